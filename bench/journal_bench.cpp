@@ -174,8 +174,8 @@ void recovery(benchmark::State& state) {
     journal::Writer::Options limits;
     limits.max_bytes = std::int64_t{4} << 30;
     auto writer = journal::Writer::open(file.path, limits);
-    (void)writer->append({{{0, 1, "session", journal::to_text(journal::to_json(session()))}}, {}},
-                         1, journal::Durability::kProcessEnd);
+    (void)writer->append({{{0, 1, "session", to_line(journal::to_json(session()))}}, {}}, 1,
+                         journal::Durability::kProcessEnd);
     journal::Batch batch;
     for (int i = 0; i < 1000; ++i)
       batch.entries.push_back({0, 1, "steps", std::string(std::size_t{1} << 14, 'x')});

@@ -181,7 +181,6 @@ constexpr Keystroke kKeystrokes[] = {
 
 // From the editor's message to the diagnostics: for a character that comes, and goes again.
 void keystroke(benchmark::State& state) {
-  using Json = nlohmann::json;
   bool is_published = false;
   lsp::Server server("", [&](const Json&) { is_published = true; });
   const std::string text = large_robot(1000);

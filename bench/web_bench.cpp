@@ -160,13 +160,13 @@ void write_day(const std::filesystem::path& path, std::int64_t begin) {
   auto writer = std::move(*journal::Writer::open(path, {}));
   journal::Session session;
   session.rules_text = kRulesOfADay;
-  session.planner = journal::Json::object();
+  session.planner = Json::object();
   const std::string reasons(1500, 'x');
   journal::Batch batch;
   const auto add = [&](std::string_view kind, std::int64_t at, const std::string& body) {
     batch.entries.push_back({0, at, std::string(kind), body});
   };
-  add(journal::kind::kSession, begin, journal::to_text(journal::to_json(session)));
+  add(journal::kind::kSession, begin, to_line(journal::to_json(session)));
   for (std::int64_t minute = 0; minute < 1440; ++minute) {
     const std::int64_t at = begin + minute * 60 * kSecond;
     for (int i = 0; i < 3; ++i) add(journal::kind::kSteps, at, std::string(20'000, 'x'));
@@ -198,7 +198,7 @@ void day_of_journal(benchmark::State& state) {
     const auto begin = Clock::now();
     const web::Answer answer = routes[0].answer({{"since", "1800000000"}});
     milliseconds.push_back(std::chrono::duration<double, std::milli>(Clock::now() - begin).count());
-    if (answer.body["incidents"].size() != 1440) throw std::runtime_error(answer.body.dump());
+    if (answer.body["incidents"].size() != 1440) throw std::runtime_error(to_line(answer.body));
   }
   std::filesystem::remove_all(folder);
   claim("1,440 incidents of a day, from the journal", quantile(milliseconds, 0.5), 500, "ms");

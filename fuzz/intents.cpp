@@ -45,7 +45,7 @@ struct Folder {
     auto writer = journal::Writer::open(journal, {});
     journal::Session session;
     session.boot = journal::boot_id();
-    (void)writer->append({{{0, 1, "session", journal::to_text(journal::to_json(session))}}, {}}, 1,
+    (void)writer->append({{{0, 1, "session", to_line(journal::to_json(session))}}, {}}, 1,
                          journal::Durability::kProcessEnd);
     newest = writer->newest();
   }

@@ -60,7 +60,7 @@ void read_steps(const std::string& body) {
 }
 
 void read_row(const std::string& body) {
-  const journal::Json json = journal::from_text(body);
+  const Json json = parse_json(body);
   (void)journal::session_from_json(json);
   (void)journal::learned_from_json(json);
   (void)journal::command_from_json(json, rules());

@@ -8,9 +8,8 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace culprit::study::rca;
-  using Json = nlohmann::ordered_json;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = parse_json(text);
   if (json.is_discarded()) return 0;
   const auto campaign = campaign_from_json(json);
   if (!campaign) {

@@ -39,7 +39,7 @@ int try_alerts(const AlertsOptions& options) {
   const std::atomic<bool> stop = false;
   const alerts::Alert alert = test_alert(settings->page);
   bool are_all_sent = true;
-  web::Json list = web::Json::array();
+  Json list = Json::array();
   for (const alerts::Destination& destination : settings->to) {
     const alerts::Sent sent = alerts::send(destination, alert, kPatience, stop);
     const bool is_sent = sent.how == alerts::Sent::How::kSent;
@@ -48,7 +48,7 @@ int try_alerts(const AlertsOptions& options) {
     if (!options.json)
       say(stdout, "{}: {}\n", destination.name(), is_sent ? "sent" : "NOT sent: " + sent.why);
   }
-  if (options.json) say(stdout, "{}\n", web::to_line(list));
+  if (options.json) say(stdout, "{}\n", to_line(list));
   return are_all_sent ? kOk : kFailed;
 }
 

@@ -18,7 +18,7 @@ struct VerifyOptions {
   bool json = false;
 };
 
-journal::Json to_json(const journal::Verification& result) {
+Json to_json(const journal::Verification& result) {
   return {{"whole", result.findings.empty()},
           {"rows", result.rows},
           {"first", result.first},
@@ -51,7 +51,7 @@ int verify(const VerifyOptions& options) {
   const auto result = journal::verify(*journal, noted);
   if (!result) return fail(result.error());
   if (options.json) {
-    fmt::print("{}\n", journal::to_text(to_json(*result)));
+    fmt::print("{}\n", to_line(to_json(*result)));
     return result->findings.empty() ? kOk : kFailed;
   }
   constexpr std::size_t kShown = 20;

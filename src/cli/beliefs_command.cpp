@@ -24,8 +24,8 @@ struct BeliefsOptions {
 };
 
 // What export writes and import reads.
-journal::Json document_of(const journal::Learned& learned) {
-  journal::Json document = {{"format", kFormat}, {"format_version", 1}};
+Json document_of(const journal::Learned& learned) {
+  Json document = {{"format", kFormat}, {"format_version", 1}};
   document.update(journal::to_json(learned));
   return document;
 }
@@ -38,7 +38,7 @@ int show(const BeliefsOptions& options) {
   const auto learned = journal->learned();
   if (!learned) return fail(learned.error());
   if (options.json) {
-    fmt::print("{}\n", journal::to_text(document_of(*learned)));
+    fmt::print("{}\n", to_line(document_of(*learned)));
     return kOk;
   }
   if (learned->beliefs.empty()) {
@@ -66,14 +66,14 @@ int write_out(const BeliefsOptions& options) {
   if (!journal) return fail(journal.error());
   const auto learned = journal->learned();
   if (!learned) return fail(learned.error());
-  const auto written = write_text(options.output, document_of(*learned).dump(2) + "\n");
+  const auto written = write_text(options.output, to_indented(document_of(*learned)) + "\n");
   return written ? kOk : fail(written.error());
 }
 
 Expected<journal::Learned> read_file(const std::string& path) {
   const auto text = read_text(path);
   if (!text) return Error{text.error()};
-  const journal::Json document = journal::from_text(*text);
+  const Json document = parse_json(*text);
   if (journal::text_of(document, "format") != kFormat ||
       journal::integer_of(document, "format_version") != 1)
     return Error{"'" + path + "' is not what culprit beliefs export writes"};

@@ -75,7 +75,7 @@ std::string state_of_the_robot() {
 class OutcomesCount {
  public:
   void follow(const journal::Entry& entry) {
-    const journal::Json body = journal::from_text(entry.body);
+    const Json body = parse_json(entry.body);
     if (entry.kind == journal::kind::kSession) begin(body, entry.id);
     if (entry.kind == journal::kind::kEvent) said(body);
     if (entry.kind == journal::kind::kBelief) learned(body, entry.id);
@@ -95,14 +95,14 @@ class OutcomesCount {
       beliefs[{each.rule, each.strategy}] = {each.belief.alpha, each.belief.beta};
     return beliefs;
   }
-  void begin(const journal::Json& body, std::int64_t row) {
+  void begin(const Json& body, std::int64_t row) {
     said_.clear();
     const auto session = journal::session_from_json(body);
     ASSERT_TRUE(session) << session.error();
     EXPECT_EQ(by_name(session->learned), beliefs_)
         << "the run of row " << row << " begins with other beliefs";
   }
-  void said(const journal::Json& body) {
+  void said(const Json& body) {
     const std::string type = journal::text_of(body, "type");
     const Name name{journal::text_of(body, "rule"), journal::text_of(body, "strategy")};
     if (type != "outcome_counted") return;
@@ -110,10 +110,10 @@ class OutcomesCount {
     if (as == "success") ++said_[name].first;
     if (as == "failure") ++said_[name].second;
   }
-  void learned(const journal::Json& body, std::int64_t row) {
+  void learned(const Json& body, std::int64_t row) {
     const Name name{journal::text_of(body, "rule"), journal::text_of(body, "strategy")};
     const std::pair now{journal::number_of(body, "alpha"), journal::number_of(body, "beta")};
-    const journal::Json prior = body.value("prior", journal::Json::array({0, 0}));
+    const Json prior = body.value("prior", Json::array({0, 0}));
     const auto before = beliefs_.try_emplace(name, prior[0], prior[1]).first->second;
     const bool helped = now == std::pair{before.first + 1, before.second};
     const bool did_not = now == std::pair{before.first, before.second + 1};

@@ -3,9 +3,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "base/environment.h"
+#include "json/json.h"
 #include "terminal/test_program.h"
 
 namespace culprit::cli {
@@ -100,12 +100,12 @@ TEST_F(Commands, CheckPrintsNothingButTheDocumentForPrograms) {
   const std::string bad = world.write("bad.rules", "robot x\n");
   auto json = culprit({"check", "--format", "json", good, bad});
   EXPECT_EQ(json.wait(), 1);
-  const auto found = nlohmann::json::parse(json.output());
+  const auto found = parse_json(json.output());
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0]["code"], "R001");
   auto sarif = culprit({"check", "--format", "sarif", good});
   EXPECT_EQ(sarif.wait(), 0);
-  EXPECT_TRUE(nlohmann::json::parse(sarif.output())["runs"][0]["results"].empty());
+  EXPECT_TRUE(parse_json(sarif.output())["runs"][0]["results"].empty());
   auto nonsense = culprit({"check", "--format", "xml", good});
   EXPECT_EQ(nonsense.wait(), 2);
 }
@@ -141,7 +141,7 @@ RULE CameraSlow
   auto wrong = culprit({"check", "--robot", "--format", "json", bad});
   EXPECT_EQ(wrong.wait(), 0) << "a robot changes: these are warnings";
   std::vector<std::string> found;
-  for (const auto& d : nlohmann::json::parse(wrong.output())) {
+  for (const auto& d : parse_json(wrong.output())) {
     found.push_back(d["code"].get<std::string>() + " " +
                     (d.contains("fix") ? d["fix"]["text"].get<std::string>() : "-"));
   }
@@ -166,9 +166,9 @@ TEST_F(Commands, GraphShowsTheRobot) {
   const TestProgram camera(world, {"sunset-node", "camera"});
   auto graph = culprit({"graph", "--json"});
   ASSERT_EQ(graph.wait(), 0) << graph.output();
-  const auto json = nlohmann::json::parse(graph.output());
-  EXPECT_THAT(json.dump(), HasSubstr("/managed_subsystem/camera"));
-  EXPECT_THAT(json.dump(), HasSubstr(std::to_string(camera.pid())));
+  const auto json = parse_json(graph.output());
+  EXPECT_THAT(to_line(json), HasSubstr("/managed_subsystem/camera"));
+  EXPECT_THAT(to_line(json), HasSubstr(std::to_string(camera.pid())));
   auto dot = culprit({"graph", "--dot"});
   ASSERT_EQ(dot.wait(), 0);
   EXPECT_THAT(dot.output(), HasSubstr("digraph"));
@@ -179,9 +179,9 @@ TEST_F(Commands, PlanLooksAtTheRobotAndLeavesItAsItIs) {
   auto plan =
       culprit({"plan", world.write("two.rules", kCommandRules), "--robot", "--format", "json"});
   ASSERT_EQ(plan.wait(), 0) << plan.output();
-  const auto json = nlohmann::json::parse(plan.output().substr(plan.output().find('{')));
+  const auto json = parse_json(plan.output().substr(plan.output().find('{')));
   EXPECT_TRUE(json["failures"].empty()) << "what was never seen is not gone: " << json;
-  EXPECT_THAT(json["unknown"].dump(), HasSubstr("alive(depth)"));
+  EXPECT_THAT(to_line(json["unknown"]), HasSubstr("alive(depth)"));
   auto graph = culprit({"graph"});
   ASSERT_EQ(graph.wait(), 0);
   EXPECT_THAT(graph.output(), Not(HasSubstr("/managed_subsystem/depth"))) << "it was started";

@@ -12,7 +12,6 @@ namespace culprit::cli {
 namespace {
 
 using journal::Entry;
-using journal::Json;
 using journal::text_of;
 
 bool is_decision(const Entry& entry, const Json& body) {
@@ -28,7 +27,7 @@ Expected<std::optional<Entry>> decision_at(const journal::Reader& journal, std::
     const auto row = journal.entry(id);
     if (!row) return Error{row.error()};
     if (!*row) return std::optional<Entry>();
-    const Json body = journal::from_text((*row)->body);
+    const Json body = parse_json((*row)->body);
     rule = text_of(body, "rule");
     if (is_decision(**row, body) || rule.empty()) return row;
   }
@@ -37,7 +36,7 @@ Expected<std::optional<Entry>> decision_at(const journal::Reader& journal, std::
   while (true) {
     auto row = journal.newest(journal::kind::kEvent, before);
     if (!row || !*row) return row;
-    const Json body = journal::from_text((*row)->body);
+    const Json body = parse_json((*row)->body);
     const bool fits = id == 0 ? text_of(body, "type") == words_of<StrategyChosen>().name
                               : is_decision(**row, body) && text_of(body, "rule") == rule;
     if (fits) return row;
@@ -88,7 +87,7 @@ Expected<std::vector<Entry>> sequel_of(const journal::Reader& journal, const Ent
   auto more = rows->next(entry);
   // A strategy that was interrupted is finished by the next run.
   for (; more && *more; more = rows->next(entry)) {
-    const Json body = journal::from_text(entry.body);
+    const Json body = parse_json(entry.body);
     const auto number = journal::integer_of(body, "command", -1);
     const bool is_outcome = entry.kind == journal::kind::kOutcome;
     const bool is_ours = is_outcome
@@ -118,7 +117,7 @@ Expected<ExplainedDecision> read_decision(const journal::Reader& journal, std::i
                          : fmt::format("there is no row {}, or nothing was decided about it; "
                                        "culprit log shows the rows",
                                        id)};
-  ExplainedDecision explained{**decision, journal::from_text((*decision)->body)};
+  ExplainedDecision explained{**decision, parse_json((*decision)->body)};
   if (!is_decision(explained.entry, explained.body)) return explained;
   auto sequel = sequel_of(journal, explained.entry, text_of(explained.body, "rule"));
   if (!sequel) return Error{sequel.error()};
@@ -134,7 +133,7 @@ Expected<std::string> explain_decision(const journal::Reader& journal, std::int6
   const auto& [entry, body, sequel] = *decision;
   std::string out =
       fmt::format("Row {}, {}\n{}\n", entry.id, local_time(entry.at), text_of(body, "text"));
-  if (!is_decision(entry, body)) return out + body.dump(2) + "\n";
+  if (!is_decision(entry, body)) return out + to_indented(body) + "\n";
   out += suspects_of(body) + candidates_of(body);
   if (!sequel.empty()) out += "\nWhat came of it\n";
   for (const Entry& each : sequel) out += log_line(each) + "\n";
@@ -146,7 +145,7 @@ Expected<std::string> decision_as_json(const journal::Reader& journal, std::int6
   if (!decision) return Error{decision.error()};
   Json document{{"decision", log_document(decision->entry)}, {"sequel", Json::array()}};
   for (const Entry& each : decision->sequel) document["sequel"].push_back(log_document(each));
-  return journal::to_text(document);
+  return to_line(document);
 }
 
 }  // namespace culprit::cli

@@ -7,8 +7,6 @@
 namespace culprit::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 const char* severity_of(const Diagnostic& d) {
   return d.severity == Severity::kError ? "error" : "warning";
 }
@@ -133,8 +131,6 @@ Json sarif_report(const std::vector<CheckedFile>& files) {
           {"runs", Json::array({std::move(run)})}};
 }
 
-std::string to_text(const Json& document) {
-  return document.dump(2, ' ', false, Json::error_handler_t::replace);
-}
+std::string to_text(const Json& document) { return to_indented(document); }
 
 }  // namespace culprit::cli

@@ -5,8 +5,7 @@
 
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
+#include "json/json.h"
 #include "language/diagnostic.h"
 #include "language/source.h"
 
@@ -20,12 +19,12 @@ struct CheckedFile {
 // An array of {file, code, severity, line, column, end_line, end_column, cause, remedy}, in the
 // order of the files and of their text; with notes, [{note, file, line, ...}], of what is included
 // or used.
-nlohmann::ordered_json json_report(const std::vector<CheckedFile>& files);
+Json json_report(const std::vector<CheckedFile>& files);
 
 // SARIF 2.1.0 (OASIS), one run. Every code is a rule, found or not.
-nlohmann::ordered_json sarif_report(const std::vector<CheckedFile>& files);
+Json sarif_report(const std::vector<CheckedFile>& files);
 
 // `document` as text. What is not UTF-8 in a rule file becomes U+FFFD.
-std::string to_text(const nlohmann::ordered_json& document);
+std::string to_text(const Json& document);
 
 }  // namespace culprit::cli

@@ -22,7 +22,7 @@ TEST(DiagnosticReport, JsonHoldsPlaceCauseAndRemedy) {
   ASSERT_EQ(report.size(), 1u);
   EXPECT_EQ(
       report[0],
-      nlohmann::ordered_json(
+      Json(
           {{"file", "b.rules"},
            {"code", "R001"},
            {"severity", "error"},
@@ -77,8 +77,7 @@ TEST(DiagnosticReport, SarifPointsAtARuleOfItsDriverAndAtTheText) {
   const auto& place = result["locations"][0]["physicalLocation"];
   EXPECT_EQ(place["artifactLocation"]["uri"], "my%20robot.rules");
   EXPECT_EQ(place["region"],
-            nlohmann::ordered_json(
-                {{"startLine", 2}, {"startColumn", 1}, {"endLine", 2}, {"endColumn", 6}}));
+            Json({{"startLine", 2}, {"startColumn", 1}, {"endLine", 2}, {"endColumn", 6}}));
   ASSERT_EQ(result["fixes"].size(), 1u);
   EXPECT_EQ(result["fixes"][0]["description"]["text"], "change 'robot' to 'ROBOT'");
   const auto& change = result["fixes"][0]["artifactChanges"][0];
@@ -98,8 +97,8 @@ TEST(DiagnosticReport, SarifSaysWhatIsOnlyAWarning) {
 
 TEST(DiagnosticReport, SurvivesTextThatIsNotUtf8) {
   const auto file = checked("a\xff.rules", "\xff\xfe ROBOT x\nCONST \xc3 = 3\n");
-  EXPECT_FALSE(nlohmann::json::parse(to_text(json_report({file}))).empty());
-  EXPECT_EQ(nlohmann::json::parse(to_text(sarif_report({file})))["version"], "2.1.0");
+  EXPECT_FALSE(parse_json(to_text(json_report({file}))).empty());
+  EXPECT_EQ(parse_json(to_text(sarif_report({file})))["version"], "2.1.0");
 }
 
 }  // namespace

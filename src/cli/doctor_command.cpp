@@ -5,7 +5,6 @@
 
 #include <fmt/chrono.h>
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "base/text_file.h"
 #include "base/units.h"
@@ -14,6 +13,7 @@
 #include "doctor/examine.h"
 #include "doctor/look.h"
 #include "doctor/report.h"
+#include "json/json.h"
 #include "ros2/options.h"
 #include "terminal/console.h"
 #include "terminal/seconds_option.h"
@@ -98,8 +98,7 @@ void print_changes(const Report& before, const Report& now) {
 // One line of JSON for each look.
 void print_again(const Report* before, const Report& now, const DoctorOptions& options) {
   if (options.json) {
-    say(stdout, "{}\n",
-        to_json(now).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    say(stdout, "{}\n", to_line(to_json(now)));
   } else if (before == nullptr) {
     print_text(now);
   } else {

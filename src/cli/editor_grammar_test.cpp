@@ -4,8 +4,9 @@
 #include <set>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
+#include "base/text_file.h"
+#include "json/json.h"
 #include "language/functions.h"
 #include "language/line_reader.h"
 #include "language/parser.h"
@@ -16,13 +17,10 @@ namespace {
 
 using Words = std::set<std::string, std::less<>>;
 
-nlohmann::json read_json(const std::string& name) {
-  std::ifstream in("editors/vscode/" + name);
-  return nlohmann::json::parse(in);
-}
+Json read_json(const std::string& name) { return parse_json(*read_text("editors/vscode/" + name)); }
 
-const nlohmann::json& grammar() {
-  static const nlohmann::json document = read_json("syntaxes/culprit-rules.tmLanguage.json");
+const Json& grammar() {
+  static const Json document = read_json("syntaxes/culprit-rules.tmLanguage.json");
   return document;
 }
 
@@ -94,7 +92,7 @@ TEST(EditorExtension, HasAnIcon) {
 TEST(EditorExtension, OffersOnlyCommandsThatItHas) {
   std::ifstream file("editors/vscode/src/extension.ts");
   const std::string source(std::istreambuf_iterator<char>(file), {});
-  const nlohmann::json contributes = read_json("package.json").at("contributes");
+  const Json contributes = read_json("package.json").at("contributes");
   Words commands;
   for (const auto& each : contributes.at("commands")) {
     commands.insert(each.at("command").get<std::string>());
@@ -109,7 +107,7 @@ TEST(EditorExtension, OffersOnlyCommandsThatItHas) {
 }
 
 // A snippet as it stands in the file when nothing is typed into it.
-std::string as_inserted(const nlohmann::json& snippet) {
+std::string as_inserted(const Json& snippet) {
   std::string text;
   for (const auto& line : snippet.at("body")) text += line.get<std::string>() + "\n";
   text = std::regex_replace(text, std::regex(R"(\$\{\d+:([^}]*)\})"), "$1");
@@ -118,7 +116,7 @@ std::string as_inserted(const nlohmann::json& snippet) {
 }
 
 TEST(EditorSnippets, AreWellFormed) {
-  const nlohmann::json snippets = read_json("snippets/culprit-rules.json");
+  const Json snippets = read_json("snippets/culprit-rules.json");
   EXPECT_GT(snippets.size(), 5u);
   for (const auto& [name, snippet] : snippets.items()) {
     std::string text = as_inserted(snippet);

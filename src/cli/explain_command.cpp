@@ -21,7 +21,7 @@ struct ExplainOptions {
   bool json = false;
 };
 
-journal::Json to_json(const Explanation& e) {
+Json to_json(const Explanation& e) {
   return {{"code", to_string(e.code)},
           {"title", e.title},
           {"why", e.why},
@@ -29,7 +29,7 @@ journal::Json to_json(const Explanation& e) {
           {"right", e.right}};
 }
 
-journal::Json to_json(const doctor::Explanation& e) {
+Json to_json(const doctor::Explanation& e) {
   return {{"code", e.code},
           {"title", e.title},
           {"why", e.why},
@@ -64,10 +64,10 @@ int explain(const ExplainOptions& options) {
     return kOk;
   }
   if (options.what.empty() && options.json) {
-    journal::Json all = journal::Json::array();
+    Json all = Json::array();
     for (const Explanation& e : explanations()) all.push_back(to_json(e));
     for (const doctor::Explanation& e : doctor::explanations()) all.push_back(to_json(e));
-    fmt::print("{}\n", journal::to_text(all));
+    fmt::print("{}\n", to_line(all));
     return kOk;
   }
   if (options.what.empty()) {
@@ -77,7 +77,7 @@ int explain(const ExplainOptions& options) {
     return kOk;
   }
   if (const auto* finding = doctor::find_explanation(options.what)) {
-    fmt::print("{}", options.json ? journal::to_text(to_json(*finding)) + "\n" : page(*finding));
+    fmt::print("{}", options.json ? to_line(to_json(*finding)) + "\n" : page(*finding));
     return kOk;
   }
   const Explanation* explanation = find_explanation(options.what);
@@ -87,7 +87,7 @@ int explain(const ExplainOptions& options) {
     return kUsage;
   }
   if (options.json) {
-    fmt::print("{}\n", journal::to_text(to_json(*explanation)));
+    fmt::print("{}\n", to_line(to_json(*explanation)));
   } else {
     fmt::print("{}", page(*explanation));
   }

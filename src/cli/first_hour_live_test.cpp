@@ -17,11 +17,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "base/live_clock.h"
 #include "base/text_file.h"
 #include "demo/test_live_sunset.h"
+#include "json/json.h"
 #include "ros2/options.h"
 #include "ros2/test_change_state.h"
 #include "terminal/test_program.h"
@@ -248,7 +248,7 @@ void look_at_the_healthy(const TestWorld& world, const std::string& breaks_itsel
   std::istringstream looks(doctor.output());
   int count = 0;
   for (std::string look; std::getline(looks, look); ++count) {
-    const auto report = nlohmann::json::parse(look, nullptr, false);
+    const auto report = parse_json(look);
     ASSERT_TRUE(report.is_object()) << look;
     for (const auto& finding : report["findings"])
       EXPECT_TRUE(finding["code"] == "D020" && finding["who"] == breaks_itself)

@@ -38,7 +38,7 @@ OutcomeOfOrder outcome_of(const web::Answer& answer) {
 
 }  // namespace
 
-OutcomeOfOrder give(const RunningCulprit& culprit, web::Json order, const std::string& reason) {
+OutcomeOfOrder give(const RunningCulprit& culprit, Json order, const std::string& reason) {
   order["author"] = who_orders();
   order["reason"] = reason;
   // It waits less than we do, and is not followed once we have given up.

@@ -12,11 +12,11 @@ namespace culprit::cli {
 
 struct OutcomeOfOrder {
   bool is_done = false;
-  std::string text;            // what became of it
-  web::Json answer = nullptr;  // of the call; null: there was none
+  std::string text;       // what became of it
+  Json answer = nullptr;  // of the call; null: there was none
 };
 
 // `order` is as POST /api/orders takes it, but for who gives it: that is who is at the terminal.
-OutcomeOfOrder give(const RunningCulprit& culprit, web::Json order, const std::string& reason);
+OutcomeOfOrder give(const RunningCulprit& culprit, Json order, const std::string& reason);
 
 }  // namespace culprit::cli

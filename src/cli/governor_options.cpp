@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <charconv>
 
-#include <nlohmann/json.hpp>
-
 #include "journal/history.h"
 #include "journal/json.h"
+#include "json/json.h"
 #include "terminal/seconds_option.h"
 
 namespace culprit::cli {
@@ -116,7 +115,7 @@ Expected<Governor::Options> GovernorOptions::options() const {
   return out;
 }
 
-nlohmann::ordered_json GovernorOptions::to_json() const {
+Json GovernorOptions::to_json() const {
   return {{"approve", approve},
           {"quiet", quiet_seconds},
           {"intensity", overall},
@@ -130,7 +129,7 @@ nlohmann::ordered_json GovernorOptions::to_json() const {
           {"no_evidence", no_evidence}};
 }
 
-GovernorOptions GovernorOptions::from_json(const nlohmann::ordered_json& json) {
+GovernorOptions GovernorOptions::from_json(const Json& json) {
   GovernorOptions options;
   const auto intensity = [&json](const char* key, std::string& value) {
     if (const std::string text = journal::text_of(json, key); !text.empty()) value = text;

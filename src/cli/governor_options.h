@@ -4,9 +4,9 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json_fwd.hpp>
 
 #include "execute/governor.h"
+#include "json/json.h"
 
 namespace culprit::cli {
 
@@ -31,8 +31,8 @@ struct GovernorOptions {
   Expected<Governor::Options> options() const;
 
   // For the journal. What is missing there was as recommended, but for `restarts`: not bounded.
-  nlohmann::ordered_json to_json() const;
-  static GovernorOptions from_json(const nlohmann::ordered_json& json);
+  Json to_json() const;
+  static GovernorOptions from_json(const Json& json);
 };
 
 }  // namespace culprit::cli

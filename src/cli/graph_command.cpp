@@ -2,10 +2,10 @@
 #include <unistd.h>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
 #include "cli/rule_graph.h"
+#include "json/json.h"
 #include "knowledge/dependency_graph.h"
 #include "live/live_robot.h"
 #include "live/rule_file.h"
@@ -101,10 +101,9 @@ void print_text(const Picture& picture) {
 }
 
 void print_json(const Picture& picture) {
-  nlohmann::json document{{"nodes", nlohmann::json::array()},
-                          {"dependencies", nlohmann::json::array()}};
+  Json document{{"nodes", Json::array()}, {"dependencies", Json::array()}};
   for (const auto& [node, place] : picture.nodes) {
-    nlohmann::json entry{{"name", node}};
+    Json entry{{"name", node}};
     if (place.pid != 0) entry["pid"] = place.pid;
     if (!place.host.empty()) entry["host"] = place.host;
     document["nodes"].push_back(std::move(entry));
@@ -113,7 +112,7 @@ void print_json(const Picture& picture) {
     document["dependencies"].push_back(
         {{"consumer", edge.consumer}, {"producer", edge.producer}, {"channel", edge.channel}});
   }
-  fmt::print("{}\n", document.dump(2));
+  fmt::print("{}\n", to_indented(document));
 }
 
 // Names of nodes were checked against the ROS grammar when they came in, those of computers were not.

@@ -61,7 +61,7 @@ int list_incidents(const IncidentOptions& options) {
   auto found = incidents::incidents_of(*journal, since);
   if (!found) return fail(found.error());
   const auto recordings = recorder::recordings_in(recordings_beside(options, *path));
-  journal::Json list = journal::Json::array();
+  Json list = Json::array();
   if (!options.json && !found->incidents.empty())
     fmt::print("{:<10} {:<24} {:>12}  {:<24} {}\n", "id", "when", "for", "cause",
                "how it ended, and its recordings");
@@ -76,9 +76,9 @@ int list_incidents(const IncidentOptions& options) {
     }
   }
   if (options.json) {
-    fmt::print("{}\n", journal::to_text({{"journal", path->string()},
-                                         {"oldest", found->oldest},
-                                         {"incidents", std::move(list)}}));
+    fmt::print("{}\n", to_line({{"journal", path->string()},
+                                {"oldest", found->oldest},
+                                {"incidents", std::move(list)}}));
   } else if (found->incidents.empty()) {
     fmt::print("nothing went wrong{}, as far as {} tells\n",
                options.since.empty() ? "" : " in the last " + options.since, path->string());
@@ -87,8 +87,8 @@ int list_incidents(const IncidentOptions& options) {
 }
 
 // {"name", "about", "unit", "limits", "points": [[seconds since 1970, value] …]}
-journal::Json curve_as_json(const incidents::Curve& curve) {
-  journal::Json points = journal::Json::array();
+Json curve_as_json(const incidents::Curve& curve) {
+  Json points = Json::array();
   for (const auto& point : curve.points)
     points.push_back({kNanosecondInSeconds * static_cast<double>(point.at), point.value});
   return {{"name", curve.name},
@@ -98,13 +98,13 @@ journal::Json curve_as_json(const incidents::Curve& curve) {
           {"points", std::move(points)}};
 }
 
-journal::Json report_as_json(const incidents::PageContent& content,
-                             const std::vector<recorder::StoredRecording>& recordings) {
-  journal::Json json =
+Json report_as_json(const incidents::PageContent& content,
+                    const std::vector<recorder::StoredRecording>& recordings) {
+  Json json =
       incidents::to_json(content.incident, incidents::recordings_of(content.incident, recordings));
   json["robot"] = content.robot;
   json["events"] = content.events;
-  json["curves"] = journal::Json::array();
+  json["curves"] = Json::array();
   json["remarks"] = content.remarks;
   if (!content.curves) return json;
   for (const incidents::Curve& curve : content.curves->curves)
@@ -134,8 +134,7 @@ int write_incident(const IncidentOptions& options) {
     if (!written) return fail(written.error());
   }
   if (options.json)
-    fmt::print("{}\n",
-               journal::to_text(report_as_json(**content, recorder::recordings_in(recordings))));
+    fmt::print("{}\n", to_line(report_as_json(**content, recorder::recordings_in(recordings))));
   std::vector<std::string> remarks = (*content)->remarks;
   if ((*content)->curves)
     remarks.insert(remarks.end(), (*content)->curves->remarks.begin(),

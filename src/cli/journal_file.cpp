@@ -64,15 +64,15 @@ std::string written(std::int64_t at, std::tm* (*split)(const std::time_t*, std::
 
 std::string local_time(std::int64_t at) { return written(at, localtime_r, ' ', ""); }
 
-journal::Json log_document(const journal::Entry& entry) {
+Json log_document(const journal::Entry& entry) {
   return {{"id", entry.id},
           {"at", written(entry.at, gmtime_r, 'T', "Z")},
           {"kind", entry.kind},
-          {"body", journal::from_text(entry.body)}};
+          {"body", parse_json(entry.body)}};
 }
 
 std::string log_line(const journal::Entry& entry) {
-  const journal::Json body = journal::from_text(entry.body);
+  const Json body = parse_json(entry.body);
   std::string what = entry.kind;
   if (entry.kind == journal::kind::kEvent) {
     what = journal::text_of(body, "type");

@@ -6,9 +6,9 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json_fwd.hpp>
 
 #include "journal/reader.h"
+#include "json/json.h"
 
 namespace culprit::cli {
 
@@ -27,6 +27,6 @@ std::string local_time(std::int64_t at);
 // "   123  2026-11-21 18:36:01.123  strategy chosen    camera is held responsible …"
 std::string log_line(const journal::Entry& entry);
 // {"id", "at": "2026-11-21T17:36:01.123Z", "kind", "body"}
-nlohmann::ordered_json log_document(const journal::Entry& entry);
+Json log_document(const journal::Entry& entry);
 
 }  // namespace culprit::cli

@@ -26,11 +26,11 @@ class ConsoleListener : public live::Listener {
 class JsonListener : public live::Listener {
  public:
   void on_event(const Event& event, const RuleSet& rules, Time start) override {
-    web::Json json = web::to_json(event, rules, start);
+    Json json = web::to_json(event, rules, start);
     if (!json["text"].get_ref<const std::string&>().empty()) print(std::move(json));
   }
   void on_announcement(Duration after, const EventWords& words, const std::string& text) override {
-    web::Json json{{"t", seconds(after)}};
+    Json json{{"t", seconds(after)}};
     json.update(web::to_json(words));
     json["text"] = text;
     print(std::move(json));
@@ -39,9 +39,9 @@ class JsonListener : public live::Listener {
   void on_trouble(const std::string& text) override { fail(text); }
 
  private:
-  static void print(web::Json json) {
+  static void print(Json json) {
     json["clock"] = web::HubObserver::wall_clock();
-    say(stdout, "{}\n", web::to_line(json));
+    say(stdout, "{}\n", to_line(json));
   }
 };
 

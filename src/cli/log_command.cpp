@@ -5,7 +5,7 @@
 #include "base/live_clock.h"
 #include "cli/commands.h"
 #include "cli/journal_file.h"
-#include "journal/json.h"
+#include "json/json.h"
 
 namespace culprit::cli {
 namespace {
@@ -37,7 +37,7 @@ int show(const LogOptions& options) {
   for (; more && *more; more = rows->next(entry)) {
     if (entry.at < earliest || (!options.kind.empty() && entry.kind != options.kind)) continue;
     if (options.json) {
-      fmt::print("{}\n", journal::to_text(log_document(entry)));
+      fmt::print("{}\n", to_line(log_document(entry)));
     } else {
       fmt::print("{}\n", log_line(entry));
     }

@@ -72,8 +72,7 @@ int serve(const std::string& version, const LspOptions& options) {
     if (from.empty()) return Error{"save this file first: others are found beside it"};
     return rule_files::load(file, from);
   };
-  lsp::Server server(version,
-                     [](const nlohmann::json& message) { lsp::write_message(std::cout, message); },
+  lsp::Server server(version, [](const Json& message) { lsp::write_message(std::cout, message); },
                      {load, rule_files::includable});
   std::unique_ptr<ros2::Survey> survey;
   std::optional<Watch> watch;

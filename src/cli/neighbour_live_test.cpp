@@ -12,13 +12,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "base/live_clock.h"
 #include "cli/test_network.h"
 #include "exemplars/sunset/node_process.h"
 #include "journal/reader.h"
 #include "journal/standing_orders.h"
+#include "json/json.h"
 #include "link/survey.h"
 #include "robot/inbox.h"
 #include "ros2/options.h"
@@ -234,10 +234,8 @@ struct TwoMachines : Neighbours {
     EXPECT_EQ(graph.wait(), 0) << graph.output();
     const std::string said =
         graph.output();  // what it could not see of other computers stands first
-    const auto json =
-        nlohmann::json::parse(said.substr(std::min(said.find('{'), said.size())), nullptr, false);
-    for (const auto& each :
-         json.is_object() ? json.value("nodes", nlohmann::json::array()) : nlohmann::json()) {
+    const auto json = parse_json(said.substr(std::min(said.find('{'), said.size())));
+    for (const auto& each : json.is_object() ? json.value("nodes", Json::array()) : Json()) {
       if (each.value("name", "") != node) continue;
       EXPECT_NE(each.contains("pid"), each.contains("host")) << each;
       return each.contains("pid") ? "pid" : "host";

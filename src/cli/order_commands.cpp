@@ -17,8 +17,6 @@
 namespace culprit::cli {
 namespace {
 
-using web::Json;
-
 struct OrderOptions {
   WhichCulprit which;
   std::string reason;
@@ -118,7 +116,7 @@ int order(const OrderOptions& options, const MakeOrder& make) {
                     {"text", outcome.text},
                     {"answer", std::move(outcome.answer)}});
   }
-  if (options.json) say(stdout, "{}\n", web::to_line({{"orders", list}, {"others", here.others}}));
+  if (options.json) say(stdout, "{}\n", to_line({{"orders", list}, {"others", here.others}}));
   // Somebody may have meant one of these.
   for (const std::string& other : here.others) say(stderr, "culprit: not told: {}\n", other);
   return is_all_done && (here.others.empty() || !options.all) ? kOk : kFailed;

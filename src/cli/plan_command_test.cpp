@@ -3,9 +3,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "json/json.h"
 
 namespace culprit::cli {
 namespace {
@@ -75,12 +75,12 @@ TEST_F(Plan, SaysWhatTheManualSays) {
 TEST_F(Plan, GivesTheSameAsData) {
   ASSERT_EQ(plan({kSunset, "--state", kSunsetState, "--planner", "paper", "--format", "json"}), kOk)
       << err;
-  const auto json = nlohmann::json::parse(out);
+  const auto json = parse_json(out);
   ASSERT_EQ(json["failures"].size(), 4u);
   const auto& dead = json["failures"][0];
   EXPECT_EQ(dead["rule"], "RGBDead");
   EXPECT_EQ(dead["chosen"], "rgb_restart");
-  EXPECT_EQ(dead["blamed"], nlohmann::json({"camera"}));
+  EXPECT_EQ(dead["blamed"], Json({"camera"}));
   EXPECT_FALSE(dead.contains("failing_s")) << "the state says no moment";
   const auto& redeploy = dead["candidates"][1];
   EXPECT_EQ(redeploy["excluded"]["condition"], "other_chosen");
@@ -90,7 +90,7 @@ TEST_F(Plan, GivesTheSameAsData) {
   EXPECT_TRUE(segmentation["chosen"].is_null());
   EXPECT_EQ(segmentation["candidates"][0]["excluded"]["failure"], "SensorFusionDead");
   EXPECT_EQ(segmentation["candidates"][0]["flips"][0]["rules"],
-            nlohmann::json({"SensorFusionDead", "RGBDead"}));
+            Json({"SensorFusionDead", "RGBDead"}));
 }
 
 TEST_F(Plan, IsTheBayesPlannersUnlessSaidOtherwise) {
@@ -137,7 +137,7 @@ TEST_F(Plan, ChoosesNothingWhileTheInterlockIsClosed) {
   EXPECT_THAT(out, Not(HasSubstr("would redeploy")));
   EXPECT_THAT(out, Not(HasSubstr("  chosen\n")));
   ASSERT_EQ(plan_for(killed, rules, "json"), kOk) << err;
-  const auto answer = nlohmann::json::parse(out);
+  const auto answer = parse_json(out);
   for (const auto& failure : answer["failures"]) {
     EXPECT_TRUE(failure["chosen"].is_null());
     if (failure["rule"] != "RGBDead") continue;

@@ -22,7 +22,7 @@ int record(const RecordOptions& options) {
   const std::string error = web::text_of(answer->body, "error").value_or("");
   if (answer->status != 200) return fail("nothing is recorded: " + error);
   if (options.json) {
-    say(stdout, "{}\n", web::to_line(answer->body));
+    say(stdout, "{}\n", to_line(answer->body));
   } else {
     say(stdout, "{}: recording to {}\n", culprit->name(),
         without_controls(web::text_of(answer->body, "recording").value_or("")));

@@ -3,12 +3,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "bag/bag_file.h"
 #include "base/environment.h"
 #include "base/live_clock.h"
 #include "base/text_file.h"
+#include "json/json.h"
 #include "recorder/recording_folder.h"
 #include "ros2/cdr.h"
 #include "ros2/messages.h"
@@ -70,7 +70,7 @@ struct BlackBoxes : testing::Test {
       TestProgram record(world,
                          {"culprit", "record", "--domain", domain, "--json", "--name", "trial"});
       if (record.wait() != 0) continue;
-      const auto said = nlohmann::json::parse(record.output(), nullptr, false);
+      const auto said = parse_json(record.output());
       const std::string path = said.value("recording", "");
       ASSERT_TRUE(culprit.prints("messages: " + path)) << culprit.output();
       const auto all = messages_in(path);
@@ -148,7 +148,7 @@ TEST_F(BlackBoxes, BecomeAPageOfTheIncidentThatShowsWhatTheRulesRead) {
 
   TestProgram list(world, {"culprit", "incident", "--journal", journal, "--json"});
   EXPECT_EQ(list.wait(), 0) << list.output();
-  const auto all = nlohmann::json::parse(list.output(), nullptr, false);
+  const auto all = parse_json(list.output());
   ASSERT_TRUE(all.contains("incidents")) << list.output();
   ASSERT_THAT(all["incidents"], SizeIs(1)) << list.output();
   EXPECT_EQ(all["incidents"][0]["recordings"][0]["path"], recording_of("LidarDead").string());

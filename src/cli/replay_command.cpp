@@ -22,8 +22,6 @@
 namespace culprit::cli {
 namespace {
 
-using journal::Json;
-
 struct ReplayOptions {
   std::string journal;
   std::int64_t session = 0;
@@ -39,11 +37,11 @@ int complain_about(const ReplayOptions& options, const std::string& what) {
   return fail("cannot replay '" + options.journal + "': " + what);
 }
 
-journal::Json to_json(const replay::Repetition& result, const replay::Recording& recording) {
-  journal::Json json{{"same", !result.difference},    {"session", recording.session_row()},
-                     {"steps", result.steps},         {"observations", result.observations},
-                     {"decisions", result.decisions}, {"digest", result.digest},
-                     {"rows_lost", result.has_gap}};
+Json to_json(const replay::Repetition& result, const replay::Recording& recording) {
+  Json json{{"same", !result.difference},    {"session", recording.session_row()},
+            {"steps", result.steps},         {"observations", result.observations},
+            {"decisions", result.decisions}, {"digest", result.digest},
+            {"rows_lost", result.has_gap}};
   if (const auto& difference = result.difference)
     json["difference"] = {{"at_s", seconds(difference->at - recording.session().start)},
                           {"row", difference->row},
@@ -68,7 +66,7 @@ int repeat(const ReplayOptions& options, const journal::Reader& journal,
   const auto result = replay::repeat(recording, journal, planner->planner(), *governor, sink);
   if (!result) return complain_about(options, result.error());
   if (options.json) {
-    fmt::print("{}\n", journal::to_text(to_json(*result, recording)));
+    fmt::print("{}\n", to_line(to_json(*result, recording)));
     return result->difference ? kFailed : kOk;
   }
   fmt::print("{} steps, {} observations, {} decisions of the run that begins with row {}\n",
@@ -157,9 +155,9 @@ void print(const std::vector<AdviceLine>& lines, const std::string& what) {
                                                 [](const AdviceLine& l) { return l.mark != ' '; }));
 }
 
-journal::Json to_json(const std::vector<AdviceLine>& lines) {
+Json to_json(const std::vector<AdviceLine>& lines) {
   constexpr std::string_view kWhere[] = {"recorded", "other", "both"};
-  journal::Json list = journal::Json::array();
+  Json list = Json::array();
   for (const AdviceLine& each : lines)
     list.push_back({{"at_s", each.at},
                     {"in", kWhere[each.mark == '-'   ? 0
@@ -187,7 +185,7 @@ int compare(const ReplayOptions& options, replay::Recording& recording, bool oth
     fmt::print(stderr, "culprit: the recording does not have the {}\n", each);
   const std::vector<AdviceLine> lines = merged(*before, *after);
   if (options.json) {
-    fmt::print("{}\n", journal::to_text(to_json(lines)));
+    fmt::print("{}\n", to_line(to_json(lines)));
   } else {
     print(lines, "what was observed");
   }
@@ -244,11 +242,11 @@ int look_back(const ReplayOptions& options, const journal::Reader& journal, bool
   const auto after = replay::hindsight(journal, rules.get(), planner, since);
   if (!after) return complain_about(options, after.error());
   if (options.json) {
-    fmt::print("{}\n", journal::to_text({{"since", after->since},
-                                         {"until", after->until},
-                                         {"missing", after->missing},
-                                         {"recorded", to_json(before->said)},
-                                         {"other", to_json(after->said)}}));
+    fmt::print("{}\n", to_line({{"since", after->since},
+                                {"until", after->until},
+                                {"missing", after->missing},
+                                {"recorded", to_json(before->said)},
+                                {"other", to_json(after->said)}}));
     return kOk;
   }
   for (const std::string& each : after->missing)

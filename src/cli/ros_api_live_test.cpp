@@ -15,7 +15,6 @@ namespace {
 
 using ros2::Durability;
 
-using ros_api::Json;
 using ros_api::TestRosNode;
 using testing::HasSubstr;
 using testing::Not;

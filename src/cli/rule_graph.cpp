@@ -5,9 +5,9 @@
 #include <variant>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "cli/diagnostic_report.h"
+#include "json/json.h"
 #include "knowledge/describe.h"
 #include "language/occurrences.h"
 #include "language/parser.h"
@@ -15,7 +15,7 @@
 namespace culprit::cli {
 namespace {
 
-using GraphJson = nlohmann::ordered_json;
+using GraphJson = Json;
 
 RuleGraph::Place place_of(Span span, const Source& source) {
   const auto written = source.origin(span).place;

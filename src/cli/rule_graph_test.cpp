@@ -6,9 +6,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "json/json.h"
 
 namespace culprit::cli {
 namespace {
@@ -74,21 +74,20 @@ TEST_F(GraphOfRules, IsOfComponentsDependenciesAndRules) {
 TEST_F(GraphOfRules, AsDataSaysWhereEachIsWritten) {
   const std::string path = file("rover", kRover);
   ASSERT_EQ(graph({path, "--json"}), kOk) << err;
-  const auto json = nlohmann::json::parse(out);
-  EXPECT_EQ(json["components"][1], nlohmann::json({{"name", "slam"},
-                                                   {"node", "/slam"},
-                                                   {"declared", true},
-                                                   {"file", path},
-                                                   {"line", 2},
-                                                   {"column", 11}}));
+  const auto json = parse_json(out);
+  EXPECT_EQ(json["components"][1], Json({{"name", "slam"},
+                                         {"node", "/slam"},
+                                         {"declared", true},
+                                         {"file", path},
+                                         {"line", 2},
+                                         {"column", 11}}));
   const auto& arm = json["components"][2];
   EXPECT_EQ(arm["declared"], false);
   EXPECT_EQ(arm["line"], 14) << "where it is named first";
-  EXPECT_EQ(json["dependencies"],
-            nlohmann::json::parse(R"([{"consumer": "slam", "producer": "lidar"}])"));
+  EXPECT_EQ(json["dependencies"], parse_json(R"([{"consumer": "slam", "producer": "lidar"}])"));
   EXPECT_EQ(json["rules"][0]["line"], 5);
-  EXPECT_EQ(json["rules"][0]["reads"], nlohmann::json({"lidar", "slam"}));
-  EXPECT_EQ(json["rules"][1]["adapts"], nlohmann::json({"slam", "arm"}));
+  EXPECT_EQ(json["rules"][0]["reads"], Json({"lidar", "slam"}));
+  EXPECT_EQ(json["rules"][1]["adapts"], Json({"slam", "arm"}));
   EXPECT_EQ(json["rules"][1]["criticality"], "WARNING");
 }
 
@@ -100,7 +99,7 @@ TEST_F(GraphOfRules, LeadsToTheFileThatIsIncludedAndToWhereATemplateIsUsed) {
                                                  "COMPONENT {name} NODE /{name}\nEND\n"
                                                  "USE driver(camera)\n");
   ASSERT_EQ(graph({path, "--json"}), kOk) << err;
-  const auto json = nlohmann::json::parse(out);
+  const auto json = parse_json(out);
   ASSERT_EQ(json["components"].size(), 2u);
   EXPECT_EQ(json["components"][0]["file"], included);
   EXPECT_EQ(json["components"][0]["line"], 1);

@@ -5,10 +5,10 @@
 #include <unistd.h>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
 #include "cli/diagnostic_report.h"
+#include "json/json.h"
 #include "rule_files/rule_files.h"
 #include "rule_test/file_run.h"
 #include "terminal/console.h"
@@ -53,13 +53,10 @@ bool write_junit(const std::string& path, const std::vector<rule_test::SuiteRepo
 }
 
 // Lengths are those of the robot's clock.
-nlohmann::ordered_json results_as_json(const Totals& totals,
-                                       const std::vector<rule_test::SuiteReport>& suites) {
-  nlohmann::ordered_json all{{"tests", totals.tests},
-                             {"failed", totals.failed},
-                             {"suites", nlohmann::ordered_json::array()}};
+Json results_as_json(const Totals& totals, const std::vector<rule_test::SuiteReport>& suites) {
+  Json all{{"tests", totals.tests}, {"failed", totals.failed}, {"suites", Json::array()}};
   for (const rule_test::SuiteReport& suite : suites) {
-    nlohmann::ordered_json cases = nlohmann::ordered_json::array();
+    Json cases = Json::array();
     for (const auto& each : suite.cases)
       cases.push_back({{"name", each.name},
                        {"ok", each.failure.empty()},

@@ -114,7 +114,7 @@ ros_api::OrderServices::Give orders_over_dds(const RunOptions& options,
   if (!has_keys)
     say(remarks,
         "culprit: takes orders over DDS from whoever is on this domain (--orders-from-anyone)\n");
-  return [&desk, &hub](const web::Json& order) { return web::give_order(desk, hub, order); };
+  return [&desk, &hub](const Json& order) { return web::give_order(desk, hub, order); };
 }
 
 // After Ctrl-C. The middleware can hang with its locks held.

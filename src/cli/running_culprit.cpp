@@ -48,7 +48,7 @@ std::string why_silent(const LocalSocket& socket, const std::string& error) {
   return fmt::format("{} does not answer: {}", who, error);
 }
 
-std::string text_in(const web::Json& json, const char* member) {
+std::string text_in(const Json& json, const char* member) {
   return web::text_of(json, member).value_or("");
 }
 
@@ -58,7 +58,7 @@ std::string RunningCulprit::name() const {
   const std::string robot = text_in(about, "robot");
   return fmt::format("culprit{} (process {}, domain {}, node /{})",
                      robot.empty() ? "" : " of " + printable(robot), process,
-                     about.contains("domain") ? about["domain"].dump() : "?",
+                     about.contains("domain") ? to_line(about["domain"]) : "?",
                      printable(text_in(about, "node")));
 }
 

@@ -14,7 +14,7 @@ namespace culprit::cli {
 
 struct RunningCulprit {
   int process = 0;
-  web::Json about;  // GET /api/about
+  Json about;  // GET /api/about
   web::LocalClient client;
 
   // "culprit of rover (process 4711, domain 0)"

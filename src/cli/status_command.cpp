@@ -26,7 +26,7 @@ Expected<WhatCulpritSays> asked(const RunningCulprit& culprit) {
     *document = std::move(*answer);
   }
   if (auto events = culprit.client.get("/api/events"); events && events->is_array())
-    said.events = events->get<std::vector<web::Json>>();
+    said.events = events->get<std::vector<Json>>();
   return said;
 }
 
@@ -34,7 +34,7 @@ int status(const StatusOptions& options) {
   constexpr std::size_t kEvents = 6;
   CulpritsHere here = culprits_here(options.which);
   bool is_well = !here.answering.empty() && here.others.empty();
-  web::Json list = web::Json::array();
+  Json list = Json::array();
   for (const RunningCulprit& culprit : here.answering) {
     const auto said = asked(culprit);
     if (!said) {
@@ -57,7 +57,7 @@ int status(const StatusOptions& options) {
     }
   }
   if (options.json) {
-    say(stdout, "{}\n", web::to_line({{"culprits", list}, {"others", here.others}}));
+    say(stdout, "{}\n", to_line({{"culprits", list}, {"others", here.others}}));
   } else if (here.answering.empty()) {
     return fail(none_to_ask(here));
   } else {

@@ -11,8 +11,6 @@
 namespace culprit::cli {
 namespace {
 
-using web::Json;
-
 // ---- documents of any form
 
 const Json kNothing = nullptr;

@@ -13,11 +13,11 @@ namespace culprit::cli {
 // The latest documents of GET /api/stream, and of /api/about. Documents are null, or of any other form,
 // where it has said nothing, or is of another version.
 struct WhatCulpritSays {
-  web::Json about = nullptr;
-  web::Json robot = nullptr;
-  web::Json state = nullptr;
-  web::Json control = nullptr;
-  std::vector<web::Json> events{};  // oldest first
+  Json about = nullptr;
+  Json robot = nullptr;
+  Json state = nullptr;
+  Json control = nullptr;
+  std::vector<Json> events{};  // oldest first
 };
 
 // No failure is seen, nothing keeps culprit from acting, and nobody is asked.

@@ -11,7 +11,6 @@ namespace {
 
 using testing::HasSubstr;
 using testing::Not;
-using web::Json;
 
 std::string all_of(const WhatCulpritSays& said) {
   std::string text;
@@ -25,15 +24,15 @@ std::string all_of(const WhatCulpritSays& said) {
 
 WhatCulpritSays well() {
   WhatCulpritSays said;
-  said.about = Json::parse(
+  said.about = parse_json(
       R"({"version": "1.2", "process": 4711, "domain": 3, "node": "culprit", "rules": "my.rules"})");
   said.robot =
-      Json::parse(R"({"robot": "rover", "components": [{"name": "camera"}, {"name": "fusion"}]})");
+      parse_json(R"({"robot": "rover", "components": [{"name": "camera"}, {"name": "fusion"}]})");
   said.state =
-      Json::parse(R"({"t": 20, "clock": 1795538720, "incidents": [], "rules": [{"phase": "quiet"}],
+      parse_json(R"({"t": 20, "clock": 1795538720, "incidents": [], "rules": [{"phase": "quiet"}],
       "components": [{"health": "OK", "alive": true, "process": "running", "present": true},
                      {"health": "OK", "alive": true, "process": "running", "present": true}]})");
-  said.control = Json::parse(
+  said.control = parse_json(
       R"({"paused": false, "dry_run": false, "hears": true, "silences": [], "asked": []})");
   return said;
 }
@@ -41,10 +40,10 @@ WhatCulpritSays well() {
 WhatCulpritSays ill() {
   WhatCulpritSays said = well();
   said.state["incidents"].push_back(
-      Json::parse(R"({"headline": "camera is dead", "health": "ERROR", "since": 11.5,
+      parse_json(R"({"headline": "camera is dead", "health": "ERROR", "since": 11.5,
       "rule": "CameraGone", "components": ["camera"], "certain": true, "consequences": ["FusionSilent", "PoseSilent"],
       "needs_person": false, "doing": "being repaired: redeploy camera", "next": "redeploy is being carried out"})"));
-  said.state["components"][0] = Json::parse(
+  said.state["components"][0] = parse_json(
       R"({"health": "ERROR", "alive": false, "process": "gone", "adapting": "redeploy"})");
   said.state["rules"][0]["phase"] = "attempting";
   return said;
@@ -97,7 +96,7 @@ TEST(StatusReport, TakesDocumentsOfAnyForm) {
        {"1", "[]", "\"x\"", "{}", R"({"components": 1, "incidents": {"a": 1}, "rules": [1, null]})",
         R"({"components": [1, null, {}], "incidents": [1, null, [], {"since": "x"}], "t": "x",
                                "clock": [], "silences": [3], "asked": [null], "paused": 1, "hears": "yes"})"}) {
-    const Json any = Json::parse(text);
+    const Json any = parse_json(text);
     const WhatCulpritSays said{any, any, any, any, {any, any}};
     EXPECT_FALSE(is_all_well(said)) << text;
     all_of(said);

@@ -21,7 +21,7 @@ Rows::Rows(const std::filesystem::path& journal) {
     const auto more = entries->next(entry);
     if (!more || !*more) return;
     rows_.push_back({std::chrono::nanoseconds(entry.at), entry.kind,
-                     journal::text_of(journal::from_text(entry.body), "text")});
+                     journal::text_of(parse_json(entry.body), "text")});
   }
 }
 

@@ -26,7 +26,7 @@ constexpr std::size_t kEventsKept = 200;
 // Follows what a running culprit says, on a thread of its own, and goes on trying when it falls silent.
 class Follower {
  public:
-  Follower(web::LocalClient client, web::Json about) : client_(std::move(client)) {
+  Follower(web::LocalClient client, Json about) : client_(std::move(client)) {
     said_.about = std::move(about);
     thread_ = std::thread([this] { follow(); });
   }
@@ -48,7 +48,7 @@ class Follower {
  private:
   void follow() {
     while (!is_over_) {
-      const auto ended = client_.follow([this](std::string_view kind, web::Json document) {
+      const auto ended = client_.follow([this](std::string_view kind, Json document) {
         take(kind, std::move(document));
         return !is_over_;
       });
@@ -60,7 +60,7 @@ class Follower {
     }
   }
 
-  void take(std::string_view kind, web::Json document) {
+  void take(std::string_view kind, Json document) {
     const MutexLock lock(mutex_);
     heard_ = live_now();
     trouble_.clear();

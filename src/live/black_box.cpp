@@ -25,10 +25,10 @@ void BlackBox::stepped(const Runtime::Step& step) {
   if (step.events.empty()) return;
   const Knowledge& knowledge = manager_->knowledge();
   for (const Event& event : step.events) {
-    journal::Json json = journal::to_json(event, knowledge.rules);
+    Json json = journal::to_json(event, knowledge.rules);
     if (journal::text_of(json, "text").empty()) continue;
     json["clock"] = clock_now();
-    recorder_.note_event(journal::to_text(json));
+    recorder_.note_event(to_line(json));
     if (const auto* detected = std::get_if<FailureDetected>(&event.what))
       recorder_.begin(knowledge.rules[detected->rule].name);
   }
@@ -36,8 +36,7 @@ void BlackBox::stepped(const Runtime::Step& step) {
 }
 
 void BlackBox::announced(Time /*at*/, const EventWords& words, const std::string& text) {
-  recorder_.note_event(
-      journal::to_text({{"type", words.name}, {"text", text}, {"clock", clock_now()}}));
+  recorder_.note_event(to_line({{"type", words.name}, {"text", text}, {"clock", clock_now()}}));
 }
 
 }  // namespace culprit::live

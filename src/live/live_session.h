@@ -33,8 +33,8 @@ class LiveSession {
     PlannerFactory planner;
     Governor::Options governor;
     // How both are written down in the journal, for whoever repeats the run.
-    journal::Json planner_record;
-    journal::Json governor_record = journal::Json::object();
+    Json planner_record;
+    Json governor_record = Json::object();
     double forgetting = 1;
     Duration discovery = Manager::kDiscovery;
     bool launches = false;      // components that are missing

@@ -70,8 +70,8 @@ struct KillSwitch : testing::Test {
       session.is_paused = is_paused();
       write(journal::kind::kSession, to_json(session), wall);
     }
-    void write(std::string_view kind, const journal::Json& body, std::int64_t wall) {
-      const journal::Batch batch{{{0, wall, std::string(kind), journal::to_text(body)}}, {}};
+    void write(std::string_view kind, const Json& body, std::int64_t wall) {
+      const journal::Batch batch{{{0, wall, std::string(kind), to_line(body)}}, {}};
       const auto written =
           beginning.writer->append(batch, wall, journal::Durability::kPowerFailure);
       ASSERT_TRUE(written) << written.error();
@@ -275,10 +275,10 @@ TEST_F(KillSwitch, IsKnownFromTheRowsOfAnOlderCulprit) {
     ASSERT_TRUE(writer);
     journal::Session session;
     session.boot = journal::boot_id();
-    const journal::Json pause = {{"type", "order_accepted"}, {"order", "pause"}, {"author", "ada"}};
-    const journal::Batch batch{{{0, kWall, "session", journal::to_text(to_json(session))},
-                                {0, kWall, "event", journal::to_text(pause)}},
-                               {}};
+    const Json pause = {{"type", "order_accepted"}, {"order", "pause"}, {"author", "ada"}};
+    const journal::Batch batch{
+        {{0, kWall, "session", to_line(to_json(session))}, {0, kWall, "event", to_line(pause)}},
+        {}};
     ASSERT_TRUE(writer->append(batch, kWall, journal::Durability::kProcessEnd));
   }
   {

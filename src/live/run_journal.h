@@ -18,7 +18,7 @@ struct RunBeginning {
   // What the last run could not write any more, to be written before this one begins.
   std::vector<journal::Entry> unwritten;
   journal::Learned learned;
-  journal::Json interrupted = journal::Json::array();
+  Json interrupted = Json::array();
   History past;            // without silences
   KnownRobot known_robot;  // is_whole: as far as the journal tells
   std::string last_rules;  // the text of the last run's rules

@@ -12,13 +12,12 @@
 #include <string>
 #include <vector>
 
-#include "http/json.h"
+#include "json/json.h"
 #include "live/situation.h"
 #include "ros_api/culprit_types.h"
 
 namespace culprit::ros_api {
 
-using web::Json;
 using WallTime = std::chrono::system_clock::time_point;
 
 // A builtin_interfaces/Time.

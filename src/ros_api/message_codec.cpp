@@ -61,7 +61,7 @@ std::optional<T> number_in(const Json& document) {
 
 // Whoever reads a text in Python gets an exception otherwise.
 std::string mended(const std::string& text) {
-  return Json::parse(web::to_line(Json(text))).get<std::string>();
+  return parse_json(to_line(Json(text))).get<std::string>();
 }
 
 class Encoder {

@@ -6,13 +6,11 @@
 #pragma once
 
 #include "base/expected.h"
-#include "http/json.h"
+#include "json/json.h"
 #include "ros2/cdr.h"
 #include "ros_api/culprit_types.h"
 
 namespace culprit::ros_api {
-
-using web::Json;
 
 // A field that the document has not is zero, false or empty. Texts that are no UTF-8 are mended; a
 // floating-point number that is null is not a number. Errors: a member that is no field of the type, or

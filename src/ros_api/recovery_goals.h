@@ -24,11 +24,10 @@
 #include <vector>
 
 #include "base/time.h"
-#include "http/json.h"
+#include "json/json.h"
 
 namespace culprit::ros_api {
 
-using web::Json;
 using WallTime = std::chrono::system_clock::time_point;
 
 class RecoveryGoals {

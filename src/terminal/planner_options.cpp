@@ -1,8 +1,7 @@
 #include "terminal/planner_options.h"
 
-#include <nlohmann/json.hpp>
-
 #include "journal/json.h"
+#include "json/json.h"
 #include "plan/bayes/bayes_planner.h"
 #include "plan/paper_planner.h"
 
@@ -49,7 +48,7 @@ PlannerFactory PlannerOptions::factory() const {
   return [options = *this] { return options.planner(); };
 }
 
-nlohmann::ordered_json PlannerOptions::to_json() const {
+Json PlannerOptions::to_json() const {
   return {{"name", name},
           {"objective", objective},
           {"no_dependencies", no_dependencies},
@@ -57,7 +56,7 @@ nlohmann::ordered_json PlannerOptions::to_json() const {
           {"no_impact", no_impact}};
 }
 
-Expected<PlannerOptions> PlannerOptions::from_json(const nlohmann::ordered_json& json) {
+Expected<PlannerOptions> PlannerOptions::from_json(const Json& json) {
   PlannerOptions options;
   options.name = journal::text_of(json, "name");
   options.objective = journal::text_of(json, "objective");

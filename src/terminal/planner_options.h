@@ -6,9 +6,9 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json_fwd.hpp>
 
 #include "base/expected.h"
+#include "json/json.h"
 #include "plan/planner.h"
 
 namespace culprit {
@@ -27,8 +27,8 @@ struct PlannerOptions {
   PlannerFactory factory() const;
 
   // For the journal. Errors: the planner or its objective is not known.
-  nlohmann::ordered_json to_json() const;
-  static Expected<PlannerOptions> from_json(const nlohmann::ordered_json& json);
+  Json to_json() const;
+  static Expected<PlannerOptions> from_json(const Json& json);
 };
 
 }  // namespace culprit

@@ -14,18 +14,18 @@ struct Known {
 std::optional<Known> known(Hub& hub, const std::string& component) {
   const auto robot = hub.latest(Kind::kRobot);
   if (!robot) return std::nullopt;
-  const Json components = Json::parse(*robot).value("components", Json::array());
+  const Json components = parse_json(*robot).value("components", Json::array());
   std::size_t place = 0;
   while (place < components.size() && components[place].value("name", "") != component) ++place;
   if (place == components.size()) return std::nullopt;
   Known found{components[place].value("node", ""), 0};
   if (const auto graph = hub.latest(Kind::kGraph)) {
-    for (const Json& node : Json::parse(*graph).value("nodes", Json::array())) {
+    for (const Json& node : parse_json(*graph).value("nodes", Json::array())) {
       if (node.value("component", "") == component) found.node = node.value("node", "");
     }
   }
   if (const auto state = hub.latest(Kind::kState)) {
-    const Json states = Json::parse(*state).value("components", Json::array());
+    const Json states = parse_json(*state).value("components", Json::array());
     if (place < states.size()) found.pid = states[place].value("pid", 0);
   }
   return found;

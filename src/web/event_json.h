@@ -2,7 +2,7 @@
 // what the page needs to show it without a table of its own.
 #pragma once
 
-#include "http/json.h"
+#include "json/json.h"
 #include "knowledge/event_words.h"
 
 namespace culprit::web {

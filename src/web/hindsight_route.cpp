@@ -26,7 +26,7 @@ Answer look_back(const std::string& rules, std::int64_t seconds,
                 folder, kMostSecondsOfReplay);
   if (!looked) return refuse(503, "the journal could not be replayed: " + looked.error());
   if (looked->status != 0) return refuse(422, looked->text);
-  Json body = Json::parse(looked->text, nullptr, false);
+  Json body = parse_json(looked->text);
   if (!body.is_object()) return refuse(503, "the replay gave nothing: " + looked->text);
   return {200, std::move(body)};
 }

@@ -28,7 +28,7 @@ struct ToldOnce {
     const auto commands = manager.step(now, observations);
     observer.stepped({now, {}, observations, commands, manager.events()});
   }
-  Json latest(Kind kind) const { return Json::parse(*hub.latest(kind)); }
+  Json latest(Kind kind) const { return parse_json(*hub.latest(kind)); }
 
   const RuleSet rules = *check(Source("test", kObservedRules)).rules;
   Manager manager{rules, std::make_unique<BayesPlanner>(), {}};
@@ -43,7 +43,7 @@ TEST(HubObserver, TellsWhatTheClockOnTheWallSays) {
   told.observer.announced(Time(), {"trouble", "trouble", EventSeverity::kWarning, Tone::kWarning},
                           "a test");
   const Hub::Batch batch = told.hub.wait(0, std::chrono::milliseconds(0));
-  const Json event = Json::parse(*batch.messages.back().data);
+  const Json event = parse_json(*batch.messages.back().data);
   EXPECT_EQ(event["text"], "a test");
   EXPECT_EQ(event["clock"], 1795538700.123);
 }

@@ -45,14 +45,14 @@ std::optional<Number> number_of(const Json& query, const char* name) {
 class Recent {
  public:
   explicit Recent(Hub& hub) {
-    if (const auto robot = hub.latest(Kind::kRobot)) robot_ = Json::parse(*robot);
+    if (const auto robot = hub.latest(Kind::kRobot)) robot_ = parse_json(*robot);
     std::uint64_t seen = 0;
     for (auto batch = hub.wait(seen, std::chrono::milliseconds(0)); !batch.messages.empty();
          batch = hub.wait(seen, std::chrono::milliseconds(0))) {
       seen = batch.messages.back().number;
       for (const Message& message : batch.messages) {
         if (message.kind == Kind::kEvent)
-          events_.emplace_back(message.number, Json::parse(*message.data));
+          events_.emplace_back(message.number, parse_json(*message.data));
       }
     }
   }
@@ -104,8 +104,8 @@ std::set<std::string> failing_now(Hub& hub) {
   const auto robot = hub.latest(Kind::kRobot);
   const auto state = hub.latest(Kind::kState);
   if (!robot || !state) return failing;
-  const Json rules = Json::parse(*robot)["rules"];
-  const Json states = Json::parse(*state)["rules"];
+  const Json rules = parse_json(*robot)["rules"];
+  const Json states = parse_json(*state)["rules"];
   for (std::size_t r = 0; r < std::min(rules.size(), states.size()); ++r) {
     if (states[r]["phase"] != "quiet") failing.insert(rules[r]["name"].get<std::string>());
   }

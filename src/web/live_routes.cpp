@@ -19,7 +19,7 @@ Answer newest(Hub& hub, Kind kind) {
     if (kind != Kind::kState && newest) break;
   }
   if (!newest) return refuse(503, "the manager has not said anything yet; ask again");
-  return {200, Json::parse(*newest)};
+  return {200, parse_json(*newest)};
 }
 
 Answer events(Hub& hub) {
@@ -30,7 +30,7 @@ Answer events(Hub& hub) {
     if (batch.messages.empty()) return {200, list};
     seen = batch.messages.back().number;
     for (const Message& message : batch.messages) {
-      if (message.kind == Kind::kEvent) list.push_back(Json::parse(*message.data));
+      if (message.kind == Kind::kEvent) list.push_back(parse_json(*message.data));
     }
   }
 }

@@ -154,7 +154,7 @@ std::optional<Json> word_on(std::uint64_t number, Hub& hub, std::uint64_t after,
       after = message.number;
       if (message.kind != Kind::kEvent || message.data->find("\"order_") == std::string::npos)
         continue;
-      Json event = Json::parse(*message.data);
+      Json event = parse_json(*message.data);
       const std::string type = event.value("type", "");
       const bool is_word = type == "order_accepted" || type == "order_refused";
       if (is_word && event.value("number", std::uint64_t{0}) == number) return event;

@@ -10,6 +10,7 @@
 
 #include "base/live_clock.h"
 #include "base/test_folder.h"
+#include "base/text_file.h"
 #include "journal/session.h"
 #include "journal/writer.h"
 #include "language/checker.h"
@@ -133,10 +134,7 @@ struct Routes : testing::Test {
   std::vector<Route> all;
 };
 
-Json openapi() {
-  std::ifstream file("src/web/openapi.json");
-  return Json::parse(file);
-}
+Json openapi() { return parse_json(*read_text("src/web/openapi.json")); }
 
 TEST_F(Routes, AreAllInTheOpenApiDocument) {
   std::set<std::string> told;
@@ -228,7 +226,7 @@ TEST(RuleDesk, IncludesForAPageWhatIsBesideTheFile) {
   const auto said = [&](const std::string& text) {
     for (const Route& route : rule_routes(desk)) {
       if (route.path == "/api/rules/ask")
-        return route.answer({{"text", text}}).body["diagnostics"].dump();
+        return to_line(route.answer({{"text", text}}).body["diagnostics"]);
     }
     return std::string("no such route");
   };
@@ -360,10 +358,11 @@ TEST_F(Routes, ExportWhatWasLearned) {
   hub.publish(Kind::kState, R"({"beliefs": [[3, 7], [5, 5]], "priors": [[2, 7], [5, 5]],
       "couplings": [[0, 0, 2, 1]]})");
   const Json learned = ask("get /api/beliefs").body;
-  EXPECT_EQ(learned["beliefs"].dump(),
+  EXPECT_EQ(to_line(learned["beliefs"]),
             R"([{"rule":"R","strategy":"s","belief":[3,7],"prior":[2,7]}])")
       << "from what it began, which a fleet may have told";
-  EXPECT_EQ(learned["couplings"].dump(), R"([{"cause":"R","effect":"R","cleared":2,"stayed":1}])");
+  EXPECT_EQ(to_line(learned["couplings"]),
+            R"([{"cause":"R","effect":"R","cleared":2,"stayed":1}])");
 }
 
 TEST_F(Routes, ReloadOnlyRulesWithoutErrors) {
@@ -377,8 +376,8 @@ TEST_F(Routes, ReloadOnlyRulesWithoutErrors) {
 
 TEST_F(Routes, OfferWhatTheRobotHasAndDisturbItNoMoreThanNeeded) {
   const Json names = ask("post /api/rules/names", {{"text", kRouteRules}}).body;
-  EXPECT_EQ(names["nodes"].dump(), R"({"/camera":{"parameters":{"gain":0.5,"matrix":null}}})");
-  EXPECT_EQ(names["topics"].dump(), R"(["/rgb"])");
+  EXPECT_EQ(to_line(names["nodes"]), R"({"/camera":{"parameters":{"gain":0.5,"matrix":null}}})");
+  EXPECT_EQ(to_line(names["topics"]), R"(["/rgb"])");
   EXPECT_THAT(looked_at.nodes, testing::ElementsAre("/camera"));
   EXPECT_TRUE(looked_at.fields_of_topics.empty());
 }
@@ -428,11 +427,12 @@ TEST_F(Routes, TellIncidentsOfTheStreamWhereThereIsNoJournal) {
   EXPECT_EQ(answer.body["journal"], nullptr);
   ASSERT_EQ(answer.body["incidents"].size(), 1u);
   const Json& incident = answer.body["incidents"][0];
-  EXPECT_EQ(incident["causes"].dump(), R"(["camera"])");
-  EXPECT_EQ(incident["helped"].dump(), R"(["s"])");
+  EXPECT_EQ(to_line(incident["causes"]), R"(["camera"])");
+  EXPECT_EQ(to_line(incident["helped"]), R"(["s"])");
   EXPECT_EQ(incident["seconds"], 2);
-  const Json range{
-      {"first", incident["first"].dump()}, {"last", incident["last"].dump()}, {"from", "stream"}};
+  const Json range{{"first", to_line(incident["first"])},
+                   {"last", to_line(incident["last"])},
+                   {"from", "stream"}};
   const Json told = ask("get /api/incidents/events", range).body["events"];
   ASSERT_EQ(told.size(), 3u);
   EXPECT_EQ(told[2]["t"], 1'800'000'012);
@@ -474,8 +474,7 @@ TEST_F(Routes, TellIncidentsOfTheJournalAsTheStreamWould) {
     for (const auto& [kind, body] : {std::pair{journal::kind::kSession, journal::to_json(session)},
                                      {journal::kind::kEvent, detected},
                                      {journal::kind::kEvent, chosen}})
-      batch.entries.push_back(
-          {0, 1'800'000'000'000'000'000, std::string(kind), journal::to_text(body)});
+      batch.entries.push_back({0, 1'800'000'000'000'000'000, std::string(kind), to_line(body)});
     ASSERT_TRUE(writer->append(batch, 1'800'000'000'000'000'000, journal::Durability::kProcessEnd));
   }
   const Json list = ask("get /api/incidents", {{"since", "1799999999.5"}}).body;
@@ -483,13 +482,13 @@ TEST_F(Routes, TellIncidentsOfTheJournalAsTheStreamWould) {
   ASSERT_EQ(list["incidents"].size(), 1u) << list;
   EXPECT_EQ(list["incidents"][0]["over"], false);
   const Json& incident = list["incidents"][0];
-  const Json range{{"first", incident["first"].dump()}, {"last", incident["last"].dump()}};
+  const Json range{{"first", to_line(incident["first"])}, {"last", to_line(incident["last"])}};
   const Json told = ask("get /api/incidents/events", range).body["events"];
   ASSERT_EQ(told.size(), 2u) << told;
   EXPECT_EQ(told[0]["label"], "detected");
   EXPECT_EQ(told[0]["severity"], "error");
   EXPECT_EQ(told[1]["clock"], 1'800'000'000.1);
-  EXPECT_EQ(told[1]["components"].dump(), R"(["camera"])");
+  EXPECT_EQ(to_line(told[1]["components"]), R"(["camera"])");
   EXPECT_EQ(told[1]["candidates"][0]["excluded"]["text"], "it was tried");
 }
 
@@ -555,7 +554,7 @@ TEST_F(Routes, TellWhatAComponentUsesAndLogged) {
   EXPECT_GT(camera["process"]["memory"], 1'000'000);
   EXPECT_EQ(camera["usage"], Json::array()) << "nobody has looked yet";
   EXPECT_EQ(camera["parameters"]["gain"], 0.5);
-  EXPECT_EQ(camera["log"].dump(), R"([{"clock":7.5,"level":"warning","text":"it is dark"}])");
+  EXPECT_EQ(to_line(camera["log"]), R"([{"clock":7.5,"level":"warning","text":"it is dark"}])");
   EXPECT_THAT(looked_at.nodes, testing::ElementsAre("/camera"));
   EXPECT_EQ(ask("get /api/component", {{"name", "lidar"}}).body["process"], nullptr);
   EXPECT_EQ(ask("get /api/component", {{"name", "nobody"}}).status, 404);

@@ -47,9 +47,9 @@ Answer ask(const RuleDesk& desk, const Json& body) {
   if (!text) return refuse(400, "send the rules as 'text'");
   Json reply{{"diagnostics", Json::array()}, {"result", nullptr}};
   lsp::Server server("web",
-                     [&](const nlohmann::json& message) {
+                     [&](const Json& message) {
                        if (message.contains("id")) {
-                         reply["result"] = message.value("result", nlohmann::json());
+                         reply["result"] = message.value("result", Json());
                        } else if (message["params"]["uri"] == kUri) {
                          reply["diagnostics"] = message["params"]["diagnostics"];
                        }
@@ -58,14 +58,14 @@ Answer ask(const RuleDesk& desk, const Json& body) {
                         return desk.can_save() ? rule_files::includable(desk.path())
                                                : std::vector<std::string>{};
                       }});
-  const nlohmann::json document{{"uri", kUri}};
+  const Json document{{"uri", kUri}};
   server.handle({{"method", "textDocument/didOpen"},
                  {"params", {{"textDocument", {{"uri", kUri}, {"text", *text}}}}}});
   const auto method = text_of(body, "method");
   if (!method) return {200, reply};
   if (std::find(kQuestions.begin(), kQuestions.end(), *method) == kQuestions.end())
     return refuse(400, "'method' has to be one that asks about a text, such as textDocument/hover");
-  nlohmann::json params = nlohmann::json::object();
+  Json params = Json::object();
   if (const auto sent = body.find("params"); sent != body.end() && sent->is_object())
     params = *sent;
   params["textDocument"] = document;
@@ -82,7 +82,7 @@ Answer as_json(const Json& body) {
 }
 
 Answer as_text(const Json& body) {
-  const auto text = rule_json::to_rules(kTextOfPage, body.dump());
+  const auto text = rule_json::to_rules(kTextOfPage, to_line(body));
   if (!text) return refuse(422, text.error());
   return {200, {{"text", *text}}};
 }

@@ -26,13 +26,13 @@ Answer play(const Json& request) {
   if (!laboratory) return refuse(503, laboratory.error());
   const AsideFolder folder;
   const std::string wish = folder.file("request.json");
-  if (const auto written = write_text(wish, request.dump()); !written)
+  if (const auto written = write_text(wish, to_line(request)); !written)
     return refuse(503, written.error());
   const auto played =
       run_aside({laboratory->string(), "play-again", wish}, folder, kMostSecondsOfRun);
   if (!played) return refuse(503, "the run could not be played: " + played.error());
   if (played->status != 0) return refuse(422, played->text);
-  Json body = Json::parse(played->text, nullptr, false);
+  Json body = parse_json(played->text);
   if (!body.is_object()) return refuse(503, "culprit-lab gave no run: " + played->text);
   return {200, std::move(body)};
 }

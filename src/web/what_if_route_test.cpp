@@ -1,10 +1,9 @@
 #include "web/what_if_route.h"
 
-#include <fstream>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/text_file.h"
 #include "plan/paper_planner.h"
 
 namespace culprit::web {
@@ -15,8 +14,7 @@ Answer ask(const Json& body) {
 }
 
 Json example() {
-  std::ifstream file("src/web/openapi.json");
-  const auto document = Json::parse(file);
+  const auto document = parse_json(*read_text("src/web/openapi.json"));
   return document["paths"]["/api/what-if"]["post"]["requestBody"]["content"]["application/json"]
                  ["example"];
 }

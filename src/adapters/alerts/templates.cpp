@@ -5,12 +5,11 @@
 #include <string_view>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
+
+#include "json/json.h"
 
 namespace culprit::alerts {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // RFC 3339, in UTC.
 std::string timestamp_of(double seconds_since_1970) {
@@ -94,9 +93,7 @@ Json plain(const Alert& alert) {
   return json;
 }
 
-std::string on_one_line(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
+std::string on_one_line(const Json& json) { return to_line(json); }
 
 }  // namespace
 

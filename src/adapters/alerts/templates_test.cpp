@@ -2,12 +2,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
+
+#include "json/json.h"
 
 namespace culprit::alerts {
 namespace {
 
-using nlohmann::json;
 using testing::HasSubstr;
 using Kind = Destination::Kind;
 
@@ -52,7 +52,7 @@ TEST(AlertText, SaysWhoIsBlamedWhatSuffersAndWhatIsDone) {
 TEST(AlertTemplates, GiveSlackATextInWhichNamesAreOnlyText) {
   Alert alert = dead_camera();
   alert.headline = "<!channel> & <http://evil|camera>";
-  const json body = json::parse(body_for(Kind::kSlack, alert));
+  const Json body = parse_json(body_for(Kind::kSlack, alert));
   EXPECT_THAT(body["text"].get<std::string>(),
               HasSubstr("&lt;!channel&gt; &amp; &lt;http://evil|camera&gt;"));
   EXPECT_THAT(body["text"].get<std::string>(),
@@ -60,8 +60,8 @@ TEST(AlertTemplates, GiveSlackATextInWhichNamesAreOnlyText) {
 }
 
 TEST(AlertTemplates, GiveAlertmanagerOneAlertFromItsBeginningToItsEnd) {
-  const json firing = json::parse(body_for(Kind::kAlertmanager, dead_camera()));
-  const json resolved = json::parse(body_for(Kind::kAlertmanager, over(dead_camera())));
+  const Json firing = parse_json(body_for(Kind::kAlertmanager, dead_camera()));
+  const Json resolved = parse_json(body_for(Kind::kAlertmanager, over(dead_camera())));
   ASSERT_EQ(firing.size(), 1u);
   EXPECT_EQ(firing[0]["labels"], resolved[0]["labels"]);
   EXPECT_EQ(firing[0]["labels"]["robot"], "rover");
@@ -70,7 +70,7 @@ TEST(AlertTemplates, GiveAlertmanagerOneAlertFromItsBeginningToItsEnd) {
   EXPECT_EQ(resolved[0]["endsAt"], "2026-11-24T16:45:02.750Z");
   Alert needed = dead_camera();
   needed.needs_person = true;
-  const json both = json::parse(body_for(Kind::kAlertmanager, needed));
+  const Json both = parse_json(body_for(Kind::kAlertmanager, needed));
   ASSERT_EQ(both.size(), 2u);
   EXPECT_EQ(both[0]["labels"], firing[0]["labels"]);
   EXPECT_EQ(both[1]["labels"]["alertname"], "CulpritNeedsPerson");
@@ -87,14 +87,14 @@ TEST(AlertTemplates, FindAlertmanagersApi) {
 }
 
 TEST(AlertTemplates, GiveProgramsAllThatIsKnown) {
-  const json body = json::parse(body_for(Kind::kJson, over(dead_camera())));
+  const Json body = parse_json(body_for(Kind::kJson, over(dead_camera())));
   EXPECT_EQ(body["format"], "culprit-alert");
   EXPECT_EQ(body["state"], "resolved");
-  EXPECT_EQ(body["components"], json::array({"camera"}));
+  EXPECT_EQ(body["components"], Json::array({"camera"}));
   EXPECT_EQ(body["link"], "http://rover.lan:8642");
   Alert odd = dead_camera();
   odd.headline = "\xff\xfe\n\"";
-  EXPECT_TRUE(json::accept(body_for(Kind::kJson, odd)));
+  EXPECT_TRUE(Json::accept(body_for(Kind::kJson, odd)));
 }
 
 }  // namespace

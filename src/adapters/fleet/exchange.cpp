@@ -4,12 +4,10 @@
 
 #include "fleet/clean.h"
 #include "fleet/definition.h"
-#include "journal/json.h"
+#include "json/json.h"
 
 namespace culprit::fleet {
 namespace {
-
-using journal::Json;
 
 constexpr int kAtOnce = 400;
 // Anybody with a robot's login can make up models.
@@ -52,7 +50,7 @@ template <class T>
 std::string texts_of(const std::vector<T>& all) {
   Json json = Json::array();
   for (const T& each : all) json.push_back(json_of(each));
-  return journal::to_text(json);
+  return to_line(json);
 }
 
 constexpr const char* kRobot = R"sql(
@@ -214,7 +212,7 @@ Expected<FleetKnowledge> ask(Server& server, const Identity& identity, const Rul
   for (const auto& [name, definition] : definitions_of(rules))
     wanted.push_back(
         {{"rule", name.rule}, {"strategy", name.strategy}, {"definition", definition}});
-  const std::string names = journal::to_text(wanted);
+  const std::string names = to_line(wanted);
   FleetKnowledge knowledge;
   knowledge.model = clean(rules.robot);
   const auto pool = server.query(

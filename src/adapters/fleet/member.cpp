@@ -10,7 +10,7 @@
 #include "fleet/exchange.h"
 #include "fleet/journal_tail.h"
 #include "fleet/schema.h"
-#include "journal/json.h"
+#include "json/json.h"
 
 namespace culprit::fleet {
 
@@ -269,8 +269,8 @@ void Member::State::tell_of_dropped() {
 // Each strategy once.
 void Member::State::tell_of_deviations(const FleetKnowledge& knowledge) {
   const auto known = outbox->value("deviations");
-  journal::Json said = known && *known ? journal::from_text(**known) : journal::Json::array();
-  if (!said.is_array()) said = journal::Json::array();
+  Json said = known && *known ? parse_json(**known) : Json::array();
+  if (!said.is_array()) said = Json::array();
   bool is_news = false;
   for (const Deviation& each : deviations(*heard_rules, knowledge)) {
     const std::string name = each.name.rule + "/" + each.name.strategy;
@@ -279,7 +279,7 @@ void Member::State::tell_of_deviations(const FleetKnowledge& knowledge) {
     said.push_back(name);
     is_news = true;
   }
-  if (is_news) (void)outbox->set_value("deviations", journal::to_text(said));
+  if (is_news) (void)outbox->set_value("deviations", to_line(said));
 }
 
 // A copy of this robot's disk on a computer that cannot be told from this one.

@@ -11,8 +11,6 @@
 namespace culprit::fleet {
 namespace {
 
-using journal::Json;
-
 StrategyName name_of(const Strategy& strategy, const RuleSet& rules) {
   return {clean(rules[strategy.rule].name), clean(strategy.name)};
 }
@@ -136,11 +134,11 @@ std::string to_text(const FleetKnowledge& knowledge) {
                                   {"recent", {known.recent_helped, known.recent_failed}},
                                   {"own", {known.own.helped, known.own.failed}}});
   }
-  return journal::to_text(json);
+  return to_line(json);
 }
 
 FleetKnowledge knowledge_from_text(const std::string& text) {
-  const Json json = journal::from_text(text);
+  const Json json = parse_json(text);
   FleetKnowledge knowledge;
   if (!json.is_object()) return knowledge;
   knowledge.model = journal::text_of(json, "model");

@@ -6,8 +6,6 @@
 namespace culprit::fleet {
 namespace {
 
-using journal::Json;
-
 std::string hex_of(std::string_view bytes) {
   constexpr std::string_view kDigits = "0123456789abcdef";
   std::string digits;
@@ -58,7 +56,7 @@ void Tally::begin(const journal::Entry& entry, std::string_view hash) {
   open_.clear();
   is_new_.clear();
   counts_.clear();
-  const Json body = journal::from_text(entry.body);
+  const Json body = parse_json(entry.body);
   Run run;
   run.id = hex_of(hash.substr(0, 16));
   run.row = entry.id;
@@ -86,7 +84,7 @@ void Tally::close(Failure& failure, std::int64_t at, const char* how) {
 }
 
 void Tally::event(const journal::Entry& entry) {
-  const Json body = journal::from_text(entry.body);
+  const Json body = parse_json(entry.body);
   if (!body.is_object()) return;
   const std::string type = journal::text_of(body, "type");
   const std::string rule = clean(journal::text_of(body, "rule"));

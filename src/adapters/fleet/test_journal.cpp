@@ -27,7 +27,7 @@ void TestJournal::begins(const std::string& context) {
   session.fleet_context = context;
   // As two processes never begin at the same nanosecond on the same clocks.
   session.boot = std::to_string(std::random_device()());
-  append(journal::kind::kSession, journal::to_text(journal::to_json(session)));
+  append(journal::kind::kSession, to_line(journal::to_json(session)));
 }
 
 void TestJournal::ends() { writer_.reset(); }

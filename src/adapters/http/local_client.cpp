@@ -54,7 +54,7 @@ class StreamReader {
     if (line.starts_with("data: ")) data_ = line.substr(6);
     if (line.starts_with(':')) return take_("", nullptr);
     if (!line.empty() || data_.empty()) return true;
-    Json document = Json::parse(std::exchange(data_, ""), nullptr, false);
+    Json document = parse_json(std::exchange(data_, ""));
     return document.is_discarded() || take_(kind_, std::move(document));
   }
 
@@ -71,7 +71,7 @@ Expected<Answer> LocalClient::ask(Method method, const std::string& path, const 
   const auto result =
       method == Method::kGet ? client.Get(path) : client.Post(path, to_line(body), kJsonType);
   if (!result) return Error{why_no_answer(result.error(), patience_)};
-  Json document = Json::parse(result->body, nullptr, false);
+  Json document = parse_json(result->body);
   if (document.is_discarded()) return Error{"the answer is no JSON"};
   return Answer{result->status, std::move(document)};
 }

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "http/json.h"
+#include "json/json.h"
 
 namespace culprit::web {
 

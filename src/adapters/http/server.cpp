@@ -300,7 +300,7 @@ class Server::Http {
       if (route.method == Method::kGet) {
         for (const auto& [name, value] : q.params) body[name] = value;
       } else if (!q.body.empty()) {
-        body = Json::parse(q.body, nullptr, false);
+        body = parse_json(q.body);
         if (body.is_discarded()) return give(q, r, refuse(400, "the body is no JSON"));
       }
       give(q, r, route.answer(body));

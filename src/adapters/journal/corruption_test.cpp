@@ -7,10 +7,10 @@
 #include <gtest/gtest.h>
 
 #include "base/test_folder.h"
-#include "journal/json.h"
 #include "journal/learned_copy.h"
 #include "journal/reader.h"
 #include "journal/writer.h"
+#include "json/json.h"
 
 namespace culprit::journal {
 namespace {
@@ -49,16 +49,16 @@ struct Corruption : testing::Test {
     Writer::Options options;
     options.max_wal_bytes = 64 << 10;
     Writer writer = std::move(*Writer::open(folder / "a.journal", options));
-    append(writer, batch(kind::kSession, to_text({{"text", std::string(3000, 's')}})));
+    append(writer, batch(kind::kSession, to_line({{"text", std::string(3000, 's')}})));
     for (int i = 0; i < kBeliefs; ++i) {
       Batch all = batch(kind::kSteps, std::string(700, 'o'));
       for (int k = 0; k < 5; ++k)
-        all.entries.push_back({0, kNow, std::string(kind::kEvent), to_text({{"text", "event"}})});
+        all.entries.push_back({0, kNow, std::string(kind::kEvent), to_line({{"text", "event"}})});
       all.learned.beliefs = {belief(i, 5 + i)};
       append(writer, all);
       expected.beliefs.push_back(all.learned.beliefs[0]);
     }
-    append(writer, batch(kind::kEvent, to_text({{"text", "the last"}})));
+    append(writer, batch(kind::kEvent, to_line({{"text", "the last"}})));
     copy("a.journal", "killed.journal");  // with what is in the -wal file
   }
   static void append(Writer& writer, const Batch& all) {
@@ -140,7 +140,7 @@ TEST_F(Corruption, LosesNothingThatWasLearnedAndTheJournalIsWrittenAgain) {
 
     Learned now = expected;
     for (int i = 0; i < 2; ++i) {
-      Batch more = batch(kind::kEvent, to_text({{"text", std::string(1500, 'x')}}));
+      Batch more = batch(kind::kEvent, to_line({{"text", std::string(1500, 'x')}}));
       more.learned.beliefs = {belief(0, 100 + i)};
       now.beliefs[0] = more.learned.beliefs[0];
       append_somehow(*writer, path, more);

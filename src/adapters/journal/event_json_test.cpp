@@ -100,7 +100,7 @@ TEST(EventJson, RowsAreAsTheyHaveAlwaysBeen) {
   std::set<EventKind> seen;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     seen.insert(events[i].index());
-    EXPECT_EQ(to_text(to_json(Event{Time(7ns), events[i]}, rules)), rows[i]);
+    EXPECT_EQ(to_line(to_json(Event{Time(7ns), events[i]}, rules)), rows[i]);
   }
   EXPECT_EQ(seen.size(), std::variant_size_v<EventWhat::Variant>) << "each has a sample";
 }
@@ -109,7 +109,7 @@ TEST(EventJson, WhatIsReadBackIsWrittenAgainWithTheSameNames) {
   const RuleSet rules = *check(Source("test", kRules)).rules;
   std::size_t read = 0;
   for (const std::string& text : golden_rows()) {
-    const Json row = from_text(text);
+    const Json row = parse_json(text);
     const auto event = event_from_json(row, rules);
     if (!event) continue;
     ++read;
@@ -141,14 +141,14 @@ TEST(EventJson, ReadsNothingThatTheRulesDoNotHaveOrThatIsDamaged) {
            R"({"type": "order_accepted", "order": "silence", "component": "gone"})",
            R"({"type": "order_accepted", "order": "shout"})",
        })
-    EXPECT_FALSE(event_from_json(from_text(row), rules)) << row;
+    EXPECT_FALSE(event_from_json(parse_json(row), rules)) << row;
 }
 
 // By which strategy it was resolved may be one that the rules no longer have.
 TEST(EventJson, AResolutionCountsWithoutItsStrategy) {
   const RuleSet rules = *check(Source("test", kRules)).rules;
   const auto event = event_from_json(
-      from_text(R"({"type": "failure_resolved", "rule": "R", "strategy": "gone"})"), rules);
+      parse_json(R"({"type": "failure_resolved", "rule": "R", "strategy": "gone"})"), rules);
   ASSERT_TRUE(event);
   EXPECT_FALSE(std::get<FailureResolved>(event->what).strategy);
 }

@@ -70,7 +70,7 @@ TEST(History, OfEachComponentHowItCameUpLastIsReadBack) {
 TEST(History, OldRowsAreStillRead) {
   const RuleSet r = rules();
   const auto resolved = event_from_json(
-      from_text(R"({"type":"failure_resolved","rule":"R","reaction_s":1,"time":5})"), r);
+      parse_json(R"({"type":"failure_resolved","rule":"R","reaction_s":1,"time":5})"), r);
   ASSERT_TRUE(resolved);
   EXPECT_FALSE(std::get<FailureResolved>(resolved->what).strategy);
 }

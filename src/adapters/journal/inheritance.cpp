@@ -25,7 +25,7 @@ std::string without_time(const Event& event, const RuleSet& rules) {
   Json json = row_of(event, rules);
   json.erase("time");
   json.erase("reaction_s");  // is not read back
-  return to_text(json);
+  return to_line(json);
 }
 
 }  // namespace
@@ -53,12 +53,12 @@ void Bequest::add(const Event& event) {
 
 void Bequest::add_row(const Event& event) {
   past_.push_back(event);
-  rows_.push_back(culprit::journal::to_text(row_of(event, rules_)));
+  rows_.push_back(to_line(row_of(event, rules_)));
 }
 
 std::string Bequest::text(const Learned& learned, std::size_t most) const {
   std::string text = "{\"version\":" + std::to_string(kVersion) +
-                     ",\"learned\":" + to_text(to_json(learned)) + ",\"past\":[";
+                     ",\"learned\":" + to_line(to_json(learned)) + ",\"past\":[";
   constexpr std::string_view kEnd = "]}";
   std::size_t size = text.size() + kEnd.size();
   if (size > most) return {};
@@ -80,7 +80,7 @@ std::string to_text(const Inheritance& inheritance, const RuleSet& rules, std::s
 
 Expected<Inheritance> inheritance_from_text(const std::string& text, const RuleSet& rules,
                                             Duration shift, Time now) {
-  const Json json = from_text(text);
+  const Json json = parse_json(text);
   if (!json.is_object()) return Error{"it cannot be read"};
   if (integer_of(json, "version") != kVersion) return Error{"it is of another version of culprit"};
   auto learned = learned_from_json(json.value("learned", Json()));

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "journal/json.h"
+#include "json/json.h"
 #include "language/checker.h"
 
 namespace culprit::journal {

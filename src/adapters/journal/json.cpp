@@ -52,12 +52,6 @@ struct RequestWriter {
 
 }  // namespace
 
-std::string to_text(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-Json from_text(std::string_view text) { return Json::parse(text, nullptr, false); }
-
 std::string text_of(const Json& json, const char* key) {
   if (!json.is_object()) return "";
   const auto found = json.find(key);

@@ -5,20 +5,11 @@
 #include <string>
 #include <string_view>
 
-#include <nlohmann/json.hpp>
-
 #include "base/expected.h"
+#include "json/json.h"
 #include "robot/command.h"
 
 namespace culprit::journal {
-
-using Json = nlohmann::ordered_json;
-
-// One line. Texts that are no UTF-8 are mended.
-std::string to_text(const Json& json);
-
-// Never throws; discarded if `text` is no JSON.
-Json from_text(std::string_view text);
 
 // Members that may be missing, or be of another kind than expected.
 std::string text_of(const Json& json, const char* key);

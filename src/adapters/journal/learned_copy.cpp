@@ -72,14 +72,14 @@ Expected<void> write_copy(const std::filesystem::path& path, const LearnedCopy& 
   const Json json = {{"row", copy.newest.id},
                      {"hash", to_hex(copy.newest.hash)},
                      {"learned", to_json(copy.learned)}};
-  return write_sealed(path, to_text(json) + "\n");
+  return write_sealed(path, to_line(json) + "\n");
 }
 
 Expected<std::optional<LearnedCopy>> read_copy(const std::filesystem::path& path) {
   const auto text = read_sealed(path);
   if (!text) return Error{text.error()};
   if (!*text) return std::optional<LearnedCopy>();
-  const Json json = from_text(**text);
+  const Json json = parse_json(**text);
   const auto hash = hash_from_hex(text_of(json, "hash"));
   auto learned = learned_from_json(json.is_object() ? json.value("learned", Json()) : Json());
   if (!hash || !learned) return Error{"cannot read '" + path.string() + "': it is damaged"};
@@ -111,7 +111,7 @@ Expected<Learned> brought_up_to_date(const LearnedCopy& copy, const Database& jo
   auto row = rows->step();
   for (; row && *row; row = rows->step()) {
     const std::string kind(rows->bytes(0));
-    follow(learned, kind, from_text(rows->bytes(1)));
+    follow(learned, kind, parse_json(rows->bytes(1)));
   }
   if (!row) return Error{row.error()};
   return learned;

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "journal/json.h"
 #include "journal/tables.h"
+#include "json/json.h"
 
 namespace culprit::journal {
 

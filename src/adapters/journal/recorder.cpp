@@ -42,7 +42,7 @@ std::optional<Digest> digest_of(std::span<const Command> commands, std::span<con
   for (const Command& command : commands)
     all += std::to_string(command.id.number) + " " + rules[command.component].name + " " +
            culprit::to_string(command) + "\n";
-  for (const Event& event : events) all += to_text(to_json(event, rules)) + "\n";
+  for (const Event& event : events) all += to_line(to_json(event, rules)) + "\n";
   const Hash hash = hasher.of(all);
   Digest digest = 0;
   for (std::size_t i = 0; i < 8; ++i) digest = digest << 8 | hash[i];
@@ -168,7 +168,7 @@ void Recorder::take_outcomes(Pending& step) {
                        {"reason", reply->text},
                        {"text", asked->second + ": " + std::string(outcome) +
                                     (reply->text.empty() ? "" : ", " + reply->text)}};
-    decided(step).rows.push_back({0, step.wall, std::string(kind::kOutcome), to_text(body)});
+    decided(step).rows.push_back({0, step.wall, std::string(kind::kOutcome), to_line(body)});
     asked_.erase(asked);
   }
   if (step.decided != nullptr && step.decided->number == 0) {
@@ -212,7 +212,7 @@ void Recorder::decide(Pending& step, std::span<const Command> commands,
   decision.events.assign(events.begin(), events.end());
   if (!events.empty()) decision.learned = changes();
   const auto add_row = [&](std::string_view kind, const Json& body) {
-    decision.rows.push_back({0, step.wall, std::string(kind), to_text(body)});
+    decision.rows.push_back({0, step.wall, std::string(kind), to_line(body)});
   };
   for (const Event& event : events) add_row(kind::kEvent, to_json(event, rules_));
   for (const Command& command : commands) {
@@ -425,7 +425,7 @@ void Recorder::close_steps() {
 }
 
 void Recorder::add(std::string_view kind, std::int64_t at, const Json& body) {
-  add({0, at, std::string(kind), to_text(body)});
+  add({0, at, std::string(kind), to_line(body)});
 }
 
 // What a step led to stands behind the row that the step is in.
@@ -475,9 +475,9 @@ void Recorder::begin_session_anew(const std::filesystem::path& rows) {
   session_["continued"] = true;
   if (!robot_.is_null())
     unsaved_.entries.insert(unsaved_.entries.begin(),
-                            {0, wall, std::string(kind::kRobot), to_text(robot_)});
+                            {0, wall, std::string(kind::kRobot), to_line(robot_)});
   unsaved_.entries.insert(unsaved_.entries.begin(),
-                          {0, wall, std::string(kind::kSession), to_text(session_)});
+                          {0, wall, std::string(kind::kSession), to_line(session_)});
 }
 
 Expected<void> Recorder::write() {
@@ -493,7 +493,7 @@ Expected<void> Recorder::write() {
     unsaved_.entries.insert(
         unsaved_.entries.begin(),
         {0, now, std::string(kind::kGap),
-         to_text({{"steps", gap_steps_}, {"rows", gap_rows_}, {"text", text}})});
+         to_line({{"steps", gap_steps_}, {"rows", gap_rows_}, {"text", text}})});
     gap_steps_ = gap_rows_ = 0;
   }
   if (unsaved_.entries.empty() && is_nothing(unsaved_.learned)) return {};

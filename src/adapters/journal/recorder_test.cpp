@@ -11,9 +11,9 @@
 
 #include "base/test_expected.h"
 #include "base/test_folder.h"
-#include "journal/json.h"
 #include "journal/reader.h"
 #include "journal/unwritten.h"
+#include "json/json.h"
 #include "language/checker.h"
 
 namespace culprit::journal {

@@ -40,7 +40,7 @@ class Trail {
 
   void follow(const Entry& entry) {
     if (entry.kind == kind::kSteps) lived_at(Time(Duration(first_step(entry))));
-    const Json body = from_text(entry.body);
+    const Json body = parse_json(entry.body);
     if (!body.is_object()) return;
     if (entry.kind == kind::kEnd && flag_of(body, "stepped_back")) open_.clear();
     if (entry.kind == kind::kEvent) {
@@ -196,7 +196,7 @@ Expected<KnownRobot> find_known_robot(const Reader& journal, const Whereabouts& 
   if (!row) return Error{row.error()};
   // What was seen must not be for others to say.
   if (!rows->is_as_written(entry, hasher)) return KnownRobot{};
-  KnownRobot known = known_robot_of(from_text(entry.body), where);
+  KnownRobot known = known_robot_of(parse_json(entry.body), where);
   // The last run may have had other rules, and did not see the robot whole.
   known.is_whole = known.is_whole && entry.id > last_run;
   return known;
@@ -230,7 +230,7 @@ Expected<Recovery> recover(const Reader& journal, const Unwritten& unwritten, co
   if (!row) return Error{row.error()};
   // A row that somebody else could have written must not say which process is whose.
   if (!is_good()) return recovery;
-  const Json begin = from_text((*last)->body);
+  const Json begin = parse_json((*last)->body);
   recovery.was_other_boot = text_of(begin, "boot") != boot_id();
   // An older culprit did not write it.
   recovery.was_other_domain = integer_of(begin, "domain", now.domain) != now.domain;

@@ -27,7 +27,7 @@ struct JournalRecovery : testing::Test {
     session.boot = boot_id();
     Batch all;
     all.entries.push_back(
-        {0, kRecoveredAt, std::string(kind::kSession), to_text(to_json(session))});
+        {0, kRecoveredAt, std::string(kind::kSession), to_line(to_json(session))});
     all.entries.push_back({0, kRecoveredAt, std::string(kind::kSteps), "anything"});
     all.entries.push_back({0, kRecoveredAt, std::string(kind::kEvent), found(4242)});
     Writer writer = value_of(Writer::open(path, {}));
@@ -36,7 +36,7 @@ struct JournalRecovery : testing::Test {
 
   std::string found(int pid) const {
     Json row = to_json(Event{Time(), ComponentFound{ComponentId(0), pid}}, rules);
-    return to_text(row);
+    return to_line(row);
   }
   void change(const std::string& sql) {
     auto database = value_of(Database::open(path, Database::Mode::kWrite));
@@ -121,7 +121,7 @@ struct ExpectedRobot : testing::Test {
     } else {
       body = to_json(Event{told.latest, ComponentFound{ComponentId(0), 77}}, rules);
     }
-    return {0, kRecoveredAt, std::string(kind), to_text(body)};
+    return {0, kRecoveredAt, std::string(kind), to_line(body)};
   }
   Recovery recovered(Time now = Time(110s), std::optional<int> manager_before = {},
                      std::int64_t wall = kRecoveredAt) {

@@ -163,11 +163,11 @@ std::string to_text(const StandingOrders& orders, const Clocks& now) {
     if (quiet.until != kNever) each["rest"] = (quiet.until - now.robot).count();
     json["silences"].push_back(std::move(each));
   }
-  return to_text(json);
+  return to_line(json);
 }
 
 Expected<StandingOrders> orders_from_text(const std::string& text, const Clocks& now) {
-  const Json json = from_text(text);
+  const Json json = parse_json(text);
   if (!json.is_object() || !json.contains("paused") || !json.contains("dry_run") ||
       !json.contains("silences") || !json["silences"].is_array())
     return Error{"these are no orders"};

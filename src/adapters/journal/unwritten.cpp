@@ -40,9 +40,9 @@ class RowsToFind {
 // Whether the journal says by this row that all before it was written, or was lost and is over.
 bool is_the_last_word(const Entry& row) {
   if (row.kind == kind::kEnd) return true;
-  if (row.kind == kind::kSession) return !flag_of(from_text(row.body), "continued");
+  if (row.kind == kind::kSession) return !flag_of(parse_json(row.body), "continued");
   // Some of what waited to be written was dropped, and the rows that came of it follow.
-  if (row.kind == kind::kGap) return integer_of(from_text(row.body), "rows") > 0;
+  if (row.kind == kind::kGap) return integer_of(parse_json(row.body), "rows") > 0;
   return false;
 }
 

@@ -30,7 +30,7 @@ struct UnwrittenRows : testing::Test {
     file->begin_after(writer->newest());
   }
   static Entry row(int number) {
-    return {0, kUnwrittenAt + number, std::string(kind::kIntent), to_text({{"command", number}})};
+    return {0, kUnwrittenAt + number, std::string(kind::kIntent), to_line({{"command", number}})};
   }
   void write(std::vector<Entry> rows) {
     const auto written =
@@ -49,7 +49,7 @@ struct UnwrittenRows : testing::Test {
   std::vector<std::int64_t> commands() const {
     std::vector<std::int64_t> all;
     for (const Entry& each : found().rows)
-      all.push_back(integer_of(from_text(each.body), "command"));
+      all.push_back(integer_of(parse_json(each.body), "command"));
     return all;
   }
   void change(const std::string& sql) {
@@ -109,16 +109,16 @@ TEST_F(UnwrittenRows, AreOverIfAnotherRunFollowedOrAllWasWritten) {
 
 TEST_F(UnwrittenRows, GoOnInARunThatBeganANewSession) {
   keep({row(1)});
-  write({{0, kUnwrittenAt, std::string(kind::kSession), to_text({{"continued", true}})}});
+  write({{0, kUnwrittenAt, std::string(kind::kSession), to_line({{"continued", true}})}});
   EXPECT_EQ(commands(), std::vector<std::int64_t>{1});
 }
 
 // The disk was full for long: the rows of what came of them are later than they.
 TEST_F(UnwrittenRows, AreOverIfRowsWereDropped) {
   keep({row(1)});
-  write({{0, kUnwrittenAt, std::string(kind::kGap), to_text({{"text", "odd"}})}});
+  write({{0, kUnwrittenAt, std::string(kind::kGap), to_line({{"text", "odd"}})}});
   EXPECT_EQ(commands(), std::vector<std::int64_t>{1});
-  write({{0, kUnwrittenAt, std::string(kind::kGap), to_text({{"rows", 3}, {"steps", 9}})}});
+  write({{0, kUnwrittenAt, std::string(kind::kGap), to_line({{"rows", 3}, {"steps", 9}})}});
   EXPECT_THAT(commands(), IsEmpty());
 }
 

@@ -12,7 +12,7 @@ class Replayed {
  public:
   void follow(const Entry& entry) {
     if (entry.kind != kind::kBelief) return;
-    const Json body = from_text(entry.body);
+    const Json body = parse_json(entry.body);
     if (!body.is_object()) return;
     if (body.contains("forgotten")) {
       const std::string rule = text_of(body, "forgotten");

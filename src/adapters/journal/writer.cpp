@@ -6,8 +6,8 @@
 #include <sys/stat.h>
 #include <system_error>
 
-#include "journal/json.h"
 #include "journal/schema.h"
+#include "json/json.h"
 
 namespace culprit::journal {
 namespace {
@@ -180,7 +180,7 @@ Expected<void> Writer::restore(const Learned& learned) {
   const std::int64_t now = std::chrono::duration_cast<std::chrono::nanoseconds>(
                                std::chrono::system_clock::now().time_since_epoch())
                                .count();
-  if (done) done = insert({0, now, std::string(kind::kGap), to_text({{"text", remark_}})});
+  if (done) done = insert({0, now, std::string(kind::kGap), to_line({{"text", remark_}})});
   if (done) done = keep(learned, now);
   if (done) done = database_.run("COMMIT");
   if (!done) {
@@ -275,14 +275,14 @@ Expected<void> Writer::keep(const Learned& learned, std::int64_t now) {
     belief->bind(3, each.belief.alpha).bind(4, each.belief.beta);
     belief->bind(5, each.prior.alpha).bind(6, each.prior.beta);
     if (const auto done = belief->step(); !done) return Error{done.error()};
-    const Entry entry{0, now, std::string(kind::kBelief), to_text(body_of(each))};
+    const Entry entry{0, now, std::string(kind::kBelief), to_line(body_of(each))};
     if (const auto inserted = insert(entry); !inserted) return inserted;
   }
   for (const LearnedCoupling& each : learned.couplings) {
     coupling->bind(1, std::string_view(each.cause)).bind(2, std::string_view(each.effect));
     coupling->bind(3, each.coupling.cleared).bind(4, each.coupling.stayed);
     if (const auto done = coupling->step(); !done) return Error{done.error()};
-    const Entry entry{0, now, std::string(kind::kCoupling), to_text(body_of(each))};
+    const Entry entry{0, now, std::string(kind::kCoupling), to_line(body_of(each))};
     if (const auto inserted = insert(entry); !inserted) return inserted;
   }
   return {};
@@ -297,7 +297,7 @@ Expected<int> Writer::forget(const std::string& rule, std::int64_t now) {
   Batch batch;
   batch.entries.push_back(
       {0, now, std::string(kind::kBelief),
-       to_text({{"forgotten", rule}, {"text", "forgot what was learned of " + what}})});
+       to_line({{"forgotten", rule}, {"text", "forgot what was learned of " + what}})});
   auto begun = database_.run("BEGIN IMMEDIATE");
   if (!begun) return failure(path_, begun.error());
   const Link before = newest_;

@@ -12,9 +12,9 @@
 
 #include "base/test_expected.h"
 #include "base/test_folder.h"
-#include "journal/json.h"
 #include "journal/reader.h"
 #include "journal/verify.h"
+#include "json/json.h"
 
 namespace culprit::journal {
 namespace {
@@ -33,7 +33,7 @@ Batch batch(int events, std::size_t size = 10) {
   Batch all;
   for (int i = 0; i < events; ++i)
     all.entries.push_back(
-        {0, kWrittenAt, std::string(kind::kEvent), to_text({{"text", std::string(size, 'x')}})});
+        {0, kWrittenAt, std::string(kind::kEvent), to_line({{"text", std::string(size, 'x')}})});
   return all;
 }
 

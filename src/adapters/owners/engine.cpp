@@ -11,9 +11,8 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <nlohmann/json.hpp>
-
 #include "base/live_clock.h"
+#include "json/json.h"
 #include "owners/file_descriptor.h"
 #include "owners/proc.h"
 #include "owners/remote_program.h"
@@ -21,7 +20,6 @@
 namespace culprit::owners {
 namespace {
 
-using nlohmann::json;
 using Activity = UnitState::Activity;
 
 constexpr std::size_t kLongestAnswer = 4 << 20;  // bytes: a list of a thousand containers
@@ -69,16 +67,16 @@ std::string one_line(std::string text) {
 }
 
 std::string message_of(const std::string& body) {
-  const json document = json::parse(body, nullptr, false);
+  const Json document = parse_json(body);
   if (document.is_object() && document.contains("message") && document["message"].is_string())
     return one_line(document["message"].get<std::string>());
   return one_line(body);
 }
 
 template <class T>
-std::optional<T> member(const json& object, const char* name) {
+std::optional<T> member(const Json& object, const char* name) {
   if (!object.is_object() || !object.contains(name)) return std::nullopt;
-  const json& value = object[name];
+  const Json& value = object[name];
   if constexpr (std::is_same_v<T, bool>) {
     if (!value.is_boolean()) return std::nullopt;
   } else if constexpr (std::is_same_v<T, std::string>) {
@@ -220,10 +218,10 @@ Expected<UnitState> Engine::state_of(const std::string& container) {
     return state;
   }
   if (answer->status != 200) return Error{name() + ": " + message_of(answer->body)};
-  const json document = json::parse(answer->body, nullptr, false);
+  const Json document = parse_json(answer->body);
   const std::string what = "a look at " + container;
   if (!document.is_object() || !document.contains("State")) return no_form(what);
-  const json& said = document["State"];
+  const Json& said = document["State"];
   const auto status = member<std::string>(said, "Status");
   const auto pid = member<std::int64_t>(said, "Pid");
   const auto code = member<std::int64_t>(said, "ExitCode");
@@ -297,7 +295,7 @@ Expected<void> Engine::kill(const std::string& container) {
 Expected<bool> Engine::runs(const std::string& container, int pid) {
   const auto answer = ask("GET", "/containers/" + container + "/json", kPatience);
   if (!answer) return Error{answer.error()};
-  const json document = json::parse(answer->body, nullptr, false);
+  const Json document = parse_json(answer->body);
   const auto id = member<std::string>(document, "Id");
   if (!id || id->empty() || !document.contains("State")) return no_form("a look at " + container);
   if (container_of(pid) == *id) return true;
@@ -311,12 +309,12 @@ Expected<bool> Engine::runs(const std::string& container, int pid) {
 Expected<std::vector<std::string>> Engine::services() {
   const auto answer = ask("GET", "/containers/json?all=1", kPatience);
   if (!answer) return Error{answer.error()};
-  const json document = json::parse(answer->body, nullptr, false);
+  const Json document = parse_json(answer->body);
   if (!document.is_array()) return no_form("the list of its containers");
   std::vector<std::string> names;
-  for (const json& each : document) {
+  for (const Json& each : document) {
     if (!each.is_object() || !each.contains("Names") || !each["Names"].is_array()) continue;
-    for (const json& name : each["Names"]) {
+    for (const Json& name : each["Names"]) {
       if (!name.is_string()) continue;
       const std::string text = name.get<std::string>();
       names.push_back(text.starts_with('/') ? text.substr(1) : text);

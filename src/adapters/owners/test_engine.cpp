@@ -9,8 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <nlohmann/json.hpp>
-
+#include "json/json.h"
 #include "owners/proc.h"
 
 namespace culprit::owners {
@@ -144,7 +143,7 @@ void TestEngine::serve() {
 
 std::string TestEngine::look_at(const std::string& name) {
   const TestContainer& container = containers_.at(name);
-  const nlohmann::json document = {
+  const Json document = {
       {"Id", std::string(64, 'c')},
       {"Name", "/" + name},
       {"RestartCount", 0},
@@ -159,7 +158,7 @@ std::string TestEngine::look_at(const std::string& name) {
         {"ExitCode", container.code},
         {"Error", ""}}},
       {"HostConfig", {{"RestartPolicy", {{"Name", container.policy}, {"MaximumRetryCount", 0}}}}}};
-  return http(200, document.dump());
+  return http(200, to_line(document));
 }
 
 std::string TestEngine::answer_to(const std::string& method, const std::string& target) {
@@ -167,10 +166,10 @@ std::string TestEngine::answer_to(const std::string& method, const std::string& 
   constexpr std::string_view kContainers = "/containers/";
   if (!target.starts_with(kContainers)) return http(404, R"({"message":"page not found"})");
   if (target == "/containers/json?all=1") {
-    nlohmann::json all = nlohmann::json::array();
+    Json all = Json::array();
     for (const auto& [name, container] : containers_)
       all.push_back({{"Id", std::string(64, 'c')}, {"Names", {"/" + name}}});
-    return http(200, all.dump());
+    return http(200, to_line(all));
   }
   const std::size_t slash = target.find('/', kContainers.size());
   const std::string name = target.substr(kContainers.size(), slash - kContainers.size());

@@ -1,11 +1,10 @@
 #include "recorder/graph_json.h"
 
-#include <nlohmann/json.hpp>
+#include "json/json.h"
 
 namespace culprit::recorder {
 
 std::string graph_to_json(const ros2::Graph& graph) {
-  using Json = nlohmann::ordered_json;
   Json nodes = Json::array();
   for (const auto& [node, endpoints, participant] : graph.nodes()) {
     Json json{{"name", node.name}};

@@ -7,13 +7,13 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "base/environment.h"
 #include "base/text_file.h"
 #include "demo/demo_setup.h"
 #include "demo/suave_demo_command.h"
 #include "demo/sunset_demo.h"
+#include "json/json.h"
 #include "live/observers.h"
 #include "live/robot_names.h"
 #include "terminal/command.h"
@@ -73,22 +73,22 @@ std::string joined(const std::vector<std::string>& items) {
   return out.empty() ? "none" : out;
 }
 
-nlohmann::json to_json(const std::vector<PlayOutcome>& outcomes) {
-  nlohmann::json document{{"scenarios", nlohmann::json::array()}};
+Json to_json(const std::vector<PlayOutcome>& outcomes) {
+  Json document{{"scenarios", Json::array()}};
   std::size_t resolved = 0;
   std::size_t unresolved = 0;
   for (const PlayOutcome& o : outcomes) {
-    nlohmann::json entry{{"name", o.name},
-                         {"faults", o.faults},
-                         {"failures", o.failures},
-                         {"strategies", o.strategies},
-                         {"strategies_executed", o.strategies.size()},
-                         {"strategies_succeeded", o.strategies_succeeded},
-                         {"unnecessary_redeployments", o.unnecessary_redeployments},
-                         {"reaction_time_s", o.reaction_times},
-                         {"downtime_s", o.downtime},
-                         {"mean_iou", nullptr},
-                         {"resolved", o.is_resolved()}};
+    Json entry{{"name", o.name},
+               {"faults", o.faults},
+               {"failures", o.failures},
+               {"strategies", o.strategies},
+               {"strategies_executed", o.strategies.size()},
+               {"strategies_succeeded", o.strategies_succeeded},
+               {"unnecessary_redeployments", o.unnecessary_redeployments},
+               {"reaction_time_s", o.reaction_times},
+               {"downtime_s", o.downtime},
+               {"mean_iou", nullptr},
+               {"resolved", o.is_resolved()}};
     if (o.mean_iou) entry["mean_iou"] = *o.mean_iou;
     document["scenarios"].push_back(std::move(entry));
     resolved += o.reaction_times.size();
@@ -241,7 +241,7 @@ int demo_sunset(const DemoOptions& options) {
   if (!all_healed)
     say(stdout, "The logs of the nodes are in {}\n", ((*demo)->keep_state() / "log").string());
   if (!options.output.empty()) {
-    const auto written = write_text(options.output, to_json(outcomes).dump(2) + "\n");
+    const auto written = write_text(options.output, to_indented(to_json(outcomes)) + "\n");
     if (!written) {
       say(stderr, "culprit: {}\n", written.error());
       return kFailed;

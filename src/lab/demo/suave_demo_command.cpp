@@ -4,27 +4,27 @@
 #include <unistd.h>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "base/text_file.h"
 #include "demo/demo_setup.h"
+#include "json/json.h"
 #include "terminal/command.h"
 #include "terminal/console.h"
 
 namespace culprit::lab {
 namespace {
 
-nlohmann::json to_json(const MissionOutcome& outcome, double speed) {
+Json to_json(const MissionOutcome& outcome, double speed) {
   const suave::MissionSeen& mission = outcome.mission;
-  nlohmann::json json{{"robot", "suave"},
-                      {"speed", speed},
-                      {"search_time_s", nullptr},
-                      {"distance_m", mission.inspected_m},
-                      {"mission_s", *mission.done_s},
-                      {"failures", outcome.failures},
-                      {"strategies", outcome.strategies},
-                      {"reaction_time_s", outcome.reaction_times},
-                      {"unresolved", outcome.unresolved}};
+  Json json{{"robot", "suave"},
+            {"speed", speed},
+            {"search_time_s", nullptr},
+            {"distance_m", mission.inspected_m},
+            {"mission_s", *mission.done_s},
+            {"failures", outcome.failures},
+            {"strategies", outcome.strategies},
+            {"reaction_time_s", outcome.reaction_times},
+            {"unresolved", outcome.unresolved}};
   if (mission.found_s) json["search_time_s"] = *mission.found_s;
   return json;
 }
@@ -69,7 +69,7 @@ int demo_suave(SuaveDemo::Options options, const std::string& json) {
   }
   print(*outcome, speed);
   if (!json.empty()) {
-    if (auto written = write_text(json, to_json(*outcome, speed).dump(2) + "\n"); !written) {
+    if (auto written = write_text(json, to_indented(to_json(*outcome, speed)) + "\n"); !written) {
       say(stderr, "culprit: {}\n", written.error());
       return kFailed;
     }

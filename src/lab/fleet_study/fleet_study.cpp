@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
+#include "json/json.h"
 #include "simulation/random.h"
 #include "study/ordered_work.h"
 
@@ -177,11 +177,10 @@ std::string fleet_markdown(const std::vector<FleetRow>& rows) {
 }
 
 std::string fleet_json(const std::vector<FleetRow>& rows, const FleetCampaign& campaign) {
-  nlohmann::ordered_json json = {
-      {"study", "fleet"},          {"models", campaign.models},
-      {"robots", campaign.robots}, {"experience", campaign.experience},
-      {"first", campaign.first},   {"most", campaign.pooling.most},
-      {"seed", campaign.seed},     {"rows", nlohmann::ordered_json::array()}};
+  Json json = {{"study", "fleet"},          {"models", campaign.models},
+               {"robots", campaign.robots}, {"experience", campaign.experience},
+               {"first", campaign.first},   {"most", campaign.pooling.most},
+               {"seed", campaign.seed},     {"rows", Json::array()}};
   for (const FleetRow& row : rows)
     json["rows"].push_back({{"robots", row.world},
                             {"differs", row.differs},
@@ -191,7 +190,7 @@ std::string fleet_json(const std::vector<FleetRow>& rows, const FleetCampaign& c
                             {"ratio", row.ratio},
                             {"low", row.low},
                             {"high", row.high}});
-  return json.dump(2) + "\n";
+  return to_indented(json) + "\n";
 }
 
 }  // namespace culprit::study::fleet

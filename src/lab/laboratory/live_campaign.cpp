@@ -143,7 +143,7 @@ Expected<study::RunMetrics> LiveCampaign::attempt(const study::Configuration& co
   if (WEXITSTATUS(*status) != 0) return Error{last_line(program.log)};
   const auto text = read_text(output.string());
   if (!text) return Error{text.error()};
-  const auto json = nlohmann::ordered_json::parse(*text, nullptr, false);
+  const auto json = parse_json(*text);
   if (!json.is_object()) return Error{output.string() + ": is no JSON object"};
   auto metrics = study::run_from_json<study::RunMetrics>(json);
   std::filesystem::remove_all(place, error);

@@ -40,8 +40,8 @@ Expected<study::SingleRun> play_of(const Expected<C>& campaign, study::RunId id)
 
 }  // namespace
 
-Expected<study::SingleRun> play_again(std::string_view study,
-                                      const nlohmann::ordered_json& campaign, study::RunId id) {
+Expected<study::SingleRun> play_again(std::string_view study, const Json& campaign,
+                                      study::RunId id) {
   if (study == study::Campaign::kStudy)
     return play_of(study::campaign_from_json<study::Campaign>(campaign), id);
   if (study == study::SuaveCampaign::kStudy)

@@ -6,9 +6,8 @@
 
 #include <string_view>
 
-#include <nlohmann/json.hpp>
-
 #include "base/expected.h"
+#include "json/json.h"
 #include "study/campaign.h"
 #include "study/single_run.h"
 
@@ -17,7 +16,7 @@ namespace culprit::lab {
 // `study` and `campaign` are what a result says (sunset_study/json.h, suave_study/report.h,
 // rca_study/report.h), of whatever origin. Errors: what is wrong with the campaign; it has no such
 // run.
-Expected<study::SingleRun> play_again(std::string_view study,
-                                      const nlohmann::ordered_json& campaign, study::RunId id);
+Expected<study::SingleRun> play_again(std::string_view study, const Json& campaign,
+                                      study::RunId id);
 
 }  // namespace culprit::lab

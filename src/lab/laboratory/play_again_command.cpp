@@ -14,8 +14,6 @@
 namespace culprit::lab {
 namespace {
 
-using web::Json;
-
 Json to_json(const study::TimelineEntry& incident) {
   const std::string_view name = study::name(incident.kind);
   const bool is_fault = incident.kind == study::Happening::kFault;
@@ -51,7 +49,7 @@ bool is_natural(const Json& request, const char* member) {
 int answer(const std::string& path) {
   const auto text = read_text(path);
   if (!text) return fail(text.error(), kUsage);
-  const Json request = Json::parse(*text, nullptr, false);
+  const Json request = parse_json(*text);
   const bool is_whole = request.is_object() && request.contains("study") &&
                         request["study"].is_string() && request.contains("campaign") &&
                         is_natural(request, "row") && is_natural(request, "run");
@@ -60,7 +58,7 @@ int answer(const std::string& path) {
       play_again(request["study"].get<std::string>(), request["campaign"],
                  {request["row"].get<std::uint32_t>(), request["run"].get<std::uint32_t>()});
   if (!run) return fail(run.error());
-  say_text(stdout, to_json(*run).dump() + "\n");
+  say_text(stdout, to_line(to_json(*run)) + "\n");
   return kOk;
 }
 

@@ -1,11 +1,11 @@
 #include "web/single_run_route.h"
 
-#include <fstream>
 #include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/text_file.h"
 #include "rca_study/campaign_json.h"
 #include "suave_study/suave_record.h"
 #include "sunset_study/json.h"
@@ -14,13 +14,10 @@
 namespace culprit::lab {
 namespace {
 
-using web::Json;
-
 web::Answer ask(const Json& body) { return web::single_run_route().answer(body); }
 
 Json example() {
-  std::ifstream file("src/web/openapi.json");
-  const auto document = Json::parse(file);
+  const auto document = parse_json(*read_text("src/web/openapi.json"));
   return document["paths"]["/api/studies/run"]["post"]["requestBody"]["content"]["application/json"]
                  ["example"];
 }

@@ -4,8 +4,8 @@
 #include <CLI/CLI.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
+#include "json/json.h"
 #include "laboratory/commands.h"
 
 namespace culprit::lab {
@@ -66,7 +66,7 @@ TEST_F(StudyCommand, GivesTheRowsOfAllThreeTables) {
   ASSERT_EQ(run({"sunset", "--runs", "4", "--experiments", "4", "--repetitions", "1", "--json"}),
             kOk)
       << complaint;
-  const auto document = nlohmann::json::parse(said);
+  const auto document = parse_json(said);
   EXPECT_EQ(document["rows"].size(), 9);  // eight of the ablation, and the misspecified one
   const auto& row = document["rows"][7];
   EXPECT_TRUE(row["dependencies"] && row["criticality"] && row["impact"]);
@@ -86,7 +86,7 @@ TEST_F(StudyCommand, SeesOutagesByTheDetectorsThatAreChosen) {
                  "--detectors", "own,phi", "--json"}),
             kOk)
       << complaint;
-  const auto rows = nlohmann::json::parse(said)["rows"];
+  const auto rows = parse_json(said)["rows"];
   ASSERT_EQ(rows.size(), 4u);
   EXPECT_EQ(rows[0]["profile"], "paper");
   EXPECT_EQ(rows[2]["profile"], "paper:phi");
@@ -100,7 +100,7 @@ TEST_F(StudyCommand, GivesTheSameBytesWithAnyNumberOfJobs) {
   ASSERT_EQ(run_small({"--jobs", "5", "--json"}), kOk);
   EXPECT_EQ(said, one);
   ASSERT_EQ(run_small({"--jobs", "5", "--json", "--seed", "2"}), kOk);
-  EXPECT_NE(nlohmann::json::parse(said)["rows"], nlohmann::json::parse(one)["rows"]);
+  EXPECT_NE(parse_json(said)["rows"], parse_json(one)["rows"]);
 }
 
 TEST_F(StudyCommand, ShardsMergeToTheSameBytes) {

@@ -20,8 +20,6 @@
 namespace culprit::lab {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 // As they were typed; empty: as the mission has it.
 struct SettingTexts {
   std::string visibility_period;
@@ -98,7 +96,7 @@ Expected<void> apply(const SettingTexts& texts, suave::model::MissionSettings& s
 Expected<suave::model::VehicleTraits> read_vehicle(const std::string& path) {
   const auto text = read_text(path);
   if (!text) return Error{text.error()};
-  Json json = Json::parse(*text, nullptr, false);
+  Json json = parse_json(*text);
   if (json.is_discarded()) return Error{path + ": it is no JSON"};
   if (json.is_object() && json.contains("vehicle")) json = Json(json["vehicle"]);
   const auto vehicle = study::vehicle_from_json(json);
@@ -184,7 +182,7 @@ int fit(const study::SuaveCampaign& campaign, const SuaveOptions& options) {
       {"fitted_to", options.fit},      {"campaign", study::to_json(campaign)},
       {"left_out", recorded->unknown}, {"misfit_before", fit->misfit_before},
       {"misfit", fit->misfit},         {"vehicle", study::to_json(fit->vehicle)}};
-  const auto written = write_text(options.output.output, document.dump(2) + "\n");
+  const auto written = write_text(options.output.output, to_indented(document) + "\n");
   return written ? kOk : fail(written.error(), kFailed);
 }
 

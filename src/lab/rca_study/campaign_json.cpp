@@ -8,8 +8,6 @@
 namespace culprit::study::rca {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 // As culprit study rca has them.
 constexpr std::size_t kMostFaults = 10;
 constexpr double kMostNoise = 0.4;
@@ -81,7 +79,7 @@ std::vector<std::string> planners(JsonFields& campaign) {
 // What its setting is follows from it.
 void take_scenario(RcaCampaign& campaign, JsonFields& fields) {
   (void)fields.array("settings");
-  auto scenario = scenario_from_json(fields.object("scenario").dump());
+  auto scenario = scenario_from_json(to_line(fields.object("scenario")));
   if (!scenario) return fields.complain_inside("scenario", scenario.error());
   campaign.settings = {setting_of(*scenario)};
   campaign.scenario = std::move(*scenario);
@@ -97,7 +95,7 @@ Json to_json(const RcaCampaign& campaign) {
             {"seed", campaign.seed},
             {"version", campaign.version}};
   for (const RcaSetting& each : campaign.settings) json["settings"].push_back(to_json(each));
-  if (campaign.scenario) json["scenario"] = Json::parse(to_json(*campaign.scenario));
+  if (campaign.scenario) json["scenario"] = parse_json(to_json(*campaign.scenario));
   return json;
 }
 

@@ -8,16 +8,15 @@
 // the scenario is like.
 #pragma once
 
-#include <nlohmann/json.hpp>
-
 #include "base/expected.h"
+#include "json/json.h"
 #include "rca_study/campaign.h"
 
 namespace culprit::study::rca {
 
-nlohmann::ordered_json to_json(const RcaCampaign& campaign);
+Json to_json(const RcaCampaign& campaign);
 
 // What is missing, unknown, out of range or does not fit together is an error that says where.
-Expected<RcaCampaign> campaign_from_json(const nlohmann::ordered_json& json);
+Expected<RcaCampaign> campaign_from_json(const Json& json);
 
 }  // namespace culprit::study::rca

@@ -6,8 +6,6 @@
 namespace culprit::study::rca {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 RcaCampaign campaign() {
   RcaCampaign campaign;
   campaign.settings = {{5, 1, 0.1, true, true}, {4, 2, 0, false, false, false, true, true, true}};
@@ -21,7 +19,7 @@ RcaCampaign campaign() {
 
 TEST(RcaCampaignJson, ComesBackAsItWas) {
   const Json json = to_json(campaign());
-  const auto read = campaign_from_json(Json::parse(json.dump()));
+  const auto read = campaign_from_json(parse_json(to_line(json)));
   ASSERT_TRUE(read) << read.error();
   EXPECT_EQ(to_json(*read), json);
 }

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
+#include "json/json.h"
 #include "study/markup.h"
 #include "study/plot/scale.h"
 #include "study/plot/svg.h"
@@ -12,8 +12,6 @@
 
 namespace culprit::study::rca {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json json_of(const Calibration& calibration) {
   Json bins = Json::array();
@@ -88,7 +86,7 @@ std::string learning_json(const LearningCampaign& campaign, const LearningResult
                            {"success", json_of(result.success)},
                            {"kappa", json_of(result.kappa)},
                            {"rate_error", result.rates.error()}}}};
-  return document.dump(2) + "\n";
+  return to_indented(document) + "\n";
 }
 
 std::string learning_html(const LearningCampaign& campaign, const LearningResult& result,

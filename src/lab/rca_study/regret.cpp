@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
+#include "json/json.h"
 #include "plan/bayes/bayes_planner.h"
 #include "rca_study/optimum.h"
 #include "rca_study/rules.h"
@@ -110,7 +110,6 @@ Table regret_table(const RegretCampaign& campaign, const std::vector<Regrets>& r
 }
 
 std::string regret_json(const RegretCampaign& campaign, const std::vector<Regrets>& regrets) {
-  using Json = nlohmann::ordered_json;
   Json objectives = Json::array();
   for (const Regrets& each : regrets)
     objectives.push_back({{"objective", to_string(each.objective)},
@@ -123,7 +122,7 @@ std::string regret_json(const RegretCampaign& campaign, const std::vector<Regret
                            {"seed", campaign.seed},
                            {"as_told", campaign.is_as_told},
                            {"objectives", std::move(objectives)}}}};
-  return document.dump(2) + "\n";
+  return to_indented(document) + "\n";
 }
 
 }  // namespace culprit::study::rca

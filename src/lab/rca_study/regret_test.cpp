@@ -3,8 +3,8 @@
 #include <atomic>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
+#include "json/json.h"
 #include "plan/bayes/bayes_planner.h"
 #include "rca_study/optimum.h"
 #include "rca_study/rules.h"
@@ -71,7 +71,7 @@ TEST(Regret, IsTheSameWithAnyNumberOfThreads) {
   const auto two = measure_regret(campaign, 2, nullptr, nullptr);
   ASSERT_TRUE(one && two);
   EXPECT_EQ(regret_json(campaign, *one), regret_json(campaign, *two));
-  const auto json = nlohmann::json::parse(regret_json(campaign, *one));
+  const auto json = parse_json(regret_json(campaign, *one));
   EXPECT_EQ(json["regret"]["objectives"].size(), 4u);
   const auto never_on = [](std::uint64_t, std::uint64_t) { return false; };
   EXPECT_FALSE(measure_regret(campaign, 1, never_on, nullptr));

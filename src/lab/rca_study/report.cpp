@@ -1,8 +1,8 @@
 #include "rca_study/report.h"
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
+#include "json/json.h"
 #include "rca_study/campaign_json.h"
 #include "study/pareto.h"
 #include "study/statistics/welch.h"
@@ -10,8 +10,6 @@
 
 namespace culprit::study::rca {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::optional<double> path(const RcaRow& row) {
   if (row.effects == 0) return std::nullopt;
@@ -169,7 +167,7 @@ std::string rca_csv(const std::vector<RcaRow>& rows, Times times) {
       const char* comma = head.empty() ? "" : ",";
       head += comma + key;
       line += comma;
-      if (!value.is_null()) line += value.is_string() ? value.get<std::string>() : value.dump();
+      if (!value.is_null()) line += value.is_string() ? value.get<std::string>() : to_line(value);
     }
     if (out.empty()) out = head + "\n";
     out += line + "\n";
@@ -183,7 +181,7 @@ std::string rca_json(const RcaCampaign& campaign, const std::vector<RcaRow>& row
   const auto front = on_front(rows);
   for (std::size_t i = 0; i < rows.size(); ++i)
     document["rows"].push_back(figures(rows[i], front[i], times));
-  return document.dump(2) + "\n";
+  return to_indented(document) + "\n";
 }
 
 }  // namespace culprit::study::rca

@@ -1,7 +1,8 @@
 #include "rca_study/report.h"
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
+
+#include "json/json.h"
 
 namespace culprit::study::rca {
 namespace {
@@ -20,7 +21,7 @@ TEST(RcaReport, SaysWhichPlannersNoOtherBeatsInTheSameSetting) {
   const std::vector<RcaRow> rows = {row("naive", 20, 5, 3), row("paper", 20, 6, 1),
                                     row("bayes", 20, 5, 1), row("optimum", 20, 1, 0),
                                     row("naive", 50, 9, 9)};
-  const auto document = nlohmann::json::parse(rca_json({}, rows, Times::kLeftOut));
+  const auto document = parse_json(rca_json({}, rows, Times::kLeftOut));
   EXPECT_EQ(document["rows"][0]["on_front"], false);
   EXPECT_EQ(document["rows"][1]["on_front"], false);
   EXPECT_EQ(document["rows"][2]["on_front"], true);

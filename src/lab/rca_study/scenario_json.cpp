@@ -5,16 +5,14 @@
 #include <set>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
+#include "json/json.h"
 #include "language/checker.h"
 #include "rca_study/rules.h"
 #include "study/json_fields.h"
 
 namespace culprit::study::rca {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kFormat = "culprit-rca 1";
 constexpr std::size_t kMostTopics = 100'000;
@@ -76,7 +74,7 @@ Json json_of(const RcaTopic& topic, const RcaScenario& scenario) {
 class Reader {
  public:
   Expected<RcaScenario> read(const std::string& text) {
-    const Json json = Json::parse(text, nullptr, false);
+    const Json json = parse_json(text);
     if (json.is_discarded()) return Error{"it is no JSON"};
     JsonFields fields(json);
     if (fields.text("format") != kFormat)

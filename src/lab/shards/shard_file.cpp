@@ -10,8 +10,6 @@
 namespace culprit::study {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 template <class C>
 Expected<AnyShardReader> any(Expected<ShardReader<C>> reader) {
   if (!reader) return Error{reader.error()};

@@ -65,8 +65,8 @@ class ShardReader {
   ShardReader(ShardLines lines, ShardHeader<C> header)
       : lines_(std::move(lines)), header_(std::move(header)) {}
 
-  Expected<std::optional<Run>> run(const nlohmann::ordered_json& json);
-  Expected<std::optional<Run>> end(const nlohmann::ordered_json& json);
+  Expected<std::optional<Run>> run(const Json& json);
+  Expected<std::optional<Run>> end(const Json& json);
 
   ShardLines lines_;
   ShardHeader<C> header_;

@@ -365,16 +365,15 @@ RC_GTEST_PROP(ShardFile, BringsRunsOfSuaveBackToTheLastBit, (double value)) {
 }
 
 TEST(ShardFile, SaysWhatIsWrongWithACampaignOfSuave) {
-  const auto complaint = [](const char* field, const nlohmann::ordered_json& value) {
+  const auto complaint = [](const char* field, const Json& value) {
     std::string line = header_line(ShardHeader<SuaveCampaign>{suave_campaign(), {1, 1}});
     line.pop_back();
-    nlohmann::ordered_json json = *unsealed(line);
+    Json json = *unsealed(line);
     json["campaign"][field] = value;
     return read_error(sealed_line(json));
   };
   const std::string begin = "x: has a wrong header: campaign is wrong: ";
-  EXPECT_EQ(complaint("managers", nlohmann::ordered_json::array()),
-            begin + "managers is wrong: there is no manager");
+  EXPECT_EQ(complaint("managers", Json::array()), begin + "managers is wrong: there is no manager");
   EXPECT_EQ(complaint("managers", {"bt", 3}), begin + "managers holds something that is no text");
   EXPECT_EQ(complaint("managers", {"bt", "bt"}),
             begin + "managers is wrong: manager 'bt' is there twice");
@@ -401,7 +400,7 @@ TEST(ShardFile, SaysWhatIsWrongWithItsLines) {
             "x: has format version 1, but this culprit reads 2; use the culprit that wrote it");
   EXPECT_EQ(read_error(beginning_line({"moon", {1, 1}, {}})),
             "x: has a wrong header: campaign is no JSON object");
-  EXPECT_EQ(read_error(beginning_line({"moon", {1, 1}, nlohmann::ordered_json::object()})),
+  EXPECT_EQ(read_error(beginning_line({"moon", {1, 1}, Json::object()})),
             "x: is of a study 'moon' that this culprit does not know; use the culprit that wrote "
             "it");
   EXPECT_EQ(read_error(head + run + run), "x:3: here should be run 1 of row 0" + end);
@@ -417,14 +416,14 @@ TEST(ShardFile, SaysWhatIsWrongWithItsLines) {
 }
 
 TEST(ShardFile, SaysWhichFieldIsWrong) {
-  const auto complaint = [](const char* field, const nlohmann::ordered_json& value) {
+  const auto complaint = [](const char* field, const Json& value) {
     Campaign campaign;
     campaign.rows.resize(1);
     campaign.runs = 1;
     std::string line = run_line({0, 0}, RunMetrics());
     line.pop_back();
-    nlohmann::ordered_json json = *unsealed(line);
-    json["metrics"].at(nlohmann::ordered_json::json_pointer(field)) = value;
+    Json json = *unsealed(line);
+    json["metrics"].at(Json::json_pointer(field)) = value;
     const std::string error =
         read_error(header_line(ShardHeader<Campaign>{campaign, {1, 1}}) + sealed_line(json));
     return error.substr(0, error.find(';'));

@@ -8,8 +8,6 @@
 namespace culprit::study {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::string_view kFormat = "culprit-shard";
 constexpr std::uint64_t kFormatVersion = 2;
 constexpr std::size_t kLongestLine = 1 << 20;  // bytes; a run with 100 reaction times has 2,500

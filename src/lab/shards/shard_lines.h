@@ -6,9 +6,8 @@
 #include <istream>
 #include <string>
 
-#include <nlohmann/json.hpp>
-
 #include "base/expected.h"
+#include "json/json.h"
 #include "shards/shard.h"
 
 namespace culprit::study {
@@ -39,7 +38,7 @@ class ShardLines {
 struct ShardBeginning {
   std::string study;  // the campaign's kStudy
   Shard shard;
-  nlohmann::ordered_json campaign;
+  Json campaign;
 };
 
 std::string beginning_line(const ShardBeginning& beginning);

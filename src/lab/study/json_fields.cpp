@@ -5,8 +5,6 @@
 namespace culprit::study {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 const Json kNull;
 const Json kNoObject = Json::object();
 const Json kNoArray = Json::array();

@@ -8,14 +8,14 @@
 #include <string_view>
 #include <vector>
 
-#include <nlohmann/json.hpp>
+#include "json/json.h"
 
 namespace culprit::study {
 
 class JsonFields {
  public:
   // `json` lives longer than this.
-  explicit JsonFields(const nlohmann::ordered_json& json);
+  explicit JsonFields(const Json& json);
 
   bool has(std::string_view name) const { return json_.contains(std::string(name)); }
   bool is_object(std::string_view name) const {
@@ -32,8 +32,8 @@ class JsonFields {
   // True, and the field counts as read, if it is null.
   bool is_null(std::string_view name);
   // An empty object or array where there is a complaint.
-  const nlohmann::ordered_json& object(std::string_view name);
-  const nlohmann::ordered_json& array(std::string_view name);
+  const Json& object(std::string_view name);
+  const Json& array(std::string_view name);
 
   void complain(std::string_view name, std::string_view what);
   // Takes over the complaint of what was inside `name`.
@@ -43,9 +43,9 @@ class JsonFields {
   std::string complaint() const;
 
  private:
-  const nlohmann::ordered_json& at(std::string_view name);
+  const Json& at(std::string_view name);
 
-  const nlohmann::ordered_json& json_;
+  const Json& json_;
   std::size_t read_ = 0;
   std::string complaint_;
 };

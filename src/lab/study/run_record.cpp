@@ -8,8 +8,6 @@
 namespace culprit::study {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::size_t kMostRows = 256;
 
 Json to_json(const HonestMetrics& honest) {

@@ -4,9 +4,8 @@
 
 #include <cstdint>
 
-#include <nlohmann/json.hpp>
-
 #include "base/expected.h"
+#include "json/json.h"
 #include "study/campaign.h"
 #include "study/run_metrics.h"
 
@@ -15,18 +14,18 @@ namespace culprit::study {
 inline constexpr std::uint64_t kMostShardedRuns = 1'000'000'000;  // of a row
 
 // An error if a number is not finite: it would not come back.
-Expected<nlohmann::ordered_json> to_json(const RunMetrics& run);
+Expected<Json> to_json(const RunMetrics& run);
 // An error says which field is missing or out of range. Unknown fields are errors, too.
 template <class Run>
-Expected<Run> run_from_json(const nlohmann::ordered_json& json);
+Expected<Run> run_from_json(const Json& json);
 template <>
-Expected<RunMetrics> run_from_json(const nlohmann::ordered_json& json);
+Expected<RunMetrics> run_from_json(const Json& json);
 
-nlohmann::ordered_json to_json(const Campaign& campaign);
+Json to_json(const Campaign& campaign);
 // A campaign has at least one row, none twice, and at least one run.
 template <class C>
-Expected<C> campaign_from_json(const nlohmann::ordered_json& json);
+Expected<C> campaign_from_json(const Json& json);
 template <>
-Expected<Campaign> campaign_from_json(const nlohmann::ordered_json& json);
+Expected<Campaign> campaign_from_json(const Json& json);
 
 }  // namespace culprit::study

@@ -6,8 +6,6 @@
 namespace culprit::study {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 std::string seal(std::string_view body) {
   boost::crc_32_type crc;
   crc.process_bytes(body.data(), body.size());
@@ -20,7 +18,7 @@ const std::size_t kSealSize = seal("").size();
 
 std::string sealed_line(const Json& json) {
   // Numbers are written with as few digits as bring them back to the last bit.
-  const std::string body = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string body = to_line(json);
   return body.substr(0, body.size() - 1) + seal(body) + "\n";
 }
 
@@ -28,7 +26,7 @@ std::optional<Json> unsealed(std::string_view line) {
   if (line.size() <= kSealSize) return std::nullopt;
   const std::string body = std::string(line.substr(0, line.size() - kSealSize)) + "}";
   if (seal(body) != line.substr(line.size() - kSealSize)) return std::nullopt;
-  Json json = Json::parse(body, nullptr, false);
+  Json json = parse_json(body);
   if (!json.is_object()) return std::nullopt;
   return json;
 }

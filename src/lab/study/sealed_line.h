@@ -8,15 +8,15 @@
 #include <string>
 #include <string_view>
 
-#include <nlohmann/json.hpp>
+#include "json/json.h"
 
 namespace culprit::study {
 
 // With a line end. `json` is an object with at least one field.
-std::string sealed_line(const nlohmann::ordered_json& json);
+std::string sealed_line(const Json& json);
 
 // The object without the seal; nothing if the line was changed, or never was sealed. `line` has no
 // line end.
-std::optional<nlohmann::ordered_json> unsealed(std::string_view line);
+std::optional<Json> unsealed(std::string_view line);
 
 }  // namespace culprit::study

@@ -6,8 +6,8 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
+#include "json/json.h"
 #include "study/statistics/welch.h"
 #include "suave_study/html_report.h"
 #include "suave_study/published.h"
@@ -99,7 +99,7 @@ TEST(SuaveCampaign, IsTheSameOnAnyNumberOfThreads) {
   EXPECT_EQ(once, suave_json(run_campaign(small, 3)));
   SuaveCampaign other = small;
   other.seed = 2;
-  const auto rows = [](const std::string& text) { return nlohmann::json::parse(text)["rows"]; };
+  const auto rows = [](const std::string& text) { return parse_json(text)["rows"]; };
   EXPECT_NE(rows(once), rows(suave_json(run_campaign(other, 1))));
 }
 
@@ -142,7 +142,7 @@ TEST(PublishedSuave, YieldsThePapersTests) {
 TEST(SuaveReport, HasARowForEachManagerAndTestsAgainstEach) {
   const SuaveCampaign small = campaign("extended", {"none", "bt", kCulprit}, 4);
   const SuaveResult result = run_campaign(small, 2);
-  const auto json = nlohmann::json::parse(suave_json(result));
+  const auto json = parse_json(suave_json(result));
   ASSERT_EQ(json["rows"].size(), 3u);
   EXPECT_EQ(json["rows"][1]["manager"], "bt");
   EXPECT_EQ(json["rows"][1]["mission"], "extended");

@@ -41,7 +41,7 @@ int fit(std::uint32_t runs) {
     return 1;
   }
   fmt::print("{}\nmisfit {:.3f}, with the constants as they are {:.3f}\n",
-             to_json(fit->vehicle).dump(2), fit->misfit, fit->misfit_before);
+             to_indented(to_json(fit->vehicle)), fit->misfit, fit->misfit_before);
   return 0;
 }
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
+#include "json/json.h"
 #include "study/statistics/welch.h"
 #include "study/tables/columns.h"
 #include "suave_study/published.h"
@@ -12,8 +12,6 @@
 
 namespace culprit::study {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr const char* kNothing = "–";
 
@@ -232,7 +230,7 @@ std::string suave_json(const SuaveResult& result) {
                                  {"p", test.result.p},
                                  {"difference", test.result.difference}});
   }
-  return document.dump(2) + "\n";
+  return to_indented(document) + "\n";
 }
 
 }  // namespace culprit::study

@@ -7,7 +7,6 @@
 namespace culprit::study {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using suave::model::MissionSettings;
 using suave::model::Range;
 using suave::model::ThrusterSetting;

@@ -9,18 +9,17 @@
 //     {"gain_per_s": 0.65, "cruise": 0.7625, ...}     each of VehicleTraits
 #pragma once
 
-#include <nlohmann/json.hpp>
-
 #include "exemplars/suave/model/mission_settings.h"
 #include "exemplars/suave/model/vehicle.h"
+#include "json/json.h"
 
 namespace culprit::study {
 
-nlohmann::ordered_json to_json(const suave::model::MissionSettings& settings);
-nlohmann::ordered_json to_json(const suave::model::VehicleTraits& vehicle);
+Json to_json(const suave::model::MissionSettings& settings);
+Json to_json(const suave::model::VehicleTraits& vehicle);
 
 // Errors: a field is missing, unknown, or no value that a mission or a vehicle can have.
-Expected<suave::model::MissionSettings> settings_from_json(const nlohmann::ordered_json& json);
-Expected<suave::model::VehicleTraits> vehicle_from_json(const nlohmann::ordered_json& json);
+Expected<suave::model::MissionSettings> settings_from_json(const Json& json);
+Expected<suave::model::VehicleTraits> vehicle_from_json(const Json& json);
 
 }  // namespace culprit::study

@@ -9,7 +9,6 @@
 namespace culprit::study {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using suave::model::Reactions;
 
 bool is_finite(const std::vector<double>& values) {

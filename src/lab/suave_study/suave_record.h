@@ -6,13 +6,13 @@
 
 namespace culprit::study {
 
-Expected<nlohmann::ordered_json> to_json(const SuaveRun& run);
+Expected<Json> to_json(const SuaveRun& run);
 template <>
-Expected<SuaveRun> run_from_json(const nlohmann::ordered_json& json);
+Expected<SuaveRun> run_from_json(const Json& json);
 
-nlohmann::ordered_json to_json(const SuaveCampaign& campaign);
+Json to_json(const SuaveCampaign& campaign);
 // A campaign has managers, missions and generations that there are, and at least one run.
 template <>
-Expected<SuaveCampaign> campaign_from_json(const nlohmann::ordered_json& json);
+Expected<SuaveCampaign> campaign_from_json(const Json& json);
 
 }  // namespace culprit::study

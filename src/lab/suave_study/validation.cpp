@@ -6,16 +6,14 @@
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
+#include "json/json.h"
 #include "study/statistics/rank_correlation.h"
 #include "study/tables/columns.h"
 #include "suave_study/suave_record.h"
 
 namespace culprit::study {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct Compared {
   const char* metric;
@@ -176,7 +174,7 @@ std::string validation_json(const Validation& validation) {
                                  {"spearman_rho", json(each.spearman_rho)},
                                  {"kendall_tau", json(each.kendall_tau)}});
   }
-  return document.dump(2) + "\n";
+  return to_indented(document) + "\n";
 }
 
 }  // namespace culprit::study

@@ -1,14 +1,11 @@
 #include "sunset_study/json.h"
 
-#include <nlohmann/json.hpp>
-
 #include "exemplars/sunset/scenario.h"
+#include "json/json.h"
 #include "study/run_record.h"
 
 namespace culprit::study {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json mean_sd(const Summary& summary) {
   if (summary.count() == 0) return {{"mean", nullptr}, {"sd", nullptr}};
@@ -75,7 +72,7 @@ std::string json(const Findings& findings) {
   for (const LearningCurve& curve : findings.learning)
     document["learning"].push_back(curve_json(curve));
   // Names from outside may be no UTF-8; the rest of the document is not lost for that.
-  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return to_indented(document) + "\n";
 }
 
 }  // namespace culprit::study

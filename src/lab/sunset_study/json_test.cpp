@@ -1,14 +1,12 @@
 #include "sunset_study/json.h"
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
+#include "json/json.h"
 #include "study/test_findings.h"
 
 namespace culprit::study {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::vector<std::string> keys(const Json& object) {
   std::vector<std::string> keys;
@@ -18,7 +16,7 @@ std::vector<std::string> keys(const Json& object) {
 
 TEST(StudyJson, HasTheDocumentedShape) {
   const CampaignResult result = synthetic_result(9);
-  const Json document = Json::parse(json({result, {}, {}}));
+  const Json document = parse_json(json({result, {}, {}}));
   EXPECT_EQ(keys(document), (std::vector<std::string>{"study", "campaign", "scenarios", "rows"}));
   EXPECT_EQ(document["study"], "sunset");
   ASSERT_EQ(document["rows"].size(), 9u);
@@ -46,14 +44,14 @@ TEST(StudyJson, HasNullForTheMeanOfNothing) {
   campaign.runs = 1;
   CampaignFold fold(campaign);
   fold.add({});
-  const Json document = Json::parse(json({fold.result(), {}, {}}));
+  const Json document = parse_json(json({fold.result(), {}, {}}));
   EXPECT_TRUE(document["rows"][0]["reaction_s"]["mean"].is_null());
 }
 
 TEST(StudyJson, SurvivesNamesThatAreNoUtf8) {
   Findings findings = synthetic_findings(1);
   findings.learning.front().strategy = "\xff\"";
-  EXPECT_EQ(Json::parse(json(findings))["learning"][0]["strategy"], "\xEF\xBF\xBD\"");
+  EXPECT_EQ(parse_json(json(findings))["learning"][0]["strategy"], "\xEF\xBF\xBD\"");
 }
 
 }  // namespace

@@ -1,12 +1,11 @@
 // The file of a healthy robot. Its form is that of version 1 for good: files are kept for years.
-#include <nlohmann/json.hpp>
 
 #include "doctor/baseline.h"
+#include "json/json.h"
 
 namespace culprit::doctor {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Wires = std::map<std::string, Baseline::Wire>;
 
 constexpr int kVersion = 1;
@@ -54,12 +53,12 @@ std::string to_text(const Baseline& baseline) {
                       {"topics", std::move(topics)},
                       {"transforms", baseline.transforms},
                       {"diagnostics", baseline.statuses}};
-  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return to_indented(document) + "\n";
 }
 
 Expected<Baseline> parse_baseline(const std::string& text) {
   try {
-    const Json json = Json::parse(text);
+    const Json json = parse_json(text);
     if (!json.is_object() || !json.contains(kMark))
       return Error{"this is no healthy robot: culprit doctor --save FILE writes one"};
     if (json.at(kMark) != kVersion)

@@ -3,17 +3,15 @@
 #include <algorithm>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "doctor/examine.h"
 #include "doctor/explanations.h"
 #include "doctor/held_up.h"
 #include "doctor/wording.h"
+#include "json/json.h"
 
 namespace culprit::doctor {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json finding_json(const Finding& finding) {
   return {{"code", finding.code},       {"severity", label(finding.gravity)},

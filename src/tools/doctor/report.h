@@ -2,19 +2,18 @@
 //
 //     const auto picture = doctor::look({.participant = options});
 //     const doctor::Report report = doctor::report_of(*picture);
-//     std::cout << doctor::to_json(report).dump(2);
+//     std::cout << doctor::to_indented(to_json(report));
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "base/units.h"
 #include "doctor/baseline.h"
 #include "doctor/finding.h"
 #include "doctor/picture.h"
+#include "json/json.h"
 
 namespace culprit::doctor {
 
@@ -34,11 +33,11 @@ Report report_of(const Picture& picture, const Baseline* healthy = nullptr);
 
 // {domain, nodes, looked_s, findings: [{code, severity, who, nodes, topic, seen, matters, remedy}],
 // left_out}.
-nlohmann::ordered_json to_json(const Report& report);
+Json to_json(const Report& report);
 
 // SARIF 2.1.0 (OASIS), one run. Every code is a rule, found or not; who is concerned are logical
 // locations.
-nlohmann::ordered_json to_sarif(const Report& report);
+Json to_sarif(const Report& report);
 
 // "12 nodes on domain 7: 1 error, 2 warnings". Where there is a doubt, it says so instead of that nothing is wrong.
 std::string summary(const Report& report);

@@ -5,10 +5,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "doctor/explanations.h"
 #include "doctor/held_up.h"
+#include "json/json.h"
 
 namespace culprit::doctor {
 namespace {
@@ -137,7 +137,7 @@ TEST(Report, IsDataForPrograms) {
   const Report report = report_of(picture);
   EXPECT_EQ(summary(report), "3 nodes on domain 7: 1 error, 0 warnings");
   EXPECT_EQ(
-      to_json(report).dump(),
+      to_line(to_json(report)),
       R"({"domain":7,"nodes":3,"looked_s":8.0,"findings":[{"code":"D001",)"
       R"("severity":"error","who":"/scan: /lidar → /slam","nodes":["/lidar","/slam"],"topic":"/scan",)"
       R"("seen":"reliability: offered is best effort, requested is reliable",)"

@@ -113,7 +113,7 @@ std::string escaped(std::string_view text) {
   return out;
 }
 
-journal::Json cell_json(const Field& field, Kind kind) {
+Json cell_json(const Field& field, Kind kind) {
   if (!field) return {};
   if (kind == Kind::kText) return *field;
   if (kind == Kind::kCount) return integer_in(field);
@@ -144,18 +144,18 @@ std::string to_text(const Report& report, double now) {
 }
 
 std::string to_json_text(const Report& report) {
-  journal::Json json = {{"report", report.title}, {"tables", journal::Json::array()}};
+  Json json = {{"report", report.title}, {"tables", Json::array()}};
   for (const Table& table : report.tables) {
-    journal::Json rows = journal::Json::array();
+    Json rows = Json::array();
     for (const Row& row : table.rows) {
-      journal::Json object = journal::Json::object();
+      Json object = Json::object();
       for (std::size_t c = 0; c < row.size(); ++c)
         object[table.query.columns[c].key] = cell_json(row[c], table.query.columns[c].kind);
       rows.push_back(std::move(object));
     }
     json["tables"].push_back({{"title", table.query.title}, {"rows", std::move(rows)}});
   }
-  return json.dump(2, ' ', false, journal::Json::error_handler_t::replace) + "\n";
+  return to_indented(json) + "\n";
 }
 
 std::string to_html(const Report& report, double now) {

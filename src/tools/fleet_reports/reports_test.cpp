@@ -79,7 +79,7 @@ TEST_F(FleetReports, SayWhoIsIllWhatIsWorstAndWhoIsNotLikeTheOthers) {
   const std::string html = to_html(*report, 0);
   EXPECT_NE(html.find("&lt;camera&gt;"), std::string::npos);
   EXPECT_EQ(html.find("<camera>"), std::string::npos);
-  const journal::Json json = journal::from_text(to_json_text(*report));
+  const Json json = parse_json(to_json_text(*report));
   EXPECT_EQ(json["tables"][1]["rows"][0]["failures"], 10);
 }
 
@@ -87,11 +87,11 @@ TEST_F(FleetReports, SayWhoIsIllWhatIsWorstAndWhoIsNotLikeTheOthers) {
 TEST_F(FleetReports, TheDashboardsQueriesAreTaken) {
   std::ifstream file("packaging/fleet/grafana.json");
   const std::string text(std::istreambuf_iterator<char>(file), {});
-  const journal::Json dashboard = journal::from_text(text);
+  const Json dashboard = parse_json(text);
   ASSERT_TRUE(dashboard.is_object());
   int queries = 0;
-  for (const journal::Json& panel : dashboard["panels"]) {
-    for (const journal::Json& target : panel["targets"]) {
+  for (const Json& panel : dashboard["panels"]) {
+    for (const Json& target : panel["targets"]) {
       std::string sql = target["rawSql"].get<std::string>();
       const std::string macro = "$__timeFilter(f.began)";
       for (auto at = sql.find(macro); at != std::string::npos; at = sql.find(macro))

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "journal/json.h"
 #include "knowledge/describe.h"
 
 namespace culprit::incidents {
@@ -16,7 +17,7 @@ void add_to(std::vector<std::string>& names, const std::string& name) {
   if (std::ranges::find(names, name) == names.end()) names.push_back(name);
 }
 
-Criticality criticality_of(const journal::Json& event) {
+Criticality criticality_of(const Json& event) {
   const std::string word = journal::text_of(event, "criticality");
   for (const Criticality each : {Criticality::kError, Criticality::kWarning}) {
     if (word == to_string(each)) return each;

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "journal/json.h"
+#include "json/json.h"
 #include "language/rule_set.h"
 
 namespace culprit::incidents {
@@ -24,7 +24,7 @@ struct Told {
   std::int64_t row = 0;  // ascending: of the journal, or wherever it is found again
   double wall = 0;       // seconds since 1970
   double robot = 0;      // seconds by the robot's clock, which does not jump
-  const journal::Json& event;
+  const Json& event;
 };
 
 struct Incident {

@@ -8,8 +8,6 @@
 namespace culprit::incidents {
 namespace {
 
-using journal::Json;
-
 // Candidates as the stream tells them: the journal has a word and a sentence.
 void tell_exclusions(Json& event) {
   const auto candidates = event.find("candidates");

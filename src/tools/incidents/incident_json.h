@@ -15,11 +15,10 @@ std::vector<recorder::StoredRecording> recordings_of(
     const Incident& incident, const std::vector<recorder::StoredRecording>& all);
 
 // {"id", "first", "last", "clock", "seconds", …, "recordings": [{"name", "path", "bytes"}]}
-journal::Json to_json(const Incident& incident,
-                      const std::vector<recorder::StoredRecording>& recordings);
+Json to_json(const Incident& incident, const std::vector<recorder::StoredRecording>& recordings);
 // What people are told beside an event: {"type": ..., "label": ..., "severity": ..., "tone": ...}
-journal::Json to_json(const EventWords& words);
+Json to_json(const EventWords& words);
 // As the stream tells it (web/event_json.h); `t` is `clock`.
-journal::Json to_json(ToldEvent told);
+Json to_json(ToldEvent told);
 
 }  // namespace culprit::incidents

@@ -14,8 +14,6 @@
 namespace culprit::incidents {
 namespace {
 
-using journal::Json;
-
 // The colours are those of the page (ui/src/app.css).
 constexpr std::string_view kStyle =
     R"(:root{color-scheme:light dark;--surface:#fff;--raised:#f4f5f7;--text:#1b1f24;--muted:#59636e;--faint:#d8dee4;--accent:#0a5cc4;--ok:#3f6b50;--note:#2f6fa8;--warning:#8a5a00;--error:#b42318}

@@ -14,7 +14,7 @@ namespace culprit::incidents {
 struct PageContent {
   Incident incident;
   std::string robot;
-  std::vector<journal::Json> events;     // as GET /api/incidents/events tells them (docs/web.md)
+  std::vector<Json> events;              // as GET /api/incidents/events tells them (docs/web.md)
   std::vector<std::string> recordings;   // names of files; empty: nothing was recorded
   std::optional<RecordedCurves> curves;  // of one of them; nothing: `remarks` say why
   std::vector<std::string> remarks;      // sentences about the recording

@@ -15,7 +15,6 @@
 namespace culprit::incidents {
 namespace {
 
-using journal::Json;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;

@@ -36,7 +36,7 @@ constexpr std::int64_t kSecond = 1'000'000'000;
 
 // A journal that tells what happened so many seconds after noon. The robot's clock was at 100 s then.
 struct JournalIncidents : testing::Test {
-  void tell(double after, journal::Json event) {
+  void tell(double after, Json event) {
     event["text"] = "something";
     event["time"] = static_cast<std::int64_t>((100 + after) * kSecond);
     add(journal::kind::kEvent, after, event);
@@ -45,7 +45,7 @@ struct JournalIncidents : testing::Test {
     tell(after, {{"type", "failure_detected"}, {"rule", rule}, {"criticality", criticality}});
   }
   void resolved(double after, const char* rule, const char* strategy = nullptr) {
-    journal::Json event{{"type", "failure_resolved"}, {"rule", rule}};
+    Json event{{"type", "failure_resolved"}, {"rule", rule}};
     if (strategy != nullptr) event["strategy"] = strategy;
     tell(after, event);
   }
@@ -56,12 +56,12 @@ struct JournalIncidents : testing::Test {
     journal::Session session;
     session.rules_path = "two.rules";
     session.rules_text = kTwoRules;
-    session.planner = journal::Json::object();
+    session.planner = Json::object();
     add(journal::kind::kSession, after, journal::to_json(session));
   }
-  void add(std::string_view kind, double after, const journal::Json& body) {
+  void add(std::string_view kind, double after, const Json& body) {
     const auto at = static_cast<std::int64_t>((kNoon + after) * kSecond);
-    rows.entries.push_back({0, at, std::string(kind), journal::to_text(body)});
+    rows.entries.push_back({0, at, std::string(kind), to_line(body)});
   }
   journal::Reader journal() {
     auto writer = value_of(journal::Writer::open(folder / "a.journal", {}));
@@ -155,9 +155,8 @@ TEST_F(JournalIncidents, OfNothingAreNone) { EXPECT_THAT(since(0), IsEmpty()); }
 // Rows come from a file: what is no event says nothing.
 TEST_F(JournalIncidents, TakeNothingFromRowsThatSayNothing) {
   session(0);
-  for (const journal::Json& body :
-       {journal::Json(nullptr), journal::Json(7), journal::Json::array(),
-        journal::Json{{"type", 7}}, journal::Json{{"type", "failure_resolved"}}})
+  for (const Json& body : {Json(nullptr), Json(7), Json::array(), Json{{"type", 7}},
+                           Json{{"type", "failure_resolved"}}})
     add(journal::kind::kEvent, 1, body);
   tell(2, {{"type", "failure_detected"}, {"rule", "NobodyKnowsThis"}, {"criticality", 9}});
   chosen(3, "NobodyKnowsThis", "nothing");

@@ -63,7 +63,7 @@ class Names {
   const RuleSet* checked() {
     if (!is_checked_) {
       is_checked_ = true;
-      const auto session = journal::session_from_json(journal::from_text(text_));
+      const auto session = journal::session_from_json(parse_json(text_));
       if (session) rules_ = check(Source(session->rules_path, session->rules_text)).rules;
     }
     return rules_ ? &*rules_ : nullptr;
@@ -100,7 +100,7 @@ Expected<IncidentBuilder> build(const Reader& journal, std::int64_t from) {
       names->begin(entry.body);
     }
     if (entry.kind != journal::kind::kEvent || !is_telling(entry.body)) continue;
-    const journal::Json event = journal::from_text(entry.body);
+    const Json event = parse_json(entry.body);
     const double robot = kNanosecond * static_cast<double>(journal::integer_of(event, "time"));
     builder.add({entry.id, kNanosecond * static_cast<double>(entry.at), robot, event},
                 components_of);
@@ -171,7 +171,7 @@ Expected<std::optional<journal::Session>> session_at(const Reader& journal, std:
   const auto found = journal.newest(journal::kind::kSession, row);
   if (!found) return Error{found.error()};
   if (!*found) return std::optional<journal::Session>();
-  auto session = journal::session_from_json(journal::from_text((*found)->body));
+  auto session = journal::session_from_json(parse_json((*found)->body));
   if (!session) return std::optional<journal::Session>();
   return std::optional(std::move(*session));
 }
@@ -189,7 +189,7 @@ Expected<std::vector<ToldEvent>> events_of(const Reader& journal, std::int64_t f
   for (; more && *more && entry.id <= last && told.size() < kMostTold; more = rows->next(entry)) {
     if (entry.kind == journal::kind::kSession) names->begin(entry.body);
     if (entry.kind != journal::kind::kEvent) continue;
-    journal::Json event = journal::from_text(entry.body);
+    Json event = parse_json(entry.body);
     if (journal::text_of(event, "text").empty()) continue;  // for culprit itself
     const double robot = kNanosecond * static_cast<double>(journal::integer_of(event, "time"));
     if (told.empty()) wall_of_robot = kNanosecond * static_cast<double>(entry.at) - robot;

@@ -32,7 +32,7 @@ struct ToldEvent {
   std::int64_t row = 0;
   double wall =
       0;  // seconds since 1970, by the robot's clock from the first one on: within an incident it does not jump
-  journal::Json event;                  // as the row has it
+  Json event;                           // as the row has it
   std::vector<std::string> components;  // of its strategy, if it is about one
 };
 

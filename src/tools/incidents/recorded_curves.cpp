@@ -20,7 +20,6 @@ namespace culprit::incidents {
 namespace {
 
 namespace fs = std::filesystem;
-using journal::Json;
 
 // A message that nobody named a field of is looked into if it is no picture, no map and no cloud.
 constexpr std::size_t kSmallMessage = std::size_t{16} << 10;  // bytes
@@ -75,7 +74,7 @@ Json first_graph(const fs::path& path, const CurveLimits& limits) {
     if (topic.name != recorder::Recorder::kGraphTopic || message.bytes.size() > kMostGraph)
       continue;
     const auto text = ros2::decode<ros2::msg::String>(bytes_of(message));
-    if (text) return journal::from_text(text->data);
+    if (text) return parse_json(text->data);
   }
   return nullptr;
 }

@@ -23,11 +23,11 @@ std::optional<std::string> header_line(std::istream& in) {
 
 }  // namespace
 
-Expected<std::optional<nlohmann::json>> read_message(std::istream& in) {
+Expected<std::optional<Json>> read_message(std::istream& in) {
   constexpr std::string_view kLength = "Content-Length: ";
   std::optional<std::size_t> length;
   auto line = header_line(in);
-  if (!line) return std::optional<nlohmann::json>();
+  if (!line) return std::optional<Json>();
   for (; line && !line->empty(); line = header_line(in)) {
     if (!line->starts_with(kLength)) continue;
     std::size_t value = 0;
@@ -40,12 +40,12 @@ Expected<std::optional<nlohmann::json>> read_message(std::istream& in) {
   std::string body(*length, '\0');
   if (!in.read(body.data(), static_cast<std::streamsize>(body.size())))
     return Error{"a message that ends too early"};
-  return std::optional(nlohmann::json::parse(body, nullptr, false));
+  return std::optional(parse_json(body));
 }
 
-void write_message(std::ostream& out, const nlohmann::json& message) {
+void write_message(std::ostream& out, const Json& message) {
   // Texts come from files and may hold anything: what is no UTF-8 is replaced.
-  const std::string body = message.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  const std::string body = to_line(message);
   out << "Content-Length: " << body.size() << "\r\n\r\n" << body << std::flush;
 }
 

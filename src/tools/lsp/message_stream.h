@@ -6,9 +6,8 @@
 #include <optional>
 #include <ostream>
 
-#include <nlohmann/json.hpp>
-
 #include "base/expected.h"
+#include "json/json.h"
 
 namespace culprit::lsp {
 
@@ -16,10 +15,10 @@ namespace culprit::lsp {
 inline constexpr std::size_t kMaxMessage = 128u << 20;
 
 // The next message; nothing at the end of the stream. What is no JSON comes as a discarded value
-// (nlohmann::json::is_discarded). An error: the stream is no sequence of messages, and cannot be
+// (Json::is_discarded). An error: the stream is no sequence of messages, and cannot be
 // read on.
-Expected<std::optional<nlohmann::json>> read_message(std::istream& in);
+Expected<std::optional<Json>> read_message(std::istream& in);
 
-void write_message(std::ostream& out, const nlohmann::json& message);
+void write_message(std::ostream& out, const Json& message);
 
 }  // namespace culprit::lsp

@@ -14,7 +14,6 @@
 namespace culprit::lsp {
 namespace {
 
-using Json = nlohmann::json;
 using OccurrenceKind = Occurrence::Kind;
 
 // JSON-RPC 2.0 and LSP error codes.

@@ -6,15 +6,14 @@
 #include <set>
 #include <string>
 
-#include <nlohmann/json.hpp>
-
+#include "json/json.h"
 #include "lsp/document.h"
 
 namespace culprit::lsp {
 
 class Server {
  public:
-  using Send = std::function<void(const nlohmann::json& message)>;
+  using Send = std::function<void(const Json& message)>;
 
   // Where documents find the files that they include. `from` is the path of the document; empty: it
   // has none.
@@ -29,7 +28,7 @@ class Server {
 
   // One message of the client, of any content; answers and diagnostics go through Send. False when
   // the client said that the server has to end.
-  bool handle(const nlohmann::json& message);
+  bool handle(const Json& message);
 
   // What the robot has now, for completion, hover and diagnostics. Diagnostics that change are
   // published.
@@ -42,8 +41,6 @@ class Server {
   int exit_code() const { return is_shut_down_ ? 0 : 1; }
 
  private:
-  using Json = nlohmann::json;
-
   // An object with the member "result" or the member "error".
   Json answer(const std::string& method, const Json& params);
   void notice(const std::string& method, const Json& params);

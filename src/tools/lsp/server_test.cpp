@@ -12,7 +12,6 @@
 namespace culprit::lsp {
 namespace {
 
-using Json = nlohmann::json;
 using testing::AllOf;
 using testing::Contains;
 using testing::ElementsAre;
@@ -412,7 +411,7 @@ class ReuseSession {
       auto& lines = all[message["params"]["uri"]];
       lines.clear();
       for (const Json& d : message["params"]["diagnostics"])
-        lines.push_back(d["range"]["start"]["line"].dump() + ": " +
+        lines.push_back(to_line(d["range"]["start"]["line"]) + ": " +
                         d["message"].get<std::string>());
     }
     return all;

@@ -38,7 +38,7 @@ void expect_beliefs_as_recorded(const fs::path& path, const std::string& what) {
   double alpha = 10 * 0.5;
   for (auto more = rows.next(entry); more && *more; more = rows.next(entry)) {
     if (entry.kind != journal::kind::kBelief) continue;
-    const auto body = journal::from_text(entry.body);
+    const auto body = parse_json(entry.body);
     helped += journal::number_of(body, "alpha") > alpha ? 1 : 0;
     alpha = std::max(alpha, journal::number_of(body, "alpha"));
   }

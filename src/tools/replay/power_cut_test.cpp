@@ -67,7 +67,7 @@ int intents_about(const std::string& component, const fs::path& path) {
   int count = 0;
   while (value_of(rows.next(entry))) {
     const bool is_one = entry.kind == journal::kind::kIntent &&
-                        journal::text_of(journal::from_text(entry.body), "component") == component;
+                        journal::text_of(parse_json(entry.body), "component") == component;
     count += is_one ? 1 : 0;
   }
   return count;

@@ -13,7 +13,7 @@ Expected<Recording> Recording::open(const journal::Reader& journal, std::int64_t
     return Error{session == 0
                      ? "it has no run that begins in it"
                      : "row " + std::to_string(session) + " is not the beginning of a run"};
-  auto begin = journal::session_from_json(journal::from_text((*row)->body));
+  auto begin = journal::session_from_json(parse_json((*row)->body));
   if (!begin) return Error{begin.error()};
   if (begin->continued)
     return Error{"the run of row " + std::to_string((*row)->id) +

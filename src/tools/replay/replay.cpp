@@ -21,7 +21,7 @@ Expected<std::vector<std::string>> said_after(const journal::Reader& journal, st
   auto more = rows->next(entry);
   for (; more && *more && entry.kind != journal::kind::kSteps; more = rows->next(entry)) {
     if (entry.kind == journal::kind::kEvent || entry.kind == journal::kind::kIntent)
-      said.push_back(journal::text_of(journal::from_text(entry.body), "text"));
+      said.push_back(journal::text_of(parse_json(entry.body), "text"));
   }
   if (!more) return Error{more.error()};
   return said;
@@ -107,7 +107,7 @@ std::unique_ptr<Manager> manager_for(const journal::Session& session, const Rule
   manager->remember(journal::history_from_json(session.past, rules));
   manager->remember(journal::known_robot_from_json(session.known_robot));
   if (!session.interrupted.is_array()) return manager;
-  for (const journal::Json& each : session.interrupted) {
+  for (const Json& each : session.interrupted) {
     if (auto interrupted = journal::interrupted_from_json(each, rules))
       manager->resume(std::move(*interrupted));
   }

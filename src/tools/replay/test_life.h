@@ -148,7 +148,7 @@ class Life {
       return is_read(command) ||
              std::any_of(found.rows.begin(), found.rows.end(), [&](const journal::Entry& row) {
                return row.kind == journal::kind::kIntent &&
-                      journal::integer_of(journal::from_text(row.body), "command") ==
+                      journal::integer_of(parse_json(row.body), "command") ==
                           static_cast<std::int64_t>(command.id.number);
              });
     });

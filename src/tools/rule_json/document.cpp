@@ -74,7 +74,7 @@ Expected<Json> parse_document(const std::string& name, const std::string& text) 
   if (!inspector.complaint().empty()) {
     return Error{place(name, text, inspector.offset()) + ": " + inspector.complaint() + "\n"};
   }
-  return Json::parse(text, nullptr, false);
+  return parse_json(text);
 }
 
 }  // namespace culprit::rule_json

@@ -46,13 +46,13 @@ const char* describe(Part part) {
 using Words = std::optional<std::string>;  // of a line; nothing: the value is no such part
 
 Words number_words(const Json& value) {
-  std::string text = value.is_number() ? value.dump() : "";
+  std::string text = value.is_number() ? to_line(value) : "";
   if (value.is_string()) text = value.get<std::string>();
   return is_number(text) ? Words(text) : std::nullopt;
 }
 
 Words signed_words(const Json& value) {
-  std::string text = value.is_number() ? value.dump() : "";
+  std::string text = value.is_number() ? to_line(value) : "";
   if (value.is_string()) text = value.get<std::string>();
   return is_number(text.starts_with('-') ? text.substr(1) : text) ? Words(text) : std::nullopt;
 }

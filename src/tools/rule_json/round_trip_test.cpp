@@ -49,12 +49,12 @@ std::string imported(const std::string& json) {
 std::string schema_complaints(const std::string& json) {
   static const auto kSchema = [] {
     auto schema = std::make_unique<valijson::Schema>();
-    const auto text = nlohmann::json::parse(read("docs/rules.schema.json"));
+    const nlohmann::json text = parse_json(read("docs/rules.schema.json"));
     valijson::SchemaParser(valijson::SchemaParser::kDraft7)
         .populateSchema(valijson::adapters::NlohmannJsonAdapter(text), *schema);
     return schema;
   }();
-  const auto document = nlohmann::json::parse(json);
+  const nlohmann::json document = parse_json(json);  // what valijson reads
   valijson::ValidationResults results;
   const valijson::adapters::NlohmannJsonAdapter target(document);
   if (valijson::Validator().validate(*kSchema, target, &results)) return "";
@@ -129,7 +129,7 @@ RULE Bad
 # end
 )"));
   ASSERT_TRUE(json) << json.error();
-  const nlohmann::json expected = nlohmann::json::parse(R"j({
+  const Json expected = parse_json(R"j({
     "version": 1,
     "statements": [
       {"statement": "COMPONENT", "name": "fusion", "node": "/robot/fusion",
@@ -146,7 +146,7 @@ RULE Bad
     ],
     "end": ["# end"]
   })j");
-  EXPECT_EQ(nlohmann::json(*json), expected);
+  EXPECT_EQ(*json, expected);
 }
 
 // The text between the first line ```<kind> of docs/rule-json.md and the next ```.

@@ -64,8 +64,8 @@ Json name_to_json(std::string_view text) {
 }
 
 Json number_to_json(const std::string& text) {
-  Json number = Json::parse(text, nullptr, false);
-  return number.is_number() && number.dump() == text ? number : Json(text);
+  Json number = parse_json(text);
+  return number.is_number() && to_line(number) == text ? number : Json(text);
 }
 
 bool is_word(std::string_view text) { return is_token(text, Token::Kind::kIdentifier); }

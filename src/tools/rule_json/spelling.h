@@ -7,11 +7,9 @@
 #include <string>
 #include <string_view>
 
-#include <nlohmann/json.hpp>
+#include "json/json.h"
 
 namespace culprit::rule_json {
-
-using Json = nlohmann::ordered_json;
 
 // A text of the language: in quotes, with escapes.
 std::string in_quotes(std::string_view value);

@@ -198,6 +198,6 @@ Expected<Json> to_json(const Source& source, Colour colour) {
   return statements(source, lexemes);
 }
 
-std::string to_text(const Json& document) { return document.dump(2) + "\n"; }
+std::string to_text(const Json& document) { return to_indented(document) + "\n"; }
 
 }  // namespace culprit::rule_json

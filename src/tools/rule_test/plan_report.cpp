@@ -11,8 +11,6 @@
 namespace culprit {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::size_t kMostNearTriggers = 3;
 
 // What triggers read and nobody has told yet.

@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
+#include "json/json.h"
 #include "plan/decision.h"
 
 namespace culprit {
@@ -23,9 +22,9 @@ struct PlanReport {
 };
 
 std::string plan_as_text(const PlanReport& report);
-nlohmann::ordered_json plan_as_json(const PlanReport& report);
+Json plan_as_json(const PlanReport& report);
 
 // Why a strategy was not chosen; null for the one that was.
-nlohmann::ordered_json exclusion_as_json(const Candidate& candidate, const RuleSet& rules);
+Json exclusion_as_json(const Candidate& candidate, const RuleSet& rules);
 
 }  // namespace culprit

@@ -1,8 +1,8 @@
 #include "study/report/html_report.h"
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
+#include "json/json.h"
 #include "study/comparison.h"
 #include "study/markup.h"
 #include "study/plot/plots.h"
@@ -13,8 +13,6 @@
 
 namespace culprit::study {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string provenance(const Campaign& campaign) {
   return "<dl class=\"facts\">\n" +

@@ -1,0 +1,25 @@
+// JSON documents, read from text and written as text. Here alone, for the library's parser is
+// compiled anew, which takes seconds, wherever it is called.
+//
+//     const Json answer = parse_json(R"({"node": "/camera", "pid": 42})");
+//     if (answer.is_discarded()) …       // it is no JSON
+//     to_line({{"node", "/camera"}})     // {"node":"/camera"}
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+namespace culprit {
+
+using Json = nlohmann::ordered_json;  // members stay in the order in which they were written
+
+// Never throws; discarded if `text` is no JSON.
+Json parse_json(std::string_view text);
+
+// Neither throws: what is no UTF-8 is replaced, for robots name things as they like.
+std::string to_line(const Json& json);      // on one line
+std::string to_indented(const Json& json);  // on several, without a newline at the end
+
+}  // namespace culprit

@@ -1,0 +1,29 @@
+#include "json/json.h"
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace culprit {
+namespace {
+
+TEST(Json, KeepsMembersInTheOrderInWhichTheyWereWritten) {
+  const std::string text = R"({"z":1,"a":{"y":[true,null],"b":"x"}})";
+  EXPECT_EQ(to_line(parse_json(text)), text);
+  EXPECT_EQ(to_indented(parse_json(R"({"z":[1],"a":2})")),
+            "{\n  \"z\": [\n    1\n  ],\n  \"a\": 2\n}");
+}
+
+TEST(Json, IsDiscardedWhereItIsNone) {
+  for (const char* text : {"", "{", "[1,]", "{\"a\":1} b", "'a'", "\"\xFF\"", "1e999999"})
+    EXPECT_TRUE(parse_json(text).is_discarded()) << text;
+  EXPECT_TRUE(parse_json(std::string(100'000, '[')).is_discarded());
+}
+
+TEST(Json, IsWrittenWhereATextIsNoUtf8) {
+  EXPECT_EQ(to_line({{"name", "caf\xE9"}}), "{\"name\":\"caf\xEF\xBF\xBD\"}");
+  EXPECT_EQ(to_indented(Json("caf\xE9")), "\"caf\xEF\xBF\xBD\"");
+}
+
+}  // namespace
+}  // namespace culprit
