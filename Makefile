@@ -27,7 +27,7 @@ demo:
 	build/demo/bin/culprit-lab demo --end
 
 test:
-	@scripts/install-dependencies --tests
+	@scripts/install-dependencies --test-builds
 	scripts/test
 
 # What takes longer than a test may, some four and a half hours in all: all tests as users build, a robot that is broken and healed for an hour, three robots
