@@ -409,12 +409,17 @@ void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
         *manager_, [this] { return robot_->link().contested(); }, frame_.start);
     runtime_->next_look = [observer] { return observer->next_look(); };
   }
-  // The recorder takes the observations.
+  // What is asked for is written down before it goes out, and others are told when it has.
+  runtime_->before_commands = [this](const Runtime::Step& step) {
+    if (recorder_ == nullptr) return;
+    std::vector<Observation> observations = step.observations;
+    recorder_->stepped(step.now, observations, step.commands, step.events);
+  };
   runtime_->on_step = [this](const Runtime::Step& step) {
     if (seen_) seen_->note(step.observations);
     if (frame_.observer != nullptr) frame_.observer->stepped(step);
-    if (recorder_ != nullptr)
-      recorder_->stepped(step.now, step.observations, step.commands, step.events);
+    if (recorder_ != nullptr && step.commands.empty())
+      recorder_->stepped(step.now, step.observations, {}, step.events);
     withdraw_doubles();
   };
   runtime_->on_events = [this](std::span<const Event> events) { tell(events); };

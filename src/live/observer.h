@@ -30,7 +30,7 @@ class Observer {
   // A manager begins. Both are there until the last step that is told of. People count times from
   // `start`, which is the same for all sessions of a run.
   virtual void begins(const Manager& manager, std::function<Remarks()> remarks, Time start) = 0;
-  // It did a step, and its commands are about to go out.
+  // It did a step, and its commands have gone out.
   virtual void stepped(const Runtime::Step& step) = 0;
   // When it wants to be told of a step even if nothing happens.
   virtual Time next_look() const = 0;

@@ -222,31 +222,5 @@ TEST(Runtime, TellsTheManagerThatItOverslept) {
   EXPECT_LE(slept[0], 20s);
 }
 
-// A robot of which nothing is ever heard.
-class SilentRobot : public Robot {
- public:
-  Time now() const override { return now_; }
-  void observe(Time until, std::vector<Observation>&) override { now_ = until; }
-  void execute(const Command&) override {}
-
- private:
-  Time now_{};
-};
-
-TEST(Runtime, StepsWhenSomebodyWantsToLookThoughNothingHappens) {
-  const RuleSet no_rules;
-  Manager manager(no_rules, std::make_unique<BayesPlanner>(), {});
-  SilentRobot robot;
-  Runtime runtime(manager, robot);
-  std::vector<Time> looks;
-  runtime.next_look = [&] { return looks.empty() ? Time(20s) : later(looks.back(), 7s); };
-  runtime.on_step = [&](const Runtime::Step& step) {
-    if (step.now >= Time(20s)) looks.push_back(step.now);
-  };
-  const std::atomic<bool> stop = false;
-  runtime.run(stop, Time(40s));
-  EXPECT_THAT(looks, testing::ElementsAre(Time(20s), Time(27s), Time(34s), Time(40s)));
-}
-
 }  // namespace
 }  // namespace culprit::test

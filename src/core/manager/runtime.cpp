@@ -23,8 +23,10 @@ void Runtime::step(std::vector<Observation>& observations) {
   const Time begin = robot_.now();
   const Time now = stepped_ = std::max(stepped_, robot_.observed_until());
   const std::vector<Command> commands = manager_.step(now, observations);
-  if (on_step) on_step({now, robot_.now() - begin, observations, commands, manager_.events()});
+  const Step done{now, robot_.now() - begin, observations, commands, manager_.events()};
+  if (!commands.empty() && before_commands) before_commands(done);
   for (const Command& command : commands) robot_.execute(command);
+  if (on_step) on_step(done);
   if (!manager_.events().empty() && on_events) on_events(manager_.events());
 }
 

@@ -28,8 +28,6 @@ class Runtime {
   // Both must outlive the runtime.
   Runtime(ManagingSystem& manager, Robot& robot) : manager_(manager), robot_(robot) {}
 
-  // Called after every step, before its commands go out, on the thread of run(). It may take the
-  // observations.
   struct Step {
     Time now;
     Duration took;  // by the robot's clock
@@ -37,6 +35,13 @@ class Runtime {
     std::span<const Command> commands;
     std::span<const Event> events;
   };
+
+  // Called after a step that has commands, before they go out, on the thread of run(): the robot
+  // waits for whatever is done here.
+  std::function<void(const Step&)> before_commands;
+
+  // Called after every step, when its commands have gone out, on the thread of run(). It may take
+  // the observations.
   std::function<void(const Step&)> on_step;
 
   // When a step is wanted though the manager has no reason for one; nothing: never. Called on the
