@@ -93,6 +93,17 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
     return IsLocatorSupported(locator) && reception_.thread->is_open(port);
   }
 
+  // Told to stay on this machine, nodes of Iron and newer listen at all its addresses, and announce only those in
+  // the network. We have no other than the loopback address then, so we send to them there.
+  bool transform_remote_locator(const Locator& remote, Locator& result) const override {
+    if (ChainingTransport::transform_remote_locator(remote, result)) return true;
+    if (udp().interfaceWhiteList.empty()) return false;
+    // Of shared memory, which they announce too, it must not be asked whether it is local.
+    if (!IsLocatorSupported(remote) || !is_local_locator(remote)) return false;
+    result = remote;
+    return IpLocator::setIPv4(result, udp().interfaceWhiteList.front());
+  }
+
   // As UDPv4Transport does, whose sockets would have threads of their own.
   bool OpenInputChannel(const Locator& locator, Receiver* receiver,
                         std::uint32_t largest) override {

@@ -66,6 +66,18 @@ TEST(Context, TwoNodesSeeEachOther) {
   EXPECT_TRUE(other.sees_node("/ns/a"));
 }
 
+// As nodes of Iron and newer do with ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST: they announce an address of the network.
+TEST(Context, WhoHasTheLoopbackAddressOnlySeesWhoOfThisMachineHasAll) {
+  const TestDomain domain;
+  ParticipantOptions all_addresses = domain.options();
+  all_addresses.reach = Reach::kSubnet;
+  LiveContext one(domain.options()), other(all_addresses);
+  const NodeEntry a(*one, {"/", "a"});
+  const NodeEntry b(*other, {"/", "b"});
+  EXPECT_TRUE(one.sees_node("/b"));
+  EXPECT_TRUE(other.sees_node("/a"));
+}
+
 TEST(Context, EndpointsComeAndGoWithTheirOwners) {
   const TestDomain domain;
   LiveContext watcher(domain.options()), robot(domain.options());
