@@ -32,6 +32,7 @@
 
 #include "ros2/careful_transport.h"
 #include "ros2/participant.h"
+#include "ros2/type_description.h"
 
 namespace culprit::ros2::fast_dds {
 
@@ -202,7 +203,8 @@ void apply(EntityQos& entity, const Qos& qos, const std::string& user_data) {
                                                                    : dds::SHARED_OWNERSHIP_QOS;
   entity.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   entity.data_sharing().off();
-  entity.user_data().setValue({user_data.begin(), user_data.end()});
+  const std::string said = user_data.empty() ? type_user_data({}) : user_data;
+  entity.user_data().setValue({said.begin(), said.end()});
 }
 
 inline rtps::Locator_t locator(const std::string& ip, std::uint32_t port) {

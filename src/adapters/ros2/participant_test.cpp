@@ -14,6 +14,7 @@
 
 #include "base/live_clock.h"
 #include "ros2/live_test.h"
+#include "ros2/type_description.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -413,6 +414,20 @@ class Known {
   ConditionVariable changed_;
   std::map<Guid, EndpointInfo> all_ CULPRIT_GUARDED_BY(mutex_);
 };
+
+// Nodes on rmw_cyclonedds of Jazzy warn of each endpoint without user data.
+TEST(Participant, NoEndpointOfItsSaysNothing) {
+  const TestDomain domain;
+  EventLog<DiscoveryEvent> events;
+  const auto watcher = join(domain, [&](DiscoveryEvent event) { events.add(std::move(event)); });
+  const auto other = join(domain);
+  const auto writer = other->create_writer({"t", "T", {}, "", {}});
+  ASSERT_TRUE(writer);
+  EXPECT_TRUE(events.wait_for_one([](const DiscoveryEvent& event) {
+    const auto* info = std::get_if<EndpointInfo>(&event);
+    return info != nullptr && is_of_culprit(info->user_data);
+  }));
+}
 
 TEST(Participant, WhatItNeverMeetsIsDiscoveredAsAllElse) {
   const TestDomain domain;

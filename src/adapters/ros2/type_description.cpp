@@ -166,7 +166,7 @@ std::string type_user_data(std::string_view hash, std::string_view service_hash)
   std::string text;
   if (!hash.empty()) text.append("typehash=").append(hash).append(";");
   if (!service_hash.empty()) text.append("sertypehash=").append(service_hash).append(";");
-  return text.empty() ? text : text.append(kCulpritsMark);
+  return text.append(kCulpritsMark);
 }
 
 bool is_of_culprit(std::string_view user_data) {

@@ -17,8 +17,9 @@ namespace culprit::ros2 {
 std::string type_hash(std::string_view type, const MessageDefinitions& definitions);
 
 // What tells others of these hashes in an endpoint's user data, as Iron and newer read it; of a message,
-// and of the service that it belongs to (from Lyrical on). Nothing for those that are empty. Other culprits
-// know it as ours: that we say so is no sign of what the robot's nodes are (context.h).
+// and of the service that it belongs to (from Lyrical on). Nothing of those that are empty, but never nothing at all:
+// nodes on rmw_cyclonedds of Jazzy warn of each endpoint that says nothing. Other culprits know it as ours: that we
+// say so is no sign of what the robot's nodes are (context.h).
 std::string type_user_data(std::string_view hash, std::string_view service_hash = {});
 // Whether that is a culprit's.
 bool is_of_culprit(std::string_view user_data);
