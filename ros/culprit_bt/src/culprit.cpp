@@ -26,16 +26,20 @@ Culprit::Culprit(std::shared_ptr<RosThread> thread, std::string name)
   client_ = node.create_client<Ask>(name_ + "/get_parameters", rmw_qos_profile_services_default,
                                     thread_->group());
   timer_ = node.create_wall_timer(
-      std::chrono::milliseconds(100), [this] { look(); }, thread_->group());
+      std::chrono::milliseconds(100),
+      [this, alive = callbacks_] { alive->within([this] { look(); }); }, thread_->group());
 }
+
+Culprit::~Culprit() { callbacks_->end(); }
 
 void Culprit::subscribe() {
   rclcpp::SubscriptionOptions options;
   options.callback_group = thread_->group();
   subscription_ = thread_->node().create_subscription<Status>(
       name_ + "/status", rclcpp::QoS(1).reliable().transient_local(),
-      [this](std::shared_ptr<const Status> status, const rclcpp::MessageInfo& info) {
-        heard(std::move(status), info);
+      [this, alive = callbacks_](std::shared_ptr<const Status> status,
+                                 const rclcpp::MessageInfo& info) {
+        alive->within([&] { heard(std::move(status), info); });
       },
       options);
 }
@@ -80,13 +84,16 @@ void Culprit::look() {
   if (is_asked_ || !is_there || !is_due || !client_->service_is_ready()) return;
   is_asked_ = true;
   asked_ = now;
-  const auto asked = client_->async_send_request(std::make_shared<Ask::Request>(),
-                                                 [this](rclcpp::Client<Ask>::SharedFuture) {
-                                                   const std::scoped_lock answered(mutex_);
-                                                   is_asked_ = false;
-                                                   answers_ = true;
-                                                   is_silent_ = false;
-                                                 });
+  const auto asked =
+      client_->async_send_request(std::make_shared<Ask::Request>(),
+                                  [this, alive = callbacks_](rclcpp::Client<Ask>::SharedFuture) {
+                                    alive->within([this] {
+                                      const std::scoped_lock answered(mutex_);
+                                      is_asked_ = false;
+                                      answers_ = true;
+                                      is_silent_ = false;
+                                    });
+                                  });
   request_ = asked.request_id;
 }
 

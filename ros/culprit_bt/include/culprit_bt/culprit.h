@@ -44,6 +44,9 @@ class Culprit {
   static std::shared_ptr<Culprit> of(const BT::NodeConfig& config, const std::string& name);
 
   Culprit(std::shared_ptr<RosThread> thread, std::string name);
+  ~Culprit();
+  Culprit(const Culprit&) = delete;
+  Culprit& operator=(const Culprit&) = delete;
 
   const std::string& name() const { return name_; }
   RosThread& thread() const { return *thread_; }
@@ -53,6 +56,25 @@ class Culprit {
   using Status = culprit_msgs::msg::Status;
   using Ask = rcl_interfaces::srv::GetParameters;
 
+  // Callbacks run within it. The executor may still hold, and run, what is due when its owner ends: since Jazzy also
+  // timers that were let go. None runs then, and the end waits for the one that runs.
+  class Life {
+   public:
+    template <class Callback>
+    void within(Callback callback) {
+      const std::scoped_lock lock(mutex_);
+      if (!is_over_) callback();
+    }
+    void end() {
+      const std::scoped_lock lock(mutex_);
+      is_over_ = true;
+    }
+
+   private:
+    std::mutex mutex_;
+    bool is_over_ = false;
+  };
+
   void subscribe();
   void heard(std::shared_ptr<const Status> status, const rclcpp::MessageInfo& info);
   void look();
@@ -60,6 +82,7 @@ class Culprit {
 
   const std::shared_ptr<RosThread> thread_;
   const std::string name_;
+  const std::shared_ptr<Life> callbacks_ = std::make_shared<Life>();
 
   mutable std::mutex mutex_;
   std::shared_ptr<const Status> status_;
@@ -72,7 +95,6 @@ class Culprit {
   std::int64_t request_ = 0;  // that is open, if it is asked
   Clock::time_point asked_{};
 
-  // They go first: their callbacks use what is above.
   rclcpp::Client<Ask>::SharedPtr client_;
   rclcpp::Subscription<Status>::SharedPtr subscription_;
   rclcpp::TimerBase::SharedPtr timer_;
