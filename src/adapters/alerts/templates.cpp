@@ -93,16 +93,14 @@ Json plain(const Alert& alert) {
   return json;
 }
 
-std::string on_one_line(const Json& json) { return to_line(json); }
-
 }  // namespace
 
 std::string body_for(Destination::Kind kind, const Alert& alert) {
   switch (kind) {
     case Destination::Kind::kSlack:
-      return on_one_line(slack(alert));
+      return to_line(slack(alert));
     case Destination::Kind::kAlertmanager:
-      return on_one_line(alertmanager(alert));
+      return to_line(alertmanager(alert));
     default:
       return as_json(alert);
   }
@@ -114,6 +112,6 @@ std::string path_for(Destination::Kind kind, const Url& url) {
   return url.path.substr(0, url.path.find_last_not_of('/') + 1) + kApi;
 }
 
-std::string as_json(const Alert& alert) { return on_one_line(plain(alert)); }
+std::string as_json(const Alert& alert) { return to_line(plain(alert)); }
 
 }  // namespace culprit::alerts

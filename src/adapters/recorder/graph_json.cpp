@@ -21,7 +21,7 @@ std::string graph_to_json(const ros2::Graph& graph) {
     }
     nodes.push_back(std::move(json));
   }
-  return Json{{"nodes", nodes}}.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return to_line({{"nodes", nodes}});
 }
 
 }  // namespace culprit::recorder
