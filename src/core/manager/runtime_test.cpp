@@ -47,7 +47,7 @@ class AsksOnce : public ManagingSystem {
                ? std::vector<Command>{{CommandId{1}, ComponentId(0), StartProcess{}, {}, {}}}
                : std::vector<Command>{};
   }
-  Time next_deadline() const override { return steps_ < 3 ? Time(steps_ * 1s) : kNever; }
+  Time next_deadline() const override { return kNever; }
   std::span<const Event> events() const override { return {}; }
 
  private:
@@ -57,8 +57,8 @@ class AsksOnce : public ManagingSystem {
 TEST(Runtime, SendsWhatWasWrittenDownBeforeItTellsOthers) {
   AsksOnce manager;
   std::vector<std::string> done;
-  struct Robot : SilentRobot {
-    explicit Robot(std::vector<std::string>& told) : done(told) {}
+  struct RecordingRobot : SilentRobot {
+    explicit RecordingRobot(std::vector<std::string>& sent) : done(sent) {}
     void execute(const Command&) override { done.push_back("send"); }
     std::vector<std::string>& done;
   } robot(done);
