@@ -40,6 +40,7 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "") # the first line of each description
 
 set(same_version "(= ${CULPRIT_PACKAGE_VERSION})")
 set(CPACK_DEBIAN_CULPRIT_PACKAGE_SECTION admin)
+set(CPACK_DEBIAN_CULPRIT_PACKAGE_DEPENDS "libpq5") # which is loaded when there is a fleet
 set(CPACK_DEBIAN_CULPRIT_PACKAGE_SUGGESTS "culprit-lab, culprit-doc")
 set(CPACK_DEBIAN_CULPRIT_PACKAGE_CONTROL_EXTRA
     ${PROJECT_SOURCE_DIR}/packaging/debian/postinst ${PROJECT_SOURCE_DIR}/packaging/debian/prerm

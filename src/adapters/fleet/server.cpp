@@ -3,20 +3,19 @@
 #include <cstdlib>
 #include <poll.h>
 
-#include <libpq-fe.h>
-
 #include "base/live_clock.h"
+#include "fleet/libpq.h"
 
 namespace culprit::fleet {
 namespace {
 
 struct FreeOptions {
-  void operator()(PQconninfoOption* options) const { PQconninfoFree(options); }
+  void operator()(PQconninfoOption* options) const { libpq().conninfo_free(options); }
 };
 using ConnectionOptions = std::unique_ptr<PQconninfoOption, FreeOptions>;
 
 struct FreeResult {
-  void operator()(PGresult* result) const { PQclear(result); }
+  void operator()(PGresult* result) const { libpq().clear(result); }
 };
 using Result = std::unique_ptr<PGresult, FreeResult>;
 
@@ -44,9 +43,10 @@ bool is_secret(std::string_view keyword) {
 }  // namespace
 
 Expected<Address> address_from(const std::string& text) {
+  if (const auto loaded = load_libpq(); !loaded) return Error{loaded.error()};
   char* complaint = nullptr;
-  const ConnectionOptions options(PQconninfoParse(text.c_str(), &complaint));
-  PQfreemem(complaint);  // it may repeat a password
+  const ConnectionOptions options(libpq().conninfo_parse(text.c_str(), &complaint));
+  libpq().free_memory(complaint);  // it may repeat a password
   if (options == nullptr)
     return Error{
         "this is no address of a PostgreSQL database: write postgresql://HOST/DATABASE, or "
@@ -67,14 +67,14 @@ std::int64_t integer_in(const Field& field) {
 double real_in(const Field& field) { return field ? std::strtod(field->c_str(), nullptr) : 0; }
 std::string text_in(const Field& field) { return field.value_or(""); }
 
-void Server::Close::operator()(pg_conn* connection) const { PQfinish(connection); }
+void Server::Close::operator()(pg_conn* connection) const { libpq().finish(connection); }
 
 Error Server::error(const std::string& what) { return {one_line(what)}; }
 
-bool Server::is_usable() const { return PQstatus(connection_.get()) == CONNECTION_OK; }
+bool Server::is_usable() const { return libpq().status(connection_.get()) == CONNECTION_OK; }
 
 std::string Server::user() const {
-  const char* user = PQuser(connection_.get());
+  const char* user = libpq().user(connection_.get());
   return user != nullptr ? user : "";
 }
 
@@ -88,7 +88,7 @@ Expected<void> Server::wait(bool for_writing, Time until) {
     if (*stop_) return Error{"culprit ends"};
     if (live_now() >= until) return Error{"it does not answer"};
     constexpr int kLookMs = 100;
-    pollfd file{PQsocket(connection_.get()), POLLIN, 0};
+    pollfd file{libpq().socket(connection_.get()), POLLIN, 0};
     if (for_writing) file.events |= POLLOUT;
     const int ready = poll(&file, 1, kLookMs);
     if (ready > 0) return {};
@@ -98,11 +98,12 @@ Expected<void> Server::wait(bool for_writing, Time until) {
 
 Expected<Server> Server::connect(const Address& address, const std::atomic<bool>& stop,
                                  Duration patience) {
+  if (const auto loaded = load_libpq(); !loaded) return Error{loaded.error()};
   const char* const keywords[] = {"dbname", "fallback_application_name", "client_encoding",
                                   nullptr};
   const char* const values[] = {address.text.c_str(), "culprit", "UTF8", nullptr};
   constexpr int kExpands = 1;
-  Server server(PQconnectStartParams(keywords, values, kExpands), stop, patience);
+  Server server(libpq().connect_start_params(keywords, values, kExpands), stop, patience);
   if (server.connection_ == nullptr) return Error{"there is no memory for a connection"};
   if (const auto established = server.establish(); !established) return Error{established.error()};
   const auto set = server.run(
@@ -116,56 +117,57 @@ Expected<Server> Server::connect(const Address& address, const std::atomic<bool>
 Expected<void> Server::establish() {
   const Time until = later(live_now(), patience_);
   PGconn* connection = connection_.get();
-  if (PQstatus(connection) == CONNECTION_BAD) return error(PQerrorMessage(connection));
-  PQsetNoticeProcessor(
+  if (libpq().status(connection) == CONNECTION_BAD) return error(libpq().error_message(connection));
+  libpq().set_notice_processor(
       connection, [](void*, const char*) {}, nullptr);
   auto phase = PGRES_POLLING_WRITING;
   while (phase != PGRES_POLLING_OK) {
-    if (phase == PGRES_POLLING_FAILED) return error(PQerrorMessage(connection));
+    if (phase == PGRES_POLLING_FAILED) return error(libpq().error_message(connection));
     if (const auto ready = wait(phase == PGRES_POLLING_WRITING, until); !ready) return ready;
-    phase = PQconnectPoll(connection);
+    phase = libpq().connect_poll(connection);
   }
-  if (PQsetnonblocking(connection, 1) != 0) return error(PQerrorMessage(connection));
+  if (libpq().set_nonblocking(connection, 1) != 0) return error(libpq().error_message(connection));
   return {};
 }
 
 Expected<Rows> Server::results() {
   PGconn* connection = connection_.get();
   const Time until = later(live_now(), patience_);
-  for (int flushed = PQflush(connection); flushed != 0; flushed = PQflush(connection)) {
-    if (flushed < 0) return error(PQerrorMessage(connection));
+  for (int flushed = libpq().flush(connection); flushed != 0; flushed = libpq().flush(connection)) {
+    if (flushed < 0) return error(libpq().error_message(connection));
     if (const auto ready = wait(true, until); !ready) return Error{ready.error()};
-    if (PQconsumeInput(connection) == 0) return error(PQerrorMessage(connection));
+    if (libpq().consume_input(connection) == 0) return error(libpq().error_message(connection));
   }
   Rows rows;
   std::optional<Error> failure;
   while (true) {
-    while (PQisBusy(connection) != 0) {
+    while (libpq().is_busy(connection) != 0) {
       if (const auto ready = wait(false, until); !ready) {
         connection_.reset(nullptr);
         return Error{ready.error()};
       }
-      if (PQconsumeInput(connection) == 0) return error(PQerrorMessage(connection));
+      if (libpq().consume_input(connection) == 0) return error(libpq().error_message(connection));
     }
-    const Result result(PQgetResult(connection));
+    const Result result(libpq().get_result(connection));
     if (result == nullptr) break;
-    const auto status = PQresultStatus(result.get());
+    const auto status = libpq().result_status(result.get());
     if (status != PGRES_TUPLES_OK && status != PGRES_COMMAND_OK) {
-      const char* state = PQresultErrorField(result.get(), PG_DIAG_SQLSTATE);
-      const char* message = PQresultErrorField(result.get(), PG_DIAG_MESSAGE_PRIMARY);
+      const char* state = libpq().result_error_field(result.get(), PG_DIAG_SQLSTATE);
+      const char* message = libpq().result_error_field(result.get(), PG_DIAG_MESSAGE_PRIMARY);
       state_ = state != nullptr ? state : "";
-      failure = error(message != nullptr ? message : PQresultErrorMessage(result.get()));
+      failure = error(message != nullptr ? message : libpq().result_error_message(result.get()));
       if (status == PGRES_COPY_IN || status == PGRES_COPY_OUT || status == PGRES_COPY_BOTH) break;
       continue;
     }
-    for (int r = 0; r < PQntuples(result.get()); ++r) {
+    for (int r = 0; r < libpq().tuples(result.get()); ++r) {
       Row& row = rows.emplace_back();
-      for (int c = 0; c < PQnfields(result.get()); ++c) {
-        if (PQgetisnull(result.get(), r, c) != 0) {
+      for (int c = 0; c < libpq().fields(result.get()); ++c) {
+        if (libpq().get_is_null(result.get(), r, c) != 0) {
           row.emplace_back();
         } else {
-          row.emplace_back(std::string(PQgetvalue(result.get(), r, c),
-                                       static_cast<std::size_t>(PQgetlength(result.get(), r, c))));
+          row.emplace_back(
+              std::string(libpq().get_value(result.get(), r, c),
+                          static_cast<std::size_t>(libpq().get_length(result.get(), r, c))));
         }
       }
     }
@@ -180,17 +182,17 @@ Expected<Rows> Server::query(const std::string& sql, const std::vector<Field>& p
   std::vector<const char*> values;
   for (const Field& each : parameters) values.push_back(each ? each->c_str() : nullptr);
   constexpr int kAsText = 0;
-  if (PQsendQueryParams(connection_.get(), sql.c_str(), static_cast<int>(values.size()), nullptr,
-                        values.data(), nullptr, nullptr, kAsText) == 0)
-    return error(PQerrorMessage(connection_.get()));
+  if (libpq().send_query_params(connection_.get(), sql.c_str(), static_cast<int>(values.size()),
+                                nullptr, values.data(), nullptr, nullptr, kAsText) == 0)
+    return error(libpq().error_message(connection_.get()));
   return results();
 }
 
 Expected<void> Server::run(const std::string& sql) {
   state_.clear();
   if (connection_ == nullptr) return Error{"its connection is broken"};
-  if (PQsendQuery(connection_.get(), sql.c_str()) == 0)
-    return error(PQerrorMessage(connection_.get()));
+  if (libpq().send_query(connection_.get(), sql.c_str()) == 0)
+    return error(libpq().error_message(connection_.get()));
   const auto done = results();
   if (!done) return Error{done.error()};
   return {};
