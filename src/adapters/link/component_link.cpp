@@ -82,7 +82,7 @@ void ComponentLink::service_seen(const GraphEndpoint& seen) {
   if (is_called && !offer.hash.empty()) types_.find(offer, [](const Expected<MessageLibrary*>&) {});
   if (service == node_ + "/change_state") {
     watch_transitions();
-    read_lifecycle(kJoining, Told::kAlways);
+    read_lifecycle(kJoining, Told::kAlways, Haste::kNow);
   }
   if (service == node_ + "/get_parameters") read_parameters();
   if (service == node_ + "/change_mode" && needs_.changes_modes) modes();
@@ -96,8 +96,23 @@ ServiceClient* ComponentLink::make(std::unique_ptr<ServiceClient>& client,
   const MutexLock lock(mutex_);
   if (client) return client.get();
   const ServiceName name{service, std::string(type)};
-  auto made = probe ? ServiceClient::create(self_, name, qos, std::move(*probe))
-                    : ServiceClient::create(self_, name, qos);
+  return keep(client, service,
+              probe ? ServiceClient::create(self_, name, qos, std::move(*probe))
+                    : ServiceClient::create(self_, name, qos));
+}
+
+ServiceClient* ComponentLink::make_reader(std::unique_ptr<ServiceClient>& client,
+                                          const std::string& service, std::string_view type,
+                                          const Qos& qos) {
+  const MutexLock lock(mutex_);
+  if (client) return client.get();
+  return keep(client, service,
+              ServiceClient::create(self_, {service, std::string(type)}, qos, Haste::kSoon));
+}
+
+ServiceClient* ComponentLink::keep(std::unique_ptr<ServiceClient>& client,
+                                   const std::string& service,
+                                   Expected<std::unique_ptr<ServiceClient>> made) {
   if (!made) {
     inbox_.put(LinkTrouble{"cannot call " + service + ": " + made.error()});
     return nullptr;
@@ -114,7 +129,8 @@ ServiceClient* ComponentLink::lifecycle() {
 
 ServiceClient* ComponentLink::lifecycle_reader() {
   if (!needs_.changes_lifecycle)
-    return make(lifecycle_reader_, node_ + "/get_state", srv::GetState::kType, qos::kServices);
+    return make_reader(lifecycle_reader_, node_ + "/get_state", srv::GetState::kType,
+                       qos::kServices);
   ServiceClient* client = lifecycle();
   return client == nullptr ? nullptr : client->probe();
 }
@@ -128,8 +144,8 @@ ServiceClient* ComponentLink::parameters() {
 
 ServiceClient* ComponentLink::parameter_reader() {
   if (!needs_.sets_parameters)
-    return make(parameter_reader_, node_ + "/get_parameters", srv::GetParameters::kType,
-                qos::kParameterServices);
+    return make_reader(parameter_reader_, node_ + "/get_parameters", srv::GetParameters::kType,
+                       qos::kParameterServices);
   ServiceClient* client = parameters();
   return client == nullptr ? nullptr : client->probe();
 }
@@ -159,19 +175,21 @@ bool ComponentLink::has_lifecycle() {
 }
 
 void ComponentLink::check_lifecycle() {
-  if (has_lifecycle()) read_lifecycle(kProbe, Told::kIfNew);
+  if (has_lifecycle()) read_lifecycle(kProbe, Told::kIfNew, Haste::kSoon);
 }
 
-void ComponentLink::read_lifecycle(Duration patience, Told told) {
+void ComponentLink::read_lifecycle(Duration patience, Told told, Haste haste) {
   ServiceClient* client = lifecycle_reader();
   if (client == nullptr) return;
-  client->call(encode(srv::GetState::Request{}), Repeat::kUntilAnswered, patience,
-               [this, told](const CallResult& result) {
-                 if (result.outcome != CallOutcome::kAnswered) return;
-                 inbox_.put(Probed{component_, true});
-                 const auto response = decode<srv::GetState::Response>(result.reply);
-                 if (response) tell(to_lifecycle(response->current_state.id), told);
-               });
+  client->call(
+      encode(srv::GetState::Request{}), Repeat::kUntilAnswered, patience,
+      [this, told](const CallResult& result) {
+        if (result.outcome != CallOutcome::kAnswered) return;
+        inbox_.put(Probed{component_, true});
+        const auto response = decode<srv::GetState::Response>(result.reply);
+        if (response) tell(to_lifecycle(response->current_state.id), told);
+      },
+      haste);
 }
 
 void ComponentLink::tell(Lifecycle state, Told told) {
@@ -270,14 +288,16 @@ void ComponentLink::probe(int pid, std::function<Time()> heard) {
   if (client == nullptr) return;
   if (!is_managed)
     return client->call(encode(srv::GetParameters::Request{}), Repeat::kUntilAnswered, kProbe,
-                        tell_of);
-  client->call(encode(srv::GetState::Request{}), Repeat::kUntilAnswered, kProbe,
-               [this, tell_of](const CallResult& result) {
-                 tell_of(result);
-                 if (result.outcome != CallOutcome::kAnswered) return;
-                 const auto response = decode<srv::GetState::Response>(result.reply);
-                 if (response) tell(to_lifecycle(response->current_state.id), Told::kIfNew);
-               });
+                        tell_of, Haste::kSoon);
+  client->call(
+      encode(srv::GetState::Request{}), Repeat::kUntilAnswered, kProbe,
+      [this, tell_of](const CallResult& result) {
+        tell_of(result);
+        if (result.outcome != CallOutcome::kAnswered) return;
+        const auto response = decode<srv::GetState::Response>(result.reply);
+        if (response) tell(to_lifecycle(response->current_state.id), Told::kIfNew);
+      },
+      Haste::kSoon);
 }
 
 // ---- commands

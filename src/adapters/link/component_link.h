@@ -100,7 +100,7 @@ class ComponentLink {
 
   bool has_lifecycle();
   enum class Told : std::uint8_t { kAlways, kIfNew };
-  void read_lifecycle(Duration patience, Told told);
+  void read_lifecycle(Duration patience, Told told, Haste haste);
   void tell(Lifecycle state, Told told);
   void watch_transitions();
   void unanswered(Time due, const std::function<Time()>& heard);
@@ -115,6 +115,11 @@ class ComponentLink {
   ServiceClient* make(std::unique_ptr<ServiceClient>& client, const std::string& service,
                       std::string_view type, const Qos& qos,
                       std::optional<ServiceClient::Probe> probe = {});
+  // Of one that only reads.
+  ServiceClient* make_reader(std::unique_ptr<ServiceClient>& client, const std::string& service,
+                             std::string_view type, const Qos& qos);
+  ServiceClient* keep(std::unique_ptr<ServiceClient>& client, const std::string& service,
+                      Expected<std::unique_ptr<ServiceClient>> made) CULPRIT_REQUIRES(mutex_);
 
   NodeEntry& self_;
   const ComponentId component_;

@@ -76,6 +76,7 @@ class Linked {
       return what != nullptr && fits(*what);
     });
   }
+  const std::vector<Observation>& seen() const { return seen_; }
   Reply ask(decltype(Command::what) what, Duration timeout = 5s,
             ComponentId component = ComponentId(0)) {
     const CommandId id{++last_};
@@ -362,6 +363,52 @@ TEST(Link, ReadsFieldsRhythmsAndDiagnostics) {
   EXPECT_TRUE(trouble) << "a field that is not there must be said";
   EXPECT_FALSE(linked.has_seen<StatusHeard>([](const StatusHeard&) { return true; }))
       << "all that the rules name was found";
+}
+
+// Of many a second most lie in their socket for a moment. A silence begins when the last one came.
+TEST(Link, KnowsWhenMessagesCameThatItReadsLater) {
+  const TestDomain domain;
+  Robot robot(domain);
+  auto speaking = robot.publisher<msg::Float64>("/speaking");
+  Linked linked(domain, {}, R"(
+COMPONENT robot NODE /robot
+RULE R
+  POLICIES ERROR
+  TRIGGER age(/speaking) > 10s
+    STRATEGY s 50 10
+      ADAPTATION robot restart 5
+)");
+  ASSERT_TRUE(linked.sees("/robot"));
+  std::vector<Time> said;
+  const auto is_about_it = [](const SampleArrived&) { return true; };
+  const Time end = later(live_now(), kPatience);
+  do {
+    speaking.publish({1.0});
+  } while (!linked.wait<SampleArrived>(is_about_it, 20ms) && live_now() < end);
+  // More than wake the thread that receives.
+  for (int i = 0; i < 150; ++i) {
+    said.push_back(live_now());
+    speaking.publish({1.0});
+    said.push_back(live_now());
+    std::this_thread::sleep_for(10ms);
+  }
+  const auto comes_after = [&](Time time) {
+    return std::ranges::any_of(linked.seen(), [&](const Observation& each) {
+      return std::holds_alternative<SampleArrived>(each.what) && each.at >= time;
+    });
+  };
+  while (!comes_after(said[said.size() - 2]) && live_now() < end)
+    (void)linked.wait<LinkTrouble>([](const LinkTrouble&) { return false; }, 20ms);
+  int between = 0;  // two messages, as seen by who said them
+  for (const Observation& each : linked.seen()) {
+    if (!std::holds_alternative<SampleArrived>(each.what) || each.at < said.front()) continue;
+    constexpr Duration kClocks = 1ms;  // of the kernel and of us
+    const auto next = std::ranges::upper_bound(said, each.at + kClocks);
+    const bool is_while_it_was_said = (next - said.begin()) % 2 == 1;
+    const bool is_just_after = next != said.begin() && each.at - *(next - 1) <= 2 * kClocks;
+    between += is_while_it_was_said || is_just_after ? 0 : 1;
+  }
+  EXPECT_LE(between, 15) << "but for a few, when somebody else had the processor";
 }
 
 // For whoever wrote a name otherwise: what is there instead is told once, and only while something

@@ -1,8 +1,24 @@
 #include "link/topic_watch.h"
 
 #include <algorithm>
+#include <chrono>
+
+#include "base/live_clock.h"
+#include "ros2/receive_thread.h"
 
 namespace culprit::ros2 {
+
+namespace {
+
+// It may have lain in its socket for a moment. If the wall clock was set meanwhile, it came just now.
+Time arrival_of(const Sample& sample) {
+  constexpr Duration kLongest = 2 * Duration(ReceiveThread::kSoon);
+  const Duration ago = std::chrono::system_clock::now() - sample.received;
+  const bool is_plausible = ago >= Duration::zero() && ago <= kLongest;
+  return live_now() - (is_plausible ? ago : Duration::zero());
+}
+
+}  // namespace
 
 TopicWatch::TopicWatch(NodeEntry& self, TopicId topic, const RuleSet& rules, Inbox& inbox)
     : self_(self), topic_(topic), rules_(rules), inbox_(inbox) {
@@ -49,7 +65,9 @@ Expected<void> TopicWatch::listen(const std::string& type, Keys keys) {
            [this](const Sample& sample) {
              has_heard_ = true;
              if (counts_)
-               inbox_.put(SampleArrived{topic_, published_since(sample.identity)}, Urgency::kSoon);
+               inbox_.put(
+                   {arrival_of(sample), SampleArrived{topic_, published_since(sample.identity)}},
+                   Urgency::kSoon);
            },
        .on_message = [this](const Sample& sample) { on_message(sample); },
        .on_unheard = [this] { on_unheard(); }});

@@ -219,11 +219,13 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
     const std::uint16_t port = IpLocator::getPhysicalPort(locator);
     ports_.push_back(port);
     for (const in_addr& address : addresses) {
+      // What is said to all has time, if it is not said to us as well: that somebody is there, again and again.
+      const Haste haste = is_multicast ? Haste::kSoon : Haste::kNow;
       const ReceiveThread::Place place{address, port, is_multicast, udp().receiveBufferSize,
-                                       largest};
+                                       largest, haste};
       const auto opened = reception_.thread->open(
-          place, [this, receiver, locator](const ReceiveThread::Datagram& datagram) {
-            came(*receiver, datagram, locator, Haste::kNow);
+          place, [this, receiver, locator, haste](const ReceiveThread::Datagram& datagram) {
+            came(*receiver, datagram, locator, haste);
           });
       if (opened) continue;
       reception_.thread->close(port);
@@ -287,8 +289,8 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
     receiver.OnDataReceived(passed.data(), static_cast<std::uint32_t>(passed.size()), local,
                             remote);
     // Not what comes by multicast: it goes away with a network interface, and nothing is wrong. Not
-    // where it depends on what is read whether anything of our own comes.
-    if (!IpLocator::isMulticast(local) && haste == Haste::kNow)
+    // where it depends on what is read whether anything of our own comes. Both have time.
+    if (haste == Haste::kNow)
       reception_.sources->came_through(passed, static_cast<std::uint16_t>(local.port), live_now());
   }
 

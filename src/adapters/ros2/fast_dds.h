@@ -226,13 +226,19 @@ inline dds::DataReaderQos reader_qos(const Qos& qos, const std::string& user_dat
   return out;
 }
 
-inline dds::DataWriterQos writer_qos(const Qos& qos, const std::string& user_data) {
+inline dds::DataWriterQos writer_qos(const Qos& qos, const std::string& user_data,
+                                     std::uint16_t port = 0) {
   dds::DataWriterQos out;
   apply(out, qos, user_data);
   out.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
   // 3 s by default; a late joiner that missed the first heartbeat waits that long for transient
   // local samples.
   out.reliable_writer_qos().times.heartbeatPeriod = {0, 20'000'000};
+  if (port != 0) {
+    out.endpoint().unicast_locator_list.push_back(locator("0.0.0.0", port));
+    // Not before acknowledgements were read.
+    out.reliable_writer_qos().times.heartbeatPeriod = {0, 250'000'000};
+  }
   if (qos.liveliness_lease != kInfinite)
     out.liveliness().announcement_period = to_duration(qos.liveliness_lease * 2 / 3);
   return out;
@@ -272,6 +278,10 @@ inline dds::DomainParticipantQos participant_qos(const ParticipantOptions& optio
     for (auto& [name, value] : properties_of(*options.security))
       out.properties().properties().emplace_back(name, value);
   }
+
+  // Of 64 KiB each. By default there is one for each thread that could send at the same time, of which most never do.
+  out.allocation().send_buffers.preallocated_number = 1;
+  out.allocation().send_buffers.dynamic = true;
 
   auto& builtin = out.wire_protocol().builtin;
   // Many nodes in one process make discovery data larger than the default of 5 kB.

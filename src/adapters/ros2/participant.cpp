@@ -289,16 +289,19 @@ const Guid& Reader::guid() const { return impl_->guid(); }
 
 class Writer::Impl final : public dds::DataWriterListener {
  public:
-  Impl(dds::Publisher& publisher, Topics& topics, WriterOptions options)
-      : publisher_(publisher), topics_(topics), options_(std::move(options)) {}
+  Impl(dds::Publisher& publisher, Topics& topics, std::uint16_t patient_port, WriterOptions options)
+      : publisher_(publisher),
+        topics_(topics),
+        port_(options.haste == Haste::kSoon ? patient_port : std::uint16_t{0}),
+        options_(std::move(options)) {}
 
   Expected<void> open(const std::string& likely_refusal) {
     const auto topic = topics_.acquire(options_.topic, options_.type, options_.qos.keys);
     if (!topic) return Error{topic.error()};
     has_topic_ = true;
-    writer_ =
-        publisher_.create_datawriter(*topic, fast_dds::writer_qos(options_.qos, options_.user_data),
-                                     this, dds::StatusMask::publication_matched());
+    writer_ = publisher_.create_datawriter(
+        *topic, fast_dds::writer_qos(options_.qos, options_.user_data, port_), this,
+        dds::StatusMask::publication_matched());
     if (writer_ == nullptr)
       return Error{"no writer of " + printable(options_.topic) + " can be created" +
                    likely_refusal};
@@ -336,6 +339,7 @@ class Writer::Impl final : public dds::DataWriterListener {
  private:
   dds::Publisher& publisher_;
   Topics& topics_;
+  const std::uint16_t port_;
   const WriterOptions options_;
   Gate gate_;
   bool has_topic_ = false;
@@ -418,7 +422,8 @@ class Participant::Impl {
   Expected<std::unique_ptr<Writer>> create_writer(WriterOptions options) {
     if (never_meets_ && never_meets_(options.topic, EndpointRole::kReader))
       return Error{"this participant was to write nothing to " + printable(options.topic)};
-    auto writer = std::make_unique<Writer::Impl>(*publisher_, *topics_, std::move(options));
+    auto writer = std::make_unique<Writer::Impl>(*publisher_, *topics_, *reception_.patient_port,
+                                                 std::move(options));
     if (auto opened = writer->open(likely_refusal_); !opened) return Error{opened.error()};
     return std::make_unique<Writer>(std::move(writer));
   }
@@ -426,6 +431,7 @@ class Participant::Impl {
   void leave() { *reception_.speaks = false; }
   void hold() { *reception_.holds += is_secured_ ? 0 : 1; }
   void release() { *reception_.holds -= is_secured_ ? 0 : 1; }
+  ReceiveThread& receiver() { return *reception_.thread; }
 
   const Guid& guid() const { return guid_; }
   const DatagramSources& sources() const { return *reception_.sources; }
@@ -485,6 +491,11 @@ Participant::Hold::Hold(Participant& participant) : participant_(*participant.im
   participant_.hold();
 }
 Participant::Hold::~Hold() { participant_.release(); }
+
+Participant::Hurry::Hurry(Participant& participant) : participant_(*participant.impl_) {
+  participant_.receiver().begin_hurry();
+}
+Participant::Hurry::~Hurry() { participant_.receiver().end_hurry(); }
 
 Participant::Participant(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Participant::~Participant() = default;

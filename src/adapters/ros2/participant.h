@@ -27,6 +27,7 @@
 #include "ros2/datagram_sources.h"
 #include "ros2/endpoint_info.h"
 #include "ros2/guid.h"
+#include "ros2/haste.h"
 #include "ros2/options.h"
 #include "ros2/qos.h"
 #include "ros2/system_time.h"
@@ -122,6 +123,9 @@ struct WriterOptions {
   Qos qos;
   std::string user_data;
   MatchCallback on_match;
+  // kSoon: acknowledgements may come as late as samples of readers that have time, and so what was lost is sent
+  // again later.
+  Haste haste = Haste::kNow;
 };
 
 class Reader {
@@ -184,6 +188,19 @@ class Participant {
     ~Hold();
     Hold(const Hold&) = delete;
     Hold& operator=(const Hold&) = delete;
+
+   private:
+    Impl& participant_;
+  };
+
+  // While one of these lives, what comes to readers and writers that have time does not come late. For who waits for
+  // an answer.
+  class Hurry {
+   public:
+    explicit Hurry(Participant& participant);
+    ~Hurry();
+    Hurry(const Hurry&) = delete;
+    Hurry& operator=(const Hurry&) = delete;
 
    private:
     Impl& participant_;

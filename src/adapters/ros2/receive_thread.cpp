@@ -19,14 +19,21 @@ constexpr std::uint32_t kReadable = EPOLLIN;
 constexpr std::uint64_t kToEnd = ~std::uint64_t{0};
 // Of one socket that has time, in one turn: a flood must not keep the others waiting for good.
 constexpr int kMostBatches = 64;
-// More datagrams than this woke the thread within kWatched: it looks every kSoon instead, for so long.
-constexpr std::chrono::milliseconds kWatched{200};
-constexpr int kMany = 10;
-constexpr std::chrono::seconds kLooks{5};
-// Of one socket that has time, in one turn: more than this is much, in bytes as the kernel counts them, about: kEach for a
-// datagram beside what it says. A socket has room for 416 KiB where nobody gave it more (net.core.rmem_max).
-constexpr std::size_t kMuch = 64 * 1024;
+// More datagrams than this within kWatched: they no longer wake the thread, which looks instead.
+constexpr std::chrono::seconds kWatched{1};
+constexpr std::size_t kMany = 20;
+// Between two looks no more than this share of its room should come to a socket, which has 416 KiB where nobody gave it
+// more (net.core.rmem_max). The kernel counts about kEach for a datagram beside what it says.
+constexpr double kMuch = 0.5;
 constexpr std::size_t kEach = 1024;
+
+// Bytes as the kernel counts them: twice what was asked for.
+std::size_t room_of(int descriptor) {
+  int room = 0;
+  socklen_t size = sizeof room;
+  getsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &room, &size);
+  return static_cast<std::size_t>(std::max(room, 1));
+}
 
 Error refused(const char* what) { return Error{std::string(what) + ": " + std::strerror(errno)}; }
 
@@ -35,6 +42,7 @@ Error refused(const char* what) { return Error{std::string(what) + ": " + std::s
 struct ReceiveThread::Socket {
   Socket(int fd, const Place& place, OnDatagram callback)
       : descriptor(fd),
+        room(room_of(fd)),
         port(place.port),
         largest(std::min(place.largest, kLargest)),
         haste(place.haste),
@@ -44,6 +52,7 @@ struct ReceiveThread::Socket {
   Socket& operator=(const Socket&) = delete;
 
   const int descriptor;
+  const std::size_t room;
   const std::uint16_t port;
   const std::uint32_t largest;
   const Haste haste;
@@ -87,6 +96,7 @@ class ReceiveThread::Batch {
     taken_ = std::chrono::system_clock::now();
     return count_ == kBatch;
   }
+  std::size_t count() const { return count_; }
   std::size_t room_taken() const {
     std::size_t room = count_ * kEach;
     for (std::size_t i = 0; i < count_; ++i) room += messages_[i].msg_len;
@@ -157,10 +167,10 @@ ReceiveThread::~ReceiveThread() {
 Expected<void> ReceiveThread::open(const Place& place, OnDatagram on_datagram) {
   const int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (descriptor < 0) return refused("no socket");
-  auto made = std::make_shared<Socket>(descriptor, place, std::move(on_datagram));
   const int wanted = 1;
   const int buffer = static_cast<int>(place.buffer);
   if (buffer > 0) setsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &buffer, sizeof buffer);
+  auto made = std::make_shared<Socket>(descriptor, place, std::move(on_datagram));
   if (place.haste == Haste::kSoon)
     setsockopt(descriptor, SOL_SOCKET, SO_TIMESTAMPNS, &wanted, sizeof wanted);
   if (place.is_shared) setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &wanted, sizeof wanted);
@@ -212,6 +222,17 @@ void ReceiveThread::join(std::uint16_t port, in_addr group, in_addr interface) {
   }
 }
 
+void ReceiveThread::begin_hurry() {
+  const MutexLock lock(mutex_);
+  ++hurried_;
+  if (!is_armed_) arm(true);
+}
+
+void ReceiveThread::end_hurry() {
+  const MutexLock lock(mutex_);
+  --hurried_;
+}
+
 void ReceiveThread::look_at_sockets(
     const std::function<void(std::span<const int> descriptors)>& look) const {
   const MutexLock lock(mutex_);
@@ -226,9 +247,6 @@ void ReceiveThread::run() {
   Batch batch;
   Batch patient_batch;
   std::array<epoll_event, 16> events{};
-  Clock::time_point watched{};  // since then
-  int woken = 0;                // by sockets that have time, since then
-  Clock::time_point looks_until{};
   bool has_kept = false;
   while (true) {
     bool looks = false;
@@ -239,10 +257,8 @@ void ReceiveThread::run() {
     const int patience = has_kept ? 0 : looks ? static_cast<int>(next_look_.count()) : -1;
     const int count =
         epoll_wait(wait_fd_, events.data(), static_cast<int>(events.size()), patience);
-    const Clock::time_point now = Clock::now();
     Sockets urgent;
     Sockets patient;
-    bool is_woken_by_patient = false;
     {
       const MutexLock lock(mutex_);
       for (int i = 0; i < count; ++i) {
@@ -254,25 +270,12 @@ void ReceiveThread::run() {
         if (ready == sockets_.end()) continue;
         const bool has_turn = !(*ready)->kept.empty();  // in any case
         if ((*ready)->haste == Haste::kNow && !has_turn) urgent.push_back(*ready);
-        is_woken_by_patient = is_woken_by_patient || (*ready)->haste == Haste::kSoon;
       }
       std::ranges::copy_if(sockets_, std::back_inserter(urgent),
                            [](const auto& each) { return !each->kept.empty(); });
       std::ranges::copy_if(sockets_, std::back_inserter(patient),
                            [](const auto& each) { return each->haste == Haste::kSoon; });
-      if (now - watched > kWatched) {
-        watched = now;
-        woken = 0;
-      }
-      woken += is_woken_by_patient && urgent.empty() ? 1 : 0;
-      if (is_armed_ && woken > kMany) {
-        looks_until = now + kLooks;
-        arm(false);
-      } else if (!is_armed_ && now >= looks_until) {
-        watched = now;
-        woken = 0;
-        arm(true);
-      }
+      watch_patient(Clock::now());
       ++rounds_;
     }
     if (urgent.empty()) take_patient(patient, patient_batch);
@@ -315,17 +318,36 @@ void ReceiveThread::take_urgent(Socket& socket, Batch& batch, const Sockets& pat
 
 // All that came to them so far.
 void ReceiveThread::take_patient(const Sockets& patient, Batch& batch) {
-  next_look_ = kSoon;
+  double most = 0;
   for (const auto& each : patient) {
-    std::size_t room_taken = 0;
+    std::size_t room = 0;
     bool has_more = true;
     for (int i = 0; has_more && i < kMostBatches; ++i) {
       has_more = batch.take(*each);
       batch.hand_to(*each);
-      room_taken += batch.room_taken();
+      room += batch.room_taken();
+      came_ += batch.count();
     }
-    if (room_taken > kMuch) next_look_ = kSooner;
+    most = std::max(most, static_cast<double>(room) / static_cast<double>(each->room));
   }
+  share_taken_ += most;
+  next_look_ = most > kMuch ? kSoonest : often_;
+}
+
+void ReceiveThread::watch_patient(Clock::time_point now) {
+  if (came_ > kMany && is_armed_ && hurried_ == 0) {
+    next_look_ = often_ = kSoonest;
+    arm(false);
+  }
+  const Clock::duration since = now - watched_;
+  if (since < kWatched) return;
+  if (came_ <= kMany && !is_armed_) arm(true);
+  const auto until_much = since * (kMuch / std::max(share_taken_, kMuch));
+  often_ = std::clamp(std::chrono::duration_cast<std::chrono::milliseconds>(until_much), kSoonest,
+                      kSoon);
+  watched_ = now;
+  came_ = 0;
+  share_taken_ = 0;
 }
 
 void ReceiveThread::arm(bool is_armed) {

@@ -9,9 +9,9 @@
 //
 // What costs most is to wake it. So some sockets have time (Haste::kSoon): they are read whenever the
 // thread is awake anyway, and if so much comes that this would be cheaper, every kSoon instead of with
-// each datagram, or every kSooner where much comes, for a socket has little room. What lies in them is always handed on
+// each datagram, or as much sooner as more comes, for a socket has little room. What lies in them is always handed on
 // before what came to the other sockets after it: who hears something there has heard all that was said before. When each
-// datagram came is told by the kernel.
+// datagram came is told by the kernel. Who waits for an answer there makes them hurry meanwhile (begin_hurry()).
 #pragma once
 
 #include <chrono>
@@ -26,20 +26,19 @@
 #include "base/expected.h"
 #include "base/mutex.h"
 #include "ros2/datagram_sources.h"
+#include "ros2/haste.h"
 #include "ros2/system_time.h"
 
 namespace culprit::ros2 {
 
-enum class Haste : std::uint8_t { kNow, kSoon };
-
 // All members may be called from any thread but the one that receives.
 class ReceiveThread {
  public:
-  static constexpr std::size_t kBatch = 8;
+  static constexpr std::size_t kBatch = 4;
   static constexpr std::size_t kMostKept = 4 << 20;  // bytes, of each socket
   static constexpr std::uint32_t kLargest = 65'536;  // bytes; UDP carries less
-  static constexpr std::chrono::milliseconds kSoon{20};
-  static constexpr std::chrono::milliseconds kSooner{4};
+  static constexpr std::chrono::milliseconds kSoon{100};
+  static constexpr std::chrono::milliseconds kSoonest{4};
   static constexpr const char* kName = "culprit-receive";  // of the thread, as `top -H` shows it
 
   struct Datagram {
@@ -73,6 +72,10 @@ class ReceiveThread {
   // port, too. Once is enough; what is refused is passed over: interfaces come and go.
   void join(std::uint16_t port, in_addr group, in_addr interface);
 
+  // Until each that began has ended, what comes to sockets that have time wakes the thread, too.
+  void begin_hurry();
+  void end_hurry();
+
   // Calls `look` with all sockets, which stay open meanwhile. It must be short.
   void look_at_sockets(const std::function<void(std::span<const int> descriptors)>& look) const;
 
@@ -86,6 +89,8 @@ class ReceiveThread {
   // Hands on what came to one that waits for nobody, at most kBatch datagrams, and keeps the rest. Before that, all that came to the patient ones.
   void take_urgent(Socket& socket, Batch& batch, const Sockets& patient, Batch& patient_batch);
   void take_patient(const Sockets& patient, Batch& batch);
+  // Whether they wake the thread, and how often it looks otherwise, depends on how much comes to them.
+  void watch_patient(Clock::time_point now) CULPRIT_REQUIRES(mutex_);
   void arm(bool is_armed) CULPRIT_REQUIRES(mutex_);
 
   const int wait_fd_;  // of epoll
@@ -96,8 +101,14 @@ class ReceiveThread {
   Sockets sockets_ CULPRIT_GUARDED_BY(mutex_);
   std::uint64_t rounds_ CULPRIT_GUARDED_BY(mutex_) = 0;  // odd: one is under way
   bool is_armed_ CULPRIT_GUARDED_BY(mutex_) = true;      // patient sockets wake the thread
-  std::chrono::milliseconds next_look_ = kSoon;          // at patient sockets; of the thread
-  std::thread thread_;                                   // begun under the mutex, joined without it
+  int hurried_ CULPRIT_GUARDED_BY(mutex_) = 0;           // how many wait for an answer
+  // Of the thread: how it looks at patient sockets, and what came to them since `watched_`.
+  std::chrono::milliseconds next_look_ = kSoonest;
+  std::chrono::milliseconds often_ = kSoonest;
+  Clock::time_point watched_{};
+  std::size_t came_ = 0;    // datagrams
+  double share_taken_ = 0;  // of its room by the one with most at each look; their sum
+  std::thread thread_;      // begun under the mutex, joined without it
 };
 
 }  // namespace culprit::ros2

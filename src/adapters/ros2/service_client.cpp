@@ -21,9 +21,9 @@ Executor::Clock::time_point after(Duration d) {
 
 Expected<std::unique_ptr<ServiceClient>> ServiceClient::create(NodeEntry& node,
                                                                const ServiceName& service,
-                                                               const Qos& qos) {
+                                                               const Qos& qos, Haste haste) {
   std::unique_ptr<ServiceClient> client(new ServiceClient(node));
-  if (auto opened = client->open(service, qos); !opened) return Error{opened.error()};
+  if (auto opened = client->open(service, qos, haste); !opened) return Error{opened.error()};
   return client;
 }
 
@@ -39,18 +39,27 @@ Expected<std::unique_ptr<ServiceClient>> ServiceClient::create(NodeEntry& node,
 
 ServiceClient::ServiceClient(NodeEntry& node) : node_(node), tasks_(node.context().executor()) {}
 
-Expected<void> ServiceClient::open(const ServiceName& service, const Qos& qos) {
+// What has time is asked for again by us if it is lost: so answers need no acknowledgements. And only the last
+// request is kept, so that Fast DDS asks for the acknowledgement of each with the request itself.
+Expected<void> ServiceClient::open(const ServiceName& service, const Qos& qos, Haste haste) {
   if (!is_valid_topic_name(service.name))
     return Error{"'" + printable(service.name) + "' is not the name of a service"};
   if (!is_valid_type_name(service.type))
     return Error{"'" + printable(service.type) + "' is not the type of a service"};
   Participant& participant = node_.context().participant();
   const std::string user_data = "clientid=" + node_.context().unique_id() + ";";
+  Qos answers = qos;
+  Qos requests = qos;
+  if (haste == Haste::kSoon) {
+    answers.reliability = Reliability::kBestEffort;
+    requests.depth = 1;
+  }
 
   auto reader = participant.create_reader(
       {.topic = mangle_topic(Channel::kReply, service.name),
        .type = mangle_type(Channel::kReply, service.type),
-       .qos = qos,
+       .qos = answers,
+       .payload = haste == Haste::kSoon ? PayloadUse::kWholeLater : PayloadUse::kWhole,
        .user_data = user_data,
        .on_match =
            [this](const Guid& remote, Match match) {
@@ -64,11 +73,13 @@ Expected<void> ServiceClient::open(const ServiceName& service, const Qos& qos) {
   auto writer = participant.create_writer(
       {.topic = mangle_topic(Channel::kRequest, service.name),
        .type = mangle_type(Channel::kRequest, service.type),
-       .qos = qos,
+       .qos = requests,
        .user_data = user_data,
-       .on_match = [this](const Guid& remote, Match match) {
-         tasks_.post([this, remote, match] { on_request_reader(remote, match); });
-       }});
+       .on_match =
+           [this](const Guid& remote, Match match) {
+             tasks_.post([this, remote, match] { on_request_reader(remote, match); });
+           },
+       .haste = haste});
   if (!writer) return Error{writer.error()};
   const Guid guid = (*writer)->guid();
   node_.add(guid);
@@ -84,7 +95,7 @@ Expected<void> ServiceClient::open(const ServiceName& service, const Qos& qos) {
 }
 
 Expected<void> ServiceClient::open_probe(Probe probe) {
-  auto client = create(node_, probe.service);
+  auto client = create(node_, probe.service, qos::kServices, Haste::kSoon);
   if (!client) return Error{client.error()};
   {
     const MutexLock lock(mutex_);
@@ -105,7 +116,8 @@ ServiceClient::~ServiceClient() {
   request_writer_.reset();
 }
 
-void ServiceClient::call(Bytes request, Repeat repeat, Duration timeout, Callback callback) {
+void ServiceClient::call(Bytes request, Repeat repeat, Duration timeout, Callback callback,
+                         Haste haste) {
   const MutexLock lock(mutex_);
   const CallNumber number = ++last_call_;
   Call& call = calls_[number];
@@ -118,6 +130,8 @@ void ServiceClient::call(Bytes request, Repeat repeat, Duration timeout, Callbac
     call.next_send =
         tasks_.post_at(after(kSendAgainAfter), [this, number] { on_send_again(number); });
   }
+  if (haste == Haste::kNow)
+    call.hurry = std::make_unique<Participant::Hurry>(node_.context().participant());
 }
 
 bool ServiceClient::is_ready() const {
@@ -280,12 +294,15 @@ void ServiceClient::start_probe() {
     round = proof_round_;
   }
   is_probing_ = true;
-  probe_->call(probe_request_, Repeat::kUntilAnswered, kProbeTimeout,
-               [this, round](const CallResult& result) {
-                 tasks_.post([this, round, outcome = result.outcome, server = result.server] {
-                   on_probe(round, outcome, server);
-                 });
-               });
+  // Whoever waits for the proof hurries (call()).
+  probe_->call(
+      probe_request_, Repeat::kUntilAnswered, kProbeTimeout,
+      [this, round](const CallResult& result) {
+        tasks_.post([this, round, outcome = result.outcome, server = result.server] {
+          on_probe(round, outcome, server);
+        });
+      },
+      Haste::kSoon);
 }
 
 void ServiceClient::on_probe(std::uint64_t round, CallOutcome outcome,

@@ -70,18 +70,21 @@ class ServiceClient {
     Bytes request;
   };
 
-  // The node entry outlives the client.
+  // The node entry outlives the client. kSoon: for one that asks again and again, and mostly has time, as the client of
+  // a probe; its answers are not sent again by the server if they are lost.
   static Expected<std::unique_ptr<ServiceClient>> create(NodeEntry& node,
                                                          const ServiceName& service,
-                                                         const Qos& qos = qos::kServices);
+                                                         const Qos& qos = qos::kServices,
+                                                         Haste haste = Haste::kNow);
   static Expected<std::unique_ptr<ServiceClient>> create(NodeEntry& node,
                                                          const ServiceName& service, const Qos& qos,
                                                          Probe probe);
   ~ServiceClient();
 
   // Sends in the calling thread if a server is ready, otherwise as soon as one is. `request` is a
-  // whole payload.
-  void call(Bytes request, Repeat repeat, Duration timeout, Callback callback);
+  // whole payload. kSoon: the answer of a client that has time may come ReceiveThread::kSoon late.
+  void call(Bytes request, Repeat repeat, Duration timeout, Callback callback,
+            Haste haste = Haste::kNow);
 
   // A request with Repeat::kNever would be sent at once.
   bool is_ready() const;
@@ -98,6 +101,7 @@ class ServiceClient {
     Bytes request;
     Repeat repeat = Repeat::kNever;
     Callback callback;
+    std::unique_ptr<Participant::Hurry> hurry;  // unless it has time
     bool is_sent = false;
     TaskGroup::TimerId deadline;
     TaskGroup::TimerId next_send;
@@ -106,7 +110,7 @@ class ServiceClient {
   using RequestId = std::pair<Mapping, std::int64_t>;  // of one sending of a call
 
   explicit ServiceClient(NodeEntry& node);
-  Expected<void> open(const ServiceName& service, const Qos& qos);
+  Expected<void> open(const ServiceName& service, const Qos& qos, Haste haste);
   Expected<void> open_probe(Probe probe);
 
   // On a receive thread.
