@@ -1,11 +1,12 @@
 // The other processes of the live benchmarks:
 //
-//   culprit-bench-peer latencies TOPIC     reads std_msgs/Float64, prints "<number> <nanoseconds
-//   from write to callback>" culprit-bench-peer fleet INDEX NODES   nodes with four topics of 10 Hz
-//   each culprit-bench-peer images              1080p pictures at 30 Hz on /bench/image
-//   culprit-bench-peer quiet               publishes /quiet/value at 10 Hz, or, after a SIGUSR1, does
-//   not; after the next one it does again
-//   culprit-bench-peer bare-reader         reads those with nothing but Fast DDS
+//   latencies TOPIC             reads std_msgs/Float64, prints "<number> <nanoseconds from write to callback>"
+//   fleet INDEX NODES TOPICS    nodes with so many topics of 10 Hz each
+//   robot INDEX OF NODES        nodes that read each other
+//   images                      1080p pictures at 30 Hz on /bench/image
+//   quiet                       publishes /quiet/value at 10 Hz, or, after a SIGUSR1, does not; after the next one it
+//                               does again
+//   bare-reader                 reads the pictures with nothing but Fast DDS
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -55,14 +56,14 @@ void latencies(const std::string& topic) {
   peer.executor.run();
 }
 
-void fleet(int index, int nodes) {
+void fleet(int index, int nodes, int topics) {
   Peer peer;
   std::vector<std::unique_ptr<ros2::Node>> members;
   std::vector<ros2::Publisher<ros2::msg::Float64>> publishers;
   for (int n = 0; n < nodes; ++n) {
     const std::string name = "node_" + std::to_string(index * nodes + n);
     members.push_back(peer.node(name));
-    for (int t = 0; t < 4; ++t)
+    for (int t = 0; t < topics; ++t)
       publishers.push_back(std::move(*members.back()->create_publisher<ros2::msg::Float64>(
           "/" + name + "/value_" + std::to_string(t))));
   }
@@ -140,8 +141,8 @@ int main(int argc, char** argv) {
   setvbuf(stdout, nullptr, _IOLBF, 0);
   if (arguments.size() == 2 && arguments[0] == "latencies") {
     latencies(arguments[1]);
-  } else if (arguments.size() == 3 && arguments[0] == "fleet") {
-    fleet(std::stoi(arguments[1]), std::stoi(arguments[2]));
+  } else if (arguments.size() == 4 && arguments[0] == "fleet") {
+    fleet(std::stoi(arguments[1]), std::stoi(arguments[2]), std::stoi(arguments[3]));
   } else if (arguments.size() == 4 && arguments[0] == "robot") {
     robot(std::stoi(arguments[1]), std::stoi(arguments[2]), std::stoi(arguments[3]));
   } else if (arguments == std::vector<std::string>{"quiet"}) {
