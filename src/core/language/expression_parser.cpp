@@ -134,8 +134,8 @@ class ExpressionParser {
         if (token.is("/")) return topic_for_value(token);
         break;
       case Token::Kind::kBad: {
-        const auto& [cause, fix] = *token.complaint;
-        const bool is_unclosed = fix && fix->text == "\"";
+        const auto [cause, fix] = complaint_about(token);
+        const bool is_unclosed = token.flaw == Token::Flaw::kUnclosed;
         return fail(Code::kBadToken, token.span, cause,
                     is_unclosed ? "write a '\"' where the text ends" : "", fix);
       }

@@ -64,10 +64,7 @@ bool is_nearly(const Token& token, std::string_view word) {
 
 constexpr const char* kCloseIt = "write a '\"' where the text ends";
 
-bool is_unclosed(const Token& token) {
-  return token.kind == Token::Kind::kBad && token.complaint->fix &&
-         token.complaint->fix->text == "\"";
-}
+bool is_unclosed(const Token& token) { return token.flaw == Token::Flaw::kUnclosed; }
 
 }  // namespace
 
@@ -218,7 +215,7 @@ bool LineReader::fail_token(const Token& token, std::string_view expected, std::
                             std::optional<Edit> fix) {
   if (token.kind == Token::Kind::kBad) {
     if (is_unclosed(token)) remedy = kCloseIt;
-    const auto& [cause, its_fix] = *token.complaint;
+    const auto [cause, its_fix] = complaint_about(token);
     return fail(Code::kBadToken, token.span, cause, std::move(remedy), its_fix);
   }
   const std::string got = token.kind == Token::Kind::kEnd

@@ -67,7 +67,8 @@ class Parser {
     };
     const Token head = s.next();
     if (head.kind == Token::Kind::kBad) {
-      read_.fail(Code::kBadToken, head.span, head.complaint->cause, "", head.complaint->fix);
+      const auto [cause, fix] = complaint_about(head);
+      read_.fail(Code::kBadToken, head.span, cause, "", fix);
       return broken();
     }
     const char first = head.text.empty() ? '\0' : head.text.front();  // which most differ in
@@ -557,6 +558,7 @@ class Parser {
   bool strategy(Scanner& s) {
     if (!inside_rule("STRATEGY")) return false;
     syntax::Rule& rule = into_->rules.back();
+    if (rule.strategies.empty()) rule.strategies.reserve(2);  // as most rules have
     rule.strategies.emplace_back();
     rule.strategies.back().has_broken_adaptation = true;  // until the line is understood
     auto name = read_.identifier(s, "the strategy's name");
@@ -705,11 +707,23 @@ class Parser {
 void reserve(syntax::File& file, const Source& source) {
   std::size_t components = 0, dependencies = 0, signals = 0, rules = 0;
   for (std::uint32_t number = 1; number <= source.line_count(); ++number) {
-    const std::string_view line = trimmed(source.text(source.line(number)));
-    components += line.starts_with("COMPONENT") ? 1 : 0;
-    dependencies += line.starts_with("DEPENDENCY") ? 1 : 0;
-    signals += line.starts_with("SIGNAL") ? 1 : 0;
-    rules += line.starts_with("RULE") ? 1 : 0;
+    const std::string_view line = unindented(source.text(source.line(number)));
+    switch (line.empty() ? '\0' : line.front()) {
+      case 'C':
+        components += line.starts_with("COMPONENT") ? 1 : 0;
+        break;
+      case 'D':
+        dependencies += line.starts_with("DEPENDENCY") ? 1 : 0;
+        break;
+      case 'S':
+        signals += line.starts_with("SIGNAL") ? 1 : 0;
+        break;
+      case 'R':
+        rules += line.starts_with("RULE") ? 1 : 0;
+        break;
+      default:
+        break;
+    }
   }
   file.components.reserve(components);
   file.dependencies.reserve(dependencies);

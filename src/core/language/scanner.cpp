@@ -24,6 +24,12 @@ constexpr auto kIsNameCharacter = [] {
 }();
 bool is_name_character(char c) { return kIsNameCharacter[static_cast<unsigned char>(c)]; }
 
+// Where the name ends that `text` may begin with.
+std::size_t name_length(std::string_view text) {
+  return static_cast<std::size_t>(std::find_if_not(text.begin(), text.end(), is_name_character) -
+                                  text.begin());
+}
+
 Lexeme::Kind lexeme_kind(Token::Kind kind) {
   if (kind == Token::Kind::kIdentifier) return Lexeme::Kind::kWord;
   return kind == Token::Kind::kSymbol ? Lexeme::Kind::kSymbol : Lexeme::Kind::kLiteral;
@@ -48,12 +54,6 @@ std::uint32_t symbol_length(std::string_view text) {
   }
 }
 
-Token bad(Span span, std::string message, std::optional<Edit> fix = {}) {
-  Token token{Token::Kind::kBad, false, span, {}, {}};
-  token.complaint = Token::Complaint{std::move(message), std::move(fix)};
-  return token;
-}
-
 // @pre the scanner has found its escapes to be known ones
 std::string unescaped(std::string_view text) {
   std::string out;
@@ -70,7 +70,71 @@ std::string unescaped(std::string_view text) {
   return out;
 }
 
+// `rest`: of the line, from the quote on.
+Complaint unclosed(std::uint32_t begin, std::string_view rest) {
+  while (rest.size() > 1 && is_blank(rest.back())) rest.remove_suffix(1);
+  const auto end = begin + static_cast<std::uint32_t>(rest.size());
+  return {"this string has no closing '\"'", Edit{{end, end}, "\""}};
+}
+
+// The same text in the quotes that the language has; nothing if it does not end, or needs escapes.
+std::optional<Edit> in_double_quotes(std::uint32_t begin, std::string_view rest) {
+  const auto close = rest.find('\'', 1);
+  if (close == std::string_view::npos) return std::nullopt;
+  const std::string_view inside = rest.substr(1, close - 1);
+  if (inside.find_first_of("\"\\") != std::string_view::npos) return std::nullopt;
+  return Edit{{begin, begin + static_cast<std::uint32_t>(close) + 1},
+              "\"" + std::string(inside) + "\""};
+}
+
+Complaint meaningless(Span span, std::string_view rest) {
+  const auto first = static_cast<unsigned char>(rest[0]);
+  if (first < 0x20 || first == 0x7f) return {"a control character has no place in a rule file"};
+  const std::string cause =
+      "'" + std::string(rest.substr(0, span.end - span.begin)) + "' means nothing here";
+  switch (first) {
+    case '\'':
+      return {cause + "; a text stands in double quotes: \"active\"",
+              in_double_quotes(span.begin, rest)};
+    case '{':
+    case '}':
+      return {cause + "; a parameter in braces stands for something in a TEMPLATE only"};
+    case '&':
+      return {cause + "; write && for 'and'", Edit{span, "&&"}};
+    case '|':
+      return {cause + "; write || for 'or'", Edit{span, "||"}};
+    default:
+      return {cause};
+  }
+}
+
 }  // namespace
+
+Complaint complaint_about(const Token& bad) {
+  const auto rest = std::get<std::string_view>(bad.literal);
+  switch (bad.flaw) {
+    case Token::Flaw::kLongName:
+      return {"this name is longer than 255 characters"};
+    case Token::Flaw::kBrace:
+      return {"a parameter stands in braces, as in {name}"};
+    case Token::Flaw::kNumber:
+      return {"'" + std::string(rest.substr(0, bad.span.end - bad.span.begin)) +
+              "' is neither a number nor a duration"};
+    case Token::Flaw::kWholeNumber:
+      return {"this whole number does not fit in 64 bits"};
+    case Token::Flaw::kRange:
+      return {"this number is out of range"};
+    case Token::Flaw::kEscape:
+      return {"unknown escape in a string; known: \\\" \\\\ \\n \\t"};
+    case Token::Flaw::kUnclosed:
+      return unclosed(bad.span.begin, rest);
+    case Token::Flaw::kMeaningless:
+      return meaningless(bad.span, rest);
+    case Token::Flaw::kNone:
+      break;
+  }
+  return {};
+}
 
 syntax::Literal Token::value() const {
   const auto owned = [](auto borrowed) -> syntax::Literal {
@@ -82,10 +146,8 @@ syntax::Literal Token::value() const {
   return std::visit(owned, literal);
 }
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
-
 std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  text = unindented(text);
   while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
   return text;
 }
@@ -134,7 +196,7 @@ Span Scanner::rest() const {
 }
 
 Token Scanner::next() {
-  Token token = peeked_ ? std::move(*peeked_) : scan();
+  const Token token = peeked_ ? *peeked_ : scan();
   peeked_.reset();
   at_ = token.span.end;
   if (token.kind != Token::Kind::kEnd) enter(lexeme_kind(token.kind), token.span);
@@ -158,15 +220,19 @@ Token Scanner::scan() const {
   return symbol(at);
 }
 
+Token Scanner::bad(Span span, Token::Flaw flaw) const {
+  return {Token::Kind::kBad, false, span, {}, text_.substr(span.begin, end_ - span.begin), flaw};
+}
+
 Token Scanner::identifier(std::uint32_t at) const {
-  std::uint32_t end = at;
-  while (end < end_ && is_name_character(text_[end])) ++end;
+  const std::string_view text(text_.data() + at, name_length({text_.data() + at, end_ - at}));
+  const std::uint32_t end = at + static_cast<std::uint32_t>(text.size());
   if (end < end_ && text_[end] == '{' && allows_holes()) return with_holes(at);
-  if (end - at > kMaxName) return bad({at, end}, "this name is longer than 255 characters");
-  const std::string_view text = text_.substr(at, end - at);
+  if (text.size() > kMaxName) return bad({at, end}, Token::Flaw::kLongName);
   Token token{Token::Kind::kIdentifier, false, {at, end}, text, {}};
   // Keywords of expressions; elsewhere the text serves.
-  if (text == "true" || text == "false") token.literal = text == "true";
+  const bool may_be_literal = text.front() == 't' || text.front() == 'f';
+  if (may_be_literal && (text == "true" || text == "false")) token.literal = text == "true";
   return token;
 }
 
@@ -178,9 +244,8 @@ Token Scanner::with_holes(std::uint32_t at) const {
     if (hole == 0 && !is_name_character(text_[end])) break;
     end += hole > 0 ? static_cast<std::uint32_t>(hole) : 1;
   }
-  if (end < end_ && text_[end] == '{')
-    return bad({end, end + 1}, "a parameter stands in braces, as in {name}");
-  if (end - at > kMaxName) return bad({at, end}, "this name is longer than 255 characters");
+  if (end < end_ && text_[end] == '{') return bad({end, end + 1}, Token::Flaw::kBrace);
+  if (end - at > kMaxName) return bad({at, end}, Token::Flaw::kLongName);
   return {Token::Kind::kIdentifier, true, {at, end}, text_.substr(at, end - at), {}};
 }
 
@@ -213,18 +278,18 @@ Token Scanner::number(std::uint32_t at) const {
   if (end > number_end) {
     if (const auto duration = parse_duration(text))
       return {Token::Kind::kDuration, false, {at, end}, {}, *duration};
-    return bad({at, end}, "'" + std::string(text) + "' is neither a number nor a duration");
+    return bad({at, end}, Token::Flaw::kNumber);
   }
   const char* last = text_.data() + number_end;
   if (std::int64_t i = 0; whole) {
     if (std::from_chars(text_.data() + at, last, i).ec == std::errc()) {
       return {Token::Kind::kNumber, false, {at, end}, {}, i};
     }
-    return bad({at, end}, "this whole number does not fit in 64 bits");
+    return bad({at, end}, Token::Flaw::kWholeNumber);
   }
   double d = 0;
   if (std::from_chars(text_.data() + at, last, d).ec != std::errc() || !std::isfinite(d)) {
-    return bad({at, end}, "this number is out of range");
+    return bad({at, end}, Token::Flaw::kRange);
   }
   return {Token::Kind::kNumber, false, {at, end}, {}, d};
 }
@@ -235,53 +300,19 @@ Token Scanner::quoted(std::uint32_t at) const {
       return {Token::Kind::kString, false, {at, i + 1}, {}, text_.substr(at + 1, i - at - 1)};
     if (text_[i] != '\\' || i + 1 == end_) continue;
     if (std::string_view("nt\"\\").find(text_[++i]) == std::string_view::npos)
-      return bad({i - 1, i + 1}, "unknown escape in a string; known: \\\" \\\\ \\n \\t");
+      return bad({i - 1, i + 1}, Token::Flaw::kEscape);
   }
-  return unclosed(at);
-}
-
-Token Scanner::unclosed(std::uint32_t at) const {
-  std::uint32_t end = end_;
-  while (end > at + 1 && is_blank(text_[end - 1])) --end;
-  return bad({at, end_}, "this string has no closing '\"'", Edit{{end, end}, "\""});
+  return bad({at, end_}, Token::Flaw::kUnclosed);
 }
 
 Token Scanner::symbol(std::uint32_t at) const {
   if (const std::uint32_t length = symbol_length(text_.substr(at, std::min(2u, end_ - at)))) {
     return {Token::Kind::kSymbol, false, {at, at + length}, text_.substr(at, length), {}};
   }
-  return meaningless(at);
-}
-
-Token Scanner::meaningless(std::uint32_t at) const {
   std::uint32_t end = at + 1;
   while (end < end_ && (static_cast<unsigned char>(text_[end]) & 0xC0) == 0x80)
     ++end;  // one whole character
-  const bool control = static_cast<unsigned char>(text_[at]) < 0x20 || text_[at] == 0x7f;
-  if (control) return bad({at, end}, "a control character has no place in a rule file");
-  std::string_view advice;
-  std::optional<Edit> fix;
-  if (text_[at] == '\'') {
-    advice = "; a text stands in double quotes: \"active\"";
-    const auto close = text_.substr(0, end_).find('\'', end);
-    const std::string_view inside = text_.substr(end, std::min<std::size_t>(close, end_) - end);
-    if (close != std::string_view::npos && inside.find_first_of("\"\\") == std::string_view::npos)
-      fix = {{at, static_cast<std::uint32_t>(close) + 1}, "\"" + std::string(inside) + "\""};
-  }
-  if (text_[at] == '{' || text_[at] == '}')
-    advice = "; a parameter in braces stands for something in a TEMPLATE only";
-  if (text_[at] == '&') {
-    advice = "; write && for 'and'";
-    fix = {{at, end}, "&&"};
-  }
-  if (text_[at] == '|') {
-    advice = "; write || for 'or'";
-    fix = {{at, end}, "||"};
-  }
-  return bad(
-      {at, end},
-      "'" + std::string(text_.substr(at, end - at)) + "' means nothing here" + std::string(advice),
-      std::move(fix));
+  return bad({at, end}, Token::Flaw::kMeaningless);
 }
 
 syntax::Name Scanner::next_name() {

@@ -10,10 +10,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
-#include "base/seldom.h"
 #include "language/diagnostic.h"
 #include "language/source.h"
 #include "language/syntax.h"
@@ -29,24 +29,41 @@ struct Token {
     kDuration,
     kString,  // literal is what stands between the quotes, which value() unescapes
     kSymbol,  // an operator or a parenthesis; text says which
-    kBad      // complaint says what is wrong with it
+    kBad      // flaw says what is wrong with it, and complaint_about() in words
   };
-  struct Complaint {
-    std::string cause;
-    std::optional<Edit> fix = std::nullopt;  // that makes it a good one
+  enum class Flaw : std::uint8_t {
+    kNone,
+    kLongName,     // more than kMaxName characters
+    kBrace,        // a '{' that begins no parameter
+    kNumber,       // letters behind it that are no unit
+    kWholeNumber,  // does not fit in 64 bits
+    kRange,        // nor this one in a double
+    kEscape,       // a backslash in a text, and what may not follow it
+    kUnclosed,     // a text without its second '"'
+    kMeaningless   // a character that begins nothing
   };
   Kind kind = Kind::kEnd;
   // A kIdentifier with a template's parameter in it: may become any kind of token.
   bool has_hole = false;
   Span span;
   std::string_view text;  // of an identifier or a symbol; else empty
+  // Of a kBad: what stands from there to the end of the line.
   std::variant<bool, std::int64_t, double, std::string_view, Duration> literal;
-  Seldom<Complaint> complaint{};
+  Flaw flaw = Flaw::kNone;
 
   bool is(std::string_view symbol) const { return kind == Kind::kSymbol && text == symbol; }
   // What a literal, true or false stands for.
   syntax::Literal value() const;
 };
+// Tokens come and go for every word of a file, so they own nothing.
+static_assert(std::is_trivially_copyable_v<Token>);
+
+struct Complaint {
+  std::string cause;
+  std::optional<Edit> fix = std::nullopt;  // that makes the token a good one
+};
+// @pre it is a kBad
+Complaint complaint_about(const Token& bad);
 
 // A piece of a line as its reader took it, for those who care how the text was written.
 struct Lexeme {
@@ -105,11 +122,10 @@ class Scanner {
   bool is_comment(std::uint32_t at) const;
   Token number(std::uint32_t at) const;
   Token quoted(std::uint32_t at) const;
-  Token unclosed(std::uint32_t at) const;
   Token identifier(std::uint32_t at) const;
   Token with_holes(std::uint32_t at) const;
   Token symbol(std::uint32_t at) const;
-  Token meaningless(std::uint32_t at) const;
+  Token bad(Span span, Token::Flaw flaw) const;
   void enter(Lexeme::Kind kind, Span span) {
     if (record_ != nullptr) record_->push_back({kind, span});
   }
@@ -123,7 +139,14 @@ class Scanner {
 };
 
 // What stands between the tokens of a line.
-bool is_blank(char c);
+inline bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
+}
+// `text` without what it begins with of that.
+inline std::string_view unindented(std::string_view text) {
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  return text;
+}
 // `text` without what it begins and ends with of that.
 std::string_view trimmed(std::string_view text);
 

@@ -49,7 +49,7 @@ class Reader {
     const Token head = s.next();
     if (head.kind == Token::Kind::kBad) {
       is_broken_ = true;
-      read_.fail(Code::kBadToken, head.span, head.complaint->cause, "");
+      read_.fail(Code::kBadToken, head.span, complaint_about(head).cause, "");
       return;
     }
     keyword_ = head.span;

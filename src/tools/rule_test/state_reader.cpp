@@ -31,7 +31,7 @@ class StateReader {
   bool statement(Scanner& s) {
     const Token head = s.next();
     if (head.kind == Token::Kind::kBad)
-      return read_.fail(Code::kBadToken, head.span, head.complaint->cause, "");
+      return read_.fail(Code::kBadToken, head.span, complaint_about(head).cause, "");
     const auto is_one_of = [&](const auto& keywords) {
       return std::find(keywords.begin(), keywords.end(), head.text) != keywords.end();
     };

@@ -114,7 +114,7 @@ class ExpressionReader {
         if (token.is("(")) return parenthesis(token, depth);
         break;
       case Token::Kind::kBad:
-        return fail(token.span, token.complaint->cause);
+        return fail(token.span, complaint_about(token).cause);
       case Token::Kind::kDuration:
       case Token::Kind::kEnd:
         break;

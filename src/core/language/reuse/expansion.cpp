@@ -346,9 +346,9 @@ class Expander {
 bool has_reuse(const Source& source) {
   constexpr std::array<std::string_view, 3> kWords = {"INCLUDE", "TEMPLATE", "USE"};
   for (std::uint32_t number = 1; number <= source.line_count(); ++number) {
-    const std::string_view line = trimmed(source.text(source.line(number)));
-    if (line.empty() || std::string_view("ITU").find(line.front()) == std::string_view::npos)
-      continue;
+    const std::string_view line = unindented(source.text(source.line(number)));
+    const char first = line.empty() ? '\0' : line.front();
+    if (first != 'I' && first != 'T' && first != 'U') continue;
     for (const std::string_view word : kWords) {
       if (line.starts_with(word) &&
           Scanner(line, {0, static_cast<std::uint32_t>(line.size())}).next().text == word)
