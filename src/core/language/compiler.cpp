@@ -12,7 +12,7 @@ void emit(const Typed& e, Program& program) {
   std::uint32_t operand = 0;
   if (e.op == Op::kConstant) {
     operand = static_cast<std::uint32_t>(program.constants.size());
-    program.constants.push_back(e.constant);
+    program.constants.push_back(*e.constant);
   } else if (e.op == Op::kInput) {
     operand = e.input.index;
   }
@@ -47,7 +47,7 @@ bool is_plain_input(const Typed& e) {
 // The number that an input is compared with, as the monitor counts: durations in seconds.
 double threshold(const Typed& constant) {
   const bool is_plain = constant.op == Op::kConstant;
-  const Slot slot = is_plain ? constant.constant.slot : evaluate(compile(constant), {});
+  const Slot slot = is_plain ? constant.constant->slot : evaluate(compile(constant), {});
   if (constant.type == Type::kDouble) return slot.d;
   return constant.type == Type::kDuration ? seconds(Duration(slot.i)) : static_cast<double>(slot.i);
 }

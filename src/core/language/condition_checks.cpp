@@ -29,6 +29,15 @@ const Typed* compared_input(const Typed& comparison) {
   return left != nullptr ? left : plain_input(comparison.children[1]);
 }
 
+// Facts know all about it after one look: is_never() would find no more with a second one.
+bool compares_with_constant(const Typed& e) {
+  if (e.children.size() != 2) return false;
+  const Typed& left = e.children[0];
+  const Typed& right = e.children[1];
+  return (plain_input(left) != nullptr && right.op == Op::kConstant) ||
+         (plain_input(right) != nullptr && left.op == Op::kConstant);
+}
+
 // "1", not "1.0": as people write the ends of a RANGE.
 std::string plain_number(double value) {
   std::string text = to_string(Value(value));
@@ -85,12 +94,20 @@ void find_constant_parts(const Typed& condition, const RuleSet& rules,
                          std::vector<Finding>& findings, std::optional<bool> known = {}) {
   if (!reads_inputs(condition)) return;  // a constant that switches something on or off
   const std::size_t before = findings.size();
+  const bool is_conjunction = condition.op == Op::kAnd;
   if (is_connective(condition)) {
-    for (const Typed& child : condition.children) find_constant_parts(child, rules, findings);
+    // What can be true together can be true one by one.
+    const auto of_part = is_conjunction && known == false ? known : std::nullopt;
+    for (const Typed& child : condition.children)
+      find_constant_parts(child, rules, findings, of_part);
     if (findings.size() > before) return;
   }
   const bool never = known ? *known : is_never(true, condition, rules);
-  if (!never && !is_never(false, condition, rules)) return;
+  // No part of it is always true, or that had been found: so it is not always true either.
+  const bool has_plain_parts =
+      is_conjunction &&
+      std::all_of(condition.children.begin(), condition.children.end(), compares_with_constant);
+  if (!never && (has_plain_parts || !is_never(false, condition, rules))) return;
   std::string reason;
   bool is_by_range = false;
   if (is_connective(condition)) {

@@ -45,7 +45,7 @@ Result slow_logic(const Typed& e, std::span<const Slot> inputs, bool dominant) {
 }
 
 Result slow(const Typed& e, std::span<const Slot> inputs) {
-  if (e.op == Op::kConstant) return from_slot(e.constant.view(), e.type);
+  if (e.op == Op::kConstant) return from_slot(e.constant->view(), e.type);
   if (e.op == Op::kInput) return from_slot(inputs[e.input.index], e.type);
   if (e.op == Op::kAnd) return slow_logic(e, inputs, false);
   if (e.op == Op::kOr) return slow_logic(e, inputs, true);
@@ -253,8 +253,8 @@ Typed random_leaf(Type type, Random& random) {
     leaf.input =
         InputId(static_cast<std::size_t>(type) * kInputsPerType + below(kInputsPerType, random));
   } else {
-    leaf.constant.slot = random_slot(type, random);
-    leaf.constant.text = leaf.constant.slot.s;
+    const Slot slot = random_slot(type, random);
+    leaf.constant = Constant{slot, std::string(slot.s)};
   }
   return leaf;
 }

@@ -71,6 +71,36 @@ ValueSet first_values(const Input& input, const RuleSet& rules) {
 bool is_single(const Interval& i) { return i.low == i.high; }
 bool is_single(const TextSet& t) { return !t.is_complement && t.texts.size() == 1; }
 
+// ---- What is known of few inputs
+
+// Null: not more than at first.
+template <class Set>
+const Set* find(InputId input, const std::vector<std::pair<InputId, Set>>& known) {
+  for (const auto& [each, values] : known) {
+    if (each == input) return &values;
+  }
+  return nullptr;
+}
+
+template <class Set>
+void enter(InputId input, Set values, std::vector<std::pair<InputId, Set>>& known) {
+  for (auto& [each, before] : known) {
+    if (each != input) continue;
+    before = std::move(values);
+    return;
+  }
+  if (known.empty()) known.reserve(4);
+  known.emplace_back(input, std::move(values));
+}
+
+// What holds if either is so.
+template <class Set>
+void keep_joint(std::vector<std::pair<InputId, Set>>& known,
+                const std::vector<std::pair<InputId, Set>>& other) {
+  std::erase_if(known, [&](const auto& each) { return find(each.first, other) == nullptr; });
+  for (auto& [input, values] : known) values = hull(values, *find(input, other));
+}
+
 // All values but the one of `single`, as far as an interval can leave one out.
 Interval all_but(const Interval& single, const Interval& of) {
   Interval out = of;
@@ -82,16 +112,17 @@ Interval all_but(const Interval& single, const Interval& of) {
 }  // namespace
 
 ValueSet Facts::values_of(InputId input) const {
-  const ValueSet* known = find(input);
+  if (is_number((*rules_)[input].type)) return interval_of(input);
+  const ValueSet* known = find(input, others_);
   return known != nullptr ? *known : first_values((*rules_)[input], *rules_);
 }
 
-const ValueSet* Facts::find(InputId input) const {
-  for (const auto& [known, values] : values_) {
-    if (known == input) return &values;
-  }
-  return nullptr;
+void Facts::know(InputId input, ValueSet values) {
+  if (const auto* interval = std::get_if<Interval>(&values)) return know(input, *interval);
+  enter(input, std::move(values), others_);
 }
+
+void Facts::know(InputId number, const Interval& interval) { enter(number, interval, numbers_); }
 
 bool Facts::assume(const Typed& e, bool truth) {
   assert(e.type == Type::kBool);
@@ -135,8 +166,8 @@ bool Facts::either(First first, Second second) {
 }
 
 void Facts::join(const Facts& other) {
-  std::erase_if(values_, [&](const auto& known) { return other.find(known.first) == nullptr; });
-  for (auto& [input, values] : values_) values = hull(values, *other.find(input));
+  keep_joint(numbers_, other.numbers_);
+  keep_joint(others_, other.others_);
 }
 
 bool Facts::compare(const Typed& e, bool truth) {
@@ -165,8 +196,8 @@ bool Facts::compare(const Typed& e, bool truth) {
 
 // Only with a constant: reasoning about two conditions at once would have to try all their cases.
 bool Facts::compare_truths(const Typed& left, const Typed& right, bool truth) {
-  if (right.op == Op::kConstant) return assume(left, right.constant.slot.b == truth);
-  if (left.op == Op::kConstant) return assume(right, left.constant.slot.b == truth);
+  if (right.op == Op::kConstant) return assume(left, right.constant->slot.b == truth);
+  if (left.op == Op::kConstant) return assume(right, left.constant->slot.b == truth);
   return true;
 }
 
@@ -222,20 +253,20 @@ bool Facts::narrow(const Typed& e, const Interval& interval) {
 }
 
 Interval Facts::interval_of(InputId number) const {
-  const ValueSet* known = find(number);
-  return known != nullptr ? std::get<Interval>(*known) : first_interval((*rules_)[number], *rules_);
+  const Interval* known = find(number, numbers_);
+  return known != nullptr ? *known : first_interval((*rules_)[number], *rules_);
 }
 
 Interval Facts::interval_of(const Typed& e) const {
   if (e.op == Op::kInput) return interval_of(e.input);
-  if (e.op == Op::kConstant) return only_number(e.constant, e.type);
+  if (e.op == Op::kConstant) return only_number(*e.constant, e.type);
   return std::get<Interval>(values_of(e));
 }
 
 ValueSet Facts::values_of(const Typed& e) const {
   switch (e.op) {
     case Op::kConstant:
-      return only_value(e.constant, e.type);
+      return only_value(*e.constant, e.type);
     case Op::kInput:
       return values_of(e.input);
     case Op::kSelect:

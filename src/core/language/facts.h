@@ -28,9 +28,9 @@ class Facts {
   bool assume(const Typed& condition, bool truth);
 
   ValueSet values_of(InputId input) const;
-  // `set` holds all values that the input has from now on.
-  template <class Set>
-  void know(InputId input, Set set);
+  // All values that the input has from now on.
+  void know(InputId input, ValueSet values);
+  void know(InputId number, const Interval& interval);
 
  private:
   // A comparison as "left before right", "left not after right" or "left equals right".
@@ -49,23 +49,14 @@ class Facts {
   Interval interval_of(InputId number) const;
   Interval interval_of(const Typed& expression) const;
 
-  const ValueSet* find(InputId input) const;  // null: not more is known than at first
-
   const RuleSet* rules_;
-  // Of inputs of which more is known than at first. They are few, for expressions are small.
-  std::vector<std::pair<InputId, ValueSet>> values_;
+  // Of inputs of which more is known than at first: of numbers, and of all others. They are few, for
+  // expressions are small.
+  template <class Set>
+  using Known = std::vector<std::pair<InputId, Set>>;
+  Known<Interval> numbers_;
+  Known<ValueSet> others_;
 };
-
-template <class Set>
-void Facts::know(InputId input, Set set) {
-  for (auto& [known, values] : values_) {
-    if (known != input) continue;
-    values = std::move(set);
-    return;
-  }
-  if (values_.empty()) values_.reserve(4);
-  values_.emplace_back(input, std::move(set));
-}
 
 // Expressions larger than this are not reasoned about, so that checking a hostile file takes time
 // in proportion to its size.

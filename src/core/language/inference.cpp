@@ -28,7 +28,7 @@ class Inference {
   Inferred infer(const Expression& e, std::optional<Type> wanted) {
     switch (e.kind) {
       case Kind::kLiteral:
-        return type_of_literal(e.literal);
+        return type_of_literal(*e.literal);
       case Kind::kName:
         return name(e, wanted);
       case Kind::kUnary:

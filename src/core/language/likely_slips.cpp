@@ -10,7 +10,10 @@ namespace {
 constexpr Duration kFastestStart = std::chrono::milliseconds(400);
 
 bool is_one_of(std::string_view word, std::initializer_list<std::string_view> words) {
-  return std::find(words.begin(), words.end(), word) != words.end();
+  // Most differ in their length: asked first, it spares the call that compares their letters.
+  return std::any_of(words.begin(), words.end(), [&](std::string_view each) {
+    return each.size() == word.size() && each == word;
+  });
 }
 
 bool is_shell(std::string_view program) {

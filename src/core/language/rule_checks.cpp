@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <numeric>
 #include <set>
 #include <string>
 #include <string_view>
@@ -121,6 +122,27 @@ class Done {
   std::map<std::string_view, const Adaptation*> by_parameter_;
 };
 
+// Of all components, one behind the other: a list for each would be thousands of small blocks.
+class Producers {
+ public:
+  explicit Producers(const RuleSet& rules)
+      : ends_(rules.components.size() + 1), all_(rules.dependencies.size()) {
+    for (const Dependency& d : rules.dependencies) ++ends_[d.consumer.index + 1];
+    std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
+    std::vector<std::size_t> next(ends_.begin(), ends_.end() - 1);
+    for (const Dependency& d : rules.dependencies)
+      all_[next[d.consumer.index]++] = d.producer.index;
+  }
+  // Those of `component` are [begin, end), in the order of the file.
+  std::size_t begin(std::size_t component) const { return ends_[component]; }
+  std::size_t end(std::size_t component) const { return ends_[component + 1]; }
+  std::size_t operator[](std::size_t place) const { return all_[place]; }
+
+ private:
+  std::vector<std::size_t> ends_;  // of what is in front of each component, and of the last one
+  std::vector<std::size_t> all_;
+};
+
 }  // namespace
 
 void check_contradictions(const syntax::Strategy& strategy, std::vector<Diagnostic>& diagnostics) {
@@ -216,34 +238,32 @@ void check_constant_trigger(const syntax::Rule& rule, const Program& trigger,
 void check_circles(const syntax::File& file, const RuleSet& rules,
                    std::vector<Diagnostic>& diagnostics) {
   const std::size_t count = rules.components.size();
-  std::vector<std::vector<std::size_t>> producers(count);
-  for (const Dependency& d : rules.dependencies)
-    producers[d.consumer.index].push_back(d.producer.index);
+  const Producers producers(rules);
 
   enum class Mark : std::uint8_t { kNew, kOpen, kDone };
   std::vector<Mark> marks(count, Mark::kNew);
   std::set<std::size_t> in_circle;
   struct Visit {
     std::size_t component;
-    std::size_t next = 0;
+    std::size_t next;  // of its producers
   };
   std::vector<Visit> path;
   for (std::size_t start = 0; start < count; ++start) {
     if (marks[start] != Mark::kNew) continue;
-    path.push_back({start});
+    path.push_back({start, producers.begin(start)});
     marks[start] = Mark::kOpen;
     while (!path.empty()) {
       Visit& here = path.back();
-      if (here.next == producers[here.component].size()) {
+      if (here.next == producers.end(here.component)) {
         marks[here.component] = Mark::kDone;
         path.pop_back();
         continue;
       }
-      const std::size_t to = producers[here.component][here.next++];
+      const std::size_t to = producers[here.next++];
       if (marks[to] == Mark::kOpen) in_circle.insert(to);
       if (marks[to] == Mark::kNew) {
         marks[to] = Mark::kOpen;
-        path.push_back({to});
+        path.push_back({to, producers.begin(to)});
       }
     }
   }

@@ -48,7 +48,7 @@ std::string_view symbol(Operator op);
 
 struct Expression {
   enum class Kind : std::uint8_t {
-    kLiteral,  // literal
+    kLiteral,  // *literal
     kName,   // name: a constant, a signal; as an argument also a topic, a component, a parameter, a
              // diagnostic
     kUnary,  // op children[0]
@@ -59,7 +59,7 @@ struct Expression {
   Kind kind = Kind::kLiteral;
   Operator op = Operator::kNot;
   Span span;
-  Literal literal;
+  Seldom<Literal> literal{};  // there if it is a kLiteral
   Name name;
   std::vector<Expression> children;
 };

@@ -28,26 +28,20 @@ Typed node(Op op, Type type, Children&&... children) {
   return typed;
 }
 
-Typed literal(const syntax::Literal& value) {
+Typed constant(Type type, Slot slot, std::string text = "") {
   Typed typed;
-  if (const auto* b = std::get_if<bool>(&value)) {
-    typed.type = Type::kBool;
-    typed.constant.slot = Slot::of(*b);
-  } else if (const auto* i = std::get_if<std::int64_t>(&value)) {
-    typed.type = Type::kInt;
-    typed.constant.slot = Slot::of(*i);
-  } else if (const auto* d = std::get_if<double>(&value)) {
-    typed.type = Type::kDouble;
-    typed.constant.slot = Slot::of(*d);
-  } else if (const auto* duration = std::get_if<Duration>(&value)) {
-    typed.type = Type::kDuration;
-    typed.constant.slot = Slot::of(*duration);
-  } else {
-    typed.type = Type::kString;
-    typed.constant.text = std::get<std::string>(value);
-    typed.constant.slot = Slot::of(std::string_view());
-  }
+  typed.type = type;
+  typed.constant = Constant{slot, std::move(text)};
   return typed;
+}
+
+Typed literal(const syntax::Literal& value) {
+  if (const auto* b = std::get_if<bool>(&value)) return constant(Type::kBool, Slot::of(*b));
+  if (const auto* i = std::get_if<std::int64_t>(&value)) return constant(Type::kInt, Slot::of(*i));
+  if (const auto* d = std::get_if<double>(&value)) return constant(Type::kDouble, Slot::of(*d));
+  if (const auto* duration = std::get_if<Duration>(&value))
+    return constant(Type::kDuration, Slot::of(*duration));
+  return constant(Type::kString, Slot::of(std::string_view()), std::get<std::string>(value));
 }
 
 // One instruction for whole numbers (and durations), one for doubles, one for texts, one for bools.
@@ -93,7 +87,7 @@ class Typer {
   std::optional<Typed> type_of(const Expression& e) {
     switch (e.kind) {
       case Kind::kLiteral:
-        return literal(e.literal);
+        return literal(*e.literal);
       case Kind::kName:
         return name(e);
       case Kind::kUnary:
@@ -383,7 +377,7 @@ class Typer {
     const Expression& first = e.children[0];
     return first.kind == Kind::kName && symbols_.constant(first.name.text) == nullptr &&
            e.children[1].kind == Kind::kLiteral &&
-           std::holds_alternative<Duration>(e.children[1].literal);
+           std::holds_alternative<Duration>(*e.children[1].literal);
   }
 
   std::optional<Typed> window(const Expression& e, Input::Kind kind) {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/seldom.h"
 #include "language/diagnostic.h"
 #include "language/program.h"
 #include "language/symbols.h"
@@ -21,9 +22,9 @@ namespace culprit {
 struct Typed {
   Op op = Op::kConstant;
   Type type = Type::kBool;
-  Constant constant;
   InputId input;
-  Span span;  // of a condition (type kBool): where it is written
+  Span span;                  // of a condition (type kBool): where it is written
+  Seldom<Constant> constant;  // there if op is kConstant
   std::vector<Typed> children;
 };
 

@@ -159,6 +159,8 @@ ValueSet hull(const ValueSet& a, const ValueSet& b) {
                     a);
 }
 
+Interval hull(const Interval& a, const Interval& b) { return join(a, b); }
+
 Interval whole_numbers(Interval i) {
   if (std::isfinite(i.low)) {
     const double up = std::ceil(i.low);

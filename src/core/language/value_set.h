@@ -52,6 +52,7 @@ Interval intersection(const Interval& a, const Interval& b);
 ValueSet intersection(const ValueSet& a, const ValueSet& b);
 // The smallest set that holds both. @pre both sets are of the same kind
 ValueSet hull(const ValueSet& a, const ValueSet& b);
+Interval hull(const Interval& a, const Interval& b);
 
 // The interval without the ends that no whole number reaches: 2 < x < 5 becomes 3 <= x <= 4.
 Interval whole_numbers(Interval interval);

@@ -158,8 +158,8 @@ class ExpressionReader {
   }
 
   static bool is_number(const Expression& e) {
-    return e.kind == Kind::kLiteral && (std::holds_alternative<std::int64_t>(e.literal) ||
-                                        std::holds_alternative<double>(e.literal));
+    return e.kind == Kind::kLiteral && (std::holds_alternative<std::int64_t>(*e.literal) ||
+                                        std::holds_alternative<double>(*e.literal));
   }
 
   static Expression binary(Operator op, Expression left, Expression right) {

@@ -52,7 +52,7 @@ class ExpressionWriter {
     constexpr int kAtom = 8;
     switch (e.kind) {
       case Kind::kLiteral:
-        return {literal_text(e.literal), kAtom, std::holds_alternative<std::int64_t>(e.literal)};
+        return {literal_text(*e.literal), kAtom, std::holds_alternative<std::int64_t>(*e.literal)};
       case Kind::kName: {
         Meaning meaning = meanings_(e.name.text);
         return {std::move(meaning.text), kAtom, meaning.is_whole};

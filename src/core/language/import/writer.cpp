@@ -241,7 +241,7 @@ class Writer {
                                                          e.op == syntax::Operator::kNotEqual);
     return std::any_of(e.children.begin(), e.children.end(), [&](const Expression& child) {
       const bool is_fraction =
-          child.kind == Kind::kLiteral && std::holds_alternative<double>(child.literal);
+          child.kind == Kind::kLiteral && std::holds_alternative<double>(*child.literal);
       return (is_equality && is_fraction) || compares_fractions(child);
     });
   }
@@ -300,8 +300,8 @@ class Writer {
 
   // culprit wants the topic itself, the reference computes it.
   std::string topic(const Expression& value, Block& block) {
-    if (value.kind == Kind::kLiteral && std::holds_alternative<std::string>(value.literal))
-      return name_text(std::get<std::string>(value.literal));
+    if (value.kind == Kind::kLiteral && std::holds_alternative<std::string>(*value.literal))
+      return name_text(std::get<std::string>(*value.literal));
     if (value.kind == Kind::kName) {
       for (const Constant& constant : file_.constants) {
         if (constant.name == value.name.text && constant.type == "string" &&
