@@ -79,7 +79,7 @@ void check_launches(const Expansion& file, Checked& checked) {
         file.source.name(), launches, troubles.front().why);
     return;
   }
-  for (Diagnostic& d : cannot_launch(file.source, rules, troubles))
+  for (Diagnostic& d : cannot_launch(checked.file, rules, troubles))
     checked.diagnostics.push_back(std::move(d));
   std::stable_sort(
       checked.diagnostics.begin(), checked.diagnostics.end(),

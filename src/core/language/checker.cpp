@@ -42,6 +42,7 @@ class Checker {
     rules_.components.reserve(file_.components.size());
     rules_.signals.reserve(file_.signals.size());
     rules_.rules.reserve(file_.rules.size());
+    rules_.inputs.reserve(2 * file_.rules.size());  // as most triggers read
     rule_names_.reserve(file_.rules.size());
     conditions_.reserve(file_.rules.size());
     std::size_t strategies = 0;
@@ -73,6 +74,9 @@ class Checker {
     }
     return std::move(rules_);
   }
+
+  // Where no memory has them.
+  std::vector<RuleConditions> take_conditions() { return std::move(conditions_); }
 
  private:
   void header() {
@@ -309,9 +313,12 @@ class Checker {
         conditions.written = &written;
         conditions.rule = id;
         conditions.trigger = std::move(*typed);
+        conditions.strategies.reserve(written.strategies.size());
         conditions_.push_back(std::move(conditions));
       }
     }
+    rule.strategies.reserve(written.strategies.size());
+    rule.components.reserve(written.strategies.size());
     rules_.rules.push_back(std::move(rule));
     PlaceIndex names;  // of its strategies
     for (const syntax::Strategy& strategy : written.strategies) {
@@ -349,8 +356,9 @@ class Checker {
       check_meaning(rule);
       if (known != nullptr) known->meaning.emplace(diagnostics_.begin() + said, diagnostics_.end());
     }
-    for (const syntax::Component& component : file_.components)
-      check_shell(component, rules_[symbols_.component(component.name)], diagnostics_);
+    // Declared components come first, in the order of the file.
+    for (std::size_t i = 0; i < file_.components.size(); ++i)
+      check_shell(file_.components[i], rules_.components[i], diagnostics_);
     check_unused(file_, rules_, diagnostics_);
     check_covered_rules(conditions_, rules_, diagnostics_);
     check_oscillation(conditions_, rules_, diagnostics_);
@@ -453,6 +461,8 @@ class Checker {
              "strategy '" + written.name.text + "' has no ADAPTATION",
              "say what it does: ADAPTATION component restart 5");
     }
+    strategy.adaptations.reserve(written.adaptations.size());
+    strategy.components.reserve(written.adaptations.size());
     for (const syntax::Adaptation& adaptation : written.adaptations)
       add_adaptation(adaptation, strategy);
     check_contradictions(written, diagnostics_);
@@ -534,6 +544,9 @@ class Checker {
 
   void link_readers(RuleId id) {
     Rule& rule = rules_.rules[id.index];
+    rule.inputs.reserve(static_cast<std::size_t>(
+        std::count_if(rule.trigger.code.begin(), rule.trigger.code.end(),
+                      [](const Instruction& i) { return i.op == Op::kInput; })));
     for (const Instruction& instruction : rule.trigger.code) {
       if (instruction.op == Op::kInput) rule.inputs.push_back(InputId(instruction.operand));
     }
@@ -581,6 +594,7 @@ Checked check_tree(const syntax::File& file, std::vector<Diagnostic> said, Stric
   Checker checker(file, strictness, result.diagnostics);
   if (memory != nullptr) checker.use(*memory, text);
   RuleSet rules = checker.check();
+  result.conditions = checker.take_conditions();
   std::stable_sort(
       result.diagnostics.begin(), result.diagnostics.end(),
       [](const Diagnostic& a, const Diagnostic& b) { return a.span.begin < b.span.begin; });
@@ -599,14 +613,16 @@ Checked check_tree(const syntax::File& file, std::vector<Diagnostic> said, Stric
 
 Checked check(const Source& source, Strictness strictness) {
   std::vector<Diagnostic> said;
-  const syntax::File file = parse(source, said);
+  syntax::File file = parse(source, said);
   if (file.has_reuse()) {
     const Expansion rules = expand(source);
     Checked checked = check(rules, strictness);
     checked.diagnostics = as_written(std::move(checked.diagnostics), rules.source);
     return checked;
   }
-  return check_tree(file, std::move(said), strictness);
+  Checked checked = check_tree(file, std::move(said), strictness);
+  checked.file = std::move(file);
+  return checked;
 }
 
 Checked check(const Parsed& whole, Strictness strictness) {

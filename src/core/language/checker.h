@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "language/condition_checks.h"
 #include "language/diagnostic.h"
 #include "language/reparse.h"
 #include "language/reuse/expansion.h"
@@ -23,6 +24,10 @@ namespace culprit {
 struct Checked {
   std::optional<RuleSet> rules;         // nothing if there is any error
   std::vector<Diagnostic> diagnostics;  // errors and warnings, in the order of the text
+  syntax::File file{};                  // the tree of the rules; empty if they were parsed already
+  // What triggers and WHENs were reasoned about with; they point into the tree. Destroying so many
+  // small things takes long: who ends anyway need not.
+  std::vector<RuleConditions> conditions{};
 };
 
 Checked check(const Source& source, Strictness strictness = Strictness::kLenient);

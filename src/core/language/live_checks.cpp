@@ -7,7 +7,6 @@
 
 #include "base/ros_names.h"
 #include "language/occurrences.h"
-#include "language/parser.h"
 
 namespace culprit {
 namespace {
@@ -453,10 +452,8 @@ std::vector<Diagnostic> missing_on(const LiveInventory& robot, const Source& sou
   return find_missing(parsed.file, *checked.rules, robot, checked.diagnostics);
 }
 
-std::vector<Diagnostic> cannot_launch(const Source& source, const RuleSet& rules,
+std::vector<Diagnostic> cannot_launch(const syntax::File& file, const RuleSet& rules,
                                       const std::vector<LiveInventory::LaunchTrouble>& troubles) {
-  std::vector<Diagnostic> ignored;
-  const syntax::File file = parse(source, ignored);
   LiveInventory nobody;
   nobody.launch_troubles = troubles;
   return LiveChecks(file, rules, nobody).find_owner_troubles();

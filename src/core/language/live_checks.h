@@ -23,8 +23,8 @@ void check_live(const syntax::File& file, const RuleSet& rules, const LiveInvent
 // Only what check_live() would add: what the robot has not.
 std::vector<Diagnostic> missing_on(const LiveInventory& robot, const Source& source);
 
-// Of the launch commands of `rules`, which are what `source` says, those that have these troubles.
-std::vector<Diagnostic> cannot_launch(const Source& source, const RuleSet& rules,
+// Of the launch commands of `rules`, which are those of `file`, the ones that have these troubles.
+std::vector<Diagnostic> cannot_launch(const syntax::File& file, const RuleSet& rules,
                                       const std::vector<LiveInventory::LaunchTrouble>& troubles);
 
 // check(), and check_live() if there is no error.
