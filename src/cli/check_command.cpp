@@ -1,11 +1,14 @@
 #include <algorithm>
+#include <filesystem>
 #include <memory>
+#include <system_error>
 #include <unistd.h>
 
 #include <fmt/core.h>
 
 #include "cli/commands.h"
 #include "cli/diagnostic_report.h"
+#include "cli/heap_room.h"
 #include "language/live_checks.h"
 #include "language/live_findings.h"
 #include "live/preflight.h"
@@ -14,10 +17,14 @@
 #include "ros2/options.h"
 #include "rule_files/rule_files.h"
 #include "terminal/console.h"
+#include "terminal/program.h"
 #include "terminal/seconds_option.h"
 
 namespace culprit::cli {
 namespace {
+
+// Files of so many bytes, thousands of rules, are worth some care for memory.
+constexpr std::size_t kLarge = std::size_t{1} << 20;
 
 struct CheckOptions {
   std::vector<std::string> files;
@@ -86,7 +93,7 @@ void check_launches(const Expansion& file, Checked& checked) {
       [](const Diagnostic& a, const Diagnostic& b) { return a.span.begin < b.span.begin; });
 }
 
-int check_all(std::vector<Expansion> all, const CheckOptions& options) {
+int check_all(std::vector<Expansion> all, int exit_code, const CheckOptions& options) {
   const Strictness strictness = options.strict ? Strictness::kStrict : Strictness::kLenient;
   std::optional<LiveInventory> robot;
   if (options.robot) {
@@ -97,10 +104,13 @@ int check_all(std::vector<Expansion> all, const CheckOptions& options) {
     }
     robot = std::move(*seen);
   }
-  int exit_code = kOk;
+  const bool is_any_large = std::ranges::any_of(
+      all, [](const Expansion& file) { return file.source.text().size() >= kLarge; });
   std::vector<CheckedFile> files;
+  Checked checked;
   for (Expansion& file : all) {
-    Checked checked = robot ? check_against(*robot, file, strictness) : check(file, strictness);
+    checked = {};  // so that there are never two
+    checked = robot ? check_against(*robot, file, strictness) : check(file, strictness);
     if (!checked.rules) exit_code = kFailed;
     if (!robot && checked.rules) check_launches(file, checked);
     if (options.format == "text") {
@@ -112,7 +122,22 @@ int check_all(std::vector<Expansion> all, const CheckOptions& options) {
   }
   if (options.format == "json") fmt::print("{}\n", to_text(json_report(files)));
   if (options.format == "sarif") fmt::print("{}\n", to_text(sarif_report(files)));
+  // With a robot DDS was there, which ends as it wants to.
+  if (is_any_large && !robot) end_program(exit_code);
   return exit_code;
+}
+
+// Rules take some twenty times the room of their text.
+void make_room(const std::vector<std::string>& files) {
+  std::uintmax_t largest = 0;
+  for (const std::string& file : files) {
+    std::error_code error;
+    if (const auto size = std::filesystem::file_size(file, error); !error)
+      largest = std::max(largest, size);
+  }
+  if (largest >= kLarge)
+    make_heap_room(20 *
+                   static_cast<std::size_t>(std::min<std::uintmax_t>(largest, Source::kMaxSize)));
 }
 
 int check_files(const CheckOptions& options) {
@@ -123,6 +148,7 @@ int check_files(const CheckOptions& options) {
   for (const std::string& path : options.files) {
     const auto files = rule_files::files_in(path, ".rules");
     if (!files) exit_code = fail(files.error());
+    if (files) make_room(*files);
     for (const std::string& file : files ? *files : std::vector<std::string>{}) {
       auto rules = rule_files::read(file);
       if (rules) {
@@ -132,7 +158,7 @@ int check_files(const CheckOptions& options) {
       }
     }
   }
-  return std::max(exit_code, check_all(std::move(all), options));
+  return check_all(std::move(all), exit_code, options);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <optional>
 #include <string>
@@ -114,6 +115,11 @@ int run_program(CLI::App& app, const std::function<void(int& exit_code)>& add_co
     reason = error.code().value();
   }
   return is_output_written(reason) ? exit_code : kFailed;
+}
+
+void end_program(int exit_code) {
+  constexpr int kNoReason = 0;
+  std::_Exit(is_output_written(kNoReason) ? exit_code : kFailed);
 }
 
 }  // namespace culprit
