@@ -1,5 +1,8 @@
 #include "terminal/program.h"
 
+#include <cstdio>
+#include <unistd.h>
+
 #include "terminal/command.h"
 #include "terminal/help.h"
 #include "terminal/seconds_option.h"
@@ -54,6 +57,15 @@ TEST(Program, AloneShowsItsCommands) {
   const Ended end = ended({});
   EXPECT_EQ(end.code, kUsage);
   EXPECT_THAT(end.said, HasSubstr("check"));
+}
+
+TEST(Program, EndsAtOnceWithAllThatItSaid) {
+  const auto end = [] {
+    dup2(STDERR_FILENO, STDOUT_FILENO);
+    std::fputs("as said", stdout);
+    end_program(kFailed);
+  };
+  EXPECT_EXIT(end(), testing::ExitedWithCode(kFailed), "as said");
 }
 
 TEST(Help, HasLinesThatFit) {
