@@ -1,6 +1,7 @@
 #include "analyze/analyzer.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "analyze/undoes.h"
@@ -338,17 +339,15 @@ Time Analyzer::shows_from(const Attempt& attempt) const {
     return std::ranges::any_of(
         inputs, [&](InputId id) { return may_be_of(component, knowledge_.rules[id], knowledge_); });
   };
-  Time from = kLongAgo;
+  std::vector<ComponentId> hearing;
   for (const Adaptation& adaptation : strategy.adaptations) {
     if (adaptation.type != AdaptationType::kRedeploy && adaptation.type != AdaptationType::kStart)
       continue;
-    from = std::max(from, knowledge_.can_hear_from(adaptation.component));
-    const std::vector<ComponentId> readers = knowledge_.graph.downstream(adaptation.component);
-    for (const ComponentId reader : readers) {
-      if (is_read(reader)) from = std::max(from, knowledge_.can_hear_from(reader));
-    }
+    hearing.push_back(adaptation.component);
+    const auto& downstream = knowledge_.graph.downstream(adaptation.component);
+    std::copy_if(downstream.begin(), downstream.end(), std::back_inserter(hearing), is_read);
   }
-  return std::min(from, later(attempt.effective, kInputs));
+  return std::min(knowledge_.can_hear_from(hearing), later(attempt.effective, kInputs));
 }
 
 bool Analyzer::holds_up_more_critical(StrategyId strategy) const {

@@ -236,7 +236,12 @@ std::optional<ComponentId> DependencyGraph::component_of(const std::string& node
 }
 
 const std::vector<ComponentId>& DependencyGraph::upstream(ComponentId component) const {
-  return reach(component, Direction::kUpstream);
+  return reach(std::span(&component, 1), Direction::kUpstream);
+}
+
+const std::vector<ComponentId>& DependencyGraph::upstream(
+    std::span<const ComponentId> components) const {
+  return reach(components, Direction::kUpstream);
 }
 
 bool DependencyGraph::reads_others(ComponentId component) const {
@@ -254,45 +259,65 @@ bool DependencyGraph::reads_others(ComponentId component) const {
 }
 
 const std::vector<ComponentId>& DependencyGraph::downstream(ComponentId component) const {
-  return reach(component, Direction::kDownstream);
+  return reach(std::span(&component, 1), Direction::kDownstream);
+}
+
+const std::vector<ComponentId>& DependencyGraph::downstream(
+    std::span<const ComponentId> components) const {
+  return reach(components, Direction::kDownstream);
 }
 
 std::optional<ComponentId> DependencyGraph::first_upstream(ComponentId component,
                                                            const Predicate& is_it) const {
-  std::optional<ComponentId> first;
-  reach(component, Direction::kUpstream, [&](ComponentId each) {
-    if (is_it(each)) first = each;
-    return first.has_value();
-  });
-  return first;
+  return first(component, Direction::kUpstream, is_it);
 }
 
-const std::vector<ComponentId>& DependencyGraph::reach(ComponentId from, Direction direction,
+std::optional<ComponentId> DependencyGraph::first_downstream(ComponentId component,
+                                                             const Predicate& is_it) const {
+  return first(component, Direction::kDownstream, is_it);
+}
+
+std::optional<ComponentId> DependencyGraph::first(ComponentId from, Direction direction,
+                                                  const Predicate& is_it) const {
+  std::optional<ComponentId> found;
+  reach(std::span(&from, 1), direction, [&](ComponentId each) {
+    if (is_it(each)) found = each;
+    return found.has_value();
+  });
+  return found;
+}
+
+const std::vector<ComponentId>& DependencyGraph::reach(std::span<const ComponentId> from,
+                                                       Direction direction,
                                                        const Predicate& is_last) const {
   found_.clear();
-  const auto start = nodes_of_components_[from.index];
-  if (!start) return found_;
+  frontier_.clear();
   visited_.resize(nodes_.size() + channels_.size(), 0);
   ++search_;
-  frontier_.assign(1, *start);
-  visited_[start->index] = search_;
-  bool is_over = false;
+  for (const ComponentId each : from) {
+    const auto start = nodes_of_components_[each.index];
+    if (!start || visited_[start->index] == search_) continue;
+    visited_[start->index] = search_;
+    frontier_.push_back(*start);
+  }
+  // Gives whether that was the last one.
   const auto visit = [&](NodeId node) {
-    if (is_over || visited_[node.index] == search_) return;
+    if (visited_[node.index] == search_) return false;
     visited_[node.index] = search_;
     frontier_.push_back(node);
     const auto& component = nodes_[node.index].component;
-    if (!component) return;
+    if (!component) return false;
     found_.push_back(*component);
-    is_over = is_last && is_last(*component);
+    return is_last && is_last(*component);
   };
   const bool up = direction == Direction::kUpstream;
-  while (!frontier_.empty() && !is_over) {
+  while (!frontier_.empty()) {
     const NodeId id = frontier_.back();
     const Node& here = nodes_[id.index];
     frontier_.pop_back();
-    for (const NodeId declared : up ? here.declared_producers : here.declared_consumers)
-      visit(declared);
+    for (const NodeId declared : up ? here.declared_producers : here.declared_consumers) {
+      if (visit(declared)) return found_;
+    }
     for (const ChannelId channel_id : up ? here.consumes : here.produces) {
       // Whoever shares a channel with many is led on by it once.
       std::uint32_t& passed = visited_[nodes_.size() + channel_id.index];
@@ -304,7 +329,7 @@ const std::vector<ComponentId>& DependencyGraph::reach(ComponentId from, Directi
       if (!counts(*own, channel, !up)) continue;
       passed = search_;
       for (const End& far : up ? channel.producers : channel.consumers) {
-        if (counts(far, channel, up)) visit(far.node);
+        if (counts(far, channel, up) && visit(far.node)) return found_;
       }
     }
   }

@@ -83,10 +83,15 @@ class DependencyGraph {
   const std::vector<ComponentId>& upstream(ComponentId component) const;
   // The components that depend on it, likewise.
   const std::vector<ComponentId>& downstream(ComponentId component) const;
-  // The first of upstream() that is it, without a look at those behind it. `is_it` does not search
-  // the graph.
+  // Of several at once, in one search: what any of them depends on, or depends on any of them; not
+  // they themselves.
+  const std::vector<ComponentId>& upstream(std::span<const ComponentId> components) const;
+  const std::vector<ComponentId>& downstream(std::span<const ComponentId> components) const;
+  // The first of upstream(), or downstream(), that is it, without a look at those behind it. `is_it`
+  // does not search the graph.
   using Predicate = std::function<bool(ComponentId)>;
   std::optional<ComponentId> first_upstream(ComponentId component, const Predicate& is_it) const;
+  std::optional<ComponentId> first_downstream(ComponentId component, const Predicate& is_it) const;
 
   // All that counts now, with circles drawn together. Found anew when it is asked for after a change
   // (docs/performance.md says what that costs); the reference is valid until the next change.
@@ -164,8 +169,10 @@ class DependencyGraph {
   const Whole& whole() const;
   void find_links(Whole& whole) const;
   // Up to the first one that is `last`; null: all.
-  const std::vector<ComponentId>& reach(ComponentId from, Direction direction,
+  const std::vector<ComponentId>& reach(std::span<const ComponentId> from, Direction direction,
                                         const Predicate& is_last = nullptr) const;
+  std::optional<ComponentId> first(ComponentId from, Direction direction,
+                                   const Predicate& is_it) const;
 
   ComponentBinding binding_;
   std::vector<Node> nodes_;

@@ -1,6 +1,7 @@
 #include "knowledge/dependency_graph.h"
 
 #include <algorithm>
+#include <set>
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -218,7 +219,37 @@ void check_condensation(const RuleSet& rules, const DependencyGraph& graph) {
   }
 }
 
-RC_GTEST_PROP(DependencyGraph, CondensesTheSameWhateverCameAndWent, ()) {
+// What a search from several finds, and what searches from each find; both ways.
+void check_searches(const RuleSet& rules, const DependencyGraph& graph) {
+  std::vector<ComponentId> several;
+  for (std::size_t c = 0; c < rules.components.size(); c += 3) several.emplace_back(c);
+  std::set<ComponentId> upstream;
+  std::set<ComponentId> downstream;
+  for (const ComponentId c : several) {
+    upstream.insert(graph.upstream(c).begin(), graph.upstream(c).end());
+    downstream.insert(graph.downstream(c).begin(), graph.downstream(c).end());
+  }
+  for (const ComponentId c : several) {
+    upstream.erase(c);
+    downstream.erase(c);
+  }
+  const auto is_same = [](const std::vector<ComponentId>& found, const std::set<ComponentId>& all) {
+    return found.size() == all.size() && std::set(found.begin(), found.end()) == all;
+  };
+  RC_ASSERT(is_same(graph.upstream(several), upstream));
+  RC_ASSERT(is_same(graph.downstream(several), downstream));
+  for (std::size_t a = 0; a < rules.components.size(); ++a) {
+    for (std::size_t b = 0; b < rules.components.size(); ++b) {
+      const auto is_b = [&](ComponentId c) { return c == ComponentId(b); };
+      RC_ASSERT(
+          graph.first_downstream(ComponentId(a), is_b).has_value() ==
+          graph.first_upstream(ComponentId(b), [&](ComponentId c) { return c == ComponentId(a); })
+              .has_value());
+    }
+  }
+}
+
+RC_GTEST_PROP(DependencyGraph, CondensesAndSearchesTheSameWhateverCameAndWent, ()) {
   std::string text = "DEPENDENCY c0 ON c1\n";
   const int components = *rc::gen::inRange(2, 12);
   for (int c = components - 1; c >= 0; --c)
@@ -244,9 +275,11 @@ RC_GTEST_PROP(DependencyGraph, CondensesTheSameWhateverCameAndWent, ()) {
         break;
       default:
         check_condensation(rules, graph);
+        check_searches(rules, graph);
     }
   }
   check_condensation(rules, graph);
+  check_searches(rules, graph);
 }
 
 // The network decides how many there are.

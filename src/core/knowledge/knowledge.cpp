@@ -1,6 +1,7 @@
 #include "knowledge/knowledge.h"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 
 namespace culprit {
@@ -159,17 +160,31 @@ std::optional<ComponentId> Knowledge::unheard_behind(RuleId rule) const {
   return std::nullopt;
 }
 
-Time Knowledge::can_hear_from(ComponentId component) const {
-  if (!graph.reads_others(component)) return kLongAgo;
-  const auto has_ends = [](const ComponentState& state) {
-    return std::max({state.node_seen, state.ends_back, state.awaits_ends_until});
+// One search for all: of a large robot most components may depend on what began anew.
+Time Knowledge::can_hear_from(std::span<const ComponentId> asked) const {
+  std::vector<ComponentId> readers;
+  std::copy_if(asked.begin(), asked.end(), std::back_inserter(readers),
+               [&](ComponentId c) { return graph.reads_others(c); });
+  std::sort(readers.begin(), readers.end());
+  Time from = kLongAgo;
+  const auto wait_for_ends_of = [&](ComponentId c) {
+    const ComponentState& state = components[c];
+    from = std::max({from, state.node_seen, state.ends_back, state.awaits_ends_until});
   };
-  Time from = has_ends(components[component]);
-  for (const ComponentId upstream : graph.upstream(component)) {
+  for (const ComponentId upstream : graph.upstream(readers)) {
     if (components[upstream].alive == false) return kNever;
-    from = std::max(from, has_ends(components[upstream]));
+    wait_for_ends_of(upstream);
   }
-  return later(from, finding);
+  // One of them that is not there itself is missed by another that depends on it.
+  const auto is_reader = [&](ComponentId c) {
+    return std::binary_search(readers.begin(), readers.end(), c);
+  };
+  for (const ComponentId reader : readers) {
+    if (components[reader].alive == false && graph.first_downstream(reader, is_reader))
+      return kNever;
+    wait_for_ends_of(reader);
+  }
+  return readers.empty() ? kLongAgo : later(from, finding);
 }
 
 }  // namespace culprit

@@ -2,6 +2,7 @@
 // `Writes` names; only the manager's step touches it.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "knowledge/beliefs.h"
@@ -74,10 +75,10 @@ struct Knowledge {
   // Was the failure detected so long before that computer fell silent that this cannot be its cause?
   bool is_older_than_silence(RuleId rule, ComponentId unheard) const;
 
-  // When a message of what the component reads can have come at the latest, since it or what it depends
-  // on began anew: its middleware has to find them first, and they have to publish again. kNever: one of
-  // those is not there. kLongAgo: it reads nothing.
-  Time can_hear_from(ComponentId component) const;
+  // When a message of what each of the components reads can have come at the latest, since it or what it
+  // depends on began anew: its middleware has to find them first, and they have to publish again.
+  // kNever: one of those is not there. kLongAgo: none of them reads anything.
+  Time can_hear_from(std::span<const ComponentId> components) const;
 };
 
 }  // namespace culprit
