@@ -4,20 +4,44 @@
 
 namespace culprit {
 
-Sources::Sources(const Knowledge& knowledge, RuleId rule)
-    : components_(knowledge.rules[rule].components) {
-  for (const ComponentId touched : knowledge.rules[rule].components) {
-    const auto& upstream = knowledge.graph.upstream(touched);
-    components_.insert(components_.end(), upstream.begin(), upstream.end());
-  }
-  std::sort(components_.begin(), components_.end());
+namespace {
+
+// They, and what was found from them; by component.
+std::vector<bool> marked(const Knowledge& knowledge, const std::vector<ComponentId>& components,
+                         const std::vector<ComponentId>& found) {
+  std::vector<bool> is_marked(knowledge.rules.components.size(), false);
+  for (const ComponentId c : components) is_marked[c.index] = true;
+  for (const ComponentId c : found) is_marked[c.index] = true;
+  return is_marked;
 }
 
-bool Sources::have(const std::vector<ComponentId>& adapted) const {
-  return std::any_of(adapted.begin(), adapted.end(), [&](ComponentId c) {
-    return std::binary_search(components_.begin(), components_.end(), c);
-  });
+bool is_any(const std::vector<ComponentId>& components, const std::vector<bool>& is_marked) {
+  return std::any_of(components.begin(), components.end(),
+                     [&](ComponentId c) { return is_marked[c.index]; });
 }
+
+// Does it do more than reconfigure something for the sake of what is less critical than `rule`?
+bool weighs_on(const Knowledge& knowledge, StrategyId strategy, RuleId rule) {
+  const Strategy& other = knowledge.rules[strategy];
+  const bool is_lesser =
+      knowledge.rules[other.rule].policies.criticality < knowledge.rules[rule].policies.criticality;
+  return begins_anew(other) || !is_lesser;
+}
+
+}  // namespace
+
+Sources::Sources(const Knowledge& knowledge, RuleId rule)
+    : is_source_(marked(knowledge, knowledge.rules[rule].components,
+                        knowledge.graph.upstream(knowledge.rules[rule].components))) {}
+
+bool Sources::have(const std::vector<ComponentId>& adapted) const {
+  return is_any(adapted, is_source_);
+}
+
+Effects::Effects(const Knowledge& knowledge, const std::vector<ComponentId>& adapted)
+    : is_reached_(marked(knowledge, adapted, knowledge.graph.downstream(adapted))) {}
+
+bool Effects::reach(const Rule& rule) const { return is_any(rule.components, is_reached_); }
 
 bool can_resolve(const Knowledge& knowledge, const std::vector<ComponentId>& adapted, RuleId rule) {
   return Sources(knowledge, rule).have(adapted);
@@ -34,10 +58,12 @@ bool begins_anew(const Strategy& strategy) {
 
 bool is_rival(const Knowledge& knowledge, StrategyId strategy, const Sources& sources,
               RuleId rule) {
-  const Strategy& other = knowledge.rules[strategy];
-  const bool is_lesser =
-      knowledge.rules[other.rule].policies.criticality < knowledge.rules[rule].policies.criticality;
-  return (begins_anew(other) || !is_lesser) && sources.have(other.components);
+  return weighs_on(knowledge, strategy, rule) && sources.have(knowledge.rules[strategy].components);
+}
+
+bool is_rival(const Knowledge& knowledge, StrategyId strategy, const Effects& effects,
+              RuleId rule) {
+  return weighs_on(knowledge, strategy, rule) && effects.reach(knowledge.rules[rule]);
 }
 
 bool may_bring_back(const Knowledge& knowledge, RuleId other, RuleId rule) {
@@ -67,10 +93,12 @@ bool is_hidden(const Knowledge& knowledge, RuleId rule) {
 
 void void_verdicts_beside(const Knowledge& knowledge, StrategyId strategy, Time at,
                           PendingOutcomes& outcomes) {
+  if (outcomes.open.empty()) return;
+  const Effects effects(knowledge, knowledge.rules[strategy].components);
   for (PendingOutcome& outcome : outcomes.open) {
     const RuleId rule = knowledge.rules[outcome.strategy].rule;
     if (rule != knowledge.rules[strategy].rule && at < outcomes.deadline(outcome))
-      outcome.is_void |= is_rival(knowledge, strategy, Sources(knowledge, rule), rule);
+      outcome.is_void |= is_rival(knowledge, strategy, effects, rule);
   }
 }
 
@@ -79,11 +107,11 @@ void mark_ambiguous(const Knowledge& knowledge, RuleId changed, Attempts& attemp
   const Attempt& own = *knowledge.states[changed].attempt;
   void_verdicts_beside(knowledge, own.strategy, own.first_change, outcomes);
   const Sources sources(knowledge, changed);
+  const Effects effects(knowledge, knowledge.rules[own.strategy].components);
   for (const RuleId id : knowledge.states.active()) {
     const auto& other = knowledge.states[id].attempt;
     if (id == changed || !other) continue;
-    if (is_rival(knowledge, own.strategy, Sources(knowledge, id), id))
-      attempts.make_ambiguous(other->strategy);
+    if (is_rival(knowledge, own.strategy, effects, id)) attempts.make_ambiguous(other->strategy);
     const bool has_changed = other->first_change != kNever;
     if (has_changed && is_rival(knowledge, other->strategy, sources, changed))
       attempts.make_ambiguous(own.strategy);

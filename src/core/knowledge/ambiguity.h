@@ -17,7 +17,18 @@ class Sources {
   bool have(const std::vector<ComponentId>& adapted) const;
 
  private:
-  std::vector<ComponentId> components_;  // ascending
+  std::vector<bool> is_source_;  // by component
+};
+
+// The other way round: which failures adapting some components can make go away. Of many rules it is
+// asked with one search.
+class Effects {
+ public:
+  Effects(const Knowledge& knowledge, const std::vector<ComponentId>& adapted);
+  bool reach(const Rule& rule) const;
+
+ private:
+  std::vector<bool> is_reached_;  // by component
 };
 
 // Can adapting these components make the failure of `rule` go away?
@@ -27,8 +38,10 @@ bool can_resolve(const Knowledge& knowledge, const std::vector<ComponentId>& ada
 bool begins_anew(const Strategy& strategy);
 
 // Can `strategy`, which is of another rule, do so? It adapts a place from where that failure may
-// come, and does more there than reconfigure it for the sake of something less critical.
+// come, and does more there than reconfigure it for the sake of something less critical. `sources`
+// are the rule's, or `effects` the strategy's.
 bool is_rival(const Knowledge& knowledge, StrategyId strategy, const Sources& sources, RuleId rule);
+bool is_rival(const Knowledge& knowledge, StrategyId strategy, const Effects& effects, RuleId rule);
 
 // May the failure of `other` have brought that of `rule` back? It is as critical, and touches what
 // stands upstream.

@@ -30,6 +30,16 @@ TEST(Ambiguity, OneOfSeveralAdaptedComponentsIsEnough) {
   EXPECT_TRUE(can_resolve(three.knowledge, {camera, lamp}, RuleId(0)));
 }
 
+TEST(Ambiguity, WhatCanResolveAFailureHasItAmongItsEffects) {
+  const Three three;
+  for (const std::vector<ComponentId>& adapted : {std::vector{ComponentId(0)},
+                                                  {ComponentId(1)},
+                                                  {ComponentId(2)},
+                                                  {ComponentId(0), ComponentId(2)}})
+    EXPECT_EQ(Effects(three.knowledge, adapted).reach(three.rules.rules[0]),
+              can_resolve(three.knowledge, adapted, RuleId(0)));
+}
+
 TEST(Ambiguity, BeginsAnewIsWhatEndsOrStartsWhatRuns) {
   const RuleSet rules =
       *check(Source("anew.rules",
