@@ -7,6 +7,7 @@ namespace culprit {
 
 RuleStates::RuleStates(const RuleSet& rules)
     : rules_(rules), states_(rules.rules.size()), failing_(rules.components.size()) {
+  find_touching();
   for (std::size_t r = 0; r < rules.rules.size(); ++r) {
     states_[r].search.tried.assign(rules.rules[r].strategies.size(), false);
     const int window = rules.rules[r].policies.hold_window;
@@ -21,7 +22,29 @@ RuleStates::RuleStates(const RuleSet& rules, const RuleStates& other)
       states_(other.states_),
       active_(other.active_),
       exhausted_(other.exhausted_),
-      failing_(other.failing_) {}
+      failing_(other.failing_),
+      touching_(other.touching_),
+      first_touching_(other.first_touching_) {}
+
+void RuleStates::find_touching() {
+  std::vector<std::pair<ComponentId, RuleId>> pairs;
+  for (std::size_t r = 0; r < rules_.rules.size(); ++r) {
+    for (const ComponentId c : rules_.rules[r].components) pairs.emplace_back(c, RuleId(r));
+  }
+  std::sort(pairs.begin(), pairs.end());
+  touching_.reserve(pairs.size());
+  first_touching_.reserve(rules_.components.size() + 1);
+  for (std::size_t c = 0, next = 0; c <= rules_.components.size(); ++c) {
+    first_touching_.push_back(next);
+    for (; next < pairs.size() && pairs[next].first == ComponentId(c); ++next)
+      touching_.push_back(pairs[next].second);
+  }
+}
+
+std::span<const RuleId> RuleStates::touching(ComponentId component) const {
+  const std::size_t first = first_touching_[component.index];
+  return std::span(touching_).subspan(first, first_touching_[component.index + 1] - first);
+}
 
 std::size_t RuleStates::place_of(StrategyId id) const {
   const auto& siblings = rules_[rules_[id].rule].strategies;
@@ -101,9 +124,24 @@ bool RuleStates::is_sick(ComponentId component, Criticality level, RuleId except
   return !std::binary_search(touched.begin(), touched.end(), component);
 }
 
+template <class Counts>
+std::optional<RuleId> RuleStates::worst_at(ComponentId component, Criticality level, RuleId except,
+                                           Counts counts) const {
+  std::optional<RuleId> worst;
+  for (const RuleId id : touching(component)) {
+    if (id == except || rules_[id].policies.criticality < level || !counts(id)) continue;
+    const auto rank = [&](RuleId r) {
+      return std::pair<int, const std::string&>(-static_cast<int>(rules_[r].policies.criticality),
+                                                rules_[r].name);
+    };
+    if (!worst || rank(id) < rank(*worst)) worst = id;
+  }
+  return worst;
+}
+
 std::optional<RuleId> RuleStates::sickness(ComponentId component, Criticality level,
                                            RuleId except) const {
-  return worst_at(component, level, except, active_);
+  return worst_at(component, level, except, [this](RuleId id) { return is_active(id); });
 }
 
 bool RuleStates::awaits_person(RuleId id) const {
@@ -114,33 +152,13 @@ bool RuleStates::awaits_person(RuleId id) const {
 
 std::optional<RuleId> RuleStates::awaiting_person_at(ComponentId component, Criticality level,
                                                      RuleId except) const {
-  if (exhausted_.empty()) return std::nullopt;
-  std::vector<RuleId> waiting;
-  std::copy_if(exhausted_.begin(), exhausted_.end(), std::back_inserter(waiting),
-               [this](RuleId id) { return awaits_person(id); });
-  return worst_at(component, level, except, waiting);
-}
-
-std::optional<RuleId> RuleStates::worst_at(ComponentId component, Criticality level, RuleId except,
-                                           const std::vector<RuleId>& among) const {
-  std::optional<RuleId> worst;
-  for (const RuleId id : among) {
-    const Rule& rule = rules_[id];
-    if (id == except || rule.policies.criticality < level) continue;
-    if (!std::binary_search(rule.components.begin(), rule.components.end(), component)) continue;
-    const auto rank = [&](RuleId r) {
-      return std::pair<int, const std::string&>(-static_cast<int>(rules_[r].policies.criticality),
-                                                rules_[r].name);
-    };
-    if (!worst || rank(id) < rank(*worst)) worst = id;
-  }
-  return worst;
+  return worst_at(component, level, except, [this](RuleId id) { return awaits_person(id); });
 }
 
 const Attempt* RuleStates::reservation(ComponentId component) const {
-  for (const RuleId id : active_) {
+  for (const RuleId id : touching(component)) {
     const auto& attempt = states_[id.index].attempt;
-    if (!attempt || attempt->stage == Attempt::Stage::kSuspended) continue;
+    if (!attempt || !is_active(id) || attempt->stage == Attempt::Stage::kSuspended) continue;
     const auto& adapted = rules_[attempt->strategy].components;
     if (std::binary_search(adapted.begin(), adapted.end(), component)) return &*attempt;
   }

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "base/time.h"
@@ -144,8 +145,11 @@ class RuleStates {
   const Attempt* reservation(ComponentId component) const;
 
  private:
+  template <class Counts>
   std::optional<RuleId> worst_at(ComponentId component, Criticality level, RuleId except,
-                                 const std::vector<RuleId>& among) const;
+                                 Counts counts) const;
+  void find_touching();
+  std::span<const RuleId> touching(ComponentId component) const;
   static bool is_active(RulePhase phase) {
     return phase == RulePhase::kFailing || phase == RulePhase::kAttempting;
   }
@@ -155,6 +159,10 @@ class RuleStates {
   std::vector<RuleId> exhausted_;
   std::vector<std::array<int, 3>>
       failing_;  // by component, by criticality: how many active rules touch it
+  // The rules that touch each component, ascending, one component after the other; and where those
+  // of each begin, and the end.
+  std::vector<RuleId> touching_;
+  std::vector<std::size_t> first_touching_;
 };
 
 }  // namespace culprit
