@@ -1,6 +1,8 @@
 #include "plan/paper_planner.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <numeric>
 #include <tuple>
 
 #include "plan/beside_exhausted.h"
@@ -39,49 +41,61 @@ void PaperPlanner::select(std::span<const RuleId> failures, Criticality level,
                           const Knowledge& knowledge, std::vector<ComponentId>& affected,
                           std::vector<Decision>& decisions) const {
   const RuleSet& rules = knowledge.rules;
-  std::vector<Candidate> candidates;
+  const std::size_t first = decisions.size();
   for (const RuleId failure : failures) {
-    for (const StrategyId id : rules[failure].strategies)
-      candidates.push_back({id, cost(rules[id], id, knowledge), {}, {}, {}, {}, 0, 0});
+    decisions.push_back({failure, {}, true, {}, {}});
+    decisions.back().candidates.reserve(rules[failure].strategies.size());
   }
-  std::sort(candidates.begin(), candidates.end(), [&](const Candidate& a, const Candidate& b) {
-    const auto key = [&](const Candidate& c) {
-      const Strategy& strategy = rules[c.strategy];
-      return std::tuple<std::int64_t, const std::string&, const std::string&>(
-          plan::parts(c.cost), rules[strategy.rule].name, strategy.name);
-    };
-    return key(a) < key(b);
-  });
-
-  std::vector<Decision> found;
-  for (const RuleId failure : failures) found.push_back({failure, {}, true, {}, {}});
-  const auto decision_about = [&](RuleId rule) {
-    return std::lower_bound(found.begin(), found.end(), rule,
-                            [](const Decision& v, RuleId r) { return v.rule < r; });
-  };
-  for (Candidate& candidate : candidates) {
-    const auto decision = decision_about(rules[candidate.strategy].rule);
-    examine(candidate, level, knowledge, affected);
+  for (const Option& option : cheapest_first(failures, knowledge)) {
+    Decision& decision = decisions[first + option.failure];
+    Candidate& candidate = decision.candidates.emplace_back();
+    candidate.strategy = option.strategy;
+    candidate.cost = option.cost;
+    examine(candidate, level, knowledge, affected, decision);
     // What is affected by the strategy chosen for the same failure is rather excluded by that
     // choice itself.
     const bool is_free = !candidate.excluded || candidate.excluded == Condition::kAffected;
-    if (is_free && decision->chosen) candidate.excluded = Condition::kOneEach;
+    if (is_free && decision.chosen) candidate.excluded = Condition::kOneEach;
     if (!candidate.excluded) {
-      decision->chosen = candidate.strategy;
+      decision.chosen = candidate.strategy;
       const auto& adapted = rules[candidate.strategy].components;
       affected.insert(affected.end(), adapted.begin(), adapted.end());
     }
     const bool is_out =
         candidate.excluded == Condition::kTried || candidate.excluded == Condition::kInvalid;
-    decision->is_spent &= is_out;
-    decision->candidates.push_back(std::move(candidate));
+    decision.is_spent &= is_out;
   }
-  decisions.insert(decisions.end(), std::make_move_iterator(found.begin()),
-                   std::make_move_iterator(found.end()));
+}
+
+std::vector<PaperPlanner::Option> PaperPlanner::cheapest_first(std::span<const RuleId> failures,
+                                                               const Knowledge& knowledge) const {
+  const RuleSet& rules = knowledge.rules;
+  // Many cost the same. So that names need not be compared each time, each failure has its rank.
+  std::vector<std::size_t> by_name(failures.size());
+  std::iota(by_name.begin(), by_name.end(), std::size_t{0});
+  std::sort(by_name.begin(), by_name.end(), [&](std::size_t a, std::size_t b) {
+    return rules[failures[a]].name < rules[failures[b]].name;
+  });
+  std::vector<Option> options;
+  for (std::size_t rank = 0; rank < by_name.size(); ++rank) {
+    for (const StrategyId id : rules[failures[by_name[rank]]].strategies) {
+      const double cost_of_it = cost(rules[id], id, knowledge);
+      options.push_back({id, cost_of_it, by_name[rank], plan::parts(cost_of_it), rank});
+    }
+  }
+  std::sort(options.begin(), options.end(), [&](const Option& a, const Option& b) {
+    const auto key = [&](const Option& o) {
+      return std::tuple<std::int64_t, std::size_t, const std::string&>(o.parts, o.rank,
+                                                                       rules[o.strategy].name);
+    };
+    return key(a) < key(b);
+  });
+  return options;
 }
 
 void PaperPlanner::examine(Candidate& candidate, Criticality level, const Knowledge& knowledge,
-                           const std::vector<ComponentId>& affected) const {
+                           const std::vector<ComponentId>& affected,
+                           const Decision& decision) const {
   const Strategy& strategy = knowledge.rules[candidate.strategy];
   if (knowledge.states.is_tried(candidate.strategy)) {
     candidate.excluded = Condition::kTried;
@@ -110,9 +124,28 @@ void PaperPlanner::examine(Candidate& candidate, Criticality level, const Knowle
       return;
     }
   }
-  if (switches_.dependencies && depends_on_cause(candidate, level, knowledge)) {
+  if (!switches_.dependencies) return;
+  if (depends_like_another(candidate, decision, knowledge) ||
+      depends_on_cause(candidate, level, knowledge))
     candidate.excluded = Condition::kDependency;
+}
+
+// Another strategy of the failure at the same components was found to depend on a failing one: so
+// does this one, and the graph need not be searched again.
+bool PaperPlanner::depends_like_another(Candidate& candidate, const Decision& decision,
+                                        const Knowledge& knowledge) const {
+  const Strategy& strategy = knowledge.rules[candidate.strategy];
+  if (strategy.is_last_resort) return false;
+  for (const Candidate& other : decision.candidates) {
+    const bool is_for_failing = other.failure && knowledge.states.is_active(*other.failure);
+    if (other.excluded != Condition::kDependency || !is_for_failing ||
+        knowledge.rules[other.strategy].components != strategy.components)
+      continue;
+    candidate.component = other.component;
+    candidate.failure = other.failure;
+    return true;
   }
+  return false;
 }
 
 bool PaperPlanner::depends_on_cause(Candidate& candidate, Criticality level,

@@ -26,6 +26,8 @@
 // of declarations.
 #pragma once
 
+#include <cstdint>
+
 #include "plan/planner.h"
 
 namespace culprit {
@@ -46,11 +48,25 @@ class PaperPlanner : public Planner {
                              const Knowledge& knowledge) const override;
 
  private:
+  // A strategy of a failure.
+  struct Option {
+    StrategyId strategy;
+    double cost = 0;
+    std::size_t failure = 0;  // index among the failures
+    std::int64_t parts = 0;   // of the cost (plan/ties.h)
+    std::size_t rank = 0;     // of the failure, by the rule's name
+  };
+
   double cost(const Strategy& strategy, StrategyId id, const Knowledge& knowledge) const;
   void select(std::span<const RuleId> failures, Criticality level, const Knowledge& knowledge,
               std::vector<ComponentId>& affected, std::vector<Decision>& decisions) const;
+  std::vector<Option> cheapest_first(std::span<const RuleId> failures,
+                                     const Knowledge& knowledge) const;
+  // `decision` has the cheaper strategies of the same failure.
   void examine(Candidate& candidate, Criticality level, const Knowledge& knowledge,
-               const std::vector<ComponentId>& affected) const;
+               const std::vector<ComponentId>& affected, const Decision& decision) const;
+  bool depends_like_another(Candidate& candidate, const Decision& decision,
+                            const Knowledge& knowledge) const;
   bool depends_on_cause(Candidate& candidate, Criticality level, const Knowledge& knowledge) const;
 
   PaperSwitches switches_;
