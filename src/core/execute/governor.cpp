@@ -201,7 +201,8 @@ Governor::Question* Governor::question_of(StrategyId strategy) {
 // ---- plans
 
 void Governor::begin_planning() {
-  std::fill(write_.withheld.begin(), write_.withheld.end(), Knowledge::Withheld{});
+  for (const StrategyId strategy : withheld_) write_.withheld[strategy.index] = {};
+  withheld_.clear();
 }
 
 bool Governor::withholds(StrategyId strategy, Time now) {
@@ -209,6 +210,7 @@ bool Governor::withholds(StrategyId strategy, Time now) {
   if (!held) return false;
   write_.withheld[strategy.index] = {held->reason, held->until,
                                      held->restraint == Restraint::kRestarts};
+  withheld_.push_back(strategy);
   tell(strategy, *held, now);
   return true;
 }

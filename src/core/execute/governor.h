@@ -127,6 +127,7 @@ class Governor {
   bool is_paused_ = false;
   std::vector<ActiveSilence> silences_;
   std::vector<Question> questions_;
+  std::vector<StrategyId> withheld_;  // since the plan was begun
   std::vector<Time>
       refused_;             // by strategy: since when the failure was there that it was refused for
   std::vector<Told> told_;  // by strategy: what was said last

@@ -26,8 +26,7 @@ void Deadlines::set(std::size_t index, Time at) {
   sift_down(position_of_[index]);
 }
 
-std::optional<std::size_t> Deadlines::pop_due(Time now) {
-  if (heap_.empty() || heap_.front().at > now) return std::nullopt;
+std::size_t Deadlines::pop() {
   const std::size_t index = heap_.front().index;
   remove(0);
   return index;

@@ -24,7 +24,10 @@ class Deadlines {
 
   // Takes out one thing whose deadline is not after `now`. Equal deadlines come in the order of
   // their numbers.
-  std::optional<std::size_t> pop_due(Time now);
+  std::optional<std::size_t> pop_due(Time now) {
+    if (heap_.empty() || heap_.front().at > now) return std::nullopt;
+    return pop();
+  }
 
  private:
   struct Entry {
@@ -34,6 +37,7 @@ class Deadlines {
   };
   static constexpr std::size_t kAbsent = static_cast<std::size_t>(-1);
 
+  std::size_t pop();
   void place(std::size_t position, Entry entry);
   void sift_up(std::size_t position);
   void sift_down(std::size_t position);
