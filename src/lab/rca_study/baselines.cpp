@@ -1,9 +1,11 @@
 #include "rca_study/baselines.h"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <tuple>
 
+#include "plan/bayes/reach.h"
 #include "plan/cost.h"
 #include "plan/ties.h"
 #include "plan/validity.h"
@@ -14,19 +16,26 @@ namespace {
 // By active rule: which active rules (places among them) are upstream of it.
 std::vector<std::vector<std::size_t>> upstream(const Knowledge& knowledge) {
   const auto& active = knowledge.states.active();
-  std::vector<std::vector<std::size_t>> touching(knowledge.rules.components.size());
+  std::vector<ComponentId> touched;
+  for (const RuleId rule : active) {
+    const auto& components = knowledge.rules[rule].components;
+    touched.insert(touched.end(), components.begin(), components.end());
+  }
+  const plan::Reach reach(knowledge, touched);
+  std::vector<std::vector<std::size_t>> touching(reach.size());
   for (std::size_t i = 0; i < active.size(); ++i) {
     for (const ComponentId c : knowledge.rules[active[i]].components)
-      touching[c.index].push_back(i);
+      touching[reach.place_of(c)].push_back(i);
   }
   std::vector<std::vector<std::size_t>> all(active.size());
   for (std::size_t i = 0; i < active.size(); ++i) {
     for (const ComponentId own : knowledge.rules[active[i]].components) {
-      for (const ComponentId c : knowledge.graph.upstream(own)) {
-        for (const std::size_t j : touching[c.index]) {
-          if (j != i) all[i].push_back(j);
-        }
-      }
+      const std::size_t place = reach.place_of(own);
+      plan::for_each(reach.upstream(place), [&](std::size_t up) {
+        if (up == place) return;  // through a circle
+        std::copy_if(touching[up].begin(), touching[up].end(), std::back_inserter(all[i]),
+                     [&](std::size_t j) { return j != i; });
+      });
     }
   }
   return all;
@@ -43,8 +52,8 @@ std::vector<double> walk(const std::vector<std::vector<std::size_t>>& upstream) 
     for (std::size_t i = 0; i < upstream.size(); ++i) {
       const double moving = (1 - kJump) * share[i];
       if (upstream[i].empty()) next[i] += moving;
-      for (const std::size_t j : upstream[i])
-        next[j] += moving / static_cast<double>(upstream[i].size());
+      const double to_each = moving / static_cast<double>(upstream[i].size());
+      for (const std::size_t j : upstream[i]) next[j] += to_each;
     }
     share = std::move(next);
   }

@@ -35,6 +35,19 @@ Costs costs_of(const RcaCampaign& campaign, const RcaScenario& scenario) {
   return costs;
 }
 
+// Row by row, with the same robot: its rules are written and checked once.
+std::vector<EpisodeResult> play_all(const RcaCampaign& campaign, std::span<const RcaRow> rows,
+                                    std::uint32_t episode) {
+  const RcaScenario scenario = scenario_of(campaign, rows.front().setting, episode);
+  const RuleSet rules = rules_of(scenario);
+  std::vector<EpisodeResult> results;
+  for (const RcaRow& row : rows) {
+    auto planner = make_planner(row.planner, campaign.objective, scenario);
+    results.push_back(play(scenario, rules, std::move(*planner)));
+  }
+  return results;
+}
+
 // Counts what is done of all that a campaign is.
 class Count {
  public:
@@ -61,15 +74,17 @@ bool find_regrets(const RcaCampaign& campaign, unsigned jobs, Count& count,
                   std::span<RcaRow> rows) {
   const RcaSetting& setting = rows.front().setting;
   const std::uint64_t robots = robots_of(campaign);
+  // Of robots whose detectors err, or whose faults are not any of all, it is not known.
+  const bool is_known = setting.noise <= 0 && !setting.is_flapping && !setting.has_unfixable &&
+                        setting.components <= RepairProcess::kMostComponents;
   Costs sum{0, std::vector<double>(rows.size(), 0)};
   std::uint64_t done = 0;
   work_in_order(
       0, robots, jobs,
       [&](std::uint64_t i) -> std::optional<Costs> {
+        if (!is_known) return std::nullopt;
         const auto scenario = scenario_of(campaign, setting, static_cast<std::uint32_t>(i));
-        // Of robots whose detectors err, or whose faults are not any of all, it is not known.
-        const bool is_known = setting.noise <= 0 && !setting.is_flapping && !setting.has_unfixable;
-        if (!is_known || !RepairProcess::is_small(scenario)) return std::nullopt;
+        if (!RepairProcess::is_small(scenario)) return std::nullopt;
         return costs_of(campaign, scenario);
       },
       [&](std::uint64_t, const std::optional<Costs>& costs) {
@@ -186,26 +201,37 @@ std::optional<std::vector<RcaRow>> run_campaign(const RcaCampaign& campaign, uns
       row.setting = setting;
     }
   }
+  if (rows.empty()) return rows;
+  // The planners share an episode's robot, unless there are too few episodes for all threads.
+  const std::size_t planners = campaign.planners.size();
+  const std::size_t together = campaign.episodes < jobs ? 1 : planners;
+  const std::uint64_t pieces = planners / together;  // of an episode
+  const auto rows_of = [&](std::uint64_t i) {
+    const std::uint64_t setting = i / pieces / campaign.episodes;
+    return std::span(rows).subspan(setting * planners + i % pieces * together, together);
+  };
   const std::uint64_t size = std::uint64_t{campaign.episodes} * rows.size();
   Count count(size + robots_of(campaign) * campaign.settings.size(), go_on);
   std::uint64_t played = 0;
   work_in_order(
-      0, size, jobs,
+      0, size / together, jobs,
       [&](std::uint64_t i) {
-        const RcaRow& row = rows[i / campaign.episodes];
-        const auto episode = static_cast<std::uint32_t>(i % campaign.episodes);
-        const RcaScenario scenario = scenario_of(campaign, row.setting, episode);
-        return play(scenario, std::move(*make_planner(row.planner, campaign.objective, scenario)));
+        return play_all(campaign, rows_of(i),
+                        static_cast<std::uint32_t>(i / pieces % campaign.episodes));
       },
-      [&](std::uint64_t i, const EpisodeResult& result) {
-        rows[i / campaign.episodes].add(result);
-        ++played;
-        return count.next();
+      [&](std::uint64_t i, const std::vector<EpisodeResult>& results) {
+        const std::span<RcaRow> its_rows = rows_of(i);
+        for (std::size_t p = 0; p < results.size(); ++p) {
+          its_rows[p].add(results[p]);
+          ++played;
+          if (!count.next()) return false;
+        }
+        return true;
       });
   if (played < size) return std::nullopt;
-  for (std::size_t first = 0; first < rows.size(); first += campaign.planners.size()) {
-    const auto of_setting = std::span(rows).subspan(first, campaign.planners.size());
-    if (!find_regrets(campaign, jobs, count, of_setting)) return std::nullopt;
+  for (std::size_t first = 0; first < rows.size(); first += planners) {
+    if (!find_regrets(campaign, jobs, count, std::span(rows).subspan(first, planners)))
+      return std::nullopt;
   }
   return rows;
 }

@@ -172,7 +172,12 @@ EpisodeResult play(const RcaScenario& scenario, const RuleSet& rules,
 }  // namespace
 
 EpisodeResult play(const RcaScenario& scenario, std::unique_ptr<const Planner> planner) {
-  return play(scenario, rules_of(scenario), std::move(planner), nullptr);
+  return play(scenario, rules_of(scenario), std::move(planner));
+}
+
+EpisodeResult play(const RcaScenario& scenario, const RuleSet& rules,
+                   std::unique_ptr<const Planner> planner) {
+  return play(scenario, rules, std::move(planner), nullptr);
 }
 
 SingleRun single_run(const RcaScenario& scenario, std::unique_ptr<const Planner> planner) {

@@ -36,6 +36,9 @@ struct EpisodeResult {
 
 // `planner` decides. The same scenario and planner, the same result but for `planning_us`.
 EpisodeResult play(const RcaScenario& scenario, std::unique_ptr<const Planner> planner);
+// With the scenario's rules (rules.h), for whoever plays it more than once.
+EpisodeResult play(const RcaScenario& scenario, const RuleSet& rules,
+                   std::unique_ptr<const Planner> planner);
 
 // The same, to look at moment by moment; and line by line, with the faults.
 SingleRun single_run(const RcaScenario& scenario, std::unique_ptr<const Planner> planner);

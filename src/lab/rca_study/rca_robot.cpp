@@ -43,6 +43,7 @@ RcaRobot::RcaRobot(const RcaScenario& scenario, const RuleSet& rules, Duration q
 
 void RcaRobot::observe(Time until, std::vector<Observation>& observations) {
   while (inbox_.empty() && plant_.step(until)) continue;
+  if (observations.empty()) return observations.swap(inbox_);
   std::move(inbox_.begin(), inbox_.end(), std::back_inserter(observations));
   inbox_.clear();
 }
