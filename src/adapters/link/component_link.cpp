@@ -9,6 +9,7 @@
 #include "link/service_call.h"
 #include "ros2/lifecycle.h"
 #include "ros2/parameter_store.h"
+#include "ros2/receive_thread.h"
 #include "ros2/services.h"
 
 namespace culprit::ros2 {
@@ -274,8 +275,9 @@ void ComponentLink::forget_unanswered() {
 }
 
 void ComponentLink::probe(int pid, std::function<Time()> heard) {
-  const auto tell_of = [this, pid, heard = std::move(heard),
-                        due = later(live_now(), kProbe)](const CallResult& result) {
+  // What is read of another computer may have come ReceiveThread::kSoon earlier.
+  const Time due = later(live_now(), kProbe + ReceiveThread::kSoon);
+  const auto tell_of = [this, pid, heard = std::move(heard), due](const CallResult& result) {
     if (result.outcome == CallOutcome::kAnswered) {
       forget_unanswered();
       inbox_.put(Probed{component_, true});

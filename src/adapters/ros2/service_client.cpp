@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "ros2/names.h"
+#include "ros2/receive_thread.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -125,7 +126,9 @@ void ServiceClient::call(Bytes request, Repeat repeat, Duration timeout, Callbac
   call.repeat = repeat;
   call.callback = std::move(callback);
   if (server_for(repeat) != nullptr) send(number, call);
-  call.deadline = tasks_.post_at(after(timeout), [this, number] { on_deadline(number); });
+  // What came in time may still lie in its socket.
+  const Duration patience = haste == Haste::kSoon ? timeout + ReceiveThread::kSoon : timeout;
+  call.deadline = tasks_.post_at(after(patience), [this, number] { on_deadline(number); });
   if (repeat == Repeat::kUntilAnswered) {
     call.next_send =
         tasks_.post_at(after(kSendAgainAfter), [this, number] { on_send_again(number); });

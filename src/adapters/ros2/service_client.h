@@ -82,7 +82,7 @@ class ServiceClient {
   ~ServiceClient();
 
   // Sends in the calling thread if a server is ready, otherwise as soon as one is. `request` is a
-  // whole payload. kSoon: the answer of a client that has time may come ReceiveThread::kSoon late.
+  // whole payload. kSoon: the answer of a client that has time may come ReceiveThread::kSoon late, and so its absence.
   void call(Bytes request, Repeat repeat, Duration timeout, Callback callback,
             Haste haste = Haste::kNow);
 
