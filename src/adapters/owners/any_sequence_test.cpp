@@ -6,11 +6,14 @@
 // CULPRIT_SEQUENCES says how many of each kind (12 unless set), CULPRIT_SEQUENCES_SEED with which the
 // first begins.
 #include <algorithm>
+#include <array>
 #include <csignal>
 #include <cstdlib>
+#include <fcntl.h>
 #include <random>
 #include <sys/wait.h>
 #include <thread>
+#include <unistd.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -131,6 +134,9 @@ class Launched : public Kept {
   // Its parent ends, so it is nobody's here. Nobody but a person could end one of several.
   void start_by_another() override {
     if (!are_all_culprits()) return;
+    // Closed when it is the program: until then nobody would find it to end it.
+    std::array<int, 2> begun{};
+    ASSERT_EQ(pipe2(begun.data(), O_CLOEXEC), 0);
     const pid_t parent = fork();
     if (parent == 0) {
       if (fork() == 0) {
@@ -139,6 +145,10 @@ class Launched : public Kept {
       }
       _exit(0);
     }
+    close(begun[1]);
+    char nothing = 0;
+    EXPECT_EQ(read(begun[0], &nothing, 1), 0);
+    close(begun[0]);
     waitpid(parent, nullptr, 0);
   }
   std::string wrong() override {
