@@ -37,8 +37,8 @@ void fleet(benchmark::State& state) {
   const auto load_of = [&](std::vector<std::string> options) {
     options.insert(options.begin(), {"run", rules, "--dry-run"});
     const Child culprit(world, "culprit", options);
-    std::this_thread::sleep_for(8s);
-    const double cpu = cpu_percent(culprit.pid(), 10s);
+    std::this_thread::sleep_for(7s);
+    const double cpu = cpu_percent(culprit.pid(), 8s);
     return std::pair(cpu, usage_of(culprit.pid()).resident_mib);
   };
   std::pair<double, double> watched;
@@ -84,8 +84,8 @@ void large_robot(benchmark::State& state) {
     while (count_of(" is there", culprit.output()) < kNodes && elapsed() < 20)
       std::this_thread::sleep_for(20ms);
     found = elapsed();
-    std::this_thread::sleep_for(4s);
-    used = cpu_percent(culprit.pid(), 8s);
+    std::this_thread::sleep_for(2s);
+    used = cpu_percent(culprit.pid(), 6s);
     memory = usage_of(culprit.pid()).resident_mib;
   }
   state.counters["cpu_percent"] = used;
@@ -140,15 +140,16 @@ void big_pictures(benchmark::State& state) {
   double bare = 0;
   double watched = 0;
   for (auto _ : state) {
-    for (int round = 0; round < 3; ++round) {
+    constexpr int kRounds = 2;
+    for (int round = 0; round < kRounds; ++round) {
       {
         const Child reader(world, "culprit-bench-peer", {"bare-reader"});
         std::this_thread::sleep_for(2s);
-        bare += cpu_percent(reader.pid(), 3s) / 3;
+        bare += cpu_percent(reader.pid(), 3s) / kRounds;
       }
       const Child culprit(world, "culprit", {"run", rules, "--dry-run"});
       std::this_thread::sleep_for(2s);
-      watched += cpu_percent(culprit.pid(), 3s) / 3;
+      watched += cpu_percent(culprit.pid(), 3s) / kRounds;
     }
   }
   state.counters["bare_reader_percent"] = bare;
