@@ -1,4 +1,4 @@
-// Reads the rules' signals out of /diagnostics. What comes there may be 20 ms late (participant.h): many nodes say there again
+// Reads the rules' signals out of /diagnostics. What comes there may be 100 ms late (participant.h): many nodes say there again
 // and again what has not changed.
 #pragma once
 

@@ -708,22 +708,10 @@ void reserve(syntax::File& file, const Source& source) {
   std::size_t components = 0, dependencies = 0, signals = 0, rules = 0;
   for (std::uint32_t number = 1; number <= source.line_count(); ++number) {
     const std::string_view line = unindented(source.text(source.line(number)));
-    switch (line.empty() ? '\0' : line.front()) {
-      case 'C':
-        components += line.starts_with("COMPONENT") ? 1 : 0;
-        break;
-      case 'D':
-        dependencies += line.starts_with("DEPENDENCY") ? 1 : 0;
-        break;
-      case 'S':
-        signals += line.starts_with("SIGNAL") ? 1 : 0;
-        break;
-      case 'R':
-        rules += line.starts_with("RULE") ? 1 : 0;
-        break;
-      default:
-        break;
-    }
+    components += line.starts_with("COMPONENT") ? 1 : 0;
+    dependencies += line.starts_with("DEPENDENCY") ? 1 : 0;
+    signals += line.starts_with("SIGNAL") ? 1 : 0;
+    rules += line.starts_with("RULE") ? 1 : 0;
   }
   file.components.reserve(components);
   file.dependencies.reserve(dependencies);
