@@ -55,7 +55,7 @@ struct Folder {
 std::string as_written(const journal::SavedIntents& saved, const Folder& folder) {
   auto file = journal::IntentFile::open(folder.journal);
   if (!file) __builtin_trap();
-  file->begin_after(saved.after);
+  file->begin_after(journal::IntentFile::Head(saved.after));
   std::string rows;
   for (const journal::Entry& row : saved.rows) journal::append_row(row, rows);
   if (!file->append(saved.latest, rows)) return "";
@@ -77,7 +77,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!bytes.starts_with("culprit-intents")) {
     auto file = journal::IntentFile::open(folder.journal);
     if (!file) __builtin_trap();
-    file->begin_after(folder.newest);
+    file->begin_after(journal::IntentFile::Head(folder.newest));
     if (!file->append(Time(std::chrono::seconds(1)), bytes)) return 0;
   } else {
     std::ofstream(journal::intents_beside(folder.journal), std::ios::binary) << bytes;

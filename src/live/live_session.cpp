@@ -413,9 +413,10 @@ void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
   runtime_->before_commands = [this](const Runtime::Step& step) {
     if (recorder_ == nullptr) return;
     std::vector<Observation> observations = step.observations;
-    recorder_->stepped(step.now, observations, step.commands, step.events);
+    recorder_->before_commands(step.now, observations, step.commands, step.events);
   };
   runtime_->on_step = [this](const Runtime::Step& step) {
+    if (recorder_ != nullptr && !step.commands.empty()) recorder_->after_commands();
     if (seen_) seen_->note(step.observations);
     if (frame_.observer != nullptr) frame_.observer->stepped(step);
     if (recorder_ != nullptr && step.commands.empty())

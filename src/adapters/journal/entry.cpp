@@ -39,8 +39,18 @@ Hash Hasher::link(const Hash& previous, const Entry& entry) {
 }
 
 Hash Hasher::of(std::string_view bytes) {
-  Hash hash{};
   EVP_DigestInit_ex(state_->context, state_->algorithm, nullptr);
+  return end_with(bytes);
+}
+
+Hash Hasher::of(const Hash& before, std::string_view bytes) {
+  EVP_DigestInit_ex(state_->context, state_->algorithm, nullptr);
+  EVP_DigestUpdate(state_->context, before.data(), before.size());
+  return end_with(bytes);
+}
+
+Hash Hasher::end_with(std::string_view bytes) {
+  Hash hash{};
   EVP_DigestUpdate(state_->context, bytes.data(), bytes.size());
   EVP_DigestFinal_ex(state_->context, hash.data(), nullptr);
   return hash;

@@ -50,8 +50,11 @@ class Hasher {
   // The next link of the chain.
   Hash link(const Hash& previous, const Entry& entry);
   Hash of(std::string_view bytes);
+  Hash of(const Hash& before, std::string_view bytes);  // of both, in this order
 
  private:
+  Hash end_with(std::string_view bytes);
+
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "journal/requests.h"
+#include "json/json_writer.h"
 #include "knowledge/component_states.h"
 #include "knowledge/describe.h"
 #include "knowledge/event_words.h"
@@ -36,31 +37,28 @@ struct WordOfOrder {
   const char* operator()(const Forget&) const { return "forget"; }
 };
 
-// Adds to {"type": ...} what the event is about.
+// Writes, behind its type, what the event is about.
 class EventWriter {
  public:
-  EventWriter(const RuleSet& rules, Json& json) : rules_(rules), json_(json) {}
+  EventWriter(const RuleSet& rules, JsonWriter& json) : rules_(rules), json_(json) {}
 
   void operator()(const FailureDetected& e) const {
     about(e.rule);
-    json_["criticality"] = culprit::to_string(rules_[e.rule].policies.criticality);
-    if (e.known_dead) json_["known_dead"] = name(*e.known_dead);
+    json_.member("criticality", culprit::to_string(rules_[e.rule].policies.criticality));
+    if (e.known_dead) json_.member("known_dead", name(*e.known_dead));
   }
   void operator()(const FailureResolved& e) const {
     about(e.rule);
-    if (e.strategy) json_["strategy"] = name(*e.strategy);
-    json_["reaction_s"] = seconds(e.reaction);
+    if (e.strategy) json_.member("strategy", name(*e.strategy));
+    json_.member("reaction_s", seconds(e.reaction));
   }
   void operator()(const FailureLost& e) const { about(e.rule); }
   void operator()(const StrategyChosen& e) const {
     about(e.strategy);
-    json_["dry_run"] = e.dry_run;
-    json_["components"] = Json::array();
-    for (const ComponentId component : rules_[e.strategy].components)
-      json_["components"].push_back(name(component));
-    json_["explains"] = Json::array();
-    for (const RuleId rule : e.explains) json_["explains"].push_back(name(rule));
-    for (const ComponentId component : e.also_ended) json_["also_ended"].push_back(name(component));
+    json_.member("dry_run", e.dry_run);
+    add_names("components", rules_[e.strategy].components);
+    add_names("explains", e.explains);
+    if (!e.also_ended.empty()) add_names("also_ended", e.also_ended);
     add_reasons(e.suspects, e.candidates);
   }
   void operator()(const FailureHeldBack& e) const {
@@ -69,62 +67,60 @@ class EventWriter {
   }
   void operator()(const AdaptationDone& e) const {
     about(e.strategy);
-    json_["adaptation"] = e.adaptation;
-    if (!e.remark.empty()) json_["remark"] = e.remark;
+    json_.member("adaptation", e.adaptation);
+    if (!e.remark.empty()) json_.member("remark", e.remark);
   }
   void operator()(const AdaptationFailed& e) const {
     about(e.strategy);
-    json_["adaptation"] = e.adaptation;
-    json_["reason"] = e.reason;
+    json_.member("adaptation", e.adaptation);
+    json_.member("reason", e.reason);
   }
   void operator()(const StrategyFailed& e) const {
     about(e.strategy);
-    json_["reason"] = e.reason;
+    json_.member("reason", e.reason);
   }
   void operator()(const StrategyResumed& e) const { about(e.strategy); }
   void operator()(const Undone& e) const {
     about(e.strategy);
-    json_["what"] = e.what;
-    json_["succeeded"] = e.succeeded;
+    json_.member("what", e.what);
+    json_.member("succeeded", e.succeeded);
   }
   void operator()(const RoundSpent& e) const { about(e.rule); }
   void operator()(const RuleExhausted& e) const { about(e.rule); }
   void operator()(const LastResortReached& e) const { about(e.rule); }
   void operator()(const ComponentLost& e) const {
     about(e.component);
-    json_["remark"] = e.remark;
+    json_.member("remark", e.remark);
   }
   void operator()(const ComponentFound& e) const {
     about(e.component);
-    json_["pid"] = e.pid;
+    json_.member("pid", e.pid);
   }
   void operator()(const NeverSeen& e) const {
-    const Json type = json_["type"];
-    json_.erase("type");  // it stands behind the names, on disk
     std::visit([this](auto id) { about(id); }, e.what);
-    json_["type"] = type;
-    if (!e.near.empty()) json_["near"] = e.near;
+    json_.member("type", words_of<NeverSeen>().name);
+    if (!e.near.empty()) json_.member("near", e.near);
   }
   void operator()(const LifecycleIntended& e) const {
     about(e.component);
-    json_["lifecycle"] = culprit::to_string(e.state);
+    json_.member("lifecycle", culprit::to_string(e.state));
   }
   void operator()(const CameUp& e) const {
     about(e.component);
-    json_["driver"] = word_of(e.how.driver);
-    json_["joining_ns"] = e.how.joining.count();
-    json_["rising_ns"] = e.how.rising.count();
+    json_.member("driver", word_of(e.how.driver));
+    json_.member("joining_ns", e.how.joining.count());
+    json_.member("rising_ns", e.how.rising.count());
   }
   void operator()(const RivalSeen& e) const { about(e.component); }
-  void operator()(const Trouble& e) const { json_["what"] = e.text; }
+  void operator()(const Trouble& e) const { json_.member("what", e.text); }
   void operator()(const OrderAccepted& e) const { add(e.order); }
   void operator()(const OrderRefused& e) const {
     add(e.order);
-    json_["refused_because"] = e.reason;
+    json_.member("refused_because", e.reason);
   }
   void operator()(const ActionHeldBack& e) const {
     about(e.strategy);
-    json_["reason"] = e.reason;
+    json_.member("reason", e.reason);
   }
   void operator()(const ApprovalAsked& e) const {
     about(e.strategy);
@@ -133,67 +129,69 @@ class EventWriter {
   void operator()(const ApprovalLapsed& e) const { about(e.strategy); }
   void operator()(const StrategyAbandoned& e) const {
     about(e.strategy);
-    json_["reason"] = e.reason;
+    json_.member("reason", e.reason);
   }
   void operator()(const OrderCarriedOut& e) const { about(e.strategy); }
   void operator()(const SilenceEnded&) const {}
-  void operator()(const StormBegan& e) const { json_["reason"] = e.reason; }
+  void operator()(const StormBegan& e) const { json_.member("reason", e.reason); }
   void operator()(const StormEnded&) const {}
   void operator()(const OutcomePending& e) const {
     about(e.strategy);
-    json_["helped"] = e.has_helped;
-    json_["due"] = e.due.time_since_epoch().count();
+    json_.member("helped", e.has_helped);
+    json_.member("due", e.due.time_since_epoch().count());
   }
   void operator()(const OutcomeCounted& e) const {
     about(e.strategy);
-    json_["as"] = culprit::to_string(e.as);
+    json_.member("as", culprit::to_string(e.as));
   }
   void operator()(const FailureFlaps& e) const {
     about(e.rule);
-    json_["times"] = e.times;
+    json_.member("times", e.times);
   }
-  void operator()(const JudgementSuspended& e) const { json_["reason"] = e.reason; }
+  void operator()(const JudgementSuspended& e) const { json_.member("reason", e.reason); }
   void operator()(const JudgementResumed&) const {}
-  void operator()(const SleepNoticed& e) const { json_["time_ns"] = e.time.count(); }
+  void operator()(const SleepNoticed& e) const { json_.member("time_ns", e.time.count()); }
   void operator()(const HostSilent& e) const {
-    json_["host"] = e.host;
-    json_["components"] = Json::array();
-    for (const ComponentId component : e.components) json_["components"].push_back(name(component));
-    if (e.is_last) json_["is_last"] = true;
+    json_.member("host", e.host);
+    add_names("components", e.components);
+    if (e.is_last) json_.member("is_last", true);
   }
-  void operator()(const HostBack& e) const { json_["host"] = e.host; }
+  void operator()(const HostBack& e) const { json_.member("host", e.host); }
   void operator()(const PriorsAdopted& e) const {
-    json_["source"] = e.source;
-    Json& priors = json_["priors"] = Json::array();
-    for (const PriorsTold::Prior& each : e.priors)
-      priors.push_back({{"rule", name(rules_[each.strategy].rule)},
-                        {"strategy", name(each.strategy)},
-                        {"alpha", each.alpha},
-                        {"beta", each.beta}});
+    json_.member("source", e.source);
+    add_each("priors", e.priors, [this](const PriorsTold::Prior& each) {
+      json_.begin_object();
+      about(each.strategy);
+      json_.member("alpha", each.alpha);
+      json_.member("beta", each.beta);
+      json_.end_object();
+    });
   }
 
  private:
-  void about(RuleId id) const { json_["rule"] = name(id); }
+  void about(RuleId id) const { json_.member("rule", name(id)); }
   void about(StrategyId id) const {
     about(rules_[id].rule);
-    json_["strategy"] = name(id);
+    json_.member("strategy", name(id));
   }
-  void about(ComponentId id) const { json_["component"] = name(id); }
-  void about(TopicId id) const { json_["topic"] = name(id); }
-  void about(SignalId id) const { json_["signal"] = name(id); }
+  void about(ComponentId id) const { json_.member("component", name(id)); }
+  void about(TopicId id) const { json_.member("topic", name(id)); }
+  void about(SignalId id) const { json_.member("signal", name(id)); }
   void about(ParameterId id) const {
     about(rules_[id].component);
-    json_["parameter"] = name(id);
+    json_.member("parameter", name(id));
   }
-  void about(DiagnosticId id) const { json_["diagnostic"] = rules_.diagnostics[id.index].name; }
+  void about(DiagnosticId id) const {
+    json_.member("diagnostic", rules_.diagnostics[id.index].name);
+  }
   void add(const Order& order) const {
-    json_["order"] = std::visit(WordOfOrder{}, order.what);
-    json_["number"] = order.number;
-    json_["author"] = order.author;
-    json_["reason"] = order.reason;
+    json_.member("order", std::visit(WordOfOrder{}, order.what));
+    json_.member("number", order.number);
+    json_.member("author", order.author);
+    json_.member("reason", order.reason);
     if (const auto* silence = std::get_if<Silence>(&order.what)) {
       add_target(silence->what);
-      if (silence->lasts) json_["lasts_ns"] = silence->lasts->count();
+      if (silence->lasts) json_.member("lasts_ns", silence->lasts->count());
     } else if (const auto* lift = std::get_if<LiftSilence>(&order.what)) {
       add_target(lift->what);
     } else if (const auto* run = std::get_if<RunStrategy>(&order.what)) {
@@ -209,22 +207,37 @@ class EventWriter {
   }
   void add_reasons(const std::vector<Suspect>& suspects,
                    const std::vector<Candidate>& candidates) const {
-    Json& all_suspects = json_["suspects"] = Json::array();
-    for (const Suspect& suspect : suspects)
-      all_suspects.push_back({{"component", name(suspect.component)},
-                              {"failure", name(suspect.failure)},
-                              {"probability", suspect.probability}});
-    Json& all_candidates = json_["candidates"] = Json::array();
-    for (const Candidate& candidate : candidates) {
-      Json entry = {{"strategy", name(candidate.strategy)}, {"cost", candidate.cost}};
-      if (candidate.resolves > 0) entry["resolves"] = candidate.resolves;
-      if (candidate.value > 0) entry["value"] = candidate.value;
-      if (candidate.excluded) {
-        entry["excluded"] = culprit::to_string(*candidate.excluded);
-        entry["because"] = describe_exclusion(candidate, rules_);
-      }
-      all_candidates.push_back(std::move(entry));
+    add_each("suspects", suspects, [this](const Suspect& suspect) {
+      json_.begin_object();
+      json_.member("component", name(suspect.component));
+      json_.member("failure", name(suspect.failure));
+      json_.member("probability", suspect.probability);
+      json_.end_object();
+    });
+    add_each("candidates", candidates, [this](const Candidate& candidate) { add(candidate); });
+  }
+  void add(const Candidate& candidate) const {
+    json_.begin_object();
+    json_.member("strategy", name(candidate.strategy));
+    json_.member("cost", candidate.cost);
+    if (candidate.resolves > 0) json_.member("resolves", candidate.resolves);
+    if (candidate.value > 0) json_.member("value", candidate.value);
+    if (candidate.excluded) {
+      json_.member("excluded", culprit::to_string(*candidate.excluded));
+      json_.member("because", describe_exclusion(candidate, rules_));
     }
+    json_.end_object();
+  }
+  template <class Ids>
+  void add_names(const char* key, const Ids& ids) const {
+    add_each(key, ids, [this](auto id) { json_.value(name(id)); });
+  }
+  template <class All, class Write>
+  void add_each(const char* key, const All& all, const Write& write) const {
+    json_.key(key);
+    json_.begin_array();
+    for (const auto& each : all) write(each);
+    json_.end_array();
   }
   template <class Id>
   const std::string& name(Id id) const {
@@ -232,7 +245,7 @@ class EventWriter {
   }
 
   const RuleSet& rules_;
-  Json& json_;
+  JsonWriter& json_;
 };
 
 class EventReader {
@@ -392,13 +405,22 @@ class EventReader {
 
 }  // namespace
 
-Json to_json(const Event& event, const RuleSet& rules) {
-  Json json = {{"type", words_of(event).name}};
+std::string line_of(const Event& event, const RuleSet& rules) {
+  constexpr std::size_t kUsual = 700;
+  std::string line;
+  line.reserve(kUsual);
+  JsonWriter json(line);
+  json.begin_object();
+  // On disk the type of these stands behind the names.
+  if (!std::holds_alternative<NeverSeen>(event.what)) json.member("type", words_of(event).name);
   std::visit(EventWriter(rules, json), event.what);
-  json["text"] = describe(event, rules);
-  json["time"] = event.at.time_since_epoch().count();
-  return json;
+  json.member("text", describe(event, rules));
+  json.member("time", event.at.time_since_epoch().count());
+  json.end_object();
+  return line;
 }
+
+Json to_json(const Event& event, const RuleSet& rules) { return parse_json(line_of(event, rules)); }
 
 std::optional<Event> event_from_json(const Json& json, const RuleSet& rules) {
   const auto kind = kind_named(text_of(json, "type"));

@@ -11,6 +11,9 @@
 namespace culprit::journal {
 
 // {"type": "failure_detected", "rule": "RGBDead", ..., "text": "...", "time": nanoseconds}
+std::string line_of(const Event& event, const RuleSet& rules);
+
+// The same, for whoever adds to it.
 Json to_json(const Event& event, const RuleSet& rules);
 
 // Whom the event is about, and how it ended; reasons, remarks, candidates and suspects were for

@@ -100,7 +100,9 @@ TEST(EventJson, RowsAreAsTheyHaveAlwaysBeen) {
   std::set<EventKind> seen;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     seen.insert(events[i].index());
-    EXPECT_EQ(to_line(to_json(Event{Time(7ns), events[i]}, rules)), rows[i]);
+    const Event event{Time(7ns), events[i]};
+    EXPECT_EQ(line_of(event, rules), rows[i]);
+    EXPECT_EQ(to_line(to_json(event, rules)), rows[i]);
   }
   EXPECT_EQ(seen.size(), std::variant_size_v<EventWhat::Variant>) << "each has a sample";
 }

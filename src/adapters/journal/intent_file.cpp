@@ -18,8 +18,13 @@ constexpr std::string_view kIntentMark = "culprit-intents1";
 constexpr std::size_t kSizeBytes = 4;
 constexpr std::size_t kIntentHead = kIntentMark.size() + 8 + sizeof(Hash);
 
+void write_fixed(std::uint64_t number, std::size_t bytes, char* out) {
+  for (std::size_t i = 0; i < bytes; ++i) out[i] = static_cast<char>(number >> (8 * i));
+}
+
 void append_fixed(std::string& out, std::uint64_t number, std::size_t bytes) {
-  for (std::size_t i = 0; i < bytes; ++i) out += static_cast<char>(number >> (8 * i));
+  out.append(bytes, '\0');
+  write_fixed(number, bytes, &out[out.size() - bytes]);
 }
 
 std::uint64_t fixed_number(std::string_view bytes) {
@@ -31,19 +36,6 @@ std::uint64_t fixed_number(std::string_view bytes) {
 
 std::string_view view_of(const Hash& hash) {
   return {reinterpret_cast<const char*>(hash.data()), hash.size()};
-}
-
-Hash hash_of_part(const Hash& before, std::string_view payload, Hasher& hasher) {
-  std::string all(view_of(before));
-  all += payload;
-  return hasher.of(all);
-}
-
-std::string head_after(const Link& row) {
-  std::string head(kIntentMark);
-  append_fixed(head, static_cast<std::uint64_t>(row.id), 8);
-  head += view_of(row.hash);
-  return head;
 }
 
 bool may_stand_here(std::string_view kind) {
@@ -115,21 +107,29 @@ Expected<IntentFile> IntentFile::open(const fs::path& journal) {
   return IntentFile(path, std::move(**lock), status.st_ino);
 }
 
-void IntentFile::begin_after(const Link& newest) {
-  head_ = head_after(newest);
-  before_ = hasher_.of(head_);
+IntentFile::Head::Head(const Link& newest) : bytes(kIntentMark) {
+  append_fixed(bytes, static_cast<std::uint64_t>(newest.id), 8);
+  bytes += view_of(newest.hash);
+  hash = Hasher().of(bytes);
+}
+
+void IntentFile::begin_after(Head head) {
+  before_ = head.hash;
+  head_ = std::move(head.bytes);
   end_ = 0;
 }
 
 Expected<void> IntentFile::append(Time step, std::string_view rows) {
-  std::string payload;
-  ByteWriter(payload).integer(step.time_since_epoch().count());
-  payload += rows;
-  const Hash hash = hash_of_part(before_, payload, hasher_);
-  bytes_ = end_ == 0 ? head_ : "";
-  append_fixed(bytes_, payload.size(), kSizeBytes);
-  bytes_ += view_of(hash);
-  bytes_ += payload;
+  bytes_.clear();
+  if (end_ == 0) bytes_ = head_;
+  const std::size_t part = bytes_.size();
+  bytes_.append(kSizeBytes + sizeof(Hash), '\0');
+  const std::size_t payload = bytes_.size();
+  ByteWriter(bytes_).integer(step.time_since_epoch().count());
+  bytes_ += rows;
+  const Hash hash = hasher_.of(before_, std::string_view(bytes_).substr(payload));
+  write_fixed(bytes_.size() - payload, kSizeBytes, &bytes_[part]);
+  bytes_.replace(part + kSizeBytes, sizeof(Hash), view_of(hash));
   append_fixed(bytes_, 0, kSizeBytes);
   if (end_ + bytes_.size() > kMaxBytes)
     return cannot_write_intents(path_, "the journal does not keep up");
@@ -175,7 +175,7 @@ SavedIntents decode_intents(std::string_view bytes) {
     constexpr std::size_t kPayload = kSizeBytes + sizeof(Hash);
     if (size > IntentFile::kMaxBytes || rest.size() < kPayload + size) return saved;
     const std::string_view payload = rest.substr(kPayload, size);
-    const Hash expected = hash_of_part(before, payload, hasher);
+    const Hash expected = hasher.of(before, payload);
     if (rest.substr(kSizeBytes, sizeof(Hash)) != view_of(expected)) return saved;
     if (!decode_part(payload, saved)) return saved;
     before = expected;

@@ -43,8 +43,15 @@ class IntentFile {
   // permissions. Whatever it had must stand in the journal. Errors say why, with the path.
   static Expected<IntentFile> open(const std::filesystem::path& journal);
 
-  // All parts stand in the journal, `newest` is a row of it: the next part is the first one.
-  void begin_after(const Link& newest);
+  // What such a file begins with. Made before it is needed, for nothing is asked for meanwhile.
+  struct Head {
+    Head() = default;
+    explicit Head(const Link& newest);
+    std::string bytes;
+    Hash hash{};
+  };
+  // All parts stand in the journal, and the row that `head` was made of: the next part is the first one.
+  void begin_after(Head head);
 
   // One more part, whole with the kernel when this returns. After an error it is not there, and the
   // parts before it are. @pre begin_after() was called

@@ -45,7 +45,7 @@ struct Intents : testing::Test {
 
   IntentFile open() const {
     IntentFile file = value_of(IntentFile::open(journal));
-    file.begin_after(kRowBefore);
+    file.begin_after(IntentFile::Head(kRowBefore));
     return file;
   }
   static void append(IntentFile& file, const std::string& body, Time step = Time(1s)) {
@@ -90,7 +90,7 @@ TEST_F(Intents, ThatTheJournalHasAreWrittenOver) {
   IntentFile file = open();
   for (int i = 0; i < 20; ++i) append(file, "long ago, and long " + std::to_string(i));
   const std::size_t size = bytes().size();
-  file.begin_after({99, {4}});
+  file.begin_after(IntentFile::Head({99, {4}}));
   append(file, "now");
   EXPECT_EQ(bodies(read()), std::vector<std::string>{"now"}) << "what is behind the end is old";
   EXPECT_EQ(read().after.id, 99);
@@ -144,7 +144,7 @@ TEST_F(Intents, MixedWithWhatWasThereBeforeAreReadAsFarAsTheyAreWhole) {
   IntentFile file = open();
   for (int i = 0; i < 40; ++i) append(file, "before " + std::string(100, 'b'));
   const std::string before = bytes();
-  file.begin_after({99, {4}});
+  file.begin_after(IntentFile::Head({99, {4}}));
   for (int i = 0; i < 30; ++i) append(file, "after " + std::string(100, 'a'));
   const std::string after = bytes();
   constexpr std::size_t kSector = 512;

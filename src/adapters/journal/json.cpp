@@ -19,8 +19,8 @@ std::string word_of(Transition transition) {
   return culprit::to_string(Command{{}, {}, ChangeLifecycle{transition}, {}});
 }
 
-Json of_value(const Value& value) {
-  return std::visit([](const auto& v) { return Json(v); }, value);
+void write_value(const Value& value, JsonWriter& json) {
+  std::visit([&](const auto& v) { json.value(v); }, value);
 }
 
 std::optional<Value> value_from(const Json& json) {
@@ -32,22 +32,39 @@ std::optional<Value> value_from(const Json& json) {
 }
 
 struct RequestWriter {
-  Json operator()(const ChangeLifecycle& r) const {
-    return {{"change_lifecycle", word_of(r.transition)}};
+  JsonWriter& json;
+
+  void operator()(const ChangeLifecycle& r) const {
+    json.member("change_lifecycle", word_of(r.transition));
   }
-  Json operator()(const ReadLifecycle&) const { return {{"read_lifecycle", nullptr}}; }
-  Json operator()(const SetParameter& r) const {
-    return {{"set_parameter", {{"name", r.name}, {"value", of_value(r.value)}}}};
+  void operator()(const ReadLifecycle&) const { add_nothing("read_lifecycle"); }
+  void operator()(const SetParameter& r) const {
+    json.member("set_parameter", [&] {
+      json.begin_object();
+      json.member("name", r.name);
+      json.member("value", [&] { write_value(r.value, json); });
+      json.end_object();
+    });
   }
-  Json operator()(const ReadParameter& r) const { return {{"read_parameter", r.name}}; }
-  Json operator()(const CallService& r) const {
-    if (r.request.empty()) return {{"call_service", r.service}};
-    return {{"call_service", {{"service", r.service}, {"request", r.request}}}};
+  void operator()(const ReadParameter& r) const { json.member("read_parameter", r.name); }
+  void operator()(const CallService& r) const {
+    if (r.request.empty()) return json.member("call_service", r.service);
+    json.member("call_service", [&] {
+      json.begin_object();
+      json.member("service", r.service);
+      json.member("request", r.request);
+      json.end_object();
+    });
   }
-  Json operator()(const ChangeMode& r) const { return {{"change_mode", r.mode}}; }
-  Json operator()(const ReadMode&) const { return {{"read_mode", nullptr}}; }
-  Json operator()(const StopProcess& r) const { return {{"stop_process", r.pid}}; }
-  Json operator()(const StartProcess&) const { return {{"start_process", nullptr}}; }
+  void operator()(const ChangeMode& r) const { json.member("change_mode", r.mode); }
+  void operator()(const ReadMode&) const { add_nothing("read_mode"); }
+  void operator()(const StopProcess& r) const { json.member("stop_process", r.pid); }
+  void operator()(const StartProcess&) const { add_nothing("start_process"); }
+
+ private:
+  void add_nothing(const char* word) const {
+    json.member(word, [&] { json.null(); });
+  }
 };
 
 }  // namespace
@@ -76,8 +93,10 @@ bool flag_of(const Json& json, const char* key) {
   return found != json.end() && found->is_boolean() && found->get<bool>();
 }
 
-Json to_json(const decltype(Command::what)& request) {
-  return std::visit(RequestWriter{}, request);
+void write(const decltype(Command::what)& request, JsonWriter& json) {
+  json.begin_object();
+  std::visit(RequestWriter{json}, request);
+  json.end_object();
 }
 
 Expected<decltype(Command::what)> request_from_json(const Json& json) {
@@ -106,11 +125,13 @@ Expected<decltype(Command::what)> request_from_json(const Json& json) {
   return unknown;
 }
 
-Json to_json(const decltype(Reply::value)& value) {
-  if (const auto* v = std::get_if<Value>(&value)) return of_value(*v);
-  if (const auto* state = std::get_if<Lifecycle>(&value))
-    return {{"lifecycle", culprit::to_string(*state)}};
-  return nullptr;
+void write(const decltype(Reply::value)& value, JsonWriter& json) {
+  if (const auto* v = std::get_if<Value>(&value)) return write_value(*v, json);
+  const auto* state = std::get_if<Lifecycle>(&value);
+  if (state == nullptr) return json.null();
+  json.begin_object();
+  json.member("lifecycle", culprit::to_string(*state));
+  json.end_object();
 }
 
 decltype(Reply::value) reading_from_json(const Json& json) {

@@ -7,6 +7,7 @@
 
 #include "base/expected.h"
 #include "json/json.h"
+#include "json/json_writer.h"
 #include "robot/command.h"
 
 namespace culprit::journal {
@@ -18,11 +19,11 @@ std::int64_t integer_of(const Json& json, const char* key, std::int64_t otherwis
 bool flag_of(const Json& json, const char* key);
 
 // What a command asks for: {"set_parameter": {"name": "gain", "value": 0.5}}
-Json to_json(const decltype(Command::what)& request);
+void write(const decltype(Command::what)& request, JsonWriter& json);
 Expected<decltype(Command::what)> request_from_json(const Json& json);
 
 // What was read before a change, or with a reply: a value, {"lifecycle": "active"}, or null.
-Json to_json(const decltype(Reply::value)& value);
+void write(const decltype(Reply::value)& value, JsonWriter& json);
 decltype(Reply::value) reading_from_json(const Json& json);
 
 std::string_view to_string(Outcome outcome);

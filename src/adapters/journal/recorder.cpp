@@ -42,7 +42,7 @@ std::optional<Digest> digest_of(std::span<const Command> commands, std::span<con
   for (const Command& command : commands)
     all += std::to_string(command.id.number) + " " + rules[command.component].name + " " +
            culprit::to_string(command) + "\n";
-  for (const Event& event : events) all += to_line(to_json(event, rules)) + "\n";
+  for (const Event& event : events) all += line_of(event, rules) + "\n";
   const Hash hash = hasher.of(all);
   Digest digest = 0;
   for (std::size_t i = 0; i < 8; ++i) digest = digest << 8 | hash[i];
@@ -197,7 +197,19 @@ void Recorder::hand_over(Urgency urgency) {
   const bool is_due = now_of_queue_ - first_queued_ >= kPeriod || queued_observations_ >= kMany;
   urgency_ = std::max({urgency_, urgency, is_due ? Urgency::kSoon : Urgency::kNone});
   // Whoever waits wakes it.
-  if (urgency_ == Urgency::kSoon || urgency_ == Urgency::kSynced) work_.notify_one();
+  if (urgency_ == Urgency::kSoon || urgency_ == Urgency::kSynced) is_writer_needed_ = true;
+}
+
+void Recorder::wake_writer() {
+  if (std::exchange(is_writer_needed_, false)) work_.notify_one();
+}
+
+void Recorder::before_commands(Time now, std::vector<Observation>& observations,
+                               std::span<const Command> commands, std::span<const Event> events) {
+  Pending& place = places_[kept_++];
+  place.now = now;
+  place.observations.swap(observations);
+  hand_over(place, commands, events);
 }
 
 Recorder::Decided& Recorder::decided(Pending& step) {
@@ -211,15 +223,14 @@ void Recorder::decide(Pending& step, std::span<const Command> commands,
   decision.commands.assign(commands.begin(), commands.end());
   decision.events.assign(events.begin(), events.end());
   if (!events.empty()) decision.learned = changes();
-  const auto add_row = [&](std::string_view kind, const Json& body) {
-    decision.rows.push_back({0, step.wall, std::string(kind), to_line(body)});
+  const auto add_row = [&](std::string_view kind, std::string body) {
+    decision.rows.push_back({0, step.wall, std::string(kind), std::move(body)});
   };
-  for (const Event& event : events) add_row(kind::kEvent, to_json(event, rules_));
+  for (const Event& event : events) add_row(kind::kEvent, line_of(event, rules_));
   for (const Command& command : commands) {
     if (is_read(command)) continue;
-    const Json body = to_json(command, rules_);
-    asked_[command.id.number] = text_of(body, "text");
-    add_row(kind::kIntent, body);
+    asked_[command.id.number] = text_of(command, rules_);
+    add_row(kind::kIntent, line_of(command, rules_));
   }
   if (decision.rows.empty()) return;
   // What of it was known before is among them.
@@ -235,6 +246,10 @@ void Recorder::remember_rows(const Decided& decision) {
   std::string& rows = recent_.back().rows;
   recent_bytes_ -= rows.size();
   rows.clear();
+  constexpr std::size_t kMostBeside = 30;  // of each row, beside its kind and its body
+  std::size_t size = 0;
+  for (const Entry& row : decision.rows) size += kMostBeside + row.kind.size() + row.body.size();
+  rows.reserve(size);
   for (const Entry& row : decision.rows) append_row(row, rows);
   recent_bytes_ += rows.size();
   if (recent_bytes_ <= kMaxRecent) return;
@@ -260,7 +275,7 @@ void Recorder::forget_recent(std::uint64_t upto) {
 // it is not there, so the journal has to be waited for.
 bool Recorder::is_with_the_kernel(const Decided& decision, Time now) {
   std::uint64_t saved = 0;
-  Link newest;
+  IntentFile::Head head;
   {
     const MutexLock lock(mutex_);
     const bool is_stalled =
@@ -272,14 +287,14 @@ bool Recorder::is_with_the_kernel(const Decided& decision, Time now) {
       in_file_ = 0;
     }
     saved = saved_;
-    newest = newest_row_;
+    if (in_file_ <= saved) head = head_;
   }
   if (!intents_ || forgotten_ > saved) return false;
   forget_recent(saved);
-  if (in_file_ <= saved) intents_->begin_after(newest);
-  std::string rows;
-  for (const Recent& each : recent_) rows += each.rows;
-  if (const auto written = intents_->append(now, rows); !written) {
+  if (in_file_ <= saved) intents_->begin_after(std::move(head));
+  rows_.clear();
+  for (const Recent& each : recent_) rows_ += each.rows;
+  if (const auto written = intents_->append(now, rows_); !written) {
     const MutexLock lock(mutex_);
     intents_.reset();
     wants_intents_ = true;
@@ -505,11 +520,12 @@ Expected<void> Recorder::write() {
   unsaved_bytes_ = 0;
   owes_sync_ = false;
   bool was_failing = false;
+  IntentFile::Head head(writer_->newest());
   {
     const MutexLock lock(mutex_);
     was_failing = std::exchange(is_failing_, false);
     saved_ = unsaved_to_;
-    newest_row_ = writer_->newest();
+    head_ = std::move(head);
   }
   if (was_failing && options_.on_trouble) options_.on_trouble("the journal is written again");
   tell_of_copy();

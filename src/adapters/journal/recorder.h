@@ -91,9 +91,17 @@ class Recorder {
     place.now = now;
     place.observations.swap(observations);
     const bool decides = !commands.empty() || !events.empty();
-    if (decides || kept_ == kMaxKept || now - places_.front().now >= kKept)
+    if (decides || kept_ == kMaxKept || now - places_.front().now >= kKept) {
       hand_over(place, commands, events);
+      wake_writer();
+    }
   }
+
+  // The same of a step with commands in two calls, with the commands between them: that the rows are
+  // written soon is seen to when the commands are out. Whatever has to be on the disk before is.
+  void before_commands(Time now, std::vector<Observation>& observations,
+                       std::span<const Command> commands, std::span<const Event> events);
+  void after_commands() { wake_writer(); }
 
   // Writes what is waiting. An error says what is lost. No step after it.
   Expected<void> end(Ending ending = Ending::kStopped);
@@ -130,6 +138,7 @@ class Recorder {
   // kSynced: soon, and on the disk then.
   enum class Urgency : std::uint8_t { kNone, kSoon, kSynced, kNow };
   void hand_over(Urgency urgency);
+  void wake_writer();
   void date_kept();
   void take_outcomes(Pending& step);
   void decide(Pending& step, std::span<const Command> commands, std::span<const Event> events);
@@ -176,6 +185,7 @@ class Recorder {
     std::string rows;
   };
   std::deque<Recent> recent_;
+  std::string rows_;  // memory that is used again
   std::size_t recent_bytes_ = 0;
   std::uint64_t forgotten_ = 0;  // the newest decision whose rows were too many to be kept here
 
@@ -184,6 +194,8 @@ class Recorder {
   std::uint64_t robot_sightings_ = 0;
   Time robot_looked_at_ = kLongAgo;
   Time robot_written_ = kLongAgo;
+
+  bool is_writer_needed_ = false;  // and not woken yet
 
   // All that a step without decisions touches, side by side.
   alignas(64) std::size_t kept_ = 0;
@@ -200,7 +212,7 @@ class Recorder {
   std::uint64_t lost_steps_ CULPRIT_GUARDED_BY(mutex_) = 0;
   std::uint64_t written_ CULPRIT_GUARDED_BY(mutex_) = 0;
   std::uint64_t saved_ CULPRIT_GUARDED_BY(mutex_) = 0;  // the newest decision in the journal
-  Link newest_row_ CULPRIT_GUARDED_BY(mutex_);          // of the journal then
+  IntentFile::Head head_ CULPRIT_GUARDED_BY(mutex_);    // of intents after that
   std::optional<std::chrono::steady_clock::time_point> writing_since_ CULPRIT_GUARDED_BY(mutex_);
   // One for the manager's thread, which has none, and whether it wants one.
   std::optional<IntentFile> new_intents_ CULPRIT_GUARDED_BY(mutex_);

@@ -1,5 +1,7 @@
 #include "journal/requests.h"
 
+#include "json/json_writer.h"
+
 namespace culprit::journal {
 namespace {
 
@@ -31,18 +33,33 @@ std::optional<ComponentId> find_component(const RuleSet& rules, const std::strin
   return find_named<ComponentId>(rules.components, name);
 }
 
-Json to_json(const Command& command, const RuleSet& rules) {
+std::string line_of(const Command& command, const RuleSet& rules) {
   const Strategy& strategy = rules[command.purpose.strategy];
   const std::string& component = rules[command.component].name;
-  return {{"command", command.id.number},
-          {"component", component},
-          {"request", to_json(command.what)},
-          {"rule", rules[strategy.rule].name},
-          {"strategy", strategy.name},
-          {"adaptation", command.purpose.adaptation},
-          {"undoes", command.purpose.undoes},
-          {"before", to_json(command.purpose.before)},
-          {"text", component + ": " + culprit::to_string(command)}};
+  constexpr std::size_t kUsual = 300;
+  std::string line;
+  line.reserve(kUsual);
+  JsonWriter json(line);
+  json.begin_object();
+  json.member("command", command.id.number);
+  json.member("component", component);
+  json.member("request", [&] { write(command.what, json); });
+  json.member("rule", rules[strategy.rule].name);
+  json.member("strategy", strategy.name);
+  json.member("adaptation", command.purpose.adaptation);
+  json.member("undoes", command.purpose.undoes);
+  json.member("before", [&] { write(command.purpose.before, json); });
+  json.member("text", text_of(command, rules));
+  json.end_object();
+  return line;
+}
+
+std::string text_of(const Command& command, const RuleSet& rules) {
+  return rules[command.component].name + ": " + culprit::to_string(command);
+}
+
+Json to_json(const Command& command, const RuleSet& rules) {
+  return parse_json(line_of(command, rules));
 }
 
 Expected<Command> command_from_json(const Json& json, const RuleSet& rules) {

@@ -8,7 +8,11 @@
 
 namespace culprit::journal {
 
-// The body of an intent.
+// The body of an intent, and the sentence in it: "camera: set gain to 1".
+std::string line_of(const Command& command, const RuleSet& rules);
+std::string text_of(const Command& command, const RuleSet& rules);
+
+// The same body, for whoever adds to it.
 Json to_json(const Command& command, const RuleSet& rules);
 
 // Errors: it is no intent, or is about what `rules` does not have.

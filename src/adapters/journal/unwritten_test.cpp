@@ -27,7 +27,7 @@ struct UnwrittenRows : testing::Test {
     writer = value_of(Writer::open(path, {}));
     write({{0, kUnwrittenAt, std::string(kind::kSession), "{}"}});
     file = value_of(IntentFile::open(path));
-    file->begin_after(writer->newest());
+    file->begin_after(IntentFile::Head(writer->newest()));
   }
   static Entry row(int number) {
     return {0, kUnwrittenAt + number, std::string(kind::kIntent), to_line({{"command", number}})};
@@ -103,7 +103,7 @@ TEST_F(UnwrittenRows, AreOverIfAnotherRunFollowedOrAllWasWritten) {
     keep({row(1)});
     write({{0, kUnwrittenAt, std::string(kind), "{}"}});
     EXPECT_THAT(commands(), IsEmpty());
-    file->begin_after(writer->newest());
+    file->begin_after(IntentFile::Head(writer->newest()));
   }
 }
 
@@ -123,16 +123,16 @@ TEST_F(UnwrittenRows, AreOverIfRowsWereDropped) {
 }
 
 TEST_F(UnwrittenRows, OfAnotherJournalAreLeftOutAndThatIsSaid) {
-  file->begin_after({1, {9, 9, 9}});
+  file->begin_after(IntentFile::Head({1, {9, 9, 9}}));
   keep({row(1)});
   EXPECT_THAT(commands(), IsEmpty());
   EXPECT_THAT(found().remark, HasSubstr("row 1, which the journal no longer has"));
-  file->begin_after({1000, writer->newest().hash});
+  file->begin_after(IntentFile::Head({1000, writer->newest().hash}));
   keep({row(1)});
   EXPECT_THAT(commands(), IsEmpty());
   EXPECT_THAT(found().remark, HasSubstr("row 1000"));
   for (const std::int64_t id : {INT64_MAX, INT64_MIN}) {
-    file->begin_after({id, writer->newest().hash});
+    file->begin_after(IntentFile::Head({id, writer->newest().hash}));
     keep({row(1)});
     EXPECT_THAT(commands(), IsEmpty());
   }
