@@ -221,8 +221,13 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
     for (const in_addr& address : addresses) {
       // What is said to all has time, if it is not said to us as well: that somebody is there, again and again.
       const Haste haste = is_multicast ? Haste::kSoon : Haste::kNow;
-      const ReceiveThread::Place place{address, port, is_multicast, udp().receiveBufferSize,
-                                       largest, haste};
+      ReceiveThread::Place place{address, port, is_multicast, udp().receiveBufferSize, largest,
+                                 haste,   {}};
+      // Of what comes to us alone that has time, too, where it is nothing else: at the port for discovery.
+      if (!is_multicast)
+        place.has_time = [sources = reception_.sources](std::span<const std::uint8_t> datagram) {
+          return sources->is_still_there(datagram);
+        };
       const auto opened = reception_.thread->open(
           place, [this, receiver, locator, haste](const ReceiveThread::Datagram& datagram) {
             came(*receiver, datagram, locator, haste);

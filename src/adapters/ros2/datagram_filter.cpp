@@ -12,10 +12,6 @@ namespace {
 
 constexpr std::uint16_t kSentinel = 1;  // of a list of parameters
 constexpr std::size_t kMostFragments = 1 << 16;
-// Flags of samples and fragments (RTPS 2.3 §9.4.5.3.1); the last two of samples only.
-constexpr std::uint8_t kHasParameters = 0x02;
-constexpr std::uint8_t kHasPayload = 0x04;
-constexpr std::uint8_t kHasKey = 0x08;
 
 // Of a gap without a bitmap, with its header.
 constexpr std::size_t kGapSize = 32;
@@ -120,7 +116,7 @@ class DatagramFilter::Submessage {
     is_ok_ = is_ok_ && to_parameters >= at_ - counted_from;
     if (is_ok_) skip(to_parameters - (at_ - counted_from));
     const std::size_t begin = at_;
-    if ((flags & kHasParameters) != 0) skip_parameters();
+    if ((flags & rtps::kHasParameters) != 0) skip_parameters();
     if (is_ok_) sample.parameters = body_.subspan(begin, at_ - begin);
     return sample;
   }
@@ -302,7 +298,7 @@ bool DatagramFilter::tell_of_announcement(const Submessage& submessage) {
   const std::span<const std::uint8_t> announcer(sample.writer.bytes.data() + 12, 4);
   const bool is_of_writers = std::ranges::equal(announcer, kOfWriters);
   if (!is_of_writers && !std::ranges::equal(announcer, kOfReaders)) return false;
-  if ((body.flags & kHasPayload) == 0) {
+  if ((body.flags & rtps::kHasPayload) == 0) {
     const auto ended = read_end(sample.parameters, body.order(), body.rest());
     if (!ended) return false;
     const auto known = announced_.find(*ended);
@@ -367,7 +363,8 @@ bool DatagramFilter::address(std::span<std::uint8_t> submessage, const Course& c
 bool DatagramFilter::hand_over(Readers::Reader& reader, std::span<const std::uint8_t> submessage,
                                const Course& course) {
   constexpr std::uint8_t kMeaning = 0x1e;  // of the flags: all but the order of bytes
-  if (!reader.on_whole || !course.sent || (submessage[1] & kMeaning) != kHasPayload) return false;
+  if (!reader.on_whole || !course.sent || (submessage[1] & kMeaning) != rtps::kHasPayload)
+    return false;
   if (course.destination != GuidPrefix{} && course.destination != reader.guid.prefix())
     return false;
   // Nothing was objected to it: its lengths fit.
@@ -427,8 +424,8 @@ const char* DatagramFilter::objection_to_data(const Submessage& submessage, Cloc
   constexpr const char* kDamaged = "a damaged sample";
   Submessage body = submessage;
   const Submessage::Sample sample = body.read_sample();
-  const bool has_payload = (body.flags & kHasPayload) != 0;
-  const bool has_key = (body.flags & kHasKey) != 0;
+  const bool has_payload = (body.flags & rtps::kHasPayload) != 0;
+  const bool has_key = (body.flags & rtps::kHasKey) != 0;
   if (!body.ok() || (has_payload && has_key)) return kDamaged;
   if ((has_payload || has_key) && body.left() < kEncapsulationSize) return kDamaged;
   if (sample.sequence < 1 || is_far(sample.writer, sample.sequence, now))

@@ -10,12 +10,33 @@ namespace culprit::ros2 {
 namespace {
 
 constexpr std::size_t kPrefixInHeader = 8;
+// Where a sample has its writer (RTPS 2.3 §9.4.5.3), and which announces a participant (§9.3.1.3).
+constexpr std::size_t kWriterInData = rtps::kSubmessageHeader + 8;
+constexpr std::array<std::uint8_t, 4> kAnnouncesParticipant = {0x00, 0x01, 0x00, 0xc2};
+constexpr std::uint8_t kOfVendor = 0x80;  // these and higher kinds are a vendor's own (§8.3.3.2)
 constexpr std::size_t kPrefixInInfoSource = rtps::kSubmessageHeader + 8;
 
 GuidPrefix prefix_at(std::span<const std::uint8_t> bytes, std::size_t position) {
   GuidPrefix prefix;
   std::memcpy(prefix.bytes.data(), bytes.data() + position, prefix.bytes.size());
   return prefix;
+}
+
+bool announces_participant(std::span<const std::uint8_t> data) {
+  return (data[1] & (rtps::kHasPayload | rtps::kHasKey)) == rtps::kHasPayload &&
+         data.size() >= kWriterInData + kAnnouncesParticipant.size() &&
+         std::equal(kAnnouncesParticipant.begin(), kAnnouncesParticipant.end(),
+                    data.begin() + kWriterInData);
+}
+
+// Of the submessage that `bytes` begin with, with its header; nothing: it is not whole.
+std::optional<std::size_t> size_of_submessage(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() < rtps::kSubmessageHeader) return std::nullopt;
+  const bool is_little = (bytes[1] & 1) != 0;
+  const std::size_t length = std::size_t{bytes[is_little ? 3 : 2]} << 8 | bytes[is_little ? 2 : 3];
+  const bool reaches_the_end = length == 0 && bytes[0] != rtps::kPad && bytes[0] != rtps::kInfoTime;
+  const std::size_t size = reaches_the_end ? bytes.size() : rtps::kSubmessageHeader + length;
+  return size > bytes.size() ? std::nullopt : std::optional(size);
 }
 
 // Calls `found` with each participant that an INFO_SRC names; whoever calls has what that requires.
@@ -51,6 +72,28 @@ void DatagramSources::heard(std::span<const std::uint8_t> datagram, const UdpAdd
   note(prefix_at(datagram, kPrefixInHeader), from, now);
   find_sources(datagram, [&](const GuidPrefix& participant)
                              CULPRIT_REQUIRES(mutex_) { note(participant, from, now); });
+}
+
+bool DatagramSources::is_still_there(std::span<const std::uint8_t> datagram) const {
+  if (datagram.size() < rtps::kHeader || std::memcmp(datagram.data(), "RTPS", 4) != 0) return false;
+  std::size_t announced = 0;
+  for (auto rest = datagram.subspan(rtps::kHeader); !rest.empty();) {
+    const auto size = size_of_submessage(rest);
+    if (!size) return false;
+    const std::uint8_t kind = rest[0];
+    if (kind == rtps::kData && announces_participant(rest.first(*size))) {
+      ++announced;
+    } else if (kind != rtps::kPad && kind != rtps::kInfoTime && kind != rtps::kInfoDestination &&
+               kind < kOfVendor) {
+      return false;
+    }
+    rest = rest.subspan(*size);
+  }
+  const GuidPrefix participant = prefix_at(datagram, kPrefixInHeader);
+  const MutexLock lock(mutex_);
+  const auto found = entries_.find(participant);
+  const bool is_known = found != entries_.end() && found->second.is_kept;
+  return announced > 0 && (is_known || self_ == participant);
 }
 
 void DatagramSources::note(const GuidPrefix& participant, const UdpAddress& from, Time now) {

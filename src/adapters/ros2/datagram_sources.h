@@ -48,6 +48,9 @@ class DatagramSources {
   };
 
   void heard(std::span<const std::uint8_t> datagram, const UdpAddress& from, Time now);
+  // Whether all that it says is that somebody who was discovered, and is kept, is still there (RTPS 2.3
+  // §8.5.3): the announcement of a participant, in plain. What it announces may have changed.
+  bool is_still_there(std::span<const std::uint8_t> datagram) const;
 
   // It was discovered: it is kept until it is forgotten.
   void keep(const GuidPrefix& participant);

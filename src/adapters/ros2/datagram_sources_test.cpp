@@ -1,9 +1,13 @@
 #include "ros2/datagram_sources.h"
 
+#include <algorithm>
+#include <array>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "ros2/live_test.h"
+#include "ros2/test_datagram.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -115,6 +119,52 @@ TEST(DatagramSources, StrangersDoNotWashOutWhoIsThere) {
   EXPECT_FALSE(sources.of(prefix(2)).is_complete) << "nobody knows what was lost of it";
   sources.forget(prefix(1));
   EXPECT_THAT(sources.of(prefix(1)).addresses, IsEmpty());
+}
+
+TEST(DatagramSources, WhoIsStillThereSaysNothingElse) {
+  using Entity = std::array<std::uint8_t, 4>;
+  constexpr Entity kOfParticipants = {0, 1, 0, 0xc2};
+  constexpr Entity kOfEndpoints = {0, 0, 3, 0xc2};
+  const auto writer = [](std::size_t sender, const Entity& entity) {
+    Guid guid;
+    const GuidPrefix of = prefix(sender);
+    std::ranges::copy(of.bytes, guid.bytes.begin());
+    std::ranges::copy(entity, guid.bytes.begin() + 12);
+    return guid;
+  };
+  const auto announced = [&](std::size_t sender) {
+    return TestDatagram(prefix(sender)).data(writer(sender, kOfParticipants), 1);
+  };
+  const Guid announcer = writer(1, kOfParticipants);
+  DatagramSources sources;
+  sources.heard(announced(1).bytes(), kThere, kNow);
+  EXPECT_FALSE(sources.is_still_there(announced(1).bytes())) << "nobody discovered it yet";
+  sources.keep(prefix(1));
+  EXPECT_TRUE(sources.is_still_there(announced(1).bytes()));
+  EXPECT_FALSE(sources.is_still_there(announced(2).bytes()));
+  sources.begin(prefix(2));
+  EXPECT_TRUE(sources.is_still_there(announced(2).bytes())) << "it is our own";
+
+  const Bytes some(8);
+  EXPECT_TRUE(sources.is_still_there(TestDatagram(prefix(1))
+                                         .submessage(0x09, 0, some)
+                                         .data(announcer, 1)
+                                         .submessage(0x80, 0, some)
+                                         .bytes()));
+  EXPECT_FALSE(sources.is_still_there(TestDatagram(prefix(1)).bytes()));
+  EXPECT_FALSE(
+      sources.is_still_there(TestDatagram(prefix(1)).data(writer(1, kOfEndpoints), 1).bytes()))
+      << "of an endpoint";
+  EXPECT_FALSE(sources.is_still_there(announced(1).heartbeat(announcer, 1, 1).bytes()));
+  EXPECT_FALSE(sources.is_still_there(announced(1).submessage(0x0c, 0, Bytes(20)).bytes()))
+      << "in the name of another one";
+  EXPECT_FALSE(
+      sources.is_still_there(TestDatagram(prefix(1)).farewell(announcer, 1, announcer).bytes()));
+  const Bytes whole = announced(1).bytes();
+  for (std::size_t size = 0; size < whole.size(); ++size)
+    EXPECT_FALSE(sources.is_still_there(std::span(whole).first(size))) << size;
+  sources.forget(prefix(1));
+  EXPECT_FALSE(sources.is_still_there(announced(1).bytes()));
 }
 
 TEST(DatagramSources, TooManyAddressesAreKnownToBeTooMany) {

@@ -45,8 +45,9 @@ struct ReceiveThread::Socket {
         room(room_of(fd)),
         port(place.port),
         largest(std::min(place.largest, kLargest)),
-        haste(place.haste),
-        on_datagram(std::move(callback)) {}
+        has_time(place.has_time),
+        on_datagram(std::move(callback)),
+        is_patient(place.haste == Haste::kSoon) {}
   ~Socket() { ::close(descriptor); }
   Socket(const Socket&) = delete;
   Socket& operator=(const Socket&) = delete;
@@ -55,8 +56,11 @@ struct ReceiveThread::Socket {
   const std::size_t room;
   const std::uint16_t port;
   const std::uint32_t largest;
-  const Haste haste;
+  const HasTime has_time;
   const OnDatagram on_datagram;
+  bool is_patient;                        // guarded by the mutex of the thread's owner
+  Clock::time_point busy = Clock::now();  // when something came last that has no time
+  bool is_calm = false;                   // something came since, and has
 
   // Taken, and not handed on yet. Of the thread.
   struct Kept {
@@ -68,6 +72,12 @@ struct ReceiveThread::Socket {
   std::size_t kept_bytes = 0;  // with what each takes beside what it says: datagrams may be empty
 
   static std::size_t bytes_of(const Kept& each) { return sizeof(Kept) + each.bytes.size(); }
+
+  void look_at(std::span<const std::uint8_t> datagram) {
+    if (!has_time) return;
+    is_calm = has_time(datagram);
+    if (!is_calm) busy = Clock::now();
+  }
 };
 
 // What was taken from a socket at once. Its memory is touched only as far as datagrams reach.
@@ -102,12 +112,16 @@ class ReceiveThread::Batch {
     for (std::size_t i = 0; i < count_; ++i) room += messages_[i].msg_len;
     return room;
   }
-  void hand_to(const Socket& socket) {
-    for (std::size_t i = 0; i < count_; ++i) socket.on_datagram({bytes(i), sender(i), received(i)});
+  void hand_to(Socket& socket) {
+    for (std::size_t i = 0; i < count_; ++i) {
+      socket.look_at(bytes(i));
+      socket.on_datagram({bytes(i), sender(i), received(i)});
+    }
   }
   void keep_for(Socket& socket) {
     for (std::size_t i = 0; i < count_; ++i) {
       const auto all = bytes(i);
+      socket.look_at(all);
       socket.kept.push_back({sender(i), received(i), {all.begin(), all.end()}});
       socket.kept_bytes += Socket::bytes_of(socket.kept.back());
     }
@@ -182,7 +196,7 @@ Expected<void> ReceiveThread::open(const Place& place, OnDatagram on_datagram) {
     return refused("cannot listen there");
   const MutexLock lock(mutex_);
   epoll_event event{};
-  event.events = place.haste == Haste::kNow || is_armed_ ? kReadable : 0;
+  event.events = !made->is_patient || is_armed_ ? kReadable : 0;
   event.data.u64 = static_cast<std::uint64_t>(descriptor);
   if (epoll_ctl(wait_fd_, EPOLL_CTL_ADD, descriptor, &event) != 0)
     return refused("cannot wait for what comes there");
@@ -269,12 +283,12 @@ void ReceiveThread::run() {
         });
         if (ready == sockets_.end()) continue;
         const bool has_turn = !(*ready)->kept.empty();  // in any case
-        if ((*ready)->haste == Haste::kNow && !has_turn) urgent.push_back(*ready);
+        if (!(*ready)->is_patient && !has_turn) urgent.push_back(*ready);
       }
       std::ranges::copy_if(sockets_, std::back_inserter(urgent),
                            [](const auto& each) { return !each->kept.empty(); });
       std::ranges::copy_if(sockets_, std::back_inserter(patient),
-                           [](const auto& each) { return each->haste == Haste::kSoon; });
+                           [](const auto& each) { return each->is_patient; });
       watch_patient(Clock::now());
       ++rounds_;
     }
@@ -289,6 +303,7 @@ void ReceiveThread::run() {
     {
       const MutexLock lock(mutex_);
       ++rounds_;
+      calm(Clock::now());
     }
     round_ended_.notify_all();
   }
@@ -353,11 +368,22 @@ void ReceiveThread::watch_patient(Clock::time_point now) {
 void ReceiveThread::arm(bool is_armed) {
   is_armed_ = is_armed;
   for (const auto& each : sockets_) {
-    if (each->haste == Haste::kNow) continue;
-    epoll_event event{};
-    event.events = is_armed ? kReadable : 0;
-    event.data.u64 = static_cast<std::uint64_t>(each->descriptor);
-    epoll_ctl(wait_fd_, EPOLL_CTL_MOD, each->descriptor, &event);
+    if (each->is_patient) wake_for(*each);
+  }
+}
+
+void ReceiveThread::wake_for(const Socket& socket) {
+  epoll_event event{};
+  event.events = !socket.is_patient || is_armed_ ? kReadable : 0;
+  event.data.u64 = static_cast<std::uint64_t>(socket.descriptor);
+  epoll_ctl(wait_fd_, EPOLL_CTL_MOD, socket.descriptor, &event);
+}
+
+void ReceiveThread::calm(Clock::time_point now) {
+  for (const auto& each : sockets_) {
+    if (!each->has_time) continue;
+    const bool has_time = each->is_calm && now - each->busy >= kCalm && each->kept.empty();
+    if (std::exchange(each->is_patient, has_time) != has_time) wake_for(*each);
   }
 }
 

@@ -12,6 +12,9 @@
 // each datagram, or as much sooner as more comes, for a socket has little room. What lies in them is always handed on
 // before what came to the other sockets after it: who hears something there has heard all that was said before. When each
 // datagram came is told by the kernel. Who waits for an answer there makes them hurry meanwhile (begin_hurry()).
+//
+// One where announcements come has time only while nothing else comes there (Place::has_time): in a robot at
+// rest each participant says again and again that it is there.
 #pragma once
 
 #include <chrono>
@@ -48,6 +51,9 @@ class ReceiveThread {
   };
   // Called on the thread that receives, one at a time. It may write into what came, which is gone when it returns.
   using OnDatagram = std::function<void(const Datagram&)>;
+  using HasTime = std::function<bool(std::span<const std::uint8_t> datagram)>;
+  // Nothing else must have come for so long, and this must have.
+  static constexpr std::chrono::seconds kCalm{2};
 
   ReceiveThread();
   ~ReceiveThread();
@@ -61,6 +67,7 @@ class ReceiveThread {
     std::uint32_t buffer = 0;  // bytes, which net.core.rmem_max caps; 0: the system's
     std::uint32_t largest = kLargest;  // bytes of a datagram; what is longer is cut
     Haste haste = Haste::kNow;
+    HasTime has_time{};  // empty: always as `haste` says
   };
   // Errors: the place is taken, or the system refuses. The thread begins with the first socket.
   Expected<void> open(const Place& place, OnDatagram on_datagram);
@@ -92,6 +99,9 @@ class ReceiveThread {
   // Whether they wake the thread, and how often it looks otherwise, depends on how much comes to them.
   void watch_patient(Clock::time_point now) CULPRIT_REQUIRES(mutex_);
   void arm(bool is_armed) CULPRIT_REQUIRES(mutex_);
+  void wake_for(const Socket& socket) CULPRIT_REQUIRES(mutex_);
+  // Who has time only while it is calm has it now, or has it no more.
+  void calm(Clock::time_point now) CULPRIT_REQUIRES(mutex_);
 
   const int wait_fd_;  // of epoll
   const int wake_fd_;  // to end

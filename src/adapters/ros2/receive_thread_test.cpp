@@ -53,10 +53,11 @@ std::uint16_t unused_port() { return Voice().port(); }
 
 struct Listener {
   // Opens a port and notes what comes there, with that name before it.
-  std::uint16_t open(const std::string& name, Haste haste = Haste::kNow) {
+  std::uint16_t open(const std::string& name, Haste haste = Haste::kNow,
+                     const ReceiveThread::HasTime& has_time = {}) {
     while (true) {
       const std::uint16_t port = unused_port();
-      if (thread.open({.ip = kThisMachine, .port = port, .haste = haste},
+      if (thread.open({.ip = kThisMachine, .port = port, .haste = haste, .has_time = has_time},
                       [this, name](const ReceiveThread::Datagram& datagram) {
                         sender = datagram.from.port;
                         heard.add(name + std::string(datagram.bytes.begin(), datagram.bytes.end()));
@@ -137,6 +138,42 @@ TEST(ReceiveThread, WhatHasTimeComesByItself) {
     }
   }
   EXPECT_THAT(ears.heard.all(), SizeIs(100));
+}
+
+// It is as with those that always have time: what lies there is handed on first.
+TEST(ReceiveThread, OneHasTimeWhileNothingElseComesThere) {
+  Listener ears;
+  const Voice speaker;
+  const auto has_time = [](std::span<const std::uint8_t> bytes) { return bytes[0] == 'c'; };
+  const std::uint16_t calm = ears.open("", Haste::kNow, has_time);
+  std::binary_semaphore is_inside(0), may_go_on(0);
+  const std::uint16_t urgent = unused_port();
+  ASSERT_TRUE(ears.thread.open({.ip = kThisMachine, .port = urgent}, [&](const auto& datagram) {
+    const std::string text(datagram.bytes.begin(), datagram.bytes.end());
+    ears.heard.add(text);
+    if (text != "wait") return;
+    is_inside.release();
+    may_go_on.acquire();
+  }));
+  // Which of two that were said while the thread was busy is heard first.
+  const auto heard_first = [&] {
+    const std::size_t before = ears.heard.all().size();
+    speaker.say(urgent, "wait");
+    is_inside.acquire();
+    speaker.say(urgent, "urgent");
+    speaker.say(calm, "calm");
+    may_go_on.release();
+    EXPECT_TRUE(ears.heard.wait_for_count(before + 3));
+    return ears.heard.all()[before + 1];
+  };
+  EXPECT_EQ(heard_first(), "urgent") << "nobody knows yet what comes there";
+  std::this_thread::sleep_for(ReceiveThread::kCalm);
+  (void)heard_first();
+  EXPECT_EQ(heard_first(), "calm");
+  speaker.say(calm, "alarm");
+  ASSERT_TRUE(ears.heard.wait_for_one([](const auto& text) { return text == "alarm"; }));
+  (void)heard_first();
+  EXPECT_EQ(heard_first(), "urgent");
 }
 
 TEST(ReceiveThread, ItIsKnownWhenWhatHasTimeCame) {

@@ -26,6 +26,11 @@ enum Kind : std::uint8_t {
   kDataFragment = 0x16
 };
 
+// Flags of samples and fragments (RTPS 2.3 §9.4.5.3.1); the last two of samples only.
+inline constexpr std::uint8_t kHasParameters = 0x02;
+inline constexpr std::uint8_t kHasPayload = 0x04;
+inline constexpr std::uint8_t kHasKey = 0x08;
+
 // It only says how to understand those that follow.
 inline bool is_about_others(std::uint8_t kind) {
   return kind == kPad || kind == kInfoTime || (kind >= kInfoSource && kind <= kInfoReply);
