@@ -146,6 +146,7 @@ Expected<void> Link::start() {
   auto context = Context::create(executor_, options_.participant, std::move(graph));
   if (!context) return Error{context.error()};
   context_ = std::move(*context);
+  context_->participant().on_round([this] { inbox_.hand_over(); });
   auto node = Node::create(*context_, options_.name);
   if (!node) return Error{node.error()};
   node_ = std::move(*node);

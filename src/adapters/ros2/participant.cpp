@@ -501,6 +501,9 @@ Participant::Participant(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Participant::~Participant() = default;
 void Participant::leave() { impl_->leave(); }
 const Guid& Participant::guid() const { return impl_->guid(); }
+void Participant::on_round(std::function<void()> on_round) {
+  impl_->receiver().on_round(std::move(on_round));
+}
 DatagramSources::Origin Participant::origin_of(const GuidPrefix& participant) const {
   return impl_->sources().of(participant);
 }

@@ -206,6 +206,9 @@ class Participant {
     Impl& participant_;
   };
 
+  // Calls `on_round`, on the thread that receives, whenever the readers were handed what came together.
+  void on_round(std::function<void()> on_round);
+
   // Where the datagrams of another participant came from so far.
   DatagramSources::Origin origin_of(const GuidPrefix& participant) const;
   // When its last one came; kLongAgo: it is not there.

@@ -247,6 +247,11 @@ void ReceiveThread::end_hurry() {
   --hurried_;
 }
 
+void ReceiveThread::on_round(std::function<void()> on_round) {
+  const MutexLock lock(mutex_);
+  on_round_ = std::make_shared<const std::function<void()>>(std::move(on_round));
+}
+
 void ReceiveThread::look_at_sockets(
     const std::function<void(std::span<const int> descriptors)>& look) const {
   const MutexLock lock(mutex_);
@@ -273,6 +278,7 @@ void ReceiveThread::run() {
         epoll_wait(wait_fd_, events.data(), static_cast<int>(events.size()), patience);
     Sockets urgent;
     Sockets patient;
+    std::shared_ptr<const std::function<void()>> on_round;
     {
       const MutexLock lock(mutex_);
       for (int i = 0; i < count; ++i) {
@@ -290,6 +296,7 @@ void ReceiveThread::run() {
       std::ranges::copy_if(sockets_, std::back_inserter(patient),
                            [](const auto& each) { return each->is_patient; });
       watch_patient(Clock::now());
+      on_round = on_round_;
       ++rounds_;
     }
     if (urgent.empty()) take_patient(patient, patient_batch);
@@ -300,6 +307,7 @@ void ReceiveThread::run() {
     }
     urgent.clear();
     patient.clear();
+    if (on_round) (*on_round)();
     {
       const MutexLock lock(mutex_);
       ++rounds_;

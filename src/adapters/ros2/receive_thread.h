@@ -83,6 +83,9 @@ class ReceiveThread {
   void begin_hurry();
   void end_hurry();
 
+  // Calls `on_round`, on the thread that receives, whenever it has handed on what came together.
+  void on_round(std::function<void()> on_round);
+
   // Calls `look` with all sockets, which stay open meanwhile. It must be short.
   void look_at_sockets(const std::function<void(std::span<const int> descriptors)>& look) const;
 
@@ -109,6 +112,7 @@ class ReceiveThread {
   mutable Mutex mutex_;
   ConditionVariable round_ended_;
   Sockets sockets_ CULPRIT_GUARDED_BY(mutex_);
+  std::shared_ptr<const std::function<void()>> on_round_ CULPRIT_GUARDED_BY(mutex_);  // or nothing
   std::uint64_t rounds_ CULPRIT_GUARDED_BY(mutex_) = 0;  // odd: one is under way
   bool is_armed_ CULPRIT_GUARDED_BY(mutex_) = true;      // patient sockets wake the thread
   int hurried_ CULPRIT_GUARDED_BY(mutex_) = 0;           // how many wait for an answer

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 namespace culprit {
 namespace {
@@ -25,26 +26,35 @@ void Inbox::put(Observation observation, Urgency urgency) {
       if (oldest != waiting_.end()) waiting_.erase(oldest);
       ++dropped_;
     }
-    // The first one that is not urgent wakes the reader too, who then waits a little for more.
-    wake = urgency == Urgency::kNow ? !is_urgent_ : waiting_.empty();
-    is_urgent_ |= urgency == Urgency::kNow;
+    if (urgency == Urgency::kNow) wake = !std::exchange(is_due_, true);
     waiting_.push_back(std::move(observation));
   }
   if (wake) something_came_.notify_one();
 }
 
+void Inbox::hand_over() {
+  {
+    const MutexLock lock(mutex_);
+    if (waiting_.empty() || is_due_) return;
+    const Time now = live_now();
+    if (now < later(handed_over_, kSoon)) return;
+    handed_over_ = now;
+    is_due_ = true;
+  }
+  something_came_.notify_one();
+}
+
 void Inbox::take(Time until, std::vector<Observation>& observations) {
   MutexLock lock(mutex_);
-  while (!is_urgent_ && !is_interrupted_) {
-    const Time end = waiting_.empty() ? until : std::min(until, waiting_.front().at + kSoon);
-    if (end == kNever) {
+  while (!is_due_ && !is_interrupted_) {
+    if (until == kNever) {
       something_came_.wait(lock);
-    } else if (something_came_.wait_until(lock, as_steady(end)) == std::cv_status::timeout) {
+    } else if (something_came_.wait_until(lock, as_steady(until)) == std::cv_status::timeout) {
       break;
     }
   }
   is_interrupted_ = false;
-  is_urgent_ = false;
+  is_due_ = false;
   observations.insert(observations.end(), std::make_move_iterator(waiting_.begin()),
                       std::make_move_iterator(waiting_.end()));
   waiting_.clear();

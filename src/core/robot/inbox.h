@@ -11,14 +11,14 @@
 namespace culprit {
 
 // Whether somebody should act on it at once. A sample of a topic that speaks anyway changes nothing
-// by itself: such observations are handed over together, a little later, so that thousands a second
-// do not wake a thread each.
+// by itself: such observations are handed over together, when all are there that came with it, so that
+// thousands a second do not wake a thread each.
 enum class Urgency : std::uint8_t { kNow, kSoon };
 
 // All members may be called from any thread.
 class Inbox {
  public:
-  // How long an observation that is not urgent may lie here.
+  // What is not urgent is handed over no more often.
   static constexpr Duration kSoon = std::chrono::milliseconds(20);
 
   // Observations beyond this many that nobody took are dropped, oldest first: a flood must not eat
@@ -32,8 +32,11 @@ class Inbox {
   }
   void put(Observation observation, Urgency urgency);
 
-  // Waits until something is there, `until` has come, or interrupt() was called, and appends what
-  // is there.
+  // All is there that came together: whoever waits gets what is not urgent, too. Call it again and again.
+  void hand_over();
+
+  // Waits until something urgent is there or was handed over, `until` has come, or interrupt() was called,
+  // and appends what is there.
   void take(Time until, std::vector<Observation>& observations);
 
   // Lets the present or the next take() return at once.
@@ -46,7 +49,8 @@ class Inbox {
   mutable Mutex mutex_;
   ConditionVariable something_came_;
   std::vector<Observation> waiting_ CULPRIT_GUARDED_BY(mutex_);
-  bool is_urgent_ CULPRIT_GUARDED_BY(mutex_) = false;
+  bool is_due_ CULPRIT_GUARDED_BY(mutex_) = false;  // something of it
+  Time handed_over_ CULPRIT_GUARDED_BY(mutex_) = kLongAgo;
   std::size_t dropped_ CULPRIT_GUARDED_BY(mutex_) = 0;
   bool is_interrupted_ CULPRIT_GUARDED_BY(mutex_) = false;
 };

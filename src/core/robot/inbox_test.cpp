@@ -1,5 +1,6 @@
 #include "robot/inbox.h"
 
+#include <atomic>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -20,11 +21,40 @@ TEST(Inbox, HandsOverInOrder) {
   EXPECT_LE(taken[0].at, taken[1].at);
 }
 
-TEST(Inbox, WaitsNotLongForWhatIsNotUrgent) {
+TEST(Inbox, WhatIsNotUrgentIsHandedOverTogether) {
+  Inbox inbox;
+  inbox.hand_over();  // nothing
+  for (std::uint32_t i = 0; i < 3; ++i) inbox.put(SampleArrived{TopicId(i), 1}, Urgency::kSoon);
+  inbox.hand_over();
+  std::vector<Observation> taken;
+  inbox.take(kNever, taken);
+  EXPECT_EQ(taken.size(), 3u);
+}
+
+TEST(Inbox, WhatIsNotUrgentIsHandedOverAgainAndAgain) {
+  Inbox inbox;
+  std::vector<Observation> taken;
+  for (std::size_t i = 1; i <= 3; ++i) {
+    std::atomic<bool> is_taken = false;
+    std::thread rounds([&] {
+      inbox.put(SampleArrived{TopicId(0), 1}, Urgency::kSoon);
+      while (!is_taken) {
+        inbox.hand_over();
+        std::this_thread::sleep_for(1ms);
+      }
+    });
+    inbox.take(kNever, taken);
+    is_taken = true;
+    rounds.join();
+    EXPECT_EQ(taken.size(), i);
+  }
+}
+
+TEST(Inbox, WhoeverLooksGetsWhatIsNotUrgent) {
   Inbox inbox;
   inbox.put(SampleArrived{TopicId(0), 1}, Urgency::kSoon);
   std::vector<Observation> taken;
-  inbox.take(kNever, taken);
+  inbox.take(live_now(), taken);
   EXPECT_EQ(taken.size(), 1u);
 }
 
@@ -61,6 +91,7 @@ TEST(Inbox, DropsTheOldestInAFloodButNeverAReply) {
   inbox.put(Reply{{7}, Outcome::kDone, {}, ""});
   for (std::size_t i = 0; i < Inbox::kMaxWaiting + 10; ++i)
     inbox.put(SampleArrived{TopicId(0), 1}, Urgency::kSoon);
+  inbox.hand_over();
   EXPECT_EQ(inbox.dropped(), 11u);
   std::vector<Observation> taken;
   inbox.take(kNever, taken);
