@@ -1,6 +1,8 @@
 // A fleet as its users meet it: a database that is set up, a robot that reports to it, another one
 // that begins with what the first learned, and who looks at both.
 #include <csignal>
+#include <cstdlib>
+#include <fstream>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -102,6 +104,18 @@ TEST_F(FleetOfPrograms, ASecondRobotBeginsWithWhatTheFirstLearned) {
   EXPECT_THAT(said_by({"fleet", "beliefs", owner, "--json"}), HasSubstr("\"helped\": 1"));
   EXPECT_THAT(said_by({"fleet", "compare", owner}), HasSubstr("all are like the others"));
   EXPECT_THAT(said_by({"fleet", "incidents", owner, "--sql"}), HasSubstr("percentile_cont"));
+}
+
+// As where the library is not installed: what is found first in its place is none.
+TEST(FleetWithoutItsLibrary, IsToldWhatToInstall) {
+  const TestWorld world;
+  std::ofstream(world.folder() / "libpq.so.5") << "no library";
+  setenv("LD_LIBRARY_PATH", world.folder().c_str(), 1);
+  TestProgram status(world, {"culprit", "fleet", "status", "postgresql://localhost/robots"});
+  const auto code = status.wait();
+  unsetenv("LD_LIBRARY_PATH");
+  EXPECT_EQ(code, 1);
+  EXPECT_THAT(status.output(), HasSubstr("install libpq5"));
 }
 
 TEST_F(FleetOfPrograms, APasswordOnTheCommandLineIsRefusedAndNotRepeated) {
