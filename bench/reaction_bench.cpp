@@ -133,7 +133,7 @@ void trigger_to_request(benchmark::State& state) {
 
   std::vector<double> requests;  // when they were written, as above
   for (auto _ : state) {
-    for (int i = 1; i <= 400; ++i) {
+    for (int i = 1; i <= 350; ++i) {
       target.publish(0);
       std::this_thread::sleep_for(60ms);
       target.forget_request();
@@ -188,9 +188,10 @@ void silence_to_request(benchmark::State& state) {
   for (auto _ : state) {
     for (int i = 0; i < 5; ++i) {
       SystemTime last;
-      for (int n = 0; n < 40; ++n) {
+      constexpr int kSamples = 28;
+      for (int n = 1; n <= kSamples; ++n) {
         last = target.publish(0);
-        if (n < 39) std::this_thread::sleep_for(100ms);
+        if (n < kSamples) std::this_thread::sleep_for(100ms);
       }
       target.forget_request();
       if (const auto request = target.await_request(5s))
