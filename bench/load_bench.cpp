@@ -104,7 +104,7 @@ void doctor(benchmark::State& state) {
     robots.push_back(
         std::make_unique<Child>(world, "culprit-bench-peer",
                                 std::vector<std::string>{"robot", std::to_string(i), "10", "20"}));
-  std::this_thread::sleep_for(8s);
+  std::this_thread::sleep_for(10s);
   double elapsed = 0;
   double used = 0;
   int exit_code = -1;

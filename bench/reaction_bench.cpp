@@ -133,7 +133,7 @@ void trigger_to_request(benchmark::State& state) {
 
   std::vector<double> requests;  // when they were written, as above
   for (auto _ : state) {
-    for (int i = 1; i <= 350; ++i) {
+    for (int i = 1; i <= 320; ++i) {
       target.publish(0);
       std::this_thread::sleep_for(60ms);
       target.forget_request();
