@@ -144,6 +144,21 @@ TEST_F(RecordingHere, ARequestThatIsReadBackIsBesideTheJournalBeforeItGoesOut) {
   EXPECT_THAT(beside(path), IsEmpty());
 }
 
+// Whoever is killed in between leaves the intent; the journal need not wait for its next time.
+TEST_F(RecordingHere, TheJournalFollowsWhenTheRequestIsOut) {
+  const auto recorder = begin();
+  sees_a_failure(*recorder);
+  ASSERT_TRUE(comes_true([&] { return has(kind::kEvent); })) << "and its thread waits again";
+  std::vector<Observation> none;
+  const std::vector<Command> commands{{CommandId{1}, ComponentId(0), StopProcess{}, 1s}};
+  const auto began = std::chrono::steady_clock::now();
+  recorder->before_commands(now, none, commands, {});
+  EXPECT_TRUE(has(kind::kIntent) || !beside(path).empty());
+  recorder->after_commands();
+  EXPECT_TRUE(comes_true([&] { return has(kind::kIntent); }));
+  EXPECT_LT(std::chrono::steady_clock::now() - began, Recorder::kPeriod / 2);
+}
+
 TEST_F(RecordingHere, WhatAnIntentFollowsFromIsBesideItUnlessTheJournalHasIt) {
   const auto recorder = begin();
   asks_for_a_stop(*recorder);
