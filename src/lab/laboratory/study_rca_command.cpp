@@ -10,7 +10,6 @@
 
 #include "base/text_file.h"
 #include "laboratory/commands.h"
-#include "managers/style_planner.h"
 #include "rca_study/learning_report.h"
 #include "rca_study/regret.h"
 #include "rca_study/repair_process.h"
@@ -23,7 +22,9 @@
 namespace culprit::lab {
 namespace {
 
+using study::rca::RangeOfSeconds;
 using study::rca::RcaCampaign;
+using study::rca::RcaFactors;
 using study::rca::RcaRow;
 using study::rca::RepairProcess;
 using study::rca::Times;
@@ -37,6 +38,7 @@ struct RcaOptions {
   bool flapping = false;
   bool unfixable = false;
   bool ignore = false;
+  RcaFactors factors;
   std::vector<std::string> planners;  // none: all
   std::string objective = "balanced";
   std::uint32_t episodes = 100;
@@ -80,25 +82,24 @@ Expected<RcaCampaign> campaign_of(const RcaOptions& options) {
       for (const double noise : options.noise)
         campaign.settings.push_back({components, faults, noise, options.cyclic,
                                      options.mixed_levels, false, options.flapping,
-                                     options.unfixable, options.ignore});
+                                     options.unfixable, options.ignore, options.factors});
     }
   }
-  auto all = study::rca::planner_names();
   for (const std::string& planner : options.planners) {
-    if (std::find(all.begin(), all.end(), planner) == all.end())
-      return Error{
-          fmt::format("there is no planner '{}'; there are {}", planner, fmt::join(all, ", "))};
+    if (const auto complaint = study::rca::complaint_about_planner(planner))
+      return Error{"--planner: " + *complaint};
   }
   const bool has_optimum = study::rca::has_optimum(campaign);
   const auto& asked = options.planners;
   if (!has_optimum && std::find(asked.begin(), asked.end(), "optimum") != asked.end())
     return Error{fmt::format(
         "the optimum is only worked out for robots of at most {} components with at most {} faults "
-        "and {} subscriptions; see --components and --faults",
+        "and {} subscriptions, all watched, without common causes and false alarms; see "
+        "--components, --faults, --unwatched, --common-causes and --false-alarms",
         RepairProcess::kMostComponents, RepairProcess::kMostFaults,
         RepairProcess::kMostSubscriptions)};
+  auto all = study::rca::usual_planners();
   if (!has_optimum) std::erase(all, "optimum");
-  std::erase_if(all, [](const std::string& name) { return study::find_style(name).has_value(); });
   campaign.planners = asked.empty() ? all : asked;
   campaign.objective = *parse_objective(options.objective);
   campaign.episodes = options.episodes;
@@ -146,6 +147,7 @@ int study_learning(const RcaOptions& options) {
   study::rca::LearningCampaign campaign;
   campaign.setting = {options.components.front(), options.faults.front(), options.noise.front(),
                       options.cyclic};
+  campaign.setting.factors = options.factors;
   campaign.objective = *parse_objective(options.objective);
   campaign.faults = *options.learned;
   campaign.forgetting = options.forgetting;
@@ -160,14 +162,72 @@ int study_learning(const RcaOptions& options) {
   if (!written) return fail(written.error(), kFailed);
   if (options.html.empty()) return kOk;
   const std::string command = fmt::format(
-      "culprit study rca --learn {} --components {} --faults {} --noise {:g}{} --objective {} "
+      "culprit study rca --learn {} --components {} --faults {} --noise {:g}{}{} --objective {} "
       "--forgetting {:g}{} --seed {}",
       campaign.faults, campaign.setting.components, campaign.setting.faults, campaign.setting.noise,
-      options.cyclic ? " --cyclic" : "", options.objective, campaign.forgetting,
-      options.drift ? " --drift" : "", campaign.seed);
+      options.cyclic ? " --cyclic" : "", study::rca::options_of(options.factors), options.objective,
+      campaign.forgetting, options.drift ? " --drift" : "", campaign.seed);
   const auto page = write_text(
       options.html, study::rca::learning_html(campaign, *result, command, options.version));
   return page ? kOk : fail(page.error(), kFailed);
+}
+
+template <class T>
+T value_or_usage_error(const std::string& option, const Expected<T>& read) {
+  if (!read) throw CLI::ValidationError(option, read.error());
+  return *read;
+}
+
+void add_range(CLI::App& command, const std::string& name, RangeOfSeconds& range,
+               const std::string& usual, const std::string& help) {
+  command
+      .add_option_function<std::string>(
+          name,
+          [name, &range](const std::string& text) {
+            range = value_or_usage_error(name, study::rca::parse_range(text));
+          },
+          help)
+      ->type_name("RANGE")
+      ->default_str(usual);
+}
+
+void add_share(CLI::App& command, const std::string& name, double& share, double most,
+               const std::string& usual, const std::string& help) {
+  command
+      .add_option_function<std::string>(
+          name,
+          [name, &share, most](const std::string& text) {
+            share = value_or_usage_error(name, study::rca::parse_share(text, most));
+          },
+          help)
+      ->type_name("SHARE")
+      ->default_str(usual);
+}
+
+// What differs from robot to robot (rca_study/factors.h).
+void add_factors(CLI::App& command, RcaFactors& factors) {
+  add_range(command, "--detector-latency", factors.detector_latency_s, "0..0.4s",
+            "Time until a detector shows a change");
+  command.add_flag("--stated,!--not-stated", factors.states_latency,
+                   "Impacts of strategies include the latency of the detector");
+  add_share(command, "--pass", factors.pass, 1, "90%",
+            "Probability that a subscription passes failures on");
+  add_range(command, "--delay", factors.delay_s, "0.1..0.8s",
+            "Time until a subscription passes a failure on");
+  add_share(command, "--unwatched", factors.unwatched, RcaFactors::kMostUnwatched, "0%",
+            "Share of components without a rule");
+  add_share(command, "--hidden", factors.hidden, 1, "0%",
+            "Share of true dependencies that the graph does not show");
+  command
+      .add_option("--common-causes", factors.common_causes,
+                  "Faults outside the robot, each of which hits two components for a while")
+      ->check(CLI::Range(std::size_t{0}, RcaFactors::kMostCommonCauses))
+      ->capture_default_str();
+  command
+      .add_option("--false-alarms", factors.false_alarms,
+                  "False alarms of each detector per minute, each 1 to 5 s long")
+      ->check(CLI::Range(0.0, RcaFactors::kMostFalseAlarms))
+      ->capture_default_str();
 }
 
 int study_rca(const RcaOptions& options) {
@@ -232,10 +292,11 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
                     "Nothing that the rules have helps against one of the faults");
   command->add_flag("--ignore", options->ignore,
                     "The rules IGNORE the infrastructure topics, as a user's would");
+  add_factors(*command, options->factors);
   command
       ->add_option("--planner", options->planners,
-                   fmt::format("Only these of {}; without a choice, all but those of others "
-                               "(rebet to ghahremani)",
+                   fmt::format("Only these of {}; patient:2s waits 2 s instead of 3.4 s; without a "
+                               "choice, all but patient to ghahremani",
                                fmt::join(study::rca::planner_names(), ", ")))
       ->delimiter(',');
   auto* scenario = command
@@ -243,9 +304,13 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
                                     "Play this scenario (docs/study-rca.md), with other luck in "
                                     "each episode, instead of random ones")
                        ->type_name("FILE");
+  const std::vector<std::string> factors = {
+      "--detector-latency", "--stated", "--pass",          "--delay",
+      "--unwatched",        "--hidden", "--common-causes", "--false-alarms"};
   for (const std::string random : {"--components", "--faults", "--noise", "--cyclic",
                                    "--mixed-levels", "--flapping", "--unfixable", "--ignore"})
     scenario->excludes(random);
+  for (const std::string& factor : factors) scenario->excludes(factor);
   command
       ->add_option("--write-scenario", options->scenario_output,
                    "Write the first episode's scenario there, and play nothing")
@@ -260,6 +325,10 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
               "more how true that is")
           ->check(CLI::Range(1U, 1'000'000U))
           ->excludes(scenario);
+  // It counts every rule as that of the component with its number, and every effect as one that
+  // illness came to.
+  for (const std::string factor : {"--unwatched", "--common-causes", "--false-alarms"})
+    learn->excludes(factor);
   command->add_option("--forgetting", options->forgetting, "As of culprit run")
       ->check(CLI::Range(0.5, 1.0))
       ->capture_default_str()
@@ -272,6 +341,7 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
                                    "How far bayes is from the optimum, for each objective, on "
                                    "random robots of up to four components");
   regret->excludes(scenario)->excludes(learn);
+  for (const std::string& factor : factors) regret->excludes(factor);
   command->add_option("--systems", options->systems, "So many robots")
       ->check(CLI::Range(1U, 1'000'000U))
       ->capture_default_str()

@@ -61,9 +61,11 @@ std::vector<double> walk(const std::vector<std::vector<std::size_t>>& upstream) 
   return share;
 }
 
-Decision candidates_of(RuleId rule, const Knowledge& knowledge) {
-  Decision decision{rule, {}, true, {}, {}};
-  for (const StrategyId id : knowledge.rules[rule].strategies) {
+}  // namespace
+
+Decision cheapest_first(RuleId failure, const Knowledge& knowledge) {
+  Decision decision{failure, {}, true, {}, {}};
+  for (const StrategyId id : knowledge.rules[failure].strategies) {
     const Strategy& strategy = knowledge.rules[id];
     Candidate candidate;
     candidate.strategy = id;
@@ -86,8 +88,6 @@ Decision candidates_of(RuleId rule, const Knowledge& knowledge) {
                    });
   return decision;
 }
-
-}  // namespace
 
 std::vector<double> RankingPlanner::ranks(const Knowledge& knowledge) const {
   std::vector<double> ranks;
@@ -119,7 +119,7 @@ std::vector<Decision> RankingPlanner::plan(std::span<const RuleId> failures,
   for (const std::size_t place : order) {
     const RuleId rule = active[place];
     if (!std::binary_search(failures.begin(), failures.end(), rule)) continue;
-    Decision decision = candidates_of(rule, knowledge);
+    Decision decision = cheapest_first(rule, knowledge);
     for (Candidate& candidate : decision.candidates) {
       if (candidate.excluded) continue;
       if (!first) {

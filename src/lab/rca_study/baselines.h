@@ -7,7 +7,7 @@
 //   random-walk    by how often a walker comes by that goes from a failure to a random one upstream
 //                  of it, and with probability 0.15 to any, as MonitorRank and its followers do
 //
-// Two more are the paper's planner: "naive" without its dependency graph, so that each failure is
+// Those that wait for evidence are in timing_planners.h. Two more are the paper's planner: "naive" without its dependency graph, so that each failure is
 // repaired alone, and "paper".
 #pragma once
 
@@ -18,6 +18,10 @@
 #include "plan/planner.h"
 
 namespace culprit::study::rca {
+
+// The failure's strategies, cheapest first (paper, Eq. 1), with why some cannot be tried; none is
+// chosen.
+Decision cheapest_first(RuleId failure, const Knowledge& knowledge);
 
 enum class Ranking : std::uint8_t { kFirstFailing, kTopological, kRandomWalk };
 

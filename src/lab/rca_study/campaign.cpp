@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <span>
 
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
 #include "knowledge/condensation.h"
 #include "managers/style_planner.h"
 #include "plan/bayes/bayes_planner.h"
@@ -10,11 +13,21 @@
 #include "rca_study/baselines.h"
 #include "rca_study/optimum.h"
 #include "rca_study/rules.h"
+#include "rca_study/timing_planners.h"
 #include "simulation/random.h"
 #include "study/ordered_work.h"
 
 namespace culprit::study::rca {
 namespace {
+
+constexpr std::string_view kPatient = "patient:";
+
+// How long "patient" or "patient:2s" waits; nothing if the latter says no duration.
+std::optional<Duration> wait_of(std::string_view name) {
+  if (!name.starts_with(kPatient)) return PatientPlanner::kUsual;
+  const auto wait = parse_duration(name.substr(kPatient.size()));
+  return wait ? std::optional(*wait) : std::nullopt;
+}
 
 // Expected costs in the decision process of one robot: of the optimum, and of each planner.
 struct Costs {
@@ -103,13 +116,37 @@ bool find_regrets(const RcaCampaign& campaign, unsigned jobs, Count& count,
 }  // namespace
 
 std::vector<std::string> planner_names() {
-  return {"naive", "first-failing", "topological", "random-walk", "paper",  "bayes",
-          "rebet", "ac-ros",        "vogel",       "ghahremani",  "optimum"};
+  return {"naive", "first-failing", "topological", "random-walk", "paper",
+          "bayes", "patient",       "informed",    "rebet",       "ac-ros",
+          "vogel", "ghahremani",    "optimum"};
+}
+
+std::vector<std::string> usual_planners() {
+  auto names = planner_names();
+  std::erase_if(names, [](const std::string& name) {
+    return name == "patient" || name == "informed" || find_style(name).has_value();
+  });
+  return names;
+}
+
+std::optional<std::string> complaint_about_planner(const std::string& name) {
+  const auto names = planner_names();
+  if (std::find(names.begin(), names.end(), name) != names.end()) return std::nullopt;
+  if (name.starts_with(kPatient)) {
+    const auto wait = wait_of(name);
+    if (wait && *wait >= PatientPlanner::kLeast && *wait <= PatientPlanner::kMost)
+      return std::nullopt;
+    return fmt::format("the wait of planner '{}' is not from {} to {}; write it as in patient:2s",
+                       name, culprit::to_string(PatientPlanner::kLeast),
+                       culprit::to_string(PatientPlanner::kMost));
+  }
+  return fmt::format("there is no planner '{}'; there are {}", name, fmt::join(names, ", "));
 }
 
 Expected<std::unique_ptr<const Planner>> make_planner(const std::string& name, Objective objective,
                                                       const RcaScenario& scenario) {
   using Made = std::unique_ptr<const Planner>;
+  if (const auto complaint = complaint_about_planner(name)) return Error{*complaint};
   if (name == "bayes") return Made(std::make_unique<BayesPlanner>(objective));
   if (name == "paper") return Made(std::make_unique<PaperPlanner>());
   if (name == "naive")
@@ -118,17 +155,16 @@ Expected<std::unique_ptr<const Planner>> make_planner(const std::string& name, O
     return Made(std::make_unique<RankingPlanner>(Ranking::kFirstFailing));
   if (name == "topological") return Made(std::make_unique<RankingPlanner>(Ranking::kTopological));
   if (name == "random-walk") return Made(std::make_unique<RankingPlanner>(Ranking::kRandomWalk));
+  if (name == "informed") return Made(std::make_unique<InformedPlanner>(scenario));
+  if (name.starts_with("patient")) return Made(std::make_unique<PatientPlanner>(*wait_of(name)));
   if (const auto style = find_style(name)) return Made(std::make_unique<StylePlanner>(*style));
-  if (name == "optimum") {
-    if (RepairProcess::is_small(scenario)) return Made(optimum_planner(scenario, objective));
-    return Error{"the optimum is only known of small robots: at most " +
-                 std::to_string(RepairProcess::kMostComponents) + " components, " +
-                 std::to_string(RepairProcess::kMostSubscriptions) + " subscriptions and " +
-                 std::to_string(RepairProcess::kMostFaults) + " faults"};
-  }
-  std::string known;
-  for (const std::string& each : planner_names()) known += (known.empty() ? "" : ", ") + each;
-  return Error{"there is no planner '" + name + "'; there are " + known};
+  if (RepairProcess::is_small(scenario)) return Made(optimum_planner(scenario, objective));
+  return Error{
+      "the optimum is only known of small robots: at most " +
+      std::to_string(RepairProcess::kMostComponents) + " components, " +
+      std::to_string(RepairProcess::kMostSubscriptions) + " subscriptions and " +
+      std::to_string(RepairProcess::kMostFaults) +
+      " faults; each component has a rule, and nothing is a common cause or a false alarm"};
 }
 
 void RcaRow::add(const EpisodeResult& result) {
@@ -170,7 +206,9 @@ Expected<SingleRun> single_run(const RcaCampaign& campaign, RunId id) {
 bool has_optimum(const RcaCampaign& campaign) {
   if (campaign.scenario) return RepairProcess::is_small(*campaign.scenario);
   return std::all_of(campaign.settings.begin(), campaign.settings.end(), [](const RcaSetting& s) {
-    return s.components <= RepairProcess::kMostComponents && s.faults <= RepairProcess::kMostFaults;
+    return s.components <= RepairProcess::kMostComponents &&
+           s.faults <= RepairProcess::kMostFaults && s.factors.unwatched <= 0 &&
+           s.factors.common_causes == 0 && s.factors.false_alarms <= 0;
   });
 }
 

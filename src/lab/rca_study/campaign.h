@@ -16,9 +16,14 @@
 
 namespace culprit::study::rca {
 
-// "naive", "first-failing", "topological", "random-walk", "paper", "bayes", the styles of others
-// (style_planner.h), and "optimum", which is for small robots only (optimum.h).
+// "naive", "first-failing", "topological", "random-walk", "paper", "bayes", those that wait for
+// evidence ("patient", "informed": timing_planners.h), the styles of others (style_planner.h), and
+// "optimum", which is for small robots only (optimum.h).
 std::vector<std::string> planner_names();
+// Those of a campaign that names none: without the styles of others and those that wait.
+std::vector<std::string> usual_planners();
+// Why there is no planner of that name; nothing if there is. "patient:2s" says how long it waits.
+std::optional<std::string> complaint_about_planner(const std::string& name);
 
 struct RcaCampaign {
   static constexpr std::string_view kStudy = "rca";  // its name in files

@@ -13,16 +13,19 @@ constexpr std::size_t kMostFaults = 10;
 constexpr double kMostNoise = 0.4;
 constexpr std::uint32_t kMostEpisodes = 1'000'000;
 constexpr std::size_t kMostSettings = 256;
+constexpr std::size_t kMostPlanners = 64;
 
 Json to_json(const RcaSetting& setting) {
-  return {{"components", setting.components},
-          {"faults", setting.faults},
-          {"noise", setting.noise},
-          {"cyclic", setting.is_cyclic},
-          {"mixed_levels", setting.has_mixed_levels},
-          {"flapping", setting.is_flapping},
-          {"unfixable", setting.has_unfixable},
-          {"ignore", setting.ignores_plumbing}};
+  Json json{{"components", setting.components},
+            {"faults", setting.faults},
+            {"noise", setting.noise},
+            {"cyclic", setting.is_cyclic},
+            {"mixed_levels", setting.has_mixed_levels},
+            {"flapping", setting.is_flapping},
+            {"unfixable", setting.has_unfixable},
+            {"ignore", setting.ignores_plumbing}};
+  if (setting.factors != RcaFactors()) json["factors"] = to_json(setting.factors);
+  return json;
 }
 
 RcaSetting setting(const Json& json, std::string& complaint) {
@@ -41,6 +44,11 @@ RcaSetting setting(const Json& json, std::string& complaint) {
   setting.is_flapping = option("flapping");
   setting.has_unfixable = option("unfixable");
   setting.ignores_plumbing = option("ignore");
+  if (fields.has("factors")) {
+    const auto factors = factors_from_json(fields.object("factors"));
+    if (factors) setting.factors = *factors;
+    if (!factors) fields.complain_inside("factors", factors.error());
+  }
   complaint = fields.complaint();
   return setting;
 }
@@ -61,14 +69,13 @@ std::vector<RcaSetting> settings(JsonFields& campaign) {
 
 std::vector<std::string> planners(JsonFields& campaign) {
   std::vector<std::string> planners;
-  const auto known = planner_names();
   const Json& all = campaign.array("planners");
-  if (all.empty() || all.size() > known.size())
+  if (all.empty() || all.size() > kMostPlanners)
     campaign.complain("planners", "has no entry, or too many");
   for (const Json& each : all) {
     const std::string name = each.is_string() ? each.get<std::string>() : "";
-    if (std::find(known.begin(), known.end(), name) == known.end()) {
-      campaign.complain("planners", "has '" + name + "', which there is not");
+    if (const auto complaint = complaint_about_planner(name)) {
+      campaign.complain_inside("planners", *complaint);
       break;
     }
     planners.push_back(name);

@@ -4,6 +4,8 @@
 //      "planners": ["paper", "bayes"], "objective": "balanced", "episodes": 20, "seed": 1,
 //      "version": "1.2.3"}
 //
+// A setting that differs from the usual robots in a factor also has "factors" (factors.h).
+//
 // With a scenario of its own it has "scenario" (scenario_json.h), and one setting, which says what
 // the scenario is like.
 #pragma once

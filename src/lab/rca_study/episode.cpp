@@ -44,7 +44,11 @@ class Judge {
   Judge(const RcaScenario& scenario, const RuleSet& rules, const Plant& plant,
         EpisodeResult& result)
       : rules_(rules), plant_(plant), result_(result) {
-    for (const InjectedFault& fault : scenario.faults) faulty_.insert(ComponentId(fault.component));
+    for (const InjectedFault& fault : scenario.faults) {
+      const ComponentId component(fault.component);
+      faulty_.insert(component);
+      if (!scenario.components[fault.component].is_unwatched) repairable_.insert(component);
+    }
     result.faults = static_cast<std::int32_t>(faulty_.size());
   }
 
@@ -56,7 +60,7 @@ class Judge {
   }
 
   void conclude() {
-    result_.is_exact = adapted_ == faulty_;
+    result_.is_exact = adapted_ == repairable_;
     result_.effects = static_cast<std::int32_t>(grounded_.size());
     for (const auto& [rule, is_grounded] : grounded_) result_.grounded += is_grounded ? 1 : 0;
   }
@@ -77,7 +81,7 @@ class Judge {
 
   void see(const FailureHeldBack& held) {
     const std::size_t effect = rules_[held.rule].components.front().index;
-    if (plant_.fault(effect) || !plant_.is_ill(effect)) return;
+    if (plant_.fault(effect) || plant_.is_hit(effect) || !plant_.is_ill(effect)) return;
     for (const Candidate& candidate : held.candidates) {
       if (candidate.excluded != Condition::kDependency || !candidate.failure) continue;
       const std::size_t cause = rules_[*candidate.failure].components.front().index;
@@ -93,6 +97,7 @@ class Judge {
   const Plant& plant_;
   EpisodeResult& result_;
   std::set<ComponentId> faulty_;
+  std::set<ComponentId> repairable_;  // of these: those with a rule
   std::set<ComponentId> adapted_;
   std::map<RuleId, bool> grounded_;  // by failure that is only an effect: what it waited for last
 };
@@ -162,6 +167,7 @@ EpisodeResult play(const RcaScenario& scenario, const RuleSet& rules,
     result.unresolved += robot.plant().fault(c) ? 1 : 0;
   double first_s = scenario.horizon_s;
   for (const InjectedFault& fault : scenario.faults) first_s = std::min(first_s, fault.at_s);
+  for (const CommonCause& cause : scenario.common_causes) first_s = std::min(first_s, cause.at_s);
   const Time end = result.is_recovered ? clock.last_change() : robot.now();
   result.recovery_s = std::max(0.0, seconds(end.time_since_epoch()) - first_s);
   result.downtime_s = clock.downtime_s(robot.now());
@@ -187,6 +193,14 @@ SingleRun single_run(const RcaScenario& scenario, std::unique_ptr<const Planner>
     const std::string& component = scenario.components[fault.component].name;
     run.incidents.push_back({fault.at_s, Happening::kFault, component,
                              fmt::format("fault: {} {}", component, to_string(fault.kind))});
+  }
+  for (const CommonCause& cause : scenario.common_causes) {
+    for (const std::size_t hit : {cause.first, cause.second}) {
+      const std::string& component = scenario.components[hit].name;
+      run.incidents.push_back(
+          {cause.at_s, Happening::kFault, component,
+           fmt::format("common cause: {} for {:.1f} s", component, cause.lasts_s)});
+    }
   }
   std::stable_sort(
       run.incidents.begin(), run.incidents.end(),

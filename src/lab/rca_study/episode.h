@@ -15,7 +15,8 @@ namespace culprit::study::rca {
 struct EpisodeResult {
   std::int32_t faults = 0;
   // The components that were adapted are those that had a fault: all, and no other. A fault that
-  // hides behind another counts when it is found once it shows.
+  // hides behind another counts when it is found once it shows; one of a component without a rule
+  // does not count.
   bool is_exact = false;
   bool is_first_right = false;  // the component adapted first had a fault then
   // Of the failures that were only effects and waited for another: how many there were, and how

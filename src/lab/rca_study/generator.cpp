@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include "simulation/random.h"
@@ -11,10 +12,12 @@ namespace {
 
 using simulation::Random;
 
-constexpr double kPasses = 0.9;          // of an ordinary subscription
 constexpr double kFeedbackPasses = 0.5;  // controllers live with a bad estimate for a while
 constexpr double kFirstFault_s = 3;      // until then the robot is well
 constexpr double kAtOnce_s = 1;          // within which all faults come
+constexpr double kCycle_s = 0.2;         // of the rules
+constexpr double kShortestCause_s = 5;   // how long a common cause lasts
+constexpr double kLongestCause_s = 15;
 
 // What helps against what, by Repair and FaultKind. No source publishes such rates; these say that
 // a process that is gone or hangs needs a new one, and that most of the rest yields to a restart.
@@ -46,7 +49,8 @@ std::vector<InjectedFault> faults(const RcaSetting& setting, Random& random) {
 
 class Generator {
  public:
-  Generator(const RcaSetting& setting, std::uint64_t seed) : setting_(setting), random_(seed) {
+  Generator(const RcaSetting& setting, std::uint64_t seed)
+      : setting_(setting), factors_(setting.factors), random_(seed), more_(simulation::mix(~seed)) {
     scenario_.seed = random_.next();
   }
 
@@ -57,6 +61,9 @@ class Generator {
     if (setting_.is_cyclic && size() > 1) add_feedback();
     if (setting_.components >= 20) add_infrastructure();
     scenario_.faults = faults(setting_, random_);
+    leave_unwatched();
+    hide_dependencies();
+    add_common_causes();
     return std::move(scenario_);
   }
 
@@ -78,8 +85,11 @@ class Generator {
     for (std::size_t i = 0; i < size(); ++i) {
       RcaComponent component{"c" + std::to_string(i), Criticality::kError, {}, {}};
       if (setting_.has_mixed_levels) component.criticality = kLevels[below(kLevels.size())];
-      component.detector = {random_.uniform(0, 0.4), setting_.noise, setting_.noise};
+      component.detector = {
+          random_.uniform(factors_.detector_latency_s.low, factors_.detector_latency_s.high),
+          setting_.noise, setting_.noise, factors_.false_alarms};
       for (std::size_t r = 0; r < kRepairs; ++r) component.treatments.push_back(treatment(r));
+      if (factors_.states_latency) state_latency(component);
       scenario_.components.push_back(std::move(component));
       scenario_.topics.push_back({"/c" + std::to_string(i) + "/out", {i}, {}});
     }
@@ -101,13 +111,20 @@ class Generator {
     return treatment;
   }
 
+  // The verdict on a strategy comes after its impact, and so after the detector could show it.
+  static void state_latency(RcaComponent& component) {
+    for (Treatment& treatment : component.treatments)
+      treatment.impact += static_cast<int>(std::ceil(component.detector.latency_s / kCycle_s));
+  }
+
   void subscribe(std::size_t topic, std::size_t component, double passes) {
     auto& subscribers = scenario_.topics[topic].subscribers;
     const bool is_there =
         std::any_of(subscribers.begin(), subscribers.end(),
                     [&](const Subscription& s) { return s.component == component; });
     if (is_there) return;
-    subscribers.push_back({component, passes, random_.uniform(0.1, 0.8), false});
+    subscribers.push_back(
+        {component, passes, random_.uniform(factors_.delay_s.low, factors_.delay_s.high), false});
   }
 
   // One to three inputs; every tenth component of a layer has many readers.
@@ -120,7 +137,7 @@ class Generator {
         const std::size_t width = first_of(from + 1) - first_of(from);
         std::size_t place = below(width);
         if (random_.chance(0.3)) place -= place % 10;
-        subscribe(first_of(from) + place, i, kPasses);
+        subscribe(first_of(from) + place, i, factors_.pass);
       }
     }
   }
@@ -143,7 +160,7 @@ class Generator {
       const std::size_t back = std::min(layer_of(from), 1 + below(3));
       const std::size_t to = first_of(layer_of(from) - back);
       const std::size_t width = first_of(layer_of(from) - back + 1) - to;
-      subscribe(from, to + below(width), setting_.is_as_told ? kPasses : kFeedbackPasses);
+      subscribe(from, to + below(width), setting_.is_as_told ? factors_.pass : kFeedbackPasses);
     }
   }
 
@@ -165,8 +182,73 @@ class Generator {
     subscribe(scenario_.topics.size() - 2, monitor, 0);
   }
 
+  // So many of those at hand, each as likely as any other.
+  template <class Each>
+  void take_share(double share, std::vector<Each> all, const std::function<void(Each)>& take) {
+    auto count = static_cast<std::size_t>(std::lround(share * static_cast<double>(all.size())));
+    for (; count > 0; --count) {
+      const std::size_t place = more_.next() % all.size();
+      take(all[place]);
+      all[place] = all.back();
+      all.pop_back();
+    }
+  }
+
+  void leave_unwatched() {
+    std::vector<RcaComponent*> all;
+    for (RcaComponent& component : scenario_.components) all.push_back(&component);
+    take_share<RcaComponent*>(factors_.unwatched, all,
+                              [](RcaComponent* c) { c->is_unwatched = true; });
+  }
+
+  void hide_dependencies() {
+    std::vector<Subscription*> all;
+    for (RcaTopic& topic : scenario_.topics) {
+      for (Subscription& s : topic.subscribers) {
+        if (s.passes > 0) all.push_back(&s);
+      }
+    }
+    take_share<Subscription*>(factors_.hidden, all, [](Subscription* s) { s->is_hidden = true; });
+  }
+
+  // The components that illness may reach from one, that one included.
+  std::vector<bool> reached_from(std::size_t component) const {
+    std::vector<bool> is_reached(size(), false);
+    std::vector<std::size_t> open{component};
+    is_reached[component] = true;
+    while (!open.empty()) {
+      const std::size_t from = open.back();
+      open.pop_back();
+      for (const Subscription& s : scenario_.topics[from].subscribers) {
+        if (s.passes <= 0 || is_reached[s.component]) continue;
+        is_reached[s.component] = true;
+        open.push_back(s.component);
+      }
+    }
+    return is_reached;
+  }
+
+  // On a small robot there may be no two components of which neither depends on the other: then
+  // there are fewer causes.
+  void add_common_causes() {
+    constexpr int kTries = 200;
+    for (std::size_t n = 0; n < factors_.common_causes; ++n) {
+      for (int k = 0; k < kTries; ++k) {
+        const std::size_t first = more_.next() % size();
+        const std::size_t second = more_.next() % size();
+        if (reached_from(first)[second] || reached_from(second)[first]) continue;
+        scenario_.common_causes.push_back({first, second,
+                                           kFirstFault_s + more_.uniform(0, kAtOnce_s),
+                                           more_.uniform(kShortestCause_s, kLongestCause_s)});
+        break;
+      }
+    }
+  }
+
   const RcaSetting& setting_;
+  const RcaFactors& factors_;
   Random random_;
+  Random more_;  // of the factors, so that a robot differs by them alone
   RcaScenario scenario_;
 };
 

@@ -9,6 +9,7 @@
 // Sizes in use: 5 (SUNSET), 20 (Nav2), 200 and 300 (Autoware), up to 10,000.
 #pragma once
 
+#include "rca_study/factors.h"
 #include "rca_study/scenario.h"
 
 namespace culprit::study::rca {
@@ -26,6 +27,7 @@ struct RcaSetting {
   bool is_flapping = false;       // every fault comes and goes; else any is of any kind
   bool has_unfixable = false;     // nothing helps against one of the faults
   bool ignores_plumbing = false;  // the rules' author knows the infrastructure, and ignores it
+  RcaFactors factors{};
 
   bool operator==(const RcaSetting&) const = default;
 };

@@ -62,30 +62,38 @@ std::string figure(const std::string& id, const std::string& what, const Calibra
          calibration_plot(what, calibration).inside_page() + "</figure>\n";
 }
 
+// ", detectors 0 to 3 s late"; empty if it is a usual robot.
+std::string other_factors(const LearningCampaign& campaign) {
+  const std::string factors = describe(campaign.setting.factors);
+  return factors.empty() ? "" : ", " + factors;
+}
+
 }  // namespace
 
 std::string learning_text(const LearningCampaign& campaign, const LearningResult& result) {
   return fmt::format(
-      "Learned from {} faults on a robot of {} components, measured on {} more{}\n"
+      "Learned from {} faults on a robot of {} components{}, measured on {} more{}\n"
       "  success of strategies: expected calibration error {:.3f} of {} outcomes\n"
       "  of each strategy:      {:.3f} from how often it helped, in the mean\n"
       "  kappa:                 expected calibration error {:.3f} of {} outcomes\n",
-      result.learned, campaign.setting.components, result.measured,
+      result.learned, campaign.setting.components, other_factors(campaign), result.measured,
       campaign.has_drift ? "; what helps changed for the last quarter of the former" : "",
       result.success.error(), result.success.count(), result.rates.error(), result.kappa.error(),
       result.kappa.count());
 }
 
 std::string learning_json(const LearningCampaign& campaign, const LearningResult& result) {
-  const Json document = {{"learning",
-                          {{"components", campaign.setting.components},
-                           {"faults_learned", result.learned},
-                           {"faults_measured", result.measured},
-                           {"forgetting", campaign.forgetting},
-                           {"drift", campaign.has_drift},
-                           {"success", json_of(result.success)},
-                           {"kappa", json_of(result.kappa)},
-                           {"rate_error", result.rates.error()}}}};
+  Json document = {{"learning",
+                    {{"components", campaign.setting.components},
+                     {"faults_learned", result.learned},
+                     {"faults_measured", result.measured},
+                     {"forgetting", campaign.forgetting},
+                     {"drift", campaign.has_drift},
+                     {"success", json_of(result.success)},
+                     {"kappa", json_of(result.kappa)},
+                     {"rate_error", result.rates.error()}}}};
+  if (campaign.setting.factors != RcaFactors())
+    document["learning"]["factors"] = to_json(campaign.setting.factors);
   return to_indented(document) + "\n";
 }
 
@@ -98,8 +106,9 @@ std::string learning_html(const LearningCampaign& campaign, const LearningResult
          "<dl class=\"facts\">\n" +
          page_fact("Command", "<code>" + markup_escaped(command) + "</code>") +
          page_fact("Version", "culprit " + markup_escaped(version)) +
-         page_fact("Robot", fmt::format("{} components, {} faults at once",
-                                        campaign.setting.components, campaign.setting.faults)) +
+         page_fact("Robot",
+                   fmt::format("{} components, {} faults at once{}", campaign.setting.components,
+                               campaign.setting.faults, other_factors(campaign))) +
          page_fact(
              "Learned from",
              fmt::format("{} faults{}", result.learned,

@@ -16,7 +16,9 @@ constexpr Duration kFlapsOff = 1500ms;
 }  // namespace
 
 Plant::Plant(const RcaScenario& scenario)
-    : scenario_(scenario), states_(scenario.components.size()), to_come_(scenario.faults.size()) {
+    : scenario_(scenario),
+      states_(scenario.components.size()),
+      to_come_(scenario.faults.size() + scenario.common_causes.size()) {
   simulation::Random random(simulation::mix(scenario.seed));
   for (const RcaTopic& topic : scenario.topics) {
     for (const Subscription& s : topic.subscribers) {
@@ -29,6 +31,13 @@ Plant::Plant(const RcaScenario& scenario)
   }
   for (const InjectedFault& fault : scenario.faults)
     at(Time(from_seconds(fault.at_s)), [this, &fault] { inject(fault); });
+  for (const CommonCause& cause : scenario.common_causes) {
+    at(Time(from_seconds(cause.at_s)), [this, &cause] {
+      --to_come_;
+      hit(cause, 1);
+    });
+    at(Time(from_seconds(cause.at_s + cause.lasts_s)), [this, &cause] { hit(cause, -1); });
+  }
 }
 
 bool Plant::step(Time until) {
@@ -60,6 +69,12 @@ void Plant::flap(std::size_t component) {
   update();
 }
 
+void Plant::hit(const CommonCause& cause, int change) {
+  states_[cause.first].hits += change;
+  states_[cause.second].hits += change;
+  update();
+}
+
 void Plant::set_down(std::size_t component, bool is_down) {
   states_[component].is_down = is_down;
   update();
@@ -81,7 +96,8 @@ std::vector<std::optional<Duration>> Plant::onsets() const {
   std::vector<std::optional<Duration>> onset(states_.size());
   std::vector<std::size_t> redundant(states_.size(), 0);
   for (std::size_t c = 0; c < states_.size(); ++c) {
-    if (states_[c].shows || states_[c].is_down) open.emplace(Duration::zero(), c);
+    if (states_[c].shows || states_[c].is_down || states_[c].hits > 0)
+      open.emplace(Duration::zero(), c);
   }
   while (!open.empty()) {
     const auto [at, c] = open.top();

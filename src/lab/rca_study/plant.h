@@ -35,6 +35,8 @@ class Plant {
   // What its detector would say if it made no mistakes.
   bool looks_ill(std::size_t component) const { return states_[component].looks_ill; }
   std::optional<FaultKind> fault(std::size_t component) const { return states_[component].fault; }
+  // Does a common cause hit it now?
+  bool is_hit(std::size_t component) const { return states_[component].hits > 0; }
   bool is_well() const { return ill_ == 0 && faults_ == 0 && !has_faults_to_come(); }
   // Does illness pass from one to the other in this episode, directly or through others?
   bool passes(std::size_t from, std::size_t to) const;
@@ -60,6 +62,7 @@ class Plant {
     std::size_t redundant = 0;  // inputs that have to be ill together
     std::optional<FaultKind> fault;
     bool shows = false;  // the fault, now
+    int hits = 0;        // common causes at work
     bool is_down = false;
     bool is_ill = false;
     bool looks_ill = false;
@@ -71,6 +74,8 @@ class Plant {
   bool has_faults_to_come() const { return to_come_ > 0; }
   void inject(const InjectedFault& fault);
   void flap(std::size_t component);
+  // A common cause begins (1) or ends (-1).
+  void hit(const CommonCause& cause, int change);
   void update();
   std::vector<std::optional<Duration>> onsets() const;
   void become(std::size_t component, bool is_ill, Duration delay);

@@ -1,6 +1,7 @@
 #include "rca_study/rca_robot.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace culprit::study::rca {
 namespace {
@@ -22,10 +23,15 @@ RcaRobot::RcaRobot(const RcaScenario& scenario, const RuleSet& rules, Duration q
       noise_(simulation::mix(scenario.seed + 1)),
       luck_(simulation::mix(scenario.seed + 2)),
       bodies_(scenario.components.size()),
-      parameters_(scenario.components.size()) {
+      parameters_(scenario.components.size()),
+      signals_(scenario.components.size()) {
   plant_.on_fault = [this](std::size_t c) { on_fault(c); };
   for (std::size_t p = 0; p < rules.parameters.size(); ++p)
     parameters_[rules.parameters[p].component.index] = ParameterId(p);
+  for (std::size_t c = 0, s = 0; c < bodies_.size(); ++c) {
+    if (!scenario.components[c].is_unwatched) signals_[c] = SignalId(s++);
+    false_alarms_.push_back({simulation::Random(simulation::mix(scenario.seed + 3) + c)});
+  }
   for (std::size_t c = 0; c < bodies_.size(); ++c) {
     bodies_[c].parameters[kTuning] = 1.0;
     bodies_[c].start(++last_pid_);
@@ -34,9 +40,11 @@ RcaRobot::RcaRobot(const RcaScenario& scenario, const RuleSet& rules, Duration q
   for (const RcaTopic& topic : scenario.topics) {
     for (const std::size_t p : topic.publishers)
       tell(EndpointAppeared{node_of(scenario.components[p]), EndpointKind::kPublisher, topic.name});
-    for (const Subscription& s : topic.subscribers)
-      tell(EndpointAppeared{node_of(scenario.components[s.component]), EndpointKind::kSubscriber,
-                            topic.name});
+    for (const Subscription& s : topic.subscribers) {
+      if (!s.is_hidden)
+        tell(EndpointAppeared{node_of(scenario.components[s.component]), EndpointKind::kSubscriber,
+                              topic.name});
+    }
   }
   read_detectors();
 }
@@ -64,15 +72,29 @@ void RcaRobot::appear(std::size_t component) {
 void RcaRobot::read_detectors() {
   for (std::size_t c = 0; c < bodies_.size(); ++c) {
     const Detector& detector = scenario_.components[c].detector;
-    const bool looks_ill = plant_.looks_ill(c);
+    if (!signals_[c]) continue;
+    const bool looks_ill = plant_.looks_ill(c) || is_false_alarm(c);
     const bool is_wrong = noise_.chance(looks_ill ? detector.miss : detector.false_alarm);
-    tell(SignalRead{SignalId(c), Value(looks_ill != is_wrong)});
+    tell(SignalRead{*signals_[c], Value(looks_ill != is_wrong)});
   }
   if (!plant_.is_well()) well_since_.reset();
   if (plant_.is_well() && !well_since_) well_since_ = now();
   const bool is_quiet = well_since_ && now() >= later(*well_since_, quiet_);
   is_over_ = is_quiet || now() >= Time(from_seconds(scenario_.horizon_s));
   if (!is_over_) plant_.after(from_seconds(scenario_.reading_s), [this] { read_detectors(); });
+}
+
+// Alarms of 1 to 5 s, as often as the detector has them (a Poisson process).
+bool RcaRobot::is_false_alarm(std::size_t component) {
+  const double per_min = scenario_.components[component].detector.false_alarms_per_min;
+  if (per_min <= 0) return false;
+  FalseAlarm& alarm = false_alarms_[component];
+  const double now_s = seconds(now().time_since_epoch());
+  while (alarm.ends_s <= now_s) {
+    alarm.begins_s = alarm.ends_s - std::log(1 - alarm.luck.uniform()) * 60 / per_min;
+    alarm.ends_s = alarm.begins_s + alarm.luck.uniform(1, 5);
+  }
+  return alarm.begins_s <= now_s;
 }
 
 void RcaRobot::on_fault(std::size_t component) {

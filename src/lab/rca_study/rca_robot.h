@@ -37,6 +37,7 @@ class RcaRobot : public Robot {
  private:
   void appear(std::size_t component);
   void read_detectors();
+  bool is_false_alarm(std::size_t component);
   void on_fault(std::size_t component);
   void lose(std::size_t component, const std::string& remark);
   void serve(const Command& command);
@@ -58,6 +59,13 @@ class RcaRobot : public Robot {
   simulation::Random luck_;
   std::vector<simulation::Body> bodies_;
   std::vector<std::optional<ParameterId>> parameters_;  // "tuning", by component
+  std::vector<std::optional<SignalId>> signals_;        // what its detector says; by component
+  struct FalseAlarm {
+    simulation::Random luck;
+    double begins_s = 0;
+    double ends_s = 0;
+  };
+  std::vector<FalseAlarm> false_alarms_;  // the next or present one, by component
   std::set<CommandId> open_;
   std::vector<Observation> inbox_;
   int last_pid_ = 100;

@@ -63,13 +63,19 @@ void RepairProcess::connect(DependencyGraph& graph) const {
   for (const RcaTopic& topic : scenario_.topics) {
     for (const std::size_t p : topic.publishers)
       graph.endpoint_appeared(node(p), EndpointKind::kPublisher, topic.name);
-    for (const Subscription& s : topic.subscribers)
-      graph.endpoint_appeared(node(s.component), EndpointKind::kSubscriber, topic.name);
+    for (const Subscription& s : topic.subscribers) {
+      if (!s.is_hidden)
+        graph.endpoint_appeared(node(s.component), EndpointKind::kSubscriber, topic.name);
+    }
   }
 }
 
 bool RepairProcess::is_small(const RcaScenario& scenario) {
-  return scenario.components.size() <= kMostComponents && scenario.faults.size() <= kMostFaults &&
+  const bool is_all_seen = std::none_of(
+      scenario.components.begin(), scenario.components.end(),
+      [](const RcaComponent& c) { return c.is_unwatched || c.detector.false_alarms_per_min > 0; });
+  return is_all_seen && scenario.common_causes.empty() &&
+         scenario.components.size() <= kMostComponents && scenario.faults.size() <= kMostFaults &&
          !scenario.faults.empty() && subscriptions(scenario) <= kMostSubscriptions;
 }
 

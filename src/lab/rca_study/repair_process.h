@@ -87,7 +87,8 @@ class RepairProcess {
   static constexpr std::size_t kMostFaults = 3;
   static constexpr int kTurns = 2;
 
-  // Can it be worked out for this robot?
+  // Can it be worked out for this robot? Not with common causes, false alarms that last, or
+  // components without a rule.
   static bool is_small(const RcaScenario& scenario);
 
   // Both must outlive it. `rules` are those of the scenario. @pre is_small(scenario)

@@ -45,24 +45,27 @@ std::vector<std::optional<bool>> on_front(const std::vector<RcaRow>& rows) {
 // All that is told of a row, in the order of its telling.
 Json figures(const RcaRow& row, std::optional<bool> is_on_front, Times times) {
   const auto optional = [](std::optional<double> value) { return value ? Json(*value) : Json(); };
-  return {{"planner", row.planner},
-          {"components", row.setting.components},
-          {"faults", row.setting.faults},
-          {"noise", row.setting.noise},
-          {"cyclic", row.setting.is_cyclic},
-          {"episodes", row.episodes},
-          {"exact_set", row.exact.mean()},
-          {"top1", row.first_right.mean()},
-          {"path", optional(path(row))},
-          {"wrong_component", row.wrong_component.mean()},
-          {"unnecessary", row.unnecessary.mean()},
-          {"strategies_per_fault", row.strategies_per_fault.mean()},
-          {"downtime_s", row.downtime_s.mean()},
-          {"recovery_s", row.recovery_s.mean()},
-          {"unresolved", row.unresolved.mean()},
-          {"regret", optional(row.regret)},
-          {"plan_us", optional(plan_us(row, times))},
-          {"on_front", is_on_front ? Json(*is_on_front) : Json()}};
+  Json json{{"planner", row.planner},
+            {"components", row.setting.components},
+            {"faults", row.setting.faults},
+            {"noise", row.setting.noise},
+            {"cyclic", row.setting.is_cyclic},
+            {"episodes", row.episodes},
+            {"exact_set", row.exact.mean()},
+            {"top1", row.first_right.mean()},
+            {"path", optional(path(row))},
+            {"wrong_component", row.wrong_component.mean()},
+            {"unnecessary", row.unnecessary.mean()},
+            {"strategies_per_fault", row.strategies_per_fault.mean()},
+            {"downtime_s", row.downtime_s.mean()},
+            {"recovery_s", row.recovery_s.mean()},
+            {"unresolved", row.unresolved.mean()},
+            {"regret", optional(row.regret)},
+            {"plan_us", optional(plan_us(row, times))},
+            {"on_front", is_on_front ? Json(*is_on_front) : Json()}};
+  const std::string factors = options_of(row.setting.factors);
+  if (!factors.empty()) json["factors"] = factors.substr(1);
+  return json;
 }
 
 std::string percent(std::optional<double> share) { return share ? number(100 * *share, 1) : "–"; }
@@ -96,6 +99,7 @@ Table rca_table(const RcaCampaign& campaign, const std::vector<RcaRow>& rows, Ti
   if (all.is_flapping) robots += ", flapping faults";
   if (all.has_unfixable) robots += ", one fault that nothing fixes";
   if (all.ignores_plumbing) robots += ", infrastructure ignored";
+  if (const std::string factors = describe(all.factors); !factors.empty()) robots += ", " + factors;
   Table table{"rca",
               fmt::format("Root causes on random robots{}: means of {} episodes, seed {}", robots,
                           campaign.episodes, campaign.seed),

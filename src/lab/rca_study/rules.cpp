@@ -67,9 +67,10 @@ std::string rules_text(const RcaScenario& scenario) {
   }
   for (const RcaComponent& c : scenario.components) {
     text += fmt::format("COMPONENT {0} NODE /{0} LAUNCH \"run {0}\"\n", c.name);
-    text += fmt::format("SIGNAL {0}_ill DIAGNOSTIC {0} KEY ill\n", c.name);
+    if (!c.is_unwatched) text += fmt::format("SIGNAL {0}_ill DIAGNOSTIC {0} KEY ill\n", c.name);
   }
   for (const RcaComponent& c : scenario.components) {
+    if (c.is_unwatched) continue;
     text +=
         fmt::format("\nRULE {0}_fails\n  POLICIES {1}{2} ATTEMPTS 12\n  TRIGGER {0}_ill == true\n",
                     c.name, level(c.criticality), hold(c.detector));

@@ -1,6 +1,6 @@
 // The rules of a scenario: all that a manager is told of the robot beforehand.
 //
-// One rule for each component: its detector says that it is ill. The author of the rules knows how
+// One rule for each component that is watched: its detector says that it is ill. The author of the rules knows how
 // often a reading is wrong and has a failure hold in as many of a few readings as make a false
 // detection rare.
 #pragma once
@@ -14,8 +14,8 @@ namespace culprit::study::rca {
 // In the rule language.
 std::string rules_text(const RcaScenario& scenario);
 
-// The same, checked. Rule number i, component number i and signal number i are those of component
-// i.
+// The same, checked. Component number i is component i; rule number i and signal number i are those
+// of the i-th component that is watched.
 RuleSet rules_of(const RcaScenario& scenario);
 
 }  // namespace culprit::study::rca

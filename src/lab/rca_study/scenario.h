@@ -4,9 +4,10 @@
 // What a manager may know is what the generated rules say (rules.h). The rest is hidden truth:
 // which subscriptions pass failures on, how good the detectors are, and what helps against what.
 //
-// Who is ill? A component with a fault that shows, one that is taken down by an adaptation, and
-// every component that is passed an illness: by one of its subscriptions, or, of those that are
-// redundant, by all of them. An illness that only feeds itself (a circle) is none.
+// Who is ill? A component with a fault that shows, one that is taken down by an adaptation, one that
+// a common cause hits, and every component that is passed an illness: by one of its subscriptions,
+// or, of those that are redundant, by all of them. An illness that only feeds itself (a circle) is
+// none.
 #pragma once
 
 #include <array>
@@ -48,7 +49,8 @@ struct Treatment {
 struct Detector {
   double latency_s = 0;  // from a change until readings show it
   double miss = 0;       // the probability that a reading of an ill component says that it is well
-  double false_alarm = 0;  // and the other way round
+  double false_alarm = 0;           // and the other way round
+  double false_alarms_per_min = 0;  // alarms of some seconds while it is well, in the mean
 };
 
 struct RcaComponent {
@@ -56,6 +58,7 @@ struct RcaComponent {
   Criticality criticality = Criticality::kError;
   Detector detector;
   std::vector<Treatment> treatments;  // each repair at most once
+  bool is_unwatched = false;          // no rule is about it
 };
 
 struct Subscription {
@@ -63,6 +66,7 @@ struct Subscription {
   double passes = 0;   // the probability that this subscription passes failures on, in an episode
   double delay_s = 0;  // until it does
   bool is_redundant = false;  // does so only together with all others like it of the component
+  bool is_hidden = false;     // the graph does not show it
 };
 
 struct RcaTopic {
@@ -79,6 +83,15 @@ struct InjectedFault {
   bool is_unfixable = false;  // nothing that the rules have helps against it
 };
 
+// A cause outside the robot, such as a network that is down: it makes two components ill for a while,
+// and no repair of them helps.
+struct CommonCause {
+  std::size_t first = 0;
+  std::size_t second = 0;
+  double at_s = 0;
+  double lasts_s = 0;
+};
+
 struct RcaScenario {
   std::uint64_t seed = 0;  // of all that is left to chance while it is played
   double reading_s = 0.2;  // between two readings of each detector
@@ -86,6 +99,7 @@ struct RcaScenario {
   std::vector<RcaComponent> components;
   std::vector<RcaTopic> topics;
   std::vector<InjectedFault> faults;
+  std::vector<CommonCause> common_causes{};
 };
 
 }  // namespace culprit::study::rca

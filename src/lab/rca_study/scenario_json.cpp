@@ -8,6 +8,7 @@
 
 #include "json/json.h"
 #include "language/checker.h"
+#include "rca_study/factors.h"
 #include "rca_study/rules.h"
 #include "study/json_fields.h"
 
@@ -44,24 +45,30 @@ Json json_of(const Treatment& t) {
 Json json_of(const RcaComponent& c) {
   Json treatments = Json::array();
   for (const Treatment& t : c.treatments) treatments.push_back(json_of(t));
-  return {{"name", c.name},
-          {"criticality", level_name(c.criticality)},
-          {"detector",
-           {{"latency_s", c.detector.latency_s},
-            {"miss", c.detector.miss},
-            {"false_alarm", c.detector.false_alarm}}},
-          {"treatments", std::move(treatments)}};
+  Json json{{"name", c.name},
+            {"criticality", level_name(c.criticality)},
+            {"detector",
+             {{"latency_s", c.detector.latency_s},
+              {"miss", c.detector.miss},
+              {"false_alarm", c.detector.false_alarm}}},
+            {"treatments", std::move(treatments)}};
+  if (c.detector.false_alarms_per_min > 0)
+    json["detector"]["false_alarms_per_min"] = c.detector.false_alarms_per_min;
+  if (c.is_unwatched) json["unwatched"] = true;
+  return json;
 }
 
 Json json_of(const RcaTopic& topic, const RcaScenario& scenario) {
   Json publishers = Json::array();
   for (const std::size_t p : topic.publishers) publishers.push_back(scenario.components[p].name);
   Json subscribers = Json::array();
-  for (const Subscription& s : topic.subscribers)
-    subscribers.push_back({{"component", scenario.components[s.component].name},
-                           {"passes", s.passes},
-                           {"delay_s", s.delay_s},
-                           {"redundant", s.is_redundant}});
+  for (const Subscription& s : topic.subscribers) {
+    Json& json = subscribers.emplace_back(Json{{"component", scenario.components[s.component].name},
+                                               {"passes", s.passes},
+                                               {"delay_s", s.delay_s},
+                                               {"redundant", s.is_redundant}});
+    if (s.is_hidden) json["hidden"] = true;
+  }
   Json json{{"name", topic.name},
             {"publishers", std::move(publishers)},
             {"subscribers", std::move(subscribers)}};
@@ -85,7 +92,11 @@ class Reader {
     each(fields, "components", kMostComponents, [&](JsonFields& f) { component(f); });
     each(fields, "topics", kMostTopics, [&](JsonFields& f) { topic(f); });
     each(fields, "faults", kMostFaults, [&](JsonFields& f) { fault(f); });
-    if (scenario_.components.empty()) fields.complain("components", "is empty");
+    if (fields.has("common_causes"))
+      each(fields, "common_causes", kMostFaults, [&](JsonFields& f) { common_cause(f); });
+    const auto& all = scenario_.components;
+    if (std::all_of(all.begin(), all.end(), [](const RcaComponent& c) { return c.is_unwatched; }))
+      fields.complain("components", all.empty() ? "is empty" : "has only unwatched ones");
     if (!fields.complaint().empty()) return Error{fields.complaint()};
     // The names become names of rules.
     const Checked checked = check(Source("scenario.rules", rules_text(scenario_)));
@@ -149,7 +160,11 @@ class Reader {
     component.detector.latency_s = number(detector, "latency_s", 0, kMostSeconds);
     component.detector.miss = number(detector, "miss", 0, 1);
     component.detector.false_alarm = number(detector, "false_alarm", 0, 1);
+    if (detector.has("false_alarms_per_min"))
+      component.detector.false_alarms_per_min =
+          number(detector, "false_alarms_per_min", 0, RcaFactors::kMostFalseAlarms);
     fields.complain_inside("detector", detector.complaint());
+    component.is_unwatched = fields.has("unwatched") && fields.truth("unwatched");
     each(fields, "treatments", kRepairs,
          [&](JsonFields& f) { component.treatments.push_back(treatment(f, component)); });
     if (component.treatments.empty()) fields.complain("treatments", "is empty");
@@ -193,6 +208,7 @@ class Reader {
       s.passes = number(f, "passes", 0, 1);
       s.delay_s = number(f, "delay_s", 0, kMostSeconds);
       s.is_redundant = f.truth("redundant");
+      s.is_hidden = f.has("hidden") && f.truth("hidden");
       if (!seen.insert(s.component).second) f.complain("component", "subscribes twice");
       topic.subscribers.push_back(s);
     });
@@ -220,6 +236,21 @@ class Reader {
     scenario_.faults.push_back(fault);
   }
 
+  void common_cause(JsonFields& fields) {
+    CommonCause cause;
+    const Json& hit = fields.array("components");
+    if (hit.size() != 2 || hit[0] == hit[1])
+      return fields.complain("components", "does not name two different ones");
+    const auto place = [&](const Json& name) {
+      return index_of(fields, name.is_string() ? name.get<std::string>() : "");
+    };
+    cause.first = place(hit[0]);
+    cause.second = place(hit[1]);
+    cause.at_s = number(fields, "at_s", 0, scenario_.horizon_s);
+    cause.lasts_s = number(fields, "lasts_s", 0.01, kMostSeconds);
+    scenario_.common_causes.push_back(cause);
+  }
+
   RcaScenario scenario_;
   std::map<std::string, std::size_t> places_;
   std::size_t ends_ = 0;
@@ -245,6 +276,12 @@ std::string to_json(const RcaScenario& scenario) {
                                          {"at_s", f.at_s}});
     if (f.is_unfixable) fault["unfixable"] = true;
   }
+  for (const CommonCause& cause : scenario.common_causes)
+    json["common_causes"].push_back(
+        {{"components",
+          {scenario.components[cause.first].name, scenario.components[cause.second].name}},
+         {"at_s", cause.at_s},
+         {"lasts_s", cause.lasts_s}});
   return json.dump(1) + "\n";
 }
 
