@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "analyze/undoes.h"
+#include "diagnose/timing.h"
 #include "language/evaluate.h"
 
 namespace culprit {
@@ -180,6 +181,7 @@ void Analyzer::evaluate_trigger(RuleId id, Time now) {
     state.detection.trigger_since = now;
   }
   if (!is_true(value)) state.detection.armed = true;
+  if (is_false(value)) state.detection.last_false = now;
   if (is_false(value) && state.left_off && !state.left_off->gone) forget_left_off(id, now);
   if (!state.detection.history.empty()) sample_history(id, now);
 }
@@ -256,12 +258,15 @@ void Analyzer::detect(RuleId id, Time now) {
   state.recurring_since = recurs ? state.first_detected() : kNever;
   state.detection.armed = false;
   state.is_advised = false;
+  state.tried_alone.reset();
   state.settling.reset();
   if (is_same) {
     write_.states.go_on_searching(id, now);
   } else {
     write_.states.begin_search(id, now);
   }
+  state.onset = diagnose::onset_now(id, now, knowledge_);
+  if (!recurs) state.first_onset = state.onset->latest;
   write_.states.enter(id, RulePhase::kFailing);
   write_.events.tell(now, known_silence_.detected(id));
   outcomes_.detected(id, now);
@@ -278,6 +283,8 @@ void Analyzer::detect(RuleId id, Time now) {
 void Analyzer::watch_failing(RuleId id, Time now) {
   const RuleState& state = knowledge_.states[id];
   if (is_gone(id, now)) {
+    if (const auto tried = std::exchange(write_.states.state(id).tried_alone, std::nullopt))
+      note_latency(id, *tried);
     resolve(id, {id, FailureResolved::How::kWithoutStrategy, {}, {}}, now);
   } else if (!state.detection.trigger.known &&
              now >= later(state.detection.trigger_since, kLostAfter)) {
@@ -319,7 +326,9 @@ void Analyzer::judge(RuleId id, Time now) {
   // Before anybody knows how it ends: what keeps an outcome from counting must not depend on it.
   if (attempt.deadline == kNever) attempt.is_ambiguous |= couplings_.is_echo(attempt);
   // Anew each time: how long a signal takes to show a change may have become known meanwhile.
-  const Duration impact = duration_of(knowledge_.rules[attempt.strategy].impact, knowledge_.rules);
+  const Duration impact =
+      std::max(duration_of(knowledge_.rules[attempt.strategy].impact, knowledge_.rules),
+               knowledge_.latencies.lateness(id).most);
   const Time given = std::max(later(attempt.effective, impact), shows_from(attempt));
   attempt.deadline = later(given, knowledge_.signals.latency(id));
   if (knowledge_.rules[id].policies.on_change || is_gone(id, now)) return succeed(id, now);
@@ -411,6 +420,10 @@ void Analyzer::succeed(RuleId id, Time now) {
   const bool caused = !is_suspended && !went_away_before(attempt);
   if (caused) couplings_.resolved(attempt, !attempt.is_ambiguous, now);
   couplings_.ended(attempt, now);
+  if (caused && !attempt.is_ambiguous) note_latency(id, attempt.effective);
+  // It helped after all, and its rule showed that late.
+  if (!caused && !is_suspended && state.tried_alone) note_latency(id, *state.tried_alone);
+  state.tried_alone.reset();
   if (caused) {
     resolve(id, {id, FailureResolved::How::kByStrategy, attempt.strategy, {}}, now);
   } else {
@@ -420,6 +433,12 @@ void Analyzer::succeed(RuleId id, Time now) {
   ++state.search.attempts;
   write_.states.set_tried(attempt.strategy, true);
   if (caused) outcomes_.judged(attempt, true, now);
+}
+
+void Analyzer::note_latency(RuleId id, Time effective) {
+  const Time cleared = knowledge_.states[id].detection.trigger_since;
+  if (effective != kNever && cleared >= effective)
+    write_.latencies.cleared(id, cleared - effective);
 }
 
 std::optional<ComponentId> Analyzer::unheard_behind(const Attempt& attempt) const {
@@ -472,6 +491,8 @@ void Analyzer::fail(RuleId id, Time now) {
     write_.states.set_tried(attempt.strategy, true);
     ++state.search.attempts;
     if (!went_away_before(attempt)) outcomes_.judged(attempt, false, now);
+    state.tried_alone.reset();
+    if (!attempt.is_ambiguous && attempt.effective != kNever) state.tried_alone = attempt.effective;
   }
   const std::string reason = !attempt.obstacle.empty() ? attempt.obstacle
                              : state.detection.trigger.known

@@ -65,6 +65,7 @@ class Analyzer {
     SignalStore& signals;  // takes the rules that were touched
     Beliefs& beliefs;
     Couplings& couplings;
+    Latencies& latencies;
     PendingOutcomes& outcomes;
     EventLog& events;
   };
@@ -144,6 +145,7 @@ class Analyzer {
   bool has_components_back(const Attempt& attempt) const;
   void exhaust(RuleId id, Time now);
   bool went_away_before(const Attempt& attempt) const;
+  void note_latency(RuleId id, Time effective);
   // Is there a more critical failure for which the same component would be adapted?
   bool holds_up_more_critical(StrategyId strategy) const;
   syntax::Criticality criticality(RuleId id) const {

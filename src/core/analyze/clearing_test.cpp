@@ -35,7 +35,7 @@ struct Watched {
   Knowledge knowledge{rules};
   Analyzer analyzer{knowledge,
                     {knowledge.states, knowledge.signals, knowledge.beliefs, knowledge.couplings,
-                     knowledge.outcomes, knowledge.events}};
+                     knowledge.latencies, knowledge.outcomes, knowledge.events}};
   Time now{100s};
 };
 

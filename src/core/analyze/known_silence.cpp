@@ -2,27 +2,10 @@
 
 #include <algorithm>
 
+#include "diagnose/imminent.h"
+
 namespace culprit {
 namespace {
-
-// Where silence ends, whatever else is done with the value: a rate at 0; an age or a suspicion
-// beyond all constants, if it is compared with nothing else.
-bool is_decided_by_silence(const Input& input) {
-  return input.kind == Input::Kind::kRate ||
-         ((input.kind == Input::Kind::kAge || input.kind == Input::Kind::kPhi) &&
-          input.only_compared && !input.thresholds.empty());
-}
-
-Slot after_long_silence(const Input& input) {
-  switch (input.kind) {
-    case Input::Kind::kRate:
-      return Slot::of(0.0);
-    case Input::Kind::kAge:
-      return Slot::of(from_seconds(input.thresholds.back()) + Duration(1));
-    default:
-      return Slot::of(input.thresholds.back() + 1);
-  }
-}
 
 bool can_bring_back(const Rule& rule, ComponentId component, const RuleSet& rules) {
   return std::ranges::any_of(rule.strategies, [&](StrategyId id) {
@@ -46,7 +29,7 @@ KnownSilence::KnownSilence(const Knowledge& knowledge)
         is_brought_back_[component.index] = true;
     }
     for (const InputId input : rules.rules[r].inputs) {
-      if (is_decided_by_silence(rules[input])) of_silence_[r].push_back(input);
+      if (diagnose::after_long_silence(rules[input])) of_silence_[r].push_back(input);
     }
   }
 }
@@ -61,7 +44,7 @@ std::optional<ComponentId> KnownSilence::behind(RuleId rule) const {
     const auto component = silent_through(knowledge_.rules[input].topic, rule);
     if (!component) continue;
     if (!dead) dead = component;
-    assumed.push_back({input, after_long_silence(knowledge_.rules[input])});
+    assumed.push_back({input, *diagnose::after_long_silence(knowledge_.rules[input])});
   }
   if (!dead) return std::nullopt;
   const Slot value = evaluate(knowledge_.rules[rule].trigger, knowledge_.signals.slots(), assumed);

@@ -24,6 +24,7 @@ struct ComponentState {
   int node_pid = 0;           // the process that the node runs in; 0 = not known
   int namesakes = 0;          // other nodes of its name
   ProcessState process = ProcessState::kRunning;  // meaningful if pid is set
+  Time process_since = kLongAgo;                  // when that changed last
   int pid = 0;                 // the process that the operating system was asked about
   std::string process_remark;  // how it ended
   // Since when nothing can come from it: its process ended by a fault without saying good-bye, or
@@ -33,6 +34,7 @@ struct ComponentState {
   bool answers_probes = false;  // it did, since its process began
   Time answered = kLongAgo;     // when it did so last
   Lifecycle lifecycle = Lifecycle::kUnknown;
+  Time lifecycle_since = kLongAgo;  // when it was read first in that state
   Time changes_until = kNever;     // when a transition under way hangs; kNever: none is known to be
   Duration transition_patience{};  // that culprit has with each, if more than it needed before
   // Where its lifecycle should be: where it was last while no strategy was at it, or where one
@@ -49,7 +51,8 @@ struct ComponentState {
 
   // Does it work as a process and as a node? Nothing until something is known of it.
   std::optional<bool> alive;
-  bool is_missed = false;  // it was never seen, and had its time to show itself
+  Time alive_since = kLongAgo;  // when that changed last
+  bool is_missed = false;       // it was never seen, and had its time to show itself
 
   // The other computer that its node ran on last (LivesOn); empty: it was this one, or is not known.
   std::string host;

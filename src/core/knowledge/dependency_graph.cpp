@@ -225,6 +225,20 @@ bool DependencyGraph::counts(const End& end, const Channel& channel, bool produc
   return producer && channel.live_producers == 0;
 }
 
+std::optional<std::string> DependencyGraph::unsupplied_input(ComponentId component) const {
+  const auto node = nodes_of_components_[component.index];
+  std::optional<std::string> first;
+  if (!node) return first;
+  for (const ChannelId id : nodes_[node->index].consumes) {
+    const Channel& channel = channels_[id.index];
+    const bool is_supplied =
+        std::any_of(channel.producers.begin(), channel.producers.end(),
+                    [&](const End& end) { return counts(end, channel, true); });
+    if (!is_supplied && (!first || channel.name < *first)) first = channel.name;
+  }
+  return first;
+}
+
 bool DependencyGraph::is_present(ComponentId component) const {
   const auto node = nodes_of_components_[component.index];
   return node && nodes_[node->index].is_present;

@@ -69,6 +69,10 @@ class DependencyGraph {
   // Whether it depends on any node, of the rules or not.
   bool reads_others(ComponentId component) const;
 
+  // A topic that the component's node subscribes to, or a service that it is a client of, that no node
+  // offers; the first by name. Nothing: all that it reads is offered.
+  std::optional<std::string> unsupplied_input(ComponentId component) const;
+
   // How many nodes publish `topic`, as far as was seen and is not ignored, and whether the
   // component is among them.
   std::size_t publisher_count(const std::string& topic) const;

@@ -53,6 +53,7 @@ Knowledge::Knowledge(const RuleSet& rule_set)
       states(rules),
       beliefs(rules),
       couplings(rules),
+      latencies(rules),
       withheld(rules.strategies.size()) {}
 
 Knowledge::Knowledge(const RuleSet& rule_set, const Knowledge& other)
@@ -65,6 +66,7 @@ Knowledge::Knowledge(const RuleSet& rule_set, const Knowledge& other)
       states(rules, other.states),
       beliefs(other.beliefs),
       couplings(other.couplings),
+      latencies(other.latencies),
       withheld(other.withheld),
       outcomes(other.outcomes),
       rivals(other.rivals),

@@ -12,6 +12,7 @@
 #include "knowledge/dependency_graph.h"
 #include "knowledge/event_log.h"
 #include "knowledge/heard_names.h"
+#include "knowledge/latencies.h"
 #include "knowledge/outcomes.h"
 #include "knowledge/rivals.h"
 #include "knowledge/rule_states.h"
@@ -40,6 +41,7 @@ struct Knowledge {
   RuleStates states;
   Beliefs beliefs;
   Couplings couplings;
+  Latencies latencies;
   // What the governor does not allow now.
   struct Withheld {
     std::string reason;        // empty: it is allowed

@@ -15,6 +15,7 @@
 
 #include "base/time.h"
 #include "knowledge/attempt.h"
+#include "knowledge/onset.h"
 #include "language/rule_set.h"
 
 namespace culprit {
@@ -56,6 +57,7 @@ struct LeftOff {
 struct Detection {
   Slot trigger;                   // as last evaluated
   Time trigger_since = kLongAgo;  // since when it has that value
+  Time last_false = kLongAgo;     // when it was known to be false last; kLongAgo: never yet
   bool armed = true;              // ON_CHANGE: the trigger was not true since the rule acted
 
   // HOLD n/k: the last k evaluations, one per cycle, newest at `newest`.
@@ -77,12 +79,16 @@ struct RuleState {
   RulePhase phase = RulePhase::kQuiet;
   Detection detection;
   Time failing_since = kNever;    // when the failure was detected
+  std::optional<Onset> onset;     // when it began, as far as known when it was detected
+  Time first_onset = kNever;      // the latest onset of its first detection, if it comes and goes
   Time recurring_since = kNever;  // if it went away and is back: when it was detected first
   Time gone_since = kLongAgo;     // when it went away last
   Time quiet_until = kLongAgo;    // COOLDOWN
 
   Search search;
   std::optional<Attempt> attempt;
+  // When the last attempt that failed took effect, if nothing else can have helped since.
+  std::optional<Time> tried_alone;
   bool is_advised = false;  // dry run: what would be done was said
   std::optional<Settling> settling;
   std::optional<LeftOff> left_off;  // nobody has seen the failure gone since
@@ -140,6 +146,9 @@ class RuleStates {
   // The most critical such rule, the first by name among equals.
   std::optional<RuleId> sickness(ComponentId component, Criticality level, RuleId except) const;
 
+  // The rules with a strategy that adapts it, ascending.
+  std::span<const RuleId> touching(ComponentId component) const;
+
   // The strategy attempt that has `component` reserved, if any: from its choice until its verdict
   // and undoing, but while it is suspended.
   const Attempt* reservation(ComponentId component) const;
@@ -149,7 +158,6 @@ class RuleStates {
   std::optional<RuleId> worst_at(ComponentId component, Criticality level, RuleId except,
                                  Counts counts) const;
   void find_touching();
-  std::span<const RuleId> touching(ComponentId component) const;
   static bool is_active(RulePhase phase) {
     return phase == RulePhase::kFailing || phase == RulePhase::kAttempting;
   }

@@ -33,6 +33,11 @@ bool is_heard_of(ComponentId component, const Knowledge& knowledge) {
   return false;
 }
 
+void set_process(ComponentState& state, ProcessState process, Time at) {
+  if (state.process != process) state.process_since = at;
+  state.process = process;
+}
+
 // A managed node makes its ends when it is configured.
 bool is_up(Lifecycle state) {
   return state == Lifecycle::kActive || state == Lifecycle::kInactive ||
@@ -55,7 +60,7 @@ void Monitor::on(Time at, const NodeAppeared& seen) {
   state.node_seen = at;
   state.node_pid = seen.pid;
   state.missed_probes = 0;
-  if (seen.pid != state.pid || seen.pid == 0) state.process = ProcessState::kRunning;
+  if (seen.pid != state.pid || seen.pid == 0) set_process(state, ProcessState::kRunning, at);
   if (state.process == ProcessState::kRunning) note_no_longer_dead(*component);
   if (!same_process) await_ends(*component, at);
   const bool was_alive = state.alive == true;
@@ -141,6 +146,7 @@ void Monitor::remember(const History& past) {
 
 void Monitor::on(Time at, const LifecycleRead& seen) {
   ComponentState& state = write_.components[seen.component];
+  if (seen.state != state.lifecycle) state.lifecycle_since = at;
   state.lifecycle = seen.state;
   const bool is_primary = seen.state != Lifecycle::kUnknown && seen.state != Lifecycle::kTransition;
   if (seen.state != Lifecycle::kTransition) {
@@ -218,7 +224,7 @@ void Monitor::on(Time at, const ProcessSeen& seen) {
   if (is_other && state.in_graph && seen.state != ProcessState::kRunning) return;
   if (seen.state == ProcessState::kRunning && seen.pid != state.pid)
     write_.departures.arrived(seen.component, at);
-  state.process = seen.state;
+  set_process(state, seen.state, at);
   state.pid = seen.pid;
   state.process_remark = seen.remark;
   // One of several was too many: the graph says which it is from now on, so none is missed.
@@ -378,6 +384,7 @@ void Monitor::update_alive(ComponentId component, Time at, const std::string& re
   }
   if (state.alive == is_alive) return;
   state.alive = is_alive;
+  state.alive_since = at;
   if (is_alive && state.host_silent) deadlines_.set(return_of(component), later(at, kSpeaks));
   if (is_alive) {
     write_.events.tell(at, ComponentFound{component, state.node_pid});

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "plan/bayes/reach.h"
+#include "diagnose/reach.h"
 #include "plan/cost.h"
 #include "plan/ties.h"
 #include "plan/validity.h"
@@ -21,7 +21,7 @@ std::vector<std::vector<std::size_t>> upstream(const Knowledge& knowledge) {
     const auto& components = knowledge.rules[rule].components;
     touched.insert(touched.end(), components.begin(), components.end());
   }
-  const plan::Reach reach(knowledge, touched);
+  const diagnose::Reach reach(knowledge, touched);
   std::vector<std::vector<std::size_t>> touching(reach.size());
   for (std::size_t i = 0; i < active.size(); ++i) {
     for (const ComponentId c : knowledge.rules[active[i]].components)
@@ -31,7 +31,7 @@ std::vector<std::vector<std::size_t>> upstream(const Knowledge& knowledge) {
   for (std::size_t i = 0; i < active.size(); ++i) {
     for (const ComponentId own : knowledge.rules[active[i]].components) {
       const std::size_t place = reach.place_of(own);
-      plan::for_each(reach.upstream(place), [&](std::size_t up) {
+      diagnose::for_each(reach.upstream(place), [&](std::size_t up) {
         if (up == place) return;  // through a circle
         std::copy_if(touching[up].begin(), touching[up].end(), std::back_inserter(all[i]),
                      [&](std::size_t j) { return j != i; });

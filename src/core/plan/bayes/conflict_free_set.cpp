@@ -4,6 +4,8 @@
 #include <numeric>
 
 namespace culprit::plan {
+
+using namespace diagnose;
 namespace {
 
 // The items in the order of their worth, highest first, equal ones as they came.

@@ -9,9 +9,12 @@
 
 #include <vector>
 
-#include "plan/bayes/bit_rows.h"
+#include "diagnose/bit_rows.h"
 
 namespace culprit::plan {
+
+using diagnose::BitRows;
+using diagnose::Word;
 
 inline constexpr std::size_t kExact = 20;
 

@@ -4,6 +4,8 @@
 #include <rapidcheck/gtest.h>
 
 namespace culprit::plan {
+
+using namespace diagnose;
 namespace {
 
 // Choices at places of their own; which places are near which.

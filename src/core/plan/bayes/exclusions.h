@@ -4,34 +4,26 @@
 #include <array>
 #include <span>
 
+#include "diagnose/examination.h"
 #include "plan/bayes/levels.h"
 
 namespace culprit::plan {
 
-// Which components a plan looks at: those that active and exhausted rules touch, those of
-// suspicious rules while anyone waits to see whether they fail, and those that are not heard.
-std::vector<ComponentId> components_of_interest(const Knowledge& knowledge,
-                                                std::span<const RuleId> suspicious);
-
-// Those of the suspicious rules for which a failure of `failures` still waits, to see whether they
-// fail.
-std::vector<RuleId> awaited(std::span<const RuleId> suspicious, std::span<const RuleId> failures,
-                            const Knowledge& knowledge);
+// A strategy that helps at least so likely, and takes nothing down, need not wait for what is wrong
+// downstream of it: whether it helped may not be seen, but hardly matters.
+inline constexpr double kSure = 0.9;
 
 // Does it take a component down, if only for a moment?
 bool takes_down(const Adaptation& adaptation);
 bool takes_down(const Strategy& strategy);
 
-// How long a failure waits, from its detection on, to see whether a suspicious rule fails.
-Duration longest_wait(RuleId suspicious, const Knowledge& knowledge);
-
 // Places (see Reach) where something stands against adapting them, and why.
 class Exclusions {
  public:
-  // `failures` are those to be decided about; what waits for a person is not among them: whoever
-  // made way for it would wait as long.
-  Exclusions(const Knowledge& knowledge, const Reach& reach, const Levels& levels,
-             std::span<const RuleId> failures, std::span<const RuleId> suspicious);
+  // `failures` are those to be decided about, without those that wait for a person: yielding to them
+  // would block the others as long.
+  Exclusions(const Knowledge& knowledge, const diagnose::Examination& found, const Levels& levels,
+             std::span<const RuleId> failures);
 
   struct Obstacle {
     Condition condition = Condition::kAdapting;
@@ -62,23 +54,21 @@ class Exclusions {
   struct Marks {
     explicit Marks(std::size_t places) : at(1, places), failure(places) {}
     void mark(std::size_t place, RuleId rule) {
-      if (!has(at[0], place)) failure[place] = rule;
-      set(at[0], place);
+      if (!diagnose::has(at[0], place)) failure[place] = rule;
+      diagnose::set(at[0], place);
     }
-    std::span<const Word> bits() const { return at[0]; }
+    std::span<const diagnose::Word> bits() const { return at[0]; }
 
-    BitRows at;
+    diagnose::BitRows at;
     std::vector<RuleId> failure;
   };
   std::optional<Obstacle> in_the_way(std::size_t place, const Marks& marks) const;
-  std::optional<Obstacle> pending_suspicion(std::size_t place, const Strategy& strategy,
-                                            double chance) const;
   std::size_t level_of(RuleId rule) const { return static_cast<std::size_t>(levels_.of(rule)); }
-  std::optional<Obstacle> found(Condition condition, std::span<const Word> where,
+  std::optional<Obstacle> found(Condition condition, std::span<const diagnose::Word> where,
                                 const Marks& marks) const;
 
   const Knowledge& knowledge_;
-  const Reach& reach_;
+  const diagnose::Reach& reach_;
   const Levels& levels_;
   // By level: reserved by attempts, and holding back what depends on it. Not by one that is less
   // critical and only waits for its verdict: it gives way.
@@ -87,10 +77,8 @@ class Exclusions {
   // `failures`.
   std::vector<Marks> urgent_;
   std::vector<Marks> planned_;
-  std::vector<Marks> judged_;       // by level: of those whose strategy waits for its verdict
-  std::vector<Marks> pending_;      // by level: of suspicious rules that are more critical
-  Marks suspects_;                  // of suspicious rules
-  std::vector<Duration> patience_;  // by place: how long a failure waits for the suspicious there
+  std::vector<Marks> judged_;    // by level: of those whose strategy waits for its verdict
+  std::vector<Marks> imminent_;  // by level: of imminent rules that are more critical
   Marks added_;
   Marks guarded_;  // of those added, what may not be disturbed from upstream
 };

@@ -7,30 +7,30 @@
 //     L_i = max(own level of i, max_k L_k)
 //
 // over the failures k that wait for i: those that have a cause upstream and none of their own, i
-// being enough to explain them (Responsibility::is_explained_by); and those in the same circle as
-// i, for each of them may be the cause of the others. Without that, a WARNING whose effect is an
+// being enough to explain them (Diagnosis::is_explained_by); and those in the same feedback
+// loop as i, for each of them may be the cause of the others. Without that, a WARNING whose effect is an
 // ERROR would wait for the repair of what is not broken.
 #pragma once
 
 #include <vector>
 
-#include "plan/bayes/responsibility.h"
+#include "diagnose/diagnosis.h"
 
 namespace culprit::plan {
 
 class Levels {
  public:
   // `knowledge` must outlive it.
-  Levels(const Knowledge& knowledge, const Failures& failures,
-         const Responsibility& responsibility);
+  Levels(const Knowledge& knowledge, const diagnose::Causes& causes,
+         const diagnose::Diagnosis& diagnosis);
 
   // Of a rule that has no failure: its own.
   Criticality of(RuleId rule) const;
 
  private:
   const Knowledge& knowledge_;
-  const Failures& failures_;
-  std::vector<Criticality> levels_;  // by failure
+  const diagnose::Causes& causes_;
+  std::vector<Criticality> levels_;  // by node
 };
 
 }  // namespace culprit::plan

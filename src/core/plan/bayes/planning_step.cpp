@@ -6,14 +6,16 @@
 #include <numeric>
 #include <tuple>
 
+#include "diagnose/known_down.h"
 #include "plan/also_ended.h"
 #include "plan/bayes/bayes_planner.h"
-#include "plan/bayes/seen_down.h"
-#include "plan/bayes/suspicion.h"
 #include "plan/beside_exhausted.h"
 #include "plan/ties.h"
 
 namespace culprit::plan {
+
+using namespace diagnose;
+
 namespace {
 
 // What costs more than it is worth has to be done all the same, once nothing else comes first: it
@@ -29,6 +31,18 @@ int redeployments(const Strategy& strategy) {
                     [](const Adaptation& a) { return a.type == AdaptationType::kRedeploy; }));
 }
 
+// Does it do nothing but replace processes that are known to be down?
+bool only_revives(const Strategy& strategy, const Knowledge& knowledge) {
+  const auto is_down = [&](ComponentId c) {
+    return is_known_down(c, knowledge) && !dead_container_of(c, knowledge);
+  };
+  const std::vector<ComponentId> others = also_ended(strategy, knowledge);
+  return std::all_of(strategy.components.begin(), strategy.components.end(),
+                     [&](ComponentId c) { return is_down(c) && replaces(strategy, c); }) &&
+         std::all_of(others.begin(), others.end(),
+                     [&](ComponentId c) { return is_known_down(c, knowledge); });
+}
+
 }  // namespace
 
 PlanningStep::PlanningStep(std::span<const RuleId> failures, const Knowledge& knowledge,
@@ -36,25 +50,17 @@ PlanningStep::PlanningStep(std::span<const RuleId> failures, const Knowledge& kn
     : knowledge_(knowledge),
       weights_(weights),
       planned_(failures.begin(), failures.end()),
-      suspicious_(suspicious_rules(knowledge)),
-      awaited_(awaited(suspicious_, failures, knowledge)),
-      reach_(knowledge, components_of_interest(knowledge, awaited_)),
-      paths_(knowledge, reach_, suspicious_),
-      failures_(knowledge, reach_, paths_),
-      responsibility_(knowledge, failures_),
+      found_(knowledge, failures),
+      causes_(found_.causes()),
+      diagnosis_(found_.diagnosis()),
       unheard_(all_unheard()),
-      levels_(knowledge, failures_, responsibility_),
+      levels_(knowledge, causes_, diagnosis_),
       chances_(all_chances()),
-      exclusions_(knowledge, reach_, levels_, worked_on(), awaited_),
-      has_choice_(failures_.size(), false),
-      tries_(failures_.size()) {}
+      exclusions_(knowledge, found_, levels_, worked_on()),
+      has_choice_(causes_.size(), false),
+      tries_(causes_.size()) {}
 
 std::vector<Decision> PlanningStep::run() {
-  Time until = kLongAgo;
-  for (const RuleId rule : planned_) {
-    if (is_newborn(rule, knowledge_)) until = std::max(until, newborn_until(rule, knowledge_));
-  }
-  if (until > kLongAgo) watchers_.emplace(knowledge_, until);
   find_stakes();
   examine_all();
   revive();
@@ -65,9 +71,9 @@ std::vector<Decision> PlanningStep::run() {
 }
 
 std::vector<std::vector<StrategyChance>> PlanningStep::all_chances() const {
-  std::vector<std::vector<StrategyChance>> all(failures_.size());
+  std::vector<std::vector<StrategyChance>> all(causes_.size());
   for (const RuleId rule : planned_)
-    all[failures_.index_of(rule)] = strategy_chances(rule, knowledge_);
+    all[causes_.index_of(rule)] = strategy_chances(rule, knowledge_);
   return all;
 }
 
@@ -76,7 +82,7 @@ std::vector<std::vector<StrategyChance>> PlanningStep::all_chances() const {
 std::vector<RuleId> PlanningStep::worked_on() const {
   std::vector<RuleId> rules;
   std::copy_if(planned_.begin(), planned_.end(), std::back_inserter(rules),
-               [&](RuleId rule) { return !waits_for_person(failures_.index_of(rule)); });
+               [&](RuleId rule) { return !waits_for_person(causes_.index_of(rule)); });
   return rules;
 }
 
@@ -100,7 +106,7 @@ bool PlanningStep::waits_for_person(std::size_t failure) const {
 }
 
 std::vector<std::optional<ComponentId>> PlanningStep::all_unheard() const {
-  std::vector<std::optional<ComponentId>> all(failures_.size());
+  std::vector<std::optional<ComponentId>> all(causes_.size());
   for (std::size_t i = 0; knowledge_.components.is_any_unreached() && i < all.size(); ++i)
     all[i] = unheard_behind(i);
   return all;
@@ -108,7 +114,8 @@ std::vector<std::optional<ComponentId>> PlanningStep::all_unheard() const {
 
 // As Knowledge::unheard_behind(), but without what is seen to be well.
 std::optional<ComponentId> PlanningStep::unheard_behind(std::size_t failure) const {
-  const RuleId rule = failures_[failure];
+  if (causes_[failure].kind != CauseNode::Kind::kFailure) return std::nullopt;
+  const RuleId rule = causes_[failure].rule;
   if (!knowledge_.unheard_behind(rule)) return std::nullopt;
   std::optional<ComponentId> found;
   const auto look = [&](ComponentId c) {
@@ -116,30 +123,42 @@ std::optional<ComponentId> PlanningStep::unheard_behind(std::size_t failure) con
   };
   for (const ComponentId c : knowledge_.rules[rule].components) {
     look(c);
-    for_each(paths_.upstream(reach_.place_of(c), rule),
-             [&](std::size_t place) { look(reach_[place]); });
+    for_each(found_.paths().upstream(found_.reach().place_of(c), rule),
+             [&](std::size_t place) { look(found_.reach()[place]); });
   }
   return found;
 }
 
-// It is exhausted, or nothing may be begun for it without a person.
-bool PlanningStep::is_left_to_person(RuleId rule) const {
-  return knowledge_.states.awaits_person(rule) || waits_for_person(failures_.index_of(rule));
+// It is exhausted, or nothing may be begun for it without a person: no rule that can see touches a
+// component in trouble, or no node supplies an input.
+bool PlanningStep::is_left_to_person(std::size_t node) const {
+  switch (causes_[node].kind) {
+    case CauseNode::Kind::kFailure:
+      return knowledge_.states.awaits_person(causes_[node].rule) || waits_for_person(node);
+    case CauseNode::Kind::kImminent:
+      return false;
+    case CauseNode::Kind::kTrouble: {
+      const auto rules = knowledge_.states.touching(causes_[node].component);
+      return std::none_of(rules.begin(), rules.end(), [&](RuleId rule) {
+        return knowledge_.states[rule].detection.trigger.known;
+      });
+    }
+    case CauseNode::Kind::kUnsupplied:
+      return true;
+  }
+  return true;
 }
 
-// The likeliest cause outside its circle, if the failure more likely has one than not; or else who
-// is dead in its circle.
-std::optional<RuleId> PlanningStep::cause_of(std::size_t failure) const {
-  if (responsibility_.against_others(failure) >= 0.5) {
-    const auto dead = responsibility_.dead_in_circle(failure);
-    return dead ? std::optional(failures_[*dead]) : std::nullopt;
-  }
+// The likeliest cause outside its loop, if the failure more likely has one than not; or else the
+// member of its loop that is known to be dead.
+std::optional<std::size_t> PlanningStep::cause_of(std::size_t failure) const {
+  if (diagnosis_.against_others(failure) >= 0.5) return diagnosis_.dead_in_loop(failure);
   std::int64_t most = 0;
-  RuleId cause;
-  responsibility_.for_each_share(failure, [&](std::size_t j, double share) {
-    if (parts(share) > most) std::tie(most, cause) = std::pair(parts(share), failures_[j]);
+  std::size_t cause = failure;
+  diagnosis_.for_each_share(failure, [&](std::size_t j, double share) {
+    if (parts(share) > most) std::tie(most, cause) = std::pair(parts(share), j);
   });
-  return cause;
+  return most > 0 ? std::optional(cause) : std::nullopt;
 }
 
 // By level, then by worth, then by name, which failures are in the order of.
@@ -153,27 +172,30 @@ bool PlanningStep::is_before(const WeighedCandidate& a, const WeighedCandidate& 
 }
 
 void PlanningStep::find_stakes() {
-  stakes_.resize(failures_.size());
+  stakes_.resize(causes_.size());
   const auto weight_of = [&](std::size_t i) {
-    return weight(knowledge_.rules[failures_[i]].policies.criticality);
+    return causes_[i].kind == CauseNode::Kind::kFailure
+               ? weight(knowledge_.rules[causes_[i].rule].policies.criticality)
+               : 0;
   };
-  for (std::size_t i = 0; i < failures_.size(); ++i) stakes_[i] += weight_of(i);
-  // Whichever member of a circle was first, the others go away with it.
-  for (const auto& circle : failures_.circles()) {
-    for (const std::size_t i : circle) {
-      for (const std::size_t k : circle) {
-        if (k != i) stakes_[i] += responsibility_.kappa(i, k) * weight_of(k);
+  for (std::size_t i = 0; i < causes_.size(); ++i) stakes_[i] += weight_of(i);
+  // Whichever member of a loop was first, the others clear with it.
+  for (const auto& loop : causes_.loops()) {
+    for (const std::size_t i : loop) {
+      for (const std::size_t k : loop) {
+        if (k != i) stakes_[i] += diagnosis_.kappa(i, k) * weight_of(k);
       }
     }
   }
-  for (std::size_t k = 0; k < failures_.size(); ++k) {
-    responsibility_.for_each_share(
+  for (std::size_t k = 0; k < causes_.size(); ++k) {
+    diagnosis_.for_each_share(
         k, [&](std::size_t i, double share) { stakes_[i] += share * weight_of(k); });
-    // What is not downstream, and was seen to go away with another one.
-    for (const auto& [cause, coupling] : knowledge_.couplings.of(failures_[k])) {
+    if (causes_[k].kind != CauseNode::Kind::kFailure) continue;
+    // What is not downstream, and was seen to clear with another one.
+    for (const auto& [cause, coupling] : knowledge_.couplings.of(causes_[k].rule)) {
       if (!knowledge_.states.is_active(cause) || coupling.cleared == 0) continue;
-      const std::size_t i = failures_.index_of(cause);
-      if (i != k && !has(failures_.causes(k), i))
+      const std::size_t i = causes_.index_of(cause);
+      if (i != k && !has(causes_.causes(k), i))
         stakes_[i] += coupling.mean(Coupling::kRare) * weight_of(k);
     }
   }
@@ -183,7 +205,7 @@ void PlanningStep::examine_all() {
   std::size_t count = 0;
   for (const auto& of_failure : chances_) count += of_failure.size();
   weighed_.reserve(count);
-  for (const RuleId rule : planned_) examine(failures_.index_of(rule));
+  for (const RuleId rule : planned_) examine(causes_.index_of(rule));
   best_first_.reserve(count);
   for (WeighedCandidate& weighed : weighed_) best_first_.push_back(&weighed);
   std::sort(
@@ -212,13 +234,13 @@ void PlanningStep::examine(std::size_t failure) {
   }
   const std::vector<double> costs = expected_costs(possible);
   tries_[failure] = std::move(possible);
-  const double root = responsibility_.of(failure);
+  const double root = diagnosis_.of(failure);
 
   std::size_t next = 0;
   for (const std::size_t s : order) {
     WeighedCandidate& weighed = weighed_.emplace_back();
     weighed.failure = failure;
-    weighed.level = levels_.of(failures_[failure]);
+    weighed.level = levels_.of(causes_[failure].rule);
     weighed.candidate.strategy = all[s].strategy;
     weighed.affected = exclusions_.affected(knowledge_.rules[all[s].strategy]);
     if (all[s].is_tried) {
@@ -245,7 +267,7 @@ void PlanningStep::examine(std::size_t failure) {
 
 std::vector<Try> PlanningStep::tries_of(std::size_t failure,
                                         const std::vector<StrategyChance>& chances) const {
-  const Duration latency = knowledge_.signals.latency(failures_[failure]);
+  const Duration latency = knowledge_.signals.latency(causes_[failure].rule);
   std::vector<Try> all;
   all.reserve(chances.size());
   for (const StrategyChance& each : chances) {
@@ -260,7 +282,7 @@ std::vector<Try> PlanningStep::tries_of(std::size_t failure,
 double PlanningStep::disruption(const Strategy& strategy) const {
   std::size_t down = 0;
   const auto add = [&](ComponentId component) {
-    down += 1 + reach_.dependents(reach_.place_of(component));
+    down += 1 + found_.reach().dependents(found_.reach().place_of(component));
   };
   for (const Adaptation& adaptation : strategy.adaptations) {
     if (takes_down(adaptation)) add(adaptation.component);
@@ -271,7 +293,7 @@ double PlanningStep::disruption(const Strategy& strategy) const {
 }
 
 void PlanningStep::exclude(WeighedCandidate& weighed, double chance) const {
-  const RuleId rule = failures_[weighed.failure];
+  const RuleId rule = causes_[weighed.failure].rule;
   const Strategy& strategy = knowledge_.rules[weighed.candidate.strategy];
   // What is known to be dead, and a safe stop, wait for nobody but who has the component already.
   if (weighed.only_revives || strategy.is_last_resort) {
@@ -279,12 +301,7 @@ void PlanningStep::exclude(WeighedCandidate& weighed, double chance) const {
       exclude(weighed, *held);
     return;
   }
-  exclude_effect(weighed);
-  if (weighed.candidate.excluded) return;
-  const bool need_not_wait = chance >= kSure && !takes_down(strategy);
-  if (watchers_ && is_newborn(rule, knowledge_) && !need_not_wait &&
-      watchers_->are_upstream_of(rule))
-    return exclude(weighed, {Condition::kSuspect, likeliest_component(rule), rule});
+  if (exclude_effect(weighed) || exclude_unproven(weighed, chance)) return;
   if (const auto held = exclusions_.reserved(weighed.level, weighed.affected))
     return exclude(weighed, *held);
   for (const std::size_t place : weighed.affected) {
@@ -299,6 +316,22 @@ void PlanningStep::exclude(WeighedCandidate& weighed, double chance) const {
   if (is_settling)
     return exclude(weighed,
                    {Condition::kSettling, likeliest_component(settling->with), settling->with});
+}
+
+// Does it wait because a cause upstream may still be detected, or because it may be the echo of one
+// that is gone?
+bool PlanningStep::exclude_unproven(WeighedCandidate& weighed, double chance) const {
+  const RuleId rule = causes_[weighed.failure].rule;
+  const auto awaiting = found_.awaited().of(rule);
+  if (!awaiting) return false;
+  const bool need_not_wait =
+      chance >= kSure && !takes_down(knowledge_.rules[weighed.candidate.strategy]);
+  const bool is_coupled =
+      knowledge_.couplings.of(awaiting->because, rule).mean(Coupling::kUsual) > 0.5;
+  if (need_not_wait || !is_coupled) return false;
+  exclude(weighed, {awaiting->is_echo ? Condition::kSettling : Condition::kSuspect,
+                    likeliest_component(awaiting->because), awaiting->because});
+  return true;
 }
 
 void PlanningStep::exclude(WeighedCandidate& weighed, const Exclusions::Obstacle& obstacle) const {
@@ -316,33 +349,43 @@ void PlanningStep::exclude_invalid(WeighedCandidate& weighed, const Invalid& why
   weighed.candidate.remark = why.reason;
 }
 
-// A failure that others more likely explain waits for them.
-void PlanningStep::exclude_effect(WeighedCandidate& weighed) const {
+// Does it wait for a cause that more likely explains it?
+bool PlanningStep::exclude_effect(WeighedCandidate& weighed) const {
+  const StrategyId strategy = weighed.candidate.strategy;
   if (const auto cause = cause_of(weighed.failure)) {
-    const bool goes_round = may_be_tried_beside_exhausted(weighed.candidate.strategy, knowledge_) &&
-                            is_left_to_person(*cause);
-    if (!goes_round)
-      exclude(weighed, {Condition::kDependency, likeliest_component(*cause), *cause});
-    return;
+    const bool goes_round =
+        may_be_tried_beside_exhausted(strategy, knowledge_) && is_left_to_person(*cause);
+    if (!goes_round) exclude_for(weighed, *cause);
+    return !goes_round;
   }
   // A failure of what is on a computer that is not heard, or depends on it, waits until it is.
   if (const auto unheard = unheard_[weighed.failure]) {
-    if (may_be_tried_beside_exhausted(weighed.candidate.strategy, knowledge_)) return;
+    if (may_be_tried_beside_exhausted(strategy, knowledge_)) return false;
     exclude(weighed, {Condition::kUnheard, *unheard, {}});
     weighed.candidate.remark = knowledge_.why_unheard(*unheard);
-    return;
+    return true;
   }
-  // In a circle the members take turns, whoever is the likelier: what counts is what is outside.
-  // But who is in a circle is only known when the failures are old enough.
-  if (!is_young(failures_[weighed.failure], knowledge_)) return;
-  std::int64_t most = 0;
-  RuleId likeliest;
-  for (const std::size_t j : failures_.circles()[failures_.circle_of(weighed.failure)]) {
-    if (j != weighed.failure && parts(responsibility_.of(j)) > most)
-      std::tie(most, likeliest) = std::pair(parts(responsibility_.of(j)), failures_[j]);
+  // In a feedback loop the members take turns, whichever is the likelier; a likelier one that has not
+  // fired yet is waited for.
+  for (const std::size_t j : causes_.loops()[causes_.loop_of(weighed.failure)]) {
+    const bool is_likelier = parts(diagnosis_.of(j)) > parts(diagnosis_.of(weighed.failure));
+    if (causes_[j].kind != CauseNode::Kind::kImminent || !is_likelier) continue;
+    exclude_for(weighed, j);
+    return true;
   }
-  if (most > 0)
-    exclude(weighed, {Condition::kDependency, likeliest_component(likeliest), likeliest});
+  return false;
+}
+
+void PlanningStep::exclude_for(WeighedCandidate& weighed, std::size_t cause) const {
+  const CauseNode& node = causes_[cause];
+  const bool has_fired = node.kind == CauseNode::Kind::kFailure;
+  Exclusions::Obstacle obstacle{Condition::kDependency, component_of(cause), {}};
+  if (node.is_rule()) obstacle.because = node.rule;
+  if (node.is_rule() && !has_fired) obstacle.condition = Condition::kSuspect;
+  exclude(weighed, obstacle);
+  if (node.kind == CauseNode::Kind::kTrouble) weighed.candidate.remark = to_string(node.trouble);
+  if (node.kind == CauseNode::Kind::kUnsupplied)
+    weighed.candidate.remark = "no node offers " + node.channel;
 }
 
 // The dead are replaced side by side, whatever depends on whatever and however critical it is.
@@ -354,7 +397,8 @@ void PlanningStep::revive() {
       continue;
     }
     for (const ComponentId c : knowledge_.rules[weighed->candidate.strategy].components) {
-      if (const auto taken = exclusions_.taken(reach_.place_of(c))) exclude(*weighed, *taken);
+      if (const auto taken = exclusions_.taken(found_.reach().place_of(c)))
+        exclude(*weighed, *taken);
     }
     if (!weighed->candidate.excluded) choose(*weighed);
   }
@@ -364,7 +408,7 @@ void PlanningStep::choose(const WeighedCandidate& weighed) {
   has_choice_[weighed.failure] = true;
   sides_.push_back({tries_[weighed.failure], {weighed.place}});
   using enum Exclusions::Disturbance;
-  exclusions_.add(failures_[weighed.failure], weighed.affected,
+  exclusions_.add(causes_[weighed.failure].rule, weighed.affected,
                   weighed.only_revives ? kNone : kFromUpstream);
 }
 
@@ -401,14 +445,14 @@ void PlanningStep::select(Criticality level) {
 // The conflict-free ones of the highest total worth.
 std::vector<PlanningStep::WeighedCandidate*> PlanningStep::chosen_together(
     const std::vector<WeighedCandidate*>& open) const {
-  BitRows takes(open.size(), reach_.size());
-  BitRows near(open.size(), reach_.size());
+  BitRows takes(open.size(), found_.reach().size());
+  BitRows near(open.size(), found_.reach().size());
   std::vector<Item> items;
   for (std::size_t e = 0; e < open.size(); ++e) {
     for (const std::size_t place : open[e]->affected) {
       set(takes[e], place);
-      add(near[e], reach_.upstream(place));
-      add(near[e], reach_.downstream(place));
+      add(near[e], found_.reach().upstream(place));
+      add(near[e], found_.reach().downstream(place));
     }
     add(near[e], takes[e]);
     items.push_back({open[e]->failure, open[e]->worth, takes[e], near[e]});
@@ -466,13 +510,18 @@ ComponentId PlanningStep::likeliest_component(RuleId rule) const {
   return best.second;
 }
 
+ComponentId PlanningStep::component_of(std::size_t node) const {
+  return causes_[node].is_rule() ? likeliest_component(causes_[node].rule)
+                                 : causes_[node].component;
+}
+
 std::vector<Suspect> PlanningStep::suspects(std::size_t failure) const {
   std::vector<Suspect> all;
   all.reserve(BayesPlanner::kSuspects);
-  const RuleId rule = failures_[failure];
-  all.push_back({{}, rule, responsibility_.of(failure)});
-  responsibility_.for_each_share(failure, [&](std::size_t j, double share) {
-    all.push_back({{}, failures_[j], share});
+  const RuleId rule = causes_[failure].rule;
+  all.push_back({likeliest_component(rule), rule, diagnosis_.of(failure)});
+  diagnosis_.for_each_share(failure, [&](std::size_t j, double share) {
+    all.push_back({component_of(j), causes_[j].is_rule() ? causes_[j].rule : rule, share});
   });
   const std::size_t shown = std::min(all.size(), BayesPlanner::kSuspects);
   std::partial_sort(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(shown), all.end(),
@@ -484,19 +533,18 @@ std::vector<Suspect> PlanningStep::suspects(std::size_t failure) const {
                       return key(a) < key(b);
                     });
   all.resize(shown);
-  for (Suspect& suspect : all) suspect.component = likeliest_component(suspect.failure);
   return all;
 }
 
 std::vector<Decision> PlanningStep::decisions() {
   std::vector<Decision> found;
   found.reserve(planned_.size());
-  std::vector<std::size_t> place(failures_.size(), failures_.size());
+  std::vector<std::size_t> place(causes_.size(), causes_.size());
   for (WeighedCandidate* weighed : best_first_) {
     std::size_t& at = place[weighed->failure];
-    if (at == failures_.size()) {
+    if (at == causes_.size()) {
       at = found.size();
-      found.push_back({failures_[weighed->failure], {}, true, {}, suspects(weighed->failure)});
+      found.push_back({causes_[weighed->failure].rule, {}, true, {}, suspects(weighed->failure)});
       found.back().candidates.reserve(chances_[weighed->failure].size());
     }
     Decision& decision = found[at];

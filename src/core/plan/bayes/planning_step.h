@@ -4,13 +4,13 @@
 #include <span>
 #include <vector>
 
+#include "diagnose/examination.h"
 #include "plan/bayes/conflict_free_set.h"
 #include "plan/bayes/exclusions.h"
 #include "plan/bayes/levels.h"
 #include "plan/bayes/side_by_side.h"
 #include "plan/bayes/strategy_chances.h"
 #include "plan/bayes/value.h"
-#include "plan/bayes/watchers.h"
 #include "plan/planner.h"
 
 namespace culprit::plan {
@@ -27,20 +27,20 @@ class PlanningStep {
   // A strategy of a failure that is to be decided about.
   struct WeighedCandidate {
     Candidate candidate;
-    std::size_t failure = 0;    // index in failures_
-    Criticality level{};        // of the failure
-    std::int64_t worth = 0;     // plan/ties.h
-    std::int64_t cost = 0;      // the same
-    std::size_t place = 0;      // among tries_ of the failure
-    bool only_revives = false;  // plan/bayes/seen_down.h
+    std::size_t failure = 0;  // index in causes_
+    Criticality level{};      // of the failure
+    std::int64_t worth = 0;   // plan/ties.h
+    std::int64_t cost = 0;    // the same
+    std::size_t place = 0;    // among tries_ of the failure
+    bool only_revives = false;
     Exclusions::Places affected;
   };
 
   std::vector<std::vector<StrategyChance>> all_chances() const;
   std::vector<RuleId> worked_on() const;
   bool waits_for_person(std::size_t failure) const;
-  bool is_left_to_person(RuleId rule) const;
-  std::optional<RuleId> cause_of(std::size_t failure) const;
+  bool is_left_to_person(std::size_t node) const;
+  std::optional<std::size_t> cause_of(std::size_t failure) const;
   std::vector<std::optional<ComponentId>> all_unheard() const;
   std::optional<ComponentId> unheard_behind(std::size_t failure) const;
   void find_stakes();
@@ -51,7 +51,9 @@ class PlanningStep {
   void exclude(WeighedCandidate& weighed, double chance) const;
   void exclude(WeighedCandidate& weighed, const Exclusions::Obstacle& obstacle) const;
   void exclude_invalid(WeighedCandidate& weighed, const Invalid& why) const;
-  void exclude_effect(WeighedCandidate& weighed) const;
+  bool exclude_effect(WeighedCandidate& weighed) const;
+  bool exclude_unproven(WeighedCandidate& weighed, double chance) const;
+  void exclude_for(WeighedCandidate& weighed, std::size_t cause) const;
   void revive();
   void select(Criticality level);
   void choose(const WeighedCandidate& weighed);
@@ -60,6 +62,7 @@ class PlanningStep {
                                                 const std::vector<WeighedCandidate*>& chosen) const;
   bool is_taken(WeighedCandidate& weighed) const;
   ComponentId likeliest_component(RuleId rule) const;
+  ComponentId component_of(std::size_t node) const;
   std::vector<Suspect> suspects(std::size_t failure) const;
   std::vector<Decision> decisions();
   bool is_before(const WeighedCandidate& a, const WeighedCandidate& b) const;
@@ -67,14 +70,10 @@ class PlanningStep {
   const Knowledge& knowledge_;
   const CostWeights& weights_;
   std::vector<RuleId> planned_;
-  std::vector<RuleId> suspicious_;
-  std::vector<RuleId> awaited_;  // of these
-  Reach reach_;
-  FailurePaths paths_;
-  std::optional<Watchers> watchers_;  // while a failure is newborn
-  Failures failures_;
-  Responsibility responsibility_;
-  // By failure: the component on a computer that is not heard that it is about, or can have spread
+  diagnose::Examination found_;
+  const diagnose::Causes& causes_;        // of found_
+  const diagnose::Diagnosis& diagnosis_;  // likewise
+  // By node: the component on a computer that is not heard that it is about, or can have spread
   // from. It explains the failure for sure, as nothing that is only learned does.
   std::vector<std::optional<ComponentId>> unheard_;
   Levels levels_;

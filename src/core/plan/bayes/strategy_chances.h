@@ -45,12 +45,4 @@ struct StrategyChance {
 // Of all strategies of the rule, in their order.
 std::vector<StrategyChance> strategy_chances(RuleId rule, const Knowledge& knowledge);
 
-// The probability that what is wrong would still be there after all that was tried at the rule's
-// component:
-//
-//     (1 - sum_{t tried} v_t) prod_{t tried} (1 - q_t) (prod_t (1 - P_t))^rounds
-//
-// Who comes round again may be lucky with each as at first.
-double still_there(RuleId rule, const Knowledge& knowledge);
-
 }  // namespace culprit::plan

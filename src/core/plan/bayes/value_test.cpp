@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include "diagnose/still_there.h"
 #include "plan/bayes/strategy_chances.h"
 #include "plan/bayes/test_scene.h"
 
@@ -60,15 +61,15 @@ TEST(StrategyChances, HelpLessOnceOneFailedThatHelpsAgainstTheSame) {
 
 TEST(StrategyChances, SayHowLikelyWhatIsWrongOutlivesThem) {
   Scene scene(kOverlapping);
-  EXPECT_DOUBLE_EQ(still_there(scene.rule("A"), *scene), 1);
+  EXPECT_DOUBLE_EQ(diagnose::still_there(scene.rule("A"), *scene), 1);
   scene.tried("A.redeploy");
-  EXPECT_NEAR(still_there(scene.rule("A"), *scene), 0.1, 1e-9);
+  EXPECT_NEAR(diagnose::still_there(scene.rule("A"), *scene), 0.1, 1e-9);
   Scene other(kOverlapping);
   other.tried("A.configure").tried("A.restart");
-  EXPECT_NEAR(still_there(other.rule("A"), *other), 0.38, 0.01);
+  EXPECT_NEAR(diagnose::still_there(other.rule("A"), *other), 0.38, 0.01);
   Scene again(kOverlapping);
   (*again).states.state(again.rule("A")).search.round = 1;
-  EXPECT_NEAR(still_there(again.rule("A"), *again), 0.72 * 0.57 * 0.1, 1e-9);
+  EXPECT_NEAR(diagnose::still_there(again.rule("A"), *again), 0.72 * 0.57 * 0.1, 1e-9);
 }
 
 TEST(StrategyChances, ReplaceAProcessThatIsDown) {

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace culprit::plan {
+namespace culprit::diagnose {
 
 using Word = std::uint64_t;
 inline constexpr std::size_t kWordBits = 64;
@@ -86,4 +86,4 @@ inline std::optional<std::size_t> first_common(std::span<const Word> a, std::spa
 // Rows as columns, of `size` of either.
 BitRows transposed(const BitRows& square, std::size_t size);
 
-}  // namespace culprit::plan
+}  // namespace culprit::diagnose

@@ -1,11 +1,11 @@
-#include "plan/bayes/bit_rows.h"
+#include "diagnose/bit_rows.h"
 
 #include <random>
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-namespace culprit::plan {
+namespace culprit::diagnose {
 namespace {
 
 RC_GTEST_PROP(BitRows, RowsBecomeColumns, ()) {
@@ -26,4 +26,4 @@ RC_GTEST_PROP(BitRows, RowsBecomeColumns, ()) {
 }
 
 }  // namespace
-}  // namespace culprit::plan
+}  // namespace culprit::diagnose

@@ -1,4 +1,4 @@
-#include "plan/bayes/reach.h"
+#include "diagnose/reach.h"
 
 #include <algorithm>
 
@@ -6,8 +6,11 @@
 
 #include "plan/bayes/test_scene.h"
 
-namespace culprit::plan {
+namespace culprit::diagnose {
 namespace {
+
+using plan::failure_of;
+using plan::Scene;
 
 // More than a word's worth of them, with circles.
 TEST(Reach, AgreesWithTheGraphAboutEachComponent) {
@@ -38,4 +41,4 @@ TEST(Reach, AgreesWithTheGraphAboutEachComponent) {
 }
 
 }  // namespace
-}  // namespace culprit::plan
+}  // namespace culprit::diagnose

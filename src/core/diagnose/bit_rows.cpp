@@ -1,9 +1,9 @@
-#include "plan/bayes/bit_rows.h"
+#include "diagnose/bit_rows.h"
 
 #include <algorithm>
 #include <array>
 
-namespace culprit::plan {
+namespace culprit::diagnose {
 namespace {
 
 using Block = std::array<Word, kWordBits>;
@@ -41,4 +41,4 @@ BitRows transposed(const BitRows& square, std::size_t size) {
   return result;
 }
 
-}  // namespace culprit::plan
+}  // namespace culprit::diagnose

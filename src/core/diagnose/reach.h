@@ -7,11 +7,11 @@
 #include <cassert>
 #include <vector>
 
+#include "diagnose/bit_rows.h"
 #include "knowledge/condensation.h"
 #include "knowledge/knowledge.h"
-#include "plan/bayes/bit_rows.h"
 
-namespace culprit::plan {
+namespace culprit::diagnose {
 
 class Reach {
  public:
@@ -46,4 +46,4 @@ class Reach {
   std::vector<std::size_t> dependents_;
 };
 
-}  // namespace culprit::plan
+}  // namespace culprit::diagnose

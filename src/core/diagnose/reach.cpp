@@ -1,10 +1,10 @@
-#include "plan/bayes/reach.h"
+#include "diagnose/reach.h"
 
 #include <algorithm>
 #include <array>
 #include <utility>
 
-namespace culprit::plan {
+namespace culprit::diagnose {
 namespace {
 
 using Scc = Condensation::Scc;
@@ -119,4 +119,4 @@ Reach::Reach(const Condensation& graph, const Sccs& sccs, std::vector<ComponentI
   downstream_ = transposed(upstream_, size());
 }
 
-}  // namespace culprit::plan
+}  // namespace culprit::diagnose

@@ -1,11 +1,9 @@
-#include "plan/bayes/failure_paths.h"
+#include "diagnose/paths.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "plan/bayes/suspicion.h"
-
-namespace culprit::plan {
+namespace culprit::diagnose {
 namespace {
 
 using Vertex = DependencyGraph::Vertex;
@@ -13,7 +11,7 @@ using Vertex = DependencyGraph::Vertex;
 // What is known of a component.
 struct Signs {
   std::array<bool, 2> is_watched{};  // by a quiet rule of each kind
-  std::array<bool, 2> has_ill{};     // a rule of that kind is not quiet, or suspicious
+  std::array<bool, 2> has_ill{};     // a rule of that kind is not quiet, or imminent
 
   // Bad values come of outages too, but no outages of bad values.
   bool is_ill(Symptom symptom) const {
@@ -32,7 +30,8 @@ bool is_ill(const RuleState& state) {
          (seen.history.empty() && seen.trigger.known && seen.trigger.b);
 }
 
-std::vector<Signs> signs_of(const Knowledge& knowledge, std::span<const RuleId> suspicious) {
+std::vector<Signs> signs_of(const Knowledge& knowledge, std::span<const RuleId> imminent,
+                            std::span<const std::optional<TroubleSeen>> troubles) {
   std::vector<Signs> signs(knowledge.rules.components.size());
   const auto add = [&](RuleId rule, bool is_ill) {
     const auto symptom = static_cast<std::size_t>(symptom_of(rule, knowledge));
@@ -44,7 +43,10 @@ std::vector<Signs> signs_of(const Knowledge& knowledge, std::span<const RuleId> 
     const bool is_seen_ill = is_ill(state);
     if (is_seen_ill || state.detection.trigger.known) add(RuleId(r), is_seen_ill);
   }
-  for (const RuleId rule : suspicious) add(rule, true);
+  for (const RuleId rule : imminent) add(rule, true);
+  for (std::size_t c = 0; c < signs.size(); ++c) {
+    if (troubles[c]) signs[c].has_ill[static_cast<std::size_t>(Symptom::kOutage)] = true;
+  }
   return signs;
 }
 
@@ -114,16 +116,16 @@ class Narrowing {
 
 }  // namespace
 
-FailurePaths::FailurePaths(const Knowledge& knowledge, const Reach& whole,
-                           std::span<const RuleId> suspicious)
-    : knowledge_(knowledge), whole_(whole) {
+Paths::Paths(const Knowledge& knowledge, const Reach& whole, const Awaited& awaited,
+             std::span<const RuleId> imminent, std::span<const std::optional<TroubleSeen>> troubles)
+    : knowledge_(knowledge), whole_(whole), awaited_(awaited) {
   std::array<bool, 2> is_needed{};
   for (const RuleId rule : knowledge.states.active()) {
-    if (!is_young(rule, knowledge))
+    if (!has_whole_graph(rule))
       is_needed[static_cast<std::size_t>(symptom_of(rule, knowledge))] = true;
   }
   if (!is_needed[0] && !is_needed[1]) return;
-  const std::vector<Signs> signs = signs_of(knowledge, suspicious);
+  const std::vector<Signs> signs = signs_of(knowledge, imminent, troubles);
   for (const Symptom symptom : {Symptom::kOutage, Symptom::kValue}) {
     const bool is_any_well =
         std::any_of(signs.begin(), signs.end(), [&](const Signs& s) { return s.is_well(symptom); });
@@ -133,10 +135,14 @@ FailurePaths::FailurePaths(const Knowledge& knowledge, const Reach& whole,
   }
 }
 
-std::span<const Word> FailurePaths::upstream(std::size_t place, RuleId rule) const {
-  const auto& narrowed = narrowed_[static_cast<std::size_t>(symptom_of(rule, knowledge_))];
-  const bool is_whole = !narrowed || is_young(rule, knowledge_);
-  return (is_whole ? whole_ : *narrowed).upstream(place);
+bool Paths::has_whole_graph(RuleId rule) const {
+  const auto awaiting = awaited_.of(rule);
+  return awaiting && !awaiting->is_echo;
 }
 
-}  // namespace culprit::plan
+std::span<const Word> Paths::upstream(std::size_t place, RuleId rule) const {
+  const auto& narrowed = narrowed_[static_cast<std::size_t>(symptom_of(rule, knowledge_))];
+  return (narrowed && !has_whole_graph(rule) ? *narrowed : whole_).upstream(place);
+}
+
+}  // namespace culprit::diagnose

@@ -1,0 +1,160 @@
+#include "diagnose/awaited.h"
+
+#include <algorithm>
+
+namespace culprit::diagnose {
+namespace {
+
+std::size_t at(Symptom symptom) { return static_cast<std::size_t>(symptom); }
+
+// When the rule's failure was really over.
+Time recovered(RuleId rule, const Knowledge& knowledge) {
+  return knowledge.states[rule].gone_since - knowledge.latencies.lateness(rule).least;
+}
+
+bool cleared_lately(RuleId rule, const Knowledge& knowledge) {
+  const RuleState& state = knowledge.states[rule];
+  return state.phase == RulePhase::kQuiet && state.gone_since != kLongAgo &&
+         knowledge.now < later(state.gone_since, kLongestEvidence);
+}
+
+}  // namespace
+
+template <class Key>
+void Awaited::Two<Key>::add(const Best<Key>& other) {
+  if (!other.rule) return;
+  if (first.rule == other.rule) {
+    first.key = std::max(first.key, other.key);
+  } else if (!first.rule || other.key > first.key) {
+    second = first;
+    first = other;
+  } else if (!second.rule || other.key > second.key) {
+    second = other;
+  }
+}
+
+template <class Key>
+void Awaited::Two<Key>::add(const Two& other) {
+  add(other.first);
+  add(other.second);
+}
+
+template <class Key>
+const Awaited::Best<Key>& Awaited::Two<Key>::without(RuleId rule) const {
+  return first.rule == rule ? second : first;
+}
+
+Awaited::Awaited(const Knowledge& knowledge, std::span<const RuleId> failures)
+    : knowledge_(knowledge) {
+  const bool is_any_new = std::any_of(failures.begin(), failures.end(), [&](RuleId rule) {
+    return knowledge.now < later(knowledge.states[rule].failing_since, 2 * kLongestEvidence);
+  });
+  if (!is_any_new) return;
+  Time latest = kLongAgo;
+  for (const RuleId failure : failures)
+    latest = std::max(latest, onset_of(failure, knowledge).latest);
+  collect(latest);
+  carry();
+  for (const RuleId failure : failures) look_at(failure);
+}
+
+void Awaited::collect(Time latest_onset) {
+  places_.resize(knowledge_.graph.condensation().size());
+  is_circle_.resize(places_.size(), false);
+  std::vector<bool> is_taken(places_.size(), false);
+  for (std::size_t c = 0; c < knowledge_.rules.components.size(); ++c) {
+    const auto scc = knowledge_.graph.scc_of(ComponentId(c));
+    if (!scc) continue;
+    if (is_taken[*scc]) is_circle_[*scc] = true;
+    is_taken[*scc] = true;
+  }
+  for (std::size_t r = 0; r < knowledge_.rules.rules.size(); ++r) {
+    const RuleId rule(r);
+    const Duration within = evidence_within(rule, latest_onset, knowledge_);
+    const bool is_gone = cleared_lately(rule, knowledge_);
+    if (within == Duration::zero() && !is_gone) continue;
+    for (const ComponentId c : knowledge_.rules[rule].components) {
+      const auto scc = knowledge_.graph.scc_of(c);
+      if (!scc) continue;
+      Place& place = places_[*scc];
+      if (within > Duration::zero()) {
+        auto& own = is_gone ? place.own_again : place.own[at(symptom_of(rule, knowledge_))];
+        own.add(Best<Duration>{within, rule});
+      }
+      if (is_gone) place.own_gone.add(Best<Time>{recovered(rule, knowledge_), rule});
+    }
+  }
+}
+
+void Awaited::carry() {
+  const Condensation& graph = knowledge_.graph.condensation();
+  for (Condensation::Scc scc = 0; scc < places_.size(); ++scc) {
+    Place& place = places_[scc];
+    for (const Condensation::Scc producer : graph.producers(scc)) {
+      const Place& before = places_[producer];
+      for (const std::size_t s : {at(Symptom::kOutage), at(Symptom::kValue)}) {
+        place.upstream[s].add(before.upstream[s]);
+        place.upstream[s].add(before.own[s]);
+      }
+      place.upstream_again.add(before.upstream_again);
+      place.upstream_again.add(before.own_again);
+      place.upstream_gone.add(before.upstream_gone);
+      place.upstream_gone.add(before.own_gone);
+    }
+  }
+}
+
+void Awaited::look_at(RuleId failure) {
+  const Awaiting found = awaiting(failure);
+  if (knowledge_.now < found.until) found_.emplace_back(failure, found);
+}
+
+Awaiting Awaited::awaiting(RuleId failure) const {
+  const Onset onset = onset_of(failure, knowledge_);
+  const RuleState& state = knowledge_.states[failure];
+  const Time first_onset = first_onset_of(failure, knowledge_);
+  const bool is_value = symptom_of(failure, knowledge_) == Symptom::kValue;
+  const Duration passing = duration_of(kPassing, knowledge_.rules);
+  Awaiting found;
+  const Duration lateness = presumed_lateness(failure, knowledge_);
+  const auto wait_for = [&](const Two<Duration>& evidence, Time latest, Time detected) {
+    const auto& [within, rule] = evidence.without(failure);
+    if (!rule) return;
+    const Duration least =
+        std::min<Duration>(within, knowledge_.signals.latency(*rule) / 2 + knowledge_.rules.cycle);
+    const Time until = std::clamp(later(latest - lateness, within), later(latest, least),
+                                  later(detected, kLongestEvidence));
+    if (until > found.until) found = {until, *rule, false};
+  };
+  const auto fade = [&](const Two<Time>& gone) {
+    const auto& [recovered_at, rule] = gone.without(failure);
+    if (!rule || onset.earliest > later(recovered_at, passing)) return;
+    const Time until = later(recovered_at, passing + clears_within(failure, knowledge_));
+    if (until > found.until) found = {until, *rule, true};
+  };
+  for (const ComponentId c : knowledge_.rules[failure].components) {
+    const auto scc = knowledge_.graph.scc_of(c);
+    if (!scc) continue;
+    const Place& place = places_[*scc];
+    for (const Symptom symptom : {Symptom::kOutage, Symptom::kValue}) {
+      if (symptom == Symptom::kValue && !is_value) continue;
+      wait_for(place.upstream[at(symptom)], first_onset, state.first_detected());
+      if (is_circle_[*scc]) wait_for(place.own[at(symptom)], first_onset, state.first_detected());
+    }
+    wait_for(place.upstream_again, onset.latest, state.failing_since);
+    if (is_circle_[*scc]) wait_for(place.own_again, onset.latest, state.failing_since);
+    fade(place.upstream_gone);
+    if (is_circle_[*scc]) fade(place.own_gone);
+  }
+  return found;
+}
+
+std::optional<Awaiting> Awaited::of(RuleId failure) const {
+  const auto found = std::lower_bound(
+      found_.begin(), found_.end(), failure,
+      [](const std::pair<RuleId, Awaiting>& each, RuleId rule) { return each.first < rule; });
+  if (found == found_.end() || found->first != failure) return std::nullopt;
+  return found->second;
+}
+
+}  // namespace culprit::diagnose

@@ -1,0 +1,83 @@
+// Evidence that can still come: for each failure, how long something upstream may yet prove to be its
+// cause.
+//
+//     W_i = max_u min(b_i + E_u, d_i + kLongestEvidence)     quiet rules u upstream of i, of a
+//                                                            symptom that can cause i's
+//     Z_i = max_u r_u + passing + C_i                        rules u upstream of i that cleared lately,
+//                                                            if e_i <= r_u + passing
+//
+//   e_i, E_u        onset and evidence time (timing.h); d_i the detection of i
+//   b_i             when i presumably began: l_i, less the presumed lateness of a value's rule, but at
+//                   most so early that a reading and a cycle of u are waited for after d_i. If i comes
+//                   and goes, b_i and d_i are those of the first time, but for rules u that cleared
+//                   lately: they may come and go with i
+//   r_u             when u recovered: it cleared then, less its least lateness
+//   passing         kPassing: how long a bad value usually takes along the graph
+//   C_i             how long i shows it after its cause is gone (clears_within)
+//
+// Until W_i a cause may still be detected; until Z_i the failure may be the echo of one that is gone.
+// After both, nothing more can come, and nothing is waited for. All maxima are found in one pass over
+// the condensed graph, producers first.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "diagnose/timing.h"
+
+namespace culprit::diagnose {
+
+inline constexpr Cycles kPassing{5};
+
+struct Awaiting {
+  Time until = kLongAgo;
+  RuleId because;        // the rule that can still fire, or cleared
+  bool is_echo = false;  // the latter
+};
+
+class Awaited {
+ public:
+  // For `failures`, those to be decided about. `knowledge` must outlive it.
+  Awaited(const Knowledge& knowledge, std::span<const RuleId> failures);
+
+  // What can still come for one of them; nothing: all that can come is there.
+  std::optional<Awaiting> of(RuleId failure) const;
+
+ private:
+  template <class Key>
+  struct Best {
+    Key key{};
+    std::optional<RuleId> rule;  // nothing: none
+  };
+  // The best and the second best of another rule: a failure does not wait for itself.
+  template <class Key>
+  struct Two {
+    Best<Key> first;
+    Best<Key> second;
+    void add(const Best<Key>& other);
+    void add(const Two& other);
+    const Best<Key>& without(RuleId rule) const;
+  };
+  struct Place {
+    std::array<Two<Duration>, 2> own;       // E_u by symptom, of rules at this SCC
+    std::array<Two<Duration>, 2> upstream;  // of those upstream of it
+    // Of rules that cleared lately: E_u, and r_u.
+    Two<Duration> own_again;
+    Two<Duration> upstream_again;
+    Two<Time> own_gone;
+    Two<Time> upstream_gone;
+  };
+
+  void collect(Time latest_onset);
+  void carry();
+  void look_at(RuleId failure);
+  Awaiting awaiting(RuleId failure) const;
+
+  const Knowledge& knowledge_;
+  std::vector<Place> places_;  // by SCC; empty: nothing can be awaited
+  std::vector<bool> is_circle_;
+  std::vector<std::pair<RuleId, Awaiting>> found_;  // ascending
+};
+
+}  // namespace culprit::diagnose

@@ -1,0 +1,119 @@
+#include "diagnose/awaited.h"
+
+#include <gtest/gtest.h>
+
+#include "plan/bayes/test_scene.h"
+
+namespace culprit::diagnose {
+namespace {
+
+using namespace std::chrono_literals;
+using plan::failure_of;
+using plan::Scene;
+
+// a -> b, each watched by a value of its own; their monitors are at most 400 ms late (the least impact
+// of their strategies, two cycles), and are read every 200 ms.
+class TwoMonitors : public ::testing::Test {
+ protected:
+  TwoMonitors() : scene_(rules()) {
+    scene_.link("a", "b");
+    for (const char* rule : {"A", "B"}) {
+      scene_->signals.set_latency(scene_.rules()[scene_.rule(rule)].inputs.front(), 400ms);
+      scene_->states.state(scene_.rule(rule)).detection.trigger = Slot::of(false);
+    }
+  }
+
+  static std::string rules() {
+    std::string text = failure_of("a", "A") + failure_of("b", "B");
+    text.replace(text.rfind("x > 1"), 5, "y > 1");
+    return text;
+  }
+  std::optional<Awaiting> awaited(Duration detected_ago) {
+    scene_.fail("B", 10s - detected_ago);
+    return Awaited(*scene_, scene_->states.active()).of(scene_.rule("B"));
+  }
+  RuleState& state(const char* rule) { return scene_->states.state(scene_.rule(rule)); }
+
+  Scene scene_;
+};
+
+// B began at least 200 ms before it was detected, and A would show its own failure within 600 ms.
+TEST_F(TwoMonitors, AQuietRuleUpstreamCanStillFireForAWhile) {
+  ASSERT_TRUE(awaited(300ms));
+  EXPECT_EQ(awaited(300ms)->because, scene_.rule("A"));
+  EXPECT_FALSE(awaited(300ms)->is_echo);
+  EXPECT_TRUE(awaited(399ms));
+  EXPECT_FALSE(awaited(401ms));
+}
+
+TEST_F(TwoMonitors, ARuleThatCannotSeeIsNotWaitedFor) {
+  state("A").detection.trigger = Slot();
+  EXPECT_FALSE(awaited(100ms));
+}
+
+TEST_F(TwoMonitors, ARuleInItsCooldownIsNotWaitedFor) {
+  state("A").quiet_until = scene_->now + 10s;
+  EXPECT_FALSE(awaited(100ms));
+}
+
+TEST_F(TwoMonitors, ARuleDownstreamIsNotWaitedFor) {
+  scene_.fail("A", 9900ms);
+  EXPECT_FALSE(Awaited(*scene_, scene_->states.active()).of(scene_.rule("A")));
+}
+
+// How late it is was seen in an earlier failure.
+TEST_F(TwoMonitors, ALateRuleIsWaitedForAsLongAsItWasLate) {
+  scene_->latencies.cleared(scene_.rule("A"), 2s);
+  EXPECT_TRUE(awaited(1900ms));
+  EXPECT_FALSE(awaited(2100ms));
+}
+
+// B is as late as A, so that A would have been detected first.
+TEST_F(TwoMonitors, TwoRulesThatAreEquallyLateNeedNotWait) {
+  scene_->latencies.cleared(scene_.rule("A"), 2s);
+  scene_->latencies.cleared(scene_.rule("B"), 2s);
+  EXPECT_TRUE(awaited(300ms));
+  EXPECT_FALSE(awaited(500ms));
+}
+
+// A recovered a moment ago; what B shows may be the echo of that.
+TEST_F(TwoMonitors, AFailureMayBeTheEchoOfOneThatCleared) {
+  state("A").gone_since = scene_->now - 500ms;
+  const auto echo = awaited(900ms);
+  ASSERT_TRUE(echo);
+  EXPECT_TRUE(echo->is_echo);
+  state("A").gone_since = scene_->now - 2s;
+  EXPECT_FALSE(awaited(900ms)) << "that was too long ago";
+}
+
+// One status tells of both: neither is later than the other.
+TEST(Awaited, RulesOfOneMonitorDoNotWaitForOneAnother) {
+  std::string text = failure_of("a", "A") + failure_of("b", "B") +
+                     "SIGNAL x DIAGNOSTIC board KEY x\nSIGNAL y DIAGNOSTIC board KEY y\n";
+  text.replace(text.find("x > 1", text.find("RULE B")), 5, "y > 1");
+  Scene scene(text);
+  scene.link("a", "b").fail("B", 9900ms);
+  scene->states.state(scene.rule("A")).detection.trigger = Slot::of(false);
+  for (const char* rule : {"A", "B"})
+    scene->signals.set_latency(scene.rules()[scene.rule(rule)].inputs.front(), 100ms);
+  EXPECT_FALSE(Awaited(*scene, scene->states.active()).of(scene.rule("B")));
+}
+
+// Its topic has sent since the failure began: it has no outage, and its threshold does not matter.
+TEST(Awaited, ATopicThatSentSinceTheOnsetIsProof) {
+  std::string text = failure_of("a", "A") + failure_of("b", "B");
+  text.replace(text.find("x > 1"), 5, "age(/out) > 3s");
+  Scene scene(text);
+  scene.link("a", "b").fail("B", 9900ms);
+  scene->states.state(scene.rule("A")).detection.trigger = Slot::of(false);
+  const auto awaited = [&] {
+    return Awaited(*scene, scene->states.active()).of(scene.rule("B")).has_value();
+  };
+  scene->signals.set_rhythm(TopicId(0), {scene->now - 350ms, 200ms, 200ms});
+  EXPECT_TRUE(awaited());
+  scene->signals.set_rhythm(TopicId(0), {scene->now - 50ms, 200ms, 200ms});
+  EXPECT_FALSE(awaited());
+}
+
+}  // namespace
+}  // namespace culprit::diagnose

@@ -1,0 +1,274 @@
+#include "diagnose/causes.h"
+
+#include <algorithm>
+#include <cassert>
+#include <iterator>
+
+#include "diagnose/imminent.h"
+#include "diagnose/known_down.h"
+
+namespace culprit::diagnose {
+namespace {
+
+void sort_by_name(std::vector<RuleId>& ids, const RuleSet& rules) {
+  std::sort(ids.begin(), ids.end(),
+            [&](RuleId a, RuleId b) { return rules[a].name < rules[b].name; });
+}
+
+// Visits what can be reached from `root` through `rows` and is still in `open`, which it leaves.
+// Calls `done` for each when all that it leads to was visited.
+template <class Done>
+void search(std::size_t root, const BitRows& rows, std::span<Word> open,
+            std::vector<std::size_t>& path, Done done) {
+  clear(open, root);
+  path.assign(1, root);
+  while (!path.empty()) {
+    const auto next = first_common(rows[path.back()], open);
+    if (!next) {
+      done(path.back());
+      path.pop_back();
+      continue;
+    }
+    clear(open, *next);
+    path.push_back(*next);
+  }
+}
+
+std::size_t level_of(const Rule& rule) {
+  return static_cast<std::size_t>(rule.policies.criticality);
+}
+
+// Does a strategy of its rule begin anew what it is about?
+bool may_be_broken(RuleId rule, const RuleSet& rules) {
+  const auto begins_anew = [](const Adaptation& adaptation) {
+    return adaptation.type == AdaptationType::kRestart ||
+           adaptation.type == AdaptationType::kRedeploy ||
+           adaptation.type == AdaptationType::kStart;
+  };
+  return std::any_of(
+      rules[rule].strategies.begin(), rules[rule].strategies.end(), [&](StrategyId s) {
+        return std::any_of(rules[s].adaptations.begin(), rules[s].adaptations.end(), begins_anew);
+      });
+}
+
+// What comes and goes began with its first detection.
+Onset onset_of_node(RuleId failure, const Knowledge& knowledge) {
+  const Onset onset = onset_of(failure, knowledge);
+  const Time first = first_onset_of(failure, knowledge);
+  return {std::min(onset.earliest, first), std::min(onset.latest, first)};
+}
+
+// Did its function never work while culprit watched?
+bool never_worked(RuleId rule, const Knowledge& knowledge) {
+  return knowledge.states[rule].detection.last_false == kLongAgo;
+}
+
+}  // namespace
+
+std::vector<ComponentId> touched_by(RuleId rule, const Knowledge& knowledge) {
+  const Rule& of = knowledge.rules[rule];
+  std::vector<ComponentId> touched;
+  for (const StrategyId id : of.strategies) {
+    const Strategy& strategy = knowledge.rules[id];
+    if (strategy.is_last_resort) continue;
+    touched.insert(touched.end(), strategy.components.begin(), strategy.components.end());
+  }
+  if (touched.empty()) return of.components;
+  std::sort(touched.begin(), touched.end());
+  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+  return touched;
+}
+
+Causes::Causes(const Knowledge& knowledge, const Reach& reach, const Paths& paths,
+               std::span<const RuleId> imminent,
+               std::span<const std::optional<TroubleSeen>> troubles)
+    : places_(knowledge.rules.rules.size(), kAbsent) {
+  add_rules(knowledge, imminent);
+  add_troubles(knowledge, troubles);
+  add_unsupplied(knowledge);
+  causes_ = BitRows(size(), size());
+  learned_ = BitRows(size(), size());
+  hosts_ = BitRows(size(), size());
+  loop_of_.resize(size());
+  connect(knowledge, reach, paths);
+  leave_out_slight(knowledge);
+  find_loops(transposed(causes_, size()));
+}
+
+void Causes::add_rules(const Knowledge& knowledge, std::span<const RuleId> imminent) {
+  const RuleStates& states = knowledge.states;
+  std::vector<RuleId> rules = states.active();
+  std::copy_if(states.exhausted().begin(), states.exhausted().end(), std::back_inserter(rules),
+               [&](RuleId id) { return states.awaits_person(id); });
+  rules.insert(rules.end(), imminent.begin(), imminent.end());
+  sort_by_name(rules, knowledge.rules);
+  for (const RuleId rule : rules) {
+    places_[rule.index] = nodes_.size();
+    const bool is_imminent = states[rule].phase == RulePhase::kQuiet;
+    nodes_.push_back(
+        {is_imminent ? CauseNode::Kind::kImminent : CauseNode::Kind::kFailure,
+         rule,
+         {},
+         {},
+         {},
+         is_imminent ? onset_now(rule, knowledge.now, knowledge) : onset_of_node(rule, knowledge)});
+  }
+}
+
+void Causes::add_troubles(const Knowledge& knowledge,
+                          std::span<const std::optional<TroubleSeen>> troubles) {
+  std::vector<bool> is_touched(knowledge.rules.components.size(), false);
+  for (const CauseNode& node : nodes_) {
+    if (node.kind != CauseNode::Kind::kFailure) continue;
+    for (const ComponentId c : touched_by(node.rule, knowledge)) is_touched[c.index] = true;
+  }
+  std::vector<ComponentId> components;
+  for (std::size_t c = 0; c < troubles.size(); ++c) {
+    if (troubles[c] && !is_touched[c]) components.emplace_back(c);
+  }
+  const RuleSet& rules = knowledge.rules;
+  std::sort(components.begin(), components.end(),
+            [&](ComponentId a, ComponentId b) { return rules[a].name < rules[b].name; });
+  for (const ComponentId c : components) {
+    const TroubleSeen& seen = *troubles[c.index];
+    nodes_.push_back({CauseNode::Kind::kTrouble, {}, c, seen.trouble, {}, seen.onset});
+  }
+}
+
+void Causes::add_unsupplied(const Knowledge& knowledge) {
+  const std::size_t rules = nodes_.size();
+  for (std::size_t i = 0; i < rules; ++i) {
+    const RuleId rule = nodes_[i].rule;
+    if (nodes_[i].kind != CauseNode::Kind::kFailure || !never_worked(rule, knowledge)) continue;
+    for (const ComponentId c : touched_by(rule, knowledge)) {
+      if (auto channel = knowledge.graph.unsupplied_input(c))
+        nodes_.push_back({CauseNode::Kind::kUnsupplied, rule, c, {}, std::move(*channel), {}});
+    }
+  }
+}
+
+void Causes::connect(const Knowledge& knowledge, const Reach& reach, const Paths& paths) {
+  BitRows touching(reach.size(), size());  // by place: which nodes touch it
+  for (std::size_t i = 0; i < size(); ++i) {
+    const CauseNode& node = nodes_[i];
+    if (node.is_rule()) {
+      for (const ComponentId c : touched_by(node.rule, knowledge))
+        set(touching[reach.place_of(c)], i);
+    } else if (node.kind == CauseNode::Kind::kTrouble) {
+      set(touching[reach.place_of(node.component)], i);
+    }
+  }
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (!nodes_[i].is_rule()) continue;
+    const auto row = causes_[i];
+    for (const ComponentId c : touched_by(nodes_[i].rule, knowledge)) {
+      for_each(paths.upstream(reach.place_of(c), nodes_[i].rule),
+               [&](std::size_t place) { add(row, touching[place]); });
+    }
+    connect_learned(knowledge, i);
+    connect_containers(knowledge, i);
+    clear(row, i);
+    for (std::size_t j = 0; j < size(); ++j) {
+      if (!has(row, j)) continue;
+      const bool is_first =
+          nodes_[j].kind == CauseNode::Kind::kTrouble && nodes_[j].trouble == Trouble::kNeverSeen;
+      if (is_first ? !never_worked(nodes_[i].rule, knowledge) : !can_precede(j, i)) clear(row, j);
+    }
+  }
+  for (std::size_t u = 0; u < size(); ++u) {
+    if (nodes_[u].kind == CauseNode::Kind::kUnsupplied) set(causes_[index_of(nodes_[u].rule)], u);
+  }
+}
+
+void Causes::connect_learned(const Knowledge& knowledge, std::size_t i) {
+  for (const Couplings::Learned& each : knowledge.couplings.of(nodes_[i].rule)) {
+    if (!holds(each.cause) || each.coupling.cleared == 0) continue;
+    const std::size_t j = index_of(each.cause);
+    if (has(causes_[i], j) || each.coupling.mean(Coupling::kRare) < kKnownCoupling) continue;
+    set(causes_[i], j);
+    set(learned_[i], j);
+  }
+}
+
+// What lives in a dead process is an effect of its death, whatever the graph says.
+void Causes::connect_containers(const Knowledge& knowledge, std::size_t i) {
+  for (const ComponentId c : touched_by(nodes_[i].rule, knowledge)) {
+    const auto container = dead_container_of(c, knowledge);
+    if (!container) continue;
+    for (std::size_t j = 0; j < size(); ++j) {
+      const CauseNode& node = nodes_[j];
+      const auto touched = node.is_rule() ? touched_by(node.rule, knowledge)
+                                          : std::vector<ComponentId>{node.component};
+      if (!std::binary_search(touched.begin(), touched.end(), *container)) continue;
+      set(causes_[i], j);
+      set(hosts_[i], j);
+    }
+  }
+}
+
+// By level: what is less critical and no outage, and is only ever reconfigured. That is no cause: its
+// author finds nothing broken there, and what is bad may be old, for a publisher of better values is
+// out.
+void Causes::leave_out_slight(const Knowledge& knowledge) {
+  const RuleSet& rules = knowledge.rules;
+  BitRows slight(kLevels, size());
+  for (std::size_t j = 0; j < size(); ++j) {
+    if (!nodes_[j].is_rule()) continue;
+    const RuleId rule = nodes_[j].rule;
+    if (symptom_of(rule, knowledge) == Symptom::kOutage || may_be_broken(rule, rules)) continue;
+    for (std::size_t level = level_of(rules[rule]) + 1; level < kLevels; ++level)
+      set(slight[level], j);
+  }
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (!nodes_[i].is_rule()) continue;
+    for_each(slight[level_of(rules[nodes_[i].rule])],
+             [&](std::size_t cause) { clear(causes_[i], cause); });
+  }
+}
+
+bool Causes::can_precede(std::size_t j, std::size_t i) const {
+  return nodes_[j].onset.earliest <= nodes_[i].onset.latest;
+}
+
+double Causes::timely(std::size_t j, std::size_t i) const {
+  const Time began = nodes_[j].onset.latest;
+  const Time came = nodes_[i].onset.earliest;
+  if (began == kLongAgo || began == kNever || came <= later(began, kUsualDelay)) return 1;
+  return seconds(kUsualDelay) / seconds(came - began);
+}
+
+// Kosaraju: what is visited first from the last of one search, backwards, is a loop.
+void Causes::find_loops(const BitRows& effects) {
+  BitRows open(1, nodes_.size());
+  std::vector<std::size_t> path;
+  std::vector<std::size_t> order;
+  const auto open_all = [&] {
+    for (std::size_t i = 0; i < nodes_.size(); ++i) set(open[0], i);
+  };
+  open_all();
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    if (has(open[0], i))
+      search(i, causes_, open[0], path, [&](std::size_t done) { order.push_back(done); });
+  }
+  open_all();
+  for (auto root = order.rbegin(); root != order.rend(); ++root) {
+    if (!has(open[0], *root)) continue;
+    auto& loop = loops_.emplace_back();
+    search(*root, effects, open[0], path, [&](std::size_t done) { loop.push_back(done); });
+    std::sort(loop.begin(), loop.end());
+    for (const std::size_t member : loop) loop_of_[member] = loops_.size() - 1;
+  }
+  for (const auto& loop : loops_) {
+    if (loop.size() == 1) continue;
+    for (const std::size_t member : loop) {
+      for (const std::size_t other : loop) clear(causes_[member], other);
+    }
+  }
+}
+
+std::size_t Causes::index_of(RuleId rule) const {
+  assert(holds(rule));
+  return places_[rule.index];
+}
+
+}  // namespace culprit::diagnose

@@ -1,0 +1,99 @@
+// What is wrong now, and what may be the cause of what.
+//
+// Nodes are
+//   - failures: rules that fired, also exhausted ones whose trigger is true;
+//   - imminent rules (imminent.h): what they read looks bad, and they have not fired yet;
+//   - troubles (trouble.h) of components that no failure touches: a supplier needs no rule;
+//   - inputs without a supplier: a failing rule that never saw its function work, of a component
+//     that reads a topic or calls a service that no node offers.
+//
+// Node j may be the cause of node i if a component of j is upstream of one of i, by a way that i can
+// have taken (paths.h), however critical either is (but a bad value that is only ever reconfigured is
+// no cause of a more critical one): the effects decide how bad a cause is (plan/bayes/levels.h). Two
+// failures that were seen to clear together count as if they were connected, although the graph shows
+// no edge. A cause begins before its effect (timing.h). Nodes that may be the causes of each other,
+// directly or through others, form a feedback loop; that needs no loop in the graph, because a rule
+// may touch several components.
+//
+// Rules are in the order of their names, components in that of theirs, so that nothing depends on the
+// order of declarations.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnose/paths.h"
+
+namespace culprit::diagnose {
+
+inline constexpr std::size_t kLevels = 3;  // of criticality
+
+// An effect usually follows its cause within this time. Twice as late, it is half as likely.
+inline constexpr Duration kUsualDelay = std::chrono::seconds(5);
+// Learned couplings off the graph count from this mean on.
+inline constexpr double kKnownCoupling = 0.3;
+
+// The components by which a failure of the rule is explained: those that its strategies adapt, but for
+// what only a last resort adapts.
+std::vector<ComponentId> touched_by(RuleId rule, const Knowledge& knowledge);
+
+struct CauseNode {
+  enum class Kind : std::uint8_t { kFailure, kImminent, kTrouble, kUnsupplied };
+  Kind kind = Kind::kFailure;
+  RuleId rule;              // of a failure, or imminent; kUnsupplied: the failure
+  ComponentId component{};  // kTrouble: that is in trouble; kUnsupplied: that lacks its input
+  Trouble trouble{};        // kTrouble
+  std::string channel{};    // kUnsupplied: the topic or service
+  Onset onset;
+
+  bool is_rule() const { return kind == Kind::kFailure || kind == Kind::kImminent; }
+};
+
+class Causes {
+ public:
+  // `reach` holds all components that these nodes touch; `paths` are made of it.
+  Causes(const Knowledge& knowledge, const Reach& reach, const Paths& paths,
+         std::span<const RuleId> imminent, std::span<const std::optional<TroubleSeen>> troubles);
+
+  std::size_t size() const { return nodes_.size(); }
+  const CauseNode& operator[](std::size_t i) const { return nodes_[i]; }
+  bool holds(RuleId rule) const { return places_[rule.index] != kAbsent; }
+  // Of a failure or an imminent rule. @pre holds(rule)
+  std::size_t index_of(RuleId rule) const;
+
+  // The possible causes of node i outside its own loop.
+  std::span<const Word> causes(std::size_t i) const { return causes_[i]; }
+  // Is j a possible cause of i only because of what was learned, or because i lives in it?
+  bool is_learned(std::size_t j, std::size_t i) const { return has(learned_[i], j); }
+  bool lives_in(std::size_t i, std::size_t j) const { return has(hosts_[i], j); }
+  // How likely the effect i came so late after j, relative to one that came in the usual time: 0..1.
+  double timely(std::size_t j, std::size_t i) const;
+
+  // The nodes of feedback loop c; most consist of one.
+  std::size_t loop_of(std::size_t i) const { return loop_of_[i]; }
+  const std::vector<std::vector<std::size_t>>& loops() const { return loops_; }
+
+ private:
+  static constexpr std::size_t kAbsent = static_cast<std::size_t>(-1);
+
+  void add_rules(const Knowledge& knowledge, std::span<const RuleId> imminent);
+  void add_troubles(const Knowledge& knowledge,
+                    std::span<const std::optional<TroubleSeen>> troubles);
+  void add_unsupplied(const Knowledge& knowledge);
+  void connect(const Knowledge& knowledge, const Reach& reach, const Paths& paths);
+  void connect_learned(const Knowledge& knowledge, std::size_t i);
+  void connect_containers(const Knowledge& knowledge, std::size_t i);
+  void leave_out_slight(const Knowledge& knowledge);
+  bool can_precede(std::size_t j, std::size_t i) const;
+  void find_loops(const BitRows& effects);
+
+  std::vector<CauseNode> nodes_;
+  std::vector<std::size_t> places_;  // in nodes_, by RuleId
+  BitRows causes_{0, 0};
+  BitRows learned_{0, 0};
+  BitRows hosts_{0, 0};
+  std::vector<std::size_t> loop_of_;
+  std::vector<std::vector<std::size_t>> loops_;
+};
+
+}  // namespace culprit::diagnose

@@ -1,0 +1,97 @@
+#include "diagnose/diagnosis.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnose/known_down.h"
+#include "diagnose/still_there.h"
+
+namespace culprit::diagnose {
+
+double own_cause(double prior, double explained) {
+  return prior / (prior + (1 - prior) * explained);
+}
+
+Diagnosis::Diagnosis(const Knowledge& knowledge, const Causes& causes)
+    : knowledge_(knowledge),
+      causes_(causes),
+      against_others_(causes.size()),
+      claims_(causes.size(), 0) {
+  for (std::size_t i = 0; i < causes.size(); ++i) {
+    const bool is_sure = !causes[i].is_rule() || is_known_dead(i);
+    prior_.push_back(is_sure ? kKnownDown : kCoincidence);
+    against_others_[i] = own_cause(prior_[i], explained(i));
+  }
+  own_ = against_others_;
+  for (const auto& loop : causes.loops()) {
+    if (loop.size() > 1) divide(loop);
+  }
+  for (std::size_t i = 0; i < own_.size(); ++i) {
+    for_each(causes.causes(i), [&](std::size_t j) { claims_[i] += passes(j, i) * own_[j]; });
+  }
+}
+
+double Diagnosis::share(std::size_t j, std::size_t i) const {
+  if (!has(causes_.causes(i), j)) return 0;
+  return (1 - own_[i]) * passes(j, i) * own_[j] / claims_[i];
+}
+
+bool Diagnosis::is_explained_by(std::size_t i, std::size_t j) const {
+  return has(causes_.causes(i), j) && is_enough(j, i);
+}
+
+bool Diagnosis::is_known_dead(std::size_t i) const {
+  return causes_[i].is_rule() && is_known_down(causes_[i].rule, knowledge_);
+}
+
+bool Diagnosis::is_enough(std::size_t j, std::size_t i) const {
+  return own_cause(prior_[i], passes(j, i)) < 0.5;
+}
+
+std::optional<std::size_t> Diagnosis::dead_in_loop(std::size_t i) const {
+  for (const std::size_t j : causes_.loops()[causes_.loop_of(i)]) {
+    if (j != i && is_known_dead(j) && is_enough(j, i)) return j;
+  }
+  return std::nullopt;
+}
+
+double Diagnosis::kappa(std::size_t j, std::size_t i) const {
+  if (causes_.lives_in(i, j)) return 1;
+  if (!causes_[i].is_rule() || !causes_[j].is_rule()) return Coupling::kUsual;
+  // Most failures have learned nothing: no need to search.
+  if (knowledge_.couplings.of(causes_[i].rule).empty()) return Coupling::kUsual;
+  const double expected = causes_.is_learned(j, i) ? Coupling::kRare : Coupling::kUsual;
+  return knowledge_.couplings.of(causes_[j].rule, causes_[i].rule).mean(expected);
+}
+
+double Diagnosis::explained(std::size_t i) const {
+  double unexplained = 1;
+  for_each(causes_.causes(i), [&](std::size_t j) { unexplained *= 1 - passes(j, i); });
+  return 1 - unexplained;
+}
+
+void Diagnosis::divide(const std::vector<std::size_t>& loop) {
+  Time first = kNever;
+  for (const std::size_t i : loop) first = std::min(first, causes_[i].onset.latest);
+  double sum = 0;
+  std::vector<double> weights;
+  for (const std::size_t i : loop) sum += weights.emplace_back(weight(i, loop, first));
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    const double omega = sum > 0 ? weights[k] / sum : 1 / static_cast<double>(loop.size());
+    own_[loop[k]] *= omega + (1 - omega) * kCoincidence;
+  }
+}
+
+double Diagnosis::weight(std::size_t i, const std::vector<std::size_t>& loop, Time first) const {
+  // Even one at which all was tried may be the cause: it can have failed by accident.
+  constexpr double kLeast = 0.01;
+  const double delay = seconds(causes_[i].onset.latest - first) / seconds(knowledge_.rules.cycle);
+  double weight = std::max(kLeast, still_there(causes_[i].rule, knowledge_)) *
+                  (prior_[i] / kCoincidence) / (1 + delay);
+  for (const std::size_t k : loop) {
+    if (k != i) weight *= std::max(kLeast, kappa(i, k)) / Coupling::kUsual;
+  }
+  return weight;
+}
+
+}  // namespace culprit::diagnose

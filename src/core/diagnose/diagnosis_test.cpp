@@ -1,0 +1,212 @@
+#include "diagnose/diagnosis.h"
+
+#include <gtest/gtest.h>
+
+#include "diagnose/examination.h"
+#include "plan/bayes/test_scene.h"
+
+namespace culprit::diagnose {
+namespace {
+
+using namespace std::chrono_literals;
+using plan::failure_of;
+using plan::Scene;
+
+constexpr double kPi = kCoincidence;
+constexpr double kKappa = Coupling::kUsual;
+
+// R_i of a failure that is there, by the name of its rule.
+double own(Scene& scene, const std::string& rule) {
+  const Examination found(*scene, scene->states.active());
+  return found.diagnosis().of(found.causes().index_of(scene.rule(rule)));
+}
+
+Scene chain() {
+  Scene scene(failure_of("a", "A") + failure_of("b", "B") + failure_of("c", "C"));
+  scene.link("a", "b").link("b", "c");
+  return scene;
+}
+
+TEST(Reach, CountsWhoDependsOnAComponent) {
+  Scene scene = chain();
+  const Reach reach(*scene, {scene.component("a"), scene.component("b"), scene.component("c")});
+  EXPECT_EQ(reach.dependents(reach.place_of(scene.component("a"))), 2u);
+  EXPECT_EQ(reach.dependents(reach.place_of(scene.component("b"))), 1u);
+  EXPECT_EQ(reach.dependents(reach.place_of(scene.component("c"))), 0u);
+}
+
+// However many read it: what is ill of them speaks for the way, not against it.
+TEST(Paths, AManyReadTopicCarriesFailuresWhereAllOfItsReadersAreIll) {
+  std::string rules = failure_of("producer", "P") + failure_of("aside", "X");
+  for (char c = 'a'; c < 'k'; ++c) rules += failure_of({c}, "R" + std::string(1, c));
+  Scene scene(rules);
+  scene->states.state(scene.rule("X")).detection.trigger =
+      Slot::of(false);  // it is seen to be well
+  scene.fail("P", -1h);
+  for (char c = 'a'; c < 'k'; ++c) {
+    scene.link("producer", {c});
+    scene.fail("R" + std::string(1, c), -1h);
+  }
+  EXPECT_LT(own(scene, "Ra"), 0.5);
+  EXPECT_GT(own(scene, "P"), 0.5);
+}
+
+TEST(OwnCause, IsTheNoisyOrsPosterior) {
+  EXPECT_DOUBLE_EQ(own_cause(0.05, 0), 1) << "nothing else explains it";
+  EXPECT_DOUBLE_EQ(own_cause(0.05, 0.95), 0.05 / (0.05 + 0.95 * 0.95));
+  EXPECT_DOUBLE_EQ(own_cause(0.05, 1), 0.05);
+}
+
+TEST(Diagnosis, FallsToTheFailureWithNoFailureUpstream) {
+  Scene scene = chain();
+  scene.fail("A").fail("B").fail("C");
+  EXPECT_DOUBLE_EQ(own(scene, "A"), 1);
+  EXPECT_DOUBLE_EQ(own(scene, "B"), own_cause(kPi, kKappa));
+  EXPECT_DOUBLE_EQ(own(scene, "C"), own_cause(kPi, 1 - (1 - kKappa) * (1 - kKappa)));
+}
+
+TEST(Diagnosis, LooksThroughHealthyComponents) {
+  Scene scene = chain();
+  scene.fail("A").fail("C");
+  EXPECT_DOUBLE_EQ(own(scene, "C"), own_cause(kPi, kKappa));
+}
+
+TEST(Diagnosis, FollowsWhatWasLearned) {
+  Scene scene = chain();
+  scene.fail("A").fail("B");
+  scene->couplings.set(scene.rule("A"), scene.rule("B"), {1, 9});
+  const double kappa = (2 * kKappa + 1) / 12;
+  EXPECT_DOUBLE_EQ(own(scene, "B"), own_cause(kPi, kappa));
+}
+
+TEST(Diagnosis, IsTakenFromAFailureByALesserOneToo) {
+  Scene scene(failure_of("a", "A", "WARNING") + failure_of("b", "B"));
+  scene.link("a", "b").fail("A").fail("B");
+  EXPECT_DOUBLE_EQ(own(scene, "B"), own_cause(kPi, kKappa));
+}
+
+TEST(Diagnosis, RisesWhenTheProcessIsKnownDown) {
+  Scene scene = chain();
+  scene.fail("A").fail("B");
+  scene.process("b", ProcessState::kStopped);
+  EXPECT_DOUBLE_EQ(own(scene, "B"), own_cause(kKnownDown, kKappa));
+}
+
+TEST(Diagnosis, IsSharedInAFeedbackLoop) {
+  Scene scene = chain();
+  scene.link("c", "a").fail("A").fail("B").fail("C");
+  const double third = 1.0 / 3 + 2.0 / 3 * kPi;
+  EXPECT_NEAR(own(scene, "A"), third, 1e-12);
+  EXPECT_NEAR(own(scene, "C"), third, 1e-12);
+}
+
+TEST(Diagnosis, InALoopFallsToAComponentThatWasNotAdaptedInVain) {
+  Scene scene = chain();
+  scene.link("c", "a").fail("A").fail("B").fail("C");
+  scene.tried("A.restart");
+  const double still_there = 1 - 0.5;
+  const double omega = still_there / (still_there + 2);
+  EXPECT_NEAR(own(scene, "A"), omega + (1 - omega) * kPi, 1e-12);
+}
+
+TEST(Diagnosis, InALoopFallsToTheFirstOnset) {
+  Scene scene = chain();
+  scene.link("c", "a").fail("A", 400ms).fail("B").fail("C", 200ms);  // a cycle is 200 ms
+  const double sum = 1.0 / 3 + 1 + 1.0 / 2;
+  const double omega = 1 / sum;
+  EXPECT_NEAR(own(scene, "B"), omega + (1 - omega) * kPi, 1e-12);
+}
+
+TEST(Diagnosis, OfALoopIsExplainedByACauseUpstreamOfIt) {
+  Scene scene = chain();
+  scene.link("c", "b").fail("A").fail("B").fail("C");
+  const double half = 0.5 + 0.5 * kPi;
+  EXPECT_DOUBLE_EQ(own(scene, "A"), 1);
+  EXPECT_NEAR(own(scene, "B"), own_cause(kPi, kKappa) * half, 1e-12);
+}
+
+TEST(Diagnosis, SharesTheExplainedPart) {
+  Scene scene = chain();
+  scene.fail("A").fail("B").fail("C");
+  const Examination found(*scene, scene->states.active());
+  const Diagnosis& r = found.diagnosis();
+  EXPECT_NEAR(r.share(0, 2) + r.share(1, 2), 1 - r.of(2), 1e-12);
+  EXPECT_NEAR(r.share(0, 2) / r.share(1, 2), r.of(0) / r.of(1), 1e-9);
+  EXPECT_EQ(r.share(2, 0), 0);
+}
+
+// Nobody needs a rule about a supplier: a consumer of one in trouble is an effect.
+TEST(Diagnosis, ASupplierCountsWithoutARule) {
+  Scene scene("COMPONENT a NODE /a\n" + failure_of("b", "B"));
+  scene.link("a", "b").fail("B");
+  EXPECT_DOUBLE_EQ(own(scene, "B"), 1);
+  const ComponentId a = scene.component("a");
+  scene.process("a", ProcessState::kGone);
+  EXPECT_LT(own(scene, "B"), 0.5) << "it exited";
+  scene.process("a", ProcessState::kStopped);
+  EXPECT_LT(own(scene, "B"), 0.5) << "it is stopped";
+  scene.process("a", ProcessState::kRunning);
+  scene->components[a].in_graph = true;
+  scene->components[a].alive = false;
+  EXPECT_LT(own(scene, "B"), 0.5) << "it hangs";
+  scene->components[a].alive = true;
+  scene->components[a].lifecycle = Lifecycle::kInactive;
+  EXPECT_LT(own(scene, "B"), 0.5) << "it is not active";
+  scene->components[a].lifecycle = Lifecycle::kActive;
+  EXPECT_DOUBLE_EQ(own(scene, "B"), 1);
+}
+
+// It worked for ten minutes in spite of the trouble, so the trouble is not why.
+TEST(Diagnosis, AnOldTroubleExplainsNothingNew) {
+  Scene scene("COMPONENT a NODE /a\n" + failure_of("b", "B"));
+  scene.link("a", "b");
+  scene->now = Time(1000s);
+  scene->components[scene.component("a")].lifecycle = Lifecycle::kInactive;
+  scene->components[scene.component("a")].lifecycle_since = Time(100s);
+  scene->states.state(scene.rule("B")).onset = Onset{Time(900s), Time(900s)};
+  scene.fail("B");
+  EXPECT_GT(own(scene, "B"), 0.5);
+  scene->states.state(scene.rule("B")).onset = Onset{Time(102s), Time(102s)};
+  EXPECT_LT(own(scene, "B"), 0.5);
+}
+
+TEST(Diagnosis, ACauseBeginsBeforeItsEffect) {
+  Scene scene = chain();
+  scene.fail("A").fail("B");
+  scene->states.state(scene.rule("A")).onset = Onset{Time(88s), Time(89s)};
+  scene->states.state(scene.rule("B")).onset = Onset{Time(85s), Time(86s)};
+  EXPECT_DOUBLE_EQ(own(scene, "B"), 1);
+  scene->states.state(scene.rule("B")).onset = Onset{Time(88s), Time(90s)};
+  EXPECT_LT(own(scene, "B"), 0.5);
+}
+
+TEST(Diagnosis, ACouplingThatWasLearnedNeedsNoEdge) {
+  Scene scene(failure_of("a", "A") + failure_of("b", "B"));
+  scene.fail("A").fail("B");
+  EXPECT_DOUBLE_EQ(own(scene, "B"), 1);
+  scene->couplings.set(scene.rule("A"), scene.rule("B"), {2, 0});
+  EXPECT_LT(own(scene, "B"), 0.5);
+  EXPECT_DOUBLE_EQ(own(scene, "A"), 1);
+}
+
+// It has never worked, and no node offers what it reads: it waits for its supplier.
+TEST(Diagnosis, AnInputWithoutASupplierExplainsAFunctionThatNeverWorked) {
+  Scene scene(failure_of("b", "B"));
+  scene->graph.endpoint_appeared("/b", EndpointKind::kClient, "/map");
+  scene.fail("B");
+  EXPECT_LT(own(scene, "B"), 0.5);
+  scene->states.state(scene.rule("B")).detection.last_false = Time(50s);
+  EXPECT_DOUBLE_EQ(own(scene, "B"), 1) << "it worked without it";
+}
+
+// A safe stop adapts a component that has nothing to do with the failure.
+TEST(Diagnosis, ALastResortTouchesNothing) {
+  Scene scene(failure_of("a", "A") + failure_of("b", "B") +
+              "STRATEGY stop 100 10 LASTRESORT\nADAPTATION a set_parameter speed 0 1\n");
+  scene.fail("A").fail("B");
+  EXPECT_DOUBLE_EQ(own(scene, "B"), 1);
+  EXPECT_DOUBLE_EQ(own(scene, "A"), 1);
+}
+
+}  // namespace
+}  // namespace culprit::diagnose

@@ -1,0 +1,65 @@
+#include "diagnose/imminent.h"
+
+#include "language/evaluate.h"
+
+namespace culprit::diagnose {
+namespace {
+
+using Kind = Input::Kind;
+
+bool reads_topic(const Input& input) {
+  return input.kind == Kind::kRate || input.kind == Kind::kAge || input.kind == Kind::kPhi;
+}
+
+// With HOLD one reading proves little.
+bool is_coming(const RuleState& state, const Policies& policies) {
+  if (state.detection.history.empty())
+    return state.detection.trigger.known && state.detection.trigger.b;
+  return 2 * state.detection.true_in_history > policies.hold_needed;
+}
+
+bool fires_if_silence_lasts(RuleId rule, const Knowledge& knowledge) {
+  std::vector<Assumed> assumed;
+  for (const InputId id : knowledge.rules[rule].inputs) {
+    const Input& input = knowledge.rules[id];
+    if (!reads_topic(input) || !is_silent(input.topic, knowledge.now, knowledge)) continue;
+    if (const auto value = after_long_silence(input)) assumed.push_back({id, *value});
+  }
+  if (assumed.empty()) return false;
+  const Slot value = evaluate(knowledge.rules[rule].trigger, knowledge.signals.slots(), assumed);
+  return value.known && value.b;
+}
+
+}  // namespace
+
+std::optional<Slot> after_long_silence(const Input& input) {
+  switch (input.kind) {
+    case Kind::kRate:
+      return Slot::of(0.0);
+    case Kind::kAge:
+      if (!input.only_compared || input.thresholds.empty()) return std::nullopt;
+      return Slot::of(from_seconds(input.thresholds.back()) + Duration(1));
+    case Kind::kPhi:
+      if (!input.only_compared || input.thresholds.empty()) return std::nullopt;
+      return Slot::of(input.thresholds.back() + 1);
+    default:
+      return std::nullopt;
+  }
+}
+
+bool is_imminent(RuleId rule, const Knowledge& knowledge) {
+  const RuleState& state = knowledge.states[rule];
+  if (state.phase != RulePhase::kQuiet || knowledge.now < state.quiet_until) return false;
+  return is_coming(state, knowledge.rules[rule].policies) ||
+         fires_if_silence_lasts(rule, knowledge);
+}
+
+std::vector<RuleId> imminent_rules(const Knowledge& knowledge) {
+  std::vector<RuleId> all;
+  for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
+    if (is_imminent(RuleId(r), knowledge)) all.emplace_back(r);
+  }
+  return all;
+}
+
+}  // namespace culprit::diagnose

@@ -1,0 +1,138 @@
+#include "diagnose/timing.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace culprit::diagnose {
+namespace {
+
+using Kind = Input::Kind;
+
+bool watches_a_topic(const Input& input) {
+  return input.kind == Kind::kAge || input.kind == Kind::kPhi || input.kind == Kind::kRate;
+}
+
+bool watches_a_component(const Input& input) {
+  return input.kind == Kind::kAlive || input.kind == Kind::kLifecycle;
+}
+
+// The onset of a silence or a death that the input shows now; nothing: it shows none.
+std::optional<Onset> outage_of(const Input& input, Time now, const Knowledge& knowledge) {
+  if (watches_a_topic(input)) {
+    const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(input.topic);
+    if (is_silent(input.topic, now, knowledge))
+      return Onset{*rhythm.last, later(*rhythm.last, rhythm.gap)};
+    if (input.kind == Kind::kRate) return Onset{now - input.window, now};
+    if (rhythm.last) return Onset{*rhythm.last, now};
+    return std::nullopt;
+  }
+  const ComponentState& state = knowledge.components[input.component];
+  if (input.kind == Kind::kAlive && state.alive == false)
+    return Onset{state.alive_since, state.alive_since};
+  if (input.kind == Kind::kLifecycle && state.lifecycle_since != kLongAgo)
+    return Onset{state.lifecycle_since, state.lifecycle_since};
+  return std::nullopt;
+}
+
+// HOLD n/k: at least n - 1 cycles pass from the onset until the rule fires, usually at most k.
+Duration held_at_least(RuleId rule, const Knowledge& knowledge) {
+  return duration_of(Cycles{knowledge.rules[rule].policies.hold_needed - 1}, knowledge.rules);
+}
+Duration held_at_most(RuleId rule, const Knowledge& knowledge) {
+  const int window = knowledge.rules[rule].policies.hold_window;
+  return duration_of(Cycles{window > 1 ? window : 0}, knowledge.rules);
+}
+
+// A latency is two of the intervals that a signal is read in.
+Duration reading_of(RuleId rule, const Knowledge& knowledge) {
+  return knowledge.signals.latency(rule) / 2;
+}
+
+// The onset of a bad value that made the trigger true `since` then.
+Onset onset_of_value(RuleId rule, Time since, const Knowledge& knowledge) {
+  const Latencies::Range lateness = knowledge.latencies.lateness(rule);
+  return {since - reading_of(rule, knowledge) - lateness.most - held_at_most(rule, knowledge),
+          since - lateness.least - held_at_least(rule, knowledge)};
+}
+
+}  // namespace
+
+Symptom symptom_of(RuleId rule, const Knowledge& knowledge) {
+  const auto& inputs = knowledge.rules[rule].inputs;
+  const bool reads_values = std::any_of(inputs.begin(), inputs.end(), [&](InputId id) {
+    return !watches_a_topic(knowledge.rules[id]) && !watches_a_component(knowledge.rules[id]);
+  });
+  return reads_values ? Symptom::kValue : Symptom::kOutage;
+}
+
+bool is_silent(TopicId topic, Time now, const Knowledge& knowledge) {
+  const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(topic);
+  return rhythm.last && rhythm.gap > Duration::zero() &&
+         now > later(*rhythm.last, kSilentGaps * rhythm.gap);
+}
+
+Onset onset_now(RuleId rule, Time now, const Knowledge& knowledge) {
+  std::optional<Onset> outage;
+  for (const InputId id : knowledge.rules[rule].inputs) {
+    const Input& input = knowledge.rules[id];
+    if (!watches_a_topic(input) && !watches_a_component(input)) continue;
+    const auto found = outage_of(input, now, knowledge);
+    if (!found) continue;
+    if (!outage) outage = found;
+    outage->earliest = std::min(outage->earliest, found->earliest);
+    outage->latest = std::max(outage->latest, found->latest);
+  }
+  if (outage) return *outage;
+  const Detection& detection = knowledge.states[rule].detection;
+  const bool is_true = detection.trigger.known && detection.trigger.b;
+  const bool has_lasted = is_true && detection.history.empty();  // FOR
+  return onset_of_value(rule, has_lasted ? std::min(detection.trigger_since, now) : now, knowledge);
+}
+
+Onset onset_of(RuleId failure, const Knowledge& knowledge) {
+  const RuleState& state = knowledge.states[failure];
+  if (state.onset) return *state.onset;
+  return onset_of_value(failure, state.failing_since, knowledge);
+}
+
+Time first_onset_of(RuleId failure, const Knowledge& knowledge) {
+  return std::min(onset_of(failure, knowledge).latest, knowledge.states[failure].first_onset);
+}
+
+Duration presumed_lateness(RuleId failure, const Knowledge& knowledge) {
+  const Latencies::Range lateness = knowledge.latencies.lateness(failure);
+  return symptom_of(failure, knowledge) == Symptom::kValue ? lateness.presumed - lateness.least
+                                                           : Duration::zero();
+}
+
+Duration evidence_within(RuleId quiet, Time onset, const Knowledge& knowledge) {
+  const RuleState& state = knowledge.states[quiet];
+  if (state.phase != RulePhase::kQuiet || knowledge.now < state.quiet_until ||
+      !state.detection.trigger.known)
+    return Duration::zero();
+  Duration longest{};
+  bool reads_value = false;
+  for (const InputId id : knowledge.rules[quiet].inputs) {
+    const Input& input = knowledge.rules[id];
+    if (watches_a_topic(input)) {
+      const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(input.topic);
+      if (rhythm.last && *rhythm.last <= onset)
+        longest = std::max<Duration>(longest, kSilentGaps * rhythm.gap);
+    } else if (!watches_a_component(input)) {
+      reads_value = true;
+    }
+  }
+  if (reads_value) {
+    longest =
+        std::max(longest, reading_of(quiet, knowledge) + knowledge.latencies.lateness(quiet).most +
+                              held_at_most(quiet, knowledge));
+  }
+  return std::min(longest, kLongestEvidence);
+}
+
+Duration clears_within(RuleId failure, const Knowledge& knowledge) {
+  return 2 * reading_of(failure, knowledge) + knowledge.latencies.lateness(failure).most +
+         held_at_most(failure, knowledge);
+}
+
+}  // namespace culprit::diagnose

@@ -1,0 +1,63 @@
+// When a failure began, and from when on a quiet rule counts as health.
+//
+// Rules are alarms, and alarms come late. Symbols, for a rule r:
+//
+//   [e_r, l_r]   onset: the failure that r sees began between e_r and l_r
+//   E_r          after an onset, r (or what it reads) shows it within E_r
+//
+//   trigger reads            e_r                              l_r                    E_r
+//   age, phi, rate, silent   last sample                      last sample + gap      2 gaps
+//   rate, not silent         detection - window               detection              2 gaps
+//   alive                    when that changed                the same               none: asked
+//   lifecycle                when the state was read          the same               none: asked
+//   a value                  t - reading - most lateness      t - least lateness     reading + most lateness
+//
+// where t is the time from which the trigger has been true (HOLD n/k: the detection; k cycles more for
+// e_r and E_r, n - 1 cycles less for l_r), `gap` the usual pause of the topic, `reading` the period of
+// the signal, and the lateness is that of knowledge/latencies.h. If a trigger reads several, what is silent or down decides before values.
+//
+// Rule u can be the cause of failure i only if it began before it: e_u <= l_i. While
+//
+//     now < l_i + E_u
+//
+// a quiet rule u can still fire as the cause of i: it says nothing about i. From then on, or once its
+// topics have sent after l_i, it says that its components are well.
+#pragma once
+
+#include "knowledge/knowledge.h"
+
+namespace culprit::diagnose {
+
+// What a rule sees of a failure.
+enum class Symptom : std::uint8_t {
+  kOutage,  // its trigger reads topics' ages, rates, or what is alive
+  kValue    // it reads the value of a signal, a parameter or a diagnostic
+};
+Symptom symptom_of(RuleId rule, const Knowledge& knowledge);
+
+// A topic counts as silent after this many of its usual gaps.
+inline constexpr int kSilentGaps = 2;
+// Evidence that takes longer than this is not waited for.
+inline constexpr Duration kLongestEvidence = std::chrono::seconds(10);
+
+// Is the topic silent at `now` for longer than it usually is? Not while its rhythm is unknown.
+bool is_silent(TopicId topic, Time now, const Knowledge& knowledge);
+
+// The onset of what the rule sees, if its failure is detected at `now`.
+Onset onset_now(RuleId rule, Time now, const Knowledge& knowledge);
+// The onset of a detected failure, as it is there now; and the latest onset of the first of its
+// detections, if it comes and goes.
+Onset onset_of(RuleId failure, const Knowledge& knowledge);
+Time first_onset_of(RuleId failure, const Knowledge& knowledge);
+// How much earlier than the latest possible onset the failure presumably began.
+Duration presumed_lateness(RuleId failure, const Knowledge& knowledge);
+
+// E of a quiet rule; zero if it gives no evidence any more: its topics have sent since `onset`, its
+// trigger is unknown, it is in its COOLDOWN, or its nodes must be asked.
+Duration evidence_within(RuleId quiet, Time onset, const Knowledge& knowledge);
+
+// How long after its cause is gone the failure may still be shown: the readings, the lateness and
+// the HOLD of its rule.
+Duration clears_within(RuleId failure, const Knowledge& knowledge);
+
+}  // namespace culprit::diagnose

@@ -1,0 +1,75 @@
+#include "diagnose/trouble.h"
+
+#include "diagnose/known_down.h"
+
+namespace culprit::diagnose {
+namespace {
+
+Onset at(Time since) { return {since, since}; }
+
+// A topic that pauses now and then is silent on demand; this one never was.
+bool is_steady(const SignalStore::Rhythm& rhythm) {
+  constexpr int kSteady = 3;
+  return rhythm.gap > Duration::zero() && rhythm.longest <= kSteady * rhythm.gap;
+}
+
+std::optional<TroubleSeen> own_trouble(ComponentId component, const Knowledge& knowledge) {
+  const ComponentState& state = knowledge.components[component];
+  if (state.process == ProcessState::kGone)
+    return TroubleSeen{Trouble::kExited, at(state.process_since)};
+  if (state.process == ProcessState::kStopped)
+    return TroubleSeen{Trouble::kStopped, at(state.process_since)};
+  if (!knowledge.sightings.has(component)) return TroubleSeen{Trouble::kNeverSeen, at(kLongAgo)};
+  if (state.hangs()) return TroubleSeen{Trouble::kHung, {state.answered, state.alive_since}};
+  if (state.alive == false) return TroubleSeen{Trouble::kLeft, at(state.alive_since)};
+  const bool is_managed = state.lifecycle != Lifecycle::kUnknown;
+  if (is_managed && state.lifecycle != Lifecycle::kActive)
+    return TroubleSeen{Trouble::kNotActive, at(state.lifecycle_since)};
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string_view to_string(Trouble trouble) {
+  switch (trouble) {
+    case Trouble::kExited:
+      return "exited";
+    case Trouble::kStopped:
+      return "is stopped";
+    case Trouble::kLeft:
+      return "left the graph";
+    case Trouble::kHung:
+      return "hangs";
+    case Trouble::kNotActive:
+      return "is not active";
+    case Trouble::kNeverSeen:
+      return "was never seen";
+    case Trouble::kSilent:
+      return "is silent";
+  }
+  return "";
+}
+
+std::optional<TroubleSeen> trouble_of(ComponentId component, const Knowledge& knowledge) {
+  if (knowledge.is_unheard(component)) return std::nullopt;
+  return own_trouble(component, knowledge);
+}
+
+std::vector<std::optional<TroubleSeen>> all_troubles(const Knowledge& knowledge) {
+  std::vector<std::optional<TroubleSeen>> all;
+  all.reserve(knowledge.rules.components.size());
+  for (std::size_t c = 0; c < knowledge.rules.components.size(); ++c)
+    all.push_back(trouble_of(ComponentId(c), knowledge));
+  for (std::size_t t = 0; t < knowledge.rules.topics.size(); ++t) {
+    const TopicId topic(t);
+    const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(topic);
+    if (!is_silent(topic, knowledge.now, knowledge) || !is_steady(rhythm)) continue;
+    const auto component = knowledge.graph.only_publisher(knowledge.rules[topic].name);
+    if (component && !all[component->index] && !knowledge.is_unheard(*component))
+      all[component->index] =
+          TroubleSeen{Trouble::kSilent, {*rhythm.last, later(*rhythm.last, rhythm.gap)}};
+  }
+  return all;
+}
+
+}  // namespace culprit::diagnose

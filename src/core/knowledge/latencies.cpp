@@ -1,0 +1,108 @@
+#include "knowledge/latencies.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <variant>
+
+namespace culprit {
+namespace {
+
+bool reads_value(const Input& input) {
+  using Kind = Input::Kind;
+  switch (input.kind) {
+    case Kind::kRate:
+    case Kind::kAge:
+    case Kind::kPhi:
+    case Kind::kAlive:
+    case Kind::kLifecycle:
+    case Kind::kParameter:
+      return false;
+    case Kind::kSignal:
+    case Kind::kLevel:
+    case Kind::kMean:
+    case Kind::kMin:
+    case Kind::kMax:
+    case Kind::kStddev:
+    case Kind::kChanged:
+      return true;
+  }
+  return true;
+}
+
+// The diagnostic status that carries the value; empty: another source.
+std::string status_of(const Input& input, const RuleSet& rules) {
+  if (input.kind == Input::Kind::kLevel) return rules.diagnostics[input.diagnostic.index].name;
+  if (!reads_value(input)) return "";
+  const auto* key = std::get_if<DiagnosticKey>(&rules[input.signal].source);
+  return key != nullptr ? key->status : "";
+}
+
+Duration least_impact(const Rule& rule, const RuleSet& rules) {
+  std::optional<Cycles> least;
+  for (const StrategyId id : rule.strategies) {
+    if (!least || rules[id].impact < *least) least = rules[id].impact;
+  }
+  return duration_of(least.value_or(Cycles{0}), rules);
+}
+
+}  // namespace
+
+Latencies::Latencies(const RuleSet& rules)
+    : is_late_(rules.rules.size(), false),
+      stated_(rules.rules.size()),
+      learned_(rules.rules.size()),
+      cycle_(rules.cycle) {
+  std::map<std::string, std::set<std::size_t>> readers;  // of each status: rules
+  for (std::size_t r = 0; r < rules.rules.size(); ++r) {
+    for (const InputId id : rules.rules[r].inputs) {
+      if (const std::string status = status_of(rules[id], rules); !status.empty())
+        readers[status].insert(r);
+    }
+  }
+  for (std::size_t r = 0; r < rules.rules.size(); ++r) {
+    const auto& inputs = rules.rules[r].inputs;
+    is_late_[r] = std::any_of(inputs.begin(), inputs.end(),
+                              [&](InputId id) { return reads_value(rules[id]); });
+    const bool is_stated = std::any_of(inputs.begin(), inputs.end(), [&](InputId id) {
+      const std::string status = status_of(rules[id], rules);
+      return reads_value(rules[id]) && (status.empty() || readers[status].size() < 2);
+    });
+    if (!is_stated) continue;
+    const Duration most = least_impact(rules.rules[r], rules);
+    stated_[r] = {Duration::zero(), most, std::max<Duration>(Duration::zero(), most - rules.cycle)};
+  }
+}
+
+// A sample is as long as a reading needs, too: less than a cycle in most robots.
+Latencies::Range Latencies::lateness(RuleId rule) const {
+  const Range& stated = stated_[rule.index];
+  const Learned& learned = learned_[rule.index];
+  if (learned.count > 0) {
+    const Duration least = std::max<Duration>(Duration::zero(), learned.range.least - cycle_);
+    return {least, learned.range.most, least};
+  }
+  if (stated.most == Duration::zero()) return stated;
+  return {stated.least, stated.most + excess_, stated.presumed};
+}
+
+void Latencies::cleared(RuleId rule, Duration after) {
+  if (!is_late_[rule.index]) return;
+  Learned learned = learned_[rule.index];
+  after = std::max(after, Duration::zero());
+  learned.range = learned.count == 0 ? Range{after, after, after}
+                                     : Range{std::min(learned.range.least, after),
+                                             std::max(learned.range.most, after), after};
+  ++learned.count;
+  set(rule, learned);
+}
+
+void Latencies::set(RuleId rule, const Learned& learned) {
+  learned_[rule.index] = learned;
+  if (learned.count > 0)
+    excess_ = std::max(excess_, learned.range.most - stated_[rule.index].most - cycle_);
+}
+
+}  // namespace culprit

@@ -1,0 +1,59 @@
+// How late each rule shows a change of the value that it watches, beyond the time that its readings
+// take: the delay of the node that measures or computes the value.
+//
+//   stated    before anything was observed: at most the least impact of the rule's strategies,
+//             because the rule's author expects to see the effect of that strategy within it.
+//             Presumably one cycle less (the author rounds up), and possibly not at all
+//   learned   from how long after a proven repair the rule cleared: the shortest and the longest time.
+//             How much longer that was than stated, at most, counts for the rules of which nothing was
+//             learned yet: the same author underestimated them
+//
+// A status that carries the values of several rules comes from one monitor, which sees all of them
+// at once: none of these rules is later than the others, and their lateness is zero until it was
+// learned. Triggers on topics alone have no lateness: their thresholds say when they fire.
+#pragma once
+
+#include <vector>
+
+#include "language/rule_set.h"
+
+namespace culprit {
+
+class Latencies {
+ public:
+  struct Range {
+    Duration least{};
+    Duration most{};      // >= least
+    Duration presumed{};  // between them: to be compared with that of other rules
+
+    bool operator==(const Range&) const = default;
+  };
+  // The shortest and the longest of `count` observed times.
+  struct Learned {
+    int count = 0;
+    Range range;
+
+    bool operator==(const Learned&) const = default;
+  };
+
+  explicit Latencies(const RuleSet& rules);
+
+  // What was learned of the rule; or else what the rule file states.
+  Range lateness(RuleId rule) const;
+
+  // A proven repair took effect, and the rule's trigger was false so long `after` that. Ignored for
+  // rules that read only topics, components or parameters.
+  void cleared(RuleId rule, Duration after);
+  const Learned& learned(RuleId rule) const { return learned_[rule.index]; }
+  // For what was learned in an earlier run.
+  void set(RuleId rule, const Learned& learned);
+
+ private:
+  std::vector<bool> is_late_;  // by rule: it reads values of a monitor of its own
+  std::vector<Range> stated_;
+  std::vector<Learned> learned_;
+  Duration cycle_;
+  Duration excess_{};  // of what was learned over what was stated
+};
+
+}  // namespace culprit
