@@ -10,6 +10,7 @@
 #include "base/xml.h"
 #include "incidents/curve_plot.h"
 #include "incidents/incident_words.h"
+#include "journal/json.h"
 
 namespace culprit::incidents {
 namespace {
