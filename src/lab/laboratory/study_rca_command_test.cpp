@@ -1,0 +1,69 @@
+#include "laboratory/study_rca_command.h"
+
+#include <algorithm>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace culprit::lab {
+namespace {
+
+using testing::HasSubstr;
+
+class StudyRcaCommand : public testing::Test {
+ protected:
+  // On a small robot, with `more` options. Gives what is printed, or the complaint.
+  std::string run(const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"rca",        "--components", "8",        "--faults",
+                                          "2",          "--episodes",   "2",        "--planner",
+                                          "patient:2s", "informed",     "--format", "csv"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    std::reverse(arguments.begin(), arguments.end());
+    CLI::App study;
+    int exit_code = -1;
+    add_study_rca(study, "test", exit_code);
+    testing::internal::CaptureStdout();
+    std::string complaint;
+    try {
+      study.parse(arguments);
+    } catch (const CLI::ParseError& error) {
+      complaint = error.what();
+    }
+    const std::string printed = testing::internal::GetCapturedStdout();
+    return complaint.empty() ? printed : complaint;
+  }
+};
+
+TEST_F(StudyRcaCommand, RecordsTheFactorsThatDifferFromTheUsual) {
+  EXPECT_THAT(run({"--detector-latency", "0..3s", "--stated", "--pass", "0.5", "--delay", "1..2s",
+                   "--unwatched", "25%", "--hidden", "10%", "--common-causes", "1",
+                   "--false-alarms", "0.5"}),
+              HasSubstr("--detector-latency 0..3s --stated --pass 50% --delay 1..2s "
+                        "--unwatched 25% --hidden 10% --common-causes 1 --false-alarms 0.5"));
+  const std::string usual = run({});
+  EXPECT_THAT(usual, HasSubstr("patient:2s,8,2,"));
+  EXPECT_THAT(usual, HasSubstr("informed,8,2,"));
+  EXPECT_EQ(run({"--detector-latency", "0..400ms", "--not-stated", "--pass", "90%", "--delay",
+                 "0.1..0.8s", "--unwatched", "0%", "--hidden", "0", "--common-causes", "0",
+                 "--false-alarms", "0"}),
+            usual);
+}
+
+TEST_F(StudyRcaCommand, RefusesFactorsThatMakeNoSense) {
+  EXPECT_EQ(run({"--detector-latency", "3..1s"}),
+            "--detector-latency: '3..1s' ends before it begins; write the smaller value first, as "
+            "in 1s..3s");
+  EXPECT_EQ(run({"--unwatched", "95%"}),
+            "--unwatched: '95%' is out of range; write a share from 0 to 90%, such as 30% or 0.3");
+  EXPECT_THAT(run({"--common-causes", "11"}), HasSubstr("--common-causes"));
+  EXPECT_THAT(run({"--false-alarms", "-1"}), HasSubstr("--false-alarms"));
+}
+
+TEST_F(StudyRcaCommand, RefusesFactorsWhereTheyChangeNothing) {
+  EXPECT_THAT(run({"--regret", "--hidden", "10%"}), HasSubstr("--hidden excludes --regret"));
+  EXPECT_THAT(run({"--learn", "10", "--unwatched", "10%"}),
+              HasSubstr("--unwatched excludes --learn"));
+}
+
+}  // namespace
+}  // namespace culprit::lab
