@@ -44,9 +44,9 @@ class Followed {
     const auto [known, is_new] = known_.try_emplace(key_of(situation), 0);
     if (!is_new) return known->second;
     const Round round = decided(situation);
-    double sum = process_.cost_of_leaving_it_ill();
+    double sum = process_.cost_of_leaving_it_ill(situation);
     if (!round.empty()) {
-      sum = process_.cost(round);
+      sum = process_.cost(situation, round);
       for (const RepairProcess::Outcome& outcome : process_.outcomes(situation, round))
         sum += outcome.probability * cost(outcome.situation);
     }
@@ -136,17 +136,17 @@ class OptimumPlanner : public Planner {
 // Branch and bound: what may cost least is looked at first, and nothing that must cost more than
 // what is known already.
 const Optimum::Best& Optimum::best(const Situation& situation) {
-  // Who else is ill does not matter if all is known.
+  // If all is known, the other components that are ill do not matter.
   if (const auto told = process_.told_by_itself(situation)) return best(*told);
   const std::string key = key_of(situation);
   const auto known = known_.find(key);
   if (known != known_.end()) return known->second;
   Best best;
-  if (situation.ill != 0) best.cost = process_.cost_of_leaving_it_ill();
+  if (situation.ill != 0) best.cost = process_.cost_of_leaving_it_ill(situation);
   if (process_.is_open(situation)) {
     std::vector<Begun> all;
     for (Round& round : process_.rounds(situation)) {
-      Begun begun{process_.cost(round), all.size(), std::move(round), {}};
+      Begun begun{process_.cost(situation, round), all.size(), std::move(round), {}};
       begun.outcomes = process_.outcomes(situation, begun.round);
       for (const RepairProcess::Outcome& outcome : begun.outcomes)
         begun.least += outcome.probability * least(outcome.situation);

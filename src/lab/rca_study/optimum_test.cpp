@@ -45,6 +45,25 @@ TEST(Optimum, OfOneComponentIsWhatItIsByHand) {
   EXPECT_NEAR(optimal_cost(single(), Objective::kAdaptations), redeploy, 1e-9);
 }
 
+// A time in which nothing is worse than NON_CRITICAL costs a quarter of one with an ERROR.
+TEST(Optimum, WeighsTimeByTheWorstFailure) {
+  RcaScenario scenario = single();
+  scenario.components[0].criticality = Criticality::kNonCritical;
+  const double restart = 0.25 * 0.25 + 0.25 + 0.1;
+  const double redeploy = 0.25 * 0.5 + 0.25 + 0.5 + 0.1;
+  EXPECT_NEAR(optimal_cost(scenario, Objective::kBalanced),
+              6.0 / 7 * (restart + 0.5 * redeploy) + redeploy / 7, 1e-9);
+  // With an effect that is an ERROR the time costs as much as if it were the cause.
+  scenario.components.push_back(scenario.components.front());
+  scenario.components[1].name = "b";
+  scenario.components[1].criticality = Criticality::kError;
+  const RuleSet rules = rules_of(scenario);
+  const RepairProcess process(scenario, rules, Objective::kBalanced);
+  const Round restart_first{{0, 0}};
+  const auto cost = [&](Members ill) { return process.cost({ill, 0, {}, {}}, restart_first); };
+  EXPECT_NEAR(cost(0b11) - cost(0b01), 0.75 * 0.25, 1e-9);
+}
+
 // Everything that may begin in everything that may be seen, and nothing is ever left out.
 class Enumerated {
  public:
@@ -71,10 +90,10 @@ class Enumerated {
       std::get<3>(key).emplace_back(faulty, passing, std::llround(1e9 * weight));
     const auto known = known_.find(key);
     if (known != known_.end()) return known->second;
-    double best = process_.cost_of_leaving_it_ill();
+    double best = process_.cost_of_leaving_it_ill(situation);
     if (process_.is_open(situation)) {
       for (const Round& round : process_.rounds(situation)) {
-        double sum = process_.cost(round);
+        double sum = process_.cost(situation, round);
         for (const auto& [probability, next] : process_.outcomes(situation, round))
           sum += probability * cost(next);
         best = std::min(best, sum);
@@ -90,7 +109,8 @@ class Enumerated {
 // Where who has a fault stays in doubt (circles, several faults), and where it does not.
 TEST(Optimum, IsTheLeastOfAllWhateverIsLeftOut) {
   for (const RcaSetting& setting :
-       {RcaSetting{3, 2, 0, false}, RcaSetting{3, 2, 0, true}, RcaSetting{2, 2, 0, true}}) {
+       {RcaSetting{3, 2, 0, false}, RcaSetting{3, 2, 0, true}, RcaSetting{2, 2, 0, true},
+        RcaSetting{3, 2, 0, true, true}, RcaSetting{3, 1, 0, false, true}}) {
     for (const std::uint64_t seed : {1u, 2u}) {
       const RcaScenario scenario = generate(setting, seed);
       const RuleSet rules = rules_of(scenario);
@@ -175,7 +195,8 @@ TEST(ExpectedCost, OfThePlannerThatDoesTheBestIsTheOptimum) {
   const RepairProcess process(scenario, rules, Objective::kBalanced);
   Optimum optimum(process);
   EXPECT_NEAR(expected_cost(process, rules, Copy(process, optimum)), optimum.cost(), 1e-9);
-  EXPECT_NEAR(expected_cost(process, rules, Nothing()), process.cost_of_leaving_it_ill(), 1e-9);
+  EXPECT_NEAR(expected_cost(process, rules, Nothing()),
+              process.cost_of_leaving_it_ill(process.beginnings().front().situation), 1e-9);
 }
 
 // In a circle of failures the rules do not say that feedback passes every second time, which the

@@ -105,10 +105,14 @@ RepairProcess::RepairProcess(const RcaScenario& scenario, const RuleSet& rules, 
       ill_.push_back(spread(faulty, passing));
   }
   tell_apart();
-  constexpr double kMany = 10;
-  const double cycles = scenario.horizon_s / seconds(rules.cycle);
-  left_ill_ = weights_.time * cycles / static_cast<double>(rules.heaviest.count) +
-              kMany * (weights_.attempt + weights_.redeployment);
+  for (Members ill = 0; ill < one(size()); ++ill) {
+    double& worst = gravity_.emplace_back(0);
+    for (std::size_t c = 0; c < size(); ++c) {
+      if (has(ill, c))
+        worst = std::max(worst, plan::weight(scenario.components[c].criticality) /
+                                    plan::weight(Criticality::kError));
+    }
+  }
 }
 
 Members RepairProcess::spread(Members faulty, Members passing) const {
@@ -336,7 +340,15 @@ std::vector<Round> RepairProcess::rounds(const Situation& situation) const {
   return all;
 }
 
-double RepairProcess::cost(const Round& round) const {
+double RepairProcess::cost_of_leaving_it_ill(const Situation& situation) const {
+  constexpr double kMany = 10;
+  const double cycles = scenario_.horizon_s / seconds(rules_.cycle);
+  return weights_.time * gravity(situation.ill) * cycles /
+             static_cast<double>(rules_.heaviest.count) +
+         kMany * (weights_.attempt + weights_.redeployment);
+}
+
+double RepairProcess::cost(const Situation& situation, const Round& round) const {
   int longest = 0;
   double sum = 0;
   for (const Treated& treated : round) {
@@ -349,7 +361,8 @@ double RepairProcess::cost(const Round& round) const {
           static_cast<double>(1 + dependents_[treated.component]) / static_cast<double>(size());
     sum += plan::try_cost(effort, weights_, rules_);
   }
-  return sum + plan::try_cost({Cycles{longest}}, CostWeights{.time = weights_.time}, rules_);
+  const CostWeights of_time{.time = weights_.time * gravity(situation.ill)};
+  return sum + plan::try_cost({Cycles{longest}}, of_time, rules_);
 }
 
 Situation RepairProcess::told(const Situation& situation, Members faulty) const {
@@ -375,6 +388,7 @@ std::optional<Situation> RepairProcess::told_by_itself(const Situation& situatio
     for (Members left = all;; left = (left - 1) & all) {
       auto& before = by_ill[ill(left, h.passing)];
       if (before.value_or(left) != left) return std::nullopt;
+      if (gravity(ill(left, h.passing)) > gravity(left)) return std::nullopt;
       before = left;
       if (left == 0) break;
     }

@@ -34,11 +34,16 @@
 //
 // A round costs, in the weights of the objective (plan/bayes/objective.h),
 //
-//     w_time max_{s in A} i_s / i_max + sum_{s in A} (w_attempt + w_redeployment [s replaces a
+//     w_time g(x) max_{s in A} i_s / i_max + sum_{s in A} (w_attempt + w_redeployment [s replaces a
 //     process] + w_disruption (share of the robot that s takes down))
 //
-// and a robot that is left ill, because nothing is left or nothing is begun, costs the scenario's
-// whole time, ten strategies and ten processes.
+//     g(x) = max_{c ill in x} W_c / W_ERROR
+//
+//   W_c    1, 2 or 4 by the criticality of the rule of c (plan/bayes/value.h)
+//
+// So a second in which an ERROR is there costs as much as two with nothing worse than a WARNING. A
+// robot that is left ill, because nothing is left or nothing is begun, costs the scenario's whole
+// time, weighted by g(x), ten strategies and ten processes.
 #pragma once
 
 #include <cstdint>
@@ -104,15 +109,15 @@ class RepairProcess {
 
   // All that may begin: never empty while is_open().
   std::vector<Round> rounds(const Situation& situation) const;
-  double cost(const Round& round) const;
-  double cost_of_leaving_it_ill() const { return left_ill_; }
+  double cost(const Situation& situation, const Round& round) const;
+  double cost_of_leaving_it_ill(const Situation& situation) const;
 
   // The situation if somebody said which components have a fault, and always would: only those are
   // ill, as if no subscription passed anything on. No way on costs less than on average over what
-  // may be said. `faulty` is one of its hypotheses'.
+  // may be said: fewer are ill, so time weighs no more. `faulty` is one of its hypotheses'.
   Situation told(const Situation& situation, Members faulty) const;
-  // The same if nobody need say it: what is seen shows it, and always will. Nothing if it does not,
-  // or is such a situation.
+  // The same if nobody need say it: what is seen shows it, and always will, and no effect is more
+  // critical than every fault. Returns nothing otherwise, or if this is such a situation already.
   std::optional<Situation> told_by_itself(const Situation& situation) const;
   // Is it such a situation?
   bool is_told(const Situation& situation) const;
@@ -142,6 +147,7 @@ class RepairProcess {
   using Seen = std::pair<Members, Members>;  // ill, gone
   using Sorted = std::map<Seen, std::vector<Situation::Hypothesis>>;
 
+  double gravity(Members ill) const { return gravity_[ill]; }
   Members spread(Members faulty, Members passing) const;
   std::size_t place(Members faulty, Members passing) const {
     return faulty << paths_.size() | passing;
@@ -163,7 +169,7 @@ class RepairProcess {
   const RcaScenario& scenario_;
   const RuleSet& rules_;
   CostWeights weights_;
-  double left_ill_ = 0;
+  std::vector<double> gravity_;  // g, by ill
   std::vector<Way> paths_;
   std::vector<Members> upstream_;  // by component, by the graph
   std::vector<std::size_t> dependents_;
