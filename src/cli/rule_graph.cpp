@@ -55,6 +55,7 @@ std::vector<ComponentId> read_by(const Rule& rule, const RuleSet& rules) {
       case Input::Kind::kMax:
       case Input::Kind::kStddev:
       case Input::Kind::kChanged:
+      case Input::Kind::kIsNan:
         if (const auto* parameter = std::get_if<ParameterId>(&rules[input.signal].source))
           of_parameter(*parameter);
         break;

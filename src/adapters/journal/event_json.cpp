@@ -157,6 +157,10 @@ class EventWriter {
     if (e.is_last) json_.member("is_last", true);
   }
   void operator()(const HostBack& e) const { json_.member("host", e.host); }
+  void operator()(const ValueUnknown& e) const {
+    json_.member("input", describe(rules_[e.input], rules_));
+    json_.member("reason", culprit::to_string(e.why));
+  }
   void operator()(const PriorsAdopted& e) const {
     json_.member("source", e.source);
     add_each("priors", e.priors, [this](const PriorsTold::Prior& each) {
@@ -367,6 +371,7 @@ class EventReader {
   bool complete(PriorsAdopted&) const { return false; }   // likewise
   bool complete(HostSilent&) const { return false; }      // likewise
   bool complete(HostBack&) const { return false; }        // likewise
+  bool complete(ValueUnknown&) const { return false; }    // likewise
 
   bool complete(Order& order) const {
     order.author = text_of(json_, "author");

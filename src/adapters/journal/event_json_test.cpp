@@ -81,7 +81,10 @@ std::vector<EventWhat> samples() {
           SleepNoticed{3s},
           PriorsAdopted{{{s, 4.5, 1.5}}, "3 robots"},
           HostSilent{"rover2", {c}, true},
-          HostBack{"rover2"}};
+          HostBack{"rover2"},
+          ValueUnknown{InputId(2), WhyUnknown::kOverflow},
+          ValueUnknown{InputId(2), WhyUnknown::kNotANumber},
+          ValueUnknown{InputId(1), WhyUnknown::kNotANumber}};
 }
 
 std::vector<std::string> golden_rows() {

@@ -186,6 +186,18 @@ class Describer {
                 : "");
   }
   std::string operator()(const HostBack& e) const { return e.host + " is heard again"; }
+  std::string operator()(const ValueUnknown& e) const {
+    const Input& input = rules_[e.input];
+    if (e.why == WhyUnknown::kOverflow) {
+      return describe(input, rules_) + " is unknown: more than " +
+             std::to_string(kMaxWindowSamples) +
+             " samples come within its window. Shorten the window";
+    }
+    const bool is_signal = input.kind != Input::Kind::kParameter;
+    return (is_signal ? rules_[input.signal].name : describe(input, rules_)) +
+           " is not a number (NaN): what rules read of it is unknown" +
+           (is_signal ? ", except isnan(" + rules_[input.signal].name + ")" : "");
+  }
   std::string operator()(const PriorsAdopted& e) const {
     return "what is believed of " + std::to_string(e.priors.size()) +
            (e.priors.size() == 1 ? " strategy" : " strategies") + " begins from what " +
@@ -350,6 +362,8 @@ std::string describe(const Input& input, const RuleSet& rules) {
       return call("stddev", rules[input.signal].name);
     case kChanged:
       return call("changed", rules[input.signal].name);
+    case kIsNan:
+      return call("isnan", rules[input.signal].name);
   }
   return "";
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "knowledge/coming_up.h"
+#include "knowledge/why_unknown.h"
 #include "language/rule_set.h"
 #include "robot/observation.h"
 
@@ -180,6 +181,13 @@ struct Trouble {
   std::string text;
 };
 
+// A value that rules read is unknown although samples come: it is not a number, or more samples come
+// than its window holds. Reported once; again when it was well for Monitor::kTellAgain meanwhile.
+struct ValueUnknown {
+  InputId input;
+  WhyUnknown why = WhyUnknown::kNotANumber;  // or kOverflow
+};
+
 // What became of a person's order.
 struct OrderAccepted {
   Order order;
@@ -317,7 +325,7 @@ class EventWhat
                           OrderCarriedOut, SilenceEnded, StormBegan, StormEnded, LastResortReached,
                           LifecycleIntended, CameUp, OutcomePending, OutcomeCounted, FailureFlaps,
                           JudgementSuspended, JudgementResumed, SleepNoticed, NeverSeen,
-                          PriorsAdopted, HostSilent, HostBack> {
+                          PriorsAdopted, HostSilent, HostBack, ValueUnknown> {
  public:
   using Variant = variant;
   using variant::variant;

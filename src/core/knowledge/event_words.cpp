@@ -61,6 +61,7 @@ constexpr std::array<EventWords, kKinds> kWords = [] {
       row<SleepNoticed>("sleep_noticed", "slept", kWarning, Tone::kWarning),
       row<HostSilent>("host_silent", "HOST DOWN", kError, Tone::kAlarm, kStrong),
       row<HostBack>("host_back", "host back", kInfo, Tone::kRelief),
+      row<ValueUnknown>("value_unknown", "unknown", kWarning, Tone::kWarning),
       row<PriorsAdopted>("priors_adopted", "fleet", kInfo, Tone::kAside),
   };
   static_assert(std::size(kRows) == kKinds, "an event without words, or one that is there twice");

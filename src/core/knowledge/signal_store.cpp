@@ -8,6 +8,7 @@ SignalStore::SignalStore(const RuleSet& rules)
     : rules_(rules),
       slots_(rules.inputs.size()),
       texts_(rules.inputs.size()),
+      why_unknown_(rules.inputs.size(), WhyUnknown::kNoValue),
       latencies_(rules.inputs.size()),
       read_at_(rules.inputs.size(), kLongAgo),
       is_unusual_(rules.inputs.size()),
@@ -21,6 +22,7 @@ SignalStore::SignalStore(const RuleSet& rules, const SignalStore& other)
     : rules_(rules),
       slots_(other.slots_),
       texts_(other.texts_),
+      why_unknown_(other.why_unknown_),
       latencies_(other.latencies_),
       read_at_(other.read_at_),
       is_unusual_(other.is_unusual_),
@@ -41,9 +43,15 @@ void SignalStore::set(InputId id, const Slot& value) {
 void SignalStore::set_quietly(InputId id, const Slot& value) {
   Slot& slot = slots_[id.index];
   slot = value;
+  if (value.known) why_unknown_[id.index] = WhyUnknown::kNoValue;
   if (rules_[id].type != Type::kString || !value.known) return;
   texts_[id.index] = value.s;
   slot.s = texts_[id.index];
+}
+
+void SignalStore::forget(InputId id, WhyUnknown why) {
+  set(id, Slot());
+  why_unknown_[id.index] = why;
 }
 
 void SignalStore::touch(InputId id) {

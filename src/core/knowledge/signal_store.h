@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/time.h"
+#include "knowledge/why_unknown.h"
 #include "language/evaluate.h"
 #include "language/rule_set.h"
 
@@ -28,7 +29,11 @@ class SignalStore {
 
   // Writes a value and marks the rules that read the input if the value is another than before.
   void set(InputId id, const Slot& value);
-  void forget(InputId id) { set(id, Slot()); }
+  void forget(InputId id, WhyUnknown why = WhyUnknown::kNoValue);
+  // Nothing if it is known.
+  std::optional<WhyUnknown> why_unknown(InputId id) const {
+    return slots_[id.index].known ? std::nullopt : std::optional(why_unknown_[id.index]);
+  }
 
   // Writes a value that cannot have changed any trigger (see Input::thresholds).
   void set_quietly(InputId id, const Slot& value);
@@ -72,7 +77,8 @@ class SignalStore {
  private:
   const RuleSet& rules_;
   std::vector<Slot> slots_;
-  std::vector<std::string> texts_;  // what slots of texts refer to
+  std::vector<std::string> texts_;       // what slots of texts refer to
+  std::vector<WhyUnknown> why_unknown_;  // of those that are
   std::vector<Duration> latencies_;
   std::vector<Time> read_at_;
   std::vector<bool> is_unusual_;

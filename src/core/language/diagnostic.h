@@ -46,6 +46,7 @@ enum class Code : std::uint16_t {
   kEmptyRange = 34,
   kShortImpact = 35,
   kShortWindow = 36,
+  kLongWindow = 37,
   // Rules that cannot work
   kContradiction = 40,
   kNoLaunch = 41,

@@ -95,7 +95,7 @@ std::vector<Explanation> name_explanations() {
        Strictness::kStrict},
       {Code::kUnknownFunction, "there is no function of this name",
        "Expressions call rate, age, phi, alive, lifecycle, parameter, level, mean, min, max, "
-       "stddev, changed, abs, pow and sqrt. Functions of your own do not exist; CONST names "
+       "stddev, changed, isnan, abs, pow and sqrt. Functions of your own do not exist; CONST names "
        "values.",
        rule_with("frequency(/robot/image) < 1"), rule_with("rate(/robot/image) < 1")},
       {Code::kUnknownAdaptation, "there is no adaptation of this name",
@@ -199,6 +199,13 @@ std::vector<Explanation> value_explanations() {
        "and "
        "the failure seems to come and go.",
        rule_with("rate(/robot/image, 100ms) < 5"), rule_with("rate(/robot/image, 1s) < 5")},
+      {Code::kLongWindow, "a window is longer than a day",
+       "rate, mean, min, max and stddev keep the samples of their window, so that they are exact. "
+       "A "
+       "window is at most 24h long. It holds at most 4,194,304 samples (100 MB), which are 24 h of "
+       "48 Hz or 1 h of 1,165 Hz. If more come, the function is unknown, and culprit reports it. "
+       "age(topic) keeps no samples and has no such limit.",
+       rule_with("rate(/robot/image, 36h) < 0.001"), rule_with("age(/robot/image) > 36h")},
   };
 }
 

@@ -42,6 +42,7 @@ bool exists(Code code) {
     case Code::kEmptyRange:
     case Code::kShortImpact:
     case Code::kShortWindow:
+    case Code::kLongWindow:
     case Code::kContradiction:
     case Code::kNoLaunch:
     case Code::kNeverValid:

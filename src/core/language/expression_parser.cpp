@@ -198,7 +198,7 @@ class ExpressionParser {
           Code::kUnknownFunction, e.name.span, "there is no function '" + e.name.text + "'",
           near.empty()
               ? "known functions: rate age phi alive lifecycle parameter level mean min max stddev "
-                "changed abs pow sqrt"
+                "changed isnan abs pow sqrt"
               : "did you mean '" + near + "'?",
           replacement(e.name.span, near));
     }

@@ -54,6 +54,7 @@ Interval first_interval(const Input& input, const RuleSet& rules) {
     case Input::Kind::kAlive:
     case Input::Kind::kParameter:
     case Input::Kind::kChanged:
+    case Input::Kind::kIsNan:
       break;
   }
   return {};

@@ -7,7 +7,7 @@ namespace {
 
 using enum Argument;
 
-constexpr std::array<FunctionInfo, 15> kFunctions = {{
+constexpr std::array<FunctionInfo, 16> kFunctions = {{
     {Function::kRate, "rate", "rate(topic) or rate(topic, window)", {kTopic, kExpression}, 1, 2},
     {Function::kAge, "age", "age(topic)", {kTopic, kTopic}, 1, 1},
     {Function::kPhi, "phi", "phi(topic)", {kTopic, kTopic}, 1, 1},
@@ -25,6 +25,7 @@ constexpr std::array<FunctionInfo, 15> kFunctions = {{
     {Function::kMax, "max", "max(signal, window) or max(a, b)", {kExpression, kExpression}, 2, 2},
     {Function::kStddev, "stddev", "stddev(signal, window)", {kExpression, kExpression}, 2, 2},
     {Function::kChanged, "changed", "changed(signal)", {kExpression, kExpression}, 1, 1},
+    {Function::kIsNan, "isnan", "isnan(signal)", {kExpression, kExpression}, 1, 1},
     {Function::kAbs, "abs", "abs(number)", {kExpression, kExpression}, 1, 1},
     {Function::kPow, "pow", "pow(base, exponent)", {kExpression, kExpression}, 2, 2},
     {Function::kSqrt, "sqrt", "sqrt(number)", {kExpression, kExpression}, 1, 1},

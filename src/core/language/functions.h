@@ -21,6 +21,7 @@ enum class Function : std::uint8_t {
   kMax,
   kStddev,
   kChanged,
+  kIsNan,
   kAbs,
   kPow,
   kSqrt

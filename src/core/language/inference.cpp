@@ -133,6 +133,9 @@ class Inference {
       case Function::kChanged:
         infer(e.children[0], std::nullopt);
         return Type::kBool;
+      case Function::kIsNan:
+        infer(e.children[0], Type::kDouble);
+        return Type::kBool;
       case Function::kMean:
       case Function::kStddev:
         infer(e.children[0], Type::kDouble);

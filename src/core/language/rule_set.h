@@ -122,6 +122,9 @@ struct Signal {
   std::optional<Range> range;
 };
 
+// So many samples of its window an input keeps at most (100 MB). If more come it is unknown.
+inline constexpr std::size_t kMaxWindowSamples = std::size_t{1} << 22;
+
 // One value that programs read: a signal as it is, or something that the monitor derives.
 struct Input {
   enum class Kind : std::uint8_t {
@@ -137,7 +140,8 @@ struct Input {
     kMin,
     kMax,
     kStddev,
-    kChanged  // signal: its value became another within the last cycle
+    kChanged,  // signal: its value became another within the last cycle
+    kIsNan     // signal: its value is not a number
   };
   Kind kind = Kind::kSignal;
   Type type = Type::kDouble;

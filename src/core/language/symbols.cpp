@@ -735,6 +735,7 @@ void renumber(Input& input, const Symbols::Uses& uses) {
     case kMax:
     case kStddev:
     case kChanged:
+    case kIsNan:
       input.signal = uses.now(input.signal);
       return;
   }

@@ -340,6 +340,15 @@ class Typer {
         wanted.signal = *signal;
         return input(wanted, Type::kBool);
       }
+      case Function::kIsNan: {
+        const auto signal = signal_argument(e.children[0], "isnan(signal)");
+        if (!signal) return std::nullopt;
+        if (const auto type = symbols_.type_of(*signal); !type || !is_numeric(*type))
+          return fail(Code::kTypeMismatch, e.children[0].span, "isnan needs a number", "");
+        wanted.kind = Input::Kind::kIsNan;
+        wanted.signal = *signal;
+        return input(wanted, Type::kBool);
+      }
       case Function::kMin:
         return is_window(e) ? window(e, Input::Kind::kMin)
                             : extreme(e, Op::kMinInt, Op::kMinDouble);
@@ -407,8 +416,11 @@ class Typer {
       return fail(Code::kTypeMismatch, e.span, "a window is a constant duration",
                   "write for example 2s");
     }
-    if (Duration(slot.i) <= Duration::zero() || Duration(slot.i) > kLongest) {
-      return fail(Code::kPolicyRange, e.span, "a window is longer than zero and at most a day", "");
+    if (Duration(slot.i) <= Duration::zero())
+      return fail(Code::kPolicyRange, e.span, "a window is longer than zero", "");
+    if (Duration(slot.i) > kLongest) {
+      return fail(Code::kLongWindow, e.span, "a window is at most a day long",
+                  "write 24h or less; age(topic) > 36h notices silence that lasts longer");
     }
     return Duration(slot.i);
   }

@@ -17,6 +17,21 @@ std::size_t position(double value, const std::vector<double>& thresholds) {
   return 2 * below + (above != thresholds.end() && *above == value ? 1 : 0);
 }
 
+// @pre `kind` is that of a signal's window
+monitor::ValueWindow::Of statistic(Kind kind) {
+  using Of = monitor::ValueWindow::Of;
+  switch (kind) {
+    case Kind::kMin:
+      return Of::kMin;
+    case Kind::kMax:
+      return Of::kMax;
+    case Kind::kStddev:
+      return Of::kStddev;
+    default:
+      return Of::kMean;
+  }
+}
+
 double as_number(const Slot& slot, Type type) {
   return type == Type::kDuration ? seconds(Duration(slot.i)) : slot.d;
 }
@@ -59,9 +74,12 @@ Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time dis
       case Kind::kMax:
       case Kind::kStddev:
       case Kind::kChanged:
+      case Kind::kIsNan:
         signals_[input.signal.index].inputs.push_back(id);
-        if (input.window > Duration::zero())
-          derived_[i].values = monitor::SlidingValues(input.window);
+        if (input.window > Duration::zero()) {
+          const Duration longest_pause = rules[input.signal].stale.value_or(input.window);
+          derived_[i].values.emplace(statistic(input.kind), input.window, longest_pause);
+        }
         break;
       case Kind::kAlive:
       case Kind::kLifecycle:
@@ -95,7 +113,11 @@ void Monitor::restart(Time now) {
   awake_ = now;
   graced_ = later(now, kGrace);
   deadlines_.set(knowledge_.rules.inputs.size() + 1, graced_);
-  for (Topic& topic : topics_) topic.phi.restart(now);
+  for (Topic& topic : topics_) {
+    topic.phi.restart(now);
+    topic.regained.reset();
+  }
+  begin_windows_anew();
   for (std::size_t c = 0; c < knowledge_.rules.components.size(); ++c) {
     ComponentState& state = write_.components[ComponentId(c)];
     state.missed_probes = 0;
@@ -195,19 +217,17 @@ void Monitor::update(InputId id, Time now) {
       value = phi(id, now);
       break;
     case Kind::kChanged:
-      return write_.signals.set(id, Slot::of(false));
+      return update_changed(id, now);
     case Kind::kMean:
     case Kind::kMin:
     case Kind::kMax:
     case Kind::kStddev:
       return update_window(id, now);
-    case Kind::kSignal: {
+    case Kind::kSignal:
+    case Kind::kIsNan:
       // Its deadline is its staleness. A refresh comes earlier and changes nothing.
-      const auto& signal = signals_[input.signal.index];
-      const auto stale = knowledge_.rules[input.signal].stale;
-      if (stale && signal.last && later(*signal.last, *stale) <= now) write_.signals.forget(id);
+      if (is_stale(input.signal, now)) write_.signals.forget(id, WhyUnknown::kStale);
       return;
-    }
     default:
       return;
   }
@@ -217,8 +237,14 @@ void Monitor::update(InputId id, Time now) {
                               position(as_number(value, input.type), input.thresholds);
   if (same_place) {
     write_.signals.set_quietly(id, value);
-  } else {
+  } else if (value.known) {
     write_.signals.set(id, value);
+  } else {
+    const bool has_overflowed = derived_[id.index].is_overflow_told;
+    const bool is_covering = input.kind == Kind::kRate && topics_[input.topic.index].first;
+    write_.signals.forget(id, has_overflowed ? WhyUnknown::kOverflow
+                              : is_covering  ? WhyUnknown::kNotCovered
+                                             : WhyUnknown::kNoValue);
   }
   deadlines_.set(id.index, next_crossing(id, now));
 }

@@ -20,7 +20,7 @@
 #include "knowledge/known_robot.h"
 #include "monitor/phi_accrual.h"
 #include "monitor/sliding_count.h"
-#include "monitor/sliding_values.h"
+#include "monitor/value_window.h"
 #include "robot/observation.h"
 
 namespace culprit {
@@ -49,6 +49,9 @@ class Monitor {
   static constexpr Duration kReturn = std::chrono::seconds(10);
   // And so long for what such a node says, from when it answers.
   static constexpr Duration kSpeaks = std::chrono::milliseconds(3500);
+
+  // A value that becomes NaN again is reported again if it was none for so long.
+  static constexpr Duration kTellAgain = std::chrono::seconds(60);
 
   // What it writes; all else it only reads.
   struct Writes {
@@ -94,6 +97,7 @@ class Monitor {
   struct Topic {
     std::optional<Time> first;
     std::optional<Time> last;
+    std::optional<Time> regained;  // the first sample since `awake_`
     monitor::PhiAccrual phi;
     std::vector<InputId> inputs;
     bool needs_phi = false;
@@ -108,13 +112,20 @@ class Monitor {
     std::optional<Time> last;
     Duration interval{};
     std::vector<InputId> inputs;
+    std::optional<WhyUnknown> unusable;  // why its last reading is no number
+    std::optional<Time> nan;             // when it was NaN last
   };
   // What an input of a topic or of a signal window keeps, by InputId.
   struct Derived {
     monitor::SlidingCount count{Duration(1)};
-    monitor::SlidingValues values{Duration(1)};
-    std::vector<double> deviations;          // kPhi: for each threshold
-    Value last_value;                        // kChanged
+    std::optional<monitor::ValueWindow> values;  // kMean, kMin, kMax, kStddev
+    std::optional<Time> overflowed;              // when the window held too much the last time
+    bool is_overflow_told = false;
+    std::vector<double> deviations;  // kPhi: for each threshold
+    // kChanged: the first reading since the last gap, the last one that was another, and its value.
+    std::optional<Time> known_since;
+    std::optional<Time> changed;
+    Value last_value;
     monitor::Ring<double> usual{kReadings};  // kSignal: the last readings
   };
 
@@ -151,7 +162,15 @@ class Monitor {
   void update(InputId id, Time now);
   Duration latency_of(SignalId signal) const;
   void note_reading(InputId id, const Slot& slot);
+  void note_number(SignalId signal, const Value& value, const Slot& slot, Time at);
   void update_window(InputId id, Time now);
+  void note_change(InputId id, const Value& value, Time at, bool is_after_gap);
+  void update_changed(InputId id, Time now);
+  void put(InputId id, const Slot& value, const Signal& signal);
+  bool is_stale(SignalId signal, Time now) const;
+  WhyUnknown why_unknown(SignalId signal, Time now) const;
+  void note_overflow(InputId id, Time at);
+  void begin_windows_anew();
   Time next_crossing(InputId id, Time now) const;
   Time next_age(const Input& input, Time now) const;
   Time next_phi(InputId id, Time now) const;
@@ -167,6 +186,7 @@ class Monitor {
   Time silent_from(TopicId topic) const;
   Time listened_since(TopicId topic) const;
   Time zero_from(const Input& input) const;
+  Time rate_known_from(InputId id) const;
   void tell_never_seen(Time at);
 
   void expect(const KnownRobot& known);

@@ -11,6 +11,22 @@ namespace {
 
 using Kind = Input::Kind;
 
+// A number, also one that a diagnostic has as a text. Nothing: it is no number.
+std::optional<double> number_in(const Value& value) {
+  if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
+  if (const auto* number = std::get_if<double>(&value)) return *number;
+  const auto* text = std::get_if<std::string>(&value);
+  const Value read = text != nullptr ? value_from_text(*text) : Value(false);
+  if (const auto* number = std::get_if<double>(&read)) return *number;
+  if (const auto* whole = std::get_if<std::int64_t>(&read)) return static_cast<double>(*whole);
+  return std::nullopt;
+}
+
+bool is_nan(const Value& value) {
+  const auto number = number_in(value);
+  return number && std::isnan(*number);
+}
+
 }  // namespace
 
 using monitor::smoothed;
@@ -21,34 +37,80 @@ void Monitor::on(Time at, const SignalRead& seen) { read_signal(seen.signal, see
 void Monitor::read_signal(SignalId signal, const Value& value, Time at) {
   const culprit::Signal& declared = knowledge_.rules[signal];
   Signal& state = signals_[signal.index];
-  const bool is_first = !state.last;
   const bool had_rhythm = state.interval > Duration::zero();
-  if (!is_first) state.interval = smoothed(state.interval, at - *state.last);
+  const bool is_after_gap =
+      !state.last || (declared.stale && later(*state.last, *declared.stale) < at);
+  if (state.last) state.interval = smoothed(state.interval, at - *state.last);
   const bool has_rhythm = state.interval > Duration::zero();
   state.last = at;
   write_.sightings.read(signal);
   std::string text;
   const Slot slot = as_type(value, declared.type, text);
+  note_number(signal, value, slot, at);
   for (const InputId id : state.inputs) {
     const Input& input = knowledge_.rules[id];
     write_.signals.set_latency(id, latency_of(signal) + input.window);
     write_.signals.set_read_at(id, at);
     if (has_rhythm && !had_rhythm) write_.signals.touch(id);
-    if (input.kind == Kind::kSignal) {
-      note_reading(id, slot);
-      write_.signals.set(id, slot);
-      if (declared.stale) deadlines_.set(id.index, later(at, *declared.stale));
-    } else if (input.kind == Kind::kChanged) {
-      Derived& derived = derived_[id.index];
-      const bool differs = !is_first && derived.last_value != value;
-      derived.last_value = value;
-      if (differs) deadlines_.set(id.index, later(at, knowledge_.rules.cycle));
-      if (differs || is_first) write_.signals.set(id, Slot::of(differs));
-    } else if (slot.known) {
-      derived_[id.index].values.add(at, slot.d);
-      update_window(id, at);
+    switch (input.kind) {
+      case Kind::kSignal:
+        note_reading(id, slot);
+        put(id, slot, state);
+        break;
+      case Kind::kIsNan:
+        put(id, number_in(value) ? Slot::of(is_nan(value)) : Slot(), state);
+        break;
+      case Kind::kChanged:
+        note_change(id, value, at, is_after_gap);
+        update_changed(id, at);
+        continue;
+      default: {
+        Derived& derived = derived_[id.index];
+        if (state.unusable) {
+          derived.values->begin_anew();
+        } else if (!derived.values->add(at, slot.d)) {
+          note_overflow(id, at);
+        }
+        update_window(id, at);
+        continue;
+      }
     }
+    if (declared.stale) deadlines_.set(id.index, later(at, *declared.stale));
   }
+}
+
+// Whether the reading is a number, and if not, why.
+void Monitor::note_number(SignalId signal, const Value& value, const Slot& slot, Time at) {
+  Signal& state = signals_[signal.index];
+  state.unusable.reset();
+  if (slot.known) return;
+  state.unusable = is_nan(value) ? WhyUnknown::kNotANumber : WhyUnknown::kUnreadable;
+  if (!is_nan(value)) return;
+  const bool is_news = !state.nan || later(*state.nan, kTellAgain) <= at;
+  state.nan = at;
+  const auto reads_number = [&](InputId id) { return knowledge_.rules[id].kind != Kind::kIsNan; };
+  const auto reader = std::ranges::find_if(state.inputs, reads_number);
+  if (is_news && reader != state.inputs.end())
+    write_.events.tell(at, ValueUnknown{*reader, WhyUnknown::kNotANumber});
+}
+
+void Monitor::put(InputId id, const Slot& value, const Signal& signal) {
+  if (value.known) return write_.signals.set(id, value);
+  write_.signals.forget(id, signal.unusable.value_or(WhyUnknown::kUnreadable));
+}
+
+bool Monitor::is_stale(SignalId signal, Time now) const {
+  const auto& last = signals_[signal.index].last;
+  const auto& stale = knowledge_.rules[signal].stale;
+  return last && stale && later(*last, *stale) <= now;
+}
+
+// Of a window, or of whether it changed.
+WhyUnknown Monitor::why_unknown(SignalId signal, Time now) const {
+  const Signal& state = signals_[signal.index];
+  if (!state.last) return WhyUnknown::kNoValue;
+  if (is_stale(signal, now)) return WhyUnknown::kStale;
+  return state.unusable.value_or(WhyUnknown::kNotCovered);
 }
 
 Duration Monitor::latency_of(SignalId signal) const {
@@ -86,27 +148,77 @@ void Monitor::note_reading(InputId id, const Slot& slot) {
 
 void Monitor::update_window(InputId id, Time now) {
   Derived& derived = derived_[id.index];
-  derived.values.advance(now);
-  const auto summary = derived.values.summary();
-  Slot value;
-  if (summary) {
-    switch (knowledge_.rules[id].kind) {
-      case Kind::kMean:
-        value = Slot::of(summary->mean);
-        break;
-      case Kind::kMin:
-        value = Slot::of(summary->min);
-        break;
-      case Kind::kMax:
-        value = Slot::of(summary->max);
-        break;
-      default:
-        value = Slot::of(summary->stddev);
-        break;
+  const std::optional<double> value = derived.values->value(now);
+  if (value && !std::isnan(*value)) {
+    derived.is_overflow_told = false;
+    write_.signals.set(id, Slot::of(*value));
+  } else if (value) {
+    write_.signals.forget(id, WhyUnknown::kNotANumber);
+  } else if (derived.is_overflow_told) {
+    write_.signals.forget(id, WhyUnknown::kOverflow);
+  } else {
+    write_.signals.forget(id, why_unknown(knowledge_.rules[id].signal, now));
+  }
+  deadlines_.set(id.index, derived.values->next_change(now));
+}
+
+// Never fewer samples than there were: rather unknown, until they fit again.
+void Monitor::note_overflow(InputId id, Time at) {
+  Derived& derived = derived_[id.index];
+  derived.overflowed = at;
+  if (!derived.is_overflow_told) write_.events.tell(at, ValueUnknown{id, WhyUnknown::kOverflow});
+  derived.is_overflow_told = true;
+}
+
+// The first reading after a gap is no change: nobody knows what was in between.
+void Monitor::note_change(InputId id, const Value& value, Time at, bool is_after_gap) {
+  Derived& derived = derived_[id.index];
+  if (is_after_gap || is_nan(value)) derived.known_since.reset();
+  if (is_nan(value)) return;
+  if (!derived.known_since) {
+    derived.known_since = at;
+    derived.changed.reset();
+  } else if (derived.last_value != value) {
+    derived.changed = at;
+  }
+  derived.last_value = value;
+}
+
+void Monitor::update_changed(InputId id, Time now) {
+  const SignalId signal = knowledge_.rules[id].signal;
+  const Derived& derived = derived_[id.index];
+  const Duration cycle = knowledge_.rules.cycle;
+  const auto& stale = knowledge_.rules[signal].stale;
+  const auto& last = signals_[signal.index].last;
+  if (!derived.known_since || is_stale(signal, now)) {
+    deadlines_.clear(id.index);
+    return write_.signals.forget(id, why_unknown(signal, now));
+  }
+  const Time covered = later(*derived.known_since, cycle);
+  const Time ends = derived.changed ? later(*derived.changed, cycle) : kLongAgo;
+  Time next = last && stale ? later(*last, *stale) : kNever;
+  if (now < covered) {
+    write_.signals.forget(id, WhyUnknown::kNotCovered);
+    next = std::min(next, covered);
+  } else {
+    write_.signals.set(id, Slot::of(now < ends));
+    if (now < ends) next = std::min(next, ends);
+  }
+  deadlines_.set(id.index, next);
+}
+
+// Whatever came before a gap in hearing does not count any more.
+void Monitor::begin_windows_anew() {
+  for (std::size_t i = 0; i < derived_.size(); ++i) {
+    Derived& derived = derived_[i];
+    const bool is_change = derived.known_since.has_value();
+    derived.known_since.reset();
+    if (derived.values) derived.values->begin_anew();
+    if (derived.values || is_change) {
+      write_.signals.forget(InputId(i), WhyUnknown::kNotCovered);
+      deadlines_.clear(i);
     }
   }
-  write_.signals.set(id, value);
-  deadlines_.set(id.index, derived.values.next_change());
 }
 
 void Monitor::on(Time, const StatusHeard& seen) { write_.heard_names.statuses.push_back(seen); }
@@ -129,7 +241,15 @@ void Monitor::on(Time at, const ParameterRead& seen) {
     read_signal(signal, seen.value, at);
   for (const InputId id : parameter_inputs_[seen.parameter.index]) {
     std::string text;
-    write_.signals.set(id, as_type(seen.value, knowledge_.rules[id].type, text));
+    const Slot slot = as_type(seen.value, knowledge_.rules[id].type, text);
+    if (slot.known) {
+      write_.signals.set(id, slot);
+      continue;
+    }
+    const auto why = is_nan(seen.value) ? WhyUnknown::kNotANumber : WhyUnknown::kUnreadable;
+    const bool is_news = knowledge_.signals.why_unknown(id) != why;
+    write_.signals.forget(id, why);
+    if (is_news && why == WhyUnknown::kNotANumber) write_.events.tell(at, ValueUnknown{id, why});
   }
 }
 

@@ -1,10 +1,13 @@
 #include "monitor/monitor.h"
 
 #include <cmath>
+#include <limits>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include "knowledge/describe.h"
 #include "language/checker.h"
 
 namespace culprit {
@@ -45,8 +48,13 @@ struct Oracle {
     if (readings.empty() || readings.back().first + 70ms <= now) return std::nullopt;
     return readings.back().second;
   }
+  // Of the last 50 ms, if they are covered: no pause of 70 ms (STALE), and readings from their beginning.
   std::vector<double> window(Time now) const {
+    if (!signal(now)) return {};
+    std::size_t first = readings.size() - 1;
+    while (first > 0 && readings[first].first - readings[first - 1].first <= 70ms) --first;
     std::vector<double> values;
+    if (readings[first].first + 50ms > now) return values;
     for (const auto& [at, value] : readings) {
       if (at + 50ms > now) values.push_back(value);
     }
@@ -231,12 +239,146 @@ TEST(Monitor, TakesAReadingThatMakesNoSenseForUnknown) {
 
 TEST(Monitor, ChangedHoldsForOneCycle) {
   Watched watched(rule("changed(x)"));
+  const auto changed = [&] { return watched.knowledge.signals[InputId(0)]; };
   watched.observe(1s, SignalRead{SignalId(0), Value(1.0)});
-  EXPECT_FALSE(watched.knowledge.signals[InputId(0)].b) << "the first value is no change";
+  EXPECT_FALSE(changed().known) << "the first value is neither a change nor none";
+  watched.monitor.advance(Time(1200ms));
+  EXPECT_TRUE(changed().known && !changed().b);
   watched.observe(2s, SignalRead{SignalId(0), Value(2.0)});
-  EXPECT_TRUE(watched.knowledge.signals[InputId(0)].b);
+  EXPECT_TRUE(changed().b);
   watched.monitor.advance(Time(2200ms));
-  EXPECT_FALSE(watched.knowledge.signals[InputId(0)].b);
+  EXPECT_TRUE(changed().known && !changed().b);
+}
+
+TEST(Monitor, NobodyKnowsWhatChangedInAGap) {
+  Watched watched("SIGNAL x DIAGNOSTIC d KEY x STALE 1s\n" + rule("changed(x)"));
+  const auto changed = [&] { return watched.knowledge.signals[InputId(0)]; };
+  watched.observe(1s, SignalRead{SignalId(0), Value(1.0)});
+  watched.observe(1500ms, SignalRead{SignalId(0), Value(1.0)});
+  EXPECT_TRUE(changed().known);
+  watched.monitor.advance(Time(2500ms));
+  EXPECT_FALSE(changed().known);
+  EXPECT_EQ(watched.knowledge.signals.why_unknown(InputId(0)), WhyUnknown::kStale);
+  watched.observe(3s, SignalRead{SignalId(0), Value(2.0)});
+  EXPECT_FALSE(changed().known);
+  watched.observe(3500ms, SignalRead{SignalId(0), Value(2.0)});
+  EXPECT_TRUE(changed().known && !changed().b);
+  watched.monitor.restart(Time(3600ms));
+  EXPECT_FALSE(changed().known) << "nobody listened";
+}
+
+TEST(Monitor, AWindowCountsOnceItIsCoveredAndAgainAfterAGap) {
+  Watched watched("SIGNAL x DIAGNOSTIC d KEY x STALE 500ms\n" + rule("stddev(x, 2s) < 0.1"));
+  const auto is_known = [&] { return watched.knowledge.signals[InputId(0)].known; };
+  const auto why = [&] { return watched.knowledge.signals.why_unknown(InputId(0)); };
+  const auto read = [&](Duration from, Duration until) {
+    for (; from <= until; from += 100ms) watched.observe(from, SignalRead{SignalId(0), Value(4.2)});
+  };
+  EXPECT_EQ(why(), WhyUnknown::kNoValue);
+  read(1s, 2900ms);
+  EXPECT_EQ(why(), WhyUnknown::kNotCovered);
+  read(3s, 4s);
+  EXPECT_TRUE(is_known());
+  EXPECT_EQ(watched.knowledge.signals[InputId(0)].d, 0);
+  watched.monitor.advance(Time(4500ms));
+  EXPECT_EQ(why(), WhyUnknown::kStale);
+  read(4600ms, 6500ms);
+  EXPECT_EQ(why(), WhyUnknown::kNotCovered) << "the first sample after a gap is not enough";
+  read(6600ms, 7s);
+  EXPECT_TRUE(is_known());
+  watched.monitor.restart(Time(7s));
+  EXPECT_EQ(why(), WhyUnknown::kNotCovered) << "nobody listened";
+  read(7100ms, 9s);
+  EXPECT_FALSE(is_known());
+  read(9100ms, 9100ms);
+  EXPECT_TRUE(is_known());
+}
+
+// Its first message does not make rate(/t) < 9 true; its silence does.
+TEST(Monitor, ARateCountsOnceItsWindowIsCoveredAndAgainAfterAGap) {
+  Watched watched(rule("rate(/t) < 9"));
+  const auto rate = [&] { return watched.knowledge.signals[InputId(0)]; };
+  const auto speak = [&](Duration from, Duration until) {
+    for (; from <= until; from += 100ms) watched.observe(from, SampleArrived{TopicId(0), 1});
+  };
+  speak(20s, 21900ms);
+  EXPECT_FALSE(rate().known);
+  EXPECT_EQ(watched.knowledge.signals.why_unknown(InputId(0)), WhyUnknown::kNotCovered);
+  speak(22s, 25s);
+  EXPECT_EQ(rate().d, 10);
+  watched.monitor.restart(Time(30s));
+  EXPECT_FALSE(rate().known);
+  speak(31s, 32900ms);
+  EXPECT_FALSE(rate().known) << "it was heard again after 1 s";
+  speak(33s, 34s);
+  EXPECT_EQ(rate().d, 10);
+  watched.monitor.advance(Time(36s));
+  EXPECT_EQ(rate().d, 0);
+  EXPECT_TRUE(rate().known) << "silence is covered, too";
+  watched.monitor.restart(Time(40s));
+  watched.monitor.advance(Time(42s));
+  EXPECT_TRUE(rate().known) << "nothing came for a whole window";
+}
+
+std::vector<std::string> told_unknown(const Watched& watched) {
+  std::vector<std::string> all;
+  for (const Event& event : watched.knowledge.events) {
+    if (std::holds_alternative<ValueUnknown>(event.what))
+      all.push_back(describe(event, watched.rules));
+  }
+  return all;
+}
+
+TEST(Monitor, WhatIsNotANumberIsUnknownAndTold) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  Watched watched(rule("x > 1 || isnan(x) || mean(x, 1s) > 1 || changed(x)"));
+  const auto& signals = watched.knowledge.signals;
+  const auto read = [&](Duration at, Value value) {
+    watched.observe(at, SignalRead{SignalId(0), std::move(value)});
+  };
+  for (int i = 0; i <= 20; ++i) read(100ms * i, 0.5);
+  EXPECT_TRUE(signals[InputId(1)].known && !signals[InputId(1)].b);
+  EXPECT_EQ(signals[InputId(2)].d, 0.5);
+  read(2100ms, kNan);
+  for (const std::size_t input : {0u, 2u, 3u})
+    EXPECT_EQ(signals.why_unknown(InputId(input)), WhyUnknown::kNotANumber) << input;
+  EXPECT_TRUE(signals[InputId(1)].b);
+  read(2200ms, std::string("nan"));
+  EXPECT_TRUE(signals[InputId(1)].b) << "as a diagnostic has it";
+  EXPECT_THAT(
+      told_unknown(watched),
+      testing::ElementsAre("x is not a number (NaN): what rules read of it is unknown, except "
+                           "isnan(x)"));
+  for (int i = 0; i < 10; ++i) read(2300ms + 100ms * i, 0.5);
+  EXPECT_EQ(signals.why_unknown(InputId(2)), WhyUnknown::kNotCovered);
+  read(3300ms, 0.5);
+  EXPECT_EQ(signals[InputId(2)].d, 0.5);
+  read(3400ms, std::string("n/a"));
+  EXPECT_EQ(signals.why_unknown(InputId(0)), WhyUnknown::kUnreadable);
+  EXPECT_FALSE(signals[InputId(1)].known);
+  read(3500ms, kNan);
+  EXPECT_EQ(told_unknown(watched).size(), 1u) << "it comes and goes";
+  read(64s, kNan);
+  EXPECT_EQ(told_unknown(watched).size(), 2u);
+}
+
+TEST(Monitor, AWindowThatOverflowsIsUnknownAndTold) {
+  Watched watched(rule("min(x, 1h) < 0 || rate(/t, 1h) < 1"));
+  const auto total = static_cast<std::int64_t>(kMaxWindowSamples) + 2;
+  for (std::int64_t i = 0; i < total; ++i) {
+    const Time now(500us * i);
+    watched.monitor.observe({now, SignalRead{SignalId(0), Value(i)}}, now);
+    watched.monitor.observe({now, SampleArrived{TopicId(0), 1}}, now);
+  }
+  EXPECT_THAT(
+      told_unknown(watched),
+      testing::ElementsAre("min(x, 1h) is unknown: more than 4194304 samples come within its "
+                           "window. Shorten the window",
+                           "rate(/t, 1h) is unknown: more than 4194304 samples come within "
+                           "its window. Shorten the window"));
+  watched.monitor.advance(Time(1h));
+  for (const std::size_t input : {0u, 1u})
+    EXPECT_EQ(watched.knowledge.signals.why_unknown(InputId(input)), WhyUnknown::kOverflow);
 }
 
 TEST(Monitor, KnowsWhetherAComponentIsAlive) {

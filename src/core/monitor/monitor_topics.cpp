@@ -22,6 +22,7 @@ void Monitor::on(Time at, const SampleArrived& seen) {
   write_.sightings.hear(seen.topic);
   Topic& topic = topics_[seen.topic.index];
   if (!topic.first) topic.first = at;
+  if (!topic.regained) topic.regained = at;
   SignalStore::Rhythm rhythm = knowledge_.signals.rhythm(seen.topic);
   if (rhythm.last && *rhythm.last >= awake_) {
     const Duration interval = (at - *rhythm.last) / std::max(1u, seen.published);
@@ -35,7 +36,8 @@ void Monitor::on(Time at, const SampleArrived& seen) {
   if (topic.needs_phi) topic.phi.add(at, seen.published);
   for (const InputId id : topic.inputs) {
     const Input& input = knowledge_.rules[id];
-    if (input.kind == Kind::kRate) derived_[id.index].count.add(at, seen.published);
+    if (input.kind == Kind::kRate && !derived_[id.index].count.add(at, seen.published))
+      note_overflow(id, at);
     write_.signals.set_latency(
         id, input.kind == Kind::kRate ? input.window : usual_latency(rhythm.interval));
     update(id, at);
@@ -84,6 +86,20 @@ Time Monitor::zero_from(const Input& input) const {
   return since ? later(heard_since(*since), input.window) : silent_from(input.topic);
 }
 
+// From when on its window is covered: culprit listened all the time, and the topic had spoken, or is
+// known to be silent. A topic that speaks again within the first window after a gap in hearing is as
+// one that is heard for the first time.
+Time Monitor::rate_known_from(InputId id) const {
+  const Input& input = knowledge_.rules[id];
+  const Topic& topic = topics_[input.topic.index];
+  if (!topic.first) return std::max(zero_from(input), later(awake_, input.window));
+  Time since = heard_since(*topic.first);
+  if (since == awake_ && topic.regained && *topic.regained < later(awake_, input.window))
+    since = *topic.regained;
+  if (const auto& overflowed = derived_[id.index].overflowed) since = std::max(since, *overflowed);
+  return later(since, input.window);
+}
+
 Slot Monitor::age(InputId id, Time now) const {
   const TopicId topic = knowledge_.rules[id].topic;
   const auto& last = topics_[topic.index].last;
@@ -93,12 +109,11 @@ Slot Monitor::age(InputId id, Time now) const {
 }
 
 Slot Monitor::rate(InputId id, Time now) {
-  const Input& input = knowledge_.rules[id];
-  const Topic& topic = topics_[input.topic.index];
-  const bool window_is_full = topic.first && later(heard_since(*topic.first), input.window) <= now;
-  if (topic.first ? !window_is_full : now < zero_from(input)) return {};
-  derived_[id.index].count.advance(now);
-  return Slot::of(derived_[id.index].count.rate());
+  if (now < rate_known_from(id)) return {};
+  Derived& derived = derived_[id.index];
+  derived.is_overflow_told = false;
+  derived.count.advance(now);
+  return Slot::of(derived.count.rate());
 }
 
 Slot Monitor::phi(InputId id, Time now) const {
@@ -119,10 +134,7 @@ Time Monitor::next_crossing(InputId id, Time now) const {
     case Kind::kPhi:
       return next_phi(id, now);
     default:
-      if (topic.first && now < later(heard_since(*topic.first), input.window))
-        return later(heard_since(*topic.first), input.window);
-      if (!topic.first && now < zero_from(input)) return zero_from(input);
-      return next_rate(id);
+      return now < rate_known_from(id) ? rate_known_from(id) : next_rate(id);
   }
 }
 

@@ -1,32 +1,36 @@
 // How many messages came within the last `window`, exactly.
+//
+// Each arrival is kept until it leaves the window, with how many messages had come by then: so the
+// count, and the arrival with which it will fall below a number, are found without adding up.
 #pragma once
 
 #include <cassert>
 #include <cstdint>
 
 #include "base/time.h"
+#include "language/rule_set.h"
 #include "monitor/ring.h"
 
 namespace culprit::monitor {
 
 class SlidingCount {
  public:
-  // More arrivals than this within one window are counted with the newest of them: the count stays
-  // exact, and they leave the window a moment late.
-  static constexpr std::size_t kMaxArrivals = 1 << 14;
+  // Keeps `limit` arrivals at different times at most; 16 bytes each. @pre window > 0, limit > 0
+  explicit SlidingCount(Duration window, std::size_t limit = kMaxWindowSamples)
+      : window_(window), arrivals_(limit) {
+    assert(window > Duration::zero());
+  }
 
-  // @pre window > 0
-  explicit SlidingCount(Duration window) : window_(window) { assert(window > Duration::zero()); }
-
-  // `count` messages came at `at`. Times never go back.
-  void add(Time at, std::uint32_t count);
+  // `count` messages came at `at`. Times never go back. False: the window would hold more arrivals
+  // than `limit`. Then the count begins anew with these messages.
+  [[nodiscard]] bool add(Time at, std::uint32_t count);
 
   // Forgets what is older than the window at `now`. A message leaves the window when it is exactly
   // as old as it.
   void advance(Time now);
 
-  std::uint64_t count() const { return count_; }
-  double rate() const { return static_cast<double>(count_) / seconds(window_); }
+  std::uint64_t count() const { return total_ - left_; }
+  double rate() const { return static_cast<double>(count()) / seconds(window_); }
 
   // When the count will first fall below `wanted`, if nothing more comes. kNever if it is below
   // now.
@@ -35,11 +39,12 @@ class SlidingCount {
  private:
   struct Arrivals {
     Time at;
-    std::uint64_t count = 0;
+    std::uint64_t total = 0;  // messages up to these, since the beginning
   };
   Duration window_;
-  Ring<Arrivals> arrivals_{kMaxArrivals};
-  std::uint64_t count_ = 0;
+  Ring<Arrivals> arrivals_;
+  std::uint64_t total_ = 0;  // messages that came
+  std::uint64_t left_ = 0;   // messages that left the window
 };
 
 }  // namespace culprit::monitor

@@ -229,6 +229,7 @@ class CurveReader {
         case Input::Kind::kMax:
         case Input::Kind::kStddev:
         case Input::Kind::kChanged:
+        case Input::Kind::kIsNan:
           follow_signal(rule, input.signal);
           break;
         case Input::Kind::kAge:

@@ -1,6 +1,8 @@
 #include "rule_test/course_reader.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "knowledge/signal_store.h"
 
@@ -124,6 +126,8 @@ class CourseReader {
       return Value(negative ? -number : number);
     }
     if (!negative && is_truth) return Value(token.text == "true");
+    if (token.kind == Token::Kind::kIdentifier && token.text == "nan")
+      return Value(std::numeric_limits<double>::quiet_NaN());
     if (!negative && token.kind == Token::Kind::kString)
       return Value(std::get<std::string>(token.value()));
     read_.fail_token(token, "a value", "a value is true, false, a number, or a text in quotes");
@@ -132,7 +136,10 @@ class CourseReader {
 
   bool fits(const Value& value, SignalId id, Span span) {
     std::string text;
-    if (as_type(value, rules_[id].type, text).known) return true;
+    const auto* number = std::get_if<double>(&value);
+    const bool is_nan = number != nullptr && std::isnan(*number);
+    if (is_nan ? rules_[id].type == Type::kDouble : as_type(value, rules_[id].type, text).known)
+      return true;
     return read_.fail(Code::kTypeMismatch, span,
                       rules_[id].name + " is a " + std::string(to_string(rules_[id].type)) +
                           " in the rules, and this is none",

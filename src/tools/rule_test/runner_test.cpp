@@ -229,6 +229,43 @@ TEST(Runner, DoesNotReplaceAComponentThatIsHeardWhenAnotherIsSilent) {
   EXPECT_TRUE(played.result.is_ok()) << played.text();
 }
 
+// ---- values over a time
+
+constexpr const char* kArm =
+    "COMPONENT arm NODE /arm LAUNCH \"arm\"\nSIGNAL joint TOPIC /joints FIELD data STALE 500ms\n"
+    "RULE Frozen\n  POLICIES ERROR\n  TRIGGER stddev(joint, 2s) == 0\n"
+    "    STRATEGY arm_redeploy 90 10\n      ADAPTATION arm redeploy 25\n"
+    "RULE NoNumber\n  POLICIES WARNING REPORT\n  TRIGGER isnan(joint)\n";
+
+TEST(Runner, AWindowActsOnNothingUntilItIsCovered) {
+  for (const char* course : {
+           "SIGNAL joint EVERY 20ms 0s: 0.3\nRUN 1900ms\n",
+           "SIGNAL joint EVERY 20ms 20s: 0.3\nRUN 21900ms\n",
+           "SIGNAL joint EVERY 20ms 0s: 0.3 1900ms: silent 3s: 0.3\nRUN 4900ms\n",
+           "SIGNAL joint EVERY 20ms 0s: 0.3 1900ms: nan 2s: 0.3\nRUN 3900ms\n",
+       }) {
+    const Played played = play(std::string(course) + "EXPECT NOT Frozen DETECTED\n", kArm);
+    EXPECT_TRUE(played.result.is_ok()) << course << played.text();
+  }
+  for (const char* course : {
+           "SIGNAL joint EVERY 20ms 0s: 0.3\nRUN 3s\nEXPECT Frozen DETECTED BY 2.1s\n",
+           "SIGNAL joint EVERY 20ms 0s: 0.3 1900ms: silent 3s: 0.3\nRUN 6s\n"
+           "EXPECT Frozen DETECTED AFTER 5s\n",
+       }) {
+    const Played played = play(course, kArm);
+    EXPECT_TRUE(played.result.is_ok()) << course << played.text();
+  }
+}
+
+TEST(Runner, AValueThatIsNotANumberIsSeenByARuleForIt) {
+  const Played played = play(
+      "SIGNAL joint EVERY 20ms 0s: 0.3 1s: nan\nRUN 3s\nEXPECT NoNumber DETECTED AFTER 1s\n"
+      "EXPECT NOT Frozen DETECTED\n",
+      kArm);
+  EXPECT_TRUE(played.result.is_ok()) << played.text();
+  EXPECT_THAT(played.text(), HasSubstr("joint is not a number (NaN)"));
+}
+
 // ---- the same again
 
 TEST(Runner, PlaysTheSameTestTheSameWay) {
