@@ -30,7 +30,7 @@ class SignalStore {
   // Writes a value and marks the rules that read the input if the value is another than before.
   void set(InputId id, const Slot& value);
   void forget(InputId id, WhyUnknown why = WhyUnknown::kNoValue);
-  // Nothing if it is known.
+  // Empty if the input is known.
   std::optional<WhyUnknown> why_unknown(InputId id) const {
     return slots_[id.index].known ? std::nullopt : std::optional(why_unknown_[id.index]);
   }

@@ -79,7 +79,7 @@ void Monitor::read_signal(SignalId signal, const Value& value, Time at) {
   }
 }
 
-// Whether the reading is a number, and if not, why.
+// Notes whether the reading is a number, and reports NaN.
 void Monitor::note_number(SignalId signal, const Value& value, const Slot& slot, Time at) {
   Signal& state = signals_[signal.index];
   state.unusable.reset();
@@ -105,7 +105,7 @@ bool Monitor::is_stale(SignalId signal, Time now) const {
   return last && stale && later(*last, *stale) <= now;
 }
 
-// Of a window, or of whether it changed.
+// Why a window, or whether a signal changed, is unknown.
 WhyUnknown Monitor::why_unknown(SignalId signal, Time now) const {
   const Signal& state = signals_[signal.index];
   if (!state.last) return WhyUnknown::kNoValue;
@@ -162,7 +162,7 @@ void Monitor::update_window(InputId id, Time now) {
   deadlines_.set(id.index, derived.values->next_change(now));
 }
 
-// Never fewer samples than there were: rather unknown, until they fit again.
+// The input is unknown until its samples fit again: a window never counts a part of them.
 void Monitor::note_overflow(InputId id, Time at) {
   Derived& derived = derived_[id.index];
   derived.overflowed = at;
@@ -170,7 +170,7 @@ void Monitor::note_overflow(InputId id, Time at) {
   derived.is_overflow_told = true;
 }
 
-// The first reading after a gap is no change: nobody knows what was in between.
+// The first reading after a gap is no change: the values in between are unknown.
 void Monitor::note_change(InputId id, const Value& value, Time at, bool is_after_gap) {
   Derived& derived = derived_[id.index];
   if (is_after_gap || is_nan(value)) derived.known_since.reset();
@@ -207,7 +207,7 @@ void Monitor::update_changed(InputId id, Time now) {
   deadlines_.set(id.index, next);
 }
 
-// Whatever came before a gap in hearing does not count any more.
+// Samples from before a gap in hearing no longer count.
 void Monitor::begin_windows_anew() {
   for (std::size_t i = 0; i < derived_.size(); ++i) {
     Derived& derived = derived_[i];

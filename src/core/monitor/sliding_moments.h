@@ -1,6 +1,6 @@
 // Mean or standard deviation of the values within a time that moves on.
 //
-// Nothing is ever subtracted, so no rounding error outlives the value that brought it, and the
+// No value is ever subtracted, so no rounding error outlives the value that brought it, and the
 // deviation of equal values is exactly 0. Values are summed up in two stacks (a queue of two stacks,
 // as in two-stack sliding window aggregation): each value of the older stack knows the sum of itself
 // and all later ones of its stack, the newer stack has one sum. When the older one is used up, the

@@ -33,7 +33,7 @@ class ValueWindow {
   // Forgets all: the window is covered anew from the next sample on.
   void begin_anew();
 
-  // As of `now`, which never goes back. Nothing: it is not covered, or has no sample. NaN where
+  // As of `now`, which never goes back. Empty: it is not covered, or has no sample. NaN where
   // infinite samples leave no result.
   std::optional<double> value(Time now);
 
