@@ -1,0 +1,132 @@
+// Windows from end to end: when a rule acts on them, and when it must not.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "manager/test_robot.h"
+
+namespace culprit::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+// Plays observations to a manager that only advises, as a recording is replayed, and collects when
+// each rule was detected.
+class Played {
+ public:
+  explicit Played(const std::string& rules)
+      : rules_(*check(Source("test.rules", rules)).rules),
+        manager_(rules_, std::make_unique<BayesPlanner>(), {.autonomy = Autonomy::kAdvise}) {}
+
+  template <class... What>
+  void observe(Duration at, What... what) {
+    const Time now(at);
+    wait_until(at);
+    const std::vector<Observation> observations{{now, std::move(what)}...};
+    manager_.step(now, observations);
+    note();
+  }
+  void wait_until(Duration at) {
+    while (manager_.next_deadline() < Time(at)) {
+      manager_.step(manager_.next_deadline(), {});
+      note();
+    }
+  }
+
+  std::vector<std::pair<std::string, Duration>> detected;
+
+ private:
+  void note() {
+    for (const Event& event : manager_.events()) {
+      if (const auto* found = std::get_if<FailureDetected>(&event.what))
+        detected.emplace_back(rules_[found->rule].name, event.at.time_since_epoch());
+    }
+  }
+  RuleSet rules_;
+  Manager manager_;
+};
+
+TEST(Windows, SeeAllOfALongTimeOfAFastSignal) {
+  Played played(
+      "SIGNAL x TOPIC /x FIELD data\n"
+      "RULE Min\nPOLICIES WARNING REPORT\nTRIGGER min(x, 25s) > 0.5\n"
+      "RULE Mean\nPOLICIES WARNING REPORT\nTRIGGER mean(x, 25s) > 0.8\n");
+  for (int i = 0; i < 200 * 32; ++i)
+    played.observe(5ms * i, SignalRead{SignalId(0), Value(i < 600 ? 0.0 : 1.0)});
+  EXPECT_THAT(played.detected, ElementsAre(std::pair("Mean", 25s), std::pair("Min", 27995ms)));
+}
+
+TEST(Windows, ARateIsExactHoweverManyMessagesThereAre) {
+  Played played(
+      "RULE TooFast\nPOLICIES WARNING REPORT\nTRIGGER rate(/x, 30s) > 1000\n"
+      "RULE TooSlow\nPOLICIES WARNING REPORT\nTRIGGER rate(/x, 30s) < 999\n");
+  for (int i = 0; i < 80000; ++i) played.observe(1ms * i, SampleArrived{TopicId(0), 1});
+  EXPECT_THAT(played.detected, IsEmpty());
+  played.wait_until(90s);
+  EXPECT_THAT(played.detected, ElementsAre(std::pair("TooSlow", 80030ms)));
+}
+
+constexpr const char* kLateRules = R"(
+COMPONENT driver NODE /driver LAUNCH "driver"
+SIGNAL joint TOPIC /joints FIELD data STALE 1s
+RULE DriverFrozen
+  POLICIES ERROR
+  TRIGGER stddev(joint, 2s) < 0.000001
+    STRATEGY driver_redeploy 90 10
+      ADAPTATION driver redeploy 25
+RULE DriverSlow
+  POLICIES ERROR
+  TRIGGER rate(/joints) < 9
+    STRATEGY driver_replace 90 10
+      ADAPTATION driver redeploy 25
+)";
+
+// It moves, 20 readings a second.
+void drive(TestRobot& robot, Duration time) {
+  for (Duration spent{}; spent < time; spent += 50ms) {
+    robot.signal("joint", Value(seconds(robot.now.time_since_epoch())));
+    robot.run_for(50ms);
+  }
+}
+
+TEST(Windows, AHealthyDriverThatComesLateIsLeftAlone) {
+  TestRobot robot(kLateRules);
+  robot.run_for(15s);
+  robot.add("driver", {}, "/joints");
+  robot.discover();
+  drive(robot, 20s);
+  EXPECT_EQ(robot.count("detected"), 0u) << transcript(robot);
+  EXPECT_THAT(robot.asked, IsEmpty());
+}
+
+TEST(Windows, AHealthyDriverIsLeftAloneAfterAGapInHearing) {
+  TestRobot robot(kLateRules);
+  robot.add("driver", {}, "/joints");
+  robot.discover();
+  drive(robot, 10s);
+  for (const Duration gap : {1s, 10s}) {
+    robot.freeze(gap);
+    robot.tell(Overslept{gap});
+    drive(robot, 10s);
+  }
+  EXPECT_EQ(robot.count("detected"), 0u) << transcript(robot);
+  EXPECT_THAT(robot.asked, IsEmpty());
+}
+
+TEST(Windows, AnUncoveredWindowResolvesNothing) {
+  TestRobot robot(kLateRules);
+  robot.add("driver", {}, "/joints");
+  robot.discover();
+  for (int i = 0; i < 60; ++i) {
+    robot.signal("joint", Value(0.5));
+    robot.run_for(50ms);
+  }
+  EXPECT_EQ(robot.count("DriverFrozen detected"), 1u) << transcript(robot);
+  robot.run_for(10s);
+  EXPECT_EQ(robot.count("DriverFrozen resolved"), 0u) << transcript(robot);
+  drive(robot, 2500ms);
+  EXPECT_EQ(robot.count("DriverFrozen resolved"), 1u) << transcript(robot);
+}
+
+}  // namespace
+}  // namespace culprit::test
