@@ -117,7 +117,7 @@ void Monitor::restart(Time now) {
     topic.phi.restart(now);
     topic.regained.reset();
   }
-  begin_windows_anew();
+  begin_windows_anew(now);
   for (std::size_t c = 0; c < knowledge_.rules.components.size(); ++c) {
     ComponentState& state = write_.components[ComponentId(c)];
     state.missed_probes = 0;

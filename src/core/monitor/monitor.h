@@ -170,7 +170,7 @@ class Monitor {
   bool is_stale(SignalId signal, Time now) const;
   WhyUnknown why_unknown(SignalId signal, Time now) const;
   void note_overflow(InputId id, Time at);
-  void begin_windows_anew();
+  void begin_windows_anew(Time now);
   Time next_crossing(InputId id, Time now) const;
   Time next_age(const Input& input, Time now) const;
   Time next_phi(InputId id, Time now) const;

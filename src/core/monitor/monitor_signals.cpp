@@ -207,16 +207,18 @@ void Monitor::update_changed(InputId id, Time now) {
   deadlines_.set(id.index, next);
 }
 
-// Samples from before a gap in hearing no longer count.
-void Monitor::begin_windows_anew() {
+// Samples from before a gap in hearing no longer count. A value that changed in the gap changes when it
+// is read next: many are published only when they change.
+void Monitor::begin_windows_anew(Time now) {
   for (std::size_t i = 0; i < derived_.size(); ++i) {
     Derived& derived = derived_[i];
-    const bool is_change = derived.known_since.has_value();
-    derived.known_since.reset();
-    if (derived.values) derived.values->begin_anew();
-    if (derived.values || is_change) {
-      write_.signals.forget(InputId(i), WhyUnknown::kNotCovered);
-      deadlines_.clear(i);
+    if (derived.values) {
+      derived.values->begin_anew();
+      update_window(InputId(i), now);
+    } else if (derived.known_since) {
+      derived.known_since = now;
+      derived.changed.reset();
+      update_changed(InputId(i), now);
     }
   }
 }

@@ -265,6 +265,10 @@ TEST(Monitor, NobodyKnowsWhatChangedInAGap) {
   EXPECT_TRUE(changed().known && !changed().b);
   watched.monitor.restart(Time(3600ms));
   EXPECT_FALSE(changed().known) << "nobody listened";
+  watched.monitor.advance(Time(3800ms));
+  EXPECT_TRUE(changed().known && !changed().b);
+  watched.observe(3900ms, SignalRead{SignalId(0), Value(3.0)});
+  EXPECT_TRUE(changed().b) << "at the latest now";
 }
 
 TEST(Monitor, AWindowCountsOnceItIsCoveredAndAgainAfterAGap) {

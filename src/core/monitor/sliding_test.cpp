@@ -56,7 +56,7 @@ TEST(SlidingCount, StaysExactWhenAFloodComes) {
   EXPECT_EQ(count.count(), 0u);
 }
 
-// As of a topic of 1 kHz over a minute: today's 60,000 are no fewer than 16,384 were.
+// As of a topic of 1 kHz over a minute.
 TEST(SlidingCount, IsConstantForAConstantRateHoweverLongTheWindow) {
   SlidingCount count(60s);
   for (int i = 0; i < 200000; ++i) {
