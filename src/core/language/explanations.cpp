@@ -202,7 +202,7 @@ std::vector<Explanation> value_explanations() {
       {Code::kLongWindow, "a window is longer than a day",
        "rate, mean, min, max and stddev keep the samples of their window, so that they are exact. "
        "A "
-       "window is at most 24h long. It holds at most 4,194,304 samples (100 MB), which are 24 h of "
+       "window is at most 24h long. It holds at most 4,194,304 samples (64 MB), which are 24 h of "
        "48 Hz or 1 h of 1,165 Hz. If more come, the function is unknown, and culprit reports it. "
        "age(topic) keeps no samples and has no such limit.",
        rule_with("rate(/robot/image, 36h) < 0.001"), rule_with("age(/robot/image) > 36h")},

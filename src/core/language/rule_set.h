@@ -122,7 +122,7 @@ struct Signal {
   std::optional<Range> range;
 };
 
-// So many samples of its window an input keeps at most (100 MB). If more come it is unknown.
+// So many samples of its window an input keeps at most (64 MB). If more come it is unknown.
 inline constexpr std::size_t kMaxWindowSamples = std::size_t{1} << 22;
 
 // One value that programs read: a signal as it is, or something that the monitor derives.

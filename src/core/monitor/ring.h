@@ -22,7 +22,6 @@ class Ring {
   T& operator[](std::size_t i) { return items_[(first_ + i) % items_.size()]; }
   const T& operator[](std::size_t i) const { return items_[(first_ + i) % items_.size()]; }
   T& front() { return (*this)[0]; }
-  const T& front() const { return (*this)[0]; }
   T& back() { return (*this)[size_ - 1]; }
   const T& back() const { return (*this)[size_ - 1]; }
 
@@ -37,11 +36,6 @@ class Ring {
   void pop_front() {
     assert(!empty());
     first_ = (first_ + 1) % items_.size();
-    --size_;
-  }
-  // @pre !empty()
-  void pop_back() {
-    assert(!empty());
     --size_;
   }
   void clear() { first_ = size_ = 0; }

@@ -9,7 +9,7 @@
 
 #include "base/time.h"
 #include "language/rule_set.h"
-#include "monitor/ring.h"
+#include "monitor/long_queue.h"
 
 namespace culprit::monitor {
 
@@ -42,7 +42,7 @@ class SlidingCount {
     std::uint64_t total = 0;  // messages up to these, since the beginning
   };
   Duration window_;
-  Ring<Arrivals> arrivals_;
+  LongQueue<Arrivals> arrivals_;
   std::uint64_t total_ = 0;  // messages that came
   std::uint64_t left_ = 0;   // messages that left the window
 };

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "base/time.h"
-#include "monitor/ring.h"
+#include "monitor/long_queue.h"
 
 namespace culprit::monitor {
 
@@ -36,7 +36,7 @@ class SlidingExtreme {
     double value = 0;
   };
   Of of_;
-  Ring<Entry> values_;
+  LongQueue<Entry> values_;
 };
 
 }  // namespace culprit::monitor

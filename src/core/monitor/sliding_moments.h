@@ -1,10 +1,15 @@
 // Mean or standard deviation of the values within a time that moves on.
 //
 // No value is ever subtracted, so no rounding error outlives the value that brought it, and the
-// deviation of equal values is exactly 0. Values are summed up in two stacks (a queue of two stacks,
-// as in two-stack sliding window aggregation): each value of the older stack knows the sum of itself
-// and all later ones of its stack, the newer stack has one sum. When the older one is used up, the
-// newer one becomes it. Each value is added twice in all.
+// deviation of equal values is exactly 0. Each sample belongs to a block of kBlock:
+//
+//   oldest block    for each sample that is left, the sum of it and of all later ones of the block
+//   blocks          two stacks, as in two-stack sliding window aggregation: each block of the older
+//                   one has the sum of itself and of all later ones there, the newer one has one sum
+//   newest block    one sum
+//
+// The sum of the window is that of these parts. A sample is summed up three times in all, and no call
+// does so for more than one block of samples and one stack of blocks: 0.1 ms for millions of samples.
 //
 // A sum S of n values x is
 //
@@ -14,9 +19,10 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "base/time.h"
-#include "monitor/ring.h"
+#include "monitor/long_queue.h"
 
 namespace culprit::monitor {
 
@@ -24,8 +30,9 @@ class SlidingMoments {
  public:
   enum class Of : std::uint8_t { kMean, kDeviation };
 
-  // Keeps `limit` values at most; 24 bytes each.
-  SlidingMoments(Of of, std::size_t limit) : of_(of), samples_(limit) {}
+  // Keeps `limit` values at most; 16 bytes each.
+  SlidingMoments(Of of, std::size_t limit)
+      : of_(of), samples_(limit), blocks_(limit / kBlock + 1) {}
 
   // False: it cannot hold one more, and is as it was. Times never go back.
   [[nodiscard]] bool add(Time at, double value);
@@ -47,15 +54,23 @@ class SlidingMoments {
   };
   struct Sample {
     Time at;
-    Sum sum;  // of it; in the older stack, of it and all later ones there
+    double value = 0;
   };
   Sum joined(const Sum& a, std::size_t of_a, const Sum& b, std::size_t of_b) const;
-  void turn_over();
+  void end_block();
+  void begin_oldest();
+  void pop_block();
+
+  static constexpr std::size_t kBlock = 1024;
 
   Of of_;
-  Ring<Sample> samples_;
-  std::size_t older_ = 0;  // so many of `samples_`, from the front, are the older stack
+  LongQueue<Sample> samples_;
+  std::vector<Sum> oldest_;  // of the samples that are left of the oldest block, the last one first
+  LongQueue<Sum> blocks_;
+  std::size_t older_ = 0;  // so many of `blocks_`, from the front, are the older stack
   Sum newer_;
+  Sum newest_;
+  std::size_t in_newest_ = 0;  // samples
 };
 
 }  // namespace culprit::monitor

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <vector>
 
@@ -141,6 +142,57 @@ RC_GTEST_PROP(ValueWindow, IsWhatItsDefinitionSays, ()) {
     RC_ASSERT(window.add(now, value));
     naive.samples.emplace_back(now, value);
     RC_ASSERT(is_nearly(window.value(now), naive.value(now)));
+  }
+}
+
+// Long ones are summed up by blocks.
+RC_GTEST_PROP(ValueWindow, IsWhatItsDefinitionSaysAlsoOfThousandsOfSamples, ()) {
+  const auto of = *rc::gen::element(Of::kMean, Of::kMin, Of::kMax, Of::kStddev);
+  const Duration length(*rc::gen::inRange(1, 9000));
+  ValueWindow window(of, length, 1s);
+  NaiveWindow naive{of, length, 1s};
+  Time now{};
+  for (int looks = *rc::gen::inRange(0, 12); looks > 0; --looks) {
+    const std::uint32_t step = *rc::gen::inRange(1, 4);
+    std::uint32_t random = *rc::gen::inRange(0, 1000000);
+    for (int i = *rc::gen::inRange(0, 3000); i > 0; --i) {
+      now += Duration(random % 7 == 0 ? 0 : step);
+      random = random * 1664525u + 1013904223u;
+      const double value = (random >> 16) * (looks % 2 == 0 ? 1e-3 : 10) - 5;
+      RC_ASSERT(window.add(now, value));
+      naive.samples.emplace_back(now, value);
+    }
+    now += Duration(*rc::gen::inRange(0, 2000));
+    RC_ASSERT(is_nearly(window.value(now), naive.value(now)));
+  }
+}
+
+RC_GTEST_PROP(LongQueue, IsAQueue, ()) {
+  LongQueue<int> queue(1000);
+  std::deque<int> model;
+  for (int i = *rc::gen::inRange(0, 60); i > 0; --i) {
+    const int count = *rc::gen::inRange(0, 100);
+    switch (*rc::gen::inRange(0, 5)) {
+      case 0:
+      case 1:
+        for (int n = 0; n < count && !queue.full(); ++n) {
+          queue.push_back(n);
+          model.push_back(n);
+        }
+        break;
+      case 2:
+      case 3:
+        for (int n = 0; n < count && !queue.empty(); ++n) {
+          queue.pop_front();
+          model.pop_front();
+        }
+        break;
+      default:
+        model.resize(std::min<std::size_t>(model.size(), static_cast<std::size_t>(count)));
+        queue.truncate(model.size());
+    }
+    RC_ASSERT(queue.size() == model.size());
+    for (std::size_t n = 0; n < model.size(); ++n) RC_ASSERT(queue[n] == model[n]);
   }
 }
 

@@ -2,7 +2,7 @@
 //
 // A window counts only once it is covered: known from when samples came for all of its length. A
 // stretch of more than `longest_pause` without a sample is a gap; the window is covered anew from the
-// first sample after it. Adding a sample takes constant time on average, however many there are.
+// first sample after it. Adding a sample takes constant time on average, and never long.
 #pragma once
 
 #include <cassert>
@@ -21,7 +21,7 @@ class ValueWindow {
  public:
   enum class Of : std::uint8_t { kMean, kMin, kMax, kStddev };
 
-  // Keeps `limit` samples at most; 24 bytes each, or less.
+  // Keeps `limit` samples at most; 16 bytes each.
   // @pre window > 0, longest_pause > 0, limit > 0
   ValueWindow(Of of, Duration window, Duration longest_pause,
               std::size_t limit = kMaxWindowSamples);
