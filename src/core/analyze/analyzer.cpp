@@ -6,6 +6,7 @@
 
 #include "analyze/undoes.h"
 #include "diagnose/timing.h"
+#include "knowledge/ambiguity.h"
 #include "language/evaluate.h"
 
 namespace culprit {
@@ -267,6 +268,7 @@ void Analyzer::detect(RuleId id, Time now) {
   }
   state.onset = diagnose::onset_now(id, now, knowledge_);
   if (!recurs) state.first_onset = state.onset->latest;
+  if (!is_same) note_coincidence(id);
   write_.states.enter(id, RulePhase::kFailing);
   write_.events.tell(now, known_silence_.detected(id));
   outcomes_.detected(id, now);
@@ -439,6 +441,24 @@ void Analyzer::note_latency(RuleId id, Time effective) {
   const Time cleared = knowledge_.states[id].detection.trigger_since;
   if (effective != kNever && cleared >= effective)
     write_.latencies.cleared(id, cleared - effective);
+}
+
+// Began another failure with it that the graph does not connect with it?
+void Analyzer::note_coincidence(RuleId id) {
+  constexpr Duration kTogether = std::chrono::milliseconds(500);
+  const Onset onset = *knowledge_.states[id].onset;
+  const auto& own = knowledge_.rules[id].components;
+  std::vector<RuleId> others;
+  for (const RuleId other : knowledge_.states.active()) {
+    const auto& began = knowledge_.states[other].onset;
+    if (!began || other == id || knowledge_.states[other].search.attempts > 0) continue;
+    const bool is_together = began->earliest <= later(onset.latest, kTogether) &&
+                             onset.earliest <= later(began->latest, kTogether);
+    const auto& theirs = knowledge_.rules[other].components;
+    if (is_together && !can_resolve(knowledge_, own, other) && !can_resolve(knowledge_, theirs, id))
+      others.push_back(other);
+  }
+  write_.coincidences.began(id, others);
 }
 
 std::optional<ComponentId> Analyzer::unheard_behind(const Attempt& attempt) const {

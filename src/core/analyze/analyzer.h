@@ -66,6 +66,7 @@ class Analyzer {
     Beliefs& beliefs;
     Couplings& couplings;
     Latencies& latencies;
+    Coincidences& coincidences;
     PendingOutcomes& outcomes;
     EventLog& events;
   };
@@ -146,6 +147,7 @@ class Analyzer {
   void exhaust(RuleId id, Time now);
   bool went_away_before(const Attempt& attempt) const;
   void note_latency(RuleId id, Time effective);
+  void note_coincidence(RuleId id);
   // Is there a more critical failure for which the same component would be adapted?
   bool holds_up_more_critical(StrategyId strategy) const;
   syntax::Criticality criticality(RuleId id) const {

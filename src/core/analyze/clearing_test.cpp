@@ -33,9 +33,10 @@ struct Watched {
 
   RuleSet rules;
   Knowledge knowledge{rules};
-  Analyzer analyzer{knowledge,
-                    {knowledge.states, knowledge.signals, knowledge.beliefs, knowledge.couplings,
-                     knowledge.latencies, knowledge.outcomes, knowledge.events}};
+  Analyzer analyzer{
+      knowledge,
+      {knowledge.states, knowledge.signals, knowledge.beliefs, knowledge.couplings,
+       knowledge.latencies, knowledge.coincidences, knowledge.outcomes, knowledge.events}};
   Time now{100s};
 };
 

@@ -462,15 +462,15 @@ std::string describe_exclusion(const Candidate& candidate, const RuleSet& rules)
     case Condition::kAffected:
       return component + " is affected by a strategy chosen just now";
     case Condition::kDependency:
+      if (!candidate.failure && !candidate.remark.empty())
+        return component + " " + candidate.remark;
       return "it depends on " + component + ", which may be the cause" + because;
     case Condition::kOneEach:
       return "another strategy was chosen for the same failure";
     case Condition::kDownstream:
       return "it depends on " + component + ", which is being adapted" + because;
     case Condition::kSuspect:
-      if (candidate.failure == rules[candidate.strategy].rule)
-        return "what " + component + " depends on had no time yet to show whether it is ill";
-      return "it depends on " + component + ", which looks ill" + because;
+      return "it depends on " + component + ", which may still prove to be the cause" + because;
     case Condition::kSettling:
       return "it is expected to go away now that " + rules[*candidate.failure].name +
              " is resolved";

@@ -24,7 +24,7 @@ enum class Condition : std::uint8_t {
   kOneEach,     // another strategy was chosen for the same failure
   // Of the bayes planner only:
   kDownstream,  // a component of it depends on one that is being adapted
-  kSuspect,     // a component of it depends on one that looks ill, and nobody knows yet whether
+  kSuspect,     // a component of it depends on one that may still prove to be the cause
   kSettling,    // the failure is expected to go away with one that was just resolved
   kInTheWay,    // it would be in the way of what is to be done about another failure
   // Of both planners:
@@ -40,7 +40,8 @@ struct Candidate {
   ComponentId component;              // that the condition is about
   std::optional<RuleId> failure;      // kDependency: what `component` may be the cause of;
                                       // likewise kSuspect, kSettling, kInTheWay: the other failure
-  std::string remark;                 // kInvalid, kWithheld, kUnheard: why
+  std::string remark;                 // kInvalid, kWithheld, kUnheard, kDependency without a
+                                      // failure: why
   // Of a planner that weighs them (bayes) and only if nothing excludes it beforehand.
   double resolves = 0;  // the probability that it resolves the failure
   double value = 0;     // what that is worth, before its cost

@@ -54,6 +54,7 @@ Knowledge::Knowledge(const RuleSet& rule_set)
       beliefs(rules),
       couplings(rules),
       latencies(rules),
+      coincidences(rules),
       withheld(rules.strategies.size()) {}
 
 Knowledge::Knowledge(const RuleSet& rule_set, const Knowledge& other)
@@ -67,6 +68,7 @@ Knowledge::Knowledge(const RuleSet& rule_set, const Knowledge& other)
       beliefs(other.beliefs),
       couplings(other.couplings),
       latencies(other.latencies),
+      coincidences(other.coincidences),
       withheld(other.withheld),
       outcomes(other.outcomes),
       rivals(other.rivals),

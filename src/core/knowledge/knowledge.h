@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "knowledge/beliefs.h"
+#include "knowledge/coincidences.h"
 #include "knowledge/component_states.h"
 #include "knowledge/couplings.h"
 #include "knowledge/departures.h"
@@ -42,6 +43,7 @@ struct Knowledge {
   Beliefs beliefs;
   Couplings couplings;
   Latencies latencies;
+  Coincidences coincidences;
   // What the governor does not allow now.
   struct Withheld {
     std::string reason;        // empty: it is allowed

@@ -27,6 +27,7 @@ bool reads_value(const Input& input) {
     case Kind::kMax:
     case Kind::kStddev:
     case Kind::kChanged:
+    case Kind::kIsNan:
       return true;
   }
   return true;

@@ -354,6 +354,59 @@ TEST(BayesPlanner, StopsSafelyThoughAnExhaustedFailureExplainsIt) {
   EXPECT_EQ(scene.plan(kFewRedeployments), "B.safe");
 }
 
+// Another source restores the function at once; the repair of the cause goes on beside it.
+TEST(BayesPlanner, GoesRoundACauseWhoseRepairTakesMuchLonger) {
+  const auto scene_with = [](const char* repair, const char* workaround) {
+    Scene scene(
+        "COMPONENT a NODE /a LAUNCH \"a\"\nRULE A\nPOLICIES ERROR\nTRIGGER x > 1\n"
+        "STRATEGY redeploy 90 10\nADAPTATION a redeploy " +
+        std::string(repair) + "\n" + failure_of("b", "B") + "STRATEGY other 80 10\nADAPTATION b " +
+        workaround + " 2\n");
+    scene.link("a", "b").fail("A").fail("B");
+    return scene;
+  };
+  Scene slow = scene_with("60", "change_communication in /other");
+  EXPECT_EQ(slow.plan(kBalanced), "A.redeploy B.other");
+  EXPECT_EQ(slow.candidate("B.restart").excluded, Condition::kDependency);
+  EXPECT_EQ(scene_with("10", "change_communication in /other").plan(kBalanced), "A.redeploy");
+  EXPECT_EQ(scene_with("60", "set_parameter p 1").plan(kBalanced), "A.redeploy");
+}
+
+TEST(BayesPlanner, StaggersTheRepairsOfFailuresThatRepeatedlyBeginTogether) {
+  Scene scene = robot();
+  scene.fail("A").fail("D");
+  ASSERT_EQ(scene.plan(kFewRedeployments), "A.restart D.restart");
+  const auto begin_together = [&] {
+    scene->coincidences.began(scene.rule("A"), {});
+    scene->coincidences.began(scene.rule("D"), std::vector<RuleId>{scene.rule("A")});
+  };
+  begin_together();
+  EXPECT_EQ(scene.plan(kFewRedeployments), "A.restart D.restart") << "once may be chance";
+  begin_together();
+  EXPECT_EQ(scene.plan(kFewRedeployments), "A.restart");
+  EXPECT_EQ(scene.candidate("D.restart").excluded, Condition::kInTheWay);
+  EXPECT_EQ(scene.candidate("D.restart").failure, scene.rule("A"));
+  begin_together();
+  EXPECT_EQ(scene.plan(kFewRedeployments), "D.restart") << "the other one, the next time";
+  scene->states.state(scene.rule("D")).search.attempts = 1;
+  EXPECT_EQ(scene.plan(kFewRedeployments), "A.restart") << "it did not help";
+}
+
+// Its container is dead, too: that comes first.
+TEST(BayesPlanner, ReplacesADeadContainerBeforeTheComponentsInIt) {
+  Scene scene(failure_of("box", "Box") +
+              "COMPONENT c NODE /c IN /box PLUGIN c::C\nRULE C\nPOLICIES ERROR\nTRIGGER x > 1\n"
+              "STRATEGY redeploy 90 10\nADAPTATION c redeploy 10\n");
+  scene.fail("Box").fail("C");
+  scene.process("box", ProcessState::kGone);
+  scene.process("c", ProcessState::kGone);
+  EXPECT_EQ(scene.plan(kBalanced), "Box.redeploy");
+  EXPECT_EQ(scene.candidate("C.redeploy").excluded, Condition::kDependency);
+  EXPECT_EQ(scene.candidate("C.redeploy").failure, scene.rule("Box"));
+  scene.process("box", ProcessState::kRunning);
+  EXPECT_EQ(scene.plan(kBalanced), "Box.redeploy C.redeploy");
+}
+
 TEST(BayesPlanner, SaysWhoIsSuspectedAndWhatItIsWorth) {
   Scene scene = robot();
   scene.fail("A").fail("B");

@@ -31,6 +31,18 @@ int redeployments(const Strategy& strategy) {
                     [](const Adaptation& a) { return a.type == AdaptationType::kRedeploy; }));
 }
 
+// Does it only switch to another source, or to another mode?
+bool is_workaround(const Strategy& strategy) {
+  return std::all_of(strategy.adaptations.begin(), strategy.adaptations.end(),
+                     [](const Adaptation& a) {
+                       return a.type == AdaptationType::kChangeCommunication ||
+                              a.type == AdaptationType::kChangeMode;
+                     });
+}
+
+// A workaround pays beside a repair that takes at least so much longer.
+constexpr Duration kWorkaroundGain = std::chrono::seconds(5);
+
 // Does it do nothing but replace processes that are known to be down?
 bool only_revives(const Strategy& strategy, const Knowledge& knowledge) {
   const auto is_down = [&](ComponentId c) {
@@ -67,6 +79,7 @@ std::vector<Decision> PlanningStep::run() {
   for (const Criticality level :
        {Criticality::kError, Criticality::kWarning, Criticality::kNonCritical})
     select(level);
+  go_round();
   return decisions();
 }
 
@@ -301,7 +314,8 @@ void PlanningStep::exclude(WeighedCandidate& weighed, double chance) const {
       exclude(weighed, *held);
     return;
   }
-  if (exclude_effect(weighed) || exclude_unproven(weighed, chance)) return;
+  if (exclude_effect(weighed) || exclude_unproven(weighed, chance) || exclude_coincidence(weighed))
+    return;
   if (const auto held = exclusions_.reserved(weighed.level, weighed.affected))
     return exclude(weighed, *held);
   for (const std::size_t place : weighed.affected) {
@@ -316,6 +330,32 @@ void PlanningStep::exclude(WeighedCandidate& weighed, double chance) const {
   if (is_settling)
     return exclude(weighed,
                    {Condition::kSettling, likeliest_component(settling->with), settling->with});
+}
+
+// Does it give way to a failure that repeatedly began together with it, so that one can see whose
+// repair clears the other? The one that was tried less goes first; of equals the one by name, and the
+// other the next time.
+bool PlanningStep::exclude_coincidence(WeighedCandidate& weighed) const {
+  const RuleId rule = causes_[weighed.failure].rule;
+  const auto tries = [&](RuleId id) {
+    const Search& search = knowledge_.states[id].search;
+    return search.attempts - search.attempts_before;
+  };
+  for (const RuleId other : knowledge_.coincidences.of(rule)) {
+    if (!knowledge_.states.is_active(other)) continue;
+    const auto& attempt = knowledge_.states[other].attempt;
+    const bool is_other_spent =
+        !attempt && knowledge_.states[other].search.retry_at > knowledge_.now;
+    const bool is_even = knowledge_.coincidences.together(rule, other) % 2 == 0;
+    const bool is_first_by_name =
+        (knowledge_.rules[rule].name < knowledge_.rules[other].name) == is_even;
+    const bool is_first =
+        tries(rule) != tries(other) ? tries(rule) < tries(other) : is_first_by_name;
+    if (is_other_spent || (!attempt && is_first)) continue;
+    exclude(weighed, {Condition::kInTheWay, likeliest_component(other), other});
+    return true;
+  }
+  return false;
 }
 
 // Does it wait because a cause upstream may still be detected, or because it may be the echo of one
@@ -349,13 +389,50 @@ void PlanningStep::exclude_invalid(WeighedCandidate& weighed, const Invalid& why
   weighed.candidate.remark = why.reason;
 }
 
+// Is it a workaround that restores the function much sooner than the repair of the cause, with whatever
+// strategy that is under way or would be begun?
+bool PlanningStep::is_quicker_than_repair(StrategyId id, std::size_t cause) const {
+  const Strategy& strategy = knowledge_.rules[id];
+  if (!is_workaround(strategy) || causes_[cause].kind != CauseNode::Kind::kFailure) return false;
+  const RuleId rule = causes_[cause].rule;
+  std::optional<Cycles> repair;
+  if (const auto& attempt = knowledge_.states[rule].attempt) {
+    repair = knowledge_.rules[attempt->strategy].impact;
+  } else {
+    for (const StrategyChance& each : chances_[cause]) {
+      const Cycles impact = knowledge_.rules[each.strategy].impact;
+      if (!each.is_out() && (!repair || impact < *repair)) repair = impact;
+    }
+  }
+  return repair && duration_of(*repair, knowledge_.rules) >=
+                       duration_of(strategy.impact, knowledge_.rules) + kWorkaroundGain;
+}
+
+// Workarounds begin beside the repair of their cause: they take nothing down.
+void PlanningStep::go_round() {
+  for (WeighedCandidate* weighed : best_first_) {
+    if (!weighed->goes_round || weighed->candidate.excluded) continue;
+    if (has_choice_[weighed->failure]) {
+      weighed->candidate.excluded = Condition::kOneEach;
+      continue;
+    }
+    if (const auto held = exclusions_.reserved(weighed->level, weighed->affected))
+      exclude(*weighed, *held);
+    for (const std::size_t place : weighed->affected) {
+      if (const auto taken = exclusions_.taken(place)) exclude(*weighed, *taken);
+    }
+    if (!weighed->candidate.excluded) choose(*weighed);
+  }
+}
+
 // Does it wait for a cause that more likely explains it?
 bool PlanningStep::exclude_effect(WeighedCandidate& weighed) const {
   const StrategyId strategy = weighed.candidate.strategy;
   if (const auto cause = cause_of(weighed.failure)) {
     const bool goes_round =
         may_be_tried_beside_exhausted(strategy, knowledge_) && is_left_to_person(*cause);
-    if (!goes_round) exclude_for(weighed, *cause);
+    weighed.goes_round = !goes_round && is_quicker_than_repair(strategy, *cause);
+    if (!goes_round && !weighed.goes_round) exclude_for(weighed, *cause);
     return !goes_round;
   }
   // A failure of what is on a computer that is not heard, or depends on it, waits until it is.
@@ -385,7 +462,7 @@ void PlanningStep::exclude_for(WeighedCandidate& weighed, std::size_t cause) con
   exclude(weighed, obstacle);
   if (node.kind == CauseNode::Kind::kTrouble) weighed.candidate.remark = to_string(node.trouble);
   if (node.kind == CauseNode::Kind::kUnsupplied)
-    weighed.candidate.remark = "no node offers " + node.channel;
+    weighed.candidate.remark = "needs " + node.channel + ", which no node offers";
 }
 
 // The dead are replaced side by side, whatever depends on whatever and however critical it is.
@@ -430,8 +507,8 @@ bool PlanningStep::is_taken(WeighedCandidate& weighed) const {
 void PlanningStep::select(Criticality level) {
   std::vector<WeighedCandidate*> open;
   for (WeighedCandidate* weighed : best_first_) {
-    const bool is_next =
-        !weighed->candidate.excluded && weighed->level == level && !weighed->only_revives;
+    const bool is_next = !weighed->candidate.excluded && weighed->level == level &&
+                         !weighed->only_revives && !weighed->goes_round;
     if (is_next && !is_taken(*weighed)) open.push_back(weighed);
   }
 

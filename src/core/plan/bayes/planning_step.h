@@ -27,12 +27,13 @@ class PlanningStep {
   // A strategy of a failure that is to be decided about.
   struct WeighedCandidate {
     Candidate candidate;
-    std::size_t failure = 0;  // index in causes_
-    Criticality level{};      // of the failure
-    std::int64_t worth = 0;   // plan/ties.h
-    std::int64_t cost = 0;    // the same
-    std::size_t place = 0;    // among tries_ of the failure
-    bool only_revives = false;
+    std::size_t failure = 0;    // index in causes_
+    Criticality level{};        // of the failure
+    std::int64_t worth = 0;     // plan/ties.h
+    std::int64_t cost = 0;      // the same
+    std::size_t place = 0;      // among tries_ of the failure
+    bool only_revives = false;  // waits for no other failure
+    bool goes_round = false;    // is done beside the repair of its cause
     Exclusions::Places affected;
   };
 
@@ -52,9 +53,12 @@ class PlanningStep {
   void exclude(WeighedCandidate& weighed, const Exclusions::Obstacle& obstacle) const;
   void exclude_invalid(WeighedCandidate& weighed, const Invalid& why) const;
   bool exclude_effect(WeighedCandidate& weighed) const;
+  bool exclude_coincidence(WeighedCandidate& weighed) const;
   bool exclude_unproven(WeighedCandidate& weighed, double chance) const;
   void exclude_for(WeighedCandidate& weighed, std::size_t cause) const;
+  bool is_quicker_than_repair(StrategyId strategy, std::size_t cause) const;
   void revive();
+  void go_round();
   void select(Criticality level);
   void choose(const WeighedCandidate& weighed);
   std::vector<WeighedCandidate*> chosen_together(const std::vector<WeighedCandidate*>& open) const;

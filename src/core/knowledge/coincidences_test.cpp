@@ -1,0 +1,60 @@
+#include "knowledge/coincidences.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace culprit {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+class CoincidencesOfThree : public ::testing::Test {
+ protected:
+  // b begins while a is new.
+  void begin_together(RuleId a, RuleId b) {
+    coincidences_.began(a, {});
+    coincidences_.began(b, std::vector<RuleId>{a});
+  }
+
+  const RuleId a_{0}, b_{1}, c_{2};
+  Coincidences coincidences_{of_three_rules()};
+
+ private:
+  static RuleSet of_three_rules() {
+    RuleSet rules;
+    rules.rules.resize(3);
+    return rules;
+  }
+};
+
+TEST_F(CoincidencesOfThree, OnceMayBeChance) {
+  begin_together(a_, b_);
+  EXPECT_FALSE(coincidences_.coincide(a_, b_));
+  begin_together(a_, b_);
+  EXPECT_TRUE(coincidences_.coincide(a_, b_));
+  EXPECT_TRUE(coincidences_.coincide(b_, a_));
+  EXPECT_THAT(coincidences_.of(a_), ElementsAre(b_));
+  EXPECT_THAT(coincidences_.of(c_), IsEmpty());
+}
+
+// Of ten failures each, two began together: that is no common cause.
+TEST_F(CoincidencesOfThree, RareCoincidencesMeanNothing) {
+  for (int k = 0; k < 8; ++k) {
+    coincidences_.began(a_, {});
+    coincidences_.began(b_, {});
+  }
+  begin_together(a_, b_);
+  begin_together(a_, b_);
+  EXPECT_FALSE(coincidences_.coincide(a_, b_));
+}
+
+TEST_F(CoincidencesOfThree, AStormOfFailuresMakesNoPairs) {
+  const std::vector<RuleId> many(Coincidences::kMostTogether + 1, b_);
+  coincidences_.began(a_, many);
+  coincidences_.began(a_, many);
+  EXPECT_EQ(coincidences_.together(a_, b_), 0);
+}
+
+}  // namespace
+}  // namespace culprit
