@@ -124,7 +124,8 @@ export function Choice(props: { label: string; value: string; of: string[]; take
   )
 }
 
-export function Check({ document, change, place, member, label }: Props & { place: number; member: string; label: string }) {
+// `without`: a member that makes no sense without this one.
+export function Check({ document, change, place, member, label, without }: Props & { place: number; member: string; label: string; without?: string }) {
   return (
     <label class="check">
       <input
@@ -132,7 +133,7 @@ export function Check({ document, change, place, member, label }: Props & { plac
         checked={document.statements[place][member] === true}
         onChange={(e) => {
           const isOn = e.currentTarget.checked
-          void change((d) => withMember(d, place, member, isOn || undefined))
+          void change((d) => withMember(isOn || !without ? d : withMember(d, place, without, undefined), place, member, isOn || undefined))
         }}
       />{' '}
       {label}

@@ -71,6 +71,7 @@ function situationAt(history: ManagerEvent[], t: number): Situation {
         if (event.candidates?.some((c) => c.excluded?.failure)) failure.blame = undefined // it is the fault of another
         break
       case 'strategy_abandoned':
+      case 'last_resort_done':
         if (failure) failure.phase = 'failing'
         break
       case 'strategy_failed':

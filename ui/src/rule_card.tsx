@@ -62,7 +62,8 @@ function StrategyForm({ document, change, place }: Props & { place: number }) {
         <Field {...props} member="probability" label="helps in %" kind="number" />
         <Field {...props} member="confidence" label="confidence" kind="number" />
         <Field {...props} member="when" label="only when" optional />
-        <Check {...props} member="last_resort" label="as a last resort" />
+        <Check {...props} member="last_resort" label="as a last resort" without="within" />
+        {document.statements[place].last_resort && <Field {...props} member="within" label="within (2s)" optional />}
         <Remove what={`strategy ${name}`} onClick={() => change((d) => replaced(d, place, end - place))} />
       </div>
       {adaptations.map((i) => (

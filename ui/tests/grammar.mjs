@@ -53,7 +53,7 @@ ADAPTATION eye restart 5
 RULE Written
 POLICIES FAILURE
 TRIGGER load > 0 ? abs(load - 1) * 2 + pow(heat, 2) / 3 > sqrt(heat) : !alive(slam) && +1 % 2 == 1 && true != false
-STRATEGY everything 70 20 LASTRESORT WHEN heat < 90
+STRATEGY everything 70 20 LASTRESORT WITHIN 1s WHEN heat < 90
 ADAPTATION eye set_parameter gain 0.5 2
 ADAPTATION eye increase_parameter exposure 1 2
 ADAPTATION arm decrease_parameter speed limit / 2 2
@@ -212,6 +212,7 @@ export async function writesEveryRow() {
     await enter(strategy('everything'), 'confidence', '20')
     await enter(strategy('everything'), 'only when', 'heat < 90')
     await check(strategy('everything'), 'as a last resort')
+    await enter(strategy('everything'), 'within (2s)', '1s')
     const kAdaptations = [
       ['eye', 'set_parameter', { parameter: 'gain', value: '0.5' }, '2'],
       ['eye', 'increase_parameter', { parameter: 'exposure', value: '1' }, '2'],

@@ -88,6 +88,7 @@ class EventWriter {
   void operator()(const RoundSpent& e) const { about(e.rule); }
   void operator()(const RuleExhausted& e) const { about(e.rule); }
   void operator()(const LastResortReached& e) const { about(e.rule); }
+  void operator()(const LastResortDone& e) const { about(e.strategy); }
   void operator()(const ComponentLost& e) const {
     about(e.component);
     json_.member("remark", e.remark);
@@ -113,7 +114,10 @@ class EventWriter {
   }
   void operator()(const RivalSeen& e) const { about(e.component); }
   void operator()(const Trouble& e) const { json_.member("what", e.text); }
-  void operator()(const OrderAccepted& e) const { add(e.order); }
+  void operator()(const OrderAccepted& e) const {
+    add(e.order);
+    if (!e.holds_back.empty()) add_names("holds_back", e.holds_back);
+  }
   void operator()(const OrderRefused& e) const {
     add(e.order);
     json_.member("refused_because", e.reason);

@@ -49,6 +49,7 @@ std::optional<RuleId> searched(const Event& event, const RuleSet& rules) {
   if (const auto* e = std::get_if<FailureDetected>(&event.what)) return e->rule;
   if (const auto* e = std::get_if<RoundSpent>(&event.what)) return e->rule;
   if (const auto* e = std::get_if<LastResortReached>(&event.what)) return e->rule;
+  if (const auto* e = std::get_if<LastResortDone>(&event.what)) return rules[e->strategy].rule;
   if (const auto* e = std::get_if<RuleExhausted>(&event.what)) return e->rule;
   if (const auto* e = std::get_if<StrategyFailed>(&event.what)) return rules[e->strategy].rule;
   return std::nullopt;
@@ -94,8 +95,9 @@ bool is_said_again(const Event& event, const History& kept, const RuleSet& rules
 bool is_remembered(const Event& event) {
   if (const auto* chosen = std::get_if<StrategyChosen>(&event.what)) return !chosen->dry_run;
   return is_any_of<FailureDetected, FailureResolved, FailureLost, RoundSpent, LastResortReached,
-                   RuleExhausted, StrategyFailed, StrategyResumed, AdaptationDone, OutcomePending,
-                   OutcomeCounted, ComponentFound, LifecycleIntended, CameUp>(event) ||
+                   LastResortDone, RuleExhausted, StrategyFailed, StrategyResumed, AdaptationDone,
+                   OutcomePending, OutcomeCounted, ComponentFound, LifecycleIntended, CameUp>(
+             event) ||
          order_of<RunStrategy>(event) != nullptr || order_of<Silence>(event) != nullptr ||
          order_of<LiftSilence>(event) != nullptr;
 }
@@ -130,7 +132,8 @@ History still_counting(const History& past, Time now, const RuleSet& rules) {
     if (rule && i > open[rule->index] && is_said_again(event, kept, rules)) continue;
     const bool is_open = rule && i >= open[rule->index];
     const bool is_only_of_search =
-        is_any_of<StrategyFailed, RoundSpent, LastResortReached, RuleExhausted>(event);
+        is_any_of<StrategyFailed, RoundSpent, LastResortReached, LastResortDone, RuleExhausted>(
+            event);
     const bool is_recent = later(event.at, kPastCounts) > now && !is_only_of_search;
     if (is_open || is_recent) kept.push_back(event);
   }

@@ -117,7 +117,8 @@ class Trail {
   }
 
   void begin(const StrategyChosen& chosen) {
-    if (chosen.dry_run) return;
+    // A last resort is no part of what is gone on with: it is due anew, and begun at once.
+    if (chosen.dry_run || rules_[chosen.strategy].is_last_resort) return;
     close(rules_[chosen.strategy].rule);
     open_.emplace_back();
     open_.back().strategy = chosen.strategy;
@@ -133,6 +134,7 @@ class Trail {
   void intent(const Json& body) {
     const auto command = command_from_json(body, rules_);
     if (!command) return give_up(body, command.error());
+    if (rules_[command->purpose.strategy].is_last_resort) return;
     Interrupted* found = find(command->purpose.strategy);
     // A person may have ordered it without a failure: then nobody chose it.
     if (found == nullptr) {

@@ -4,9 +4,9 @@
 #include <iterator>
 #include <utility>
 
-#include "analyze/undoes.h"
 #include "diagnose/timing.h"
 #include "knowledge/ambiguity.h"
+#include "knowledge/undoes.h"
 #include "language/evaluate.h"
 
 namespace culprit {
@@ -14,12 +14,6 @@ namespace {
 
 bool is_true(const Slot& slot) { return slot.known && slot.b; }
 bool is_false(const Slot& slot) { return slot.known && !slot.b; }
-
-// After so many rounds, at least one.
-Duration pause_after(int rounds) {
-  const int doublings = std::min(rounds - 1, 10);
-  return std::min<Duration>(Analyzer::kFirstBackoff * (1 << doublings), Analyzer::kLongestBackoff);
-}
 
 // Whose value it is; of signals and diagnostics nobody knows.
 bool may_be_of(ComponentId component, const Input& input, const Knowledge& knowledge) {
@@ -39,6 +33,10 @@ bool may_be_of(ComponentId component, const Input& input, const Knowledge& knowl
   }
 }
 
+bool is_kept_in_process(const Adaptation& adaptation) {
+  return syntax::names_parameter(adaptation.type) || adaptation.type == AdaptationType::kChangeMode;
+}
+
 }  // namespace
 
 Duration longest_detection(const RuleSet& rules) {
@@ -49,13 +47,19 @@ Duration longest_detection(const RuleSet& rules) {
   return longest;
 }
 
+Duration Analyzer::pause_after(int rounds) {
+  const int doublings = std::min(rounds - 1, 10);
+  return std::min<Duration>(kFirstBackoff * (1 << doublings), kLongestBackoff);
+}
+
 Analyzer::Analyzer(const Knowledge& knowledge, Writes writes)
     : knowledge_(knowledge),
       write_(writes),
       deadlines_(knowledge.rules.rules.size()),
       known_silence_(knowledge),
       couplings_(knowledge, {writes.states, writes.couplings}),
-      outcomes_(knowledge, {writes.beliefs, writes.outcomes, writes.events}) {}
+      outcomes_(knowledge, {writes.beliefs, writes.outcomes, writes.events}),
+      fights_(knowledge, writes.states) {}
 
 void Analyzer::advance(Time now) {
   for (const RuleId id : write_.signals.take_touched()) look_at(id, now);
@@ -100,11 +104,12 @@ void Analyzer::remember(const Event& event) {
   const auto left_off = [&](RuleId id) -> std::optional<LeftOff>& {
     return write_.states.state(id).left_off;
   };
-  const auto begin_anew = [](Search& search) { search.tried.assign(search.tried.size(), false); };
   if (const auto* detected = std::get_if<FailureDetected>(&event.what)) {
     remember_detected(detected->rule, event.at);
   } else if (const auto* resolved = std::get_if<FailureResolved>(&event.what)) {
-    if (auto& left = left_off(resolved->rule); left && resolved->strategy) {
+    const bool is_by_search =
+        resolved->strategy && !knowledge_.rules[*resolved->strategy].is_last_resort;
+    if (auto& left = left_off(resolved->rule); left && is_by_search) {
       ++left->search.attempts;
       left->search.tried[knowledge_.states.place_of(*resolved->strategy)] = true;
     }
@@ -113,20 +118,20 @@ void Analyzer::remember(const Event& event) {
     remember_gone(lost->rule, event.at, Duration::zero());
   } else if (const auto* failed = std::get_if<StrategyFailed>(&event.what)) {
     const RuleId rule = knowledge_.rules[failed->strategy].rule;
-    if (auto& left = left_off(rule)) {
+    if (auto& left = left_off(rule); left && !knowledge_.rules[failed->strategy].is_last_resort) {
       ++left->search.attempts;
       left->search.tried[knowledge_.states.place_of(failed->strategy)] = true;
     }
   } else if (const auto* spent = std::get_if<RoundSpent>(&event.what)) {
     if (auto& left = left_off(spent->rule)) {
-      begin_anew(left->search);
+      forget_tried(spent->rule, left->search);
       left->search.retry_at = later(event.at, pause_after(++left->search.round));
     }
   } else if (const auto* last = std::get_if<LastResortReached>(&event.what)) {
-    if (auto& left = left_off(last->rule)) {
-      begin_anew(left->search);
-      left->search.is_at_last_resort = true;
-    }
+    if (auto& left = left_off(last->rule)) left->search.is_at_last_resort = true;
+  } else if (const auto* taken = std::get_if<LastResortDone>(&event.what)) {
+    if (auto& left = left_off(knowledge_.rules[taken->strategy].rule))
+      left->search.tried[knowledge_.states.place_of(taken->strategy)] = true;
   } else if (const auto* exhausted = std::get_if<RuleExhausted>(&event.what)) {
     if (auto& left = left_off(exhausted->rule)) left->search.is_exhausted = true;
   }
@@ -158,6 +163,7 @@ bool Analyzer::is_proven(Time gone, Time now) const {
 
 void Analyzer::look_at(RuleId id, Time now) {
   evaluate_trigger(id, now);
+  judge_last_resort(id, now);
   switch (knowledge_.states[id].phase) {
     case RulePhase::kQuiet:
       if (detects(id, now)) detect(id, now);
@@ -170,6 +176,7 @@ void Analyzer::look_at(RuleId id, Time now) {
       judge(id, now);
       break;
   }
+  watch_last_resorts(id, now);
   schedule(id, now);
 }
 
@@ -258,9 +265,12 @@ void Analyzer::detect(RuleId id, Time now) {
   const bool is_said_to_be_exhausted = is_same && state.search.is_exhausted;
   state.recurring_since = recurs ? state.first_detected() : kNever;
   state.detection.armed = false;
-  state.is_advised = false;
+  state.is_advised = state.is_last_resort_advised = false;
   state.tried_alone.reset();
   state.settling.reset();
+  // It is due anew, also if the failure is the same one.
+  state.search.is_at_last_resort = false;
+  state.search.last_resort_at = kLongAgo;
   if (is_same) {
     write_.states.go_on_searching(id, now);
   } else {
@@ -269,9 +279,14 @@ void Analyzer::detect(RuleId id, Time now) {
   state.onset = diagnose::onset_now(id, now, knowledge_);
   if (!recurs) state.first_onset = state.onset->latest;
   if (!is_same) note_coincidence(id);
+  for (const StrategyId strategy : knowledge_.rules[id].strategies) {
+    const Strategy& last = knowledge_.rules[strategy];
+    if (last.is_last_resort && !begins_anew(last)) write_.states.set_tried(strategy, false);
+  }
   write_.states.enter(id, RulePhase::kFailing);
   write_.events.tell(now, known_silence_.detected(id));
   outcomes_.detected(id, now);
+  fights_.detected(id, now);
   if (state.search.times == kFlaps) write_.events.tell(now, FailureFlaps{id, state.search.times});
   if (is_said_to_be_exhausted) {
     write_.states.enter(id, RulePhase::kExhausted);
@@ -287,7 +302,11 @@ void Analyzer::watch_failing(RuleId id, Time now) {
   if (is_gone(id, now)) {
     if (const auto tried = std::exchange(write_.states.state(id).tried_alone, std::nullopt))
       note_latency(id, *tried);
-    resolve(id, {id, FailureResolved::How::kWithoutStrategy, {}, {}}, now);
+    if (const auto helped = last_resort_that_helped(id)) {
+      resolve(id, {id, FailureResolved::How::kByStrategy, *helped, {}}, now);
+    } else {
+      resolve(id, {id, FailureResolved::How::kWithoutStrategy, {}, {}}, now);
+    }
   } else if (!state.detection.trigger.known &&
              now >= later(state.detection.trigger_since, kLostAfter)) {
     leave(id, now);
@@ -326,7 +345,12 @@ void Analyzer::judge(RuleId id, Time now) {
     return look_at(id, now);
   }
   // Before anybody knows how it ends: what keeps an outcome from counting must not depend on it.
-  if (attempt.deadline == kNever) attempt.is_ambiguous |= couplings_.is_echo(attempt);
+  if (attempt.deadline == kNever) {
+    fights_.took_effect(attempt.strategy);
+    attempt.is_ambiguous |=
+        couplings_.is_echo(attempt) ||
+        (!state.standing.empty() && attempt.effective <= state.search.last_resort_at);
+  }
   // Anew each time: how long a signal takes to show a change may have become known meanwhile.
   const Duration impact =
       std::max(duration_of(knowledge_.rules[attempt.strategy].impact, knowledge_.rules),
@@ -487,11 +511,11 @@ void Analyzer::forgive_unheard(Time now) {
     RuleState& state = write_.states.state(id);
     Search& search = state.search;
     // What an earlier process had tried was tried before.
-    if (state.left_off || search.is_at_last_resort || !knowledge_.unheard_behind(id)) return;
+    if (state.left_off || !knowledge_.unheard_behind(id)) return;
     search.attempts = search.attempts_before;
     search.round = 0;
     search.retry_at = now;
-    std::fill(search.tried.begin(), search.tried.end(), false);
+    forget_tried(id, search);
     if (state.phase != RulePhase::kExhausted) return;
     search.is_exhausted = false;
     write_.states.enter(id, RulePhase::kFailing);
@@ -534,51 +558,135 @@ void Analyzer::resolve(RuleId id, FailureResolved how, Time now) {
 
 void Analyzer::leave(RuleId id, Time now) {
   write_.states.state(id).gone_since = now;
+  write_.states.state(id).standing.clear();
   write_.states.enter(id, RulePhase::kQuiet);
 }
 
 void Analyzer::round_is_spent(RuleId id, Time now) {
   RuleState& state = write_.states.state(id);
   ++state.search.round;
-  std::fill(state.search.tried.begin(), state.search.tried.end(), false);
+  forget_tried(id, state.search);
   state.search.retry_at = later(now, pause_after(state.search.round));
-  if (state.search.is_at_last_resort) {
-    give_up(id, now);
-  } else {
-    exhaust_if_spent(id, now);
-  }
-  const bool goes_on = state.phase == RulePhase::kFailing && !state.search.is_at_last_resort;
-  if (goes_on) write_.events.tell(now, RoundSpent{id, state.search.retry_at});
+  exhaust_if_spent(id, now);
+  if (state.phase == RulePhase::kFailing)
+    write_.events.tell(now, RoundSpent{id, state.search.retry_at});
   schedule(id, now);
 }
 
 void Analyzer::exhaust_if_spent(RuleId id, Time now) {
   RuleState& state = write_.states.state(id);
   const int limit = knowledge_.rules[id].policies.attempts;
-  // The last resorts end with their round.
-  if (state.search.is_at_last_resort ||
-      (state.search.attempts < limit && state.search.round < limit))
-    return;
+  if (state.search.attempts < limit && state.search.round < limit) return;
   give_up(id, now);
 }
 
 void Analyzer::give_up(RuleId id, Time now) {
-  const bool had_last_resorts = knowledge_.states[id].search.is_at_last_resort;
   turn_to_last_resort(id, now);
-  if (had_last_resorts || !knowledge_.states[id].search.is_at_last_resort) exhaust(id, now);
+  exhaust(id, now);
+}
+
+// ---- last resorts
+
+// The rounds are those of the other strategies.
+void Analyzer::forget_tried(RuleId id, Search& search) const {
+  const auto& strategies = knowledge_.rules[id].strategies;
+  for (std::size_t place = 0; place < strategies.size(); ++place) {
+    if (!knowledge_.rules[strategies[place]].is_last_resort) search.tried[place] = false;
+  }
+}
+
+std::optional<StrategyId> Analyzer::next_last_resort(RuleId id) const {
+  std::optional<StrategyId> next;
+  for (const StrategyId strategy : knowledge_.rules[id].strategies) {
+    const Strategy& last = knowledge_.rules[strategy];
+    if (!last.is_last_resort || knowledge_.states.is_tried(strategy)) continue;
+    if (!next || last.within < knowledge_.rules[*next].within) next = strategy;
+  }
+  return next;
+}
+
+std::optional<StrategyId> Analyzer::last_resort_due(RuleId id, Time now) const {
+  const RuleState& state = knowledge_.states[id];
+  const bool is_there = state.phase != RulePhase::kQuiet && !is_false(state.detection.trigger);
+  if (!is_there || !state.search.is_at_last_resort || state.last_resort ||
+      state.search.last_resort_at > now)
+    return std::nullopt;
+  return next_last_resort(id);
 }
 
 void Analyzer::turn_to_last_resort(RuleId id, Time now) {
   RuleState& state = write_.states.state(id);
-  const auto& strategies = knowledge_.rules[id].strategies;
-  const bool has_last_resort = std::any_of(strategies.begin(), strategies.end(), [&](StrategyId s) {
-    return knowledge_.rules[s].is_last_resort;
-  });
-  if (!has_last_resort || state.search.is_at_last_resort) return;
+  if (state.search.is_at_last_resort || !next_last_resort(id)) return;
   state.search.is_at_last_resort = true;
-  state.search.retry_at = now;
-  std::fill(state.search.tried.begin(), state.search.tried.end(), false);
   write_.events.tell(now, LastResortReached{id});
+}
+
+void Analyzer::abandon_last_resort(RuleId id, Time now) {
+  const Attempt attempt = *std::exchange(write_.states.state(id).last_resort, std::nullopt);
+  couplings_.ended(attempt, now);
+}
+
+// It has no verdict: it took effect, or could not be carried out.
+void Analyzer::judge_last_resort(RuleId id, Time now) {
+  RuleState& state = write_.states.state(id);
+  if (!state.last_resort) return;
+  const bool has_effect = state.last_resort->stage == Attempt::Stage::kWaiting;
+  if (!has_effect && state.last_resort->obstacle.empty()) return;
+  const Attempt attempt = *state.last_resort;
+  abandon_last_resort(id, now);
+  Search& search = state.search;
+  if (!has_effect) {
+    write_.events.tell(now, StrategyFailed{attempt.strategy, attempt.obstacle});
+    if (attempt.has_no_failure) return;
+    search.last_resort_at = later(now, pause_after(++search.last_resort_obstacles));
+    if (search.last_resort_obstacles < knowledge_.rules[id].policies.attempts) return;
+  } else if (attempt.has_no_failure) {
+    return write_.events.tell(now, OrderCarriedOut{attempt.strategy});
+  } else {
+    fights_.took_effect(attempt.strategy);
+    write_.events.tell(now, LastResortDone{attempt.strategy});
+    if (state.phase != RulePhase::kQuiet)
+      state.standing.push_back({attempt.strategy, attempt.effective});
+    const Duration impact =
+        duration_of(knowledge_.rules[attempt.strategy].impact, knowledge_.rules);
+    search.last_resort_at = later(attempt.effective, impact + knowledge_.signals.latency(id));
+  }
+  search.last_resort_obstacles = 0;
+  write_.states.set_tried(attempt.strategy, true);
+  if (const auto next = next_last_resort(id))
+    search.last_resort_at =
+        std::max(search.last_resort_at, later(state.failing_since, knowledge_.rules[*next].within));
+}
+
+void Analyzer::watch_last_resorts(RuleId id, Time now) {
+  RuleState& state = write_.states.state(id);
+  if (state.phase == RulePhase::kQuiet) return;
+  // What it set in a process is lost with that.
+  std::erase_if(state.standing, [&](const RuleState::Standing& each) {
+    const bool is_lost =
+        std::ranges::any_of(knowledge_.rules[each.strategy].adaptations, [&](const Adaptation& a) {
+          return is_kept_in_process(a) && knowledge_.components[a.component].node_seen > each.since;
+        });
+    if (is_lost) write_.states.set_tried(each.strategy, false);
+    return is_lost;
+  });
+  const auto next = next_last_resort(id);
+  if (next && !is_false(state.detection.trigger) &&
+      now >= later(state.failing_since, knowledge_.rules[*next].within))
+    turn_to_last_resort(id, now);
+}
+
+// The failure went away in the time that the latest one had for that, and while no other strategy of
+// the rule was under way.
+std::optional<StrategyId> Analyzer::last_resort_that_helped(RuleId id) const {
+  const RuleState& state = knowledge_.states[id];
+  if (state.standing.empty()) return std::nullopt;
+  const auto& [strategy, since] = state.standing.back();
+  const Time gone = state.detection.trigger_since;
+  const Duration impact = duration_of(knowledge_.rules[strategy].impact, knowledge_.rules);
+  const bool is_in_time =
+      gone >= since && gone <= later(since, impact + knowledge_.signals.latency(id));
+  return is_in_time ? std::optional(strategy) : std::nullopt;
 }
 
 void Analyzer::exhaust(RuleId id, Time now) {
@@ -604,6 +712,10 @@ void Analyzer::schedule(RuleId id, Time now) {
     want(state.quiet_until);
   }
   if (state.phase == RulePhase::kFailing) want(state.search.retry_at);
+  if (const auto last = next_last_resort(id); last && state.phase != RulePhase::kQuiet)
+    want(state.search.is_at_last_resort
+             ? state.search.last_resort_at
+             : later(state.failing_since, knowledge_.rules[*last].within));
   if (state.attempt && state.attempt->stage == Attempt::Stage::kWaiting) {
     want(state.attempt->deadline);
     // Until nobody waits any longer; a more critical failure may come before.

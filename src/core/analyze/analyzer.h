@@ -18,8 +18,13 @@
 // middleware can have found what it reads, and who reads it (kInputs at most).
 //
 // A round of strategies is followed by a back-off that doubles each time. After ATTEMPTS strategies
-// (or as many rounds without any valid strategy) its LASTRESORT strategies follow, each once, and
-// then the rule is exhausted.
+// (or as many rounds without any valid strategy) the rule is exhausted.
+//
+// LASTRESORT strategies are no part of the rounds. They are due WITHIN their time of the detection,
+// or earlier if no other strategy can begin or help by then, and go beside whatever is under way. They
+// have no verdict: what they changed stays while the failure is there, and the other strategies go on.
+// One that could not be carried out is tried again with back-off, up to ATTEMPTS times. Several follow
+// each other by WITHIN, each after the impact of the one before.
 //
 // A rule with ON_CHANGE acts once on the rising edge of its trigger; its strategy succeeds when its
 // adaptations took effect, because the condition is expected to last.
@@ -36,6 +41,7 @@
 #include "analyze/coupling_watch.h"
 #include "analyze/known_silence.h"
 #include "analyze/outcome_watch.h"
+#include "analyze/parameter_fights.h"
 #include "knowledge/deadlines.h"
 #include "knowledge/history.h"
 #include "knowledge/knowledge.h"
@@ -58,6 +64,9 @@ class Analyzer {
   static constexpr Duration kRecurs = std::chrono::seconds(5);
   // A failure that came so often, each time before it was proven gone, flaps.
   static constexpr int kFlaps = 3;
+
+  // The back-off after so many rounds, at least one.
+  static Duration pause_after(int rounds);
 
   // What it writes; all else it only reads.
   struct Writes {
@@ -101,12 +110,16 @@ class Analyzer {
   // verdict.
   void make_way(RuleId id, StrategyId other, Time now);
 
-  // The rule waits for a person with the cause of its failure: of its strategies only the last
-  // resorts are left, if it has any.
+  // No other strategy of the rule can begin or help in time: its last resorts are due, if it has any.
   void turn_to_last_resort(RuleId id, Time now);
+  // The last resort of the rule that has to be begun now.
+  std::optional<StrategyId> last_resort_due(RuleId id, Time now) const;
+  // The one that comes next, due or not; nothing: each took effect, or there is none.
+  std::optional<StrategyId> next_last_resort(RuleId id) const;
+  // The last resort under way is left where it is. @pre there is one
+  void abandon_last_resort(RuleId id, Time now);
 
-  // Nothing more may be done about the failure by itself: the last resorts are left, and once they
-  // were, a person.
+  // Nothing more may be done about the failure by itself: a person must look.
   void give_up(RuleId id, Time now);
 
   // A computer is not heard any more: what it explains and was tried in vain shortly before, while nobody
@@ -142,6 +155,10 @@ class Analyzer {
   std::optional<ComponentId> unheard_behind(const Attempt& attempt) const;
   void excuse(RuleId id, ComponentId unheard, Time now);
   void resolve(RuleId id, FailureResolved how, Time now);
+  void forget_tried(RuleId id, Search& search) const;
+  void judge_last_resort(RuleId id, Time now);
+  void watch_last_resorts(RuleId id, Time now);
+  std::optional<StrategyId> last_resort_that_helped(RuleId id) const;
   void exhaust_if_spent(RuleId id, Time now);
   bool has_components_back(const Attempt& attempt) const;
   void exhaust(RuleId id, Time now);
@@ -161,6 +178,7 @@ class Analyzer {
   KnownSilence known_silence_;
   CouplingWatch couplings_;
   OutcomeWatch outcomes_;
+  ParameterFights fights_;
 };
 
 }  // namespace culprit

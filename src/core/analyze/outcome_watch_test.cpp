@@ -104,7 +104,7 @@ TEST_P(OutcomeWatchOf, WhatIsAdaptedUpstreamBeforeTheDeadlineMayHaveDoneIt) {
     j.knowledge.states.enter(kWatchedEffect, RulePhase::kAttempting);
     j.knowledge.states.state(kWatchedCause).attempt.emplace().strategy = j.strategy(kWatchedCause);
     Attempts attempts(j.knowledge.states);
-    mark_ambiguous(j.knowledge, kWatchedCause, attempts, j.knowledge.outcomes);
+    mark_ambiguous(j.knowledge, j.strategy(kWatchedCause), attempts, j.knowledge.outcomes);
     Attempt attempt = *j.knowledge.states[kWatchedEffect].attempt;
     attempt.first_change = attempt.effective = Judged::kBegun;
     attempt.deadline = Judged::kDeadline;

@@ -74,7 +74,7 @@ std::optional<std::string> contradiction(const Strategy& strategy, const Knowled
                                          Time now) {
   const RuleSet& rules = knowledge.rules;
   const auto silent = silent_topics(rules[strategy.rule], rules);
-  if (!silent || strategy.is_last_resort) return std::nullopt;
+  if (!silent) return std::nullopt;
   for (const Adaptation& adaptation : strategy.adaptations) {
     const ComponentId component = adaptation.component;
     if (adaptation.type != AdaptationType::kRedeploy ||
@@ -104,7 +104,6 @@ std::optional<AnswerToCome> answer_to_come(const Strategy& strategy, const Knowl
   constexpr Duration kVerdict = std::chrono::milliseconds(1900);
   // Less than it takes to be asked again.
   constexpr Duration kWakes = std::chrono::milliseconds(250);
-  if (strategy.is_last_resort) return std::nullopt;
   for (const Adaptation& adaptation : strategy.adaptations) {
     const bool disturbs =
         adaptation.type == AdaptationType::kRestart || adaptation.type == AdaptationType::kRedeploy;

@@ -18,8 +18,9 @@ Executor::Executor(const Knowledge& knowledge, Writes writes)
 Executor::~Executor() = default;
 
 void Executor::begin(StrategyId strategy, Time now) {
-  [[maybe_unused]] const auto& components = knowledge_.rules[strategy].components;
-  assert(std::none_of(components.begin(), components.end(),
+  [[maybe_unused]] const Strategy& begun = knowledge_.rules[strategy];
+  assert(begun.is_last_resort ||
+         std::none_of(begun.components.begin(), begun.components.end(),
                       [&](ComponentId c) { return knowledge_.states.reservation(c) != nullptr; }));
   write_.attempts.begin(strategy, now);
   add_run(strategy);
@@ -27,7 +28,10 @@ void Executor::begin(StrategyId strategy, Time now) {
 
 Executor::Run& Executor::add_run(StrategyId strategy) {
   const RuleId rule = knowledge_.rules[strategy].rule;
-  std::erase_if(runs_, [&](const Run& old) { return old.rule == rule; });
+  std::erase_if(runs_, [&](const Run& old) {
+    return old.rule == rule && knowledge_.rules[old.strategy].is_last_resort ==
+                                   knowledge_.rules[strategy].is_last_resort;
+  });
   Run& run = runs_.emplace_back();
   run.rule = rule;
   run.strategy = strategy;
@@ -201,6 +205,7 @@ void Executor::finish_goal(Run& run, Time now) {
 
 bool Executor::next_undo(Run& run, Time now) {
   std::erase_if(run.undo, [&](const execute::Undo& undo) {
+    if (is_held_by_last_resort(undo)) return true;
     if (knowledge_.components[undo.component].process != ProcessState::kGone) return false;
     undo_at_next_start(run.strategy, undo, now);
     return true;
@@ -212,6 +217,25 @@ bool Executor::next_undo(Run& run, Time now) {
   }
   run.pursuit.emplace(run.undo.back().goal, run.undo.back().component, now);
   return true;
+}
+
+// A last resort has changed the same since, and that stays.
+bool Executor::is_held_by_last_resort(const execute::Undo& undo) const {
+  const auto* parameter = std::get_if<execute::ParameterGoal>(&undo.goal);
+  const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&undo.goal);
+  const bool is_mode = std::holds_alternative<execute::ModeGoal>(undo.goal);
+  bool is_held = false;
+  knowledge_.states.for_each_standing([&](StrategyId strategy) {
+    for (const Adaptation& held : knowledge_.rules[strategy].adaptations) {
+      if (held.component != undo.component) continue;
+      is_held |=
+          parameter != nullptr && names_parameter(held.type) && held.subject == parameter->name;
+      is_held |= lifecycle != nullptr && (held.type == AdaptationType::kActivate ||
+                                          held.type == AdaptationType::kDeactivate);
+      is_held |= is_mode && held.type == AdaptationType::kChangeMode;
+    }
+  });
+  return is_held;
 }
 
 // Nobody is there who could be asked. What starts next in its place may be as the last one was left:
@@ -278,7 +302,7 @@ void Executor::finish_undo(Run& run, Time now) {
 void Executor::note_change(Run& run, Time now) {
   if (run.is_undoing || attempt_of(run)->first_change != kNever) return;
   write_.attempts.change_begins(run.strategy, now);
-  mark_ambiguous(knowledge_, run.rule, write_.attempts, write_.outcomes);
+  mark_ambiguous(knowledge_, run.strategy, write_.attempts, write_.outcomes);
 }
 
 // The component's lifecycle is now where it was brought on purpose.
@@ -345,8 +369,7 @@ void Executor::note_rival(const Run& run, Time now) {
 }
 
 const Attempt* Executor::attempt_of(const Run& run) const {
-  const auto& attempt = knowledge_.states[run.rule].attempt;
-  return attempt && attempt->strategy == run.strategy ? &*attempt : nullptr;
+  return knowledge_.states.attempt_of(run.strategy);
 }
 
 // The adaptation could not be carried out; the analysis takes it from here.
@@ -359,8 +382,7 @@ void Executor::obstruct(const Run& run, std::string obstacle, const std::string&
 Time Executor::next_deadline() const {
   Time next = kNever;
   for (const Run& run : runs_) {
-    const bool is_abandoned = !knowledge_.states[run.rule].attempt;
-    if (is_abandoned) continue;
+    if (attempt_of(run) == nullptr) continue;
     if (run.pursuit) next = std::min(next, run.pursuit->next_deadline());
     if (run.interrupted) next = std::min(next, run.from);
   }

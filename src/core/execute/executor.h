@@ -3,7 +3,8 @@
 // A strategy's adaptations are carried out in the order they are written, each to its proof
 // (goal.h), before the next begins. If one cannot be carried out, or the verdict is that the
 // strategy failed, what was changed is undone in reverse order where it can be. From its choice to
-// the end of its undoing a strategy has its components to itself.
+// the end of its undoing a strategy has its components to itself, but for last resorts: these go
+// beside it, are not undone, and what they changed is not undone by others either.
 #pragma once
 
 #include <optional>
@@ -32,7 +33,8 @@ class Executor {
   Executor(const Knowledge& knowledge, Writes writes);
   ~Executor();
 
-  // The rule's attempt begins. @pre none of the rule is under way, none has its components
+  // The rule's attempt begins. @pre none of the rule is under way (a last resort:
+  // none of its last resorts); none has its components, or it is a last resort
   void begin(StrategyId strategy, Time now);
 
   // Goes on from `from` on with an attempt of an earlier process; its outcome will prove nothing.
@@ -75,6 +77,7 @@ class Executor {
   Purpose purpose_of(const Run& run) const;
   bool next_goal(Run& run, Time now);
   bool next_undo(Run& run, Time now);
+  bool is_held_by_last_resort(const execute::Undo& undo) const;
   void finish_goal(Run& run, Time now);
   void finish_undo(Run& run, Time now);
   void undo_at_next_start(StrategyId strategy, const execute::Undo& undo, Time now);

@@ -28,6 +28,10 @@ bool exists(const Silenceable& what, const RuleSet& rules) {
   return std::get<ComponentId>(what).index < rules.components.size();
 }
 
+Governor::Held paused() {
+  return {Restraint::kPaused, "paused by a person; culprit resume lets it go on", kNever};
+}
+
 Governor::Held in_words(const Departures::Departure& departure, const std::string& component) {
   using What = Departures::What;
   const std::string launcher = "process " + std::to_string(departure.launcher);
@@ -138,14 +142,28 @@ std::optional<std::string> Governor::objection_to_run(StrategyId id, Autonomy au
   if (is_paused_) return "it is paused; resume first";
   if (autonomy == Autonomy::kAdvise) return "this is a dry run; switch it off first";
   const Strategy& strategy = rules[id];
-  if (knowledge_.states[strategy.rule].attempt)
+  const auto& state = knowledge_.states[strategy.rule];
+  if (strategy.is_last_resort ? state.last_resort : state.attempt)
     return "another strategy of " + rules[strategy.rule].name + " is under way";
+  if (strategy.is_last_resort) return objection_to_last_resort(strategy);
   for (const ComponentId component : strategy.components) {
     if (knowledge_.states.reservation(component) != nullptr)
       return rules[component].name + " is being adapted";
   }
   if (const auto held = interlock()) return held->reason;
   if (auto doubt = doubt_of_identity(strategy, knowledge_)) return doubt;
+  return objection_by_when(strategy);
+}
+
+// It goes beside what is under way, and an interlock does not hold it.
+std::optional<std::string> Governor::objection_to_last_resort(const Strategy& strategy) const {
+  const bool is_of_process = kind_of(strategy) == StrategyKind::kProcess;
+  if (auto doubt = is_of_process ? doubt_of_identity(strategy, knowledge_) : std::nullopt)
+    return doubt;
+  return objection_by_when(strategy);
+}
+
+std::optional<std::string> Governor::objection_by_when(const Strategy& strategy) const {
   if (strategy.when.empty()) return std::nullopt;
   const Slot when = evaluate(strategy.when, knowledge_.signals.slots());
   return when.known && when.b ? std::nullopt
@@ -222,8 +240,7 @@ bool Governor::holds_back(StrategyId strategy, Time now) {
 }
 
 std::optional<Governor::Held> Governor::restraint_on_all(Time now) const {
-  if (is_paused_)
-    return Held{Restraint::kPaused, "paused by a person; culprit resume lets it go on", kNever};
+  if (is_paused_) return paused();
   if (storm_.storm())
     return Held{storm_.storm()->restraint, storm_.storm()->reason, storm_.next_deadline()};
   if (auto held = interlock()) return held;
@@ -244,10 +261,41 @@ std::optional<Governor::Held> Governor::restraint_on(StrategyId id, Time now) co
   return limits_.on(id, now);
 }
 
-// A last resort that starts nothing is wanted all the same.
+bool Governor::holds_last_resort_back(StrategyId strategy, std::optional<std::string> obstacle,
+                                      Time now) {
+  auto held = restraint_on_last_resort(strategy, now);
+  if (!held && obstacle) held = Held{Restraint::kImpossible, std::move(*obstacle), kNever};
+  if (held) tell(strategy, *held, now);
+  return held.has_value();
+}
+
+// A person's word, and whom it would hit if it ends or starts a process: no limit of any kind.
+std::optional<Governor::Held> Governor::restraint_on_last_resort(StrategyId id, Time now) const {
+  if (is_paused_) return paused();
+  if (auto held = restraint_by_person(id)) return held;
+  const Strategy& strategy = knowledge_.rules[id];
+  if (kind_of(strategy) != StrategyKind::kProcess) return std::nullopt;
+  if (auto doubt = doubt_of_identity(strategy, knowledge_))
+    return Held{Restraint::kIdentity, std::move(*doubt), kNever};
+  if (auto reason = launch_of_the_unseen(strategy, knowledge_))
+    return Held{Restraint::kNeverSeen, std::move(*reason), kNever};
+  return std::ranges::any_of(strategy.adaptations, launches) ? departure(strategy, now)
+                                                             : std::nullopt;
+}
+
+std::vector<StrategyId> Governor::last_resorts_behind(const Order& order) const {
+  const auto* silence = std::get_if<Silence>(&order.what);
+  std::vector<StrategyId> held;
+  for (std::size_t s = 0; s < knowledge_.rules.strategies.size(); ++s) {
+    const Strategy& strategy = knowledge_.rules.strategies[s];
+    const bool is_behind = std::holds_alternative<Pause>(order.what) ||
+                           (silence != nullptr && touches(strategy, silence->what));
+    if (strategy.is_last_resort && is_behind) held.emplace_back(s);
+  }
+  return held;
+}
+
 std::optional<Governor::Held> Governor::departure(const Strategy& strategy, Time now) const {
-  if (strategy.is_last_resort && std::ranges::none_of(strategy.adaptations, launches))
-    return std::nullopt;
   for (const ComponentId component : strategy.components) {
     const auto departure = knowledge_.departures.of(component, now);
     if (departure) return in_words(*departure, knowledge_.rules[component].name);
@@ -316,7 +364,7 @@ void Governor::tell(StrategyId strategy, const Held& held, Time now) {
 }
 
 void Governor::began(StrategyId strategy, Time now) {
-  limits_.began(strategy, now);
+  if (!knowledge_.rules[strategy].is_last_resort) limits_.began(strategy, now);
   told_[strategy.index] = {};
   std::erase_if(questions_, [&](const Question& q) { return q.strategy == strategy; });
 }

@@ -81,6 +81,11 @@ class Governor {
   bool withholds(StrategyId strategy, Time now);
   // Whether everything has to wait now, the strategy that was chosen too. If so, that is told.
   bool holds_back(StrategyId strategy, Time now);
+  // Whether the last resort has to wait: for a person who paused or muted, or because of `obstacle`,
+  // which keeps it from being carried out. No limit holds it. If so, that is told.
+  bool holds_last_resort_back(StrategyId strategy, std::optional<std::string> obstacle, Time now);
+  // The last resorts that the order holds back: a pause all, a silence those that it is about.
+  std::vector<StrategyId> last_resorts_behind(const Order& order) const;
   // Whether a person has to approve it first, and did not yet. If so, the person is asked.
   bool awaits_approval(const ApprovalAsked& choice, Time now);
   // It is begun.
@@ -108,6 +113,9 @@ class Governor {
 
   std::optional<std::string> objection_to_run(StrategyId id, Autonomy autonomy) const;
   std::optional<Held> restraint_on(StrategyId strategy, Time now) const;
+  std::optional<Held> restraint_on_last_resort(StrategyId strategy, Time now) const;
+  std::optional<std::string> objection_to_last_resort(const Strategy& strategy) const;
+  std::optional<std::string> objection_by_when(const Strategy& strategy) const;
   std::optional<Held> restraint_by_person(StrategyId strategy) const;
   std::optional<Held> departure(const Strategy& strategy, Time now) const;
   std::optional<Held> lack_of_evidence(const Strategy& strategy, Time now) const;

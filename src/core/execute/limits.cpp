@@ -174,6 +174,7 @@ void Limits::remember(const History& past) {
   std::vector<Time> detected(knowledge_.rules.rules.size(), kLongAgo);
   for (const Event& event : past) {
     const auto spent = [&](StrategyId id) {
+      if (knowledge_.rules[id].is_last_resort) return;
       spend(id, event.at, detected[knowledge_.rules[id].rule.index]);
     };
     if (const auto* failure = std::get_if<FailureDetected>(&event.what)) {

@@ -102,19 +102,23 @@ void void_verdicts_beside(const Knowledge& knowledge, StrategyId strategy, Time 
   }
 }
 
-void mark_ambiguous(const Knowledge& knowledge, RuleId changed, Attempts& attempts,
+void mark_ambiguous(const Knowledge& knowledge, StrategyId changed, Attempts& attempts,
                     PendingOutcomes& outcomes) {
-  const Attempt& own = *knowledge.states[changed].attempt;
-  void_verdicts_beside(knowledge, own.strategy, own.first_change, outcomes);
-  const Sources sources(knowledge, changed);
-  const Effects effects(knowledge, knowledge.rules[own.strategy].components);
+  const RuleId rule = knowledge.rules[changed].rule;
+  void_verdicts_beside(knowledge, changed, knowledge.states.attempt_of(changed)->first_change,
+                       outcomes);
+  const Sources sources(knowledge, rule);
+  const Effects effects(knowledge, knowledge.rules[changed].components);
   for (const RuleId id : knowledge.states.active()) {
-    const auto& other = knowledge.states[id].attempt;
-    if (id == changed || !other) continue;
-    if (is_rival(knowledge, own.strategy, effects, id)) attempts.make_ambiguous(other->strategy);
-    const bool has_changed = other->first_change != kNever;
-    if (has_changed && is_rival(knowledge, other->strategy, sources, changed))
-      attempts.make_ambiguous(own.strategy);
+    const RuleState& state = knowledge.states[id];
+    const bool is_beside = id == rule && knowledge.rules[changed].is_last_resort;
+    const bool is_another = id != rule && is_rival(knowledge, changed, effects, id);
+    if (state.attempt && (is_beside || is_another))
+      attempts.make_ambiguous(state.attempt->strategy);
+    for (const auto* other : {&state.attempt, &state.last_resort}) {
+      if (id == rule || !*other || (*other)->first_change == kNever) continue;
+      if (is_rival(knowledge, (*other)->strategy, sources, rule)) attempts.make_ambiguous(changed);
+    }
   }
 }
 

@@ -54,10 +54,10 @@ bool may_hide(const Knowledge& knowledge, RuleId other, RuleId rule);
 // Is there a failure now that may hide that of `rule`?
 bool is_hidden(const Knowledge& knowledge, RuleId rule);
 
-// The strategy under way for `changed` begins to change the system. Marks every attempt whose
+// `changed`, which is under way, begins to change the system. Marks every attempt whose
 // outcome it can cause, and its own if another one's changes can cause that: those that touch the
 // same components or are upstream of them.
-void mark_ambiguous(const Knowledge& knowledge, RuleId changed, Attempts& attempts,
+void mark_ambiguous(const Knowledge& knowledge, StrategyId changed, Attempts& attempts,
                     PendingOutcomes& outcomes);
 
 // `strategy` begins to change the system `at` that time. Voids the verdicts on strategies of other

@@ -7,13 +7,13 @@ namespace culprit {
 
 void Attempts::begin(StrategyId strategy, Time now) {
   const RuleId rule = states_.rules()[strategy].rule;
-  RuleState& state = states_.state(rule);
-  assert(!state.attempt);
-  state.attempt.emplace();
-  state.attempt->strategy = strategy;
-  state.attempt->chosen = now;
-  state.attempt->has_no_failure = state.phase == RulePhase::kQuiet;
-  states_.enter(rule, RulePhase::kAttempting);
+  auto& slot = states_.slot_of(strategy);
+  assert(!slot);
+  slot.emplace();
+  slot->strategy = strategy;
+  slot->chosen = now;
+  slot->has_no_failure = states_[rule].phase == RulePhase::kQuiet;
+  if (!states_.rules()[strategy].is_last_resort) states_.enter(rule, RulePhase::kAttempting);
 }
 
 void Attempts::resume(StrategyId strategy, Time now) {
@@ -46,7 +46,7 @@ void Attempts::undo(StrategyId strategy) {
 void Attempts::undone(StrategyId strategy) { of(strategy).stage = Attempt::Stage::kOver; }
 
 Attempt& Attempts::of(StrategyId strategy) {
-  auto& attempt = states_.state(states_.rules()[strategy].rule).attempt;
+  auto& attempt = states_.slot_of(strategy);
   assert(attempt && attempt->strategy == strategy);
   return *attempt;
 }

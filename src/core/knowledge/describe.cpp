@@ -67,7 +67,11 @@ class Describer {
       return c.excluded == Condition::kTried || c.excluded == Condition::kInvalid;
     };
     const auto waiting = std::find_if_not(e.candidates.begin(), e.candidates.end(), is_out);
-    const Candidate& shown = waiting == e.candidates.end() ? e.candidates.front() : *waiting;
+    const auto out =
+        std::find_if_not(e.candidates.begin(), e.candidates.end(),
+                         [&](const Candidate& c) { return rules_[c.strategy].is_last_resort; });
+    if (waiting == e.candidates.end() && out == e.candidates.end()) return "";
+    const Candidate& shown = waiting == e.candidates.end() ? *out : *waiting;
     if (shown.excluded == Condition::kWithheld) return "";  // ActionHeldBack says it
     return rules_[e.rule].name + " waits: " + describe_exclusion(shown, rules_);
   }
@@ -103,7 +107,13 @@ class Describer {
     return rule.name + " is exhausted: nothing helped, a person must look";
   }
   std::string operator()(const LastResortReached& e) const {
-    return rules_[e.rule].name + ": nothing helped, and only the last resort is left";
+    return rules_[e.rule].name +
+           ": no other strategy can begin or help in time, so its last resort is due";
+  }
+  std::string operator()(const LastResortDone& e) const {
+    const Strategy& strategy = rules_[e.strategy];
+    return strategy.name + " took effect; it stays while " + rules_[strategy.rule].name +
+           " is there";
   }
   std::string operator()(const ComponentLost& e) const {
     return rules_[e.component].name + " is lost" +
@@ -129,7 +139,7 @@ class Describer {
   std::string operator()(const Trouble& e) const { return e.text; }
   std::string operator()(const OrderAccepted& e) const {
     return e.order.author + ": " + describe(e.order, rules_) +
-           (e.order.reason.empty() ? "" : " (" + e.order.reason + ")");
+           (e.order.reason.empty() ? "" : " (" + e.order.reason + ")") + held_back(e.holds_back);
   }
   std::string operator()(const OrderRefused& e) const {
     return e.order.author + " is refused: " + e.reason;
@@ -227,6 +237,13 @@ class Describer {
   std::string with_rule(StrategyId id) const {
     if (id.index >= rules_.strategies.size()) return "an unknown strategy";
     return rules_[rules_[id].rule].name + "." + rules_[id].name;
+  }
+  std::string held_back(const std::vector<StrategyId>& last_resorts) const {
+    if (last_resorts.empty()) return "";
+    std::vector<std::string> names;
+    for (const StrategyId id : last_resorts) names.push_back(with_rule(id));
+    return last_resorts.size() == 1 ? "; this holds back the last resort " + names.front()
+                                    : "; this holds back the last resorts " + listed(names);
   }
   std::string name_of(const Silenceable& what) const {
     if (const auto* rule = std::get_if<RuleId>(&what))

@@ -133,9 +133,14 @@ struct RoundSpent {
   Time retry_at;
 };
 
-// Nothing is left to try but the rule's last resorts.
+// No other strategy of the rule can begin or help in time: its last resorts are due.
 struct LastResortReached {
   RuleId rule;
+};
+
+// A last resort took effect. What it changed stays as long as the failure is there.
+struct LastResortDone {
+  StrategyId strategy;
 };
 
 // Nothing is left to try. A person must look.
@@ -192,6 +197,8 @@ struct ValueUnknown {
 // What became of a person's order.
 struct OrderAccepted {
   Order order;
+  std::vector<StrategyId>
+      holds_back{};  // last resorts that are not begun either, as long as it holds
 };
 struct OrderRefused {
   Order order;
@@ -216,7 +223,8 @@ enum class Restraint : std::uint8_t {
   kNeverSeen,           // it would start what was never seen
   kLeaving,             // what was started together is being ended together
   kLaunchEnded,         // somebody has ended it, or has just started it again
-  kRestarts             // it was restarted too often: a person must look
+  kRestarts,            // it was restarted too often: a person must look
+  kImpossible           // a last resort that cannot be carried out in the robot's present state
 };
 
 // A strategy was chosen and is not begun. Told again only when the reason is another one.
@@ -326,7 +334,7 @@ class EventWhat
                           OrderCarriedOut, SilenceEnded, StormBegan, StormEnded, LastResortReached,
                           LifecycleIntended, CameUp, OutcomePending, OutcomeCounted, FailureFlaps,
                           JudgementSuspended, JudgementResumed, SleepNoticed, NeverSeen,
-                          PriorsAdopted, HostSilent, HostBack, ValueUnknown> {
+                          PriorsAdopted, HostSilent, HostBack, ValueUnknown, LastResortDone> {
  public:
   using Variant = variant;
   using variant::variant;

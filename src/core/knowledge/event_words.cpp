@@ -37,6 +37,7 @@ constexpr std::array<EventWords, kKinds> kWords = [] {
       row<Undone>("undone", "undone", kInfo, Tone::kAction),
       row<RoundSpent>("round_spent", "all tried", kInfo, Tone::kWarning),
       row<LastResortReached>("last_resort_reached", "LAST", kError, Tone::kAlarm, kStrong),
+      row<LastResortDone>("last_resort_done", "stays", kWarning, Tone::kAction, kStrong),
       row<RuleExhausted>("rule_exhausted", "EXHAUSTED", kError, Tone::kAlarm, kStrong),
       row<ComponentLost>("component_lost", "lost", kWarning, Tone::kAlarm),
       row<ComponentFound>("component_found", "found", kInfo, Tone::kRelief),

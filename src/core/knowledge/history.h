@@ -4,7 +4,7 @@
 //   StrategyChosen, StrategyResumed, OrderAccepted of RunStrategy    what was spent of the budgets
 //   FailureDetected, FailureResolved, FailureLost, AdaptationDone    health, launches, cooldowns
 //   OutcomePending, OutcomeCounted                                   verdicts that do not count yet
-//   StrategyFailed, RoundSpent, LastResortReached, RuleExhausted     what was tried
+//   StrategyFailed, RoundSpent, LastResortReached, LastResortDone, RuleExhausted     what was tried
 //   OrderAccepted of Silence and LiftSilence                         silences
 //   ComponentFound                                                   which process it last ran in
 //   LifecycleIntended                                                where a new process is brought

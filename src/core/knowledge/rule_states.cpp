@@ -6,7 +6,10 @@
 namespace culprit {
 
 RuleStates::RuleStates(const RuleSet& rules)
-    : rules_(rules), states_(rules.rules.size()), failing_(rules.components.size()) {
+    : rules_(rules),
+      states_(rules.rules.size()),
+      bars_(rules.strategies.size()),
+      failing_(rules.components.size()) {
   find_touching();
   for (std::size_t r = 0; r < rules.rules.size(); ++r) {
     states_[r].search.tried.assign(rules.rules[r].strategies.size(), false);
@@ -22,6 +25,7 @@ RuleStates::RuleStates(const RuleSet& rules, const RuleStates& other)
       states_(other.states_),
       active_(other.active_),
       exhausted_(other.exhausted_),
+      bars_(other.bars_),
       failing_(other.failing_),
       touching_(other.touching_),
       first_touching_(other.first_touching_) {}
@@ -83,7 +87,7 @@ void RuleStates::go_on_searching(RuleId id, Time now) {
 }
 
 void RuleStates::advise_anew() {
-  for (const RuleId id : active_) states_[id.index].is_advised = false;
+  for (RuleState& state : states_) state.is_advised = state.is_last_resort_advised = false;
 }
 
 namespace {
@@ -156,13 +160,29 @@ std::optional<RuleId> RuleStates::awaiting_person_at(ComponentId component, Crit
 }
 
 const Attempt* RuleStates::reservation(ComponentId component) const {
-  for (const RuleId id : touching(component)) {
-    const auto& attempt = states_[id.index].attempt;
-    if (!attempt || !is_active(id) || attempt->stage == Attempt::Stage::kSuspended) continue;
+  const auto holds = [&](const std::optional<Attempt>& attempt) {
+    if (!attempt || attempt->stage == Attempt::Stage::kSuspended) return false;
     const auto& adapted = rules_[attempt->strategy].components;
-    if (std::binary_search(adapted.begin(), adapted.end(), component)) return &*attempt;
+    return std::binary_search(adapted.begin(), adapted.end(), component);
+  };
+  const Attempt* found = nullptr;
+  for (const RuleId id : touching(component)) {
+    const RuleState& state = states_[id.index];
+    if (holds(state.last_resort)) return &*state.last_resort;
+    if (found == nullptr && is_active(id) && holds(state.attempt)) found = &*state.attempt;
   }
-  return nullptr;
+  return found;
+}
+
+const Attempt* RuleStates::attempt_of(StrategyId id) const {
+  const RuleState& state = states_[rules_[id].rule.index];
+  const auto& attempt = rules_[id].is_last_resort ? state.last_resort : state.attempt;
+  return attempt && attempt->strategy == id ? &*attempt : nullptr;
+}
+
+std::optional<Attempt>& RuleStates::slot_of(StrategyId id) {
+  RuleState& state = states_[rules_[id].rule.index];
+  return rules_[id].is_last_resort ? state.last_resort : state.attempt;
 }
 
 }  // namespace culprit

@@ -36,14 +36,19 @@ struct Settling {
 
 // How far the search for a strategy that helps has come.
 struct Search {
-  int attempts = 0;                // strategies executed for the failure, also before it came back
-  int attempts_before = 0;         // those of before it came back
-  int times = 0;                   // the failure was detected, until it was proven gone
-  int round = 0;                   // how often all strategies were gone through
-  Time retry_at = kLongAgo;        // back-off after a round
-  std::vector<bool> tried;         // in this round, by place in Rule::strategies
-  bool is_at_last_resort = false;  // only the last resorts are left to try
-  bool is_exhausted = false;       // nothing is left, until it is proven gone
+  int attempts = 0;           // strategies executed for the failure, also before it came back
+  int attempts_before = 0;    // those of before it came back
+  int times = 0;              // the failure was detected, until it was proven gone
+  int round = 0;              // how often all strategies were gone through
+  Time retry_at = kLongAgo;   // back-off after a round
+  std::vector<bool> tried;    // in this round, by place in Rule::strategies
+  bool is_exhausted = false;  // nothing is left, until it is proven gone
+
+  // The last resorts, which are no part of the rounds. Of each, `tried` says that it took effect, or
+  // could not be carried out ATTEMPTS times.
+  bool is_at_last_resort = false;  // the first of them is due, since nothing else helps in time
+  Time last_resort_at = kLongAgo;  // the next of them is not begun before
+  int last_resort_obstacles = 0;   // how often in a row it could not be carried out
 };
 
 // Where an earlier process of culprit came to.
@@ -87,9 +92,18 @@ struct RuleState {
 
   Search search;
   std::optional<Attempt> attempt;
+  std::optional<Attempt> last_resort;  // of a last resort, beside that one
+  // The last resorts that took effect for the failure, and when. What they changed stays as long as
+  // it is there.
+  struct Standing {
+    StrategyId strategy;
+    Time since{};
+  };
+  std::vector<Standing> standing;
   // When the last attempt that failed took effect, if nothing else can have helped since.
   std::optional<Time> tried_alone;
-  bool is_advised = false;  // dry run: what would be done was said
+  bool is_advised = false;              // dry run: what would be done was said
+  bool is_last_resort_advised = false;  // likewise
   std::optional<Settling> settling;
   std::optional<LeftOff> left_off;  // nobody has seen the failure gone since
 
@@ -116,6 +130,7 @@ class RuleStates {
   void set_tried(StrategyId id, bool tried);
   // Dry run: what would be done about the failure was said; or is to be said anew.
   void advise(RuleId id) { states_[id.index].is_advised = true; }
+  void advise_last_resort(RuleId id) { states_[id.index].is_last_resort_advised = true; }
   void advise_anew();
   // The failure is expected to go away with another one.
   void expect_to_settle(RuleId id, Settling settling) { states_[id.index].settling = settling; }
@@ -149,9 +164,33 @@ class RuleStates {
   // The rules with a strategy that adapts it, ascending.
   std::span<const RuleId> touching(ComponentId component) const;
 
+  // The attempt of the strategy, if it is under way.
+  const Attempt* attempt_of(StrategyId id) const;
+  // Where an attempt of the strategy has its place: its rule's, or that of the rule's last resorts.
+  std::optional<Attempt>& slot_of(StrategyId id);
+
   // The strategy attempt that has `component` reserved, if any: from its choice until its verdict
-  // and undoing, but while it is suspended.
+  // and undoing, but while it is suspended. A last resort's, if there are several.
   const Attempt* reservation(ComponentId component) const;
+
+  // The strategy sets a parameter that `by` had set, and the more critical failure that this had resolved
+  // came back: the value of `by` stays.
+  struct Bar {
+    StrategyId by;
+    Time since{};
+  };
+  const std::optional<Bar>& bar_of(StrategyId id) const { return bars_[id.index]; }
+  void bar(StrategyId id, Bar bar) { bars_[id.index] = bar; }
+
+  // Calls `visit(strategy)` for each last resort that took effect for a failure that is still there.
+  template <class Visit>
+  void for_each_standing(Visit visit) const {
+    for (const auto* rules : {&active_, &exhausted_}) {
+      for (const RuleId id : *rules) {
+        for (const RuleState::Standing& each : states_[id.index].standing) visit(each.strategy);
+      }
+    }
+  }
 
  private:
   template <class Counts>
@@ -165,6 +204,7 @@ class RuleStates {
   std::vector<RuleState> states_;
   std::vector<RuleId> active_;
   std::vector<RuleId> exhausted_;
+  std::vector<std::optional<Bar>> bars_;  // by strategy
   std::vector<std::array<int, 3>>
       failing_;  // by component, by criticality: how many active rules touch it
   // The rules that touch each component, ascending, one component after the other; and where those

@@ -23,6 +23,7 @@ namespace {
 constexpr double kMaxImpact = 1e6;  // cycles
 constexpr std::int64_t kMaxCount = 1000;
 constexpr Duration kMaxCycle = std::chrono::hours(1);
+constexpr Duration kWithin = std::chrono::seconds(2);  // LASTRESORT without WITHIN
 constexpr int kDefaultRounds = 3;  // each strategy is tried this often before the rule is exhausted
 
 class Checker {
@@ -362,6 +363,7 @@ class Checker {
     check_unused(file_, rules_, diagnostics_);
     check_covered_rules(conditions_, rules_, diagnostics_);
     check_oscillation(conditions_, rules_, diagnostics_);
+    check_interlocks(conditions_, rules_, diagnostics_);
   }
 
   void check_meaning(RuleConditions& rule) {
@@ -431,6 +433,7 @@ class Checker {
     strategy.name = written.name.text;
     strategy.rule = rule;
     strategy.is_last_resort = written.is_last_resort;
+    if (written.is_last_resort) strategy.within = written.within.value_or(kWithin);
     const auto in_percent = [](const syntax::Number& n) { return n.value > 0 && n.value <= 100; };
     if (!in_percent(written.probability)) {
       report(Code::kProbabilityRange, written.probability.span,

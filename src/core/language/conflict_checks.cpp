@@ -58,7 +58,10 @@ bool covers(const RuleConditions& strong, const RuleConditions& weak, const Rule
 struct Effect {
   std::string thing;
   std::string state;
-  std::string verb;  // for messages: "activates", "sets exposure to 3"
+  std::string verb;                        // for messages: "activates", "sets exposure to 3"
+  std::optional<ParameterId> parameter{};  // that it sets to a constant
+  Slot value{};
+  Type type = Type::kDouble;
 };
 
 std::optional<Effect> effect_of(const Adaptation& a) {
@@ -87,9 +90,17 @@ std::optional<Effect> effect_of(const Adaptation& a) {
       // A whole number fits a parameter of numbers, so 1 and 1.0 are no different.
       const Value value = a.value.type == Type::kInt ? Value(static_cast<double>(slot.i))
                                                      : to_value(slot, a.value.type);
-      return Effect{of_component(" parameter " + a.subject), to_string(value),
-                    "sets its " + a.subject + " to " + to_string(to_value(slot, a.value.type))};
+      return Effect{of_component(" parameter " + a.subject),
+                    to_string(value),
+                    "sets its " + a.subject + " to " + to_string(to_value(slot, a.value.type)),
+                    a.parameter,
+                    slot,
+                    a.value.type};
     }
+    case AdaptationType::kIncreaseParameter:
+      return Effect{of_component(" parameter " + a.subject), "more", "increases its " + a.subject};
+    case AdaptationType::kDecreaseParameter:
+      return Effect{of_component(" parameter " + a.subject), "less", "decreases its " + a.subject};
     default:
       return std::nullopt;
   }
@@ -124,11 +135,41 @@ bool take_turns(const RuleConditions& a, const RuleConditions& b, const RuleSet&
          !is_possible(a.trigger, false, b.trigger, false, rules);
 }
 
+// Does the parameter's value, as `effect` sets it, make the trigger true by itself?
+bool sets_off(const Effect& effect, RuleId rule, const RuleSet& rules) {
+  if (!effect.parameter) return false;
+  const auto reads_it = [&](const Input& input) {
+    if (input.kind == Input::Kind::kParameter) return input.parameter == *effect.parameter;
+    if (input.kind != Input::Kind::kSignal) return false;
+    const auto* source = std::get_if<ParameterId>(&rules[input.signal].source);
+    return source != nullptr && *source == *effect.parameter;
+  };
+  const Program& trigger = rules[rule].trigger;
+  std::vector<Assumed> assumed;
+  for (const Instruction& instruction : trigger.code) {
+    if (instruction.op != Op::kInput) continue;
+    const Input& input = rules[InputId(instruction.operand)];
+    if (!reads_it(input)) continue;
+    const bool is_whole = effect.type == Type::kInt && input.type == Type::kDouble;
+    if (!is_whole && effect.type != input.type) return false;
+    assumed.push_back({InputId(instruction.operand),
+                       is_whole ? Slot::of(static_cast<double>(effect.value.i)) : effect.value});
+  }
+  if (assumed.empty()) return false;
+  const std::vector<Slot> unknown(rules.inputs.size());
+  const Slot value = evaluate(trigger, unknown, assumed);
+  return value.known && value.b;
+}
+
+bool set_off_one_another(const Doing& a, const Doing& b, const RuleSet& rules) {
+  return sets_off(a.effect, b.rule->rule, rules) && sets_off(b.effect, a.rule->rule, rules);
+}
+
 // @pre both are about the same thing
 bool undo_one_another(const Doing& a, const Doing& b, const RuleSet& rules) {
   assert(a.effect.thing == b.effect.thing);
   return a.rule != b.rule && a.effect.state != b.effect.state &&
-         take_turns(*a.rule, *b.rule, rules);
+         (take_turns(*a.rule, *b.rule, rules) || set_off_one_another(a, b, rules));
 }
 
 Diagnostic oscillation(const Doing& earlier, const Doing& later, const RuleSet& rules) {
@@ -138,6 +179,29 @@ Diagnostic oscillation(const Doing& earlier, const Doing& later, const RuleSet& 
               "' of the one " + earlier.effect.verb + ", this one " + later.effect.verb +
               " (component '" + rules[later.component].name + "')",
           "leave a band between their triggers, or make the two strategies of one rule"};
+}
+
+// Only where it is certain: of a parameter, a lifecycle or a process, not of what a robot does then.
+bool is_read(const Adaptation& changed, const Program& condition, const RuleSet& rules) {
+  return std::ranges::any_of(condition.code, [&](const Instruction& instruction) {
+    if (instruction.op != Op::kInput) return false;
+    const Input& input = rules[InputId(instruction.operand)];
+    const bool is_parameter = syntax::names_parameter(changed.type);
+    switch (input.kind) {
+      case Input::Kind::kParameter:
+        return is_parameter && input.parameter == changed.parameter;
+      case Input::Kind::kSignal: {
+        const auto* source = std::get_if<ParameterId>(&rules[input.signal].source);
+        return is_parameter && source != nullptr && *source == changed.parameter;
+      }
+      case Input::Kind::kAlive:
+      case Input::Kind::kLifecycle:
+        return !is_parameter && changed.type != AdaptationType::kCall &&
+               changed.type != AdaptationType::kChangeMode && input.component == changed.component;
+      default:
+        return false;
+    }
+  });
 }
 
 }  // namespace
@@ -188,6 +252,28 @@ void check_oscillation(const std::vector<RuleConditions>& conditions, const Rule
         }
       }
       if (known.size() < kMaxCompared) known.push_back(std::move(doing));
+    }
+  }
+}
+
+void check_interlocks(const std::vector<RuleConditions>& conditions, const RuleSet& rules,
+                      std::vector<Diagnostic>& diagnostics) {
+  if (rules.interlocks.empty()) return;
+  for (const RuleConditions& rule : conditions) {
+    for (std::size_t s = 0; s < rule.strategies.size(); ++s) {
+      const Strategy& strategy = rules[rules[rule.rule].strategies[s]];
+      for (std::size_t a = 0; strategy.is_last_resort && a < strategy.adaptations.size(); ++a) {
+        const Adaptation& changed = strategy.adaptations[a];
+        const auto interlock = std::ranges::find_if(rules.interlocks, [&](const Interlock& each) {
+          return is_read(changed, each.condition, rules);
+        });
+        if (interlock == rules.interlocks.end()) continue;
+        diagnostics.push_back(
+            {Code::kMovesInterlock, Severity::kWarning, rule.strategies[s]->adaptations[a].span,
+             "last resort '" + strategy.name + "' changes what INTERLOCK " + interlock->text +
+                 " reads: it says then what culprit set, and not how the robot is",
+             "let the INTERLOCK read a measurement, such as a speed"});
+      }
     }
   }
 }

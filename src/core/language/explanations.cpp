@@ -272,6 +272,23 @@ std::vector<Explanation> rule_explanations() {
        "cameras driver\"\n",
        "COMPONENT camera NODE /robot/camera LAUNCH \"ros2 run cameras driver\" SETUP "
        "/opt/ros/humble/setup.bash\n"},
+      {Code::kMovesInterlock, "a last resort changes what an INTERLOCK reads",
+       "A last resort does not wait for an interlock, and often opens it: the robot stands, and "
+       "the "
+       "repair can begin. That is safe only if the interlock reads how the robot is. If it reads "
+       "the "
+       "parameter that the last resort sets, it opens before the robot has stopped.",
+       "INTERLOCK parameter(base, max_speed) < 0.1\nCOMPONENT base NODE /robot/base\n" +
+           rule_with("rate(/robot/image) < 1", "ERROR",
+                     "STRATEGY restart 50 10\n      ADAPTATION camera restart 5\n"
+                     "    STRATEGY stand_still 90 10 LASTRESORT",
+                     "ADAPTATION base set_parameter max_speed 0.0 1"),
+       "INTERLOCK speed < 0.1\nSIGNAL speed TOPIC /robot/odom FIELD twist.twist.linear.x\n"
+       "COMPONENT base NODE /robot/base\n" +
+           rule_with("rate(/robot/image) < 1", "ERROR",
+                     "STRATEGY restart 50 10\n      ADAPTATION camera restart 5\n"
+                     "    STRATEGY stand_still 90 10 LASTRESORT",
+                     "ADAPTATION base set_parameter max_speed 0.0 1")},
       {Code::kAlwaysTrue, "a trigger reads nothing and is always true",
        "A trigger that reads no signal, topic or component says the same whatever the robot does: "
        "this failure would be there from the start and could never be resolved.",
@@ -309,7 +326,9 @@ std::vector<Explanation> meaning_explanations() {
   return {
       {Code::kOscillation, "strategies of two rules undo one another",
        "One rule's strategy sets what the other's resets, and nothing keeps them from taking "
-       "turns: both triggers can be true together, or one of them always is. The robot could flip "
+       "turns: both triggers can be true together, one of them always is, or the parameter that "
+       "each sets "
+       "makes the other's true. The robot could flip "
        "between the two for ever. Leave a band between the triggers, as a thermostat does, or make "
        "both strategies alternatives of one rule, which remembers what it tried.",
        lights("0.2"), lights("0.7")},

@@ -10,14 +10,14 @@ namespace {
 
 using syntax::Name;
 
-constexpr std::array<std::string_view, 45> kReservedWords = {
+constexpr std::array<std::string_view, 46> kReservedWords = {
     "ROBOT",     "CYCLE",      "CONST",    "COMPONENT", "DEPENDENCY", "IGNORE",  "SIGNAL",
     "RULE",      "POLICIES",   "TRIGGER",  "STRATEGY",  "NODE",       "LAUNCH",  "ON",
     "TOPIC",     "FIELD",      "STALE",    "RANGE",     "KEY",        "FOR",     "DIAGNOSTIC",
     "PARAMETER", "HOLD",       "COOLDOWN", "ATTEMPTS",  "ON_CHANGE",  "WHEN",    "ADAPTATION",
     "INTERLOCK", "LASTRESORT", "REQUIRED", "LIFECYCLE", "RESPAWNED",  "UNIT",    "USER",
     "ENV",       "SETUP",      "CWD",      "IN",        "PLUGIN",     "PACKAGE", "PARAMETERS",
-    "REMAP",     "CONTAINER",  "HOST"};
+    "REMAP",     "CONTAINER",  "HOST",     "WITHIN"};
 
 bool is_reserved(std::string_view word) {
   // Most names have something else in them.
@@ -251,9 +251,10 @@ bool LineReader::line_ends(Scanner& s) {
   struct Slip {
     std::string_view written, meant, remedy;
   };
-  constexpr std::array<Slip, 6> kSlips = {
+  constexpr std::array<Slip, 7> kSlips = {
       {{"when", "WHEN", "write WHEN in upper case"},
        {"lastresort", "LASTRESORT", "write LASTRESORT in upper case"},
+       {"within", "WITHIN", "write WITHIN in upper case"},
        {"=", "==", "write == to compare"},
        {":", "", "remove the ':'"},
        {"and", "&&", "write && for 'and'"},

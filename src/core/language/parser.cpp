@@ -569,6 +569,15 @@ class Parser {
     if (!confidence) return false;
     const bool is_last_resort = s.peek().text == "LASTRESORT";
     if (is_last_resort) s.next();
+    std::optional<Duration> within;
+    if (s.peek().text == "WITHIN") {
+      const Token word = s.next();
+      if (!is_last_resort)
+        return read_.fail(Code::kOutOfPlace, word.span, "WITHIN belongs to a LASTRESORT",
+                          "write LASTRESORT before it, or leave it out");
+      within = read_.positive_duration(s, "how long the other strategies of the rule have");
+      if (!within) return false;
+    }
     std::optional<syntax::Expression> when;
     if (s.peek().text == "WHEN") {
       s.next();
@@ -576,7 +585,7 @@ class Parser {
       if (!when || !read_.line_ends(s)) return false;
     }
     rule.strategies.back() = {std::move(*name), *probability, *confidence, std::move(when), {},
-                              is_last_resort,   false};
+                              is_last_resort,   within,       false};
     return true;
   }
 

@@ -90,7 +90,7 @@ class Mover {
     move(span);
   }
   void move(syntax::Strategy& s) const {
-    auto& [name, probability, confidence, when, adaptations, is_last_resort, is_broken] = s;
+    auto& [name, probability, confidence, when, adaptations, is_last_resort, within, is_broken] = s;
     move(name);
     move(probability);
     move(confidence);

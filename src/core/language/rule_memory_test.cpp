@@ -60,7 +60,8 @@ class RuleSetText {
     put(rule.inputs);
   }
   void put(const Strategy& s) {
-    out_ << s.name << s.rule.index << ' ' << s.is_last_resort << s.impact.count << '\n';
+    out_ << s.name << s.rule.index << ' ' << s.is_last_resort << s.within.count() << s.impact.count
+         << '\n';
     put(s.when);
     put(s.components);
     for (const Adaptation& a : s.adaptations) {

@@ -175,10 +175,11 @@ struct Adaptation {
 struct Strategy {
   std::string name;
   RuleId rule;
-  Probability success;          // paper: P_s,init
-  double confidence = 1;        // paper: c_p, in pseudo-counts
-  Program when;                 // empty: always
-  bool is_last_resort = false;  // only when the rule's other strategies are exhausted
+  Probability success;    // paper: P_s,init
+  double confidence = 1;  // paper: c_p, in pseudo-counts
+  Program when;           // empty: always
+  bool is_last_resort = false;
+  Duration within{};  // of a last resort: what the rule's other strategies have from the detection
   std::vector<Adaptation> adaptations;
   Cycles impact;                        // paper: i_exec,s, the maximum over the adaptations
   std::vector<ComponentId> components;  // that it adapts, each once, ascending

@@ -173,6 +173,7 @@ struct Strategy {
   Seldom<Expression> when;
   std::vector<Adaptation> adaptations;
   bool is_last_resort = false;
+  std::optional<Duration> within{};  // LASTRESORT only
   bool has_broken_adaptation = false;
 };
 

@@ -150,8 +150,8 @@ std::string rules_without_mistake() {
             end;
     for (int strategies = below(3); strategies >= 0; --strategies) {
       text += "    STRATEGY s" + std::to_string(strategies) + " 50 10" +
-              pick({"", "", " LASTRESORT", " WHEN entropy < 0.7"}) + end + "      ADAPTATION " +
-              component + " " +
+              pick({"", "", " LASTRESORT", " LASTRESORT WITHIN 1s", " WHEN entropy < 0.7"}) + end +
+              "      ADAPTATION " + component + " " +
               pick({"restart 3", "redeploy 20", "set_parameter gain 1 3", "set_parameter gain 2 3",
                     "activate 3", "deactivate 3", "redeploy 1"}) +
               end;

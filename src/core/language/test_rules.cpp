@@ -289,7 +289,8 @@ void rule(File& file) {
   file.line(swapped ? trigger : policies);
   file.line(swapped ? policies : trigger);
   for (int strategies = below(3); strategies >= 0; --strategies) {
-    file.line(words({"STRATEGY", identifier(), number(), number(), maybe("LASTRESORT"),
+    file.line(words({"STRATEGY", identifier(), number(), number(),
+                     maybe(words({"LASTRESORT", maybe(words({"WITHIN", duration()}))})),
                      maybe(words({"WHEN", expression(2)}))}));
     for (int adaptations = below(3); adaptations >= 0; --adaptations) file.line(adaptation_line());
     if (below(8) == 0) file.line(declaration());

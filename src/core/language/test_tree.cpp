@@ -66,7 +66,7 @@ class Writer {
         a.span);
   }
   void put(const syntax::Strategy& s) {
-    all(s.name, s.probability, s.confidence, s.when, s.adaptations, s.is_last_resort,
+    all(s.name, s.probability, s.confidence, s.when, s.adaptations, s.is_last_resort, s.within,
         s.has_broken_adaptation);
   }
   void put(const syntax::Interlock& i) { put(i.condition); }  // its text is how it is written

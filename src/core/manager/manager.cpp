@@ -2,11 +2,13 @@
 
 #include <algorithm>
 
+#include "knowledge/undoes.h"
 #include "plan/allowed.h"
 #include "plan/also_ended.h"
 #include "plan/awaits_repair.h"
 #include "plan/beside_exhausted.h"
 #include "plan/explained_by.h"
+#include "plan/validity.h"
 
 namespace culprit {
 namespace {
@@ -95,7 +97,7 @@ std::vector<Command> Manager::step(Time now, std::span<const Observation> observ
   std::vector<Command> commands;
   if (!hears_) {
     next_plan_ = kNever;
-  } else if (analyzer_.anything_active()) {
+  } else if (analyzer_.anything_active() || is_any_last_resort_left()) {
     react(commands);
   } else {
     executor_.advance(now_, commands);  // lets go of what has just succeeded
@@ -154,6 +156,7 @@ void Manager::react(std::vector<Command>& commands) {
     executor_.advance(now_, commands);
     analyzer_.advance(now_);
     if (news_ || now_ >= next_plan_) plan(now_);
+    begin_last_resorts(now_);
     executor_.advance(now_, commands);
     if (said == knowledge_.events.size() && asked == commands.size()) break;
     news_ = true;
@@ -167,7 +170,7 @@ void Manager::obey(const Order& order, Time now) {
     return knowledge_.events.tell(now, OrderRefused{order, "the robot cannot be heard"});
   if (auto reason = governor_.objection(order, autonomy_))
     return knowledge_.events.tell(now, OrderRefused{order, std::move(*reason)});
-  knowledge_.events.tell(now, OrderAccepted{order});
+  knowledge_.events.tell(now, OrderAccepted{order, governor_.last_resorts_behind(order)});
   governor_.obey(order, now);
   if (std::holds_alternative<Pause>(order.what)) {
     abandon_all("paused by " + order.author, now);
@@ -175,6 +178,7 @@ void Manager::obey(const Order& order, Time now) {
     autonomy_ = dry_run->is_on ? Autonomy::kAdvise : Autonomy::kAct;
     knowledge_.states.advise_anew();
   } else if (const auto* run = std::get_if<RunStrategy>(&order.what)) {
+    if (knowledge_.rules[run->strategy].is_last_resort) go_before_others(run->strategy, now);
     begin(run->strategy, now);
   } else if (const auto* forgotten = std::get_if<Forget>(&order.what)) {
     forget(forgotten->rule);
@@ -220,6 +224,12 @@ void Manager::abandon_all(const std::string& reason, Time now) {
     knowledge_.events.tell(now, StrategyAbandoned{attempt->strategy, reason});
     analyzer_.abandon(id, now);
   }
+  for (std::size_t r = 0; r < knowledge_.rules.rules.size(); ++r) {
+    const auto& last_resort = knowledge_.states[RuleId(r)].last_resort;
+    if (!last_resort) continue;
+    knowledge_.events.tell(now, StrategyAbandoned{last_resort->strategy, reason});
+    analyzer_.abandon_last_resort(RuleId(r), now);
+  }
 }
 
 // Whoever only waits for a verdict gives way to a more critical failure, and learns nothing. It is
@@ -246,14 +256,14 @@ void Manager::plan(Time now) {
   for (const Decision& decision : allowed_plan(failures, now)) {
     if (decision.chosen) {
       // What was allowed when the plan was made may have been the last of its kind.
-      const bool has_to_wait =
-          governor_.holds_back(*decision.chosen, now) || governor_.withholds(*decision.chosen, now);
+      const bool has_to_wait = governor_.holds_back(*decision.chosen, now) ||
+                               governor_.withholds(*decision.chosen, now) ||
+                               is_beside_last_resort(*decision.chosen);
       if (!has_to_wait) carry_out(decision, now);
     } else if (decision.is_spent && !plan::awaits_repair(decision, knowledge_)) {
       hold_back(decision, now);
       // What was tried in vain while a computer explains the failure is tried again when that is heard.
-      const bool is_last = knowledge_.states[decision.rule].search.is_at_last_resort;
-      if (knowledge_.unheard_behind(decision.rule) && !is_last)
+      if (knowledge_.unheard_behind(decision.rule))
         analyzer_.turn_to_last_resort(decision.rule, now);
       else
         analyzer_.round_is_spent(decision.rule, now);
@@ -267,6 +277,124 @@ void Manager::plan(Time now) {
   }
   news_ = false;
   next_plan_ = next_planning(now);
+}
+
+// ---- last resorts
+
+namespace {
+
+bool touch_one_thing(const Strategy& last_resort, const Strategy& other) {
+  const auto& adapted = other.components;
+  return std::ranges::any_of(last_resort.adaptations, [&](const Adaptation& a) {
+    const bool is_shared = std::binary_search(adapted.begin(), adapted.end(), a.component);
+    const bool only_sets = syntax::names_parameter(a.type) || a.type == AdaptationType::kCall ||
+                           a.type == AdaptationType::kChangeMode;
+    return is_shared && !only_sets;
+  });
+}
+
+}  // namespace
+
+// Each is waited for until it took effect, also when its rule is exhausted.
+bool Manager::is_any_last_resort_left() const {
+  const auto& exhausted = knowledge_.states.exhausted();
+  return std::ranges::any_of(exhausted, [&](RuleId id) {
+    return knowledge_.states[id].last_resort || analyzer_.next_last_resort(id);
+  });
+}
+
+void Manager::begin_last_resorts(Time now) {
+  std::vector<RuleId> rules;
+  for (const auto* list : {&knowledge_.states.active(), &knowledge_.states.exhausted()}) {
+    std::ranges::copy_if(*list, std::back_inserter(rules),
+                         [&](RuleId id) { return analyzer_.next_last_resort(id).has_value(); });
+  }
+  for (const RuleId id : rules) {
+    const StrategyId next = *analyzer_.next_last_resort(id);
+    const RuleState& state = knowledge_.states[id];
+    const Time limit = later(state.failing_since, knowledge_.rules[next].within);
+    const bool goes_away = state.detection.trigger.known && !state.detection.trigger.b;
+    if (!goes_away && (now >= limit || !is_help_possible(id, limit, now)))
+      analyzer_.turn_to_last_resort(id, now);
+    if (const auto due = analyzer_.last_resort_due(id, now)) begin_last_resort(*due, now);
+  }
+}
+
+// A person's pause holds it, and a robot that cannot do it: then it is tried again in each cycle.
+void Manager::begin_last_resort(StrategyId strategy, Time now) {
+  const RuleId rule = knowledge_.rules[strategy].rule;
+  const bool is_dry = autonomy_ == Autonomy::kAdvise;
+  if (is_dry && knowledge_.states[rule].is_last_resort_advised) return;
+  refresh_conditions(strategy, now);
+  std::optional<std::string> obstacle;
+  if (auto invalid = plan::impossibility(knowledge_.rules[strategy], knowledge_))
+    obstacle = std::move(invalid->reason);
+  if (governor_.holds_last_resort_back(strategy, std::move(obstacle), now)) {
+    next_plan_ = std::min(next_plan_, later(now, knowledge_.rules.cycle));
+    return;
+  }
+  if (!is_dry) go_before_others(strategy, now);
+  Candidate itself;
+  itself.strategy = strategy;
+  knowledge_.events.tell(now,
+                         StrategyChosen{strategy,
+                                        {itself},
+                                        {},
+                                        is_dry,
+                                        {},
+                                        plan::also_ended(knowledge_.rules[strategy], knowledge_)});
+  if (is_dry) {
+    knowledge_.states.advise_last_resort(rule);
+  } else {
+    begin(strategy, now);
+  }
+}
+
+// Whoever would change the same thing is left where it is; else both go on side by side.
+void Manager::go_before_others(StrategyId strategy, Time now) {
+  const Strategy& last_resort = knowledge_.rules[strategy];
+  const std::vector<RuleId> active = knowledge_.states.active();
+  for (const RuleId id : active) {
+    const auto& attempt = knowledge_.states[id].attempt;
+    if (!attempt) continue;
+    const Strategy& other = knowledge_.rules[attempt->strategy];
+    if (!undoes(last_resort, other) && !touch_one_thing(last_resort, other)) continue;
+    knowledge_.events.tell(
+        now, StrategyAbandoned{attempt->strategy,
+                               "the last resort " + last_resort.name + " goes first"});
+    analyzer_.abandon(id, now);
+  }
+}
+
+bool Manager::is_beside_last_resort(StrategyId strategy) const {
+  return std::ranges::any_of(knowledge_.rules[strategy].components, [&](ComponentId component) {
+    const Attempt* holder = knowledge_.states.reservation(component);
+    return holder != nullptr && knowledge_.rules[holder->strategy].is_last_resort;
+  });
+}
+
+// Can another strategy of the rule have helped by then? By its impact: it may help at once.
+bool Manager::is_help_possible(RuleId rule, Time limit, Time now) const {
+  const RuleState& state = knowledge_.states[rule];
+  const auto is_in_time = [&](StrategyId strategy, Time begun) {
+    const Duration impact = duration_of(knowledge_.rules[strategy].impact, knowledge_.rules);
+    return later(begun, impact) <= limit;
+  };
+  if (state.phase == RulePhase::kExhausted) return false;
+  if (state.attempt && state.attempt->stage == Attempt::Stage::kAdapting)
+    return is_in_time(state.attempt->strategy, now);
+  if (state.attempt && state.attempt->stage == Attempt::Stage::kWaiting)
+    return is_in_time(state.attempt->strategy, state.attempt->effective);
+  Time from = std::max(now, state.search.retry_at);
+  if (const auto held = governor_.restraint_on_all(now)) from = std::max(from, held->until);
+  const auto& strategies = knowledge_.rules[rule].strategies;
+  return std::ranges::any_of(strategies, [&](StrategyId strategy) {
+    const Knowledge::Withheld& withheld = knowledge_.withheld[strategy.index];
+    Time begun = withheld.reason.empty() ? from : std::max(from, withheld.until);
+    if (knowledge_.states.is_tried(strategy))
+      begun = later(begun, Analyzer::pause_after(state.search.round + 1));
+    return is_in_time(strategy, begun) && !plan::invalidity(knowledge_.rules[strategy], knowledge_);
+  });
 }
 
 // What has to be true for the strategy to be begun.

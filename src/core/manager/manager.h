@@ -93,6 +93,12 @@ class Manager : public ManagingSystem {
   void abandon_all(const std::string& reason, Time now);
   void make_way_for(StrategyId strategy, Time now);
   void plan(Time now);
+  bool is_any_last_resort_left() const;
+  void begin_last_resorts(Time now);
+  void begin_last_resort(StrategyId strategy, Time now);
+  void go_before_others(StrategyId last_resort, Time now);
+  bool is_beside_last_resort(StrategyId strategy) const;
+  bool is_help_possible(RuleId rule, Time limit, Time now) const;
   std::vector<Decision> allowed_plan(const std::vector<RuleId>& failures, Time now);
   void begin(StrategyId strategy, Time now);
   void carry_out(const Decision& decision, Time now);

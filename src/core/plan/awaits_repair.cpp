@@ -37,11 +37,7 @@ bool is_under_repair(ComponentId component, const Knowledge& knowledge) {
 }  // namespace
 
 bool awaits_repair(const Decision& decision, const Knowledge& knowledge) {
-  const auto& strategies = knowledge.rules[decision.rule].strategies;
-  const bool has_last_resort =
-      std::any_of(strategies.begin(), strategies.end(),
-                  [&](StrategyId id) { return knowledge.rules[id].is_last_resort; });
-  if (has_last_resort || decision.candidates.empty()) return false;
+  if (decision.candidates.empty()) return false;
   // What was tried and what makes no sense for another reason is as in any other round.
   return std::all_of(decision.candidates.begin(), decision.candidates.end(),
                      [](const Candidate& c) { return c.excluded == Condition::kInvalid; }) &&

@@ -4,8 +4,7 @@
 // as a failed attempt: otherwise the failure would be exhausted by the time the camera is back, and
 // nobody would refocus it. So it waits as long as another failure may bring the component back, or
 // waits for a person together with that failure. If nothing is being done about the component, the
-// round counts, since otherwise nobody would be told. A failure with a LASTRESORT does not wait:
-// the safe stop must come.
+// round counts, since otherwise nobody would be told.
 #pragma once
 
 #include "plan/planner.h"

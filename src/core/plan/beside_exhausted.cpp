@@ -27,7 +27,6 @@ bool reconfigures(const Strategy& strategy) {
 
 bool may_be_tried_beside_exhausted(StrategyId strategy, const Knowledge& knowledge) {
   const Strategy& asked = knowledge.rules[strategy];
-  if (asked.is_last_resort) return true;
   const RuleState& state = knowledge.states[asked.rule];
   // A round is spent as well if nothing in it made sense, and nothing was tried.
   const bool may_have_been_tried = state.search.round > 0 && state.search.attempts > 0;

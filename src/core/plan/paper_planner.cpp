@@ -135,7 +135,6 @@ void PaperPlanner::examine(Candidate& candidate, Criticality level, const Knowle
 bool PaperPlanner::depends_like_another(Candidate& candidate, const Decision& decision,
                                         const Knowledge& knowledge) const {
   const Strategy& strategy = knowledge.rules[candidate.strategy];
-  if (strategy.is_last_resort) return false;
   for (const Candidate& other : decision.candidates) {
     const bool is_for_failing = other.failure && knowledge.states.is_active(*other.failure);
     if (other.excluded != Condition::kDependency || !is_for_failing ||
@@ -151,7 +150,6 @@ bool PaperPlanner::depends_like_another(Candidate& candidate, const Decision& de
 bool PaperPlanner::depends_on_cause(Candidate& candidate, Criticality level,
                                     const Knowledge& knowledge) const {
   const Strategy& strategy = knowledge.rules[candidate.strategy];
-  if (strategy.is_last_resort) return false;
   const RuleStates& states = knowledge.states;
   for (const ComponentId component : strategy.components) {
     const auto sick = knowledge.graph.first_upstream(component, [&](ComponentId upstream) {

@@ -19,8 +19,7 @@
 //   S  impact:       without, the cost is only the chance to fail.
 //
 // An exhausted failure may still be the cause (condition 5) while its trigger is true: what depends
-// on it waits for a person, and only what plan/beside_exhausted.h names may be tried. A LASTRESORT
-// waits for no cause.
+// on it waits for a person, and only what plan/beside_exhausted.h names may be tried.
 //
 // Equal costs go by the names of rule and strategy, so that a decision does not depend on the order
 // of declarations.

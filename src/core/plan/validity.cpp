@@ -1,5 +1,7 @@
 #include "plan/validity.h"
 
+#include <algorithm>
+
 #include "language/evaluate.h"
 
 namespace culprit::plan {
@@ -63,14 +65,66 @@ std::string obstacle(const Adaptation& adaptation, const Knowledge& knowledge) {
   }
 }
 
+// Both set the same thing of one component, and not a whole process.
+bool is_set_by_both(const Adaptation& a, const Adaptation& b) {
+  const auto is_of_lifecycle = [](const Adaptation& each) {
+    return each.type == AdaptationType::kActivate || each.type == AdaptationType::kDeactivate ||
+           each.type == AdaptationType::kRestart;
+  };
+  if (a.component != b.component) return false;
+  if (syntax::names_parameter(a.type) && syntax::names_parameter(b.type))
+    return a.parameter == b.parameter;
+  return (is_of_lifecycle(a) && is_of_lifecycle(b)) ||
+         (a.type == AdaptationType::kChangeMode && b.type == AdaptationType::kChangeMode);
+}
+
+// The value that it would set brings back a more critical failure.
+std::optional<Invalid> barred_by_another(const Strategy& strategy, const Knowledge& knowledge) {
+  const RuleSet& rules = knowledge.rules;
+  for (const StrategyId id : rules[strategy.rule].strategies) {
+    const auto& bar = knowledge.states.bar_of(id);
+    if (!bar || &rules[id] != &strategy) continue;
+    for (const Adaptation& a : strategy.adaptations) {
+      const bool is_pulled =
+          std::ranges::any_of(rules[bar->by].adaptations,
+                              [&](const Adaptation& held) { return is_set_by_both(a, held); });
+      if (is_pulled && knowledge.components[a.component].node_seen <= bar->since)
+        return Invalid{a.component, rules[a.component].name + " was set by " + rules[bar->by].name +
+                                        ", and " + rules[rules[bar->by].rule].name +
+                                        " would come back"};
+    }
+  }
+  return std::nullopt;
+}
+
+// A last resort has set what the strategy would set, and its failure is still there.
+std::optional<Invalid> held_by_last_resort(const Strategy& strategy, const Knowledge& knowledge) {
+  std::optional<Invalid> invalid;
+  knowledge.states.for_each_standing([&](StrategyId standing) {
+    const Strategy& last = knowledge.rules[standing];
+    for (const Adaptation& a : strategy.adaptations) {
+      const bool is_held = std::ranges::any_of(
+          last.adaptations, [&](const Adaptation& held) { return is_set_by_both(a, held); });
+      if (!invalid && is_held)
+        invalid =
+            Invalid{a.component, knowledge.rules[a.component].name + " was set by " + last.name +
+                                     ", the last resort of " + knowledge.rules[last.rule].name};
+    }
+  });
+  return invalid;
+}
+
 }  // namespace
 
 std::optional<Invalid> invalidity(const Strategy& strategy, const Knowledge& knowledge) {
-  const bool is_at_last_resort = knowledge.states[strategy.rule].search.is_at_last_resort;
-  if (strategy.is_last_resort != is_at_last_resort) {
-    return Invalid{strategy.adaptations.front().component,
-                   is_at_last_resort ? "only the last resort is left" : "it is the last resort"};
-  }
+  if (strategy.is_last_resort)
+    return Invalid{strategy.adaptations.front().component, "it is the last resort"};
+  if (auto held = held_by_last_resort(strategy, knowledge)) return held;
+  if (auto barred = barred_by_another(strategy, knowledge)) return barred;
+  return impossibility(strategy, knowledge);
+}
+
+std::optional<Invalid> impossibility(const Strategy& strategy, const Knowledge& knowledge) {
   if (!strategy.when.empty()) {
     const Slot when = evaluate(strategy.when, knowledge.signals.slots());
     if (!when.known)

@@ -12,7 +12,9 @@
 //   - stop: it is there.
 // Of a component on a computer that is not heard, or cannot be asked, nothing can be done.
 // A strategy is valid if each of its adaptations is, given the ones before it, its WHEN condition
-// is true, and it is a LASTRESORT just when nothing else is left.
+// is true, no last resort whose failure is still there has set the same thing, and it was not seen to bring back a
+// more critical failure (analyze/parameter_fights.h). A last resort is never
+// valid for a planner: the manager begins it.
 #pragma once
 
 #include <optional>
@@ -31,5 +33,8 @@ struct Invalid {
 
 // Nothing if the strategy is valid.
 std::optional<Invalid> invalidity(const Strategy& strategy, const Knowledge& knowledge);
+
+// Likewise of what alone keeps a last resort: it cannot be carried out, or its WHEN is not true.
+std::optional<Invalid> impossibility(const Strategy& strategy, const Knowledge& knowledge);
 
 }  // namespace culprit::plan

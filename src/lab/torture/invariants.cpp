@@ -36,6 +36,8 @@ Invariants::Invariants(const RuleSet& rules, const Scenario& scenario)
       is_bayes_(!scenario.uses_paper_planner),
       is_seen_true_(is_seen_as_it_is(scenario)),
       left_dead_since_(rules.rules.size(), kNever),
+      last_resort_(rules.rules.size(), kLongAgo),
+      last_resort_missing_(rules.rules.size(), kNever),
       dead_since_(rules.components.size(), kNever),
       searches_(rules.rules.size()),
       healthy_(scenario.governor.limits.backoff.healthy),
@@ -51,6 +53,7 @@ Invariants::Invariants(const RuleSet& rules, const Scenario& scenario)
 
 void Invariants::begin(const Manager& manager) {
   std::fill(left_dead_since_.begin(), left_dead_since_.end(), kNever);
+  std::fill(last_resort_missing_.begin(), last_resort_missing_.end(), kNever);
   beliefs_.clear();
   for (std::size_t s = 0; s < rules_.strategies.size(); ++s)
     beliefs_.push_back(manager.knowledge().beliefs[StrategyId(s)]);
@@ -74,6 +77,12 @@ void Invariants::check(const Manager& manager, Time now, std::span<const Command
       if (const auto* run = std::get_if<RunStrategy>(&what)) ordered_.insert(run->strategy);
       if (const auto* silence = std::get_if<Silence>(&what)) silenced_.insert(silence->what);
       if (const auto* lift = std::get_if<LiftSilence>(&what)) silenced_.erase(lift->what);
+    } else if (const auto* done = std::get_if<LastResortDone>(&event.what)) {
+      last_resort_[rules_[done->strategy].rule.index] = event.at;
+    } else if (const auto* failed = std::get_if<StrategyFailed>(&event.what)) {
+      // It is begun again with back-off.
+      const Strategy& strategy = rules_[failed->strategy];
+      if (strategy.is_last_resort) last_resort_[strategy.rule.index] = event.at;
     } else if (const auto* ended = std::get_if<SilenceEnded>(&event.what)) {
       silenced_.erase(ended->what);
     }
@@ -81,6 +90,7 @@ void Invariants::check(const Manager& manager, Time now, std::span<const Command
   note_the_dead(manager, now);
   check_commands(commands, truth, now);
   check_beliefs(manager, now);
+  check_last_resorts(manager, now);
   if (is_bayes_ && manager.hears()) check_the_dead(manager, now);
   steps_at_last_ = now == last_ ? steps_at_last_ + 1 : 0;
   last_ = now;
@@ -122,11 +132,15 @@ void Invariants::on(const Manager& manager, const StrategyChosen& chosen, const 
                     Time at) {
   const Strategy& strategy = rules_[chosen.strategy];
   const std::string name = rules_[strategy.rule].name + "." + strategy.name;
-  spend(overall_, "overall", at);
-  spend(kinds_[static_cast<std::size_t>(kind_of(strategy))], "of its kind", at);
+  if (strategy.is_last_resort) {
+    last_resort_[strategy.rule.index] = at;
+  } else {
+    spend(overall_, "overall", at);
+    spend(kinds_[static_cast<std::size_t>(kind_of(strategy))], "of its kind", at);
+  }
   for (const ComponentId component : strategy.components) {
     const std::string& where = rules_[component].name;
-    spend(components_[component.index], "of " + where, at);
+    if (!strategy.is_last_resort) spend(components_[component.index], "of " + where, at);
     if (silenced_.contains(component)) fail(at, name + " is begun at the silenced " + where);
     int busy = 0;
     for (const RuleId id : manager.knowledge().states.active()) {
@@ -152,7 +166,7 @@ void Invariants::on(const Manager& manager, const StrategyChosen& chosen, const 
   check_replacement(manager, strategy, truth, at);
   for (const ComponentId component : strategy.components) {
     const ComponentState& state = manager.knowledge().components[component];
-    if (state.in_graph && state.namesakes > 0)
+    if (state.in_graph && state.namesakes > 0 && !strategy.is_last_resort)
       fail(at, name + " is begun though another node has the name of " + rules_[component].name);
   }
   for (const ComponentId component : strategy.components) {
@@ -161,7 +175,8 @@ void Invariants::on(const Manager& manager, const StrategyChosen& chosen, const 
   }
   if (!manager.hears()) fail(at, name + " is begun though the robot cannot be heard");
   if (is_paused_) fail(at, name + " is begun while paused");
-  if (truth.is_moving) fail(at, name + " is begun though the robot moves");
+  if (truth.is_moving && !strategy.is_last_resort)
+    fail(at, name + " is begun though the robot moves");
 }
 
 bool Invariants::is_downstream_of_an_attempt(const Knowledge& knowledge, const Strategy& strategy,
@@ -226,6 +241,29 @@ bool Invariants::is_given_up(const Manager& manager, ComponentId component, Time
     return states.awaits_person(rule) && rules_[rule].components.front() == component &&
            rules_[rule].name.starts_with("Silent") && states[rule].first_detected() <= failed;
   });
+}
+
+void Invariants::check_last_resorts(const Manager& manager, Time now) {
+  const Knowledge& knowledge = manager.knowledge();
+  const auto is_held = [&](RuleId rule, ComponentId component) {
+    return is_paused_ || !manager.hears() || silenced_.contains(rule) ||
+           silenced_.contains(component) || knowledge.components[component].alive != true;
+  };
+  for (std::size_t s = 0; s < rules_.strategies.size(); ++s) {
+    const Strategy& strategy = rules_.strategies[s];
+    if (!strategy.is_last_resort) continue;
+    const RuleState& state = knowledge.states[strategy.rule];
+    const Slot& trigger = state.detection.trigger;
+    const bool is_due = !state.last_resort && state.phase != RulePhase::kQuiet &&
+                        (!trigger.known || trigger.b) &&
+                        now >= later(state.failing_since, strategy.within) &&
+                        last_resort_[strategy.rule.index] < state.failing_since;
+    Time& missing = last_resort_missing_[strategy.rule.index];
+    const bool is_missing = is_due && !is_held(strategy.rule, strategy.components.front());
+    missing = is_missing ? std::min(missing, now) : kNever;
+    if (is_missing && now - missing > 2 * rules_.cycle)
+      fail(now, rules_[strategy.rule].name + "." + strategy.name + " is not begun WITHIN its time");
+  }
 }
 
 // A decision comes at once, or, if the failure has to wait for anything, once in a cycle.

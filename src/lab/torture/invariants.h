@@ -8,8 +8,9 @@
 //   while the robot is known to move nothing is begun.
 // - A component is adapted by one strategy at a time, and no planner begins one downstream of what
 //   is adapted for a failure at least as critical; bayes not even for a lesser one, unless that
-//   only waits for its verdict. What a person ordered is the person's, and a last resort never
-//   waits.
+//   only waits for its verdict. What a person ordered is the person's.
+// - A last resort is begun WITHIN its time of the detection, whatever holds the other strategies, where
+//   its component can do it: only a person's pause or silence holds it. It spends no budget.
 // - With bayes, the repair of a component that the operating system knows to be dead begins within
 //   one decision of its detection where the governor allows, whatever the levels.
 // - With bayes, no process is replaced for a silence that a dead or exhausted component which it
@@ -79,6 +80,7 @@ class Invariants {
                          Time at);
   void note_the_dead(const Manager& manager, Time now);
   void count_attempts(const Event& event);
+  void check_last_resorts(const Manager& manager, Time now);
   void check_the_dead(const Manager& manager, Time now);
   bool is_given_up(const Manager& manager, ComponentId component, Time failed) const;
   bool is_excused(const Manager& manager, StrategyId strategy) const;
@@ -92,7 +94,9 @@ class Invariants {
   bool is_seen_true_;                            // what is observed is so
   std::vector<std::vector<std::size_t>> needs_;  // by component: all that it needs
   std::vector<Time>
-      left_dead_since_;           // by rule: its component is dead, and nothing is done; kNever
+      left_dead_since_;            // by rule: its component is dead, and nothing is done; kNever
+  std::vector<Time> last_resort_;  // by rule: when its last resort was begun, or took effect
+  std::vector<Time> last_resort_missing_;  // by rule: since when it should have been begun; kNever
   std::vector<Time> dead_since_;  // by component: that it is known to be dead; kNever: it is not
   // By rule: strategies that were executed since it was proven gone, and when it went away last.
   struct Search {
@@ -107,8 +111,8 @@ class Invariants {
   std::vector<Budget> restarts_;  // by component
   std::vector<Belief> beliefs_;
   std::set<Silenceable> silenced_;
-  std::set<StrategyId> ordered_;    // by a person
-  std::set<StrategyId> begun_now_;  // in this step so far
+  std::set<StrategyId> ordered_;           // by a person
+  std::set<StrategyId> begun_now_;         // in this step so far
   bool is_paused_ = false;
   Time last_{};
   int steps_at_last_ = 0;

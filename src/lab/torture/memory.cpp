@@ -44,7 +44,7 @@ void Memory::note(const Event& event) {
   past_.push_back(event);
   if (const auto rule = ended_by(event, rules_)) return close(*rule);
   if (const auto* chosen = std::get_if<StrategyChosen>(&event.what)) {
-    if (chosen->dry_run) return;
+    if (chosen->dry_run || rules_[chosen->strategy].is_last_resort) return;
     close(rules_[chosen->strategy].rule);
     open_.emplace_back().strategy = chosen->strategy;
   } else if (const auto* done = std::get_if<AdaptationDone>(&event.what)) {
@@ -55,6 +55,7 @@ void Memory::note(const Event& event) {
 }
 
 void Memory::note(const Command& command) {
+  if (rules_[command.purpose.strategy].is_last_resort) return;
   Interrupted* each = open(command.purpose.strategy);
   // A person may have ordered it without a failure: then nobody chose it.
   if (each == nullptr) {

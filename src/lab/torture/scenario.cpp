@@ -194,8 +194,12 @@ std::string rules_of(const Scenario& scenario) {
             " restart 5\n";
     text += "STRATEGY redeploy " + std::to_string(part.redeploy_percent) + " 10\nADAPTATION " + c +
             " redeploy 10\n";
-    if (part.has_last_resort)
-      text += "STRATEGY safe 100 10 LASTRESORT\nADAPTATION " + c + " set_parameter safe true 1\n";
+    if (part.has_last_resort) {
+      constexpr std::array kWithin = {"", " WITHIN 500ms", " WITHIN 5s"};
+      text += "STRATEGY safe 100 10 LASTRESORT" +
+              std::string(kWithin[static_cast<std::size_t>(part.restart_percent) % 3]) +
+              "\nADAPTATION " + c + " set_parameter safe true 1\n";
+    }
     text += "RULE Drift" + n + "\nPOLICIES NON_CRITICAL ATTEMPTS 4\nTRIGGER drift" + n +
             " > 0.5\nSTRATEGY tune 80 10\nADAPTATION " + c + " set_parameter drift 0.0 5\n";
   }

@@ -68,7 +68,7 @@ TEST(Torture, MishapsLeaveTheirMark) {
                            "is held back",
                            "is exhausted",
                            "waits for approval",
-                           "the last resort is left",
+                           "its last resort is due",
                            "is left where it is",
                            "is silenced",
                            "INTERLOCK moving == false is false",

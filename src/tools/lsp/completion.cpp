@@ -121,6 +121,8 @@ class Completion {
                  : keywords({"FOR", "HOLD", "COOLDOWN", "ATTEMPTS", "ON_CHANGE", "REPORT"});
     }
     if (statement == "STRATEGY" && words_.size() == 4) return keywords({"WHEN", "LASTRESORT"});
+    if (statement == "STRATEGY" && words_.back() == "LASTRESORT")
+      return keywords({"WITHIN", "WHEN"});
     if (statement == "DEPENDENCY") {
       if (words_.size() == 2) return keywords({"ON"});
       return components();

@@ -344,14 +344,13 @@ TEST(BayesPlanner, LetsALesserRootUpstreamOfTheDeadActAtOnce) {
   }
 }
 
-TEST(BayesPlanner, StopsSafelyThoughAnExhaustedFailureExplainsIt) {
+TEST(BayesPlanner, LeavesLastResortsToTheManager) {
   Scene scene(failure_of("a", "A") + failure_of("b", "B") +
               "STRATEGY safe 99 10 LASTRESORT\nADAPTATION b set_parameter speed 0 1\n");
   scene.link("a", "b").exhaust("A").fail("B");
   EXPECT_EQ(scene.plan(kFewRedeployments), "");
   EXPECT_EQ(scene.candidate("B.restart").excluded, Condition::kDependency);
-  scene->states.state(scene.rule("B")).search.is_at_last_resort = true;
-  EXPECT_EQ(scene.plan(kFewRedeployments), "B.safe");
+  EXPECT_EQ(scene.candidate("B.safe").excluded, Condition::kInvalid);
 }
 
 // Another source restores the function at once; the repair of the cause goes on beside it.

@@ -1,4 +1,4 @@
-#include "analyze/undoes.h"
+#include "knowledge/undoes.h"
 
 #include <gtest/gtest.h>
 

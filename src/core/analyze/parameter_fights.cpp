@@ -1,0 +1,36 @@
+#include "analyze/parameter_fights.h"
+
+namespace culprit {
+
+ParameterFights::ParameterFights(const Knowledge& knowledge, RuleStates& states)
+    : knowledge_(knowledge), states_(states), setters_(knowledge.rules.parameters.size()) {}
+
+void ParameterFights::took_effect(StrategyId strategy) {
+  for (const Adaptation& adaptation : knowledge_.rules[strategy].adaptations) {
+    if (!syntax::names_parameter(adaptation.type)) continue;
+    Setters& setters = setters_[adaptation.parameter.index];
+    if (setters.last == strategy) continue;
+    setters = {strategy, setters.last};
+  }
+}
+
+void ParameterFights::detected(RuleId rule, Time now) {
+  const RuleSet& rules = knowledge_.rules;
+  // The failure may be back before the other's change was read back.
+  for (const RuleId id : states_.active()) {
+    const auto& attempt = states_[id].attempt;
+    if (attempt && attempt->first_change != kNever) took_effect(attempt->strategy);
+  }
+  for (const StrategyId own : rules[rule].strategies) {
+    for (const Adaptation& adaptation : rules[own].adaptations) {
+      if (!syntax::names_parameter(adaptation.type)) continue;
+      const Setters& setters = setters_[adaptation.parameter.index];
+      if (!setters.last || setters.before != own) continue;
+      const RuleId other = rules[*setters.last].rule;
+      if (rules[other].policies.criticality < rules[rule].policies.criticality)
+        states_.bar(*setters.last, {own, now});
+    }
+  }
+}
+
+}  // namespace culprit

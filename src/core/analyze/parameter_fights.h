@@ -1,0 +1,37 @@
+// Two rules that pull one parameter to and fro.
+//
+// A strategy sets a parameter and resolves its failure; a strategy of a less critical rule then sets
+// the same parameter; the failure is back. Two such turns are evidence enough: from then on the
+// less critical strategy is barred, and the more critical rule's value stays, until the parameter's process
+// begins anew (plan/validity.h).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "knowledge/knowledge.h"
+
+namespace culprit {
+
+class ParameterFights {
+ public:
+  // Both must outlive it.
+  ParameterFights(const Knowledge& knowledge, RuleStates& states);
+
+  // The strategy's adaptations took effect, or are about to.
+  void took_effect(StrategyId strategy);
+  // The rule's failure was detected, perhaps once more.
+  void detected(RuleId rule, Time now);
+
+ private:
+  struct Setters {
+    std::optional<StrategyId> last;
+    std::optional<StrategyId> before;  // another one
+  };
+
+  const Knowledge& knowledge_;
+  RuleStates& states_;
+  std::vector<Setters> setters_;  // by parameter
+};
+
+}  // namespace culprit
