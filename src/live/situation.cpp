@@ -77,9 +77,20 @@ std::string time_until(Time at, Time now) {
 }
 
 // What comes next, and when, of a failure that something is being done about.
-std::string next_of(const RuleState& state, const Knowledge& knowledge) {
+std::string next_of_exhausted(RuleId rule, const Knowledge& knowledge) {
+  const auto& strategies = knowledge.rules[rule].strategies;
+  const bool goes_on = std::any_of(strategies.begin(), strategies.end(), [&](StrategyId id) {
+    return knowledge.only_starts_the_gone(knowledge.rules[id]);
+  });
+  if (!goes_on) return "nothing more is tried: a person must look";
+  return "a person must look; the process that is gone is started again in " +
+         time_until(knowledge.states[rule].search.retry_at, knowledge.now);
+}
+
+std::string next_of(RuleId rule, const Knowledge& knowledge) {
   const RuleSet& rules = knowledge.rules;
-  if (state.phase == RulePhase::kExhausted) return "nothing more is tried: a person must look";
+  const RuleState& state = knowledge.states[rule];
+  if (state.phase == RulePhase::kExhausted) return next_of_exhausted(rule, knowledge);
   if (state.attempt) {
     const std::string& strategy = rules[state.attempt->strategy].name;
     switch (state.attempt->stage) {
@@ -275,7 +286,7 @@ std::vector<Incident> Situation::incidents(const Manager& manager) const {
     incident.headline = headline_of(incident, !of(incident.root).suspects.empty(), knowledge);
     incident.doing = doing_about(incident, manager);
     incident.next = incident.host.empty()
-                        ? next_of(knowledge.states[incident.root], knowledge)
+                        ? next_of(incident.root, knowledge)
                         : "a person must look: is it on, and connected? Then it goes on by itself";
   }
   std::stable_sort(merged.begin(), merged.end(), [](const Incident& a, const Incident& b) {

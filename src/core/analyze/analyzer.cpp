@@ -92,7 +92,37 @@ std::vector<RuleId> Analyzer::plannable(Time now) const {
     const bool wants_help = state.phase == RulePhase::kFailing && is_true(state.detection.trigger);
     if (wants_help && state.search.retry_at <= now && !state.is_advised) ids.push_back(id);
   }
+  for (const RuleId id : knowledge_.states.exhausted()) {
+    const RuleState& state = knowledge_.states[id];
+    const bool is_due = goes_on(id) && state.search.retry_at <= now && !state.is_advised;
+    if (is_due) ids.insert(std::ranges::upper_bound(ids, id), id);
+  }
   return ids;
+}
+
+bool Analyzer::goes_on(RuleId id) const {
+  if (!knowledge_.states.awaits_person(id)) return false;
+  return std::ranges::any_of(knowledge_.rules[id].strategies, [&](StrategyId strategy) {
+    const Strategy& each = knowledge_.rules[strategy];
+    return !each.is_last_resort && knowledge_.only_starts_the_gone(each);
+  });
+}
+
+bool Analyzer::anything_to_do(Time now) const {
+  const auto is_open = [&](RuleId id) {
+    return knowledge_.states[id].last_resort || next_last_resort(id) ||
+           (goes_on(id) && knowledge_.states[id].search.retry_at <= now);
+  };
+  return !knowledge_.states.active().empty() ||
+         std::ranges::any_of(knowledge_.states.exhausted(), is_open);
+}
+
+Time Analyzer::next_start() const {
+  Time next = kNever;
+  for (const RuleId id : knowledge_.states.exhausted()) {
+    if (goes_on(id)) next = std::min(next, knowledge_.states[id].search.retry_at);
+  }
+  return next;
 }
 
 void Analyzer::remember(const History& past) {
@@ -289,7 +319,7 @@ void Analyzer::detect(RuleId id, Time now) {
   fights_.detected(id, now);
   if (state.search.times == kFlaps) write_.events.tell(now, FailureFlaps{id, state.search.times});
   if (is_said_to_be_exhausted) {
-    write_.states.enter(id, RulePhase::kExhausted);
+    stay_exhausted(id, now);
   } else if (state.search.is_exhausted) {
     exhaust(id, now);
   } else {
@@ -582,7 +612,11 @@ void Analyzer::exhaust_if_spent(RuleId id, Time now) {
 
 void Analyzer::give_up(RuleId id, Time now) {
   turn_to_last_resort(id, now);
-  exhaust(id, now);
+  if (knowledge_.states[id].search.is_exhausted) {
+    stay_exhausted(id, now);
+  } else {
+    exhaust(id, now);
+  }
 }
 
 // ---- last resorts
@@ -691,8 +725,18 @@ std::optional<StrategyId> Analyzer::last_resort_that_helped(RuleId id) const {
 
 void Analyzer::exhaust(RuleId id, Time now) {
   write_.states.state(id).search.is_exhausted = true;
-  write_.states.enter(id, RulePhase::kExhausted);
   write_.events.tell(now, RuleExhausted{id});
+  stay_exhausted(id, now);
+}
+
+// What is known to be gone is started again after a while (goes_on()).
+void Analyzer::stay_exhausted(RuleId id, Time now) {
+  Search& search = write_.states.state(id).search;
+  const int beyond = search.attempts - knowledge_.rules[id].policies.attempts;
+  const Duration pause = kFirstPauseOfStarts * (1 << std::clamp(beyond, 0, 10));
+  search.retry_at = later(now, std::min<Duration>(pause, kLongestPauseOfStarts));
+  forget_tried(id, search);
+  write_.states.enter(id, RulePhase::kExhausted);
 }
 
 // When the rule must be looked at next if nothing that it reads changes.

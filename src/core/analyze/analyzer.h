@@ -18,7 +18,8 @@
 // middleware can have found what it reads, and who reads it (kInputs at most).
 //
 // A round of strategies is followed by a back-off that doubles each time. After ATTEMPTS strategies
-// (or as many rounds without any valid strategy) the rule is exhausted.
+// (or as many rounds without any valid strategy) the rule is exhausted. A process that is known to be gone
+// is started again all the same, for ever, with a back-off of up to five minutes, and teaches nothing.
 //
 // LASTRESORT strategies are no part of the rounds. They are due WITHIN their time of the detection,
 // or earlier if no other strategy can begin or help by then, and go beside whatever is under way. They
@@ -55,6 +56,9 @@ class Analyzer {
  public:
   static constexpr Duration kFirstBackoff = std::chrono::seconds(1);
   static constexpr Duration kLongestBackoff = std::chrono::seconds(60);
+  // Between two starts of what is known to be gone, once the rule is exhausted: doubled each time.
+  static constexpr Duration kFirstPauseOfStarts = std::chrono::seconds(10);
+  static constexpr Duration kLongestPauseOfStarts = std::chrono::minutes(5);
   // A failing rule whose trigger is unknown for longer is no longer called failing: nobody can see
   // whether it is.
   static constexpr Duration kLostAfter = std::chrono::seconds(30);
@@ -99,8 +103,13 @@ class Analyzer {
   // Failures that a planner should decide about now, ascending: there, and no strategy under way,
   // no back-off.
   std::vector<RuleId> plannable(Time now) const;
-  // Whether there is any, for steps where nothing is wrong.
-  bool anything_active() const { return !knowledge_.states.active().empty(); }
+  // Whether anything may have to be done, for steps where nothing is wrong.
+  bool anything_to_do(Time now) const;
+  // Is the rule exhausted, and a strategy of it would only start processes that are known to be gone?
+  // That goes on, with back-off.
+  bool goes_on(RuleId id) const;
+  // When the first of these is due; kNever if none is.
+  Time next_start() const;
 
   // The rule's strategy under way ends without a verdict.
   void abandon(RuleId id, Time now);
@@ -162,6 +171,7 @@ class Analyzer {
   void exhaust_if_spent(RuleId id, Time now);
   bool has_components_back(const Attempt& attempt) const;
   void exhaust(RuleId id, Time now);
+  void stay_exhausted(RuleId id, Time now);
   bool went_away_before(const Attempt& attempt) const;
   void note_latency(RuleId id, Time effective);
   void note_coincidence(RuleId id);

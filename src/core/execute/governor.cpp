@@ -373,7 +373,10 @@ void Governor::began(StrategyId strategy, Time now) {
 
 bool Governor::is_open(const Question& question) const {
   const RuleState& state = knowledge_.states[knowledge_.rules[question.strategy].rule];
-  return state.phase == RulePhase::kFailing && state.failing_since == question.failing_since;
+  const bool is_open = state.phase == RulePhase::kFailing ||
+                       (state.phase == RulePhase::kExhausted &&
+                        knowledge_.only_starts_the_gone(knowledge_.rules[question.strategy]));
+  return is_open && state.failing_since == question.failing_since;
 }
 
 void Governor::advance(Time now) {

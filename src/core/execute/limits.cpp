@@ -60,6 +60,8 @@ std::optional<Limits::Limit> exceeded(const IntensityBudget& budget, Restraint r
                        budget.available()};
 }
 
+constexpr Duration kStartsOfTheGone = std::chrono::minutes(5);  // at most, beyond `restarts`
+
 }  // namespace
 
 StrategyKind kind_of(const Strategy& strategy) {
@@ -106,10 +108,18 @@ std::optional<Limits::Limit> Limits::on(StrategyId id, Time now) const {
   for (const Adaptation& adaptation : strategy.adaptations) {
     if (!begins_anew(adaptation)) continue;
     const std::string& name = knowledge_.rules[adaptation.component].name;
-    if (auto limit =
-            exceeded(components_[adaptation.component.index].begun_anew, Restraint::kRestarts,
-                     {"restart of " + name, "restarts of " + name}, now))
-      return limit;
+    const PerComponent& state = components_[adaptation.component.index];
+    auto limit = exceeded(state.begun_anew, Restraint::kRestarts,
+                          {"restart of " + name, "restarts of " + name}, now);
+    const bool was_told = knowledge_.states[strategy.rule].search.is_exhausted;
+    if (limit && was_told && launches(adaptation) &&
+        knowledge_.is_known_gone(adaptation.component)) {
+      // A person was told, and its start harms nothing: it is only delayed.
+      limit->restraint = Restraint::kBackoff;
+      limit->until = std::min(limit->until, later(state.restarted, kStartsOfTheGone));
+      if (limit->until <= now) limit.reset();
+    }
+    if (limit) return limit;
   }
   for (const Adaptation& adaptation : strategy.adaptations) {
     if (!restarts(adaptation)) continue;

@@ -40,7 +40,9 @@ class Limits {
     Intensity overall{};
     Intensity per_kind{};
     Intensity per_component{};
-    Intensity restarts{};  // of a component, by whatever strategies; beyond, a person must look
+    // Of a component, by whatever strategies. Beyond, a person must look; a process that is known to be
+    // gone is started every five minutes.
+    Intensity restarts{};
     Backoff backoff{};
     Duration quiet_after_launch{};  // for a component that was started
     // For what depends on a component that was started, or came back by other hands: it has to find the

@@ -112,6 +112,19 @@ KnownRobot Knowledge::known_robot() const {
   return known;
 }
 
+bool Knowledge::is_known_gone(ComponentId component) const {
+  const ComponentState& state = components[component];
+  return state.pid != 0 && state.process == ProcessState::kGone && state.alive == false;
+}
+
+bool Knowledge::only_starts_the_gone(const Strategy& strategy) const {
+  return std::ranges::all_of(strategy.adaptations, [&](const Adaptation& adaptation) {
+    const bool starts =
+        adaptation.type == AdaptationType::kRedeploy || adaptation.type == AdaptationType::kStart;
+    return starts && rules[adaptation.component].can_start() && is_known_gone(adaptation.component);
+  });
+}
+
 Time Knowledge::began(ComponentId component) const {
   Time last = components[component].node_seen;
   for (const ComponentId upstream : graph.upstream(component))

@@ -62,6 +62,11 @@ struct Knowledge {
   // of sightings.
   KnownRobot known_robot() const;
 
+  // The operating system says that its process is gone.
+  bool is_known_gone(ComponentId component) const;
+  // Does the strategy start such processes, and nothing else? That harms nothing.
+  bool only_starts_the_gone(const Strategy& strategy) const;
+
   // When the component, or something that it depends on, last joined the graph.
   Time began(ComponentId component) const;
 

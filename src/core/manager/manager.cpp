@@ -97,11 +97,11 @@ std::vector<Command> Manager::step(Time now, std::span<const Observation> observ
   std::vector<Command> commands;
   if (!hears_) {
     next_plan_ = kNever;
-  } else if (analyzer_.anything_active() || is_any_last_resort_left()) {
+  } else if (analyzer_.anything_to_do(now_)) {
     react(commands);
   } else {
     executor_.advance(now_, commands);  // lets go of what has just succeeded
-    next_plan_ = kNever;
+    next_plan_ = analyzer_.next_start();
   }
   governor_.note(knowledge_.events);
   return commands;
@@ -295,14 +295,6 @@ bool touch_one_thing(const Strategy& last_resort, const Strategy& other) {
 
 }  // namespace
 
-// Each is waited for until it took effect, also when its rule is exhausted.
-bool Manager::is_any_last_resort_left() const {
-  const auto& exhausted = knowledge_.states.exhausted();
-  return std::ranges::any_of(exhausted, [&](RuleId id) {
-    return knowledge_.states[id].last_resort || analyzer_.next_last_resort(id);
-  });
-}
-
 void Manager::begin_last_resorts(Time now) {
   std::vector<RuleId> rules;
   for (const auto* list : {&knowledge_.states.active(), &knowledge_.states.exhausted()}) {
@@ -414,7 +406,8 @@ std::vector<Decision> Manager::allowed_plan(const std::vector<RuleId>& failures,
 // While a failure waits for its turn it is planned anew once per cycle, when its back-off ends, and when
 // something is no longer withheld.
 Time Manager::next_planning(Time now) const {
-  Time next = kNever;
+  Time next = analyzer_.next_start();
+  if (next <= now) next = later(now, knowledge_.rules.cycle);
   for (const RuleId id : knowledge_.states.active()) {
     const RuleState& state = knowledge_.states[id];
     if (state.phase != RulePhase::kFailing || state.is_advised) continue;

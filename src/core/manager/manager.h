@@ -93,7 +93,6 @@ class Manager : public ManagingSystem {
   void abandon_all(const std::string& reason, Time now);
   void make_way_for(StrategyId strategy, Time now);
   void plan(Time now);
-  bool is_any_last_resort_left() const;
   void begin_last_resorts(Time now);
   void begin_last_resort(StrategyId strategy, Time now);
   void go_before_others(StrategyId last_resort, Time now);

@@ -20,7 +20,8 @@ bool may_bring_back(RuleId rule, ComponentId component, const Knowledge& knowled
   return std::any_of(strategies.begin(), strategies.end(), [&](StrategyId id) {
     const Strategy& strategy = knowledge.rules[id];
     if (!brings_back(strategy, component)) return false;
-    return knowledge.states.awaits_person(rule) || !invalidity(strategy, knowledge);
+    return knowledge.states.awaits_person(rule) || knowledge.states.attempt_of(id) != nullptr ||
+           !invalidity(strategy, knowledge);
   });
 }
 

@@ -11,6 +11,7 @@
 //   - start: it has a LAUNCH command and is not there;
 //   - stop: it is there.
 // Of a component on a computer that is not heard, or cannot be asked, nothing can be done.
+// For an exhausted rule only the start of what is known to be gone makes sense.
 // A strategy is valid if each of its adaptations is, given the ones before it, its WHEN condition
 // is true, no last resort whose failure is still there has set the same thing, and it was not seen to bring back a
 // more critical failure (analyze/parameter_fights.h). A last resort is never

@@ -110,6 +110,7 @@ void Invariants::count_attempts(const Event& event) {
   const auto count = [&](StrategyId strategy) {
     const RuleId rule = rules_[strategy].rule;
     if (ordered_.contains(strategy) || rules_[strategy].is_last_resort) return;
+    if (started_the_gone_.contains(strategy)) return;  // that goes on for ever
     if (++searches_[rule.index].attempts > rules_[rule].policies.attempts)
       fail(event.at, rules_[rule].name + " is treated more often than its ATTEMPTS allow");
   };
@@ -132,6 +133,12 @@ void Invariants::on(const Manager& manager, const StrategyChosen& chosen, const 
                     Time at) {
   const Strategy& strategy = rules_[chosen.strategy];
   const std::string name = rules_[strategy.rule].name + "." + strategy.name;
+  const bool starts_the_gone =
+      replaces(strategy) && std::ranges::all_of(strategy.components, [&](ComponentId c) {
+        return is_dead(manager.knowledge().components[c]);
+      });
+  started_the_gone_.erase(chosen.strategy);
+  if (starts_the_gone) started_the_gone_.insert(chosen.strategy);
   if (strategy.is_last_resort) {
     last_resort_[strategy.rule.index] = at;
   } else {
@@ -155,7 +162,7 @@ void Invariants::on(const Manager& manager, const StrategyChosen& chosen, const 
     const bool begins_anew = adaptation.type == AdaptationType::kRestart ||
                              adaptation.type == AdaptationType::kRedeploy ||
                              adaptation.type == AdaptationType::kStart;
-    if (begins_anew)
+    if (begins_anew && !starts_the_gone)
       spend(restarts_[adaptation.component.index],
             "of restarts of " + rules_[adaptation.component].name, at);
   }

@@ -2,7 +2,8 @@
 //
 // - No budget is ever exceeded: no interval holds more strategies than allowed, in total, of a
 //   kind, at a component. Counted here anew, from the events.
-// - No component is restarted more often than its bound allows, whichever rules ask for it.
+// - No component is restarted more often than its bound allows, whichever rules ask for it, unless its
+//   process is known to be gone.
 // - No process is started while the component's old one is there.
 // - While paused nothing is asked that changes anything; at a silenced component nothing is begun;
 //   while the robot is known to move nothing is begun.
@@ -15,7 +16,8 @@
 //   one decision of its detection where the governor allows, whatever the levels.
 // - With bayes, no process is replaced for a silence that a dead or exhausted component which it
 //   needs, and that does not seem to need it in turn, explains.
-// - No failure is treated more often than its ATTEMPTS allow, until it was proven gone.
+// - No failure is treated more often than its ATTEMPTS allow, until it was proven gone; starts of what is
+//   known to be gone do not count.
 // - What was never there is not started.
 // - Nothing healthy is replaced, as long as samples and clocks are not tampered with.
 // - Nothing is begun while the robot cannot be heard.
@@ -113,6 +115,7 @@ class Invariants {
   std::set<Silenceable> silenced_;
   std::set<StrategyId> ordered_;           // by a person
   std::set<StrategyId> begun_now_;         // in this step so far
+  std::set<StrategyId> started_the_gone_;  // whose latest attempt began so
   bool is_paused_ = false;
   Time last_{};
   int steps_at_last_ = 0;

@@ -1,0 +1,112 @@
+// Processes that do not come up: what is known to be gone is started again and again.
+#include <gtest/gtest.h>
+
+#include "manager/test_robot.h"
+#include "plan/paper_planner.h"
+
+namespace culprit::test {
+namespace {
+
+std::unique_ptr<const Planner> paper_that_starts() { return std::make_unique<PaperPlanner>(); }
+std::unique_ptr<const Planner> bayes_that_starts() { return std::make_unique<BayesPlanner>(); }
+
+class Starts : public testing::TestWithParam<PlannerFactory> {
+ protected:
+  TestRobot driver(const std::string& clauses = "", Manager::Options options = {}) const {
+    TestRobot robot("COMPONENT camera NODE /camera LAUNCH \"camera\"" + clauses +
+                        "\nCOMPONENT device NODE /device\nRULE Silent\nPOLICIES ERROR ATTEMPTS "
+                        "3\nTRIGGER age(/rgb) > 300ms\n"
+                        "STRATEGY restart 50 10\nADAPTATION camera restart 5\n"
+                        "STRATEGY redeploy 90 10\nADAPTATION camera redeploy 5\n",
+                    GetParam()(), options);
+    robot.add("device");
+    robot.add("camera", {"device"}, "/rgb");
+    robot.discover();
+    robot.run_for(4s);
+    return robot;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(EachPlanner, Starts, testing::Values(paper_that_starts, bayes_that_starts),
+                         [](const auto& test) { return test.index == 0 ? "paper" : "bayes"; });
+
+std::size_t starts_of(const TestRobot& robot) { return robot.count_asked("camera: start process"); }
+
+// As Kubernetes does: at most five minutes apart, for ever; a person is told once.
+TEST_P(Starts, OfADeadProcessGoOnForEver) {
+  TestRobot robot = driver();
+  robot["camera"].dies_at_start = true;
+  robot.kill("camera");
+  robot.run_for(30min);
+  EXPECT_EQ(robot.count("Silent is exhausted"), 1u) << transcript(robot);
+  const std::size_t before = starts_of(robot);
+  EXPECT_GE(before, 8u) << transcript(robot);
+  EXPECT_LE(before, 20u) << transcript(robot);
+  robot.run_for(1h);
+  EXPECT_GE(starts_of(robot), before + 11) << transcript(robot);
+  EXPECT_LE(starts_of(robot), before + 13) << transcript(robot);
+  EXPECT_EQ(robot.count("Silent is exhausted"), 1u) << "told once" << transcript(robot);
+  robot["camera"].dies_at_start = false;
+  robot.run_for(6min);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  EXPECT_EQ(robot.count("Silent resolved by redeploy"), 1u) << transcript(robot);
+}
+
+TEST_P(Starts, BeyondTheBoundOfRestartsAreOnlyDelayed) {
+  Manager::Options options;
+  options.governor = Governor::Options::recommended();
+  options.governor.limits.restarts = {2, 100h};
+  TestRobot robot = driver("", options);
+  robot["camera"].dies_at_start = true;
+  robot.kill("camera");
+  robot.run_for(30min);
+  EXPECT_EQ(robot.count("Silent is exhausted"), 1u) << "a person is told" << transcript(robot);
+  EXPECT_GE(starts_of(robot), 6u) << transcript(robot);
+  robot["camera"].dies_at_start = false;
+  robot.run_for(11min);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+}
+
+// It crashes a second after each start.
+TEST_P(Starts, OfWhatCrashesAgainAndAgainGetFewer) {
+  Manager::Options options;
+  options.governor = Governor::Options::recommended();
+  TestRobot robot = driver("", options);
+  std::size_t after_ten = 0;
+  for (int s = 0; s < 3600; ++s) {
+    robot.run_for(1s);
+    if (robot.works("camera")) robot.kill("camera");
+    if (s == 600) after_ten = starts_of(robot);
+  }
+  EXPECT_EQ(robot.count("Silent is exhausted"), 1u) << transcript(robot);
+  EXPECT_GE(starts_of(robot), after_ten + 8) << transcript(robot);
+  EXPECT_LE(starts_of(robot), after_ten + 12) << transcript(robot);
+}
+
+TEST_P(Starts, TeachNothingOnceTheRuleIsExhausted) {
+  TestRobot robot = driver();
+  robot["camera"].dies_at_start = true;
+  robot.kill("camera");
+  robot.run_for(20min);
+  const Belief before = robot.manager().knowledge().beliefs[StrategyId(1)];
+  robot.run_for(2h);
+  EXPECT_EQ(robot.manager().knowledge().beliefs[StrategyId(1)], before);
+}
+
+// A process that runs and does not work is left to the person.
+TEST_P(Starts, OfARunningProcessEndWithItsAttempts) {
+  TestRobot robot = driver();
+  robot["camera"].fault = "a person";
+  robot.run_for(60s);
+  ASSERT_EQ(robot.count("Silent is exhausted"), 1u) << transcript(robot);
+  const std::size_t before = robot.asked.size();
+  robot.run_for(1h);
+  EXPECT_EQ(robot.asked.size(), before) << transcript(robot);
+  robot["camera"].fault.clear();
+  robot["camera"].start_time = 1s;
+  robot.kill("camera");
+  robot.run_for(20s);
+  EXPECT_TRUE(robot.works("camera")) << "now it is dead, and started" << transcript(robot);
+}
+
+}  // namespace
+}  // namespace culprit::test
