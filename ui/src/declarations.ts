@@ -63,6 +63,7 @@ export const kDeclarations: Record<string, Declaration> = {
       remap: { begins: 'image:=/camera/image', needs: ['in'] },
       respawned: { kind: 'flag' },
       required: { kind: 'flag', begins: true },
+      ready: { begins: '20s' },
       lifecycle: { of: ['self', 'managed', 'launcher'], begins: 'self' },
     },
     ways: { label: 'started by', all: kOwners },

@@ -9,7 +9,7 @@ import { expect, file, session } from './session.mjs'
 const kWanted = `ROBOT rover
 CYCLE 100ms
 INCLUDE "packs/driver.rules"
-COMPONENT arm NODE /arm LAUNCH "ros2 run arms arm" ENV "SPEED=2" SETUP /opt/arms/setup.bash CWD /srv REQUIRED LIFECYCLE managed
+COMPONENT arm NODE /arm LAUNCH "ros2 run arms arm" ENV "SPEED=2" SETUP /opt/arms/setup.bash CWD /srv REQUIRED READY 20s LIFECYCLE managed
 COMPONENT lidar NODE /lidar UNIT lidar.service USER HOST robot@rover2 LIFECYCLE launcher
 COMPONENT slam NODE /slam CONTAINER podman slam
 COMPONENT eye NODE /eye IN /perception PLUGIN detect::Eye PACKAGE detect PARAMETERS /etc/eye.yaml REMAP image:=/rgb
@@ -130,7 +130,7 @@ export async function writesEveryRow() {
       await choose(group(`Component ${name}`), 'say more', 'lifecycle')
       await choose(group(`Component ${name}`), 'lifecycle', lifecycle)
     }
-    await component('arm', 'culprit, by a command', { launch: 'ros2 run arms arm', env: 'SPEED=2', setup: '/opt/arms/setup.bash', cwd: '/srv', required: true, lifecycle: 'managed' })
+    await component('arm', 'culprit, by a command', { launch: 'ros2 run arms arm', env: 'SPEED=2', setup: '/opt/arms/setup.bash', cwd: '/srv', required: true, ready: '20s', lifecycle: 'managed' })
     await component('lidar', 'systemd', { unit: 'lidar.service', user: true, host: 'robot@rover2', lifecycle: 'launcher' })
     await component('slam', 'docker or podman', { container: 'podman slam' })
     await component('eye', 'a component container', { in: '/perception', plugin: 'detect::Eye', package: 'detect', parameters: '/etc/eye.yaml', remap: 'image:=/rgb' })

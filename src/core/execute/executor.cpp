@@ -99,9 +99,10 @@ void Executor::advance(Run& run, Time now, std::vector<Command>& commands) {
     run.is_undoing = true;
     run.pursuit.reset();
   }
-  if (stage == Attempt::Stage::kWaiting || stage == Attempt::Stage::kSuspended ||
-      stage == Attempt::Stage::kOver)
-    return;
+  const bool is_at_rest = stage == Attempt::Stage::kWaiting ||
+                          stage == Attempt::Stage::kSuspended || stage == Attempt::Stage::kOver;
+  const bool may_start_again = stage == Attempt::Stage::kWaiting;
+  if (is_at_rest && !(may_start_again && start_again(run, now))) return;
   // The analysis has not taken it from here yet.
   if (!attempt_of(run)->obstacle.empty() && !run.is_undoing) return;
   while (run.pursuit || (run.is_undoing ? next_undo(run, now) : next_goal(run, now))) {
@@ -158,6 +159,10 @@ bool Executor::next_goal(Run& run, Time now) {
       const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&goal);
       if (lifecycle != nullptr && launches(adaptation))
         goal = execute::bringing_up(adaptation, lifecycle->target, knowledge_);
+      if (auto* present = std::get_if<execute::PresentGoal>(&goal)) {
+        run.started = std::min(run.started, now);
+        present->tries_until = later(run.started, knowledge_.rules[adaptation.component].ready);
+      }
       run.pursuit.emplace(goal, adaptation.component, now);
       return true;
     }
@@ -168,6 +173,35 @@ bool Executor::next_goal(Run& run, Time now) {
   }
   write_.attempts.took_effect(run.strategy, now);
   write_.signals.touch(run.rule);
+  return false;
+}
+
+// A process that was there, and ended before its component's READY was over, is started again: that is
+// a try of the same attempt.
+bool Executor::start_again(Run& run, Time now) {
+  if (run.started == kNever) return false;
+  const auto& adaptations = knowledge_.rules[run.strategy].adaptations;
+  for (std::size_t i = 0; i < adaptations.size(); ++i) {
+    const Adaptation& adaptation = adaptations[i];
+    const Time until = later(run.started, knowledge_.rules[adaptation.component].ready);
+    if (!launches(adaptation) || now >= until || !knowledge_.is_known_gone(adaptation.component))
+      continue;
+    auto goals = execute::goals_of(adaptation, knowledge_);
+    if (!goals) return false;
+    std::erase_if(*goals,
+                  [](const Goal& goal) { return std::holds_alternative<execute::GoneGoal>(goal); });
+    for (Goal& goal : *goals) {
+      if (auto* present = std::get_if<execute::PresentGoal>(&goal))
+        present->not_before = std::min(
+            until, later(now, execute::PresentGoal::kPause * (1 << std::min(run.starts, 10))));
+    }
+    ++run.starts;
+    run.adaptation = i;
+    run.goals = std::move(*goals);
+    run.goal = 0;
+    write_.attempts.adapts_again(run.strategy);
+    return true;
+  }
   return false;
 }
 
@@ -194,7 +228,7 @@ void Executor::finish_goal(Run& run, Time now) {
     if (!pursuit.remark().empty()) run.remark = pursuit.remark();
     note_mode(pursuit, now);
     ++run.goal;
-  } else {
+  } else if (!start_again(run, now)) {
     if (pursuit.met_rival()) note_rival(run, now);
     if (launches(adaptation) && pursuit.took_too_long()) note_too_long(pursuit, now);
     obstruct(run, knowledge_.rules[pursuit.component()].name + ": " + pursuit.remark(),

@@ -66,6 +66,8 @@ class Executor {
     CommandId pending;
     std::string remark;
     std::vector<execute::Undo> undo;
+    Time started = kNever;  // the first process that it started
+    int starts = 0;         // that its process ended after it had been there
     // Of a resumed one, until the robot was given time to show itself.
     std::optional<Interrupted> interrupted;
     Time from = kLongAgo;
@@ -76,6 +78,7 @@ class Executor {
   bool take_up(Run& run, Time now);
   Purpose purpose_of(const Run& run) const;
   bool next_goal(Run& run, Time now);
+  bool start_again(Run& run, Time now);
   bool next_undo(Run& run, Time now);
   bool is_held_by_last_resort(const execute::Undo& undo) const;
   void finish_goal(Run& run, Time now);

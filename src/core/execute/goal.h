@@ -59,6 +59,10 @@ struct PresentGoal {
   // While the process that was started is known to run, also if it only waits for something.
   Duration longest = std::chrono::seconds(60);
   Duration answer = std::chrono::seconds(5);  // until the request to start it is answered
+  // One that ends before is started again, after kPause, doubled with each try (READY).
+  static constexpr Duration kPause = std::chrono::seconds(1);
+  Time tries_until = kLongAgo;
+  Time not_before = kLongAgo;  // of the first start
 };
 
 using Goal =

@@ -343,6 +343,7 @@ std::optional<Pursuit::Request> Pursuit::pursue(const PresentGoal& goal, const K
   const bool is_coming = goal.instead_of && state.pid != 0 && state.pid != *goal.instead_of &&
                          state.process != ProcessState::kGone && !state.in_graph;
   if (is_coming && !has_changed_anything()) return look_again(now);
+  if (!has_changed_anything() && now < goal.not_before) return wait_until(goal.not_before);
   if (!has_changed_anything()) return change(StartProcess{}, now);
   if (state.in_graph && state.node_seen >= begun_) return reach();
   // Its container says that it is loaded: before culprit looked, perhaps.
@@ -358,8 +359,28 @@ std::optional<Pursuit::Request> Pursuit::pursue(const PresentGoal& goal, const K
     deadline_ = std::max(deadline_, std::min(later(state.worked, goal.patience),
                                              later(changed_, PresentGoal::kMost)));
   const bool has_ended = state.process == ProcessState::kGone && is_it;
-  if (has_ended) return give_up("it ended at once: " + state.process_remark);
+  if (has_ended) return start_again(goal, "it ended at once: " + state.process_remark, now);
   return look_again(now);
+}
+
+// The last try is made when the time is over.
+std::optional<Pursuit::Request> Pursuit::start_again(const PresentGoal& goal, std::string why,
+                                                     Time now) {
+  if (again_at_ == kNever) {
+    if (now >= goal.tries_until) return give_up(std::move(why));
+    const auto tries = static_cast<int>(std::min<std::size_t>(sent_.size() - 1, 10));
+    again_at_ = std::min(later(now, PresentGoal::kPause * (1 << tries)), goal.tries_until);
+  }
+  if (now < again_at_) return wait_until(again_at_);
+  again_at_ = kNever;
+  answer_.reset();
+  return change(StartProcess{}, now);
+}
+
+std::optional<Pursuit::Request> Pursuit::wait_until(Time at) {
+  wake_ = at;
+  step_ = Step::kPausing;
+  return std::nullopt;
 }
 
 std::optional<Pursuit::Request> Pursuit::change(Request request, Time now) {

@@ -1,7 +1,8 @@
 // The pursuit of one goal: which request comes next, and when it is reached or given up.
 //
 // A state machine without I/O. It waits for one request at a time, and sends each changing request
-// at most once; only a stop is sent anew, as a kill, where it is proven meanwhile that the node hangs.
+// at most once. But a stop is sent anew, as a kill, where it is proven meanwhile that the node hangs; and a
+// start where the process ended and may need several tries (READY).
 #pragma once
 
 #include <optional>
@@ -80,6 +81,8 @@ class Pursuit {
   std::optional<Request> pursue(const ServiceGoal& goal, Time now);
   std::optional<Request> pursue(const GoneGoal& goal, const Knowledge& knowledge, Time now);
   std::optional<Request> pursue(const PresentGoal& goal, const Knowledge& knowledge, Time now);
+  std::optional<Request> start_again(const PresentGoal& goal, std::string why, Time now);
+  std::optional<Request> wait_until(Time at);
 
   bool would_fight(const Knowledge& knowledge) const;
   std::optional<Request> change(Request request, Time now);
@@ -111,6 +114,7 @@ class Pursuit {
   Lifecycle last_ = Lifecycle::kUnknown;       // LifecycleGoal: the last primary state seen
   Lifecycle asked_for_ = Lifecycle::kUnknown;  // where the last transition leads
   bool driver_seen_ = false;
+  Time again_at_ = kNever;      // PresentGoal: the next try
   Time held_until_ = kLongAgo;  // nothing is asked for
 };
 

@@ -34,6 +34,12 @@ void Attempts::took_effect(StrategyId strategy, Time now) {
   of(strategy).stage = Attempt::Stage::kWaiting;
 }
 
+void Attempts::adapts_again(StrategyId strategy) {
+  Attempt& attempt = of(strategy);
+  attempt.stage = Attempt::Stage::kAdapting;
+  attempt.effective = attempt.deadline = kNever;
+}
+
 void Attempts::obstruct(StrategyId strategy, std::string obstacle) {
   of(strategy).obstacle = std::move(obstacle);
 }

@@ -27,6 +27,8 @@ class Attempts {
   void change_begins(StrategyId strategy, Time now);
   // The last adaptation has taken effect.
   void took_effect(StrategyId strategy, Time now);
+  // What it had started ended, and is started again.
+  void adapts_again(StrategyId strategy);
   // An adaptation could not be carried out.
   void obstruct(StrategyId strategy, std::string obstacle);
   // Its outcome proves nothing.

@@ -265,6 +265,11 @@ class Parser {
       } else if (clause.text == "REQUIRED" && !component.is_required) {
         s.next();
         component.is_required = true;
+      } else if (clause.text == "READY" && !component.ready) {
+        s.next();
+        component.ready =
+            read_.positive_duration(s, "how long a start may take, with several tries");
+        if (!component.ready) return false;
       } else if (clause.text == "RESPAWNED" && !component.is_respawned) {
         s.next();
         component.is_respawned = true;
@@ -276,7 +281,7 @@ class Parser {
         return read_.unexpected_clause(
             clause,
             {"NODE", "LAUNCH", "ENV", "SETUP", "CWD", "UNIT", "CONTAINER", "HOST", "IN", "PLUGIN",
-             "PACKAGE", "PARAMETERS", "REMAP", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
+             "PACKAGE", "PARAMETERS", "REMAP", "RESPAWNED", "REQUIRED", "READY", "LIFECYCLE"});
       }
     }
     into_->components.push_back(std::move(component));

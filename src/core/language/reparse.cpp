@@ -42,7 +42,7 @@ class Mover {
     move(value);
   }
   void move(syntax::Component& c) const {
-    auto& [name, node, launch, setup, environment, folder, is_required, is_respawned, unit,
+    auto& [name, node, launch, setup, environment, folder, is_required, is_respawned, ready, unit,
            is_users_unit, engine, engine_container, host, container, plugin, package, parameters,
            remaps, lifecycle] = c;
     move(name);

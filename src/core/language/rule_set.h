@@ -60,6 +60,8 @@ struct Component {
   bool is_required = false;  // a person is told if it is not there, also if no rule is about that
   LifecycleDriver lifecycle = LifecycleDriver::kUndeclared;
   bool is_respawned = false;  // whoever started it starts it again: culprit ends it and waits
+  // Starts that end within so long of the first are tries of one start. 0: each is one.
+  Duration ready{};
 
   // What its launch command needs beside culprit's own environment and folder. All paths are whole.
   std::string setup{};                     // a file of shell that is sourced first; may be empty

@@ -143,7 +143,8 @@ void Symbols::declare_component(const syntax::Component& written) {
                       true,
                       written.is_required,
                       written.lifecycle,
-                      written.is_respawned};
+                      written.is_respawned,
+                      written.ready.value_or(Duration::zero())};
   if (written.node) {
     const std::string& node = written.node->text;
     const auto first = components_by_node_.find(name_hash(node), [&](std::uint32_t place) {

@@ -92,6 +92,7 @@ struct Component {
   Seldom<Name> folder{};
   bool is_required = false;
   bool is_respawned = false;
+  std::optional<Duration> ready{};
   Seldom<Name> unit{};
   bool is_users_unit = false;
   Seldom<Name> engine{};  // "docker" or "podman"

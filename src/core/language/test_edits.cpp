@@ -21,6 +21,7 @@ const std::vector<std::string> kLines = {
     "COMPONENT camera NODE /camera LAUNCH \"run camera\"",
     "COMPONENT lidar NODE /lidar",
     "COMPONENT lidar NODE /camera REQUIRED",
+    "COMPONENT lidar NODE /camera LAUNCH \"lidar\" READY 20s",
     "COMPONENT nav LAUNCH \"run camera\" # größer",
     "COMPONENT",
     "DEPENDENCY camera ON lidar",

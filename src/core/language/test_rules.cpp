@@ -149,7 +149,7 @@ std::string component_line() {
   const std::string launch = maybe(words({"LAUNCH", text()}));
   const std::string around = words({maybe(words({"ENV", text()})), maybe(words({"SETUP", name()})),
                                     maybe(words({"CWD", name()}))});
-  const std::string required = maybe("REQUIRED");
+  const std::string required = words({maybe("REQUIRED"), maybe(words({"READY", duration()}))});
   const std::string respawned = maybe("RESPAWNED");
   const std::string unit = maybe(words({"UNIT", name(), maybe("USER")}));
   const std::string composed =

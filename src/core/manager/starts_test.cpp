@@ -1,4 +1,5 @@
-// Processes that do not come up: what is known to be gone is started again and again.
+// Processes that do not come up at once: what is known to be gone is started again and again, and with
+// READY several tries are one start.
 #include <gtest/gtest.h>
 
 #include "manager/test_robot.h"
@@ -106,6 +107,57 @@ TEST_P(Starts, OfARunningProcessEndWithItsAttempts) {
   robot.kill("camera");
   robot.run_for(20s);
   EXPECT_TRUE(robot.works("camera")) << "now it is dead, and started" << transcript(robot);
+}
+
+// A device that can be opened again only after 20 s.
+TEST_P(Starts, WithinReadyAreTriesOfOneAttempt) {
+  TestRobot robot = driver(" READY 30s");
+  robot["camera"].dies_at_start = true;
+  robot.kill("camera");
+  robot.run_for(20s);
+  robot["camera"].dies_at_start = false;
+  robot.run_for(16s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  EXPECT_EQ(robot.count("did not resolve"), 0u) << transcript(robot);
+  EXPECT_EQ(robot.count("(redeploy, "), 1u) << "one attempt" << transcript(robot);
+  EXPECT_EQ(starts_of(robot), 6u) << "after 1, 2, 4, 8 and 16 s" << transcript(robot);
+}
+
+TEST_P(Starts, WithoutReadyAreAttempts) {
+  TestRobot robot = driver();
+  robot["camera"].dies_at_start = true;
+  robot.kill("camera");
+  robot.run_for(3s);
+  EXPECT_GE(robot.count("redeploy did not resolve Silent: camera: it ended at once"), 1u)
+      << transcript(robot);
+}
+
+TEST_P(Starts, FailWhenReadyIsOver) {
+  TestRobot robot = driver(" READY 10s");
+  robot["camera"].dies_at_start = true;
+  robot.kill("camera");
+  robot.run_for(9s);
+  EXPECT_EQ(robot.count("did not resolve"), 0u) << transcript(robot);
+  robot.run_for(3s);
+  EXPECT_EQ(robot.count("redeploy did not resolve Silent: camera: it ended at once"), 1u)
+      << transcript(robot);
+}
+
+// Its node is there for a moment before the device refuses it.
+TEST_P(Starts, ThatEndWhenTheNodeWasThereAreTriesToo) {
+  TestRobot robot = driver(" READY 30s");
+  robot["device"].fault = "a person";
+  robot.kill("camera");
+  for (int i = 0; i < 100; ++i) {
+    robot.run_for(100ms);
+    if (robot["camera"].is_in_graph && i % 7 == 6) robot.kill("camera");
+  }
+  EXPECT_EQ(robot.count("did not resolve"), 0u) << transcript(robot);
+  EXPECT_GE(starts_of(robot), 3u) << transcript(robot);
+  robot["device"].fault.clear();
+  robot.run_for(10s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  EXPECT_EQ(robot.count("(redeploy, "), 1u) << transcript(robot);
 }
 
 }  // namespace

@@ -106,9 +106,9 @@ class Completion {
         if (words_.back() == takes_text) return {};
       }
       if (words_[words_.size() - 2] == "UNIT")
-        return keywords({"USER", "HOST", "NODE", "RESPAWNED", "REQUIRED", "LIFECYCLE"});
+        return keywords({"USER", "HOST", "NODE", "RESPAWNED", "REQUIRED", "READY", "LIFECYCLE"});
       return keywords({"NODE", "LAUNCH", "ENV", "SETUP", "CWD", "UNIT", "CONTAINER", "HOST", "IN",
-                       "PLUGIN", "PACKAGE", "PARAMETERS", "REMAP", "RESPAWNED", "REQUIRED",
+                       "PLUGIN", "PACKAGE", "PARAMETERS", "REMAP", "RESPAWNED", "REQUIRED", "READY",
                        "LIFECYCLE"});
     }
     if (statement == "SIGNAL") return signal();

@@ -34,6 +34,7 @@ std::vector<Form> table() {
         {"REMAP", "remap", kName},
         {"RESPAWNED", "respawned", kFlag},
         {"REQUIRED", "required", kFlag},
+        {"READY", "ready", kDuration},
         {"LIFECYCLE", "lifecycle", kWord}},
        {}},
       {"DEPENDENCY", {{"", "consumer", kName}, {"ON", "producers", kNames}}, {}, {}},
