@@ -165,6 +165,17 @@ class EventWriter {
     json_.member("input", describe(rules_[e.input], rules_));
     json_.member("reason", culprit::to_string(e.why));
   }
+  void operator()(const RuleBlind& e) const {
+    about(e.rule);
+    json_.member("since", e.blind.since.time_since_epoch().count());
+    json_.member("why", culprit::to_string(e.blind.why));
+    if (!e.blind.input.empty()) json_.member("input", e.blind.input);
+    if (!e.blind.near.empty()) json_.member("near", e.blind.near);
+  }
+  void operator()(const RuleSees& e) const {
+    about(e.rule);
+    json_.member("blind_for_ns", e.blind_for.count());
+  }
   void operator()(const PriorsAdopted& e) const {
     json_.member("source", e.source);
     add_each("priors", e.priors, [this](const PriorsTold::Prior& each) {
@@ -376,6 +387,17 @@ class EventReader {
   bool complete(HostSilent&) const { return false; }      // likewise
   bool complete(HostBack&) const { return false; }        // likewise
   bool complete(ValueUnknown&) const { return false; }    // likewise
+  bool complete(RuleBlind& event) const {
+    const auto why = unseen_named(text_of(json_, "why"));
+    if (!why) return false;
+    event.blind = {Time(Duration(integer_of(json_, "since"))), *why, text_of(json_, "input"),
+                   text_of(json_, "near")};
+    return true;
+  }
+  bool complete(RuleSees& event) const {
+    event.blind_for = duration("blind_for_ns");
+    return true;
+  }
 
   bool complete(Order& order) const {
     order.author = text_of(json_, "author");

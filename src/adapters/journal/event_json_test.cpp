@@ -86,7 +86,11 @@ std::vector<EventWhat> samples() {
           HostBack{"rover2"},
           ValueUnknown{InputId(2), WhyUnknown::kOverflow},
           ValueUnknown{InputId(2), WhyUnknown::kNotANumber},
-          ValueUnknown{InputId(1), WhyUnknown::kNotANumber}};
+          ValueUnknown{InputId(1), WhyUnknown::kNotANumber},
+          RuleBlind{r, {Time(3ns), Unseen::kNeverSeen, "signal load", "lode"}},
+          RuleBlind{r, {Time(3ns), Unseen::kStale, "load", ""}},
+          RuleBlind{r, {Time(3ns), Unseen::kNoResult, "", ""}},
+          RuleSees{r, 4s}};
 }
 
 std::vector<std::string> golden_rows() {
@@ -122,12 +126,14 @@ TEST(EventJson, WhatIsReadBackIsWrittenAgainWithTheSameNames) {
     ++read;
     EXPECT_EQ(event->at, Time(7ns));
     const Json again = to_json(*event, rules);
-    for (const char* key : {"type", "rule", "strategy", "component", "adaptation", "order", "pid",
-                            "lifecycle", "driver", "joining_ns", "helped", "due", "as", "times",
-                            "time_ns", "lasts_ns", "dry_run", "succeeded", "author"})
+    for (const char* key :
+         {"type",   "rule",      "strategy", "component",  "adaptation", "order",
+          "pid",    "lifecycle", "driver",   "joining_ns", "helped",     "due",
+          "as",     "times",     "time_ns",  "lasts_ns",   "dry_run",    "succeeded",
+          "author", "since",     "why",      "input",      "near",       "blind_for_ns"})
       EXPECT_EQ(again.value(key, Json()), row.value(key, Json())) << key << " of " << text;
   }
-  EXPECT_EQ(read, 39u) << "all but those whose rows do not tell enough";
+  EXPECT_EQ(read, 43u) << "all but those whose rows do not tell enough";
 }
 
 TEST(EventJson, ReadsNothingThatTheRulesDoNotHaveOrThatIsDamaged) {
@@ -145,6 +151,7 @@ TEST(EventJson, ReadsNothingThatTheRulesDoNotHaveOrThatIsDamaged) {
            R"({"type": "adaptation_done", "rule": "R", "strategy": "s", "adaptation": -1})",
            R"({"type": "component_found", "component": "camera", "pid": 4294967297})",
            R"({"type": "lifecycle_intended", "component": "camera", "lifecycle": "tired"})",
+           R"({"type": "rule_blind", "rule": "R", "why": "tired"})",
            R"({"type": "order_accepted", "order": "silence", "component": "gone"})",
            R"({"type": "order_accepted", "order": "shout"})",
        })

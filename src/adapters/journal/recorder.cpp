@@ -29,6 +29,12 @@ void replace(Learned& learned, const Learned& news) {
   }
 }
 
+// Journals from before rules could be blind have no such rows, and no decision depends on them.
+bool is_about_sight(const Event& event) {
+  return std::holds_alternative<RuleBlind>(event.what) ||
+         std::holds_alternative<RuleSees>(event.what);
+}
+
 bool is_nothing(const Learned& learned) {
   return learned.beliefs.empty() && learned.couplings.empty();
 }
@@ -37,12 +43,14 @@ bool is_nothing(const Learned& learned) {
 
 std::optional<Digest> digest_of(std::span<const Command> commands, std::span<const Event> events,
                                 const RuleSet& rules, Hasher& hasher) {
-  if (commands.empty() && events.empty()) return std::nullopt;
   std::string all;
   for (const Command& command : commands)
     all += std::to_string(command.id.number) + " " + rules[command.component].name + " " +
            culprit::to_string(command) + "\n";
-  for (const Event& event : events) all += line_of(event, rules) + "\n";
+  for (const Event& event : events) {
+    if (!is_about_sight(event)) all += line_of(event, rules) + "\n";
+  }
+  if (all.empty()) return std::nullopt;
   const Hash hash = hasher.of(all);
   Digest digest = 0;
   for (std::size_t i = 0; i < 8; ++i) digest = digest << 8 | hash[i];

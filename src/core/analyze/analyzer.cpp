@@ -52,10 +52,11 @@ Duration Analyzer::pause_after(int rounds) {
   return std::min<Duration>(kFirstBackoff * (1 << doublings), kLongestBackoff);
 }
 
-Analyzer::Analyzer(const Knowledge& knowledge, Writes writes)
+Analyzer::Analyzer(const Knowledge& knowledge, Writes writes, Time start, Time discovered)
     : knowledge_(knowledge),
       write_(writes),
       deadlines_(knowledge.rules.rules.size()),
+      blind_(knowledge, {writes.blindness, writes.events}, start, discovered),
       known_silence_(knowledge),
       couplings_(knowledge, {writes.states, writes.couplings}),
       outcomes_(knowledge, {writes.beliefs, writes.outcomes, writes.events}),
@@ -71,6 +72,7 @@ void Analyzer::advance(Time now) {
 void Analyzer::restart(Time now) {
   couplings_.restart();
   outcomes_.restart();
+  blind_.restart(now);
   for (std::size_t r = 0; r < knowledge_.rules.rules.size(); ++r) {
     const RuleId id(r);
     RuleState& state = write_.states.state(id);
@@ -222,6 +224,7 @@ void Analyzer::evaluate_trigger(RuleId id, Time now) {
   if (is_false(value)) state.detection.last_false = now;
   if (is_false(value) && state.left_off && !state.left_off->gone) forget_left_off(id, now);
   if (!state.detection.history.empty()) sample_history(id, now);
+  blind_.evaluated(id, now);
 }
 
 Slot Analyzer::value_of_trigger(RuleId id, Time now) {

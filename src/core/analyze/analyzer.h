@@ -7,6 +7,7 @@
 //              Silence that is certain to come, because who would speak is known dead, counts
 //              at once (known_silence.h)
 //   resolved   its trigger was false for its policy's time; unknown is neither true nor false
+//   blind      its trigger has been unknown for a while: neither quiet nor failing (blind_watch.h)
 //   proven     it stayed resolved for `healthy`. A failure that is back before that is the same
 //              one: its strategies stay tried, and its attempts and rounds go on counting. One
 //              that keeps coming back is reported as flapping
@@ -39,6 +40,7 @@
 #include <optional>
 #include <vector>
 
+#include "analyze/blind_watch.h"
 #include "analyze/coupling_watch.h"
 #include "analyze/known_silence.h"
 #include "analyze/outcome_watch.h"
@@ -81,11 +83,13 @@ class Analyzer {
     Latencies& latencies;
     Coincidences& coincidences;
     PendingOutcomes& outcomes;
+    Blindness& blindness;
     EventLog& events;
   };
 
-  // `knowledge` must outlive the analyzer.
-  Analyzer(const Knowledge& knowledge, Writes writes);
+  // `knowledge` must outlive the analyzer. Watching begins at `start`; the robot has its time to show
+  // itself until `discovered`.
+  Analyzer(const Knowledge& knowledge, Writes writes, Time start, Time discovered);
 
   // What earlier processes tried. Before the first advance().
   void remember(const History& past);
@@ -96,8 +100,11 @@ class Analyzer {
 
   // Looks at every rule that the monitor touched and at those whose time has come.
   void advance(Time now);
+  // Looks which rules are blind. Once a step, at its end: no plan depends on it.
+  void look_for_blind(Time now) { blind_.advance(now); }
   Time next_deadline() const {
-    return std::min({deadlines_.next(), couplings_.next_deadline(), outcomes_.next_deadline()});
+    return std::min({deadlines_.next(), couplings_.next_deadline(), outcomes_.next_deadline(),
+                     blind_.next_deadline()});
   }
 
   // Failures that a planner should decide about now, ascending: there, and no strategy under way,
@@ -185,6 +192,7 @@ class Analyzer {
   const Knowledge& knowledge_;
   Writes write_;
   Deadlines deadlines_;  // by RuleId
+  BlindWatch blind_;
   KnownSilence known_silence_;
   CouplingWatch couplings_;
   OutcomeWatch outcomes_;

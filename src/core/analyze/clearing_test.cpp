@@ -33,10 +33,12 @@ struct Watched {
 
   RuleSet rules;
   Knowledge knowledge{rules};
-  Analyzer analyzer{
-      knowledge,
-      {knowledge.states, knowledge.signals, knowledge.beliefs, knowledge.couplings,
-       knowledge.latencies, knowledge.coincidences, knowledge.outcomes, knowledge.events}};
+  Analyzer analyzer{knowledge,
+                    {knowledge.states, knowledge.signals, knowledge.beliefs, knowledge.couplings,
+                     knowledge.latencies, knowledge.coincidences, knowledge.outcomes,
+                     knowledge.blindness, knowledge.events},
+                    Time{},
+                    Time{}};
   Time now{100s};
 };
 

@@ -210,6 +210,15 @@ std::optional<ComponentId> DependencyGraph::only_publisher(const std::string& to
   return publishers.size() == 1 ? nodes_[publishers.front().index].component : std::nullopt;
 }
 
+bool DependencyGraph::was_published(const std::string& topic) const {
+  const auto known = channel_ids_.find('t' + topic);
+  if (known == channel_ids_.end()) return false;
+  const auto& producers = channels_[known->second.index].producers;
+  return !producers.empty() && std::none_of(producers.begin(), producers.end(), [&](const End& e) {
+    return e.count > 0 && nodes_[e.node.index].is_present;
+  });
+}
+
 std::vector<std::string> DependencyGraph::published_topics() const {
   std::vector<std::string> topics;
   for (const Channel& channel : channels_) {

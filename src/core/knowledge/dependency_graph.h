@@ -79,6 +79,8 @@ class DependencyGraph {
   bool publishes(ComponentId component, const std::string& topic) const;
   // The component that alone publishes it; nothing if none or several do, or a node that is none.
   std::optional<ComponentId> only_publisher(const std::string& topic) const;
+  // Nodes published it, and none does now.
+  bool was_published(const std::string& topic) const;
   // Those that any node publishes now. Sorted.
   std::vector<std::string> published_topics() const;
 

@@ -130,6 +130,13 @@ class Describer {
            (e.near.empty() ? "." : "; did you mean '" + e.near + "'?") +
            (is_component ? " Nothing is done about it" : " What rules read of it is unknown");
   }
+  std::string operator()(const RuleBlind& e) const {
+    return rules_[e.rule].name + " is blind: " + describe(e.blind);
+  }
+  std::string operator()(const RuleSees& e) const {
+    return rules_[e.rule].name + " can see again after " + two_decimals(seconds(e.blind_for)) +
+           " s";
+  }
   std::string operator()(const LifecycleIntended&) const { return ""; }
   std::string operator()(const CameUp&) const { return ""; }
   std::string operator()(const RivalSeen& e) const {

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "knowledge/blindness.h"
 #include "knowledge/coming_up.h"
 #include "knowledge/why_unknown.h"
 #include "language/rule_set.h"
@@ -163,6 +164,18 @@ using Nameable = std::variant<ComponentId, TopicId, SignalId, ParameterId, Diagn
 struct NeverSeen {
   Nameable what;
   std::string near;  // a name of the robot that may be meant; empty: none is near
+};
+
+// The trigger of the rule has had no value for a while: nobody knows whether its failure is there
+// (blindness.h). Told once, until it can see again.
+struct RuleBlind {
+  RuleId rule;
+  Blind blind{};
+};
+// Its trigger has had a value again, for a while.
+struct RuleSees {
+  RuleId rule;
+  Duration blind_for{};
 };
 
 // Another state of its lifecycle is the intended one now (ComponentState::intended_lifecycle). Not
@@ -334,7 +347,8 @@ class EventWhat
                           OrderCarriedOut, SilenceEnded, StormBegan, StormEnded, LastResortReached,
                           LifecycleIntended, CameUp, OutcomePending, OutcomeCounted, FailureFlaps,
                           JudgementSuspended, JudgementResumed, SleepNoticed, NeverSeen,
-                          PriorsAdopted, HostSilent, HostBack, ValueUnknown, LastResortDone> {
+                          PriorsAdopted, HostSilent, HostBack, ValueUnknown, LastResortDone,
+                          RuleBlind, RuleSees> {
  public:
   using Variant = variant;
   using variant::variant;

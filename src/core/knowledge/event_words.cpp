@@ -42,6 +42,8 @@ constexpr std::array<EventWords, kKinds> kWords = [] {
       row<ComponentLost>("component_lost", "lost", kWarning, Tone::kAlarm),
       row<ComponentFound>("component_found", "found", kInfo, Tone::kRelief),
       row<NeverSeen>("never_seen", "never seen", kWarning, Tone::kWarning),
+      row<RuleBlind>("rule_blind", "BLIND", kWarning, Tone::kWarning, kStrong),
+      row<RuleSees>("rule_sees", "sees", kInfo, Tone::kRelief),
       row<LifecycleIntended>("lifecycle_intended", "lifecycle", kInfo, Tone::kAside),
       row<CameUp>("came_up", "came up", kInfo, Tone::kAside),
       row<RivalSeen>("rival_seen", "RIVAL", kWarning, Tone::kWarning, kStrong),

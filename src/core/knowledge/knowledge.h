@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "knowledge/beliefs.h"
+#include "knowledge/blindness.h"
 #include "knowledge/coincidences.h"
 #include "knowledge/component_states.h"
 #include "knowledge/couplings.h"
@@ -40,6 +41,7 @@ struct Knowledge {
   Sightings sightings;
   HeardNames heard_names;
   RuleStates states;
+  Blindness blindness;
   Beliefs beliefs;
   Couplings couplings;
   Latencies latencies;
@@ -66,6 +68,12 @@ struct Knowledge {
   bool is_known_gone(ComponentId component) const;
   // Does the strategy start such processes, and nothing else? That harms nothing.
   bool only_starts_the_gone(const Strategy& strategy) const;
+
+  // Since when nobody can tell whether the rule's failure is there; nothing: the rule can see.
+  std::optional<Time> blind_since(RuleId rule) const {
+    const auto& blind = blindness[rule];
+    return blind ? std::optional(blind->since) : std::nullopt;
+  }
 
   // When the component, or something that it depends on, last joined the graph.
   Time began(ComponentId component) const;

@@ -11,6 +11,7 @@ SignalStore::SignalStore(const RuleSet& rules)
       why_unknown_(rules.inputs.size(), WhyUnknown::kNoValue),
       latencies_(rules.inputs.size()),
       read_at_(rules.inputs.size(), kLongAgo),
+      arrivals_(rules.inputs.size()),
       is_unusual_(rules.inputs.size()),
       rhythms_(rules.topics.size()),
       is_touched_(rules.rules.size()) {
@@ -25,6 +26,7 @@ SignalStore::SignalStore(const RuleSet& rules, const SignalStore& other)
       why_unknown_(other.why_unknown_),
       latencies_(other.latencies_),
       read_at_(other.read_at_),
+      arrivals_(other.arrivals_),
       is_unusual_(other.is_unusual_),
       rhythms_(other.rhythms_),
       touched_(other.touched_),

@@ -51,6 +51,17 @@ class SignalStore {
   // When a signal was read last; kLongAgo for inputs that no reading brings.
   Time read_at(InputId id) const { return read_at_[id.index]; }
   void set_read_at(InputId id, Time at) { read_at_[id.index] = at; }
+  // When values of a signal or a diagnostic come. `gap` is the usual pause between two.
+  struct Arrivals {
+    Time last = kLongAgo;
+    Duration gap{};
+    int count = 0;  // no more are counted than kRegular
+  };
+  // From so many values on, `gap` is known.
+  static constexpr int kRegular = 4;
+  const Arrivals& arrivals(InputId id) const { return arrivals_[id.index]; }
+  void set_arrivals(InputId id, const Arrivals& arrivals) { arrivals_[id.index] = arrivals; }
+
   // Has every signal that the trigger of the rule reads been read after `since`? Not if it reads
   // anything else.
   bool is_read_since(RuleId id, Time since) const;
@@ -81,6 +92,7 @@ class SignalStore {
   std::vector<WhyUnknown> why_unknown_;  // of those that are
   std::vector<Duration> latencies_;
   std::vector<Time> read_at_;
+  std::vector<Arrivals> arrivals_;
   std::vector<bool> is_unusual_;
   std::vector<Rhythm> rhythms_;  // by TopicId
   std::vector<RuleId> touched_;

@@ -58,9 +58,11 @@ Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, O
                {knowledge_.signals, knowledge_.graph, knowledge_.components, knowledge_.departures,
                 knowledge_.sightings, knowledge_.heard_names, knowledge_.events},
                options.start, later(options.start, options.discovery)),
-      analyzer_(knowledge_, {knowledge_.states, knowledge_.signals, knowledge_.beliefs,
-                             knowledge_.couplings, knowledge_.latencies, knowledge_.coincidences,
-                             knowledge_.outcomes, knowledge_.events}),
+      analyzer_(knowledge_,
+                {knowledge_.states, knowledge_.signals, knowledge_.beliefs, knowledge_.couplings,
+                 knowledge_.latencies, knowledge_.coincidences, knowledge_.outcomes,
+                 knowledge_.blindness, knowledge_.events},
+                options.start, later(options.start, options.discovery)),
       planner_(std::move(planner)),
       executor_(knowledge_, {Attempts(knowledge_.states), knowledge_.components, knowledge_.signals,
                              knowledge_.outcomes, knowledge_.rivals, knowledge_.events}),
@@ -103,6 +105,7 @@ std::vector<Command> Manager::step(Time now, std::span<const Observation> observ
     executor_.advance(now_, commands);  // lets go of what has just succeeded
     next_plan_ = analyzer_.next_start();
   }
+  if (hears_) analyzer_.look_for_blind(now_);
   governor_.note(knowledge_.events);
   return commands;
 }

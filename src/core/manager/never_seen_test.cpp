@@ -118,7 +118,8 @@ TEST(NeverSeen, OnAnEmptyRobotNothingIsStarted) {
   EXPECT_TRUE(robot.said.empty()) << "discovery may still be under way" << transcript(robot);
   robot.run_for(60s);
   EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
-  EXPECT_EQ(robot.count("was never seen"), 4u) << transcript(robot);
+  EXPECT_EQ(robot.count("was never seen"), 5u) << transcript(robot);
+  EXPECT_EQ(robot.count("Dead is blind: camera was never seen"), 1u) << transcript(robot);
   robot.order({1, "Ann", "", RunStrategy{StrategyId(0)}});
   EXPECT_TRUE(robot.was_asked("camera: start process")) << "a person may ask for it";
 }

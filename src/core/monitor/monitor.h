@@ -159,6 +159,7 @@ class Monitor {
   void on(Time, const HearingLost&) { is_deaf_ = true; }
 
   void read_signal(SignalId signal, const Value& value, Time at);
+  void note_arrival(InputId id, Time at);
   void update(InputId id, Time now);
   Duration latency_of(SignalId signal) const;
   void note_reading(InputId id, const Slot& slot);

@@ -30,6 +30,7 @@ bool is_nan(const Value& value) {
 }  // namespace
 
 using monitor::smoothed;
+using monitor::usual_gap;
 using monitor::usual_latency;
 
 void Monitor::on(Time at, const SignalRead& seen) { read_signal(seen.signal, seen.value, at); }
@@ -51,6 +52,7 @@ void Monitor::read_signal(SignalId signal, const Value& value, Time at) {
     const Input& input = knowledge_.rules[id];
     write_.signals.set_latency(id, latency_of(signal) + input.window);
     write_.signals.set_read_at(id, at);
+    note_arrival(id, at);
     if (has_rhythm && !had_rhythm) write_.signals.touch(id);
     switch (input.kind) {
       case Kind::kSignal:
@@ -111,6 +113,15 @@ WhyUnknown Monitor::why_unknown(SignalId signal, Time now) const {
   if (!state.last) return WhyUnknown::kNoValue;
   if (is_stale(signal, now)) return WhyUnknown::kStale;
   return state.unusable.value_or(WhyUnknown::kNotCovered);
+}
+
+void Monitor::note_arrival(InputId id, Time at) {
+  SignalStore::Arrivals arrivals = knowledge_.signals.arrivals(id);
+  if (arrivals.last != kLongAgo && arrivals.last >= awake_)
+    arrivals.gap = usual_gap(arrivals.gap, at - arrivals.last);
+  arrivals.last = at;
+  arrivals.count = std::min(arrivals.count + 1, SignalStore::kRegular);
+  write_.signals.set_arrivals(id, arrivals);
 }
 
 Duration Monitor::latency_of(SignalId signal) const {
@@ -229,9 +240,10 @@ void Monitor::on(Time, const ParametersListed& seen) {
   write_.heard_names.parameters[seen.component] = seen.names;
 }
 
-void Monitor::on(Time, const DiagnosticRead& seen) {
+void Monitor::on(Time at, const DiagnosticRead& seen) {
   write_.sightings.read(seen.diagnostic);
   for (const InputId id : diagnostic_inputs_[seen.diagnostic.index]) {
+    note_arrival(id, at);
     write_.signals.set(id, Slot::of(std::int64_t{seen.level}));
   }
 }
