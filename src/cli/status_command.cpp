@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 #include <unistd.h>
 
@@ -33,18 +34,19 @@ Expected<WhatCulpritSays> asked(const RunningCulprit& culprit) {
 int status(const StatusOptions& options) {
   constexpr std::size_t kEvents = 6;
   CulpritsHere here = culprits_here(options.which);
-  bool is_well = !here.answering.empty() && here.others.empty();
+  const bool are_all_known = !here.answering.empty() && here.others.empty();
+  Verdict worst = are_all_known ? Verdict::kWell : Verdict::kNotWell;
   Json list = Json::array();
   for (const RunningCulprit& culprit : here.answering) {
     const auto said = asked(culprit);
     if (!said) {
       here.others.push_back(culprit.name() + " does not say how the robot is: " + said.error());
-      is_well = false;
+      worst = Verdict::kNotWell;
       continue;
     }
-    is_well &= is_all_well(*said);
+    worst = std::max(worst, verdict_of(*said));
     list.push_back({{"about", said->about},
-                    {"well", is_all_well(*said)},
+                    {"well", verdict_of(*said) == Verdict::kWell},
                     {"control", said->control},
                     {"state", said->state}});
     if (options.json) continue;
@@ -63,7 +65,7 @@ int status(const StatusOptions& options) {
   } else {
     for (const std::string& other : here.others) say(stdout, "{}\n", other);
   }
-  return is_well ? kOk : kFailed;
+  return worst == Verdict::kWell ? kOk : worst == Verdict::kSeesLess ? kWarnings : kFailed;
 }
 
 }  // namespace
@@ -73,7 +75,9 @@ void add_status(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("status",
                                          "Show who is ill, who is blamed and what happens next, as "
                                          "the culprits that run on this machine say.\n"
-                                         "Exits with 0 if all is well, else with 1.");
+                                         "Exits with 0 if all is well, with 3 if rules that are "
+                                         "not ERROR are blind and nothing else is wrong, else "
+                                         "with 1.");
   command->add_flag("--json", options->json, "As one JSON document (docs/web.md)");
   options->which.add_to(*command);
   command->callback([options, &exit_code] { exit_code = status(*options); });

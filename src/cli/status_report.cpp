@@ -1,5 +1,6 @@
 #include "cli/status_report.h"
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 
@@ -120,6 +121,43 @@ std::string robot_name(const WhatCulpritSays& said) {
 
 using Lines = std::vector<std::string>;
 
+// A rule that says nothing: its place in the documents, and why.
+struct BlindRule {
+  std::string name;
+  std::string criticality;  // of a rule that is not known: ERROR
+  Json blind;
+};
+
+std::vector<BlindRule> blind_rules(const WhatCulpritSays& said) {
+  const auto rules = list_at(said.state, "rules");
+  const auto names = list_at(said.robot, "rules");
+  std::vector<BlindRule> all;
+  for (std::size_t r = 0; r < rules.size(); ++r) {
+    const Json& blind = member_at(rules[r], "blind");
+    if (!blind.is_object()) continue;
+    const Json& rule = r < names.size() ? names[r] : kNothing;
+    const std::string criticality = text_at(rule, "criticality");
+    all.push_back({text_at(rule, "name"), criticality.empty() ? "ERROR" : criticality, blind});
+  }
+  return all;
+}
+
+// REQUIRED components are watched without a rule.
+bool is_watching_nothing(const WhatCulpritSays& said) {
+  const auto rules = list_at(said.state, "rules");
+  const auto components = list_at(said.robot, "components");
+  if (rules.empty())
+    return std::none_of(components.begin(), components.end(),
+                        [](const Json& each) { return is_set(each, "required"); });
+  return blind_rules(said).size() == rules.size();
+}
+
+// "BatteryLow is blind", "3 rules are blind"
+std::string blind_in_short(const std::vector<BlindRule>& blind) {
+  return blind.size() == 1 ? blind[0].name + " is blind"
+                           : fmt::format("{} rules are blind", blind.size());
+}
+
 void add_incident(const WhatCulpritSays& said, const Json& incident, Colour colour, Lines& lines) {
   const std::string health = text_at(incident, "health");
   lines.push_back(fmt::format("  {}  ({}, rule {})",
@@ -134,6 +172,22 @@ void add_incident(const WhatCulpritSays& said, const Json& incident, Colour colo
   lines.push_back("      now: " + text_at(incident, "doing"));
   if (const std::string next = text_at(incident, "next"); !next.empty())
     lines.push_back("      next: " + next);
+}
+
+// ERROR rules first.
+void add_blind(const WhatCulpritSays& said, Colour colour, Lines& lines) {
+  constexpr std::size_t kMost = 8;
+  std::vector<BlindRule> blind = blind_rules(said);
+  std::stable_partition(blind.begin(), blind.end(),
+                        [](const BlindRule& rule) { return rule.criticality == "ERROR"; });
+  for (std::size_t i = 0; i < std::min(kMost, blind.size()); ++i) {
+    const std::string when = since(said, blind[i].blind);
+    lines.push_back(fmt::format(
+        "  {}: {}  ({}{}{})", tinted(blind[i].name + " is blind", Tone::kWarning, colour),
+        text_at(blind[i].blind, "text"), blind[i].criticality, when.empty() ? "" : ", ", when));
+  }
+  if (blind.size() > kMost)
+    lines.push_back(fmt::format("  {} more rules are blind", blind.size() - kMost));
 }
 
 // What people have ordered, and are asked.
@@ -189,9 +243,10 @@ std::string counts_line(const WhatCulpritSays& said) {
     if (names_of.size() > kMost) first.push_back(fmt::format("{} more", names_of.size() - kMost));
     return fmt::format(", {} {} ({})", names_of.size(), what, listed(first));
   };
-  return fmt::format("{}{}{}; {}, {} with a failure", counted(components.size(), "component"),
+  const std::size_t blind = blind_rules(said).size();
+  return fmt::format("{}{}{}; {}, {} with a failure{}", counted(components.size(), "component"),
                      some(gone, "gone"), some(ill, "affected"), counted(rules.size(), "rule"),
-                     failing);
+                     failing, blind == 0 ? "" : fmt::format(", {} blind", blind));
 }
 
 std::string event_line(const Json& event, double now, Colour colour) {
@@ -214,6 +269,13 @@ std::string headline_from(const WhatCulpritSays& said, Colour colour) {
   if (incidents.empty() && !is_set(said.control, "hears"))
     return robot + ": " + tinted("nobody knows", Tone::kWarning, colour) +
            ", the robot cannot be heard" + mode;
+  if (incidents.empty() && is_watching_nothing(said))
+    return robot + ": " + tinted("watching nothing", Tone::kWarning, colour) + ", no rule can see" +
+           mode;
+  const auto blind = blind_rules(said);
+  if (incidents.empty() && !blind.empty())
+    return robot + ": no failure is seen, but " +
+           tinted(blind_in_short(blind), Tone::kWarning, colour) + mode;
   if (incidents.empty()) return robot + ": " + tinted("all is well", Tone::kRelief, colour) + mode;
   const std::string more =
       incidents.size() > 1 ? fmt::format(", and {} more", incidents.size() - 1) : "";
@@ -224,16 +286,24 @@ std::string headline_from(const WhatCulpritSays& said, Colour colour) {
 
 }  // namespace
 
-bool is_all_well(const WhatCulpritSays& said) {
-  return said.state.is_object() && list_at(said.state, "incidents").empty() &&
-         !is_set(said.control, "paused") && is_set(said.control, "hears") &&
-         list_at(said.control, "asked").empty();
+Verdict verdict_of(const WhatCulpritSays& said) {
+  const bool is_well = said.state.is_object() && list_at(said.state, "incidents").empty() &&
+                       !is_set(said.control, "paused") && is_set(said.control, "hears") &&
+                       list_at(said.control, "asked").empty();
+  if (!is_well || is_watching_nothing(said)) return Verdict::kNotWell;
+  const auto blind = blind_rules(said);
+  const bool is_grave = std::any_of(blind.begin(), blind.end(), [](const BlindRule& rule) {
+    return rule.criticality == "ERROR";
+  });
+  if (is_grave) return Verdict::kNotWell;
+  return blind.empty() ? Verdict::kWell : Verdict::kSeesLess;
 }
 
 std::vector<std::string> situation_lines(const WhatCulpritSays& said, Colour colour) {
   Lines lines{headline_from(said, colour)};
   for (const Json& incident : list_at(said.state, "incidents"))
     add_incident(said, incident, colour, lines);
+  add_blind(said, colour, lines);
   add_people(said, lines);
   lines.push_back(counts_line(said));
   return lines;

@@ -20,8 +20,12 @@ struct WhatCulpritSays {
   std::vector<Json> events{};  // oldest first
 };
 
-// No failure is seen, nothing keeps culprit from acting, and nobody is asked.
-bool is_all_well(const WhatCulpritSays& said);
+enum class Verdict : std::uint8_t {
+  kWell,      // no failure is seen, all rules can see, culprit may act, and no person is asked
+  kSeesLess,  // but for this: rules are blind, and none of them is an ERROR rule
+  kNotWell    // a failure, a blind ERROR rule, no rule that can see, or culprit cannot act
+};
+Verdict verdict_of(const WhatCulpritSays& said);
 
 // "rover: camera is dead  [paused]"; what fails, why and what comes next; what people have ordered.
 std::vector<std::string> situation_lines(const WhatCulpritSays& said, Colour colour);

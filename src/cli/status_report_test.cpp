@@ -50,7 +50,7 @@ WhatCulpritSays ill() {
 }
 
 TEST(StatusReport, SaysThatAllIsWell) {
-  EXPECT_TRUE(is_all_well(well()));
+  EXPECT_EQ(verdict_of(well()), Verdict::kWell);
   EXPECT_THAT(all_of(well()), HasSubstr("rover: all is well\n"));
   EXPECT_THAT(all_of(well()), HasSubstr("2 components; 1 rule, 0 with a failure"));
   EXPECT_THAT(all_of(well()),
@@ -58,7 +58,7 @@ TEST(StatusReport, SaysThatAllIsWell) {
 }
 
 TEST(StatusReport, SaysWhoIsIllWhoIsBlamedAndWhatHappensNext) {
-  EXPECT_FALSE(is_all_well(ill()));
+  EXPECT_EQ(verdict_of(ill()), Verdict::kNotWell);
   const std::string text = all_of(ill());
   EXPECT_THAT(text, HasSubstr("rover: camera is dead\n"));
   EXPECT_THAT(text, HasSubstr("  camera is dead  (ERROR, rule CameraGone)\n"));
@@ -75,7 +75,7 @@ TEST(StatusReport, SaysWhatKeepsCulpritFromActingAndHowToLetItGoOn) {
   said.control["silences"].push_back(
       {{"component", "fusion"}, {"until", 80}, {"author", "ada"}, {"reason", "lens"}});
   said.control["asked"].push_back({{"rule", "CameraGone"}, {"strategy", "redeploy"}});
-  EXPECT_FALSE(is_all_well(said)) << "nobody would be helped";
+  EXPECT_EQ(verdict_of(said), Verdict::kNotWell) << "nobody would be helped";
   const std::string text = all_of(said);
   EXPECT_THAT(text, HasSubstr("rover: all is well  [paused, asks and leaves something alone]"));
   EXPECT_THAT(text, HasSubstr("culprit resume"));
@@ -83,10 +83,48 @@ TEST(StatusReport, SaysWhatKeepsCulpritFromActingAndHowToLetItGoOn) {
   EXPECT_THAT(text, HasSubstr("by ada (lens); culprit silence --lift fusion"));
 }
 
+WhatCulpritSays with_blind(const char* criticality) {
+  WhatCulpritSays said = well();
+  said.robot["rules"] = parse_json(R"([{"name": "CameraGone", "criticality": "ERROR"},
+                                       {"name": "BatteryLow"}])");
+  said.robot["rules"][1]["criticality"] = criticality;
+  said.state["rules"].push_back(parse_json(
+      R"({"phase": "quiet", "trigger": null, "blind": {"since": 11.5, "why": "never_seen",
+          "input": "battery", "near": "charge",
+          "text": "signal battery was never seen; did you mean 'charge'?"}})"));
+  return said;
+}
+
+TEST(StatusReport, NeverSaysThatAllIsWellWhileARuleIsBlind) {
+  for (const char* criticality : {"ERROR", "WARNING", "NON_CRITICAL"}) {
+    const WhatCulpritSays said = with_blind(criticality);
+    const std::string text = all_of(said);
+    EXPECT_THAT(text, HasSubstr("rover: no failure is seen, but BatteryLow is blind\n"));
+    EXPECT_THAT(text,
+                HasSubstr("  BatteryLow is blind: signal battery was never seen; did you mean "
+                          "'charge'?  (" +
+                          std::string(criticality) + ", since "));
+    EXPECT_THAT(text, HasSubstr("2 rules, 0 with a failure, 1 blind"));
+  }
+  EXPECT_EQ(verdict_of(with_blind("ERROR")), Verdict::kNotWell);
+  EXPECT_EQ(verdict_of(with_blind("WARNING")), Verdict::kSeesLess);
+}
+
+TEST(StatusReport, SaysThatNothingIsWatchedIfNoRuleCanSee) {
+  WhatCulpritSays said = with_blind("WARNING");
+  said.state["rules"][0] = said.state["rules"][1];
+  EXPECT_THAT(all_of(said), HasSubstr("rover: watching nothing, no rule can see\n"));
+  EXPECT_EQ(verdict_of(said), Verdict::kNotWell);
+  said = well();
+  said.state["rules"] = Json::array();
+  EXPECT_THAT(all_of(said), HasSubstr("rover: watching nothing, no rule can see\n"));
+  EXPECT_EQ(verdict_of(said), Verdict::kNotWell);
+}
+
 TEST(StatusReport, NeverSaysThatARobotIsWellThatCannotBeHeard) {
   WhatCulpritSays said = well();
   said.control["hears"] = false;
-  EXPECT_FALSE(is_all_well(said));
+  EXPECT_EQ(verdict_of(said), Verdict::kNotWell);
   EXPECT_THAT(all_of(said), HasSubstr("nobody knows, the robot cannot be heard"));
   EXPECT_THAT(all_of(WhatCulpritSays{}), HasSubstr("nothing is known yet"));
 }
@@ -98,7 +136,7 @@ TEST(StatusReport, TakesDocumentsOfAnyForm) {
                                "clock": [], "silences": [3], "asked": [null], "paused": 1, "hears": "yes"})"}) {
     const Json any = parse_json(text);
     const WhatCulpritSays said{any, any, any, any, {any, any}};
-    EXPECT_FALSE(is_all_well(said)) << text;
+    EXPECT_EQ(verdict_of(said), Verdict::kNotWell) << text;
     all_of(said);
   }
 }

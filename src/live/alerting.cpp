@@ -13,6 +13,7 @@ namespace {
 
 // Not a name that rules could have.
 std::string key_of_component(const std::string& name) { return "component " + name; }
+std::string key_of_blindness(const std::string& cause) { return "blind by " + cause; }
 
 std::vector<std::string> names_of_rules(const std::vector<RuleId>& ids, const RuleSet& rules) {
   std::vector<std::string> names;
@@ -101,6 +102,42 @@ std::vector<Alerting::Problem> Alerting::problems() const {
       return !each.alert.components.empty() && is_about(other.alert, each.alert.components[0]);
     });
     if (!is_told) all.push_back(std::move(each));
+  }
+  for (Problem& each : problems_of_sight()) all.push_back(std::move(each));
+  return all;
+}
+
+// Rules that are blind for the same input are one problem, and so are all if no rule can see.
+std::vector<Alerting::Problem> Alerting::problems_of_sight() const {
+  const Knowledge& knowledge = manager_->knowledge();
+  const RuleSet& rules = knowledge.rules;
+  std::map<std::string, std::vector<RuleId>> by_cause;
+  std::set<std::string> causes;
+  for (const RuleId id : knowledge.blindness.rules()) {
+    const std::string& input = knowledge.blindness[id]->input;
+    const std::string cause = key_of_blindness(input.empty() ? rules[id].name : input);
+    causes.insert(cause);
+    by_cause[knowledge.blindness.is_total() ? "" : cause].push_back(id);
+  }
+  std::vector<Problem> all;
+  for (const auto& [cause, blind] : by_cause) {
+    const auto less_critical = [&](RuleId a, RuleId b) {
+      return rules[a].policies.criticality < rules[b].policies.criticality;
+    };
+    const RuleId worst = *std::max_element(blind.begin(), blind.end(), less_critical);
+    const std::size_t others = blind.size() - 1;
+    const std::string who = cause.empty() ? "watching nothing, no rule can see"
+                            : others == 0
+                                ? rules[worst].name + " is blind"
+                                : fmt::format("{} and {} more {} blind", rules[worst].name, others,
+                                              others == 1 ? "rule are" : "rules are");
+    Problem& problem = all.emplace_back();
+    problem.keys = cause.empty() ? causes : std::set{cause};
+    problem.alert.rule = rules[worst].name;
+    problem.alert.health = std::string(to_string(rules[worst].policies.criticality));
+    problem.alert.headline = who + ": " + describe(*knowledge.blindness[worst]);
+    problem.alert.doing = "failures that they would see stay unnoticed";
+    problem.needs_person_if_it_lasts = true;
   }
   return all;
 }

@@ -69,6 +69,7 @@ class Alerting : public Observer {
   void forget_what_is_seen_again();
   std::vector<Problem> problems() const;
   std::vector<Problem> problems_of_the_whole() const;
+  std::vector<Problem> problems_of_sight() const;
   Fault& fault_of(const Problem& problem, Time now);
   void close_part(Fault& part, const std::string& whole);
   void take(Problem problem, Time now);

@@ -81,6 +81,42 @@ TEST(Alerting, SaysNothingWhileAllIsWell) {
   EXPECT_THAT(alerted.posted, testing::IsEmpty());
 }
 
+TEST(Alerting, TellsThatRulesAreBlindAndWhenTheyCanSeeAgain) {
+  Alerted alerted;
+  for (int i = 0; i < 10; ++i) {
+    alerted.robot->signal("brightness", Value(1.0));
+    alerted.run_for(1s);
+  }
+  alerted.run_for(5min);
+  ASSERT_EQ(alerted.posted.size(), 1u) << testing::PrintToString(alerted.texts());
+  EXPECT_EQ(alerted.posted[0].state, Alert::State::kFiring);
+  EXPECT_EQ(alerted.posted[0].headline, "Dark is blind: no new value of brightness comes");
+  EXPECT_EQ(alerted.posted[0].health, "NON_CRITICAL");
+  EXPECT_TRUE(alerted.posted[0].needs_person);
+  for (int i = 0; i < 120; ++i) {
+    alerted.robot->signal("brightness", Value(1.0));
+    alerted.run_for(1s);
+  }
+  ASSERT_EQ(alerted.posted.size(), 2u) << testing::PrintToString(alerted.texts());
+  EXPECT_EQ(alerted.posted[1].state, Alert::State::kResolved);
+}
+
+TEST(Alerting, TellsOnceThatNoRuleCanSee) {
+  std::vector<Alert> posted;
+  TestRobot robot(kAlertingRules);
+  Alerting alerting{{}, [&](const Alert& alert) { posted.push_back(alert); }, [] { return 1e9; }};
+  alerting.begins(robot.manager(), {}, Time());
+  for (int i = 0; i < 600; ++i) {
+    robot.run_for(100ms);
+    std::vector<Observation> none;
+    alerting.stepped({robot.now, {}, none, {}, robot.manager().events()});
+  }
+  const auto of_sight = std::ranges::count_if(posted, [](const Alert& alert) {
+    return alert.headline.starts_with("watching nothing, no rule can see: ");
+  });
+  EXPECT_EQ(of_sight, 1);
+}
+
 TEST(Alerting, TellsOfAFaultThatIsHealedAtOnceInOneMessage) {
   Alerted alerted;
   alerted.robot->kill("camera");

@@ -18,6 +18,11 @@ ros2::Health of_rule(RuleId id, const Knowledge& knowledge) {
   const RuleState& state = knowledge.states[id];
   ros2::Health health{"culprit: " + rule.name, kWell, "quiet", {}};
   health.values.emplace_back("criticality", std::string(to_string(rule.policies.criticality)));
+  if (const auto& blind = knowledge.blindness[id]) {
+    health.level = kWarn;
+    health.message = "blind: " + describe(*blind);
+    health.values.emplace_back("blind", std::string(culprit::to_string(blind->why)));
+  }
   switch (state.phase) {
     case RulePhase::kQuiet:
       return health;
@@ -60,16 +65,25 @@ std::vector<ros2::Health> health(const Knowledge& knowledge) {
   int exhausted = 0;
   for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
     all.push_back(of_rule(RuleId(r), knowledge));
-    failing += all.back().level == kWarn ? 1 : 0;
+    failing += knowledge.states.is_active(RuleId(r)) ? 1 : 0;
     exhausted += all.back().level == kError ? 1 : 0;
   }
+  const std::size_t blind = knowledge.blindness.count();
   if (failing + exhausted > 0) {
     all[0].level = exhausted > 0 ? kError : kWarn;
     all[0].message = fmt::format("{} failing, {} exhausted", failing, exhausted);
+    if (blind > 0) all[0].message += fmt::format(", {} blind", blind);
+  } else if (knowledge.blindness.is_total()) {
+    all[0].level = kWarn;
+    all[0].message = "watching nothing: no rule can see";
+  } else if (blind > 0) {
+    all[0].level = kWarn;
+    all[0].message = fmt::format("no failure is seen, {} blind", blind);
   }
   all[0].values = {{"rules", std::to_string(knowledge.rules.rules.size())},
                    {"failing", std::to_string(failing)},
-                   {"exhausted", std::to_string(exhausted)}};
+                   {"exhausted", std::to_string(exhausted)},
+                   {"blind", std::to_string(blind)}};
   for (std::size_t c = 0; c < knowledge.rules.components.size(); ++c) {
     auto status = of_component(ComponentId(c), knowledge);
     if (!status) continue;

@@ -54,6 +54,25 @@ TEST(HealthReport, WarnsOfAFailureUnderRepairAndErrsWhenNothingIsLeftToTry) {
   EXPECT_EQ(all[1].level, 2);
 }
 
+TEST(HealthReport, WarnsOfABlindRule) {
+  const RuleSet rules = two_rules();
+  Knowledge knowledge(rules);
+  knowledge.blindness.set(RuleId(1), {Time(), Unseen::kNeverSeen, "/t", "/tf"});
+  auto all = health(knowledge);
+  EXPECT_EQ(all[0].level, 1);
+  EXPECT_EQ(all[0].message, "no failure is seen, 1 blind");
+  EXPECT_EQ(all[1].level, 0);
+  EXPECT_EQ(all[2].level, 1);
+  EXPECT_EQ(all[2].message, "blind: /t was never seen; did you mean '/tf'?");
+
+  knowledge.blindness.set(RuleId(0), {Time(), Unseen::kNeverSeen, "/t", ""});
+  EXPECT_EQ(health(knowledge)[0].message, "watching nothing: no rule can see");
+
+  knowledge.states.enter(RuleId(0), RulePhase::kFailing);
+  all = health(knowledge);
+  EXPECT_EQ(all[0].message, "1 failing, 0 exhausted, 2 blind");
+}
+
 TEST(HealthReport, ErrsWhenARequiredComponentIsNotThere) {
   const RuleSet rules = *check(Source("test.rules", "COMPONENT a REQUIRED\nCOMPONENT b\n")).rules;
   Knowledge knowledge(rules);

@@ -121,7 +121,9 @@ void RecoveryGoals::consider(Goal& goal) {
   const bool is_well =
       outlook.is_known && outlook.ill.empty() && (!component.empty() || status_["health"] == 0);
   if (is_well)
-    return end(goal, State::kSucceeded, component.empty() ? "all is well" : component + " is well");
+    return end(
+        goal, State::kSucceeded,
+        component.empty() ? status_.value("summary", "all is well") : component + " is well");
   if (goal.feedback == outlook.feedback()) return;
   goal.feedback = outlook.feedback();
   news_.push_back(goal.request.id);

@@ -33,9 +33,15 @@ bool is_silenced(const Silenceable& what, const Governor& governor) {
                              [&](const auto& each) { return each.what == what; });
 }
 
-// "all is well", "camera is dead", "camera is dead, and 2 more"
+// "all is well", "camera is dead", "camera is dead, and 2 more", "no failure is seen, but 1 rule is blind"
 std::string summary_of(const std::vector<Json>& incidents, const Manager& manager) {
+  const Blindness& blindness = manager.knowledge().blindness;
+  const std::size_t blind = blindness.count();
   std::string text = "all is well";
+  if (blind > 0)
+    text = "no failure is seen, but " + std::to_string(blind) +
+           (blind == 1 ? " rule is blind" : " rules are blind");
+  if (blindness.is_total()) text = "watching nothing: no rule can see";
   if (!manager.hears()) text = "the robot cannot be heard, and nothing is judged";
   if (!incidents.empty()) text = incidents.front()["headline"].get<std::string>();
   if (incidents.size() > 1) text += ", and " + std::to_string(incidents.size() - 1) + " more";

@@ -105,6 +105,16 @@ struct ToldRobot {
       }};
 };
 
+TEST(Teller, NeverSaysThatAllIsWellWhileARuleIsBlind) {
+  ToldRobot told;
+  for (int i = 0; i < 10; ++i) {
+    told.robot->signal("brightness", Value(1.0));
+    told.run_for(1s);
+  }
+  told.run_for(60s);
+  EXPECT_EQ(told.statuses.back()["summary"], "no failure is seen, but 1 rule is blind");
+}
+
 TEST(Teller, TellsWhoIsThereAndThatAllIsWell) {
   const ToldRobot told;
   ASSERT_THAT(told.statuses, testing::Not(IsEmpty()));

@@ -149,7 +149,7 @@ const Manual::Entries& exit_statuses() {
        "It was asked for wrongly: an unknown command or option, a value that an option does not "
        "take, or an "
        "environment variable that makes no sense. Nothing was done."},
-      {"3", "There are warnings, and no error (doctor)."}};
+      {"3", "There are warnings, and no error (doctor, status)."}};
   return all;
 }
 

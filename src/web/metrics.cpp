@@ -133,6 +133,9 @@ void Metrics::look(const Manager& manager, Counts& counts) {
     const Criticality c = knowledge.rules.rules[r].policies.criticality;
     ++counts.open[label("criticality", culprit::to_string(c))];
   }
+  counts.blind.clear();
+  for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r)
+    counts.blind[of_rule(RuleId(r), knowledge.rules)] = knowledge.blindness[RuleId(r)] ? 1 : 0;
   counts.components.clear();
   for (const std::string_view word : kHealthWords) counts.components[label("health", word)] = 0;
   for (const std::size_t health : health_of_components(knowledge))
@@ -175,6 +178,7 @@ std::string Metrics::text() const {
       "Strategies that were chosen and held back by the governor.", counts.holds);
   all("culprit_orders_total", "counter", "Orders of people.", counts.orders);
   all("culprit_failures_open", "gauge", "Failures that are there now.", counts.open);
+  all("culprit_rule_blind", "gauge", "1 while the rule's trigger has no value.", counts.blind);
   all("culprit_components", "gauge", "Components of the rules by health.", counts.components);
   one("culprit_hears", "gauge", "1 while the robot can be heard.", hears_ ? 1 : 0);
   one("culprit_approvals_pending", "gauge", "Strategies that wait for a person's word.",

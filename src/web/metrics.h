@@ -49,6 +49,7 @@ class Metrics {
     Series holds;
     Series orders;
     Series open;
+    Series blind;
     Series components;
     std::string info;
     std::size_t approvals_pending = 0;

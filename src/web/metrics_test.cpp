@@ -70,6 +70,14 @@ TEST_F(Counted, TellsOfFailuresStrategiesAndHealth) {
     EXPECT_THAT(text, HasSubstr(line));
 }
 
+TEST_F(Counted, TellsWhichRulesAreBlind) {
+  constexpr const char* kLine = "culprit_rule_blind{rule=\"CameraSilent\",criticality=\"ERROR\"} ";
+  EXPECT_THAT(metrics.text(), HasSubstr(kLine + std::string("0\n")));
+  robot["camera"].process = ProcessState::kGone;
+  robot.run_for(60s);
+  EXPECT_THAT(metrics.text(), HasSubstr(kLine + std::string("1\n"))) << "nobody publishes /rgb";
+}
+
 // The rules of the format that promtool checks.
 TEST_F(Counted, IsInPrometheusTextFormat) {
   robot.discover();

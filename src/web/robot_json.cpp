@@ -80,6 +80,13 @@ std::string_view word_of(Attempt::Stage stage) {
 Json rule_to_json(RuleId id, const Knowledge& knowledge, Time start) {
   const RuleState& state = knowledge.states[id];
   Json json{{"phase", word_of(state.phase)}};
+  if (const auto& blind = knowledge.blindness[id]) {
+    json["blind"] = {{"since", time_to_json(blind->since, start)},
+                     {"why", culprit::to_string(blind->why)},
+                     {"text", describe(*blind)}};
+    if (!blind->input.empty()) json["blind"]["input"] = blind->input;
+    if (!blind->near.empty()) json["blind"]["near"] = blind->near;
+  }
   // What is true and must hold a while longer, FOR or HOLD, is no failure yet.
   if (state.phase == RulePhase::kQuiet) {
     json["trigger"] =

@@ -8,7 +8,7 @@ import type { Failure, View } from './history'
 import { headlineOf, healthOf, type Incident, incidentsOf, type Known, listed } from './incidents'
 import { usePaced } from './paced'
 import { doingOf, kSigns, type Tone } from './status'
-import { clockAt, culprits, incidents, isLive, known, live, now, robot, rulesByComponent, selected, situation, state } from './store'
+import { blindRules, clockAt, culprits, incidents, isLive, isNothingWatched, known, live, now, robot, rulesByComponent, selected, situation, state } from './store'
 import type { Candidate, Criticality, ManagerEvent } from './types'
 
 export const kWords: Record<Criticality, string> = {
@@ -234,6 +234,24 @@ export function Components() {
   )
 }
 
+// Rules that say nothing, and why.
+function BlindRules() {
+  const blind = blindRules.value
+  if (isNothingWatched.value && blind.length === 0) return <p class="headline">Watching nothing: there is no rule.</p>
+  return (
+    <>
+      {blind.map((rule) => (
+        <article class={`incident ${rule.criticality}`} key={rule.name}>
+          <h2>{rule.name} is blind</h2>
+          <p>
+            {rule.text}. culprit cannot tell whether its failure is present, since {byTheClock(clockAt(rule.since), 1)}.
+          </p>
+        </article>
+      ))}
+    </>
+  )
+}
+
 export function Explanation({ view }: { view: View }) {
   const wanted = view === live ? selected.value : null
   const rules = robot.value?.rules ?? []
@@ -248,7 +266,8 @@ export function Explanation({ view }: { view: View }) {
           what was told last. <button type="button" onClick={() => (view.moment.value = null)}>Back to now</button>
         </p>
       )}
-      {all.length === 0 && (
+      {view === live && isLive.value && <BlindRules />}
+      {all.length === 0 && !(view === live && isLive.value && (blindRules.value.length > 0 || isNothingWatched.value)) && (
         <p class="headline well">
           <b>✓ All is well.</b> No rule sees a failure{view.isNewest.value ? '' : ' at this moment'}.
         </p>

@@ -4,7 +4,7 @@ import { computed } from '@preact/signals'
 import { lastingSoFar, when } from './clock'
 import { freshness, nowByTheClock } from './freshness'
 import { headlineOf, type Incident, listed } from './incidents'
-import { can, clockAt, control, present, presentlyKnown, robot, state } from './store'
+import { blindRules, can, clockAt, control, isNothingWatched, present, presentlyKnown, robot, state } from './store'
 
 export type Tone = 'OK' | 'NON_CRITICAL' | 'WARNING' | 'ERROR' | 'EXHAUSTED' | 'unknown' | 'lost'
 export interface Mode {
@@ -96,6 +96,20 @@ function ofRobot(): Told {
   const detail = `no failure is seen by ${count} ${count === 1 ? 'rule' : 'rules'}`
   if (control.value?.hears === false)
     return told('unknown', '?', 'Unknown', 'The robot cannot be heard', 'nothing is judged until it is')
+  const blind = blindRules.value
+  if (isNothingWatched.value)
+    return told('unknown', '?', 'Unknown', 'Watching nothing', blind.length > 0 ? `no rule can see: ${blind[0].text}` : 'there is no rule')
+  if (blind.length > 0) {
+    const isGrave = blind[0].criticality === 'ERROR'
+    const more = blind.length > 1 ? ` (and ${blind.length - 1} more)` : ''
+    return told(
+      isGrave ? 'WARNING' : 'NON_CRITICAL',
+      isGrave ? kSigns.WARNING : kSigns.NON_CRITICAL,
+      'Blind',
+      `${blind[0].name} is blind${more}`,
+      `no failure is seen, but ${blind[0].text}`
+    )
+  }
   return told('OK', kSigns.OK, 'Well', 'All is well', detail)
 }
 

@@ -153,6 +153,21 @@ export const presentlyKnown: Known = (component) => ({
   isGone: presentSituation.value.gone.has(component),
   state: stateOfComponent(component),
 })
+// Rules that are blind: culprit cannot tell whether their failure is present. ERROR rules first.
+export const blindRules = computed(() =>
+  (robot.value?.rules ?? [])
+    .flatMap(({ name, criticality }, i) => {
+      const blind = state.value?.rules[i]?.blind
+      return blind ? [{ name, criticality, ...blind }] : []
+    })
+    .sort((a, b) => Number(b.criticality === 'ERROR') - Number(a.criticality === 'ERROR'))
+)
+// Without rules, REQUIRED components are watched nevertheless.
+export const isNothingWatched = computed(() => {
+  const rules = robot.value?.rules ?? []
+  return rules.length === 0 ? !robot.value?.components.some((c) => c.required) : blindRules.value.length === rules.length
+})
+
 export const present = computed(() => {
   const { failures } = presentSituation.value
   return { failures, incidents: incidentsOf(failures, componentsOfRule, presentlyKnown) }

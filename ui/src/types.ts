@@ -44,6 +44,7 @@ export interface Graph {
 export interface RuleState {
   phase: 'quiet' | 'failing' | 'attempting' | 'exhausted'
   trigger?: boolean | null
+  blind?: { since: number; why: string; text: string; input?: string; near?: string } // its trigger has no value
   since?: number
   attempts?: number
   retry_at?: number

@@ -109,6 +109,14 @@ export const kIncidents = [
 export const kIncidentEvents = kHealing.filter((e) => e.t >= kBroken).sort((a, b) => a.t - b.t).map((e) => ({ ...e, t: e.clock }))
 export const kNow = kBroken + 12
 
+// A rule whose trigger has no value says nothing, and that is not health.
+const blind = (text) => ({ trigger: null, blind: { since: kBroken, why: 'never_seen', input: 'entropy', text } })
+const kEntropy = "signal entropy was never seen; did you mean 'segmentation_entropy'?"
+export const kBlindStates = {
+  blind: { events: [], control: {}, state: { SegmentationBad: blind(kEntropy) }, cause: 'SegmentationBad is blind', level: 'Blind', mode: 'Acting', also: ['no failure is seen, but signal entropy was never seen'] },
+  'watching-nothing': { events: [], control: {}, state: Object.fromEntries(kRules.map(({ name }) => [name, blind(kEntropy)])), cause: 'Watching nothing', level: 'Unknown', mode: 'Acting', also: ['no rule can see'] },
+}
+
 // Events forgotten long ago: the failure itself is not.
 export const kForgotten = { events: [], control: {}, state: { RGBDead: failing }, cause: 'RGBDead fails', level: 'Error', mode: 'Acting' }
 

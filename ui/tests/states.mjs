@@ -1,6 +1,6 @@
 // Every state of the robot that an operator may find, on every size of screen, light and dark: what must be seen without
 // scrolling is seen, whole and at its place, and all of it looks as in the pictures beside this.
-import { kForgotten, kNow, kStates, kToday, play, state } from './robots.mjs'
+import { kBlindStates, kForgotten, kNow, kStates, kToday, play, state } from './robots.mjs'
 import { kSchemes, kSizes, pictures } from './pictures.mjs'
 import { expect, file, isAccessible, stubbed, suite } from './session.mjs'
 
@@ -84,6 +84,15 @@ async function everyState(page, server) {
     server.anew()
     play(server, kAll[name])
     await looksRight(page, name, 'desktop', kAll[name])
+    await isAccessible(page)
+  }
+  for (const [name, each] of Object.entries(kBlindStates)) {
+    server.anew()
+    play(server, each)
+    await looksRight(page, name, 'desktop', each)
+    const explanation = page.getByRole('region', { name: 'Explanation' })
+    await explanation.getByText('SegmentationBad is blind').waitFor()
+    expect((await explanation.getByText('All is well').count()) === 0, `it says that all is well (${name})`)
     await isAccessible(page)
   }
   // The server is gone: the page says so at once, and keeps its colours from nobody.

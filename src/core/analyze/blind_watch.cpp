@@ -27,7 +27,7 @@ bool keeps_last_value(const Input& input, const RuleSet& rules) {
   return input.kind == Kind::kChanged || input.kind == Kind::kLevel;
 }
 
-// What of it the robot never had.
+// The part of the input that the robot never had.
 Nameable never_seen_of(const Input& input, const Knowledge& knowledge) {
   const Sightings& sightings = knowledge.sightings;
   if (is_of_topic(input)) return input.topic;
@@ -64,7 +64,7 @@ std::string name_of(const Nameable& what, const RuleSet& rules) {
   return rules[std::get<ComponentId>(what)].name;
 }
 
-// Nothing if only the value is missing, as of a field that a topic's messages do not have.
+// Empty if only the value is missing, as with a field that a topic's messages do not have.
 std::string near_name_of(const Nameable& what, const Knowledge& knowledge) {
   const auto* signal = std::get_if<SignalId>(&what);
   const bool is_field =
@@ -273,7 +273,7 @@ Duration BlindWatch::debounce(RuleId id, Time now) const {
   return longest;
 }
 
-// What the robot never had explains more than what is missing now.
+// A name that the robot never had explains more than a value that is missing now.
 Blind BlindWatch::blind(RuleId id, Time now) const {
   const RuleSet& rules = knowledge_.rules;
   Blind blind{.since = sights_[id.index].lost, .why = Unseen::kNoResult, .input = {}, .near = {}};

@@ -1,5 +1,5 @@
-// Finds the rules that are blind: their trigger has no value, so nobody can tell whether their
-// failure is there (knowledge/blindness.h).
+// Finds the rules that are blind: their trigger has no value, so culprit cannot tell whether
+// their failure is present (knowledge/blindness.h).
 //
 //   blind      The trigger has had no value for the debounce time. A trigger that other inputs
 //              decide can see. So can one that is true, and one of which a known death decides. The

@@ -1,4 +1,4 @@
-// Which rules are blind: nobody can tell whether their failure is there.
+// Which rules are blind: culprit cannot tell whether their failure is present.
 //
 // A blind rule is neither quiet nor failing. It never counts as health, and it is never a reason to
 // act. The analysis decides which rules are blind (analyze/blind_watch.h).
@@ -44,13 +44,16 @@ struct Blind {
 
 class Blindness {
  public:
-  explicit Blindness(const RuleSet& rules) : by_rule_(rules.rules.size()) {}
+  explicit Blindness(const RuleSet& rules)
+      : by_rule_(rules.rules.size()),
+        has_required_(std::any_of(rules.components.begin(), rules.components.end(),
+                                  [](const Component& c) { return c.is_required; })) {}
 
   // Nothing: the rule can see, or did not have its time yet.
   const std::optional<Blind>& operator[](RuleId id) const { return by_rule_[id.index]; }
   std::size_t count() const { return count_; }
-  // No rule can see, or there is none. Nothing is watched.
-  bool is_total() const { return count_ == by_rule_.size(); }
+  // No rule can see; or there is none, and no REQUIRED component either. Nothing is watched.
+  bool is_total() const { return by_rule_.empty() ? !has_required_ : count_ == by_rule_.size(); }
   // Ascending.
   std::vector<RuleId> rules() const {
     std::vector<RuleId> blind;
@@ -71,6 +74,7 @@ class Blindness {
 
  private:
   std::vector<std::optional<Blind>> by_rule_;
+  bool has_required_;
   std::size_t count_ = 0;
 };
 

@@ -166,8 +166,8 @@ struct NeverSeen {
   std::string near;  // a name of the robot that may be meant; empty: none is near
 };
 
-// The trigger of the rule has had no value for a while: nobody knows whether its failure is there
-// (blindness.h). Told once, until it can see again.
+// The trigger of the rule has had no value for a while, so culprit cannot tell whether its failure is
+// present (blindness.h). Reported once, until the rule can see again.
 struct RuleBlind {
   RuleId rule;
   Blind blind{};

@@ -69,7 +69,7 @@ struct Knowledge {
   // Does the strategy start such processes, and nothing else? That harms nothing.
   bool only_starts_the_gone(const Strategy& strategy) const;
 
-  // Since when nobody can tell whether the rule's failure is there; nothing: the rule can see.
+  // Since when culprit cannot tell whether the rule's failure is present; nothing: the rule can see.
   std::optional<Time> blind_since(RuleId rule) const {
     const auto& blind = blindness[rule];
     return blind ? std::optional(blind->since) : std::nullopt;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "language/evaluate.h"
+
 namespace culprit::torture {
 namespace {
 
@@ -39,6 +41,7 @@ Invariants::Invariants(const RuleSet& rules, const Scenario& scenario)
       last_resort_(rules.rules.size(), kLongAgo),
       last_resort_missing_(rules.rules.size(), kNever),
       dead_since_(rules.components.size(), kNever),
+      unknown_since_(rules.rules.size(), kNever),
       searches_(rules.rules.size()),
       healthy_(scenario.governor.limits.backoff.healthy),
       overall_{scenario.governor.limits.overall, {}},
@@ -54,6 +57,7 @@ Invariants::Invariants(const RuleSet& rules, const Scenario& scenario)
 void Invariants::begin(const Manager& manager) {
   std::fill(left_dead_since_.begin(), left_dead_since_.end(), kNever);
   std::fill(last_resort_missing_.begin(), last_resort_missing_.end(), kNever);
+  std::fill(unknown_since_.begin(), unknown_since_.end(), kNever);
   beliefs_.clear();
   for (std::size_t s = 0; s < rules_.strategies.size(); ++s)
     beliefs_.push_back(manager.knowledge().beliefs[StrategyId(s)]);
@@ -92,9 +96,35 @@ void Invariants::check(const Manager& manager, Time now, std::span<const Command
   check_beliefs(manager, now);
   check_last_resorts(manager, now);
   if (is_bayes_ && manager.hears()) check_the_dead(manager, now);
+  if (is_seen_true_) check_sight(manager, now);
   steps_at_last_ = now == last_ ? steps_at_last_ + 1 : 0;
   last_ = now;
   if (steps_at_last_ > kMostStepsAtOnce) fail(now, "the manager steps without end");
+}
+
+// All ages begin anew after the robot could not be heard.
+void Invariants::check_sight(const Manager& manager, Time now) {
+  constexpr Duration kBlindAfter = std::chrono::minutes(1);
+  const Knowledge& knowledge = manager.knowledge();
+  const bool begins_anew =
+      !manager.hears() || std::ranges::any_of(manager.events(), [](const Event& event) {
+        return std::holds_alternative<SleepNoticed>(event.what) ||
+               std::holds_alternative<JudgementResumed>(event.what);
+      });
+  for (std::size_t r = 0; r < unknown_since_.size(); ++r) {
+    const RuleId id(r);
+    const RuleState& state = knowledge.states[id];
+    const bool is_known = state.detection.known_death || state.attempt ||
+                          evaluate(rules_[id].trigger, knowledge.signals.slots()).known;
+    if (begins_anew || is_known) {
+      unknown_since_[r] = kNever;
+      continue;
+    }
+    if (unknown_since_[r] != kNever && later(unknown_since_[r], kBlindAfter) <= now &&
+        !knowledge.blind_since(id))
+      fail(now, rules_[id].name + " has had no value for a minute and is not blind");
+    unknown_since_[r] = std::min(unknown_since_[r], now);
+  }
 }
 
 void Invariants::note_the_dead(const Manager& manager, Time now) {

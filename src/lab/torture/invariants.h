@@ -23,6 +23,7 @@
 // - Nothing is begun while the robot cannot be heard.
 // - Nothing is begun at a component while another node has its name, or at what has left while the
 //   launch that it belongs to is being ended.
+// - A rule whose trigger has had no value for a minute is blind: it never counts as well.
 // All of this holds across crashes of the manager: budgets, pauses and silences go on.
 // - A belief changes by one outcome at a time, and only with the verdict that says so.
 // - The manager never wants to be stepped without end.
@@ -84,6 +85,7 @@ class Invariants {
   void count_attempts(const Event& event);
   void check_last_resorts(const Manager& manager, Time now);
   void check_the_dead(const Manager& manager, Time now);
+  void check_sight(const Manager& manager, Time now);
   bool is_given_up(const Manager& manager, ComponentId component, Time failed) const;
   bool is_excused(const Manager& manager, StrategyId strategy) const;
   void spend(Budget& budget, const std::string& what, Time at);
@@ -100,6 +102,7 @@ class Invariants {
   std::vector<Time> last_resort_;  // by rule: when its last resort was begun, or took effect
   std::vector<Time> last_resort_missing_;  // by rule: since when it should have been begun; kNever
   std::vector<Time> dead_since_;  // by component: that it is known to be dead; kNever: it is not
+  std::vector<Time> unknown_since_;  // by rule: its trigger has no value; kNever: it has one
   // By rule: strategies that were executed since it was proven gone, and when it went away last.
   struct Search {
     int attempts = 0;

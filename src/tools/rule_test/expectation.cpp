@@ -53,6 +53,7 @@ class Matcher {
   bool is(const RuleExhausted& what) const {
     return e_.kind == Kind::kExhausted && what.rule == e_.rule;
   }
+  bool is(const RuleBlind& what) const { return e_.kind == Kind::kBlind && what.rule == e_.rule; }
   bool is(const FailureLost& what) const { return e_.kind == Kind::kLost && what.rule == e_.rule; }
   bool is(const StrategyFailed& what) const {
     return e_.kind == Kind::kFailed && what.strategy == e_.strategy;

@@ -17,6 +17,7 @@ struct Expectation {
     kResolved,   // rule; strategy: by this one
     kExhausted,  // rule
     kLost,       // rule
+    kBlind,      // rule
     kChosen,     // strategy
     kExecuted,   // strategy: all of its adaptations took effect
     kFailed,     // strategy: it did not help, or could not be carried out

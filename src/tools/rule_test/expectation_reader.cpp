@@ -22,6 +22,7 @@ constexpr std::array kVerbs = {
     Verb{"RESOLVED", Kind::kResolved, About::kRule},
     Verb{"EXHAUSTED", Kind::kExhausted, About::kRule},
     Verb{"LOST", Kind::kLost, About::kRule},
+    Verb{"BLIND", Kind::kBlind, About::kRule},
     Verb{"CHOSEN", Kind::kChosen, About::kStrategy},
     Verb{"EXECUTED", Kind::kExecuted, About::kStrategy},
     Verb{"FAILED", Kind::kFailed, About::kStrategy},

@@ -60,6 +60,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"SIGNAL blur 1s: 0.9 2s: silent\nADAPTATION camera set_parameter UNANSWERED\nRUN "
              "1min\n",
              "Blurred LOST", "CameraDead LOST", "did not happen"},
+        Case{"SIGNAL blur 1s: 0.1 2s: silent\nRUN 1min\n", "Blurred BLIND BY 15s",
+             "CameraDead BLIND", "did not happen"},
         Case{kCameraKilled, "camera_redeploy CHOSEN BY 2.3s", "camera_restart CHOSEN",
              "did not happen"},
         Case{kCameraKilled, "camera_redeploy EXECUTED BY 3s", "camera_restart EXECUTED",
