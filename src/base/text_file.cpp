@@ -2,11 +2,13 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <string_view>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -28,11 +30,15 @@ Expected<std::string> read_all(std::istream& in, const std::string& path) {
   return text;
 }
 
-// The process's mask can only be read by setting it; culprit sets up no other file meanwhile.
+// umask(2) tells the mask only by setting another one, and other threads make files meanwhile.
 mode_t mode_of_new_files() {
-  const mode_t mask = umask(0);
-  umask(mask);
-  return 0666 & ~mask;
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    constexpr std::string_view kMask = "Umask:";
+    if (line.starts_with(kMask))
+      return 0666 & ~static_cast<mode_t>(std::strtoul(line.c_str() + kMask.size(), nullptr, 8));
+  }
+  return S_IRUSR | S_IWUSR;
 }
 
 bool write_all(int file, const std::string& text) {

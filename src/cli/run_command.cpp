@@ -12,6 +12,7 @@
 #include "live/robot_names.h"
 #include "live/rule_trust.h"
 #include "live/snapshots.h"
+#include "owners/spawn.h"
 #include "ros_api/ros_api.h"
 #include "terminal/command.h"
 #include "terminal/console.h"
@@ -121,10 +122,12 @@ ros_api::OrderServices::Give orders_over_dds(const RunOptions& options,
 constexpr Duration kEndsWithin = std::chrono::seconds(8);
 
 int run(const RunOptions& options) {
+  owners::keep_files_private();
   auto rules = live::trusted_rules(options.rules, options.improvise, colour_of(STDERR_FILENO));
   if (!rules) return fail(rules.error());
   const auto trusted = live::trust_state(options.state_path(), options.journal_path(rules->rules));
   if (!trusted) return fail(trusted.error());
+  live::make_private(options.journal_path(rules->rules));
   say(stderr, "{}", rules->remarks);
   auto session = options.session(rules->rules);
   if (!session) return fail(session.error(), kUsage);

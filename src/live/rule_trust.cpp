@@ -65,6 +65,19 @@ std::string weakness_of_all(const fs::path& path) {
   return why.empty() ? weakness_up_from(fs::absolute(path)) : why;
 }
 
+// The journal and what is kept beside it, whose names begin with its name: the lock, the last writes.
+std::vector<fs::path> files_of(const fs::path& journal) {
+  std::vector<fs::path> files;
+  const fs::path folder = journal.has_parent_path() ? journal.parent_path() : ".";
+  std::error_code error;
+  for (fs::directory_iterator i(folder, error); !error && i != fs::directory_iterator();
+       i.increment(error)) {
+    if (i->path().filename().native().starts_with(journal.filename().native()))
+      files.push_back(i->path());
+  }
+  return files;
+}
+
 }  // namespace
 
 Expected<void> trust_rules(const std::string& path) {
@@ -85,15 +98,8 @@ Expected<void> trust_setup(const std::string& path) {
 
 Expected<void> trust_state(const fs::path& folder, const fs::path& journal) {
   std::error_code error;
-  std::vector<fs::path> all = {folder, folder / "log", journal};
-  // What is kept beside the journal begins with its name: the lock, the last writes.
-  fs::path beside = journal.parent_path();
-  if (beside.empty()) beside = ".";
-  for (fs::directory_iterator i(beside, error); !error && i != fs::directory_iterator();
-       i.increment(error)) {
-    if (i->path().filename().native().starts_with(journal.filename().native()))
-      all.push_back(i->path());
-  }
+  std::vector<fs::path> all = files_of(journal);
+  all.insert(all.end(), {folder, folder / "log", journal});
   for (fs::path each : all) {
     // What is not there yet is made where it will be.
     each = fs::absolute(each);
@@ -104,6 +110,15 @@ Expected<void> trust_state(const fs::path& folder, const fs::path& journal) {
                       folder.string(), why)};
   }
   return {};
+}
+
+void make_private(const fs::path& journal) {
+  for (const fs::path& each : files_of(journal)) {
+    struct stat status {};
+    if (lstat(each.c_str(), &status) == 0 && S_ISREG(status.st_mode) &&
+        status.st_uid == geteuid() && (status.st_mode & (S_IRWXG | S_IRWXO)) != 0)
+      chmod(each.c_str(), status.st_mode & S_IRWXU);
+  }
 }
 
 }  // namespace culprit::live

@@ -24,4 +24,7 @@ Expected<void> trust_setup(const std::string& path);
 Expected<void> trust_state(const std::filesystem::path& folder,
                            const std::filesystem::path& journal);
 
+// Takes the rights of others off this user's journal and what is kept beside it: an older culprit left them.
+void make_private(const std::filesystem::path& journal);
+
 }  // namespace culprit::live

@@ -103,6 +103,21 @@ TEST_F(RuleTrust, StateThatOthersMayWriteIsNotTaken) {
   EXPECT_EQ(objection_to_state(), "");
 }
 
+TEST_F(RuleTrust, TheJournalIsMadePrivate) {
+  for (const char* each : {"my.journal", "my.journal-wal", "yours.journal"}) {
+    std::ofstream(folder / each) << "";
+    allow(folder / each, 0644);
+  }
+  fs::create_symlink("yours.journal", folder / "my.journal-link");
+  make_private(folder / "my.journal");
+  const auto mode = [&](const char* name) {
+    return static_cast<int>(fs::status(folder / name).permissions());
+  };
+  EXPECT_EQ(mode("my.journal"), 0600);
+  EXPECT_EQ(mode("my.journal-wal"), 0600);
+  EXPECT_EQ(mode("yours.journal"), 0644) << "no link is followed";
+}
+
 TEST_F(RuleTrust, NorStateThatOthersMayMake) {
   allow(folder, 0777);
   EXPECT_THAT(objection_to_state(), HasSubstr(folder.string() + " is writable by others"));

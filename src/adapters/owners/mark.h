@@ -4,6 +4,9 @@
 // What a process starts in turn inherits the mark and is not the component: a second variable says
 // which process is, by its number, and a third where that number counts, for in another PID
 // namespace it is somebody else's.
+//
+// Any user can start a process with these variables. So a mark counts only in a process of our own user: a component
+// whose LAUNCH changes the user (sudo, setpriv) is known for as long as the culprit runs that started it.
 #pragma once
 
 #include <string>

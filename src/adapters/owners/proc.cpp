@@ -142,6 +142,28 @@ bool is_ros2_run(int pid) {
          fs::path(arguments[1]).filename() == "ros2" && arguments[2] == "run";
 }
 
+struct Users {
+  unsigned real = 0;
+  unsigned effective = 0;
+};
+std::optional<Users> users_of(int pid) {
+  std::ifstream status("/proc/" + std::to_string(pid) + "/status");
+  for (std::string line; std::getline(status, line);) {
+    if (!line.starts_with("Uid:")) continue;
+    std::istringstream numbers(line.substr(4));
+    Users users;
+    if (numbers >> users.real >> users.effective) return users;
+    break;
+  }
+  return std::nullopt;
+}
+
+// Both: a program that any user may run as its owner (setuid) keeps who ran it as the real one.
+bool is_of_own_user(int pid) {
+  const auto users = users_of(pid);
+  return users && users->real == geteuid() && users->effective == geteuid();
+}
+
 Duration now_on(clockid_t clock) {
   timespec now{};
   clock_gettime(clock, &now);
@@ -239,6 +261,7 @@ std::optional<Time> started_at(int pid) {
 }
 
 bool has_variable(int pid, const std::string& variable) {
+  if (!is_of_own_user(pid)) return false;
   std::ifstream environment("/proc/" + std::to_string(pid) + "/environ", std::ios::binary);
   for (std::string text; std::getline(environment, text, '\0');) {
     if (text == variable) return true;
@@ -283,16 +306,10 @@ std::optional<Identity> identity_of(int pid) {
   if (error) return std::nullopt;
   constexpr std::string_view kDeleted = " (deleted)";  // it was installed anew since
   if (program.ends_with(kDeleted)) program.resize(program.size() - kDeleted.size());
-  std::ifstream status(process + "/status");
-  for (std::string line; std::getline(status, line);) {
-    if (!line.starts_with("Uid:")) continue;
-    std::istringstream users(line.substr(4));
-    unsigned real = 0, effective = 0;
-    if (!(users >> real >> effective)) break;
-    const std::string script = is_interpreter(program) ? script_of(pid) : "";
-    return Identity{effective, program, script};
-  }
-  return std::nullopt;
+  const auto users = users_of(pid);
+  if (!users) return std::nullopt;
+  const std::string script = is_interpreter(program) ? script_of(pid) : "";
+  return Identity{users->effective, program, script};
 }
 
 std::string to_string(const Identity& identity) {

@@ -40,8 +40,8 @@ Origin origin_of(int pid);
 // On live_now()'s clock, to a hundredth of a second.
 std::optional<Time> started_at(int pid);
 
-// Whether `variable` ("NAME=value") is in the environment that the process was started with, which
-// others may not read: false for processes of another user, unless one may read all.
+// Whether `variable` ("NAME=value") is in the environment that the process was started with. False for processes of
+// another user, also where this one may read theirs: any user can write anything into it.
 bool has_variable(int pid, const std::string& variable);
 // All such processes.
 std::vector<int> processes_with(const std::string& variable);

@@ -45,6 +45,9 @@ std::vector<std::string> places_of(const Program& program) {
   return places;
 }
 
+constexpr mode_t kAsItIs = ~mode_t{0};
+mode_t umask_of_programs = kAsItIs;  // written before there are threads
+
 // All that is needed from fork() to execve(). After the fork of a program with threads only system
 // calls are safe, on what was made ready before.
 struct Preparation {
@@ -57,6 +60,7 @@ struct Preparation {
   int kept;
   Until until;
   pid_t ends_with;  // whose end ends it; 0: nobody's
+  mode_t mask;
 };
 constexpr std::size_t kPidDigits = 10;
 
@@ -77,9 +81,21 @@ void reset_signals() {
   sigprocmask(SIG_SETMASK, &none, nullptr);
 }
 
+// Culprit's service is spared when memory runs out (OOMScoreAdjust=); what it starts is not for that reason.
+void be_spared_no_more() {
+  const int file = open("/proc/self/oom_score_adj", O_RDWR | O_CLOEXEC);
+  if (file < 0) return;
+  char first = 0;
+  if (read(file, &first, 1) == 1 && first == '-' && lseek(file, 0, SEEK_SET) == 0) {
+    [[maybe_unused]] const auto written = write(file, "0", 1);
+  }
+  close(file);
+}
+
 bool redirect(const char* log) {
   const int input = open("/dev/null", O_RDONLY);
-  const int output = open(log, O_WRONLY | O_CREAT | O_APPEND, 0644);
+  const int output = open(log, O_WRONLY | O_CREAT | O_APPEND, 0600);
+  if (output >= 0) fchmod(output, 0600);  // it may be an older culprit's, open to readers
   return input >= 0 && output >= 0 && dup2(input, STDIN_FILENO) >= 0 &&
          dup2(output, STDOUT_FILENO) >= 0 && dup2(output, STDERR_FILENO) >= 0;
 }
@@ -137,6 +153,8 @@ Failure become(const Preparation& ready, int report) {
   closefrom(kept >= 0 ? kKept + 1 : kReport + 1);
   if (!redirect(ready.log)) return {Step::kOpenLog, errno};
   closefrom(kept >= 0 ? kKept + 1 : kReport + 1);
+  be_spared_no_more();
+  if (ready.mask != kAsItIs) umask(ready.mask);
   if (ready.folder != nullptr && chdir(ready.folder) != 0) return {Step::kEnterFolder, errno};
   const char* path = first_executable(ready.places);
   if (path == nullptr) return {Step::kFind, ENOENT};
@@ -162,6 +180,8 @@ std::string description(const Failure& failure, const std::string& name,
 }
 
 }  // namespace
+
+void keep_files_private() { umask_of_programs = umask(S_IRWXG | S_IRWXO); }
 
 std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   std::vector<char*> pointers;
@@ -210,7 +230,8 @@ Expected<Launch> Launch::begin(const Program& program, Until until) {
       program.pid_variable.empty() ? nullptr : &variables.back()[program.pid_variable.size() + 1],
       program.kept_until_it_runs,
       until,
-      program.lifetime == Lifetime::kStarter ? getpid() : 0};
+      program.lifetime == Lifetime::kStarter ? getpid() : 0,
+      umask_of_programs};
 
   const std::string& name = program.arguments.front();
   const auto failed = [&](int why) {

@@ -20,7 +20,8 @@ enum class Lifetime : std::uint8_t {
 struct Program {
   std::vector<std::string> arguments;  // the first is the program, with or without a path
   std::vector<std::filesystem::path> search_first;  // where to look for it before PATH
-  std::filesystem::path log;  // its output is appended here; parent folders are made
+  // Its output is appended here. Parent folders are made; the file is its user's alone.
+  std::filesystem::path log;
   // "NAME=value", beside what it inherits; also where it is looked for, if PATH is among them.
   std::vector<std::string> environment{};
   // A variable that holds the new process's own pid, and in processes that it starts, not theirs.
@@ -42,7 +43,8 @@ class Launch {
  public:
   // The new process leads a session and a process group of its own (a Ctrl-C at culprit's terminal
   // is not for it), reads nothing, inherits the environment, no open file
-  // and no capability that whoever started this program gave it, and has default signal handling.
+  // and no capability that whoever started this program gave it, has default signal handling, and is not spared
+  // when memory runs out because this program is.
   // Does not wait for any file system but that of the log. Errors: the system gives no process or
   // no descriptor.
   static Expected<Launch> begin(const Program& program, Until until);
@@ -76,6 +78,10 @@ class Launch {
   std::filesystem::path log_;
   std::filesystem::path folder_;
 };
+
+// From now on only this user can read the files that this process makes (umask), so that no other user can lock them
+// either. Programs that spawn() starts have the umask from before. Call it before there are threads.
+void keep_files_private();
 
 // As execve(2) takes them, with a null behind. They point into `texts`.
 std::vector<char*> pointers_to(std::vector<std::string>& texts);

@@ -96,23 +96,25 @@ Expected<std::vector<std::string>> Supervisor::environment_of(ComponentId compon
   return std::vector<std::string>();
 }
 
-// From the decision to start until the program runs, and carries the mark, it is nobody else's to
-// start. The kernel lets go of it when the last one that holds it has ended or runs the program.
+// From the decision to start until the program runs, and carries the mark, no other culprit may start it. The kernel
+// lets go of the lock when the last process that holds it has ended or runs the program. The file is its user's alone
+// from the beginning: whoever can open a file can lock it.
 Expected<FileDescriptor> Supervisor::lock_start_of(ComponentId component) const {
   const std::filesystem::path log = log_of(component);
   std::error_code error;
   std::filesystem::create_directories(log.parent_path(), error);
+  const std::filesystem::path path = log.parent_path() / (rules_[component].name + ".start");
   FileDescriptor lock(
-      open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NONBLOCK, 0644));
+      open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW, 0600));
   const std::string& name = rules_[component].name;
   if (!lock)
-    return Error{"cannot start " + name + ": its log " + log.string() +
-                 " cannot be written: " + std::strerror(errno)};
+    return Error{"cannot start " + name + ": the file that tells other culprits so, " +
+                 path.string() + ", cannot be made: " + std::strerror(errno)};
   if (flock(lock.get(), LOCK_EX | LOCK_NB) == 0) return Expected<FileDescriptor>(std::move(lock));
   return Error{errno == EWOULDBLOCK
                    ? name + " is being started already; look at what its program waits for"
-                   : "cannot start " + name +
-                         ": its log cannot be locked: " + std::strerror(errno)};
+                   : "cannot start " + name + ": " + path.string() +
+                         " cannot be locked: " + std::strerror(errno)};
 }
 
 void Supervisor::start(CommandId command, ComponentId component) {

@@ -23,6 +23,7 @@
 #include "base/test_folder.h"
 #include "language/checker.h"
 #include "owners/bounded_log.h"
+#include "owners/mark.h"
 #include "owners/proc.h"
 #include "owners/spawn.h"
 #include "owners/test_process.h"
@@ -820,7 +821,7 @@ TEST(Supervisor, DoesNotEndWhatItCannotStartAgain) {
     c.supervise(folder / "no folder");  // where no log can be written
     const Reply no_log = c.stop_to_start_again();
     EXPECT_EQ(no_log.outcome, Outcome::kRefused);
-    EXPECT_NE(no_log.text.find("cannot be written: Not a directory"), std::string::npos)
+    EXPECT_NE(no_log.text.find("cannot be made: Not a directory"), std::string::npos)
         << no_log.text;
     EXPECT_TRUE(exists(pid));
 
@@ -929,7 +930,7 @@ TEST(Supervisor, AMarkCountsOnlyWhereItsNumberDoes) {
 TEST(Supervisor, StartsNothingWhileAnotherCulpritStartsIt) {
   Supervised c("sleep 1000");
   std::filesystem::create_directories(c.folder());
-  const int lock = open((c.folder() / "c.log").c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
+  const int lock = open((c.folder() / "c.start").c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
   ASSERT_EQ(flock(lock, LOCK_EX), 0);
   c.supervisor->start({1}, ComponentId(0));
   const Reply reply = c.reply_to({1});
@@ -937,6 +938,59 @@ TEST(Supervisor, StartsNothingWhileAnotherCulpritStartsIt) {
   EXPECT_NE(reply.text.find("is being started already"), std::string::npos) << reply.text;
   close(lock);
   EXPECT_NE(c.start(), 0);
+}
+
+// A reader of the log, of an older culprit's say, may lock that for as long as it likes.
+TEST(Supervisor, WaitsForNoLockOfAReaderOfItsLog) {
+  Supervised c("sleep 1000");
+  std::filesystem::create_directories(c.folder());
+  const std::string log = c.folder() / "c.log";
+  close(open(log.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644));
+  const int reader = open(log.c_str(), O_RDONLY | O_CLOEXEC);
+  ASSERT_EQ(flock(reader, LOCK_SH), 0);
+  EXPECT_NE(c.start(), 0);
+  for (const char* each : {"c.log", "c.start"}) {
+    struct stat status {};
+    ASSERT_EQ(stat((c.folder() / each).c_str(), &status), 0);
+    EXPECT_EQ(status.st_mode & 0777, 0600u) << each;
+  }
+  close(reader);
+}
+
+// The service is (OOMScoreAdjust=), so that it can heal what the kernel ends.
+TEST(Supervisor, WhatItStartsIsNotSparedWhenMemoryRunsOut) {
+  constexpr const char* kOwn = "/proc/self/oom_score_adj";
+  std::string before;
+  std::ifstream(kOwn) >> before;
+  if (!(std::ofstream(kOwn) << "-100" << std::flush))
+    GTEST_SKIP() << "only root may be spared more than before";
+  Supervised c("sleep 1000");
+  const int pid = c.start();
+  std::ofstream(kOwn) << before << std::flush;
+  ASSERT_TRUE(becomes(pid, "sleep"));
+  std::string adjusted;
+  std::ifstream("/proc/" + std::to_string(pid) + "/oom_score_adj") >> adjusted;
+  EXPECT_EQ(adjusted, "0");
+}
+
+// Any user can start a process with these variables.
+TEST(Supervisor, AMarkOfAnotherUsersProcessDoesNotCount) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root can become somebody else";
+  const std::string robot = "test/stranger/" + std::to_string(getpid());
+  Supervised c("sleep 1000", robot);
+  const std::string variables = "env CULPRIT_COMPONENT=" + robot +
+                                "/c CULPRIT_PROCESS_COUNTS_IN=\"$(readlink /proc/self/ns/pid)\" "
+                                "sh -c 'export CULPRIT_PROCESS=$$; exec sleep 1000'";
+  const int stranger =
+      start_by_others("exec setpriv --reuid=65534 --regid=65534 --clear-groups " + variables);
+  const int own = start_by_others("exec " + variables);
+  ASSERT_TRUE(becomes(stranger, "sleep") && becomes(own, "sleep"));
+  EXPECT_EQ(launched_as(robot + "/c"), std::vector{own}) << "and of our user it does";
+  end(own);
+  c.supervise();
+  EXPECT_NE(c.start(), stranger);
+  EXPECT_TRUE(is_alive(stranger));
+  kill(stranger, SIGKILL);
 }
 
 // As on a file system that does not answer: a script whose interpreter is a pipe nobody writes to
