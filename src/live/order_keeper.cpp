@@ -1,5 +1,6 @@
 #include "live/order_keeper.h"
 
+#include "journal/order_reserve.h"
 #include "journal/sealed_file.h"
 #include "robot/inbox.h"
 
@@ -27,7 +28,10 @@ StandingOrders OrderKeeper::begin(std::filesystem::path file, const StandingOrde
   only_advises_ = false;
   in_file_ = is_in_file ? std::optional(found) : std::nullopt;
   begin_with(both(found, orders_));
+  // What was kept there belongs to a file that is gone or damaged.
+  if (!is_in_file) (void)journal::clear_reserve(journal::reserve_beside(*file_));
   if (const auto written = write(orders_); !written) trouble = written.error();
+  (void)journal::make_reserve(journal::reserve_beside(*file_));
   wakes_.notify_all();
   return orders_;
 }
@@ -135,6 +139,8 @@ Expected<void> OrderKeeper::write(const StandingOrders& orders) {
   const auto before = content();
   const auto written = write_orders(*file_, orders, journal::clocks_now(live_now()));
   if (written) in_file_ = orders;
+  // Where there was no room at the beginning.
+  if (written) (void)journal::make_reserve(journal::reserve_beside(*file_));
   // A failure may come after the name was changed already.
   if (!written && content() != before) in_file_.reset();
   return written;

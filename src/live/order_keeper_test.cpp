@@ -5,6 +5,7 @@
 #include <csignal>
 #include <fstream>
 #include <mutex>
+#include <sys/mount.h>
 #include <sys/resource.h>
 #include <thread>
 #include <vector>
@@ -13,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "base/test_folder.h"
+#include "journal/order_reserve.h"
 #include "language/checker.h"
 #include "live/run_journal.h"
 #include "robot/inbox.h"
@@ -131,6 +133,70 @@ TEST_F(KillSwitch, IsInForceAndSaidNotToBeKeptOnAFullDisk) {
   EXPECT_TRUE(kept.is_given);
   EXPECT_FALSE(kept.is_kept);
   EXPECT_THAT(kept.why_not, HasSubstr("a.journal-orders"));
+}
+
+// A small disk of its own, that can be filled to the last byte. It needs root.
+class SmallDisk {
+ public:
+  explicit SmallDisk(const fs::path& folder) : folder_(folder) {
+    fs::create_directory(folder);
+    is_there_ = mount("culprit-test", folder.c_str(), "tmpfs", 0, "size=8m") == 0;
+  }
+  ~SmallDisk() {
+    if (is_there_) umount2(folder_.c_str(), MNT_DETACH);
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  bool is_there() const { return is_there_; }
+  void fill() const {
+    std::FILE* file = std::fopen((folder_ / "filler").c_str(), "wb");
+    std::setvbuf(file, nullptr, _IONBF, 0);
+    for (const std::size_t size : {std::size_t{4096}, std::size_t{1}}) {
+      const std::string bytes(size, 'x');
+      while (std::fwrite(bytes.data(), 1, size, file) == size) continue;
+    }
+    std::fclose(file);
+  }
+  void free() const { fs::remove(folder_ / "filler"); }
+
+ private:
+  const fs::path folder_;
+  bool is_there_ = false;
+};
+
+// Also by a process that is killed right after: its successor finds the pause.
+TEST_F(KillSwitch, IsKeptOnADiskThatIsFull) {
+  const SmallDisk disk(folder / "disk");
+  if (!disk.is_there()) GTEST_SKIP() << "only root can mount a small disk";
+  const fs::path there = folder / "disk" / "a.journal";
+  Run run(there, rules);
+  disk.fill();
+  ASSERT_FALSE(std::ofstream(folder / "disk" / "more") << "x" << std::flush);
+  const Kept kept = run.order(Pause{});
+  EXPECT_TRUE(kept.is_kept) << kept.why_not;
+  EXPECT_TRUE(Run(there, rules).is_paused());
+  EXPECT_TRUE(run.order(Resume{}).is_kept);
+  EXPECT_FALSE(Run(there, rules).is_paused());
+  EXPECT_TRUE(run.order(Silence{ComponentId(0), {}}).is_kept);
+  EXPECT_TRUE(run.order(Pause{}).is_kept) << "again and again";
+  disk.free();
+  EXPECT_TRUE(Run(there, rules).is_paused());
+  EXPECT_TRUE(run.order(Resume{}).is_kept) << "in the file again";
+  EXPECT_FALSE(Run(there, rules).is_paused()) << "which is newer than the room that was taken";
+}
+
+TEST_F(KillSwitch, OfAFileThatIsGoneIsNotFoundInTheRoomBesideIt) {
+  {
+    Run run(path, rules);
+    ASSERT_TRUE(run.order(Pause{}).is_kept);
+  }
+  const fs::path reserve = journal::reserve_beside(journal::orders_beside(path));
+  EXPECT_EQ(fs::file_size(reserve), 32u << 10);
+  ASSERT_TRUE(journal::write_reserve(reserve, "what an older run wrote"));
+  for (const auto& each : fs::directory_iterator(folder.path())) {
+    if (each.path() != reserve) fs::remove(each.path());
+  }
+  EXPECT_FALSE(Run(path, rules).is_paused()) << "it is a first start";
+  EXPECT_EQ(journal::read_reserve(reserve), std::nullopt);
 }
 
 TEST_F(KillSwitch, IsLeftOnlyOnceThatIsKept) {

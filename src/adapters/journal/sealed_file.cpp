@@ -22,8 +22,18 @@ std::string head_of(std::string_view text) {
 
 }  // namespace
 
+std::string sealed(const std::string& text) { return head_of(text) + text; }
+
+std::optional<std::string> unsealed(const std::string& content) {
+  const std::size_t end = content.find('\n');
+  if (end == std::string::npos) return std::nullopt;
+  std::string text = content.substr(end + 1);
+  if (content.compare(0, end + 1, head_of(text)) != 0) return std::nullopt;
+  return text;
+}
+
 Expected<void> write_sealed(const std::filesystem::path& path, const std::string& text) {
-  return write_text(path.string(), head_of(text) + text);
+  return write_text(path.string(), sealed(text));
 }
 
 Expected<std::optional<std::string>> read_sealed(const std::filesystem::path& path) {
@@ -40,11 +50,9 @@ Expected<std::optional<std::string>> read_sealed(const std::filesystem::path& pa
   std::ifstream file(path, std::ios::binary);
   if (!file) return failure(std::strerror(errno));
   const std::string all{std::istreambuf_iterator<char>(file), {}};
-  const std::size_t end = all.find('\n');
-  std::string text = end == std::string::npos ? "" : all.substr(end + 1);
-  if (file.bad() || end == std::string::npos || all.substr(0, end + 1) != head_of(text))
-    return failure("it is damaged");
-  return std::optional(std::move(text));
+  auto text = unsealed(all);
+  if (file.bad() || !text) return failure("it is damaged");
+  return text;
 }
 
 }  // namespace culprit::journal

@@ -13,6 +13,10 @@
 
 namespace culprit::journal {
 
+// As such a file holds it. And back; nothing: it is not as it was written.
+std::string sealed(const std::string& text);
+std::optional<std::string> unsealed(const std::string& content);
+
 // On the disk, with its name, when this returns. Errors name the file.
 Expected<void> write_sealed(const std::filesystem::path& path, const std::string& text);
 

@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "journal/json.h"
+#include "journal/order_reserve.h"
 #include "journal/requests.h"
 #include "journal/sealed_file.h"
 #include "robot/standing.h"
@@ -199,7 +200,10 @@ std::filesystem::path orders_beside(const std::filesystem::path& journal) {
 
 Expected<void> write_orders(const std::filesystem::path& path, const StandingOrders& orders,
                             const Clocks& now) {
-  return write_sealed(path, to_text(orders, now) + "\n");
+  const std::string text = to_text(orders, now) + "\n";
+  auto written = write_sealed(path, text);
+  if (!written && write_reserve(reserve_beside(path), text)) return {};
+  return written;
 }
 
 Expected<std::optional<StandingOrders>> read_orders(const std::filesystem::path& path,
@@ -209,7 +213,9 @@ Expected<std::optional<StandingOrders>> read_orders(const std::filesystem::path&
   if (!*text) return std::optional<StandingOrders>();
   const auto orders = orders_from_text(**text, now);
   if (!orders) return Error{"cannot read '" + path.string() + "': " + orders.error()};
-  return std::optional(*orders);
+  const auto later = read_reserve(reserve_beside(path));
+  const auto reserved = later ? orders_from_text(*later, now) : orders;
+  return std::optional(reserved && reserved->revision > orders->revision ? *reserved : *orders);
 }
 
 }  // namespace culprit::journal

@@ -74,10 +74,11 @@ Expected<StandingOrders> orders_from_text(const std::string& text, const Clocks&
 // Beside which journal: "a.journal" -> "a.journal-orders"
 std::filesystem::path orders_beside(const std::filesystem::path& journal);
 
-// On the disk when it returns.
+// On the disk when it returns: in the file, or, where the disk is full, in the room that was taken beforehand
+// (order_reserve.h). Errors say why not in the file.
 Expected<void> write_orders(const std::filesystem::path& path, const StandingOrders& orders,
                             const Clocks& now);
-// Nothing: there is no such file. Errors: it cannot be read, or is damaged.
+// What was written last, by its revision. Nothing: there is no such file. Errors: it cannot be read, or is damaged.
 Expected<std::optional<StandingOrders>> read_orders(const std::filesystem::path& path,
                                                     const Clocks& now);
 
