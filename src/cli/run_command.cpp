@@ -118,8 +118,8 @@ ros_api::OrderServices::Give orders_over_dds(const RunOptions& options,
   return [&desk, &hub](const Json& order) { return web::give_order(desk, hub, order); };
 }
 
-// After Ctrl-C. The middleware can hang with its locks held.
-constexpr Duration kEndsWithin = std::chrono::seconds(8);
+// After Ctrl-C. A disk can stall, and the middleware can hang with its locks held.
+constexpr Duration kEndsWithin = std::chrono::milliseconds(2800);
 
 int run(const RunOptions& options) {
   owners::keep_files_private();

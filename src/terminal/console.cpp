@@ -1,8 +1,12 @@
 #include "terminal/console.h"
 
+#include <chrono>
 #include <cstdlib>
+#include <fcntl.h>
 #include <pthread.h>
 #include <signal.h>
+#include <string_view>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <fmt/core.h>
@@ -36,6 +40,23 @@ sigset_t awaited(Hangup hangup) {
   return signals;
 }
 
+// A thread that ends the program could itself wait for what does not end; the kernel's timer does not. Only system
+// calls are safe in here.
+void leave_behind(int /*signal*/) {
+  constexpr std::string_view kLastWords = "culprit: something does not end; it is left behind\n";
+  const int flags = fcntl(STDERR_FILENO, F_GETFL);
+  fcntl(STDERR_FILENO, F_SETFL, flags | O_NONBLOCK);
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, kLastWords.data(), kLastWords.size());
+  _exit(EXIT_FAILURE);
+}
+
+void leave_behind_after(Duration patience) {
+  ::signal(SIGALRM, leave_behind);
+  const auto all = std::chrono::ceil<std::chrono::microseconds>(patience).count();
+  const itimerval timer{{0, 0}, {all / 1'000'000, all % 1'000'000}};
+  setitimer(ITIMER_REAL, &timer, nullptr);
+}
+
 }  // namespace
 
 Colour colour_of(int descriptor) {
@@ -49,7 +70,8 @@ std::string line(const Event& event, const RuleSet& rules, Time start, Colour co
 }
 
 std::string line(const EventWords& words, Duration after, const std::string& text, Colour colour) {
-  return fmt::format("{:8.3f}  {}  {}", seconds(after), label_of(words, colour), text);
+  return fmt::format("{:8.3f}  {}  {}", seconds(after), label_of(words, colour),
+                     text);
 }
 
 std::string label_of(const EventWords& words, Colour colour) {
@@ -110,33 +132,19 @@ void StopSignals::on_user_signal(std::function<void()> act) {
 }
 
 void StopSignals::stop() {
+  if (patience_.load() != Duration::max() && !stopped_.exchange(true))
+    leave_behind_after(patience_);
   const MutexLock lock(mutex_);
   stopped_ = true;
   stopped_.notify_all();
   if (stop_) stop_();
 }
 
-// Waits for it; once the program is to end, not for ever.
-int StopSignals::next_signal() {
-  const sigset_t signals = awaited(hangup_);
-  int signal = 0;
-  if (!stopped_ || patience_.load() == Duration::max()) {
-    sigwait(&signals, &signal);
-    return signal;
-  }
-  const Duration patience = patience_;
-  const timespec limit{patience.count() / 1'000'000'000, patience.count() % 1'000'000'000};
-  while ((signal = sigtimedwait(&signals, nullptr, &limit)) < 0 && errno == EINTR) {
-  }
-  if (signal > 0) return signal;
-  fmt::print(stderr, "culprit: something does not end; it is left behind\n");
-  std::fflush(nullptr);
-  std::_Exit(1);
-}
-
 void StopSignals::wait() {
+  const sigset_t signals = awaited(hangup_);
   while (true) {
-    const int signal = next_signal();
+    int signal = 0;
+    sigwait(&signals, &signal);
     if (is_over_) return;
     if (signal == SIGUSR1) {
       const MutexLock lock(mutex_);

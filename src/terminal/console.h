@@ -60,7 +60,8 @@ class StopSignals {
   void on_reload(std::function<void()> reload);
   // What to do on SIGUSR1; called on another thread. Without it SIGUSR1 does nothing.
   void on_user_signal(std::function<void()> act);
-  // Ends the program the hard way if it has not ended so long after the first signal to stop.
+  // Ends the program the hard way (exit code 1) if it has not ended so long after the first signal to stop, whichever
+  // of its threads waits for a disk, a terminal or a lock.
   void end_within(Duration patience) { patience_ = patience; }
   const std::atomic<bool>& stopped() const { return stopped_; }
   // For commands that have nothing else to wait for.
@@ -69,8 +70,6 @@ class StopSignals {
  private:
   void wait();
   void stop();
-
-  int next_signal();
 
   const Hangup hangup_;
   std::atomic<bool> is_over_ = false;

@@ -1,5 +1,11 @@
 #include "terminal/console.h"
 
+#include <cstdio>
+#include <cstdlib>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <gtest/gtest.h>
 
 #include "language/checker.h"
@@ -23,6 +29,25 @@ TEST(Line, HasTheTimeTheLabelAndTheSentence) {
   EXPECT_EQ(line({Time(4s), ComponentFound{ComponentId(0), 7}}, rules, Time(1s), Colour::kOn),
             "   3.000  \033[32mfound     \033[0m  camera is there (process 7)");
   EXPECT_EQ(line({Time(4s), CameUp{}}, rules, Time(1s), Colour::kOn), "") << "of no interest";
+}
+
+// A disk that stalls, say: the threads that wait for it hold locks, and one of them is that which was to end it all.
+TEST(StopSignals, EndTheProgramThoughEveryThreadWaits) {
+  const pid_t child = fork();
+  if (child == 0) {
+    StopSignals signals;
+    signals.end_within(100ms);
+    signals.on_stop([] {
+      flockfile(stdout);
+      flockfile(stderr);
+      pause();
+    });
+    kill(getpid(), SIGTERM);
+    while (true) pause();
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == EXIT_FAILURE) << status;
 }
 
 }  // namespace

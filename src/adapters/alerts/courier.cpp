@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <system_error>
 #include <thread>
 
 #include <fmt/core.h>
@@ -16,7 +17,9 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Duration kPatience = 10s;
-constexpr Duration kLastMoment = 2s;
+// Both together end before culprit is ended the hard way (cli/run_command.cpp).
+constexpr Duration kLastMoment = 1500ms;
+constexpr Duration kAfterThat = 500ms;
 
 Outbox::Limits limits_for(const Destination& destination) {
   Outbox::Limits limits;
@@ -36,7 +39,13 @@ class Courier::Route : public std::enable_shared_from_this<Route> {
         outbox_(limits_for(destination_)) {}
 
   void begin() {
-    std::thread([self = shared_from_this()] { self->deliver(); }).detach();
+    try {
+      std::thread([self = shared_from_this()] { self->deliver(); }).detach();
+    } catch (const std::system_error& no_thread) {
+      tell_("no alert can be sent to " + destination_.name() + ": " + no_thread.what());
+      const MutexLock lock(mutex_);
+      is_over_ = true;
+    }
   }
 
   void post(const Alert& alert) {
@@ -58,7 +67,7 @@ class Courier::Route : public std::enable_shared_from_this<Route> {
     const auto is_over = [this]() CULPRIT_REQUIRES(mutex_) { return is_over_; };
     if (something_came_.wait_for(lock, kLastMoment, is_over)) return;
     stop_ = true;
-    something_came_.wait_for(lock, 1s, is_over);
+    something_came_.wait_for(lock, kAfterThat, is_over);
   }
 
  private:
