@@ -1,6 +1,7 @@
 #include "live/live_robot.h"
 
 #include <algorithm>
+#include <system_error>
 
 #include "live/launch.h"
 #include "owners/proc.h"
@@ -50,7 +51,18 @@ void LiveRobot::report(std::string trouble) { inbox_.put(LinkTrouble{std::move(t
 
 void LiveRobot::tell(PriorsTold priors) { inbox_.put(std::move(priors)); }
 
+// Each part has threads of its own. Where the system gives none (pids.max), the robot is not joined: the manager that
+// runs goes on.
 Expected<std::unique_ptr<LiveRobot>> LiveRobot::open(const RuleSet& rules, Options options) {
+  try {
+    return join(rules, std::move(options));
+  } catch (const std::system_error& no_thread) {
+    return Error{std::string("the system gives culprit no further thread (") + no_thread.what() +
+                 "); raise TasksMax, pids.max or ulimit -u"};
+  }
+}
+
+Expected<std::unique_ptr<LiveRobot>> LiveRobot::join(const RuleSet& rules, Options options) {
   if (auto seen = owners::proc_is_of_our_processes(); !seen) return Error{seen.error()};
   std::unique_ptr<LiveRobot> robot(new LiveRobot(rules));
   robot->supervisor_ =

@@ -27,7 +27,7 @@ class LiveRobot : public Robot {
 
   ~LiveRobot() override;
 
-  // `rules` must outlive the robot. Errors: the DDS domain cannot be joined.
+  // `rules` must outlive the robot. Errors: the DDS domain cannot be joined; the system gives no thread.
   static Expected<std::unique_ptr<LiveRobot>> open(const RuleSet& rules, Options options);
 
   Time now() const override { return live_now(); }
@@ -66,6 +66,7 @@ class LiveRobot : public Robot {
   owners::Supervisor& supervisor() { return *supervisor_; }
 
  private:
+  static Expected<std::unique_ptr<LiveRobot>> join(const RuleSet& rules, Options options);
   explicit LiveRobot(const RuleSet& rules);
 
   void listen(Time until, std::vector<Observation>& observations);

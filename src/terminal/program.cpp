@@ -11,6 +11,8 @@
 #include <system_error>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "base/closest.h"
 #include "base/name_grammar.h"
 #include "terminal/command.h"
@@ -111,7 +113,9 @@ int run_program(CLI::App& app, const std::function<void(int& exit_code)>& add_co
     exit_code = parse_and_run(app, add_commands, argc, argv);
   } catch (const std::system_error& error) {
     // That is how {fmt} says that it cannot print.
-    if (!std::string_view(error.what()).starts_with("cannot write to file")) throw;
+    if (!std::string_view(error.what()).starts_with("cannot write to file"))
+      return fail(fmt::format(
+          "cannot go on: {}; is a limit of threads, processes or memory reached?", error.what()));
     reason = error.code().value();
   }
   return is_output_written(reason) ? exit_code : kFailed;

@@ -29,14 +29,19 @@ UsageHistory::~UsageHistory() {
 }
 
 void UsageHistory::start() {
-  thread_ = std::thread([this] {
-    for (;;) {
-      look(HubObserver::wall_clock());
-      MutexLock lock(mutex_);
-      if (ends_.wait_for(lock, kPeriod, [&]() CULPRIT_REQUIRES(mutex_) { return is_over_; }))
-        return;
-    }
-  });
+  try {
+    thread_ = std::thread([this] { look_again_and_again(); });
+  } catch (const std::system_error&) {
+    return;
+  }
+}
+
+void UsageHistory::look_again_and_again() {
+  for (;;) {
+    look(HubObserver::wall_clock());
+    MutexLock lock(mutex_);
+    if (ends_.wait_for(lock, kPeriod, [&]() CULPRIT_REQUIRES(mutex_) { return is_over_; })) return;
+  }
 }
 
 void UsageHistory::look(double clock) {

@@ -34,6 +34,7 @@ class UsageHistory : public live::Observer {
   ~UsageHistory() override;
 
   // Looks every kPeriod from now on, until this ends.
+  // Without a thread for it (pids.max) there are no curves.
   void start();
   // One look, at `clock` (seconds since 1970). Processes of other computers are not seen.
   void look(double clock);
@@ -46,6 +47,7 @@ class UsageHistory : public live::Observer {
   void announced(Time, const EventWords&, const std::string&) override {}
 
  private:
+  void look_again_and_again();
   struct Process {
     int pid = 0;                   // 0: not known
     double processor_seconds = 0;  // at the last look

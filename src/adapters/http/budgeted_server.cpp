@@ -4,6 +4,7 @@
 #include <array>
 #include <cerrno>
 #include <climits>
+#include <exception>
 #include <filesystem>
 #include <netdb.h>
 #include <poll.h>
@@ -121,6 +122,8 @@ class Connection final : public httplib::Stream {
   std::size_t line_ends_ = 0;  // of the end of the header, so many bytes came last
 };
 
+thread_local bool refuses_here = false;
+
 constexpr const char* kTakes = "Accept-Encoding";
 constexpr const char* kTakesGzip = "Culprit-Takes-Gzip";  // in its place, for httplib not to see it
 
@@ -140,9 +143,27 @@ bool is_of_own_user(int socket) {
 
 }  // namespace
 
+RefusesConnections::RefusesConnections() { refuses_here = true; }
+RefusesConnections::~RefusesConnections() { refuses_here = false; }
+
 bool takes_gzip(const httplib::Request& request) { return request.has_header(kTakesGzip); }
 
+// A connection for which memory runs out ends; the others, and the server, go on.
 bool BudgetedServer::process_and_close_socket(socket_t socket) {
+  bool is_well = false;
+  if (!refuses_here) {
+    try {
+      is_well = serve(socket);
+    } catch (const std::exception&) {
+      is_well = false;
+    }
+  }
+  shutdown(socket, SHUT_RDWR);
+  close(socket);
+  return is_well;
+}
+
+bool BudgetedServer::serve(socket_t socket) {
   Connection connection(socket, budget_);
   bool is_well = clients_ == Clients::kAny || is_of_own_user(socket);
   for (int left = is_well ? budget_.requests : 0; left > 0 && svr_sock_ != INVALID_SOCKET; --left) {
@@ -151,8 +172,6 @@ bool BudgetedServer::process_and_close_socket(socket_t socket) {
     is_well = process_request(connection, left == 1, is_closed, hide_what_it_takes);
     if (!is_well || is_closed) break;
   }
-  shutdown(socket, SHUT_RDWR);
-  close(socket);
   return is_well;
 }
 

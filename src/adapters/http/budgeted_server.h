@@ -27,6 +27,14 @@ struct ConnectionBudget {
 // Who is served. Of a unix socket the kernel says who is at its other end.
 enum class Clients : std::uint8_t { kAny, kOwnUser };
 
+// While one lives, BudgetedServers close each connection that they are to serve on this thread, unread.
+class RefusesConnections {
+ public:
+  RefusesConnections();
+  ~RefusesConnections();
+  RefusesConnections(const RefusesConnections&) = delete;
+};
+
 // Of a request to a BudgetedServer.
 bool takes_gzip(const httplib::Request& request);
 
@@ -37,6 +45,7 @@ class BudgetedServer : public httplib::Server {
 
  private:
   bool process_and_close_socket(socket_t socket) override;
+  bool serve(socket_t socket);
 
   const ConnectionBudget budget_;
   const Clients clients_;  // kOwnUser: and root

@@ -1,6 +1,9 @@
 #include "http/connection_threads.h"
 
+#include <exception>
 #include <utility>
+
+#include "http/budgeted_server.h"
 
 namespace culprit::web {
 
@@ -9,10 +12,22 @@ void ConnectionThreads::enqueue(std::function<void()> connection) {
   something_changed_.wait(lock, [&]() CULPRIT_REQUIRES(mutex_) {
     return is_ending_ || waiting_.size() < idle_ || threads_.size() < most_;
   });
+  if (waiting_.size() >= idle_ && threads_.size() < most_ && !is_ending_ && !add_thread()) {
+    lock.unlock();
+    const RefusesConnections refuses;
+    return connection();
+  }
   waiting_.push_back(std::move(connection));
-  if (waiting_.size() > idle_ && threads_.size() < most_)
-    threads_.emplace_back([this] { serve(); });
   something_changed_.notify_all();
+}
+
+bool ConnectionThreads::add_thread() {
+  try {
+    threads_.emplace_back([this] { serve(); });
+    return true;
+  } catch (const std::exception&) {  // std::system_error, or no memory
+    return false;
+  }
 }
 
 void ConnectionThreads::serve() {

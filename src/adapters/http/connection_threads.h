@@ -2,7 +2,8 @@
 //
 // A page keeps one connection for as long as it is open, so a small pool would soon be used up. At
 // the limit the server takes no further connection until one ends: the kernel keeps a few waiting
-// and refuses the rest.
+// and refuses the rest. Where the system gives no further thread (pids.max, RLIMIT_NPROC, RLIMIT_AS), the connection
+// is closed unread.
 #pragma once
 
 #include <deque>
@@ -24,6 +25,7 @@ class ConnectionThreads : public httplib::TaskQueue {
   void shutdown() override;
 
  private:
+  bool add_thread() CULPRIT_REQUIRES(mutex_);
   void serve();
 
   const std::size_t most_;

@@ -9,6 +9,7 @@
 #include <memory>
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <system_error>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -368,7 +369,11 @@ Expected<std::unique_ptr<Server>> Server::start(Options options, std::vector<Rou
     return Error{
         fmt::format("cannot listen at {} port {}; is the port taken? --port chooses another",
                     http->options().address, http->options().port)};
-  return std::unique_ptr<Server>(new Server(std::move(http)));
+  try {
+    return std::unique_ptr<Server>(new Server(std::move(http)));
+  } catch (const std::system_error& no_thread) {
+    return Error{fmt::format("the system gives no thread to serve on: {}", no_thread.what())};
+  }
 }
 
 Server::~Server() {

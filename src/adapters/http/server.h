@@ -48,7 +48,8 @@ class Server {
   };
 
   // Serves from now on. `hub` may be null: nothing is streamed then. Both have to outlive the
-  // server. Errors: the port is taken, or the address is not ours; the socket cannot be made.
+  // server. Errors: the port is taken, or the address is not ours; the socket cannot be made; the
+  // system gives no thread.
   static Expected<std::unique_ptr<Server>> start(Options options, std::vector<Route> routes,
                                                  Hub* hub);
   // Closes the hub, and with it every stream.

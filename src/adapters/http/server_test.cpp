@@ -11,6 +11,7 @@
 #include <sys/stat.h>
 #include <sys/un.h>
 #include <sys/wait.h>
+#include <thread>
 #include <unistd.h>
 
 #include <gmock/gmock.h>
@@ -388,6 +389,49 @@ struct LocalServer : testing::Test {
   std::unique_ptr<Server> server;
   const LocalClient client{path, std::chrono::seconds(20)};
 };
+
+// No stack of this size can be had, so that no thread can be made while it lives.
+class NoThreads {
+ public:
+  NoThreads() {
+    pthread_getattr_default_np(&before_);
+    pthread_attr_t huge;
+    pthread_attr_init(&huge);
+    pthread_attr_setstacksize(&huge, std::size_t{1} << 46);
+    EXPECT_EQ(pthread_setattr_default_np(&huge), 0);
+    pthread_attr_destroy(&huge);
+  }
+  ~NoThreads() { pthread_setattr_default_np(&before_); }
+  NoThreads(const NoThreads&) = delete;
+
+ private:
+  pthread_attr_t before_;
+};
+
+// As with a limit of processes (pids.max). It used to end the whole program.
+TEST_F(LocalServer, RefusesConnectionsThatItHasNoThreadFor) {
+  {
+    const NoThreads none;
+    for (int i = 0; i < 20; ++i) EXPECT_FALSE(client.get("/api/about"));
+  }
+  EXPECT_TRUE(client.get("/api/about")) << "and goes on";
+  // What is there serves all the same, as soon as it is idle again.
+  const NoThreads none;
+  bool is_served = false;
+  for (int tries = 0; tries < 10'000 && !is_served; ++tries) {
+    is_served = client.get("/api/about").has_value();
+    if (!is_served) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_TRUE(is_served);
+}
+
+TEST(Servers, SayThatTheyHaveNoThread) {
+  const test::TestFolder folder;
+  Server::Options options;
+  options.socket = folder / "7-1.sock";
+  const NoThreads none;
+  EXPECT_THAT(Server::start(options, {}, nullptr).error(), HasSubstr("gives no thread"));
+}
 
 TEST_F(LocalServer, ServesItsOwnUserWithoutAToken) {
   const auto answer = client.ask(Method::kPost, "/api/echo", {{"a", 1}});

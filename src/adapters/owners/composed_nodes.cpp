@@ -1,6 +1,7 @@
 #include "owners/composed_nodes.h"
 
 #include <algorithm>
+#include <system_error>
 
 #include "base/live_clock.h"
 #include "owners/proc.h"
@@ -46,18 +47,27 @@ ComposedNodes::ComposedNodes(const RuleSet& rules, const std::vector<ComponentId
     (*at)->parts.push_back(part);
     container_of_[part] = at->get();
   }
-  for (const auto& each : containers_)
-    each->thread = std::thread([this, &container = *each] { run(container); });
+  try {
+    for (const auto& each : containers_)
+      each->thread = std::thread([this, &container = *each] { run(container); });
+  } catch (const std::system_error&) {
+    end();
+    throw;
+  }
 }
 
-ComposedNodes::~ComposedNodes() {
+ComposedNodes::~ComposedNodes() { end(); }
+
+void ComposedNodes::end() {
   {
     const MutexLock lock(mutex_);
     is_ending_ = true;
   }
   if (!containers_.empty()) services_.interrupt();
   something_came_.notify_all();
-  for (const auto& each : containers_) each->thread.join();
+  for (const auto& each : containers_) {
+    if (each->thread.joinable()) each->thread.join();
+  }
 }
 
 bool ComposedNodes::is_responsible_for(ComponentId component) const {

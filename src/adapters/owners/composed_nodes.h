@@ -77,6 +77,7 @@ class ComposedNodes {
   bool answered(const Reply& reply);
 
  private:
+  void end();
   struct Errand {
     enum class Kind : std::uint8_t { kStart, kStop };
     CommandId command;

@@ -8,6 +8,7 @@
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/prctl.h>
+#include <system_error>
 #include <thread>
 #include <unistd.h>
 
@@ -48,10 +49,15 @@ Expected<int> begin_piped(std::vector<std::string> words, std::vector<std::strin
                            POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSID);
   pid_t pid = 0;
   int why = 0;
-  std::thread([&] {
-    prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0);
-    why = posix_spawnp(&pid, arguments[0], &files, &attributes, arguments.data(), variables.data());
-  }).join();
+  try {
+    std::thread([&] {
+      prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0);
+      why =
+          posix_spawnp(&pid, arguments[0], &files, &attributes, arguments.data(), variables.data());
+    }).join();
+  } catch (const std::system_error& no_thread) {
+    why = no_thread.code().value();
+  }
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&files);
   if (why != 0) return Error{words.front() + " cannot be run: " + std::strerror(why)};
