@@ -26,7 +26,7 @@ const Manual& culprit_manual() {
       .files = {{"~/.local/state/culprit",
                  "Journals, and the logs of the components that culprit started; "
                  "$XDG_STATE_HOME/culprit if that is set."},
-                {"$XDG_RUNTIME_DIR/culprit, /run/culprit, /tmp/culprit-<uid>",
+                {"$XDG_RUNTIME_DIR/culprit, /run/culprit, /run/culprit-0, /tmp/culprit-<uid>",
                  "Where a running culprit is asked and told: status, top, pause and the like."}},
       .environment =
           {{"ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS",

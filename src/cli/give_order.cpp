@@ -39,16 +39,29 @@ OutcomeOfOrder outcome_of(const web::Answer& answer) {
 }  // namespace
 
 OutcomeOfOrder give(const RunningCulprit& culprit, Json order, const std::string& reason) {
-  order["author"] = who_orders();
-  order["reason"] = reason;
+  return std::move(give_all({culprit}, {std::move(order)}, reason).front());
+}
+
+std::vector<OutcomeOfOrder> give_all(const std::vector<RunningCulprit>& culprits,
+                                     std::vector<Json> orders, const std::string& reason) {
   // It waits less than we do, and is not followed once we have given up.
   constexpr Duration kMargin = std::chrono::milliseconds(500);
-  order["wait_s"] = seconds(kPatienceWithCulprit - kMargin);
-  order["valid_until"] = seconds(live_now().time_since_epoch() + kPatienceWithCulprit);
-  const auto answer = culprit.client.ask(web::Method::kPost, "/api/orders", order);
-  if (!answer)
-    return {false, "NOT CONFIRMED: " + answer.error() + "; culprit status shows what holds"};
-  return outcome_of(*answer);
+  for (Json& order : orders) {
+    order["author"] = who_orders();
+    order["reason"] = reason;
+    order["wait_s"] = seconds(kPatienceWithCulprit - kMargin);
+    order["valid_until"] = seconds(live_now().time_since_epoch() + kPatienceWithCulprit);
+  }
+  std::vector<web::LocalClient> clients;
+  for (const RunningCulprit& each : culprits) clients.push_back(each.client);
+  std::vector<OutcomeOfOrder> outcomes;
+  for (const auto& answer : web::LocalClient::ask_all(clients, web::Method::kPost, "/api/orders",
+                                                      orders, kPatienceWithCulprit)) {
+    outcomes.push_back(answer ? outcome_of(*answer)
+                              : OutcomeOfOrder{false, "NOT CONFIRMED: " + answer.error() +
+                                                          "; culprit status shows what holds"});
+  }
+  return outcomes;
 }
 
 }  // namespace culprit::cli

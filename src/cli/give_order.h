@@ -5,6 +5,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "cli/running_culprit.h"
 
@@ -18,5 +19,9 @@ struct OutcomeOfOrder {
 
 // `order` is as POST /api/orders takes it, but for who gives it: that is who is at the terminal.
 OutcomeOfOrder give(const RunningCulprit& culprit, Json order, const std::string& reason);
+
+// An order to each of several, all at once. Outcomes in the order of `culprits`, which has as many as `orders`.
+std::vector<OutcomeOfOrder> give_all(const std::vector<RunningCulprit>& culprits,
+                                     std::vector<Json> orders, const std::string& reason);
 
 }  // namespace culprit::cli

@@ -23,7 +23,6 @@ struct OrderOptions {
   std::string name;  // of what it is about
   double seconds = 0;
   bool lifts = false;
-  bool all = false;
   bool json = false;
 };
 
@@ -47,7 +46,7 @@ using MakeOrder = std::function<Expected<Json>(const RunningCulprit&, const Orde
 
 // {"rule": …, "strategy": …} of "Rule.strategy", or of a strategy whose name is the only one of its kind.
 Expected<Json> strategy_named(const RunningCulprit& culprit, const std::string& name) {
-  const auto robot = culprit.client.get("/api/robot");
+  const auto robot = culprit.client.get("/api/robot", web::LocalClient::kLargeAnswer);
   if (!robot) return Error{robot.error()};
   std::vector<Json> found;
   std::vector<std::string> known;
@@ -75,7 +74,7 @@ MakeOrder about_strategy(const char* word) {
 }
 
 Expected<Json> silence_of(const RunningCulprit& culprit, const OrderOptions& options) {
-  const auto robot = culprit.client.get("/api/robot");
+  const auto robot = culprit.client.get("/api/robot", web::LocalClient::kLargeAnswer);
   if (!robot) return Error{robot.error()};
   const auto components = names_in(*robot, "components");
   const auto rules = names_in(*robot, "rules");
@@ -95,18 +94,24 @@ Expected<Json> silence_of(const RunningCulprit& culprit, const OrderOptions& opt
 }
 
 int order(const OrderOptions& options, const MakeOrder& make) {
-  const CulpritsHere here = culprits_here(options.which);
-  if (here.answering.empty()) return fail(none_to_ask(here) + "\nNothing was ordered.");
-  if (here.answering.size() > 1 && !options.all) {
-    const auto one = the_culprit(options.which);
-    return fail((one ? "" : one.error()) + "\nNothing was ordered.", kUsage);
+  const bool all = options.which.all;
+  auto here = culprits_here(options.which);
+  if (!here) return fail(here.error() + "\nNothing was ordered.", kUsage);
+  if (here->answering.empty()) return fail(none_to_ask(*here) + "\nNothing was ordered.");
+  if (here->answering.size() > 1 && !all)
+    return fail(several_to_choose(*here) + "\nNothing was ordered.", kUsage);
+  std::vector<Json> orders;
+  for (const RunningCulprit& culprit : here->answering) {
+    auto made = make(culprit, options);
+    if (!made) return fail(made.error() + "\nNothing was ordered.", kUsage);
+    orders.push_back(std::move(*made));
   }
   bool is_all_done = true;
   Json list = Json::array();
-  for (const RunningCulprit& culprit : here.answering) {
-    auto made = make(culprit, options);
-    if (!made) return fail(made.error() + "\nNothing was ordered.", kUsage);
-    OutcomeOfOrder outcome = give(culprit, std::move(*made), options.reason);
+  auto outcomes = give_all(here->answering, std::move(orders), options.reason);
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    const RunningCulprit& culprit = here->answering[i];
+    OutcomeOfOrder& outcome = outcomes[i];
     is_all_done &= outcome.is_done;
     if (!options.json)
       say(outcome.is_done ? stdout : stderr, "{}: {}\n", culprit.name(),
@@ -116,10 +121,15 @@ int order(const OrderOptions& options, const MakeOrder& make) {
                     {"text", outcome.text},
                     {"answer", std::move(outcome.answer)}});
   }
-  if (options.json) say(stdout, "{}\n", to_line({{"orders", list}, {"others", here.others}}));
+  if (options.json)
+    say(stdout, "{}\n",
+        to_line({{"orders", list}, {"others", here->others}, {"not_meant", here->not_meant}}));
   // Somebody may have meant one of these.
-  for (const std::string& other : here.others) say(stderr, "culprit: not told: {}\n", other);
-  return is_all_done && (here.others.empty() || !options.all) ? kOk : kFailed;
+  for (const auto* others : {&here->others, &here->not_meant}) {
+    for (const std::string& other : *others)
+      say(stderr, "culprit: not told: {}\n", other);
+  }
+  return is_all_done && (here->others.empty() || !all) ? kOk : kFailed;
 }
 
 CLI::App* add_order(CLI::App& app, int& exit_code, const char* name, const char* description,
@@ -147,7 +157,7 @@ void add_orders(CLI::App& app, int& exit_code) {
   CLI::App* pause = add_order(app, exit_code, "pause",
                               "Let a running culprit change nothing more, until it is resumed",
                               plain("pause"), options);
-  pause->add_flag("--all", options->all, "Each culprit that runs on this machine");
+  options->which.add_all_to(*pause);
   add_order(app, exit_code, "resume", "Let a culprit that is paused go on", plain("resume"),
             make());
 

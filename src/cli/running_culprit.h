@@ -1,4 +1,7 @@
 // The culprits that run on this machine, and which of them is meant.
+//
+// All that may be meant are asked at once and have kTimeToAnswer together, so that no silent one delays an order
+// to another one. Which sockets are asked at all: live/local_socket.h.
 #pragma once
 
 #include <optional>
@@ -22,28 +25,39 @@ struct RunningCulprit {
 };
 
 struct WhichCulprit {
-  std::optional<std::uint32_t> domain;
+  std::optional<std::uint32_t> domain;  // nothing: that of ROS_DOMAIN_ID, as for any ROS program
   std::string node_name;
+  std::string user;  // whose, for root; empty: root's, and that in /run/culprit
+  bool all = false;  // of every domain; for root, of every user
 
   // The options must live as long as `command`.
   void add_to(CLI::App& command);
+  // --all
+  void add_all_to(CLI::App& command);
 };
 
 struct CulpritsHere {
   std::vector<RunningCulprit> answering;
-  // A line for each that cannot be asked, and why: it does not answer, is another user's, or has ended
-  // without a word.
+  // A line for each that was meant and cannot be asked, and why: it does not answer, or has ended without a
+  // word.
   std::vector<std::string> others;
+  // A line for each user and each domain whose culprits were not meant: how to ask those.
+  std::vector<std::string> not_meant;
 };
-CulpritsHere culprits_here(const WhichCulprit& which);
+// Errors: ROS_DOMAIN_ID names no domain, or there is no such user.
+Expected<CulpritsHere> culprits_here(const WhichCulprit& which);
 
 // The one that is meant. Errors: there is none, or several, and what to do.
 Expected<RunningCulprit> the_culprit(const WhichCulprit& which);
 
+// Which there are, where one has to be chosen, in lines.
+std::string several_to_choose(const CulpritsHere& here);
 // Why nobody can be asked, in lines.
 std::string none_to_ask(const CulpritsHere& here);
 
-// How long an answer is waited for.
+// Time for all culprits together to say who they are.
+inline constexpr Duration kTimeToAnswer = std::chrono::seconds(1);
+// Time for the whole answer to each further question, and for an order to be confirmed.
 inline constexpr Duration kPatienceWithCulprit = std::chrono::seconds(5);
 
 }  // namespace culprit::cli

@@ -22,18 +22,21 @@ Expected<WhatCulpritSays> asked(const RunningCulprit& culprit) {
   for (const auto& [path, document] :
        {std::pair("/api/robot", &said.robot), std::pair("/api/state", &said.state),
         std::pair("/api/control", &said.control)}) {
-    auto answer = culprit.client.get(path);
+    auto answer = culprit.client.get(path, web::LocalClient::kLargeAnswer);
     if (!answer) return Error{answer.error()};
     *document = std::move(*answer);
   }
-  if (auto events = culprit.client.get("/api/events"); events && events->is_array())
+  if (auto events = culprit.client.get("/api/events", web::LocalClient::kLargeAnswer);
+      events && events->is_array())
     said.events = events->get<std::vector<Json>>();
   return said;
 }
 
 int status(const StatusOptions& options) {
   constexpr std::size_t kEvents = 6;
-  CulpritsHere here = culprits_here(options.which);
+  auto found = culprits_here(options.which);
+  if (!found) return fail(found.error(), kUsage);
+  CulpritsHere& here = *found;
   const bool are_all_known = !here.answering.empty() && here.others.empty();
   Verdict worst = are_all_known ? Verdict::kWell : Verdict::kNotWell;
   Json list = Json::array();
@@ -59,11 +62,14 @@ int status(const StatusOptions& options) {
     }
   }
   if (options.json) {
-    say(stdout, "{}\n", to_line({{"culprits", list}, {"others", here.others}}));
+    say(stdout, "{}\n",
+        to_line({{"culprits", list}, {"others", here.others}, {"not_meant", here.not_meant}}));
   } else if (here.answering.empty()) {
     return fail(none_to_ask(here));
   } else {
-    for (const std::string& other : here.others) say(stdout, "{}\n", other);
+    for (const auto* others : {&here.others, &here.not_meant}) {
+      for (const std::string& other : *others) say(stdout, "{}\n", other);
+    }
   }
   return worst == Verdict::kWell ? kOk : worst == Verdict::kSeesLess ? kWarnings : kFailed;
 }
@@ -80,6 +86,7 @@ void add_status(CLI::App& app, int& exit_code) {
                                          "with 1.");
   command->add_flag("--json", options->json, "As one JSON document (docs/web.md)");
   options->which.add_to(*command);
+  options->which.add_all_to(*command);
   command->callback([options, &exit_code] { exit_code = status(*options); });
 }
 

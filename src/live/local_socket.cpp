@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <signal.h>
 #include <string>
@@ -23,6 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kService = "/run/culprit";
+constexpr const char* kOfRoot = "/run/culprit-0";
 
 fs::path folder_in_tmp(std::uint32_t user) { return "/tmp/culprit-" + std::to_string(user); }
 
@@ -35,25 +37,61 @@ fs::path own_socket_folder() {
   if (!runtime.empty()) return fs::path(runtime) / "culprit";
   const fs::path of_user = "/run/user/" + std::to_string(geteuid());
   if (access(of_user.c_str(), W_OK) == 0) return of_user / "culprit";
+  if (geteuid() == 0 && access("/run", W_OK) == 0) return kOfRoot;
   return folder_in_tmp(geteuid());
 }
 
-// All folders where a culprit may have its socket.
-std::vector<fs::path> socket_folders() {
-  std::vector<fs::path> folders{own_socket_folder(), kService,
-                                "/run/user/" + std::to_string(geteuid()) + "/culprit",
-                                folder_in_tmp(geteuid())};
-  if (geteuid() == 0) {
-    std::error_code error;
-    for (const auto& user : fs::directory_iterator("/run/user", error))
-      folders.push_back(user.path() / "culprit");
-    for (const auto& each : fs::directory_iterator("/tmp", error)) {
-      if (each.path().filename().native().starts_with("culprit-")) folders.push_back(each.path());
-    }
+// Those that other users have made, as far as root looks: any user can make any number of them.
+std::vector<fs::path> found_folders(const fs::path& place, const std::string& prefix,
+                                    const fs::path& within) {
+  constexpr int kMostRead = 100'000;
+  constexpr std::size_t kMostFound = 1000;
+  std::vector<fs::path> folders;
+  std::error_code error;
+  int left = kMostRead;
+  for (fs::directory_iterator i(place, error);
+       !error && i != fs::directory_iterator() && left-- > 0 && folders.size() < kMostFound;
+       i.increment(error)) {
+    if (i->path().filename().native().starts_with(prefix))
+      folders.push_back(within.empty() ? i->path() : i->path() / within);
   }
+  return folders;
+}
+
+// All folders where a culprit may have its socket.
+std::vector<fs::path> socket_folders(const WhoIsAsked& who) {
+  std::vector<fs::path> folders{own_socket_folder(), kService};
+  const auto add = [&](const std::vector<fs::path>& more) {
+    folders.insert(folders.end(), more.begin(), more.end());
+  };
+  std::vector<std::uint32_t> users{geteuid()};
+  if (geteuid() == 0) {
+    folders.emplace_back(kOfRoot);
+    users.insert(users.end(), who.users.begin(), who.users.end());
+    add(found_folders("/run/user", "", "culprit"));
+    add(found_folders("/tmp", "culprit-", ""));
+  }
+  for (const std::uint32_t user : users)
+    add({"/run/user/" + std::to_string(user) + "/culprit", folder_in_tmp(user)});
   std::sort(folders.begin(), folders.end());
   folders.erase(std::unique(folders.begin(), folders.end()), folders.end());
   return folders;
+}
+
+// Whose the folder is; nothing: others than that user may write there, or it is none.
+std::optional<std::uint32_t> owner_of(const fs::path& folder) {
+  struct stat status {};
+  if (lstat(folder.c_str(), &status) != 0 || !S_ISDIR(status.st_mode) ||
+      (status.st_mode & (S_IWGRP | S_IWOTH)) != 0)
+    return std::nullopt;
+  return status.st_uid;
+}
+
+bool is_asked(const fs::path& folder, std::uint32_t owner, const WhoIsAsked& who) {
+  if (owner == geteuid() || owner == 0) return true;
+  if (geteuid() != 0) return false;
+  return folder == kService || who.is_everybody ||
+         std::find(who.users.begin(), who.users.end(), owner) != who.users.end();
 }
 
 // Why nobody should listen in this folder; nothing: it is ours alone.
@@ -113,6 +151,7 @@ Expected<fs::path> own_socket(std::uint32_t domain) {
   const fs::path folder = own_socket_folder();
   mkdir(folder.c_str(), S_IRWXU);  // it may be there
   if (auto objection = objection_to(folder)) return Error{std::move(*objection)};
+  chmod(folder.c_str(), S_IRWXU);  // systemd's is open to readers unless its unit says otherwise
   fs::path path = folder / (std::to_string(domain) + "-" + std::to_string(getpid()) + ".sock");
   if (path.native().size() >= sizeof sockaddr_un{}.sun_path)
     return Error{"the name '" + path.string() + "' is too long for a socket"};
@@ -122,21 +161,23 @@ Expected<fs::path> own_socket(std::uint32_t domain) {
   return path;
 }
 
-std::vector<LocalSocket> local_sockets() {
+std::vector<LocalSocket> local_sockets(const WhoIsAsked& who) {
   std::vector<LocalSocket> found;
-  for (const fs::path& folder : socket_folders()) {
+  for (const fs::path& folder : socket_folders(who)) {
+    const auto owner = owner_of(folder);
+    if (!owner) continue;
+    const bool asks = is_asked(folder, *owner, who);
+    constexpr int kMostOfOthers = 100;  // they are told of only
+    int left = asks ? std::numeric_limits<int>::max() : kMostOfOthers;
     std::error_code error;
-    for (const auto& each : fs::directory_iterator(folder, error)) {
-      auto socket = read_socket_name(each.path());
+    for (fs::directory_iterator i(folder, error);
+         !error && i != fs::directory_iterator() && left-- > 0; i.increment(error)) {
+      auto socket = read_socket_name(i->path());
       struct stat status {};
-      if (!socket || lstat(each.path().c_str(), &status) != 0 || !S_ISSOCK(status.st_mode))
-        continue;
-      // Whoever is not us cannot make a file that is ours.
-      const bool is_ours = status.st_uid == geteuid() || geteuid() == 0;
-      const auto state =
-          is_ours ? state_of(each.path()) : std::optional(LocalSocket::State::kForbidden);
+      if (!socket || lstat(i->path().c_str(), &status) != 0 || !S_ISSOCK(status.st_mode)) continue;
+      const auto state = asks ? state_of(i->path()) : std::optional(LocalSocket::State::kForbidden);
       if (!state) continue;
-      socket->user = status.st_uid;
+      socket->user = *owner;
       socket->state = *state;
       found.push_back(std::move(*socket));
     }

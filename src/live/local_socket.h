@@ -6,10 +6,15 @@
 //     $RUNTIME_DIRECTORY        of a service of systemd: /run/culprit
 //     $XDG_RUNTIME_DIR/culprit  of a user who is logged in
 //     /run/user/<uid>/culprit   likewise, where the variable was lost (cron, sudo)
+//     /run/culprit-0            of root: no other user can be there first
 //     /tmp/culprit-<uid>        elsewhere: in a container, say
 //
-// Several culprits have a socket each. Whoever is killed leaves its socket behind; nobody answers there, and the
-// next culprit removes it.
+// The folder has the mode 0700. Several culprits have a socket each. One that is killed leaves its socket behind;
+// no process listens there, and the next culprit removes it.
+//
+// Any user can listen in a folder of such a name, and be silent or lie there. So a folder counts only if it
+// belongs to the asking user or to root, if nobody else may write to it, and if it is no link. Root may also ask other
+// users' culprits; which, is root's decision (`WhoIsAsked`), but for /run/culprit: only root can have given that to a user.
 #pragma once
 
 #include <cstdint>
@@ -27,18 +32,24 @@ Expected<std::filesystem::path> own_socket(std::uint32_t domain);
 struct LocalSocket {
   enum class State : std::uint8_t {
     kListens,   // a process is there; whether it answers is another matter
-    kLeft,      // nobody listens: that process has ended without a word
-    kForbidden  // it is another user's
+    kLeft,      // no process listens: the one that did has ended without a word
+    kForbidden  // of a user who is not asked; nothing more is known of it
   };
   std::filesystem::path path;
   std::uint32_t domain = 0;
   int process = 0;
-  std::uint32_t user = 0;  // whose it is
+  std::uint32_t user = 0;  // whose folder it is in
   State state = State::kListens;
 };
 
-// All of this user's, and those of others that this user can see; by domain and process. Root sees all.
-std::vector<LocalSocket> local_sockets();
+// Whose culprits root asks, beside its own and that in /run/culprit. It has no effect for other users.
+struct WhoIsAsked {
+  std::vector<std::uint32_t> users{};
+  bool is_everybody = false;
+};
+
+// Those that are asked, and those of others that this user can see; by domain and process.
+std::vector<LocalSocket> local_sockets(const WhoIsAsked& who = {});
 
 // Removes those that processes of this user have left behind.
 void remove_left_sockets();

@@ -1,6 +1,7 @@
 #include "live/local_socket.h"
 
 #include <fstream>
+#include <optional>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -103,6 +104,27 @@ TEST_F(LocalSockets, AreFoundWithWhatBecameOfTheirProcess) {
   all = found();
   ASSERT_EQ(all.size(), 2u);
   EXPECT_EQ(all[1].path, left);
+}
+
+// Any user can make a folder of such a name in /tmp.
+TEST_F(LocalSockets, OfOtherUsersAreAskedOnlyIfRootSaysSo) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root can give a folder away";
+  constexpr uid_t kNobody = 65534;
+  const auto path = *own_socket(7);
+  const auto listening = listener(path);
+  ASSERT_EQ(chown(path.parent_path().c_str(), kNobody, kNobody), 0);
+  const auto state = [&](const WhoIsAsked& who) {
+    for (const LocalSocket& each : local_sockets(who)) {
+      if (each.path == path) return std::optional(each.state);
+    }
+    return std::optional<LocalSocket::State>();
+  };
+  EXPECT_EQ(state({}), LocalSocket::State::kForbidden);
+  EXPECT_EQ(state({.users = {1}}), LocalSocket::State::kForbidden);
+  EXPECT_EQ(state({.users = {kNobody}}), LocalSocket::State::kListens);
+  EXPECT_EQ(state({.is_everybody = true}), LocalSocket::State::kListens);
+  chmod(path.parent_path().c_str(), 0777);
+  EXPECT_EQ(state({.is_everybody = true}), std::nullopt) << "anybody may have put it there";
 }
 
 }  // namespace

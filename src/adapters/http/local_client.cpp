@@ -1,9 +1,11 @@
 #include "http/local_client.h"
 
+#include <array>
 #include <httplib.h>
 #include <optional>
 
 #include "base/live_clock.h"
+#include "http/local_exchange.h"
 
 namespace culprit::web {
 namespace {
@@ -27,6 +29,24 @@ std::string why_no_answer(httplib::Error error, Duration patience) {
   return httplib::to_string(error);
 }
 
+std::string request_text(Method method, const std::string& path, const Json& body) {
+  const bool gets = method == Method::kGet;
+  const std::string content = gets ? "" : to_line(body);
+  std::string text = (gets ? "GET " : "POST ") + path + " HTTP/1.1\r\nHost: localhost\r\n" +
+                     "Connection: close\r\n";
+  if (!gets)
+    text += std::string("Content-Type: ") + kJsonType +
+            "\r\nContent-Length: " + std::to_string(content.size()) + "\r\n";
+  return text + "\r\n" + content;
+}
+
+Expected<Answer> answer_of(Expected<LocalAnswer> answer) {
+  if (!answer) return Error{answer.error()};
+  Json document = parse_json(answer->body);
+  if (document.is_discarded()) return Error{"the answer is no JSON"};
+  return Answer{answer->status, std::move(document)};
+}
+
 std::string refusal_in(const Json& body) {
   return text_of(body, "error").value_or("it refuses and does not say why");
 }
@@ -39,6 +59,7 @@ class StreamReader {
   // Whether more is wanted.
   bool read(std::string_view piece) {
     rest_ += piece;
+    if (rest_.size() + data_.size() > LocalClient::kLargeAnswer) return false;
     std::size_t end = 0;
     while ((end = rest_.find('\n')) != std::string::npos) {
       const std::string line = rest_.substr(0, end);
@@ -66,21 +87,32 @@ class StreamReader {
 
 }  // namespace
 
-Expected<Answer> LocalClient::ask(Method method, const std::string& path, const Json& body) const {
-  httplib::Client client = client_of(socket_, patience_);
-  const auto result =
-      method == Method::kGet ? client.Get(path) : client.Post(path, to_line(body), kJsonType);
-  if (!result) return Error{why_no_answer(result.error(), patience_)};
-  Json document = parse_json(result->body);
-  if (document.is_discarded()) return Error{"the answer is no JSON"};
-  return Answer{result->status, std::move(document)};
+Expected<Answer> LocalClient::ask(Method method, const std::string& path, const Json& body,
+                                  std::size_t most_bytes) const {
+  const std::array one{LocalRequest{socket_, user_, request_text(method, path, body), most_bytes}};
+  return answer_of(std::move(exchange_all(one, patience_).front()));
 }
 
-Expected<Json> LocalClient::get(const std::string& path) const {
-  auto answer = ask(Method::kGet, path);
+Expected<Json> LocalClient::get(const std::string& path, std::size_t most_bytes) const {
+  auto answer = ask(Method::kGet, path, nullptr, most_bytes);
   if (!answer) return Error{answer.error()};
   if (answer->status != 200) return Error{refusal_in(answer->body)};
   return std::move(answer->body);
+}
+
+std::vector<Expected<Answer>> LocalClient::ask_all(std::span<const LocalClient> clients,
+                                                   Method method, const std::string& path,
+                                                   std::span<const Json> bodies,
+                                                   Duration patience) {
+  std::vector<LocalRequest> requests;
+  for (std::size_t i = 0; i < clients.size(); ++i) {
+    const Json& body = bodies.empty() ? Json() : bodies[i];
+    requests.push_back(
+        {clients[i].socket_, clients[i].user_, request_text(method, path, body), kUsualAnswer});
+  }
+  std::vector<Expected<Answer>> answers;
+  for (auto& each : exchange_all(requests, patience)) answers.push_back(answer_of(std::move(each)));
+  return answers;
 }
 
 Expected<void> LocalClient::follow(const Take& take) const {

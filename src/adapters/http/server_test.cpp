@@ -387,7 +387,7 @@ struct LocalServer : testing::Test {
   const std::string path = folder / "7-1.sock";
   Hub hub;
   std::unique_ptr<Server> server;
-  const LocalClient client{path, std::chrono::seconds(20)};
+  const LocalClient client{path, std::chrono::seconds(20), geteuid()};
 };
 
 // No stack of this size can be had, so that no thread can be made while it lives.
@@ -532,7 +532,7 @@ TEST(LocalClients, DoNotWaitForEverForWhoDoesNotAnswer) {
   const int silent = socket(AF_UNIX, SOCK_STREAM, 0);
   ASSERT_EQ(bind(silent, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
   ASSERT_EQ(listen(silent, 1), 0);
-  const LocalClient client(path, std::chrono::milliseconds(50));
+  const LocalClient client(path, std::chrono::milliseconds(50), geteuid());
   EXPECT_THAT(client.get("/api/about").error(), HasSubstr("no answer came within 50ms"));
   EXPECT_FALSE(client.follow([](std::string_view, const Json&) { return true; }));
   close(silent);
