@@ -53,6 +53,33 @@ bool is_valid_type_name(std::string_view type) {
          is_token(type.substr(last + 1));
 }
 
+std::string escape_controls(std::string_view text) {
+  constexpr char kDigits[] = "0123456789abcdef";
+  const auto byte = [&](std::size_t i) {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
+  };
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const unsigned c = byte(i);
+    // U+0080 to U+009F, and U+202A to U+202E, U+2066 to U+2069, as UTF-8 has them.
+    const bool is_second_set = c == 0xc2 && byte(i + 1) >= 0x80 && byte(i + 1) < 0xa0;
+    const unsigned last = byte(i + 2);
+    const bool is_direction = c == 0xe2 && ((byte(i + 1) == 0x80 && last >= 0xaa && last <= 0xae) ||
+                                            (byte(i + 1) == 0x81 && last >= 0xa6 && last <= 0xa9));
+    if (c < ' ' || c == 0x7f || is_second_set) {
+      const unsigned code = is_second_set ? byte(++i) : c;
+      out += {'\\', 'x', kDigits[code >> 4], kDigits[code & 15]};
+    } else if (is_direction) {
+      const unsigned low = (byte(i + 1) & 1) << 6 | (last & 0x3f);
+      out += {'\\', 'u', '2', '0', kDigits[low >> 4], kDigits[low & 15]};
+      i += 2;
+    } else {
+      out += static_cast<char>(c);
+    }
+  }
+  return out;
+}
+
 std::string printable(std::string_view text) {
   constexpr std::size_t kLongest = 80;
   std::string out(text.substr(0, kLongest));

@@ -19,6 +19,19 @@ TEST(NameGrammar, PrintableHidesControlCharactersAndCuts) {
   EXPECT_EQ(printable(std::string(81, 'x')), std::string(80, 'x') + "...");
 }
 
+TEST(NameGrammar, EscapesWhatSteersATerminal) {
+  EXPECT_EQ(escape_controls("ada\x1b[2J\n\x7f"), "ada\\x1b[2J\\x0a\\x7f");
+  EXPECT_EQ(escape_controls("a\xc2\x9b"
+                            "2J"),
+            "a\\x9b2J")
+      << "of one character";
+  EXPECT_EQ(escape_controls("a\xe2\x80\xae"
+                            "b\xe2\x81\xa6"),
+            "a\\u202eb\\u2066");
+  EXPECT_EQ(escape_controls("Jürgen \xe2\x80\xa6 \xc2"), "Jürgen \xe2\x80\xa6 \xc2")
+      << "all else stays";
+}
+
 TEST(NameGrammar, KnowsTopicsNodesAndNamespaces) {
   EXPECT_TRUE(is_valid_topic_name("/a/b_1"));
   EXPECT_TRUE(is_valid_node_name("camera_2"));

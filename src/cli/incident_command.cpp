@@ -43,7 +43,7 @@ void print_incident(const Incident& incident,
   const auto began = static_cast<std::int64_t>(incident.began / kNanosecondInSeconds);
   fmt::print("{:<10} {:<24} {:>12}  {:<24} {}{}\n", incident.id(), local_time(began),
              incidents::lasting_text(incident.seconds), incidents::cause_of(incident),
-             incidents::outcome_of(incident), without_controls(names));
+             incidents::outcome_of(incident), escape_controls(names));
 }
 
 int list_incidents(const IncidentOptions& options) {
@@ -139,7 +139,7 @@ int write_incident(const IncidentOptions& options) {
   if ((*content)->curves)
     remarks.insert(remarks.end(), (*content)->curves->remarks.begin(),
                    (*content)->curves->remarks.end());
-  for (const std::string& each : remarks) say(stderr, "culprit: {}\n", without_controls(each));
+  for (const std::string& each : remarks) say(stderr, "culprit: {}\n", escape_controls(each));
   return kOk;
 }
 

@@ -115,7 +115,7 @@ int order(const OrderOptions& options, const MakeOrder& make) {
     is_all_done &= outcome.is_done;
     if (!options.json)
       say(outcome.is_done ? stdout : stderr, "{}: {}\n", culprit.name(),
-          without_controls(outcome.text));
+          escape_controls(outcome.text));
     list.push_back({{"process", culprit.process},
                     {"done", outcome.is_done},
                     {"text", outcome.text},
@@ -127,7 +127,7 @@ int order(const OrderOptions& options, const MakeOrder& make) {
   // Somebody may have meant one of these.
   for (const auto* others : {&here->others, &here->not_meant}) {
     for (const std::string& other : *others)
-      say(stderr, "culprit: not told: {}\n", other);
+      say(stderr, "culprit: not told: {}\n", escape_controls(other));
   }
   return is_all_done && (here->others.empty() || !all) ? kOk : kFailed;
 }

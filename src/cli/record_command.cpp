@@ -1,5 +1,6 @@
 #include <memory>
 
+#include "base/name_grammar.h"
 #include "cli/commands.h"
 #include "cli/running_culprit.h"
 #include "terminal/console.h"
@@ -25,7 +26,7 @@ int record(const RecordOptions& options) {
     say(stdout, "{}\n", to_line(answer->body));
   } else {
     say(stdout, "{}: recording to {}\n", culprit->name(),
-        without_controls(web::text_of(answer->body, "recording").value_or("")));
+        escape_controls(web::text_of(answer->body, "recording").value_or("")));
   }
   return kOk;
 }

@@ -2,6 +2,7 @@
 #include <memory>
 #include <unistd.h>
 
+#include "base/name_grammar.h"
 #include "cli/commands.h"
 #include "cli/running_culprit.h"
 #include "cli/status_report.h"
@@ -68,7 +69,7 @@ int status(const StatusOptions& options) {
     return fail(none_to_ask(here));
   } else {
     for (const auto* others : {&here.others, &here.not_meant}) {
-      for (const std::string& other : *others) say(stdout, "{}\n", other);
+      for (const std::string& other : *others) say(stdout, "{}\n", escape_controls(other));
     }
   }
   return worst == Verdict::kWell ? kOk : worst == Verdict::kSeesLess ? kWarnings : kFailed;

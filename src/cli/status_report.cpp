@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "base/name_grammar.h"
 #include "knowledge/describe.h"
 #include "terminal/console.h"
 
@@ -22,7 +23,7 @@ const Json& member_at(const Json& json, const char* name) {
 }
 std::string text_at(const Json& json, const char* name) {
   const Json& text = member_at(json, name);
-  return text.is_string() ? without_controls(text.get<std::string>()) : "";
+  return text.is_string() ? escape_controls(text.get<std::string>()) : "";
 }
 bool is_set(const Json& json, const char* name) {
   const Json& flag = member_at(json, name);
@@ -39,7 +40,7 @@ std::vector<Json> list_at(const Json& json, const char* name) {
 std::vector<std::string> texts_at(const Json& json, const char* name) {
   std::vector<std::string> texts;
   for (const Json& each : list_at(json, name)) {
-    if (each.is_string()) texts.push_back(without_controls(each.get<std::string>()));
+    if (each.is_string()) texts.push_back(escape_controls(each.get<std::string>()));
   }
   return texts;
 }

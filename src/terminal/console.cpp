@@ -11,6 +11,7 @@
 
 #include <fmt/core.h>
 
+#include "base/name_grammar.h"
 #include "knowledge/describe.h"
 
 namespace culprit {
@@ -71,7 +72,7 @@ std::string line(const Event& event, const RuleSet& rules, Time start, Colour co
 
 std::string line(const EventWords& words, Duration after, const std::string& text, Colour colour) {
   return fmt::format("{:8.3f}  {}  {}", seconds(after), label_of(words, colour),
-                     text);
+                     escape_controls(text));
 }
 
 std::string label_of(const EventWords& words, Colour colour) {
@@ -80,19 +81,6 @@ std::string label_of(const EventWords& words, Colour colour) {
 
 std::string in_tone(const std::string& text, Tone tone, Weight weight, Colour colour) {
   return colour == Colour::kOn ? colour_code(tone, weight) + text + "\033[0m" : text;
-}
-
-std::string without_controls(std::string text) {
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto c = static_cast<unsigned char>(text[i]);
-    // The second half of the controls is two bytes long in UTF-8.
-    constexpr unsigned char kFirstOfTwo = 0xc2;
-    const auto second = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : 0);
-    const bool is_pair = c == kFirstOfTwo && second >= 0x80 && second < 0xa0;
-    if (c < ' ' || c == 0x7f || is_pair) text[i] = '?';
-    if (is_pair) text[++i] = '?';
-  }
-  return text;
 }
 
 void say_text(std::FILE* stream, const std::string& text) {

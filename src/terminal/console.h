@@ -22,15 +22,12 @@ Colour colour_of(int descriptor);
 // One event as a line with its time since `start`: "   3.214  detected   RGBDead (ERROR)". Empty
 // for events that are not worth one.
 std::string line(const Event& event, const RuleSet& rules, Time start, Colour colour);
-// Likewise, of anything that has such words.
+// Likewise, of anything that has such words. What would steer the terminal in it is escaped.
 std::string line(const EventWords& words, Duration after, const std::string& text, Colour colour);
 
 // The label of an event, as wide as all are.
 std::string label_of(const EventWords& words, Colour colour);
 std::string in_tone(const std::string& text, Tone tone, Weight weight, Colour colour);
-
-// What others have said, without what would steer the terminal (control characters): '?' in their place.
-std::string without_controls(std::string text);
 
 // Prints at once. A reader who is gone, or a full disk, keeps nobody from managing a robot: what
 // cannot be said is left out.

@@ -127,11 +127,12 @@ Expected<What> read(const Json& body, const RuleSet& rules) {
 Expected<Order> read_order(const Json& body, const RuleSet& rules, std::uint64_t number) {
   const auto what = read(body, rules);
   if (!what) return Error{what.error()};
-  Order order{number, text_of(body, "author").value_or(""), text_of(body, "reason").value_or(""),
-              *what};
-  if (order.author.empty()) return Error{"say who you are: 'author'"};
-  if (order.author.size() > kLongestText || order.reason.size() > kLongestText)
+  const std::string author = text_of(body, "author").value_or("");
+  const std::string reason = text_of(body, "reason").value_or("");
+  if (author.empty()) return Error{"say who you are: 'author'"};
+  if (author.size() > kLongestText || reason.size() > kLongestText)
     return Error{"keep 'author' and 'reason' short"};
+  Order order{number, escape_controls(author), escape_controls(reason), *what};
   return order;
 }
 

@@ -254,6 +254,18 @@ TEST_F(Routes, DoNotSaveRulesThatArePartOfTheProgram) {
   EXPECT_EQ(routes[1].answer({{"text", ""}, {"version", ""}}).status, 403);
 }
 
+TEST_F(Routes, EscapeWhatWouldSteerATerminal) {
+  EXPECT_EQ(
+      ask("post /api/orders", {{"order", "pause"}, {"author", "ada\x1b[2J"}, {"reason", "a\nb"}})
+          .status,
+      202);
+  ASSERT_EQ(orders.size(), 1u);
+  EXPECT_EQ(orders[0].author, "ada\\x1b[2J");
+  EXPECT_EQ(orders[0].reason, "a\\x0ab");
+  EXPECT_EQ(ask("post /api/rules/reload", {{"author", "eve\r"}}).status, 202);
+  EXPECT_EQ(reloaded_by, "eve\\x0d");
+}
+
 TEST_F(Routes, GiveOrdersToTheManager) {
   const Answer answer = ask("post /api/orders", {{"order", "run"},
                                                  {"rule", "CameraSilent"},

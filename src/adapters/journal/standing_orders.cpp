@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "base/name_grammar.h"
 #include "journal/json.h"
 #include "journal/order_reserve.h"
 #include "journal/requests.h"
@@ -18,7 +19,10 @@ using Said = StandingOrders::Said;
 
 Json to_json(const Said& said) { return {{"author", said.author}, {"reason", said.reason}}; }
 
-Said said_from(const Json& json) { return {text_of(json, "author"), text_of(json, "reason")}; }
+// Another machine's, or an older culprit's, may hold anything.
+Said said_from(const Json& json) {
+  return {escape_controls(text_of(json, "author")), escape_controls(text_of(json, "reason"))};
+}
 
 std::optional<Said> standing(const Json& json) {
   if (json.is_null()) return std::nullopt;

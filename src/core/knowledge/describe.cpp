@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "base/name_grammar.h"
+
 namespace culprit {
 namespace {
 
@@ -468,7 +470,7 @@ std::string describe(const Order& order, const RuleSet& rules) {
 }
 
 std::string describe(const Event& event, const RuleSet& rules) {
-  return std::visit(Describer(rules), event.what);
+  return escape_controls(std::visit(Describer(rules), event.what));
 }
 
 std::string describe_exclusion(const Candidate& candidate, const RuleSet& rules) {
