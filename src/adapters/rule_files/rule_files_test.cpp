@@ -1,6 +1,7 @@
 #include "rule_files/rule_files.h"
 
 #include <fstream>
+#include <sys/stat.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -73,6 +74,18 @@ TEST_F(RuleFiles, AreNothingElse) {
   fs::create_directories(folder / "folder.rules");
   EXPECT_FALSE(load("folder.rules", robot));
   EXPECT_FALSE(load("/dev/zero", robot));
+}
+
+// Reading one could wait for ever, and give something else each time.
+TEST_F(RuleFiles, ReadNoPipe) {
+  write("robot.rules", "");
+  const auto pipe = folder / "pipe.rules";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string& each : {pipe.string(), std::string("/dev/zero")}) {
+    const auto rules = read(each);
+    ASSERT_FALSE(rules);
+    EXPECT_THAT(rules.error(), HasSubstr("is a pipe, a socket or a device"));
+  }
 }
 
 TEST_F(RuleFiles, OfAFolderAreThoseOfItsFoldersToo) {

@@ -60,6 +60,12 @@ Source Source::followed_by(std::string text) const {
 }
 
 Expected<Source> Source::read(const std::string& path) {
+  std::error_code unseen;
+  const auto kind = std::filesystem::status(path, unseen).type();
+  // Reading one could wait for ever, and give something else each time.
+  if (kind == std::filesystem::file_type::fifo || kind == std::filesystem::file_type::socket ||
+      kind == std::filesystem::file_type::character || kind == std::filesystem::file_type::block)
+    return Error{"'" + path + "' is a pipe, a socket or a device; a rule file is a regular file"};
   std::ifstream file(path, std::ios::binary);
   if (!file) return Error{"cannot read rule file '" + path + "': " + std::strerror(errno)};
   std::string text;
