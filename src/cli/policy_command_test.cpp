@@ -2,6 +2,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <set>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -104,6 +107,9 @@ TEST(UnitSettings, SayWhatIsRun) {
 
 TEST(UnitSettings, WhatStartsNothingCanExecuteNothing) {
   EXPECT_THAT(settings("stop", "restart"), HasSubstr("NoExecPaths=/\n"));
+  EXPECT_THAT(settings("stop", "restart"), HasSubstr("MemoryMax=1G\n"));
+  EXPECT_THAT(settings("redeploy", "restart"), Not(HasSubstr("MemoryMax=1G\n")))
+      << "it would count what is started";
   EXPECT_THAT(settings("redeploy", "restart"), Not(HasSubstr("NoExecPaths")));
   EXPECT_THAT(settings("redeploy", "start"),
               HasSubstr("These are started and live in this sandbox: camera, base."));
@@ -145,6 +151,38 @@ TEST(UnitSettings, WhatIsAskedOverSshTakesAProgramAndAKey) {
   EXPECT_THAT(text, Not(HasSubstr("NoExecPaths"))) << "ssh is executed";
   EXPECT_THAT(text, Not(HasSubstr("DynamicUser")));
   EXPECT_THAT(text, HasSubstr("asked over ssh, so User=\n# needs a home with a key"));
+}
+
+// systemd reads each line of the unit, and scores it (docs/security.md).
+TEST(ServiceUnit, IsTakenBySystemdAsItIs) {
+  const auto run = [](const std::string& command) { return std::system(command.c_str()); };
+  if (run("command -v systemd-analyze > /dev/null") != 0)
+    GTEST_SKIP() << "there is no systemd here";
+  EXPECT_EQ(run("systemd-analyze security --offline=true --threshold=18 packaging/culprit.service "
+                "> /dev/null"),
+            0);
+  const test::TestFolder folder;
+  std::ofstream unit(folder / "culprit.service");
+  std::ifstream from("packaging/culprit.service");
+  std::set<std::string> lines;
+  for (std::string text; std::getline(from, text);) {
+    lines.insert(text);
+    // There need be neither that program nor that user here.
+    if (text.starts_with("ExecStart=")) text = "ExecStart=/bin/true";
+    if (text.starts_with("Documentation=") || text.starts_with("User=")) continue;
+    unit << text << "\n";
+  }
+  unit.close();
+  const std::string said = (folder / "said").string();
+  EXPECT_EQ(run("systemd-analyze verify " + (folder / "culprit.service").string() + " 2> " + said),
+            0);
+  std::ifstream words(said);
+  EXPECT_THAT(std::string(std::istreambuf_iterator<char>(words), {}),
+              Not(HasSubstr("culprit.service")));
+  for (const char* each : {"OOMScoreAdjust=-500", "TasksMax=4096", "MemoryMax=75%",
+                           "ProtectSystem=strict", "RuntimeDirectoryMode=0700",
+                           "StateDirectoryMode=0700", "UMask=0077", "NoNewPrivileges=yes"})
+    EXPECT_TRUE(lines.contains(each)) << each;
 }
 
 TEST(UnitSettings, OtherUsersProcessesTakeCapabilities) {

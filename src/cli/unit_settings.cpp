@@ -75,7 +75,10 @@ std::string start_settings(const Processes& processes) {
     return "# No program is ever started: nothing but culprit can be executed, and what reloads "
            "it.\n"
            "NoExecPaths=/\n"
-           "ExecPaths=/usr/bin/culprit /usr/bin/kill -/usr/lib -/usr/lib32 -/usr/lib64\n";
+           "ExecPaths=/usr/bin/culprit /usr/bin/kill -/usr/lib -/usr/lib32 -/usr/lib64\n"
+           "# So these limits are culprit's own.\n"
+           "TasksMax=512\n"
+           "MemoryMax=1G\n";
   }
   if (processes.started.empty()) return "";
   return fmt::format(
@@ -85,7 +88,9 @@ std::string start_settings(const Processes& processes) {
       "#   DevicePolicy=closed\n"
       "#   DeviceAllow=/dev/video0 rw\n"
       "# a controller real-time threads (RestrictRealtime=no), a program that compiles while it\n"
-      "# runs memory that it may execute (MemoryDenyWriteExecute=no).\n"
+      "# runs memory that it may execute (MemoryDenyWriteExecute=no). They count for TasksMax= "
+      "and\n"
+      "# MemoryMax= of the service, too.\n"
       "Environment=ROS_LOG_DIR=/var/lib/culprit/ros-log\n",
       fmt::join(processes.started, ", "));
 }
