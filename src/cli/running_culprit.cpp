@@ -69,7 +69,7 @@ Expected<std::uint32_t> user_called(const std::string& name) {
   return Error{"there is no user '" + printable(name) + "'"};
 }
 
-// Who is at the terminal behind sudo is asked, too: sudo says so, and only root can make it up.
+// The user behind sudo is asked, too: sudo says who that is, and only root could make it up.
 Expected<live::WhoIsAsked> who_is_asked(const WhichCulprit& which) {
   live::WhoIsAsked who;
   who.is_everybody = which.all;

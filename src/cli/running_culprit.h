@@ -50,7 +50,7 @@ Expected<CulpritsHere> culprits_here(const WhichCulprit& which);
 // The one that is meant. Errors: there is none, or several, and what to do.
 Expected<RunningCulprit> the_culprit(const WhichCulprit& which);
 
-// Which there are, where one has to be chosen, in lines.
+// The culprits that one has to be chosen of, in lines.
 std::string several_to_choose(const CulpritsHere& here);
 // Why nobody can be asked, in lines.
 std::string none_to_ask(const CulpritsHere& here);

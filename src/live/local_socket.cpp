@@ -78,7 +78,7 @@ std::vector<fs::path> socket_folders(const WhoIsAsked& who) {
   return folders;
 }
 
-// Whose the folder is; nothing: others than that user may write there, or it is none.
+// The owner of the folder; nothing: other users may write there, or it is no folder.
 std::optional<std::uint32_t> owner_of(const fs::path& folder) {
   struct stat status {};
   if (lstat(folder.c_str(), &status) != 0 || !S_ISDIR(status.st_mode) ||

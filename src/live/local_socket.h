@@ -42,7 +42,7 @@ struct LocalSocket {
   State state = State::kListens;
 };
 
-// Whose culprits root asks, beside its own and that in /run/culprit. It has no effect for other users.
+// Further users whose culprits root asks, beside its own and that in /run/culprit. It has no effect for other users.
 struct WhoIsAsked {
   std::vector<std::uint32_t> users{};
   bool is_everybody = false;

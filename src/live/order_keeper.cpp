@@ -28,7 +28,7 @@ StandingOrders OrderKeeper::begin(std::filesystem::path file, const StandingOrde
   only_advises_ = false;
   in_file_ = is_in_file ? std::optional(found) : std::nullopt;
   begin_with(both(found, orders_));
-  // What was kept there belongs to a file that is gone or damaged.
+  // A record there belongs to a file that is gone or damaged.
   if (!is_in_file) (void)journal::clear_reserve(journal::reserve_beside(*file_));
   if (const auto written = write(orders_); !written) trouble = written.error();
   (void)journal::make_reserve(journal::reserve_beside(*file_));

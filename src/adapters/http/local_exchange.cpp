@@ -19,7 +19,7 @@
 namespace culprit::web {
 namespace {
 
-// What came so far, as HTTP; nothing: it is not whole yet. Errors: it never will be.
+// The answer in the bytes received so far; nothing: it is not whole yet. Errors: it never will be.
 std::optional<Expected<LocalAnswer>> read_http(const std::string& received, bool is_over) {
   const auto broken = [] { return Expected<LocalAnswer>(Error{"the answer is no HTTP"}); };
   constexpr std::string_view kVersion = "HTTP/1.";

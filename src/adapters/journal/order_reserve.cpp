@@ -62,7 +62,7 @@ class ReserveFile {
     record.text.assign(rest + 1, end);
     return record;
   }
-  // Of the newest.
+  // Which record is the newest; nothing: none is whole.
   std::optional<std::size_t> newest() const {
     const auto first = record(0);
     const auto second = record(1);

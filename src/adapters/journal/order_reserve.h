@@ -18,9 +18,9 @@ namespace culprit::journal {
 // Beside which file of orders: "a.journal-orders" -> "a.journal-orders-reserve"
 std::filesystem::path reserve_beside(const std::filesystem::path& orders);
 
-// The room is there when it returns. What it holds stays. Errors name the file.
+// The room is there when it returns. A record in it stays. Errors name the file.
 Expected<void> make_reserve(const std::filesystem::path& reserve);
-// What it holds is no longer true; the room stays.
+// Removes the records; the room stays.
 Expected<void> clear_reserve(const std::filesystem::path& reserve);
 
 // On the disk when it returns, beside the record that was written before. Errors: make_reserve() did not succeed, the

@@ -78,7 +78,7 @@ std::filesystem::path orders_beside(const std::filesystem::path& journal);
 // (order_reserve.h). Errors say why not in the file.
 Expected<void> write_orders(const std::filesystem::path& path, const StandingOrders& orders,
                             const Clocks& now);
-// What was written last, by its revision. Nothing: there is no such file. Errors: it cannot be read, or is damaged.
+// The orders that were written last, by their revision. Nothing: there is no such file. Errors: it cannot be read, or is damaged.
 Expected<std::optional<StandingOrders>> read_orders(const std::filesystem::path& path,
                                                     const Clocks& now);
 
