@@ -189,7 +189,8 @@ int run(const RunOptions& options) {
       robot, count, options.dry_run ? " (dry run)" : "");
   live.begin(orders, signals.stopped());
 
-  web::RuleDesk desk(options.rules);
+  web::RuleDesk desk(options.rules, options.may_edit_commands ? web::RuleDesk::Commands::kMayChange
+                                                              : web::RuleDesk::Commands::kStay);
   live::RobotNames names(options.message_path);
   Expected<std::unique_ptr<web::Server>> server(nullptr);
   if (options.is_on_web) {

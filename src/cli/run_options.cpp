@@ -109,6 +109,9 @@ void RunOptions::add_to(CLI::App& command) {
       ->type_name("FILE");
   planner.add_to(command);
   command.add_flag("--web", is_on_web, "Show in a browser what is seen, decided and done");
+  command.add_flag(
+      "--edit-rules", may_edit_commands,
+      "Let the page also change what the rules execute: LAUNCH, UNIT, call and the like");
   web.add_to(command);
   recording.add_to(command);
   governor.add_to(command);

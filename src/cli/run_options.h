@@ -37,6 +37,7 @@ struct RunOptions {
   std::string alerts;                     // a file; empty: nobody is alerted
   RecordingOptions recording;
   bool is_on_web = false;
+  bool may_edit_commands = false;  // from the page
   WebOptions web;
 
   // The options must live as long as `command`.

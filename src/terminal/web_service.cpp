@@ -24,10 +24,31 @@ void WebOptions::add_to(CLI::App& command) {
       ->group(kGroup);
   command
       .add_option("--token-file", token_file,
-                  "A file that only you can read, with the token that requests have to carry "
+                  "A file that only you can read, with the token that may do everything "
                   "(default: a new token each time)")
       ->type_name("FILE")
       ->group(kGroup);
+  command
+      .add_option("--operate-token-file", operate_token_file,
+                  "A file with a token that gives orders and cannot change the rules")
+      ->type_name("FILE")
+      ->group(kGroup);
+  command
+      .add_option("--look-token-file", look_token_file,
+                  "A file with a token that sees all and changes nothing")
+      ->type_name("FILE")
+      ->group(kGroup);
+  CLI::Option* const cert =
+      command
+          .add_option("--web-cert", certificate,
+                      "Encrypt (https) with this certificate, a PEM file with its chain")
+          ->type_name("FILE")
+          ->group(kGroup);
+  command.add_option("--web-key", key, "The key of --web-cert, a PEM file that only you can read")
+      ->type_name("FILE")
+      ->needs(cert)
+      ->group(kGroup);
+  cert->needs(command.get_option("--web-key"));
   command
       .add_option("--allow-host", allowed_hosts,
                   "A name by which browsers may call this machine, beside its addresses")
@@ -40,6 +61,14 @@ Expected<web::Access> access_for(const WebOptions& options) {
   web::Access access;
   access.is_local = web::is_loopback(options.address);
   access.allowed_hosts = options.allowed_hosts;
+  access.is_encrypted = !options.certificate.empty();
+  for (const auto& [file, token] : {std::pair(&options.operate_token_file, &access.operate_token),
+                                    std::pair(&options.look_token_file, &access.look_token)}) {
+    if (file->empty()) continue;
+    auto read = web::read_secret(*file);
+    if (!read) return Error{read.error()};
+    *token = std::move(*read);
+  }
   if (options.token_file.empty()) {
     if (!access.is_local)
       return Error{
@@ -52,6 +81,10 @@ Expected<web::Access> access_for(const WebOptions& options) {
   auto token = web::read_secret(options.token_file);
   if (!token) return Error{token.error()};
   access.token = std::move(*token);
+  const bool are_alike = access.token == access.operate_token ||
+                         access.token == access.look_token ||
+                         (!access.look_token.empty() && access.look_token == access.operate_token);
+  if (are_alike) return Error{"two of the token files hold the same token"};
   return access;
 }
 
@@ -64,6 +97,11 @@ Expected<std::unique_ptr<web::Server>> serve(const WebOptions& options,
   if (!access) return Error{access.error()};
   web::Server::Options server{options.address, options.port.value_or(WebOptions::kUsualPort),
                               std::move(*access)};
+  if (!options.certificate.empty()) {
+    auto tls = web::TlsContext::load(options.certificate, options.key);
+    if (!tls) return Error{tls.error()};
+    server.tls = std::move(*tls);
+  }
   server.app = web::app();
   server.openapi = web::openapi();
   auto started = web::Server::start(server, routes, hub);
@@ -76,9 +114,10 @@ Expected<std::unique_ptr<web::Server>> serve(const WebOptions& options,
     say(out, "See it in a browser: {}\n", (*started)->address());
   } else {
     say(out,
-        "See it in a browser: http://{}:{}/#token=... (the token of {}). Others can reach "
-        "this address, and what they send is not encrypted.\n",
-        options.address, (*started)->port(), options.token_file);
+        "See it in a browser: {}://{}:{}/#token=... (the token of {}). Others can reach "
+        "this address{}.\n",
+        server.tls ? "https" : "http", options.address, (*started)->port(), options.token_file,
+        server.tls ? "" : ", and what they send is not encrypted (--web-cert)");
   }
   return started;
 }

@@ -18,6 +18,10 @@ struct WebOptions {
   std::string address = "127.0.0.1";
   std::optional<int> port;  // nothing: the usual one, or another if that is taken
   std::string token_file;
+  std::string operate_token_file;
+  std::string look_token_file;
+  std::string certificate;
+  std::string key;
   std::vector<std::string> allowed_hosts;
 
   // The options must live as long as `command`.
@@ -25,7 +29,7 @@ struct WebOptions {
 };
 
 // Serves until the server is destroyed, and says on `out` where. `hub` may be null.
-// Errors: the address is not local and there is no token file; or it cannot be listened at.
+// Errors: the address is not local and there is no token file; a file cannot be used; or it cannot be listened at.
 Expected<std::unique_ptr<web::Server>> serve(const WebOptions& options,
                                              std::vector<web::Route> routes, web::Hub* hub,
                                              std::FILE* out = stdout);

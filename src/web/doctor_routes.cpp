@@ -34,7 +34,8 @@ std::vector<Route> doctor_routes(Doctor doctor) {
   return {{Method::kPost, "/api/doctor",
            [doctor = std::move(doctor), looking = std::make_shared<Mutex>()](const Json& body) {
              return answer(body, doctor, *looking);
-           }}};
+           },
+           Role::kOperate}};
 }
 
 Expected<Json> examine_robot(Duration time) {

@@ -53,7 +53,8 @@ Answer answer(const Json& body, const JournalOf& journal_of, Mutex& replaying) {
 Route hindsight_route(JournalOf journal_of) {
   return {Method::kPost, "/api/rules/replay",
           [journal_of = std::move(journal_of), replaying = std::make_shared<Mutex>()](
-              const Json& body) { return answer(body, journal_of, *replaying); }};
+              const Json& body) { return answer(body, journal_of, *replaying); },
+          Role::kLook};
 }
 
 Expected<std::filesystem::path> usual_journal(const std::string& rules) {

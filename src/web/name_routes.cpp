@@ -46,7 +46,8 @@ std::vector<Route> name_routes(Look look, RuleLoader load) {
              const auto inventory = look(interest_in(*text, load));
              if (!inventory) return refuse(503, inventory.error());
              return Answer{200, to_json(*inventory)};
-           }}};
+           },
+           Role::kLook}};
 }
 
 }  // namespace culprit::web

@@ -244,7 +244,8 @@ Answer give_order(OrderDesk& desk, Hub& hub, const Json& body) {
 
 std::vector<Route> order_routes(OrderDesk& desk, Hub& hub) {
   return {{Method::kPost, "/api/orders",
-           [&desk, &hub](const Json& body) { return give_order(desk, hub, body); }}};
+           [&desk, &hub](const Json& body) { return give_order(desk, hub, body); },
+           Role::kOperate}};
 }
 
 }  // namespace culprit::web

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <set>
 #include <sstream>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <gmock/gmock.h>
@@ -252,6 +253,72 @@ TEST_F(Routes, DoNotSaveRulesThatArePartOfTheProgram) {
   const auto routes = rule_routes(built_in);
   EXPECT_EQ(routes[0].answer(nullptr).body["can_save"], false);
   EXPECT_EQ(routes[1].answer({{"text", ""}, {"version", ""}}).status, 403);
+}
+
+// Somebody who may change a threshold may not for that reason run programs on the robot.
+TEST(RuleDesk, LetsAPageChangeWhatIsExecutedOnlyIfThatWasAllowed) {
+  const test::TestFolder folder;
+  const std::string file = folder / "robot.rules";
+  const std::string before = R"(
+CONST limit = 500ms
+COMPONENT camera NODE /camera LAUNCH "camera driver" SETUP /opt/ros/setup.bash ENV "A=1" CWD /srv
+COMPONENT lidar NODE /lidar UNIT lidar.service
+COMPONENT box NODE /box
+COMPONENT detect NODE /detect IN /box PLUGIN detect::Detector
+RULE CameraSilent
+  POLICIES ERROR
+  TRIGGER age(/rgb) > limit
+    STRATEGY restart 50 10
+      ADAPTATION camera restart 3
+    STRATEGY reset 50 10
+      ADAPTATION camera call ~/reset 3
+)";
+  std::ofstream(file) << before;
+  RuleDesk desk(file, RuleDesk::Commands::kStay);
+  // Why it is refused; empty: it is saved, and the file is as before.
+  const auto refusal = [&](RuleDesk& to, const std::string& text) -> std::string {
+    const auto outcome = to.save(text, to.read()->version);
+    const auto* refused = std::get_if<RuleDesk::Refusal>(&outcome);
+    std::ofstream(file) << before;
+    return refused != nullptr ? refused->message : "";
+  };
+  const auto changed = [&](const std::string& what, const std::string& to) {
+    std::string text = before;
+    const auto at = text.find(what);
+    EXPECT_NE(at, std::string::npos) << what;
+    return text.replace(at, what.size(), to);
+  };
+  EXPECT_EQ(refusal(desk, changed("500ms", "700ms")), "");
+  EXPECT_EQ(refusal(desk, changed("restart 50 10", "restart 60 10")), "");
+  EXPECT_EQ(refusal(desk, before + "# a note\n"), "");
+  for (const auto& [what, to] : std::vector<std::pair<std::string, std::string>>{
+           {"camera driver", "rm driver"},
+           {"/opt/ros/setup.bash", "/tmp/setup.bash"},
+           {"\"A=1\"", "\"LD_PRELOAD=/tmp/x.so\""},
+           {"CWD /srv", "CWD /tmp"},
+           {"lidar.service", "sshd.service"},
+           {"detect::Detector", "other::Plugin"},
+           {"call ~/reset", "call /shut_down"},
+           {"NODE /camera", "NODE /other"},
+           {"COMPONENT box", "COMPONENT more NODE /more LAUNCH \"more\"\nCOMPONENT box"}}) {
+    const std::string text = changed(what, to);
+    EXPECT_THAT(refusal(desk, text), HasSubstr("this changes what is executed")) << to;
+    RuleDesk free(file, RuleDesk::Commands::kMayChange);
+    EXPECT_EQ(refusal(free, text), "") << to;
+  }
+  // A detour by a text that nobody can read.
+  EXPECT_THAT(refusal(desk, "COMPONENT"), HasSubstr("could change what is executed"));
+  std::ofstream(file) << "COMPONENT";
+  const auto outcome = desk.save(before, desk.read()->version);
+  EXPECT_TRUE(std::holds_alternative<RuleDesk::Refusal>(outcome));
+}
+
+// Reading one could wait for ever.
+TEST(RuleDesk, TakesNoPipeForAFile) {
+  const test::TestFolder folder;
+  const std::string pipe = folder / "robot.rules";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THAT(RuleDesk(pipe).read().error(), HasSubstr("no regular file"));
 }
 
 TEST_F(Routes, EscapeWhatWouldSteerATerminal) {

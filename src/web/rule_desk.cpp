@@ -1,9 +1,15 @@
 #include "web/rule_desk.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
+#include <vector>
 
+#include "base/name_grammar.h"
 #include "base/text_file.h"
+#include "language/checker.h"
 #include "rule_files/rule_files.h"
+#include "web/rule_commands.h"
 
 namespace culprit::web {
 namespace {
@@ -58,10 +64,30 @@ bool RuleDesk::includes(const std::filesystem::path& file) const {
   return false;
 }
 
+// Rules with mistakes tell nothing of what they execute, neither before nor after.
+std::string RuleDesk::changed_command(const std::string& text) const {
+  const auto now = rule_files::read(path_);
+  std::error_code error;
+  const bool is_new = !fs::exists(path_, error);
+  const auto before = now ? check(*now).rules : std::nullopt;
+  const auto after = check(expand(Source(path_, text), loader())).rules;
+  if (!before && !is_new)
+    return "the file has mistakes, so that this could change what is executed";
+  if (!after) return "the text has mistakes, so that it could change what is executed";
+  const auto old = before ? commands_of(*before) : std::vector<std::string>();
+  const auto next = commands_of(*after);
+  std::vector<std::string> changed;
+  std::set_symmetric_difference(old.begin(), old.end(), next.begin(), next.end(),
+                                std::back_inserter(changed));
+  return changed.empty() ? "" : "this changes what is executed: " + printable(changed.front());
+}
+
 Expected<RuleDesk::Content> RuleDesk::read() const {
   if (fixed_) return Content{*fixed_, version_of(*fixed_)};
   std::error_code error;
   if (!std::filesystem::exists(path_, error) && !error) return Content{"", version_of("")};
+  if (!std::filesystem::is_regular_file(path_, error))
+    return Error{"'" + path_ + "' is no regular file, and so no rule file"};
   auto text = read_text(path_);
   if (!text) return Error{text.error()};
   std::string version = version_of(*text);
@@ -79,6 +105,12 @@ std::variant<std::string, RuleDesk::Refusal> RuleDesk::save(const std::string& t
   if (now->version != version)
     return Refusal{Problem::kChangedMeanwhile,
                    path_ + " was changed by somebody else since you opened it; nothing is written"};
+  const std::string command = commands_ == Commands::kStay ? changed_command(text) : "";
+  if (!command.empty())
+    return Refusal{Problem::kChangesCommands,
+                   command +
+                       "; the page may change that only of a culprit that was started with "
+                       "--edit-rules. Nothing is written"};
   if (const auto written = write_text(path_, text); !written)
     return Refusal{Problem::kNotWritten, written.error()};
   return version_of(text);

@@ -2,6 +2,7 @@
 // says which version was changed, so that nobody overwrites what another has written.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -19,8 +20,11 @@ inline constexpr const char* kTextOfPage = "rules";
 // All members may be called from any thread.
 class RuleDesk {
  public:
+  // Whether a page may change what is executed (rule_commands.h) as well.
+  enum class Commands : std::uint8_t { kMayChange, kStay };
   // A file, which may be new.
-  explicit RuleDesk(std::string path) : path_(std::move(path)) {}
+  explicit RuleDesk(std::string path, Commands commands = Commands::kMayChange)
+      : path_(std::move(path)), commands_(commands) {}
   // Rules without a file, which cannot be saved.
   RuleDesk(std::string name, std::string text) : path_(std::move(name)), fixed_(std::move(text)) {}
 
@@ -39,7 +43,7 @@ class RuleDesk {
   // this computer. Of rules without a file: nowhere. The desk must outlive it.
   RuleLoader loader() const;
 
-  enum class Problem : std::uint8_t { kChangedMeanwhile, kNotWritten };
+  enum class Problem : std::uint8_t { kChangedMeanwhile, kChangesCommands, kNotWritten };
   struct Refusal {
     Problem problem;
     std::string message;
@@ -50,9 +54,12 @@ class RuleDesk {
 
  private:
   bool includes(const std::filesystem::path& file) const;
+  // How the text would change what is executed; empty: not at all.
+  std::string changed_command(const std::string& text) const;
 
   const std::string path_;
   const std::optional<std::string> fixed_;
+  const Commands commands_ = Commands::kMayChange;
   Mutex saving_;
 };
 

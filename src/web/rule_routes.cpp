@@ -92,9 +92,10 @@ Answer as_text(const Json& body) {
 std::vector<Route> rule_routes(RuleDesk& desk) {
   return {{Method::kGet, "/api/rules", [&desk](const Json&) { return read(desk); }},
           {Method::kPut, "/api/rules", [&desk](const Json& body) { return save(desk, body); }},
-          {Method::kPost, "/api/rules/ask", [&desk](const Json& body) { return ask(desk, body); }},
-          {Method::kPost, "/api/rules/json", as_json},
-          {Method::kPost, "/api/rules/text", as_text}};
+          {Method::kPost, "/api/rules/ask", [&desk](const Json& body) { return ask(desk, body); },
+           Role::kLook},
+          {Method::kPost, "/api/rules/json", as_json, Role::kLook},
+          {Method::kPost, "/api/rules/text", as_text, Role::kLook}};
 }
 
 }  // namespace culprit::web

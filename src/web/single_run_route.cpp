@@ -55,7 +55,8 @@ Answer answer(const Json& body, Mutex& playing) {
 Route single_run_route() {
   return {
       Method::kPost, "/api/studies/run",
-      [playing = std::make_shared<Mutex>()](const Json& body) { return answer(body, *playing); }};
+      [playing = std::make_shared<Mutex>()](const Json& body) { return answer(body, *playing); },
+      Role::kOperate};
 }
 
 }  // namespace culprit::web

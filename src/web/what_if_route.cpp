@@ -34,7 +34,8 @@ Route what_if_route(PlannerFactory planner, RuleLoader load) {
   return {Method::kPost, "/api/what-if",
           [planner = std::move(planner), load = std::move(load)](const Json& body) {
             return what_if(body, planner, load);
-          }};
+          },
+          Role::kLook};
 }
 
 }  // namespace culprit::web

@@ -28,6 +28,15 @@ bool is_address(const std::string& text) {
          inet_pton(AF_INET6, text.c_str(), &address) == 1;
 }
 
+bool is_bearer_of(const std::string& token, std::string_view authorization) {
+  const std::string expected = "Bearer " + token;
+  if (token.empty() || authorization.size() != expected.size()) return false;
+  unsigned char difference = 0;
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    difference |= static_cast<unsigned char>(expected[i] ^ authorization[i]);
+  return difference == 0;
+}
+
 }  // namespace
 
 bool Access::allows_host(std::string_view host) const {
@@ -37,16 +46,28 @@ bool Access::allows_host(std::string_view host) const {
 }
 
 bool Access::allows_origin(std::string_view origin, std::string_view host) const {
-  return origin.empty() || origin == "http://" + std::string(host);
+  return origin.empty() || origin == (is_encrypted ? "https://" : "http://") + std::string(host);
 }
 
-bool Access::allows_token(std::string_view authorization) const {
-  const std::string expected = "Bearer " + token;
-  if (authorization.size() != expected.size()) return false;
-  unsigned char difference = 0;
-  for (std::size_t i = 0; i < expected.size(); ++i)
-    difference |= static_cast<unsigned char>(expected[i] ^ authorization[i]);
-  return difference == 0;
+std::string_view to_string(Role role) {
+  switch (role) {
+    case Role::kLook:
+      return "look";
+    case Role::kOperate:
+      return "operate";
+    case Role::kAdminister:
+      break;
+  }
+  return "administer";
+}
+
+std::optional<Role> Access::role_of(std::string_view authorization) const {
+  std::optional<Role> role;
+  // All are compared, so that the time tells nothing of which is near.
+  if (is_bearer_of(look_token, authorization)) role = Role::kLook;
+  if (is_bearer_of(operate_token, authorization)) role = Role::kOperate;
+  if (is_bearer_of(token, authorization)) role = Role::kAdminister;
+  return role;
 }
 
 bool is_loopback(std::string_view address) {

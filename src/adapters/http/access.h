@@ -4,9 +4,11 @@
 // - Host has to name this server: an address, "localhost", or a name that was allowed. A page that
 //   had its own name resolved to this machine (DNS rebinding) still sends its own name.
 // - Origin, where a browser sends it, has to be this server's.
-// - What changes anything needs the token; from beyond this machine, everything does.
+// - A token allows what its role does (look < operate < administer). What changes anything needs one; from beyond this
+//   machine, everything does.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,17 +18,30 @@
 
 namespace culprit::web {
 
+// The rights of a token, in ascending order: each includes those before it.
+enum class Role : std::uint8_t {
+  kLook,       // see all, and ask about rules that are not in force
+  kOperate,    // give orders, and have recordings made
+  kAdminister  // change the rules, and have them read anew
+};
+// "look", "operate", "administer"
+std::string_view to_string(Role role);
+
 struct Access {
-  std::string token;                       // never empty
+  std::string token;                       // to administer; never empty
   std::vector<std::string> allowed_hosts;  // names, beside addresses and "localhost"
   bool is_local = true;                    // only this machine can reach the server
+  std::string operate_token{};             // empty: there is none
+  std::string look_token{};                // likewise
+  bool is_encrypted = false;               // the server speaks TLS
 
   // "Host: 127.0.0.1:8642"
   bool allows_host(std::string_view host) const;
   // `origin` as a browser sends it, empty if it sent none, with the Host of the same request.
   bool allows_origin(std::string_view origin, std::string_view host) const;
-  // "Authorization: Bearer <token>"; takes as long for any wrong token of the same length.
-  bool allows_token(std::string_view authorization) const;
+  // The role of "Authorization: Bearer <token>"; nothing: it is no token of this server. Takes as long for any wrong
+  // token of the same length.
+  std::optional<Role> role_of(std::string_view authorization) const;
 };
 
 bool is_loopback(std::string_view address);

@@ -38,12 +38,30 @@ TEST(Access, TakesOnlyItsOwnOrigin) {
   }
 }
 
+TEST(Access, OverTlsItsOriginIsEncrypted) {
+  Access access{"t", {}};
+  access.is_encrypted = true;
+  EXPECT_TRUE(access.allows_origin("https://localhost:1", "localhost:1"));
+  EXPECT_FALSE(access.allows_origin("http://localhost:1", "localhost:1"));
+}
+
+TEST(Access, ATokenAllowsWhatItsRoleDoes) {
+  Access access{"secret", {}};
+  access.operate_token = "operate";
+  access.look_token = "look";
+  EXPECT_EQ(access.role_of("Bearer secret"), Role::kAdminister);
+  EXPECT_EQ(access.role_of("Bearer operate"), Role::kOperate);
+  EXPECT_EQ(access.role_of("Bearer look"), Role::kLook);
+  EXPECT_LT(Role::kLook, Role::kOperate);
+  EXPECT_LT(Role::kOperate, Role::kAdminister);
+}
+
 TEST(Access, TakesOnlyTheToken) {
   const Access access{"secret", {}};
-  EXPECT_TRUE(access.allows_token("Bearer secret"));
+  EXPECT_EQ(access.role_of("Bearer secret"), Role::kAdminister);
   for (const char* header : {"", "secret", "Bearer ", "Bearer secreu", "Bearer secrets",
                              "bearer secret", "Basic secret"}) {
-    EXPECT_FALSE(access.allows_token(header)) << header;
+    EXPECT_EQ(access.role_of(header), std::nullopt) << header;
   }
 }
 

@@ -48,11 +48,14 @@ void name_of(int socket, int (*ask)(int, sockaddr*, socklen_t*), std::string& ip
 
 class Connection final : public httplib::Stream {
  public:
-  Connection(int socket, const ConnectionBudget& budget) : socket_(socket), budget_(budget) {}
+  // `tls`: null: it is not encrypted.
+  Connection(int socket, const ConnectionBudget& budget, TlsConnection* tls)
+      : socket_(socket), budget_(budget), tls_(tls) {}
 
   // Whether another request comes. Its budget begins.
   bool begins_request() {
-    if (at_ == end_ && !wait_for(socket_, POLLIN, budget_.idle)) return false;
+    const bool has_some = at_ < end_ || (tls_ != nullptr && tls_->has_pending());
+    if (!has_some && !wait_for(socket_, POLLIN, budget_.idle)) return false;
     deadline_ = Clock::now() + budget_.request;
     header_ = body_ = 0;
     line_ends_ = 0;
@@ -60,7 +63,8 @@ class Connection final : public httplib::Stream {
   }
 
   bool is_readable() const override {
-    return at_ < end_ || wait_for(socket_, POLLIN, deadline_ - Clock::now());
+    return at_ < end_ || (tls_ != nullptr && tls_->has_pending()) ||
+           wait_for(socket_, POLLIN, deadline_ - Clock::now());
   }
   bool is_writable() const override { return wait_for(socket_, POLLOUT, budget_.write); }
 
@@ -85,6 +89,7 @@ class Connection final : public httplib::Stream {
   }
 
   ssize_t write(const char* bytes, std::size_t size) override {
+    if (tls_ != nullptr) return tls_->write(bytes, size, budget_.write);
     if (!is_writable()) return -1;
     return send(socket_, bytes, size, MSG_NOSIGNAL);
   }
@@ -101,8 +106,12 @@ class Connection final : public httplib::Stream {
   static constexpr std::string_view kEndOfHeader = "\r\n\r\n";
 
   bool fill() {
-    if (!is_readable()) return false;
-    const ssize_t received = recv(socket_, buffer_.data(), buffer_.size(), 0);
+    if (tls_ == nullptr && !is_readable()) return false;
+    const ssize_t received =
+        tls_ != nullptr
+            ? tls_->read(buffer_.data(), buffer_.size(),
+                         std::chrono::ceil<std::chrono::milliseconds>(deadline_ - Clock::now()))
+            : recv(socket_, buffer_.data(), buffer_.size(), 0);
     is_over_ = received == 0;
     if (received <= 0) return false;
     at_ = 0;
@@ -112,6 +121,7 @@ class Connection final : public httplib::Stream {
 
   const int socket_;
   const ConnectionBudget& budget_;
+  TlsConnection* const tls_;
   std::array<char, 4096> buffer_;
   std::size_t at_ = 0;
   std::size_t end_ = 0;
@@ -164,7 +174,10 @@ bool BudgetedServer::process_and_close_socket(socket_t socket) {
 }
 
 bool BudgetedServer::serve(socket_t socket) {
-  Connection connection(socket, budget_);
+  std::unique_ptr<TlsConnection> tls;
+  if (tls_ != nullptr) tls = TlsConnection::accept(*tls_, socket, budget_.request);
+  if (tls_ != nullptr && tls == nullptr) return false;
+  Connection connection(socket, budget_, tls.get());
   bool is_well = clients_ == Clients::kAny || is_of_own_user(socket);
   for (int left = is_well ? budget_.requests : 0; left > 0 && svr_sock_ != INVALID_SOCKET; --left) {
     if (!connection.begins_request()) break;

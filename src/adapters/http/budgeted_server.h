@@ -12,6 +12,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <httplib.h>
+#include <memory>
+#include <utility>
+
+#include "http/tls.h"
 
 namespace culprit::web {
 
@@ -40,8 +44,9 @@ bool takes_gzip(const httplib::Request& request);
 
 class BudgetedServer : public httplib::Server {
  public:
-  // @pre kOwnUser: it is bound to a unix socket
-  BudgetedServer(ConnectionBudget budget, Clients clients) : budget_(budget), clients_(clients) {}
+  // `tls`: null: what is sent is not encrypted. @pre kOwnUser: it is bound to a unix socket
+  BudgetedServer(ConnectionBudget budget, Clients clients, std::shared_ptr<const TlsContext> tls)
+      : budget_(budget), clients_(clients), tls_(std::move(tls)) {}
 
  private:
   bool process_and_close_socket(socket_t socket) override;
@@ -49,6 +54,7 @@ class BudgetedServer : public httplib::Server {
 
   const ConnectionBudget budget_;
   const Clients clients_;  // kOwnUser: and root
+  const std::shared_ptr<const TlsContext> tls_;
 };
 
 // How many connections may be open at a time: not more than `wanted`, and so few that enough

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "http/access.h"
 #include "json/json.h"
 
 namespace culprit::web {
@@ -38,9 +39,15 @@ std::string_view to_string(Method method);
 struct Route {
   Method method = Method::kGet;
   std::string path;  // "/api/rules"; nothing in it varies
-  // `body` is what was sent; of kGet the texts behind the '?' of the address, by name; null if nothing was sent.
+  // `body` is what was sent, without a member that was sent twice; of kGet the texts behind the '?' of the address, by name; null if nothing was sent.
   // Called from many threads at once.
   std::function<Answer(const Json& body)> answer;
+  // The role that it needs. Nothing: kLook for kGet, kAdminister for all others.
+  std::optional<Role> needs{};
+
+  Role role() const {
+    return needs.value_or(method == Method::kGet ? Role::kLook : Role::kAdminister);
+  }
 };
 
 // The text at `member` of what was sent; nothing if it is none.

@@ -50,6 +50,13 @@ bool changes(const httplib::Request& request) {
   return request.method != "GET" && request.method != "HEAD";
 }
 
+// "POST"
+std::string method_of(const Route& route) {
+  std::string name(to_string(route.method));
+  for (char& c : name) c = static_cast<char>(c - 'a' + 'A');
+  return name;
+}
+
 // Left to itself, httplib shares a port with whoever has it already.
 void take_port_alone(int socket) {
   const int yes = 1;
@@ -165,7 +172,8 @@ class Server::Http {
         limit_(kRequestsPerSecond, kBurst),
         owner_limit_(kRequestsPerSecond, kBurst),
         most_connections_(affordable_connections(kMostConnections)),
-        server_({.body_bytes = kMostBytes}, is_on_socket() ? Clients::kOwnUser : Clients::kAny) {
+        server_({.body_bytes = kMostBytes}, is_on_socket() ? Clients::kOwnUser : Clients::kAny,
+                options_.tls) {
     server_.new_task_queue = [this] { return new ConnectionThreads(most_connections_); };
     server_.set_socket_options(take_port_alone);
     server_.set_tcp_nodelay(!is_on_socket());
@@ -253,13 +261,26 @@ class Server::Http {
     const bool is_foreign = (site == "cross-site" || site == "same-site") && is_api(q);
     if (is_foreign || !options_.access.allows_origin(q.get_header_value("Origin"), host))
       return refuse(403, "pages of other sites may not ask this server");
-    const bool has_token = options_.access.allows_token(q.get_header_value("Authorization"));
-    if (!is_within_limits(q, has_token)) return refuse(429, "too many requests; wait a second");
+    const auto role = options_.access.role_of(q.get_header_value("Authorization"));
+    const Role needed = role_for(q);
+    if (!is_within_limits(q, role && *role >= needed))
+      return refuse(429, "too many requests; wait a second");
     const bool needs_token = changes(q) || (is_api(q) && !options_.access.is_local);
-    if (needs_token && !has_token)
+    if (needs_token && !role)
       return refuse(401,
                     "this needs the token that culprit printed: Authorization: Bearer <token>");
+    if (needs_token && *role < needed)
+      return refuse(403, fmt::format("this token allows to {}; this needs one that allows to {}",
+                                     to_string(*role), to_string(needed)));
     return std::nullopt;
+  }
+
+  Role role_for(const httplib::Request& q) const {
+    if (!changes(q)) return Role::kLook;
+    for (const Route& route : routes_) {
+      if (route.path == q.path && method_of(route) == q.method) return route.role();
+    }
+    return Role::kAdminister;
   }
 
   // Addresses say little of who asks: everybody on this machine has the same one. What the owner
@@ -299,10 +320,14 @@ class Server::Http {
     const auto serve = [&route](const httplib::Request& q, httplib::Response& r) {
       Json body = nullptr;
       if (route.method == Method::kGet) {
-        for (const auto& [name, value] : q.params) body[name] = value;
+        for (const auto& [name, value] : q.params) {
+          if (body.contains(name)) return give(q, r, refuse(400, "say each '?name=' once"));
+          body[name] = value;
+        }
       } else if (!q.body.empty()) {
-        body = parse_json(q.body);
-        if (body.is_discarded()) return give(q, r, refuse(400, "the body is no JSON"));
+        body = parse_strict_json(q.body);
+        if (body.is_discarded())
+          return give(q, r, refuse(400, "the body is no JSON, or has a member twice"));
       }
       give(q, r, route.answer(body));
     };
@@ -386,8 +411,8 @@ Server::~Server() {
 int Server::port() const { return http_->port(); }
 
 std::string Server::address() const {
-  return fmt::format("http://{}:{}/#token={}", http_->options().address, http_->port(),
-                     http_->options().access.token);
+  return fmt::format("{}://{}:{}/#token={}", http_->options().tls ? "https" : "http",
+                     http_->options().address, http_->port(), http_->options().access.token);
 }
 
 }  // namespace culprit::web

@@ -15,6 +15,7 @@
 #include "http/access.h"
 #include "http/hub.h"
 #include "http/routes.h"
+#include "http/tls.h"
 
 namespace culprit::web {
 
@@ -39,6 +40,7 @@ class Server {
     std::string address = "127.0.0.1";
     int port = 0;  // 0: any that is free
     Access access;
+    std::shared_ptr<const TlsContext> tls{};  // null: not encrypted
     // Where to listen instead: a unix socket. Only processes of this user and of root
     // are served there, and need no token.
     std::string socket{};

@@ -181,6 +181,140 @@ TEST_F(WebServer, NeedsTheTokenForEverythingWhereOthersCanReachIt) {
   EXPECT_EQ(client().Get("/api/echo", with_token)->status, 200);
 }
 
+TEST_F(WebServer, LetsEachTokenDoWhatItsRoleAllows) {
+  Server::Options options;
+  options.access = {kToken, {}, false};
+  options.access.operate_token = "operate-0123456789";
+  options.access.look_token = "look-0123456789abc";
+  const auto ok = [](const Json&) { return Answer{}; };
+  auto started = Server::start(options,
+                               {{Method::kGet, "/api/state", ok},
+                                {Method::kPost, "/api/ask", ok, Role::kLook},
+                                {Method::kPost, "/api/orders", ok, Role::kOperate},
+                                {Method::kPut, "/api/rules", ok}},
+                               nullptr);
+  ASSERT_TRUE(started) << started.error();
+  server = std::move(*started);
+  const auto status = [&](const std::string& token, const char* method, const char* path) {
+    httplib::Request request;
+    request.method = method;
+    request.path = path;
+    if (!token.empty()) request.headers.emplace("Authorization", "Bearer " + token);
+    const auto answer = client().send(request);
+    return answer ? answer->status : -1;
+  };
+  struct Expectation {
+    std::string token;
+    int look, ask, operate, administer;
+  };
+  for (const auto& [token, look, ask, operate, administer] :
+       {Expectation{"", 401, 401, 401, 401},
+        Expectation{options.access.look_token, 200, 200, 403, 403},
+        Expectation{options.access.operate_token, 200, 200, 200, 403},
+        Expectation{kToken, 200, 200, 200, 200}}) {
+    EXPECT_EQ(status(token, "GET", "/api/state"), look) << token;
+    EXPECT_EQ(status(token, "POST", "/api/ask"), ask) << token;
+    EXPECT_EQ(status(token, "POST", "/api/orders"), operate) << token;
+    EXPECT_EQ(status(token, "PUT", "/api/rules"), administer) << token;
+    EXPECT_EQ(status(token, "PUT", "/api//rules"), token == kToken ? 404
+                                                   : token.empty() ? 401
+                                                                   : 403);
+  }
+  httplib::Headers look{{"Authorization", "Bearer " + options.access.look_token}};
+  const auto refused = client().Post("/api/orders", look, "{}", "application/json");
+  EXPECT_THAT(refused->body,
+              HasSubstr("this token allows to look; this needs one that allows to operate"));
+}
+
+// Readers do not agree which of the two counts.
+TEST_F(WebServer, RefusesAMemberThatIsThereTwice) {
+  EXPECT_EQ(post(with_token, R"({"order": "pause", "order": "resume"})"), 400);
+  EXPECT_EQ(post(with_token, R"({"a": [{"b": 1, "\u0062": 2}]})"), 400);
+  EXPECT_EQ(post(with_token, R"({"a": {"b": 1}, "b": [{"b": 1}, {"b": 2}]})"), 200);
+  EXPECT_EQ(client().Get("/api/echo?a=1&a=2")->status, 400);
+}
+
+// Made for this test; the certificate is its own authority.
+struct TlsServer : testing::Test {
+  TlsServer() {
+    const std::string make =
+        "openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 "
+        "-nodes -days 2 -subj /CN=localhost -addext subjectAltName=IP:127.0.0.1 "
+        "-keyout " +
+        key + " -out " + certificate + " 2> /dev/null";
+    EXPECT_EQ(std::system(make.c_str()), 0);
+    auto tls = TlsContext::load(certificate, key);
+    EXPECT_TRUE(tls) << tls.error();
+    Server::Options options;
+    options.access = {kToken, {}, false};
+    options.access.is_encrypted = true;
+    options.tls = *tls;
+    auto started = Server::start(options, {echo(Method::kGet), echo(Method::kPost)}, &hub);
+    EXPECT_TRUE(started) << started.error();
+    server = std::move(*started);
+  }
+
+  const test::TestFolder folder;
+  const std::string key = folder / "robot.key";
+  const std::string certificate = folder / "robot.crt";
+  Hub hub;
+  std::unique_ptr<Server> server;
+};
+
+TEST_F(TlsServer, AnswersWhoSpeaksTls) {
+  EXPECT_THAT(server->address(), HasSubstr("https://127.0.0.1:"));
+  httplib::SSLClient client("127.0.0.1", server->port());
+  client.set_ca_cert_path(certificate.c_str());
+  client.enable_server_certificate_verification(true);
+  client.set_bearer_token_auth(kToken);
+  client.set_keep_alive(true);
+  const std::string large = "\"" + std::string(900'000, 'x') + "\"";
+  for (const std::string& body : {std::string("1"), large, std::string("2")}) {
+    const auto answer = client.Post("/api/echo", body, "application/json");
+    ASSERT_TRUE(answer) << httplib::to_string(answer.error());
+    EXPECT_EQ(answer->body, R"({"sent":)" + body + "}");
+  }
+  httplib::Headers page{{"Origin", "https://127.0.0.1:" + std::to_string(server->port())}};
+  EXPECT_EQ(client.Get("/api/echo", page)->status, 200);
+}
+
+TEST_F(TlsServer, StreamsOverTls) {
+  httplib::SSLClient client("127.0.0.1", server->port());
+  client.enable_server_certificate_verification(false);
+  client.set_bearer_token_auth(kToken);
+  hub.publish(Kind::kState, R"({"t": 1})");
+  std::string all;
+  client.Get("/api/stream", [&](const char* bytes, std::size_t size) {
+    all.append(bytes, size);
+    return all.find("event: state") == std::string::npos;
+  });
+  EXPECT_THAT(all, HasSubstr(R"({"t": 1})"));
+}
+
+TEST_F(TlsServer, TellsNothingToWhoDoesNot) {
+  const Raw plain(server->port());
+  plain.send("GET /api/echo HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer " +
+             std::string(kToken) + "\r\n\r\n");
+  EXPECT_THAT(plain.receive(), testing::Not(HasSubstr("HTTP/1.1")));
+  const Raw hangs_up(server->port());
+  hangs_up.send("\x16\x03\x01");
+  httplib::SSLClient client("127.0.0.1", server->port());
+  client.enable_server_certificate_verification(false);
+  client.set_bearer_token_auth(kToken);
+  EXPECT_TRUE(client.Get("/api/echo")) << "one that dawdles delays no other";
+}
+
+TEST_F(TlsServer, TakesOnlyAKeyThatIsPrivateAndFits) {
+  chmod(key.c_str(), 0640);
+  EXPECT_THAT(TlsContext::load(certificate, key).error(), HasSubstr("chmod 600"));
+  chmod(key.c_str(), 0600);
+  EXPECT_THAT(TlsContext::load(key, key).error(), HasSubstr("cannot use the certificate"));
+  chmod(certificate.c_str(), 0600);
+  EXPECT_THAT(TlsContext::load(certificate, certificate).error(), HasSubstr("cannot use the key"));
+  EXPECT_THAT(TlsContext::load(folder / "none", key).error(),
+              HasSubstr("cannot read the certificate"));
+}
+
 TEST_F(WebServer, RefusesPagesOfOtherSites) {
   EXPECT_EQ(post(with("Origin", "http://evil.example")), 403);
   EXPECT_EQ(post(with("Origin", "null")), 403);
@@ -415,7 +549,7 @@ TEST_F(LocalServer, RefusesConnectionsThatItHasNoThreadFor) {
     for (int i = 0; i < 20; ++i) EXPECT_FALSE(client.get("/api/about"));
   }
   EXPECT_TRUE(client.get("/api/about")) << "and goes on";
-  // What is there serves all the same, as soon as it is idle again.
+  // The thread that there is serves all the same, as soon as it is idle again.
   const NoThreads none;
   bool is_served = false;
   for (int tries = 0; tries < 10'000 && !is_served; ++tries) {

@@ -25,5 +25,16 @@ TEST(Json, IsWrittenWhereATextIsNoUtf8) {
   EXPECT_EQ(to_indented(Json("caf\xE9")), "\"caf\xEF\xBF\xBD\"");
 }
 
+TEST(StrictJson, HasNoMemberTwiceAndIsNotDeep) {
+  EXPECT_EQ(parse_strict_json(R"({"a": 1, "b": {"a": [{"a": 2}, {"a": 3}]}})"),
+            parse_json(R"({"a": 1, "b": {"a": [{"a": 2}, {"a": 3}]}})"));
+  for (const char* bad : {R"({"a": 1, "a": 1})", R"([{"b": {"a": 1, "c": 2, "a": 3}}])",
+                          R"({"a": 1, "\u0061": 2})", "{", "", R"({"a": 1}})"})
+    EXPECT_TRUE(parse_strict_json(bad).is_discarded()) << bad;
+  const std::string deep = std::string(100'000, '[') + std::string(100'000, ']');
+  EXPECT_TRUE(parse_strict_json(deep).is_discarded());
+  EXPECT_FALSE(parse_strict_json(deep.substr(99'950, 100)).is_discarded());
+}
+
 }  // namespace
 }  // namespace culprit
