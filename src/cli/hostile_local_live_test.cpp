@@ -1,0 +1,209 @@
+// Programs of another user that listen where root looks for running culprits: they are silent, trickle, never end, or say
+// that they are one. None of them keeps root's pause from the real one, delays it, or answers in its place.
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <fcntl.h>
+#include <filesystem>
+#include <map>
+#include <poll.h>
+#include <string>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/environment.h"
+#include "base/live_clock.h"
+#include "terminal/test_program.h"
+
+namespace culprit::cli {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr const char* kLocalRules = R"(
+ROBOT yard
+COMPONENT camera NODE /managed_subsystem/camera
+RULE CameraGone
+  POLICIES ERROR
+  TRIGGER alive(camera) == false
+    STRATEGY camera_redeploy 90 10
+      ADAPTATION camera restart 5
+)";
+
+constexpr uid_t kStranger = 65534;  // nobody
+
+enum class Habit : std::uint8_t { kSilent, kTrickles, kEndless, kLies };
+
+std::string answer_with(const std::string& body) {
+  return "HTTP/1.1 200 OK\r\nContent-Type: application/json\r\nContent-Length: " +
+         std::to_string(body.size()) + "\r\n\r\n" + body;
+}
+
+// What one of them sends when it may; empty: nothing.
+std::string next_piece(Habit habit) {
+  switch (habit) {
+    case Habit::kSilent:
+      return "";
+    case Habit::kTrickles:
+      return "H";
+    case Habit::kEndless:
+      return "HTTP/1.1 200 OK\r\nContent-Length: 99999999\r\n\r\n" + std::string(1 << 16, 'x');
+    case Habit::kLies:
+      break;
+  }
+  return answer_with(
+      R"({"robot": "yard", "process": 1, "domain": 0, "node": "culprit", "order": "paused", "kept": true})");
+}
+
+// In a process of the stranger: listens at `count` sockets in `folder`, and goes on until it is killed.
+[[noreturn]] void be_hostile(const std::filesystem::path& folder, const std::string& domain,
+                             int count) {
+  std::error_code error;
+  std::filesystem::create_directory(folder, error);
+  chmod(folder.c_str(), 0700);
+  std::map<int, Habit> listening;
+  for (int i = 0; i < count; ++i) {
+    const std::string path = folder / (domain + "-" + std::to_string(100'000 + i) + ".sock");
+    unlink(path.c_str());
+    const int descriptor = socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0);
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path.copy(address.sun_path, sizeof address.sun_path - 1);
+    if (bind(descriptor, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0 ||
+        listen(descriptor, 8) != 0)
+      _exit(3);
+    listening[descriptor] = static_cast<Habit>(i % 4);
+  }
+  std::signal(SIGPIPE, SIG_IGN);
+  std::map<int, Habit> open;
+  while (true) {
+    std::vector<pollfd> all;
+    for (const auto& [descriptor, habit] : listening) all.push_back({descriptor, POLLIN, 0});
+    constexpr int kTrickle = 20;  // ms
+    poll(all.data(), all.size(), kTrickle);
+    for (const pollfd& each : all) {
+      if (each.revents == 0) continue;
+      const int peer = accept4(each.fd, nullptr, nullptr, SOCK_NONBLOCK);
+      if (peer >= 0) open[peer] = listening[each.fd];
+    }
+    std::erase_if(open, [](const auto& each) {
+      const std::string piece = next_piece(each.second);
+      const bool is_over =
+          !piece.empty() && send(each.first, piece.data(), piece.size(), 0) < 0 && errno != EAGAIN;
+      if (is_over) close(each.first);
+      return is_over;
+    });
+  }
+}
+
+struct HostileNeighbours : testing::Test {
+  HostileNeighbours() {
+    if (geteuid() != 0) return;
+    for (const std::string& folder : folders()) {
+      const pid_t pid = fork();
+      if (pid == 0) {
+        if (setresgid(kStranger, kStranger, kStranger) != 0 ||
+            setresuid(kStranger, kStranger, kStranger) != 0)
+          _exit(2);
+        be_hostile(folder, environment("ROS_DOMAIN_ID"), 50);
+      }
+      neighbours.push_back(pid);
+    }
+  }
+  ~HostileNeighbours() override {
+    for (const pid_t each : neighbours) {
+      kill(each, SIGKILL);
+      waitpid(each, nullptr, 0);
+    }
+    std::error_code error;
+    for (const std::string& folder : folders()) std::filesystem::remove_all(folder, error);
+  }
+  static std::vector<std::string> folders() {
+    return {"/tmp/culprit-" + std::to_string(kStranger),
+            "/tmp/culprit-guest-" + std::to_string(getpid())};
+  }
+
+  struct Ended {
+    int code = 0;
+    std::string said;
+    Duration took{};
+  };
+  Ended ended(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), "culprit");
+    const Time begin = live_now();
+    TestProgram program(world, std::move(arguments));
+    const int code = program.wait().value_or(-1);
+    return {code, program.output(), live_now() - begin};
+  }
+
+  TestWorld world;
+  std::vector<pid_t> neighbours;
+};
+
+TEST_F(HostileNeighbours, DoNotDelayOrFalsifyAPause) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root can become somebody else";
+  // They are there before the real one is, and alone.
+  const Ended nobody = ended({"pause"});
+  EXPECT_EQ(nobody.code, 1);
+  EXPECT_THAT(nobody.said, HasSubstr("no culprit on this machine answers"));
+  EXPECT_THAT(nobody.said, HasSubstr("Nothing was ordered"));
+
+  TestProgram run(world, {"culprit", "run", world.write("yard.rules", kLocalRules), "--state-dir",
+                          (world.folder() / "state").string()});
+  ASSERT_TRUE(run.prints("culprit status")) << run.output();
+  constexpr int kRounds = 20;
+  Duration longest{};
+  for (int i = 0; i < kRounds; ++i) {
+    const Ended paused = ended({"pause", "--reason", "people on the floor"});
+    EXPECT_EQ(paused.code, 0) << paused.said;
+    EXPECT_THAT(paused.said, HasSubstr("culprit of yard (process " + std::to_string(run.pid())));
+    EXPECT_THAT(paused.said, HasSubstr("kept, so that it holds after a restart"));
+    EXPECT_THAT(paused.said, Not(HasSubstr("process 1,"))) << "what lies is not believed";
+    longest = std::max(longest, paused.took);
+    const Ended resumed = ended({"resume"});
+    EXPECT_EQ(resumed.code, 0) << resumed.said;
+    longest = std::max(longest, resumed.took);
+  }
+  RecordProperty("longest_ms", static_cast<int>(seconds(longest) * 1000));
+  EXPECT_LT(longest, Duration(std::chrono::seconds(10)))
+      << "one silent socket alone cost 5 s, and they are 50";
+
+  // To all, as root may say: the real one is told at once, and the others change nothing about that.
+  const Ended all = ended({"pause", "--all"});
+  EXPECT_EQ(all.code, 1) << "some did not answer";
+  EXPECT_THAT(all.said, HasSubstr("culprit of yard (process " + std::to_string(run.pid())));
+  EXPECT_THAT(all.said, HasSubstr("kept, so that it holds after a restart"));
+  EXPECT_LT(all.took, Duration(std::chrono::seconds(20)));
+  EXPECT_THAT(ended({"status"}).said, HasSubstr("[paused]"));
+}
+
+// As in all ROS tools, the environment says which robot is meant.
+TEST_F(HostileNeighbours, AndAnotherDomainIsOrderedOnlyByItsNumber) {
+  TestProgram run(world, {"culprit", "run", world.write("yard.rules", kLocalRules), "--state-dir",
+                          (world.folder() / "state").string()});
+  ASSERT_TRUE(run.prints("culprit status")) << run.output();
+  const std::string domain = environment("ROS_DOMAIN_ID");
+  setenv("ROS_DOMAIN_ID", "231", 1);
+  const Ended other = ended({"pause"});
+  EXPECT_EQ(other.code, 1);
+  EXPECT_THAT(other.said, HasSubstr("a culprit on domain " + domain +
+                                    " was not asked: culprit status "
+                                    "--domain " +
+                                    domain));
+  EXPECT_EQ(ended({"pause", "--domain", domain}).code, 0);
+  setenv("ROS_DOMAIN_ID", "many", 1);
+  EXPECT_EQ(ended({"pause"}).code, 2);
+  setenv("ROS_DOMAIN_ID", domain.c_str(), 1);
+  EXPECT_EQ(ended({"resume"}).code, 0);
+}
+
+}  // namespace
+}  // namespace culprit::cli
