@@ -18,6 +18,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/environment.h"
 #include "base/live_clock.h"
 #include "base/text_file.h"
 #include "demo/test_live_sunset.h"

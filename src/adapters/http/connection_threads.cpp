@@ -1,11 +1,17 @@
 #include "http/connection_threads.h"
 
+#include <algorithm>
 #include <exception>
 #include <utility>
 
 #include "http/budgeted_server.h"
 
 namespace culprit::web {
+
+ConnectionThreads::ConnectionThreads(std::size_t most, std::size_t ready) : most_(most) {
+  const MutexLock lock(mutex_);
+  while (threads_.size() < std::min(most, ready) && add_thread()) continue;
+}
 
 void ConnectionThreads::enqueue(std::function<void()> connection) {
   MutexLock lock(mutex_);

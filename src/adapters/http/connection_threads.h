@@ -3,7 +3,7 @@
 // A page keeps one connection for as long as it is open, so a small pool would soon be used up. At
 // the limit the server takes no further connection until one ends: the kernel keeps a few waiting
 // and refuses the rest. Where the system gives no further thread (pids.max, RLIMIT_NPROC, RLIMIT_AS), the connection
-// is closed unread.
+// is closed unread. A few threads are there from the beginning, so that no other part of the program can take them all.
 #pragma once
 
 #include <deque>
@@ -18,7 +18,8 @@ namespace culprit::web {
 
 class ConnectionThreads : public httplib::TaskQueue {
  public:
-  explicit ConnectionThreads(std::size_t most) : most_(most) {}
+  // Makes `ready` threads at once, or as many as the system gives.
+  ConnectionThreads(std::size_t most, std::size_t ready);
 
   // Blocks while all threads are busy.
   void enqueue(std::function<void()> connection) override;

@@ -126,6 +126,8 @@ class Exchange {
     if (received_.size() > request_.most_bytes)
       return fail("the answer is larger than " + std::to_string(request_.most_bytes >> 10) +
                   " KiB");
+    if (size <= 0 && received_.empty())
+      return fail("it hung up without an answer; is a limit of threads or descriptors reached?");
     result_ = read_http(received_, size <= 0);
     if (result_ && *result_) (*result_)->process = process_;
   }

@@ -23,6 +23,9 @@
 namespace culprit::web {
 namespace {
 
+// So many orders can be given while the page has taken all threads that the system gives.
+constexpr std::size_t kReadyThreads = 3;
+
 constexpr const char* kJson = "application/json";
 
 // The app is all of one origin and has no inline script or style; it is never in a frame.
@@ -174,7 +177,9 @@ class Server::Http {
         most_connections_(affordable_connections(kMostConnections)),
         server_({.body_bytes = kMostBytes}, is_on_socket() ? Clients::kOwnUser : Clients::kAny,
                 options_.tls) {
-    server_.new_task_queue = [this] { return new ConnectionThreads(most_connections_); };
+    server_.new_task_queue = [this] {
+      return new ConnectionThreads(most_connections_, kReadyThreads);
+    };
     server_.set_socket_options(take_port_alone);
     server_.set_tcp_nodelay(!is_on_socket());
     server_.set_payload_max_length(kMostBytes);
