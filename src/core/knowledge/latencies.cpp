@@ -90,20 +90,30 @@ Latencies::Range Latencies::lateness(RuleId rule) const {
 }
 
 void Latencies::cleared(RuleId rule, Duration after) {
-  if (!is_late_[rule.index]) return;
-  Learned learned = learned_[rule.index];
   after = std::max(after, Duration::zero());
-  learned.range = learned.count == 0 ? Range{after, after, after}
-                                     : Range{std::min(learned.range.least, after),
-                                             std::max(learned.range.most, after), after};
-  ++learned.count;
-  set(rule, learned);
+  Learned learned = learned_[rule.index];
+  const bool is_first = learned.count == 0;
+  const Duration least = is_first ? after : std::min(learned.range.least, after);
+  const Duration most = is_first ? after : std::max(learned.range.most, after);
+  set(rule, {std::min(learned.count, Learned::kMost - 1) + 1, {least, most, least}});
 }
 
 void Latencies::set(RuleId rule, const Learned& learned) {
+  if (!is_late_[rule.index]) return;
   learned_[rule.index] = learned;
+  extend_excess(rule.index);
+}
+
+void Latencies::forget(RuleId rule) {
+  learned_[rule.index] = {};
+  excess_ = Duration::zero();
+  for (std::size_t r = 0; r < learned_.size(); ++r) extend_excess(r);
+}
+
+void Latencies::extend_excess(std::size_t rule) {
+  const Learned& learned = learned_[rule];
   if (learned.count > 0)
-    excess_ = std::max(excess_, learned.range.most - stated_[rule.index].most - cycle_);
+    excess_ = std::max(excess_, learned.range.most - stated_[rule].most - cycle_);
 }
 
 }  // namespace culprit

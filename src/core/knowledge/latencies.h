@@ -28,8 +28,10 @@ class Latencies {
 
     bool operator==(const Range&) const = default;
   };
-  // The shortest and the longest of `count` observed times.
+  // The shortest and the longest of `count` observed times; the presumed one is the shortest.
   struct Learned {
+    static constexpr int kMost = 1'000'000'000;  // counts no further
+
     int count = 0;
     Range range;
 
@@ -45,10 +47,14 @@ class Latencies {
   // rules that read only topics, components or parameters.
   void cleared(RuleId rule, Duration after);
   const Learned& learned(RuleId rule) const { return learned_[rule.index]; }
-  // For what was learned in an earlier run.
+  // For what was learned in an earlier run. Ignored for the same rules: the trigger may have changed.
   void set(RuleId rule, const Learned& learned);
+  // The lateness is the stated one again, and the excess that of the other rules.
+  void forget(RuleId rule);
 
  private:
+  void extend_excess(std::size_t rule);
+
   std::vector<bool> is_late_;  // by rule: it reads values of a monitor of its own
   std::vector<Range> stated_;
   std::vector<Learned> learned_;

@@ -202,6 +202,7 @@ void Manager::forget(std::optional<RuleId> rule) {
       if (!rule || each.cause == *rule || effect == *rule)
         knowledge_.couplings.set(each.cause, effect, {});
     }
+    if (!rule || effect == *rule) knowledge_.latencies.forget(effect);
   }
 }
 

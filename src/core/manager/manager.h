@@ -73,6 +73,9 @@ class Manager : public ManagingSystem {
   void set_coupling(RuleId cause, RuleId effect, Coupling coupling) {
     knowledge_.couplings.set(cause, effect, coupling);
   }
+  void set_latency(RuleId rule, const Latencies::Learned& learned) {
+    knowledge_.latencies.set(rule, learned);
+  }
   // What earlier processes did counts: budgets, back-offs, silences and what was tried last on.
   // Before the first step, and before resume().
   void remember(const History& past);

@@ -105,6 +105,19 @@ TEST(Orders, WhatWasLearnedIsForgotten) {
   EXPECT_TRUE(r.manager().knowledge().couplings.of(kCameraDead, kDark) == Coupling{});
 }
 
+TEST(Orders, HowLateARuleIsIsForgotten) {
+  TestRobot r = robot();
+  const auto count = [&] { return r.manager().knowledge().latencies.learned(kDark).count; };
+  r.manager().set_latency(kDark, {3, {1s, 2s, 1s}});
+  r.order(order(Forget{kCameraDead}));
+  EXPECT_EQ(count(), 3);
+  r.order(order(Forget{kDark}));
+  EXPECT_EQ(count(), 0);
+  r.manager().set_latency(kDark, {3, {1s, 2s, 1s}});
+  r.order(order(Forget{}));
+  EXPECT_EQ(count(), 0);
+}
+
 TEST(Orders, ASilencedComponentIsWatchedAndLeftAloneUntilTheSilenceEnds) {
   TestRobot r = robot();
   r.order(order(Silence{kCamera, 10s}, "recalibration"));

@@ -1,0 +1,138 @@
+#include "knowledge/latencies.h"
+
+#include <gtest/gtest.h>
+
+#include "language/checker.h"
+
+namespace culprit {
+namespace {
+
+using namespace std::chrono_literals;
+using Range = Latencies::Range;
+
+// Late and Other read a status each; Common and Beside one that both of them read; OnTopic none.
+RuleSet latency_rules() {
+  return *check(Source("x.rules", R"(
+CYCLE 200ms
+COMPONENT c NODE /c LAUNCH "c"
+SIGNAL late   DIAGNOSTIC late   KEY x
+SIGNAL other  DIAGNOSTIC other  KEY x
+SIGNAL common DIAGNOSTIC common KEY x
+SIGNAL beside DIAGNOSTIC common KEY y
+RULE Late
+  POLICIES ERROR
+  TRIGGER late > 1
+    STRATEGY slow 90 10
+      ADAPTATION c redeploy 10
+    STRATEGY fast 50 10
+      ADAPTATION c restart 5
+RULE Other
+  POLICIES ERROR
+  TRIGGER other > 1
+    STRATEGY again 90 10
+      ADAPTATION c restart 3
+RULE Common
+  POLICIES ERROR
+  TRIGGER common > 1
+    STRATEGY again 90 10
+      ADAPTATION c restart 5
+RULE Beside
+  POLICIES ERROR
+  TRIGGER beside > 1
+    STRATEGY again 90 10
+      ADAPTATION c restart 5
+RULE OnTopic
+  POLICIES ERROR
+  TRIGGER age(/rgb) > 1s
+    STRATEGY again 90 10
+      ADAPTATION c restart 5
+)"))
+              .rules;
+}
+
+constexpr RuleId kLate{std::size_t{0}};
+constexpr RuleId kOther{std::size_t{1}};
+constexpr RuleId kCommon{std::size_t{2}};
+constexpr RuleId kOnTopic{std::size_t{4}};
+
+struct LatenciesOfRules : testing::Test {
+  const RuleSet rules = latency_rules();
+  Latencies latencies{rules};
+};
+
+TEST_F(LatenciesOfRules, AreTheLeastImpactOfAStrategyBeforeAnythingIsLearned) {
+  EXPECT_EQ(latencies.lateness(kLate), (Range{0s, 1s, 800ms}));
+  EXPECT_EQ(latencies.lateness(kOther), (Range{0s, 600ms, 400ms}));
+  EXPECT_EQ(latencies.learned(kLate).count, 0);
+}
+
+TEST_F(LatenciesOfRules, AreTheShortestAndTheLongestTimeThatWasLearned) {
+  latencies.cleared(kLate, 2s);
+  EXPECT_EQ(latencies.lateness(kLate), (Range{1800ms, 2s, 1800ms})) << "a reading takes a cycle";
+  latencies.cleared(kLate, 3s);
+  latencies.cleared(kLate, 1s);
+  EXPECT_EQ(latencies.lateness(kLate), (Range{800ms, 3s, 800ms}));
+  EXPECT_EQ(latencies.learned(kLate), (Latencies::Learned{3, {1s, 3s, 1s}}));
+}
+
+TEST_F(LatenciesOfRules, AreNeverNegative) {
+  latencies.cleared(kLate, -1s);
+  EXPECT_EQ(latencies.lateness(kLate), Range());
+  EXPECT_EQ(latencies.learned(kLate).count, 1);
+}
+
+TEST_F(LatenciesOfRules, ExceedWhatIsStatedByAsMuchAsThoseThatWereLearned) {
+  latencies.cleared(kLate, 3s);  // stated: 1 s, and a cycle for the reading
+  EXPECT_EQ(latencies.lateness(kOther), (Range{0s, 2400ms, 400ms}));
+  latencies.cleared(kOther, 500ms);
+  EXPECT_EQ(latencies.lateness(kOther), (Range{300ms, 500ms, 300ms})) << "its own counts for more";
+}
+
+TEST_F(LatenciesOfRules, DoNotExceedWhatIsStatedIfThoseThatWereLearnedDoNot) {
+  latencies.cleared(kLate, 1200ms);
+  EXPECT_EQ(latencies.lateness(kOther), (Range{0s, 600ms, 400ms}));
+}
+
+TEST_F(LatenciesOfRules, OfACommonMonitorAreZeroUntilTheyAreLearned) {
+  EXPECT_EQ(latencies.lateness(kCommon), Range());
+  latencies.cleared(kLate, 3s);
+  EXPECT_EQ(latencies.lateness(kCommon), Range()) << "the excess is of rules that state a lateness";
+  latencies.cleared(kCommon, 2s);
+  EXPECT_EQ(latencies.lateness(kCommon), (Range{1800ms, 2s, 1800ms}));
+}
+
+TEST_F(LatenciesOfRules, OnTopicsAreIgnored) {
+  latencies.cleared(kOnTopic, 3s);
+  latencies.set(kOnTopic, {2, {1s, 3s, 1s}});
+  EXPECT_EQ(latencies.lateness(kOnTopic), Range());
+  EXPECT_EQ(latencies.learned(kOnTopic).count, 0);
+  EXPECT_EQ(latencies.lateness(kOther), (Range{0s, 600ms, 400ms}));
+}
+
+TEST_F(LatenciesOfRules, GoOnFromThoseOfAnEarlierRun) {
+  latencies.set(kLate, {2, {1s, 3s, 1s}});
+  EXPECT_EQ(latencies.lateness(kLate), (Range{800ms, 3s, 800ms}));
+  EXPECT_EQ(latencies.lateness(kOther).most, 2400ms);
+  latencies.cleared(kLate, 4s);
+  EXPECT_EQ(latencies.learned(kLate), (Latencies::Learned{3, {1s, 4s, 1s}}));
+}
+
+TEST_F(LatenciesOfRules, ThatAreForgottenAreAsStatedAndExceedNothing) {
+  latencies.cleared(kLate, 3s);
+  latencies.cleared(kCommon, 1s);
+  latencies.forget(kLate);
+  EXPECT_EQ(latencies.lateness(kOther), (Range{0s, 1400ms, 400ms})) << "the common one is left";
+  EXPECT_EQ(latencies.lateness(kLate), (Range{0s, 1800ms, 800ms}));
+  latencies.forget(kCommon);
+  EXPECT_EQ(latencies.lateness(kLate), (Range{0s, 1s, 800ms}));
+}
+
+TEST_F(LatenciesOfRules, CountNoFurtherThanTheyCan) {
+  latencies.set(kLate, {Latencies::Learned::kMost, {1s, 2s, 1s}});
+  latencies.cleared(kLate, 3s);
+  EXPECT_EQ(latencies.learned(kLate),
+            (Latencies::Learned{Latencies::Learned::kMost, {1s, 3s, 1s}}));
+}
+
+}  // namespace
+}  // namespace culprit
