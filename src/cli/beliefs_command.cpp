@@ -35,13 +35,14 @@ double learned_of(double now, double prior) { return now - prior; }
 int show(const BeliefsOptions& options) {
   const auto journal = options.journal.open();
   if (!journal) return fail(journal.error());
-  const auto learned = journal->learned();
+  auto learned = journal->learned();
   if (!learned) return fail(learned.error());
   if (options.json) {
     fmt::print("{}\n", to_line(document_of(*learned)));
     return kOk;
   }
-  if (learned->beliefs.empty()) {
+  std::erase_if(learned->latencies, [](const auto& each) { return each.count == 0; });
+  if (learned->beliefs.empty() && learned->latencies.empty()) {
     fmt::print("nothing was learned yet\n");
     return kOk;
   }
@@ -52,12 +53,17 @@ int show(const BeliefsOptions& options) {
                100 * each.prior.mean().value, 100 * each.belief.mean().value,
                learned_of(each.belief.alpha, each.prior.alpha),
                learned_of(each.belief.beta, each.prior.beta));
-  if (learned->couplings.empty()) return kOk;
-  fmt::print("\n{:<28} {:<28} {:>8} {:>8}\n", "when this was resolved", "this went away", "yes",
-             "no");
+  if (!learned->couplings.empty())
+    fmt::print("\n{:<28} {:<28} {:>8} {:>8}\n", "when this was resolved", "this went away", "yes",
+               "no");
   for (const journal::LearnedCoupling& each : learned->couplings)
     fmt::print("{:<28} {:<28} {:>8.6g} {:>8.6g}\n", each.cause, each.effect, each.coupling.cleared,
                each.coupling.stayed);
+  if (!learned->latencies.empty())
+    fmt::print("\nHow late rules are\n{:<28} {:>8} {:>8} {:>8}\n", "rule", "count", "from", "to");
+  for (const journal::LearnedLatency& each : learned->latencies)
+    fmt::print("{:<28} {:>8} {:>6.3g} s {:>6.3g} s\n", each.rule, each.count, each.least_s,
+               each.most_s);
   return kOk;
 }
 
@@ -103,8 +109,8 @@ int read_in(const BeliefsOptions& options) {
   const auto written =
       writer->append({{}, *learned}, wall_now(), journal::Durability::kPowerFailure);
   if (!written) return fail(written.error());
-  fmt::print("{} beliefs and {} couplings added to '{}'\n", added.beliefs.size(),
-             added.couplings.size(), writer->path().string());
+  fmt::print("{} beliefs, {} couplings and {} latencies added to '{}'\n", added.beliefs.size(),
+             added.couplings.size(), added.latencies.size(), writer->path().string());
   return kOk;
 }
 

@@ -128,11 +128,14 @@ TEST_F(Journal, BeliefsGoFromRobotToRobot) {
   const std::string file = (world.folder() / "beliefs.json").string();
   world.write("beliefs.json", R"({"format": "culprit-beliefs", "format_version": 1,
     "beliefs": [{"rule": "CameraGone", "strategy": "camera_redeploy",
-                 "belief": [12, 1], "prior": [9, 1]}], "couplings": []})");
+                 "belief": [12, 1], "prior": [9, 1]}], "couplings": [],
+    "latencies": [{"rule": "CameraGone", "count": 2, "least_s": 0.5, "most_s": 2.25}]})");
   const std::string other = (world.folder() / "other.journal").string();
   said_by({"beliefs", "import", file, file, "--journal", other});
   EXPECT_THAT(said_by({"beliefs", "export", "--journal", other}), HasSubstr("15.0"));
   EXPECT_THAT(said_by({"beliefs", "show", "--journal", other}), HasSubstr("93.8 %"));
+  EXPECT_THAT(said_by({"beliefs", "show", "--journal", other}),
+              testing::ContainsRegex("CameraGone +4 +0.5 s +2.25 s"));
   said_by({"beliefs", "reset", "--journal", other}, 2);
   said_by({"beliefs", "reset", "CameraGone", "--journal", other});
   EXPECT_THAT(said_by({"beliefs", "show", "--journal", other}), HasSubstr("nothing was learned"));

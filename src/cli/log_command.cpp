@@ -56,8 +56,8 @@ void add_log(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--since", options->since, "All rows of so long ago until now: 10min, 2h");
   command->add_option("--kind", options->kind, "All rows of this kind only")
-      ->check(CLI::IsMember(
-          {"session", "robot", "event", "intent", "outcome", "belief", "coupling", "gap", "end"}));
+      ->check(CLI::IsMember({"session", "robot", "event", "intent", "outcome", "belief", "coupling",
+                             "latency", "gap", "end"}));
   command->add_flag("--json", options->json, "One JSON document per row");
   command->callback([options, &exit_code] { exit_code = show(*options); });
 }

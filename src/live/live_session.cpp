@@ -112,6 +112,9 @@ journal::Learned learned_by(const Knowledge& knowledge) {
   for (std::size_t r = 0; r < rules.rules.size(); ++r) {
     for (const Couplings::Learned& each : knowledge.couplings.of(RuleId(r)))
       learned.couplings.push_back({rules[each.cause].name, rules.rules[r].name, each.coupling});
+    const Latencies::Learned& latency = knowledge.latencies.learned(RuleId(r));
+    if (latency.count > 0)
+      learned.latencies.push_back(journal::named(rules.rules[r].name, latency));
   }
   return learned;
 }

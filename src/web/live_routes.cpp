@@ -46,7 +46,8 @@ Answer beliefs(Hub& hub) {
   Json document{{"format", "culprit-beliefs"},
                 {"format_version", 1},
                 {"beliefs", Json::array()},
-                {"couplings", Json::array()}};
+                {"couplings", Json::array()},
+                {"latencies", Json::array()}};
   std::size_t place = 0;
   for (const Json& rule : rules) {
     for (const Json& strategy : rule["strategies"]) {
@@ -69,6 +70,14 @@ Answer beliefs(Hub& hub) {
                                      {"effect", rules[effect]["name"]},
                                      {"cleared", each[2]},
                                      {"stayed", each[3]}});
+  }
+  for (const Json& each : state.body["latencies"]) {
+    const auto rule = each[0].get<std::size_t>();
+    if (rule >= rules.size()) continue;
+    document["latencies"].push_back({{"rule", rules[rule]["name"]},
+                                     {"count", each[1]},
+                                     {"least_s", each[2]},
+                                     {"most_s", each[3]}});
   }
   return {200, document};
 }

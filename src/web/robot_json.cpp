@@ -167,6 +167,18 @@ Json couplings_to_json(const Knowledge& knowledge) {
   return list;
 }
 
+// How late rules show a change, as far as that was learned.
+Json latencies_to_json(const Knowledge& knowledge) {
+  Json list = Json::array();
+  for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
+    const Latencies::Learned& latency = knowledge.latencies.learned(RuleId(r));
+    if (latency.count == 0) continue;
+    list.push_back(
+        Json::array({r, latency.count, seconds(latency.range.least), seconds(latency.range.most)}));
+  }
+  return list;
+}
+
 }  // namespace
 
 Json rules_to_json(const RuleSet& rules) {
@@ -287,6 +299,7 @@ Json state_to_json(const Knowledge& knowledge, Time start) {
     json["priors"].push_back(Json::array({prior.alpha, prior.beta}));
   }
   json["couplings"] = couplings_to_json(knowledge);
+  json["latencies"] = latencies_to_json(knowledge);
   return json;
 }
 

@@ -77,6 +77,7 @@ export interface State {
   beliefs: [number, number][]
   priors: [number, number][] // that they began from: what the rules say, or a fleet learned
   couplings: [cause: number, effect: number, cleared: number, stayed: number][]
+  latencies: [rule: number, count: number, least_s: number, most_s: number][]
 }
 
 export interface ControlState {

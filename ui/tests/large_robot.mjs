@@ -27,5 +27,5 @@ export const largeState = (t, clock = Date.now() / 1000) => ({
   rules: names.map(() => ({ phase: 'quiet', trigger: false })),
   components: names.map((_, i) => ({ health: i === Math.floor(t * 30) % kNodes ? 'ERROR' : 'OK', present: true, alive: true })),
   topics: names.map((_, i) => ({ rate: 10 + ((t * 30 + i) % 7), age: 0.1 })),
-  inputs: [], beliefs: names.map(() => [5, 5]), priors: names.map(() => [5, 5]), couplings: [],
+  inputs: [], beliefs: names.map(() => [5, 5]), priors: names.map(() => [5, 5]), couplings: [], latencies: [],
 })

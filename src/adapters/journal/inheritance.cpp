@@ -118,6 +118,14 @@ void inherit(Learned& ours, const Learned& theirs) {
       *known = each;
     }
   }
+  for (const LearnedLatency& each : theirs.latencies) {
+    const auto known = std::ranges::find(ours.latencies, each.rule, &LearnedLatency::rule);
+    if (known == ours.latencies.end()) {
+      ours.latencies.push_back(each);
+    } else {
+      *known = each;
+    }
+  }
 }
 
 History joined(const History& ours, const History& theirs, const RuleSet& rules) {

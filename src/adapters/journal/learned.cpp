@@ -8,6 +8,15 @@ Belief grown_from(const Belief& prior, const LearnedBelief& learned) {
   return regrown(learned.belief, learned.prior, prior);
 }
 
+LearnedLatency named(const std::string& rule, const Latencies::Learned& learned) {
+  return {rule, learned.count, seconds(learned.range.least), seconds(learned.range.most)};
+}
+
+Latencies::Learned latency_from(const LearnedLatency& learned) {
+  const Duration least = from_seconds(learned.least_s);
+  return {learned.count, {least, from_seconds(learned.most_s), least}};
+}
+
 void merge(Learned& learned, const Learned& other) {
   for (const LearnedBelief& theirs : other.beliefs) {
     const auto ours = std::find_if(
@@ -30,6 +39,22 @@ void merge(Learned& learned, const Learned& other) {
     } else {
       ours->coupling.cleared += theirs.coupling.cleared;
       ours->coupling.stayed += theirs.coupling.stayed;
+    }
+  }
+  for (const LearnedLatency& theirs : other.latencies) {
+    if (theirs.count == 0) continue;
+    const auto ours =
+        std::find_if(learned.latencies.begin(), learned.latencies.end(),
+                     [&](const LearnedLatency& latency) { return latency.rule == theirs.rule; });
+    if (ours == learned.latencies.end()) {
+      learned.latencies.push_back(theirs);
+    } else if (ours->count == 0) {
+      *ours = theirs;
+    } else {
+      constexpr int kMost = Latencies::Learned::kMost;
+      ours->count = std::min(ours->count, kMost - theirs.count) + theirs.count;
+      ours->least_s = std::min(ours->least_s, theirs.least_s);
+      ours->most_s = std::max(ours->most_s, theirs.most_s);
     }
   }
 }

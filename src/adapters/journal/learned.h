@@ -7,6 +7,7 @@
 
 #include "knowledge/beliefs.h"
 #include "knowledge/couplings.h"
+#include "knowledge/latencies.h"
 
 namespace culprit::journal {
 
@@ -25,16 +26,30 @@ struct LearnedCoupling {
   bool operator==(const LearnedCoupling&) const = default;
 };
 
+// Seconds, because people read it.
+struct LearnedLatency {
+  std::string rule;
+  int count = 0;  // 0: nothing is known any more
+  double least_s = 0;
+  double most_s = 0;
+  bool operator==(const LearnedLatency&) const = default;
+};
+LearnedLatency named(const std::string& rule, const Latencies::Learned& learned);
+Latencies::Learned latency_from(const LearnedLatency& learned);
+
 struct Learned {
   std::vector<LearnedBelief> beliefs;
   std::vector<LearnedCoupling> couplings;
+  std::vector<LearnedLatency> latencies;
+
+  bool is_empty() const { return beliefs.empty() && couplings.empty() && latencies.empty(); }
 };
 
 // `learned` as a belief that grows from `prior`: to the last bit what it was if the prior is the
 // same; otherwise the designer changed the rule file, and what was counted is added to the new one.
 Belief grown_from(const Belief& prior, const LearnedBelief& learned);
 
-// Adds what `other` counted to `learned`: beliefs and couplings of a fleet become one.
+// Adds what `other` counted to `learned`: beliefs, couplings and latencies of a fleet become one.
 void merge(Learned& learned, const Learned& other);
 
 }  // namespace culprit::journal

@@ -36,12 +36,20 @@ void replace(Learned& learned, const LearnedCoupling& news) {
   learned.couplings.push_back(news);
 }
 
+void replace(Learned& learned, const LearnedLatency& news) {
+  std::erase_if(learned.latencies,
+                [&](const LearnedLatency& old) { return old.rule == news.rule; });
+  learned.latencies.push_back(news);
+}
+
 void forget(Learned& learned, const std::string& rule) {
   std::erase_if(learned.beliefs,
                 [&](const LearnedBelief& each) { return rule.empty() || each.rule == rule; });
   std::erase_if(learned.couplings, [&](const LearnedCoupling& each) {
     return rule.empty() || each.cause == rule || each.effect == rule;
   });
+  std::erase_if(learned.latencies,
+                [&](const LearnedLatency& each) { return rule.empty() || each.rule == rule; });
 }
 
 void follow(Learned& learned, std::string_view kind, const Json& body) {
@@ -52,6 +60,10 @@ void follow(Learned& learned, std::string_view kind, const Json& body) {
                    LearnedCoupling{text_of(body, "cause"),
                                    text_of(body, "effect"),
                                    {number_of(body, "cleared"), number_of(body, "stayed")}});
+  if (kind == kind::kLatency)
+    return replace(
+        learned, LearnedLatency{text_of(body, "rule"), static_cast<int>(integer_of(body, "count")),
+                                number_of(body, "least_s"), number_of(body, "most_s")});
   const Json prior = body.value("prior", Json());
   const bool has_prior =
       prior.is_array() && prior.size() == 2 && prior[0].is_number() && prior[1].is_number();
@@ -101,10 +113,17 @@ Json body_of(const LearnedCoupling& learned) {
           {"stayed", learned.coupling.stayed}};
 }
 
+Json body_of(const LearnedLatency& learned) {
+  return {{"rule", learned.rule},
+          {"count", learned.count},
+          {"least_s", learned.least_s},
+          {"most_s", learned.most_s}};
+}
+
 Expected<Learned> brought_up_to_date(const LearnedCopy& copy, const Database& journal) {
   auto rows = journal.prepare(
       "SELECT kind, body FROM entry WHERE kind <> 'steps' AND id > ?1 AND kind IN ('belief', "
-      "'coupling') ORDER BY id");
+      "'coupling', 'latency') ORDER BY id");
   if (!rows) return Error{rows.error()};
   rows->bind(1, copy.newest.id);
   Learned learned = copy.learned;
@@ -125,8 +144,9 @@ bool is_same(Learned a, Learned b) {
     std::sort(each->couplings.begin(), each->couplings.end(), [](const auto& x, const auto& y) {
       return std::tie(x.cause, x.effect) < std::tie(y.cause, y.effect);
     });
+    std::ranges::sort(each->latencies, {}, &LearnedLatency::rule);
   }
-  return a.beliefs == b.beliefs && a.couplings == b.couplings;
+  return a.beliefs == b.beliefs && a.couplings == b.couplings && a.latencies == b.latencies;
 }
 
 }  // namespace culprit::journal

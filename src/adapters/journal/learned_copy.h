@@ -26,6 +26,7 @@ Expected<std::optional<LearnedCopy>> read_copy(const std::filesystem::path& path
 // The bodies of rows that say what is believed from then on.
 Json body_of(const LearnedBelief& learned);
 Json body_of(const LearnedCoupling& learned);
+Json body_of(const LearnedLatency& learned);
 
 // What the copy says, and what the rows of `journal` that are newer say after it.
 Expected<Learned> brought_up_to_date(const LearnedCopy& copy, const Database& journal);

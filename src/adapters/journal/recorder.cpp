@@ -27,16 +27,17 @@ void replace(Learned& learned, const Learned& news) {
     });
     learned.couplings.push_back(each);
   }
+  for (const LearnedLatency& each : news.latencies) {
+    std::erase_if(learned.latencies,
+                  [&](const LearnedLatency& old) { return old.rule == each.rule; });
+    learned.latencies.push_back(each);
+  }
 }
 
 // Journals from before rules could be blind have no such rows, and no decision depends on them.
 bool is_about_sight(const Event& event) {
   return std::holds_alternative<RuleBlind>(event.what) ||
          std::holds_alternative<RuleSees>(event.what);
-}
-
-bool is_nothing(const Learned& learned) {
-  return learned.beliefs.empty() && learned.couplings.empty();
 }
 
 }  // namespace
@@ -71,6 +72,7 @@ Recorder::Recorder(std::optional<Writer> writer, Options options, const Session&
   for (std::size_t r = 0; r < rules_.rules.size(); ++r) {
     const auto all = knowledge.couplings.of(RuleId(r));
     couplings_.emplace_back(all.begin(), all.end());
+    latencies_.push_back(knowledge.latencies.learned(RuleId(r)));
   }
   is_failing_ = !writer_;
   for (Entry& row : options_.unwritten) add(std::move(row));
@@ -136,7 +138,7 @@ void Recorder::hand_over(Pending& step, std::span<const Command> commands,
   bool asks = false;
   if (decides) {
     has_to_wait =
-        !is_nothing(step.decided->learned) || std::any_of(events.begin(), events.end(), is_order);
+        !step.decided->learned.is_empty() || std::any_of(events.begin(), events.end(), is_order);
     for (const Command& command : commands) {
       if (is_read(command)) continue;
       asks = true;
@@ -364,6 +366,12 @@ Learned Recorder::changes() {
     }
     couplings_[r].assign(all.begin(), all.end());
   }
+  for (std::size_t r = 0; r < latencies_.size(); ++r) {
+    const Latencies::Learned& latency = knowledge_.latencies.learned(RuleId(r));
+    if (latency == latencies_[r]) continue;
+    latencies_[r] = latency;
+    learned.latencies.push_back(named(rules_.rules[r].name, latency));
+  }
   return learned;
 }
 
@@ -519,7 +527,7 @@ Expected<void> Recorder::write() {
          to_line({{"steps", gap_steps_}, {"rows", gap_rows_}, {"text", text}})});
     gap_steps_ = gap_rows_ = 0;
   }
-  if (unsaved_.entries.empty() && is_nothing(unsaved_.learned)) return {};
+  if (unsaved_.entries.empty() && unsaved_.learned.is_empty()) return {};
   const auto written = writer_->append(
       unsaved_, now, owes_sync_ ? Durability::kPowerFailure : Durability::kProcessEnd);
   if (!written) return failed({written.error()});

@@ -175,6 +175,7 @@ class Recorder {
   // Of the manager's thread.
   std::vector<Belief> beliefs_;  // as written last
   std::vector<std::vector<Couplings::Learned>> couplings_;
+  std::vector<Latencies::Learned> latencies_;
 
   std::unordered_map<std::uint64_t, std::string> asked_;  // changes that wait for their outcome
   std::uint64_t decisions_ = 0;

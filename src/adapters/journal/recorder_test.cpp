@@ -34,6 +34,11 @@ RULE Silent
       ADAPTATION camera redeploy 2
     STRATEGY brighten 50 10
       ADAPTATION camera increase_parameter gain 0.5 2
+RULE Blurred
+  POLICIES ERROR
+  TRIGGER blur > 0.5
+    STRATEGY again 50 10
+      ADAPTATION camera redeploy 2
 )";
 
 struct Recording : testing::Test {
@@ -187,6 +192,22 @@ TEST_F(RecordingHere, WhatWasLearnedWithTheRequestIsOnTheDiskFirst) {
   recorder->stepped(now, none, commands, events);
   EXPECT_TRUE(has(kind::kIntent));
   EXPECT_TRUE(has(kind::kBelief));
+}
+
+TEST_F(Recording, HowLateARuleIsIsOnRecordWhenItChanges) {
+  constexpr RuleId kBlurred{std::size_t{1}};
+  const auto learned = [&] { return value_of(value_of(Reader::open(path)).learned()).latencies; };
+  knowledge.latencies.cleared(kBlurred, 1s);
+  const auto recorder = begin();
+  sees_a_failure(*recorder);
+  EXPECT_THAT(learned(), IsEmpty()) << "the session has it already";
+  knowledge.latencies.cleared(kBlurred, 2s);
+  sees_a_failure(*recorder);
+  EXPECT_EQ(learned(), (std::vector<LearnedLatency>{{"Blurred", 2, 1, 2}}));
+  EXPECT_TRUE(has(kind::kLatency));
+  knowledge.latencies.forget(kBlurred);
+  sees_a_failure(*recorder);
+  EXPECT_EQ(learned(), (std::vector<LearnedLatency>{{"Blurred", 0, 0, 0}}));
 }
 
 // A thread that writes to such a disk may not come back.

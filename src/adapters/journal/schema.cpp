@@ -30,7 +30,17 @@ CREATE TABLE coupling(
   cause TEXT NOT NULL, effect TEXT NOT NULL, cleared REAL NOT NULL, stayed REAL NOT NULL,
   PRIMARY KEY(cause, effect)
 ) WITHOUT ROWID;
+)sql",
+    // It may be there if only the version is damaged.
+    R"sql(
+CREATE TABLE IF NOT EXISTS latency(
+  rule TEXT PRIMARY KEY, count INTEGER NOT NULL,
+  least REAL NOT NULL, most REAL NOT NULL  -- seconds
+) WITHOUT ROWID;
 )sql"};
+
+// A reader takes what later versions added for empty.
+constexpr std::int64_t kOldestRead = 1;
 
 struct Found {
   std::int64_t version = 0;
@@ -75,9 +85,15 @@ Expected<void> check_schema(const Database& database) {
   const auto found = look(database);
   if (!found) return Error{found.error()};
   if (found->is_new) return Error{"it is empty"};
-  if (found->version < schema_version())
+  if (found->version < kOldestRead)
     return Error{"it was written by an older culprit; culprit run brings it up to date"};
   return {};
+}
+
+bool has_latencies(const Database& database) {
+  constexpr int kSince = 2;
+  const auto version = database.number("PRAGMA user_version");
+  return version && *version >= kSince;
 }
 
 bool has_damaged_head(const Database& database) {

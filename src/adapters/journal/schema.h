@@ -12,8 +12,10 @@ int schema_version();
 // the file is of another program, or of a newer culprit; it is left as it was.
 Expected<void> prepare_schema(Database& database);
 
-// Whether this is a journal that this culprit can read.
+// Whether this is a journal that this culprit can read, of its own version or of an older one.
 Expected<void> check_schema(const Database& database);
+// False for a journal of an older culprit, which has no such table.
+bool has_latencies(const Database& database);
 
 // Whether it has the tables of a journal, but not the numbers in its head that say so: not those of
 // any culprit that there may be.

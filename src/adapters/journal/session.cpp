@@ -21,11 +21,17 @@ bool is_belief(const Belief& belief) {
   return belief.alpha > 0 && belief.beta > 0 && belief.alpha < 1e15 && belief.beta < 1e15;
 }
 bool is_count(double count) { return count >= 0 && count < 1e15; }
+// No effect is awaited for longer than a year.
+bool is_latency(std::int64_t count, double least_s, double most_s) {
+  return count >= 0 && count <= Latencies::Learned::kMost && least_s >= 0 && least_s <= most_s &&
+         most_s < 366 * 86'400.0;
+}
 
 }  // namespace
 
 Json to_json(const Learned& learned) {
-  Json json = {{"beliefs", Json::array()}, {"couplings", Json::array()}};
+  Json json = {
+      {"beliefs", Json::array()}, {"couplings", Json::array()}, {"latencies", Json::array()}};
   for (const LearnedBelief& each : learned.beliefs)
     json["beliefs"].push_back({{"rule", each.rule},
                                {"strategy", each.strategy},
@@ -36,6 +42,11 @@ Json to_json(const Learned& learned) {
                                  {"effect", each.effect},
                                  {"cleared", each.coupling.cleared},
                                  {"stayed", each.coupling.stayed}});
+  for (const LearnedLatency& each : learned.latencies)
+    json["latencies"].push_back({{"rule", each.rule},
+                                 {"count", each.count},
+                                 {"least_s", each.least_s},
+                                 {"most_s", each.most_s}});
   return json;
 }
 
@@ -45,7 +56,8 @@ Expected<Learned> learned_from_json(const Json& json) {
   Learned learned;
   const Json beliefs = json.value("beliefs", Json());
   const Json couplings = json.value("couplings", Json());
-  if (!beliefs.is_array() || !couplings.is_array()) return damaged;
+  const Json latencies = json.value("latencies", Json::array());  // older culprits have none
+  if (!beliefs.is_array() || !couplings.is_array() || !latencies.is_array()) return damaged;
   for (const Json& each : beliefs) {
     const auto belief = pair_from(each, "belief");
     const auto prior = pair_from(each, "prior");
@@ -61,6 +73,13 @@ Expected<Learned> learned_from_json(const Json& json) {
     const Coupling coupling{number_of(each, "cleared", -1), number_of(each, "stayed", -1)};
     if (!is_count(coupling.cleared) || !is_count(coupling.stayed)) return damaged;
     learned.couplings.push_back({text_of(each, "cause"), text_of(each, "effect"), coupling});
+  }
+  for (const Json& each : latencies) {
+    const std::int64_t count = integer_of(each, "count", -1);
+    const double least = number_of(each, "least_s", -1);
+    const double most = number_of(each, "most_s", -1);
+    if (!is_latency(count, least, most)) return damaged;
+    learned.latencies.push_back({text_of(each, "rule"), static_cast<int>(count), least, most});
   }
   return learned;
 }

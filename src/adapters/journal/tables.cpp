@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "journal/schema.h"
+
 namespace culprit::journal {
 namespace {
 
@@ -46,6 +48,15 @@ Expected<Learned> read_learned(const Database& database) {
     learned.couplings.push_back({std::string(couplings->bytes(0)),
                                  std::string(couplings->bytes(1)),
                                  {couplings->real(2), couplings->real(3)}});
+  if (!row) return Error{row.error()};
+  if (!has_latencies(database)) return learned;
+  auto latencies = database.prepare("SELECT rule, count, least, most FROM latency ORDER BY rule");
+  if (!latencies) return Error{latencies.error()};
+  row = latencies->step();
+  for (; row && *row; row = latencies->step())
+    learned.latencies.push_back({std::string(latencies->bytes(0)),
+                                 static_cast<int>(latencies->integer(1)), latencies->real(2),
+                                 latencies->real(3)});
   if (!row) return Error{row.error()};
   return learned;
 }

@@ -60,7 +60,9 @@ bool is_damaged(const fs::path& path) {
   const auto hash =
       database->number("SELECT length(hash) FROM entry WHERE id = (SELECT max(id) FROM entry)");
   const bool has_hash = !hash || *hash == 0 || *hash == sizeof(Hash);
-  return !has_hash || Database::is_damaged(path, kLooks);
+  if (!has_hash || Database::is_damaged(path, kLooks)) return true;
+  constexpr std::array kNewerLooks = {"SELECT * FROM latency"};
+  return has_latencies(*database) && Database::is_damaged(path, kNewerLooks);
 }
 
 // What was learned, of a file that is damaged; nothing: that is lost.
@@ -176,7 +178,8 @@ Expected<void> Writer::compare(const Expected<std::optional<LearnedCopy>>& copy)
 // Makes it what is believed, and leaves a row about why.
 Expected<void> Writer::restore(const Learned& learned) {
   const Link before = newest_;
-  auto done = database_.run("BEGIN IMMEDIATE; DELETE FROM belief; DELETE FROM coupling");
+  auto done = database_.run(
+      "BEGIN IMMEDIATE; DELETE FROM belief; DELETE FROM coupling; DELETE FROM latency");
   const std::int64_t now = std::chrono::duration_cast<std::chrono::nanoseconds>(
                                std::chrono::system_clock::now().time_since_epoch())
                                .count();
@@ -234,8 +237,7 @@ Expected<void> Writer::append(const Batch& batch, std::int64_t now, Durability d
     session_ = session_before;
     return failure(path_, written.error());
   }
-  const bool is_learned = !batch.learned.beliefs.empty() || !batch.learned.couplings.empty();
-  if (is_copy_due_ || is_learned) copy_learned();
+  if (is_copy_due_ || !batch.learned.is_empty()) copy_learned();
   // Somebody may wait for what has to be durable.
   if (!is_durable) move_wal();
   return {};
@@ -269,7 +271,9 @@ Expected<void> Writer::keep(const Learned& learned, std::int64_t now) {
   auto belief = database_.prepare("INSERT OR REPLACE INTO belief VALUES(?, ?, ?, ?, ?, ?)");
   auto coupling = database_.prepare("INSERT OR REPLACE INTO coupling VALUES(?, ?, ?, ?)");
   if (!belief) return Error{belief.error()};
+  auto latency = database_.prepare("INSERT OR REPLACE INTO latency VALUES(?, ?, ?, ?)");
   if (!coupling) return Error{coupling.error()};
+  if (!latency) return Error{latency.error()};
   for (const LearnedBelief& each : learned.beliefs) {
     belief->bind(1, std::string_view(each.rule)).bind(2, std::string_view(each.strategy));
     belief->bind(3, each.belief.alpha).bind(4, each.belief.beta);
@@ -283,6 +287,13 @@ Expected<void> Writer::keep(const Learned& learned, std::int64_t now) {
     coupling->bind(3, each.coupling.cleared).bind(4, each.coupling.stayed);
     if (const auto done = coupling->step(); !done) return Error{done.error()};
     const Entry entry{0, now, std::string(kind::kCoupling), to_line(body_of(each))};
+    if (const auto inserted = insert(entry); !inserted) return inserted;
+  }
+  for (const LearnedLatency& each : learned.latencies) {
+    latency->bind(1, std::string_view(each.rule)).bind(2, std::int64_t{each.count});
+    latency->bind(3, each.least_s).bind(4, each.most_s);
+    if (const auto done = latency->step(); !done) return Error{done.error()};
+    const Entry entry{0, now, std::string(kind::kLatency), to_line(body_of(each))};
     if (const auto inserted = insert(entry); !inserted) return inserted;
   }
   return {};
@@ -303,7 +314,8 @@ Expected<int> Writer::forget(const std::string& rule, std::int64_t now) {
   const Link before = newest_;
   auto done = write(batch, now);
   for (const char* sql : {"DELETE FROM belief WHERE ?1 = '' OR rule = ?1",
-                          "DELETE FROM coupling WHERE ?1 = '' OR cause = ?1 OR effect = ?1"}) {
+                          "DELETE FROM coupling WHERE ?1 = '' OR cause = ?1 OR effect = ?1",
+                          "DELETE FROM latency WHERE ?1 = '' OR rule = ?1"}) {
     auto statement = database_.prepare(sql);
     if (!statement) return failure(path_, statement.error());
     const auto deleted = statement->bind(1, std::string_view(rule)).step();

@@ -61,7 +61,7 @@ class Writer {
   Expected<void> append(const Batch& batch, std::int64_t now, Durability durability);
 
   // Forgets all that was learned: of one rule, or of all if `rule` is empty. Gives how many beliefs
-  // and couplings that were.
+  // that were.
   Expected<int> forget(const std::string& rule, std::int64_t now);
 
   Expected<Learned> learned() const { return read_learned(database_); }

@@ -13,6 +13,7 @@
 #include "base/test_expected.h"
 #include "base/test_folder.h"
 #include "journal/reader.h"
+#include "journal/session.h"
 #include "journal/verify.h"
 #include "json/json.h"
 
@@ -256,6 +257,78 @@ TEST(Faults, AJournalOfANewerCulpritIsLeftAlone) {
   EXPECT_THAT(unread.error(), HasSubstr("newer culprit"));
 }
 
+// As version 1 left it: without the table of latencies.
+void make_old(const std::filesystem::path& path) {
+  run_sql(path, "DROP TABLE latency; PRAGMA user_version = 1");
+}
+
+TEST(OlderFile, IsReadAsItIs) {
+  const TestFolder folder;
+  {
+    Writer writer = open(folder / "a.journal");
+    Batch all = batch(3);
+    all.learned.beliefs = {kBelief};
+    ASSERT_TRUE(append(writer, all));
+  }
+  make_old(folder / "a.journal");
+  const Reader reader = value_of(Reader::open(folder / "a.journal"));
+  EXPECT_EQ(value_of(reader.learned()).beliefs, std::vector{kBelief});
+  EXPECT_TRUE(value_of(reader.learned()).latencies.empty());
+  EXPECT_TRUE(verified(folder / "a.journal").findings.empty());
+}
+
+TEST(OlderFile, IsBroughtUpToDateWhenItIsWritten) {
+  const TestFolder folder;
+  {
+    Writer writer = open(folder / "a.journal");
+    Batch all = batch(3);
+    all.learned.beliefs = {kBelief};
+    ASSERT_TRUE(append(writer, all));
+  }
+  make_old(folder / "a.journal");
+  const std::vector<LearnedLatency> latencies = {{"Rule", 1, 0.25, 0.5}};
+  {
+    Writer writer = open(folder / "a.journal");
+    EXPECT_EQ(writer.remark(), "");
+    Batch all;
+    all.learned.latencies = latencies;
+    ASSERT_TRUE(append(writer, all));
+  }
+  const Writer writer = open(folder / "a.journal");
+  EXPECT_EQ(writer.remark(), "");
+  EXPECT_EQ(value_of(writer.learned()).beliefs, std::vector{kBelief});
+  EXPECT_EQ(value_of(writer.learned()).latencies, latencies);
+  EXPECT_TRUE(verified(folder / "a.journal").findings.empty());
+}
+
+TEST(OlderFile, OnlyByItsVersionKeepsItsLatencies) {
+  const TestFolder folder;
+  const std::vector<LearnedLatency> latencies = {{"Rule", 1, 0.25, 0.5}};
+  {
+    Writer writer = open(folder / "a.journal");
+    Batch all;
+    all.learned.latencies = latencies;
+    ASSERT_TRUE(append(writer, all));
+  }
+  run_sql(folder / "a.journal", "PRAGMA user_version = 1");
+  EXPECT_EQ(value_of(open(folder / "a.journal").learned()).latencies, latencies);
+}
+
+TEST(Faults, ALatencyThatWasChangedBehindItsBackIsKnownFromTheSecondCopy) {
+  const TestFolder folder;
+  const std::vector<LearnedLatency> latencies = {{"Rule", 1, 0.25, 0.5}};
+  {
+    Writer writer = open(folder / "a.journal");
+    Batch all;
+    all.learned.latencies = latencies;
+    ASSERT_TRUE(append(writer, all));
+  }
+  run_sql(folder / "a.journal", "UPDATE latency SET most = 1000");
+  const Writer writer = open(folder / "a.journal");
+  EXPECT_THAT(writer.remark(), HasSubstr("second copy"));
+  EXPECT_EQ(value_of(writer.learned()).latencies, latencies);
+}
+
 // Root may write everywhere: while this lives, the test is nobody, and the folder is nobody's.
 class AsNobody {
  public:
@@ -332,6 +405,44 @@ TEST(Learned, OfAFleetIsAddedUp) {
   EXPECT_EQ(ours.couplings[0].coupling, (Coupling{4, 2}));
 }
 
+TEST(Learned, LatenciesOfAFleetAreTheShortestAndTheLongest) {
+  Learned ours;
+  ours.latencies = {{"R", 2, 0.5, 1.5}, {"Forgotten", 0, 0, 0}};
+  Learned theirs;
+  theirs.latencies = {{"R", 3, 1, 2}, {"Forgotten", 1, 3, 4}, {"S", 1, 0.1, 0.1}, {"T", 0, 0, 0}};
+  merge(ours, theirs);
+  EXPECT_EQ(ours.latencies, (std::vector<LearnedLatency>{
+                                {"R", 5, 0.5, 2}, {"Forgotten", 1, 3, 4}, {"S", 1, 0.1, 0.1}}));
+  Learned many;
+  many.latencies = {{"R", Latencies::Learned::kMost, 1, 1}};
+  merge(ours, many);
+  EXPECT_EQ(ours.latencies[0].count, Latencies::Learned::kMost);
+}
+
+TEST(Learned, LatenciesAreKeptToTheNanosecond) {
+  const Latencies::Learned learned{
+      7, {Duration(1'234'567'891), Duration(86'400'000'000'001), Duration(1'234'567'891)}};
+  EXPECT_EQ(latency_from(named("R", learned)), learned);
+  Learned all;
+  all.latencies = {named("R", learned)};
+  const Learned read = value_of(learned_from_json(parse_json(to_line(to_json(all)))));
+  EXPECT_EQ(latency_from(read.latencies.at(0)), learned);
+}
+
+TEST(Learned, LatenciesThatCannotBeAreRefused) {
+  for (const char* wrong :
+       {R"({})", R"([{"rule":"R"}])", R"([{"rule":"R","count":-1,"least_s":1,"most_s":2}])",
+        R"([{"rule":"R","count":1,"least_s":3,"most_s":2}])",
+        R"([{"rule":"R","count":1,"least_s":-1,"most_s":2}])",
+        R"([{"rule":"R","count":1,"least_s":1,"most_s":1e300}])",
+        R"([{"rule":"R","count":9000000000,"least_s":1,"most_s":2}])"}) {
+    EXPECT_FALSE(learned_from_json(
+        parse_json(R"({"beliefs":[],"couplings":[],"latencies":)" + std::string(wrong) + "}")))
+        << wrong;
+  }
+  EXPECT_TRUE(learned_from_json(parse_json(R"({"beliefs":[],"couplings":[]})"))) << "of version 1";
+}
+
 TEST(Learned, GrowsFromANewPriorByWhatWasCounted) {
   EXPECT_EQ(grown_from({9, 1}, {"R", "s", {6, 7}, {5, 5}}), (Belief{10, 3}));
 }
@@ -342,12 +453,15 @@ TEST(Writer, ForgetsOneRuleOrAll) {
   Batch all;
   all.learned.beliefs = {kBelief, {"Other", "s", {2, 1}, {1, 1}}};
   all.learned.couplings = {{"Rule", "Other", {1, 0}}};
+  all.learned.latencies = {{"Other", 1, 2, 2}, {"Rule", 3, 0.5, 2}};
   ASSERT_TRUE(append(writer, all));
   EXPECT_EQ(value_of(writer.forget("Rule", kWrittenAt)), 1);
   EXPECT_EQ(value_of(writer.learned()).beliefs.size(), 1u);
   EXPECT_TRUE(value_of(writer.learned()).couplings.empty());
+  EXPECT_EQ(value_of(writer.learned()).latencies,
+            (std::vector<LearnedLatency>{{"Other", 1, 2, 2}}));
   EXPECT_EQ(value_of(writer.forget("", kWrittenAt)), 1);
-  EXPECT_TRUE(value_of(writer.learned()).beliefs.empty());
+  EXPECT_TRUE(value_of(writer.learned()).is_empty());
   EXPECT_TRUE(verified(folder / "a.journal").findings.empty());
 }
 

@@ -231,5 +231,51 @@ RULE Silent
   EXPECT_FALSE(recovery.was_other_boot);
 }
 
+// The picture is measured to be sharp 1.5 s after the camera was replaced.
+TEST(Crash, HowLateARuleIsIsKnownToTheNextProcess) {
+  const TestFolder folder;
+  const char* rules = R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+RULE Blurred
+  POLICIES ERROR
+  TRIGGER blur > 0.5
+    STRATEGY redeploy 90 10
+      ADAPTATION camera redeploy 15
+)";
+  TestRobot robot(rules);
+  robot.add("camera", {}, "/rgb");
+  const auto measure = [&](double blur, Duration time) {
+    for (const Time end = robot.now + time; robot.now < end; robot.run_for(100ms))
+      robot.signal("blur", Value(blur));
+  };
+  const auto blur_once = [&] {
+    const std::size_t before = robot.count_asked("start process");
+    while (robot.count_asked("start process") == before) measure(1, 100ms);
+    measure(1, 1500ms);
+    measure(0, 5s);
+  };
+  const auto learned = [&] { return robot.manager().knowledge().latencies.learned(RuleId(0)); };
+  Latencies::Learned first;
+  {
+    const Life life(folder / "a.journal", robot, rules);
+    robot.discover();
+    measure(0, 6s);
+    blur_once();
+    first = learned();
+    EXPECT_EQ(first.count, 1) << transcript(robot);
+  }
+  {
+    const Life life(folder / "a.journal", robot, rules);
+    EXPECT_EQ(learned(), first);
+    measure(0, 2min);
+    blur_once();
+    EXPECT_EQ(learned().count, 2) << transcript(robot);
+  }
+  const journal::Reader reader = value_of(journal::Reader::open(folder / "a.journal"));
+  Recording recording = value_of(Recording::open(reader));
+  const auto repeated = value_of(repeat(recording, reader, std::make_unique<BayesPlanner>(), {}));
+  EXPECT_FALSE(repeated.difference) << "it begins with what the first process had learned";
+}
+
 }  // namespace
 }  // namespace culprit::replay

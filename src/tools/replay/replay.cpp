@@ -90,6 +90,10 @@ void restore(Manager& manager, const journal::Learned& learned, const RuleSet& r
     const auto effect = journal::find_rule(rules, each.effect);
     if (cause && effect) manager.set_coupling(*cause, *effect, each.coupling);
   }
+  for (const journal::LearnedLatency& each : learned.latencies) {
+    if (const auto rule = journal::find_rule(rules, each.rule))
+      manager.set_latency(*rule, journal::latency_from(each));
+  }
 }
 
 std::unique_ptr<Manager> manager_for(const journal::Session& session, const RuleSet& rules,
