@@ -162,7 +162,9 @@ void Analyzer::remember(const Event& event) {
   } else if (const auto* last = std::get_if<LastResortReached>(&event.what)) {
     if (auto& left = left_off(last->rule)) left->search.is_at_last_resort = true;
   } else if (const auto* taken = std::get_if<LastResortDone>(&event.what)) {
-    if (auto& left = left_off(knowledge_.rules[taken->strategy].rule))
+    // One that ends or starts nothing is begun anew by each process: that harms nothing.
+    const Strategy& last_resort = knowledge_.rules[taken->strategy];
+    if (auto& left = left_off(last_resort.rule); left && begins_anew(last_resort))
       left->search.tried[knowledge_.states.place_of(taken->strategy)] = true;
   } else if (const auto* exhausted = std::get_if<RuleExhausted>(&event.what)) {
     if (auto& left = left_off(exhausted->rule)) left->search.is_exhausted = true;
