@@ -60,6 +60,7 @@ struct RequestWriter {
   void operator()(const ReadMode&) const { add_nothing("read_mode"); }
   void operator()(const StopProcess& r) const { json.member("stop_process", r.pid); }
   void operator()(const StartProcess&) const { add_nothing("start_process"); }
+  void operator()(const Probe&) const { add_nothing("probe"); }
 
  private:
   void add_nothing(const char* word) const {

@@ -85,7 +85,10 @@ void ComponentLink::service_seen(const GraphEndpoint& seen) {
     watch_transitions();
     read_lifecycle(kJoining, Told::kAlways, Haste::kNow);
   }
-  if (service == node_ + "/get_parameters") read_parameters();
+  if (service == node_ + "/get_parameters") {
+    read_parameters();
+    note_that_it_answers();
+  }
   if (service == node_ + "/change_mode" && needs_.changes_modes) modes();
 }
 
@@ -234,6 +237,13 @@ void ComponentLink::read_parameters() {
   }
 }
 
+// One that answered once, and ceases to, hangs.
+void ComponentLink::note_that_it_answers() {
+  read_anything(kJoining, Haste::kSoon, [this](const CallResult& result) {
+    if (result.outcome == CallOutcome::kAnswered) inbox_.put(Probed{component_, true});
+  });
+}
+
 void ComponentLink::check_parameters() {
   if (!misses_parameter_.exchange(false)) return;
   ServiceClient* client = nullptr;
@@ -285,21 +295,30 @@ void ComponentLink::probe(int pid, std::function<Time()> heard) {
       unanswered(due, heard);
     }
   };
+  read_anything(kProbe, Haste::kSoon, tell_of);
+}
+
+// Of one with a lifecycle that is its state, which is told as by check_lifecycle().
+bool ComponentLink::read_anything(Duration patience, Haste haste,
+                                  std::function<void(const CallResult&)> then) {
   const bool is_managed = has_lifecycle();
   ServiceClient* client = is_managed ? lifecycle_reader() : parameter_reader();
-  if (client == nullptr) return;
-  if (!is_managed)
-    return client->call(encode(srv::GetParameters::Request{}), Repeat::kUntilAnswered, kProbe,
-                        tell_of, Haste::kSoon);
+  if (client == nullptr) return false;
+  if (!is_managed) {
+    client->call(encode(srv::GetParameters::Request{}), Repeat::kUntilAnswered, patience,
+                 std::move(then), haste);
+    return true;
+  }
   client->call(
-      encode(srv::GetState::Request{}), Repeat::kUntilAnswered, kProbe,
-      [this, tell_of](const CallResult& result) {
-        tell_of(result);
+      encode(srv::GetState::Request{}), Repeat::kUntilAnswered, patience,
+      [this, then = std::move(then)](const CallResult& result) {
+        then(result);
         if (result.outcome != CallOutcome::kAnswered) return;
         const auto response = decode<srv::GetState::Response>(result.reply);
         if (response) tell(to_lifecycle(response->current_state.id), Told::kIfNew);
       },
-      Haste::kSoon);
+      haste);
+  return true;
 }
 
 // ---- commands
@@ -466,6 +485,19 @@ void ComponentLink::run(const Command& command, const ReadMode&) {
                     command, [](const srv::GetMode::Response& response) {
                       return Answer{Outcome::kDone, Value(response.current_mode), ""};
                     });
+}
+
+// As in probe(): one that a debugger holds proves nothing.
+void ComponentLink::run(const Command& command, const Probe&) {
+  const auto answer = [this, command](const CallResult& result) {
+    const int pid = pid_;
+    if (result.outcome == CallOutcome::kTimedOut && pid != 0 && is_traced(pid))
+      return reply(command, {Outcome::kUnreachable, {}, "a debugger holds its process"});
+    const auto none = why_unanswered(result, command, "service");
+    reply(command, none ? *none : Answer{});
+  };
+  if (!read_anything(command.timeout, Haste::kNow, answer))
+    reply(command, {Outcome::kUnreachable, {}, "no client could be made"});
 }
 
 void ComponentLink::run(const Command& command, const StopProcess&) {

@@ -83,6 +83,7 @@ class ComponentLink {
             const ServiceCall& call);
   void run(const Command& command, const ChangeMode& what);
   void run(const Command& command, const ReadMode& what);
+  void run(const Command& command, const Probe& what);
   // Processes are not this link's.
   void run(const Command& command, const StopProcess& what);
   void run(const Command& command, const StartProcess& what);
@@ -98,6 +99,8 @@ class ComponentLink {
   std::optional<Answer> why_unanswered(const CallResult& result, const Command& command,
                                        const std::string& type) const;
 
+  // The cheap read. `then` is called with its result; not at all if no client could be made.
+  bool read_anything(Duration patience, Haste haste, std::function<void(const CallResult&)> then);
   bool has_lifecycle();
   enum class Told : std::uint8_t { kAlways, kIfNew };
   void read_lifecycle(Duration patience, Told told, Haste haste);
@@ -105,6 +108,7 @@ class ComponentLink {
   void watch_transitions();
   void unanswered(Time due, const std::function<Time()>& heard);
   void read_parameters();
+  void note_that_it_answers();
 
   ServiceClient* lifecycle();
   ServiceClient* lifecycle_reader();

@@ -155,6 +155,21 @@ TEST(Link, AsksLocalNodesTooWhetherTheyAnswer) {
   hung.join();
 }
 
+// Before something is taken down that depends on it. No rule is about it, so nothing asks it periodically.
+TEST(Link, AsksWhetherANodeAnswersWhenItIsToldTo) {
+  const TestDomain domain;
+  Robot robot(domain);
+  Linked linked(domain, {}, "COMPONENT robot NODE /robot\n");
+  ASSERT_TRUE(linked.wait<Probed>([](const Probed& p) { return p.answered; }));
+  const auto ask = [&] { return linked.ask(Probe{}, 500ms); };
+  EXPECT_EQ(ask().outcome, Outcome::kDone);
+  std::promise<void> goes_on;
+  std::thread hung([&] { robot.context.run([&] { goes_on.get_future().wait(); }); });
+  EXPECT_EQ(ask().outcome, Outcome::kTimedOut) << "its callback hangs";
+  goes_on.set_value();
+  hung.join();
+}
+
 // As with nodes of other users, in containers or not: nobody that can be seen holds their sockets.
 TEST(Link, MissesNoProofOfWhatAnEngineOrSystemdEnds) {
   const TestDomain domain;

@@ -90,7 +90,7 @@ class Node {
   // Null if there is none of this name.
   const Value* parameter(const std::string& name) const { return body_.parameter(name); }
   const std::map<std::string, Value>& parameters() const { return body_.parameters; }
-  // What it answers to ReadLifecycle and ReadParameter.
+  // Its answer to ReadLifecycle, ReadParameter and Probe.
   Answer read(const decltype(Command::what)& request) { return body_.answer(request); }
   // Gives whether the node has it, and accepts the value.
   bool set_parameter(const std::string& name, const Value& value);

@@ -205,7 +205,8 @@ void SimulatedRobot::serve(const Command& command, Node& node) {
   } else if (const auto* call = std::get_if<CallService>(&command.what)) {
     done_if(node.call(call->service));
   } else if (std::holds_alternative<ReadLifecycle>(command.what) ||
-             std::holds_alternative<ReadParameter>(command.what)) {
+             std::holds_alternative<ReadParameter>(command.what) ||
+             std::holds_alternative<Probe>(command.what)) {
     Answer read = node.read(command.what);
     answer(command, node, read.outcome, std::move(read.value), std::move(read.text));
   } else {

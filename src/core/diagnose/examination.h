@@ -23,6 +23,7 @@ class Examination {
   // in trouble; and those on a host that is not heard.
   const Reach& reach() const { return reach_; }
   std::span<const RuleId> imminent() const { return imminent_; }
+  std::span<const std::optional<TroubleSeen>> troubles() const { return troubles_; }
   const Awaited& awaited() const { return awaited_; }
   const Paths& paths() const { return paths_; }
   const Causes& causes() const { return causes_; }

@@ -27,6 +27,7 @@ std::optional<Onset> outage_of(const Input& input, Time now, const Knowledge& kn
     return std::nullopt;
   }
   const ComponentState& state = knowledge.components[input.component];
+  if (input.kind == Kind::kAlive && state.hangs()) return onset_of_hang(state);
   if (input.kind == Kind::kAlive && state.alive == false)
     return Onset{state.alive_since, state.alive_since};
   if (input.kind == Kind::kLifecycle && state.lifecycle_since != kLongAgo)
@@ -63,6 +64,11 @@ Symptom symptom_of(RuleId rule, const Knowledge& knowledge) {
     return !watches_a_topic(knowledge.rules[id]) && !watches_a_component(knowledge.rules[id]);
   });
   return reads_values ? Symptom::kValue : Symptom::kOutage;
+}
+
+Onset onset_of_hang(const ComponentState& state) {
+  const Time found = state.alive == false ? state.alive_since : kNever;
+  return {state.answered, std::min(found, state.questioned.unanswered.value_or(kNever))};
 }
 
 bool is_silent(TopicId topic, Time now, const Knowledge& knowledge) {

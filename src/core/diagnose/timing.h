@@ -9,6 +9,7 @@
 //   age, phi, rate, silent   last sample                      last sample + gap      2 gaps
 //   rate, not silent         detection - window               detection              2 gaps
 //   alive                    when that changed                the same               none: asked
+//   alive, it hangs          last answer                      first one missed       none: asked
 //   lifecycle                when the state was read          the same               none: asked
 //   a value                  t - reading - most lateness      t - least lateness     reading + most lateness
 //
@@ -43,6 +44,9 @@ inline constexpr Duration kLongestEvidence = std::chrono::seconds(10);
 // Is the topic silent at `now` for longer than it usually is? Not while its rhythm is unknown.
 bool is_silent(TopicId topic, Time now, const Knowledge& knowledge);
 
+// Of a component that hangs, or did not answer what it was asked: it may have begun right after its
+// last answer.
+Onset onset_of_hang(const ComponentState& state);
 // The onset of what the rule sees, if its failure is detected at `now`.
 Onset onset_now(RuleId rule, Time now, const Knowledge& knowledge);
 // The onset of a detected failure, as it is there now; and the latest onset of the first of its

@@ -1,6 +1,7 @@
 #include "diagnose/trouble.h"
 
 #include "diagnose/known_down.h"
+#include "diagnose/questions.h"
 
 namespace culprit::diagnose {
 namespace {
@@ -20,7 +21,8 @@ std::optional<TroubleSeen> own_trouble(ComponentId component, const Knowledge& k
   if (state.process == ProcessState::kStopped)
     return TroubleSeen{Trouble::kStopped, at(state.process_since)};
   if (!knowledge.sightings.has(component)) return TroubleSeen{Trouble::kNeverSeen, at(kLongAgo)};
-  if (state.hangs()) return TroubleSeen{Trouble::kHung, {state.answered, state.alive_since}};
+  if (state.hangs() || is_overdue(component, knowledge))
+    return TroubleSeen{Trouble::kHung, onset_of_hang(state)};
   if (state.alive == false) return TroubleSeen{Trouble::kLeft, at(state.alive_since)};
   const bool is_managed = state.lifecycle != Lifecycle::kUnknown;
   if (is_managed && state.lifecycle != Lifecycle::kActive)

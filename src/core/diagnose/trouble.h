@@ -14,7 +14,7 @@ enum class Trouble : std::uint8_t {
   kExited,     // its process is gone
   kStopped,    // its process is stopped (SIGSTOP)
   kLeft,       // its node left the graph
-  kHung,       // its process runs and does not answer
+  kHung,       // its process runs and does not answer: any more, or what it was asked (questions.h)
   kNotActive,  // its lifecycle is known and is not `active`
   kNeverSeen,  // it was not seen yet
   kSilent      // a topic that it alone publishes, at a steady rate, is silent

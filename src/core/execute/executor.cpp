@@ -73,9 +73,55 @@ void Executor::restart(Time now) {
   for (Run& run : runs_) {
     if (run.pursuit) run.pursuit->restart(now);
   }
+  forget_questions();
+}
+
+void Executor::ask(ComponentId component, StrategyId strategy, Duration timeout, Time now,
+                   std::vector<Command>& commands) {
+  Questioned& questioned = write_.components[component].questioned;
+  questioned.at = now;
+  questioned.is_open = true;
+  std::erase_if(questions_, [&](const Question& old) { return old.component == component; });
+  questions_.push_back({{++last_command_}, component});
+  commands.push_back({questions_.back().command, component, Probe{}, timeout, {strategy}});
+}
+
+void Executor::forget_questions() {
+  for (const Question& each : questions_)
+    write_.components[each.component].questioned.is_open = false;
+  questions_.clear();
+}
+
+std::optional<ComponentId> Executor::proven_by(const Reply& reply) const {
+  const auto question = std::ranges::find(questions_, reply.command, &Question::command);
+  const bool is_proven = question != questions_.end() && reply.outcome == Outcome::kDone &&
+                         is_of_present_process(*question);
+  return is_proven ? std::optional(question->component) : std::nullopt;
+}
+
+// A process that began since then was not asked.
+bool Executor::is_of_present_process(const Question& question) const {
+  return knowledge_.components[question.component].questioned.is_open;
+}
+
+// Who cannot be asked, and who never answered, may be well all the same.
+void Executor::note_answer(const Question& question, Outcome outcome) {
+  if (!is_of_present_process(question)) return;
+  ComponentState& state = write_.components[question.component];
+  Questioned& questioned = state.questioned;
+  questioned.is_open = false;
+  if (outcome == Outcome::kDone) return;  // the monitor notes it
+  questioned.is_pointless = outcome != Outcome::kTimedOut || !state.answers_probes;
+  if (!questioned.unanswered && !questioned.is_pointless) questioned.unanswered = questioned.at;
 }
 
 void Executor::answered(const Reply& reply, Time now) {
+  const auto question = std::ranges::find(questions_, reply.command, &Question::command);
+  if (question != questions_.end()) {
+    note_answer(*question, reply.outcome);
+    questions_.erase(question);
+    return;
+  }
   for (Run& run : runs_) {
     if (run.pursuit && run.pending == reply.command) {
       run.pending = {};

@@ -22,7 +22,7 @@ class Executor {
   // What it writes; all else it only reads.
   struct Writes {
     Attempts attempts;
-    ComponentStates& components;  // what it brought about: lifecycles, how they came up
+    ComponentStates& components;  // what it brought about, and what it asked
     SignalStore& signals;         // rules whose attempt came to another stage are to be looked at
     PendingOutcomes& outcomes;    // those that a change voids
     Rivals& rivals;
@@ -44,6 +44,14 @@ class Executor {
   // Answers until `now` could not be heard: every goal under way has its whole time again, and
   // looks before it acts.
   void restart(Time now);
+
+  // Asks the component whether it answers, before the strategy is begun. It has `timeout` to do so.
+  void ask(ComponentId component, StrategyId strategy, Duration timeout, Time now,
+           std::vector<Command>& commands);
+  // Answers to what was asked so prove nothing: nobody could hear them.
+  void forget_questions();
+  // The component that `reply` proves to answer; before answered().
+  std::optional<ComponentId> proven_by(const Reply& reply) const;
 
   // An answer; one that nobody waits for any more is ignored.
   void answered(const Reply& reply, Time now);
@@ -73,6 +81,11 @@ class Executor {
     Time from = kLongAgo;
   };
 
+  struct Question {
+    CommandId command;
+    ComponentId component;
+  };
+
   Run& add_run(StrategyId strategy);
   void advance(Run& run, Time now, std::vector<Command>& commands);
   bool take_up(Run& run, Time now);
@@ -87,6 +100,8 @@ class Executor {
   void take_owed(const Adaptation& adaptation, std::vector<execute::Goal>& goals);
   void forget_owed(ComponentId component, const std::string& parameter);
   void forget_what_others_started(Time now);
+  bool is_of_present_process(const Question& question) const;
+  void note_answer(const Question& question, Outcome outcome);
   void note_change(Run& run, Time now);
   void note_mode(const execute::Pursuit& pursuit, Time now);
   void note_rival(const Run& run, Time now);
@@ -108,6 +123,7 @@ class Executor {
     execute::Undo undo;
   };
   std::vector<Owed> owed_;
+  std::vector<Question> questions_;  // that were not answered yet
   std::uint64_t last_command_ = 0;
 };
 

@@ -15,6 +15,15 @@ namespace culprit {
 // "unconfigured", "inactive", "active", "finalized", "unknown", "in transition".
 std::string_view to_string(Lifecycle state);
 
+// What came of asking a component whether it answers (Probe), since its process began.
+struct Questioned {
+  Time at = kLongAgo;                // when it was asked last
+  bool is_open = false;              // an answer to that can still come
+  std::optional<Time> unanswered{};  // when it was first asked in vain since it answered last
+  // It cannot be asked; or it was asked in vain and never answered: it may never do so, by design.
+  bool is_pointless = false;
+};
+
 struct ComponentState {
   bool in_graph = false;      // its node is there, and its process is not known to be gone
   Time node_seen = kLongAgo;  // when the node joined the graph last
@@ -33,6 +42,7 @@ struct ComponentState {
   int missed_probes = 0;        // in a row, since it answered last
   bool answers_probes = false;  // it did, since its process began
   Time answered = kLongAgo;     // when it did so last
+  Questioned questioned{};
   Lifecycle lifecycle = Lifecycle::kUnknown;
   Time lifecycle_since = kLongAgo;  // when it was read first in that state
   Time changes_until = kNever;     // when a transition under way hangs; kNever: none is known to be

@@ -496,6 +496,8 @@ std::string describe_exclusion(const Candidate& candidate, const RuleSet& rules)
     case Condition::kDownstream:
       return "it depends on " + component + ", which is being adapted" + because;
     case Condition::kSuspect:
+      if (!candidate.remark.empty())
+        return "it depends on " + component + ", which was " + candidate.remark;
       return "it depends on " + component + ", which may still prove to be the cause" + because;
     case Condition::kSettling:
       return "it is expected to go away now that " + rules[*candidate.failure].name +

@@ -41,8 +41,8 @@ struct Candidate {
   ComponentId component;              // that the condition is about
   std::optional<RuleId> failure;      // kDependency: what `component` may be the cause of;
                                       // likewise kSuspect, kSettling, kInTheWay: the other failure
-  std::string remark;                 // kInvalid, kWithheld, kUnheard, kDependency without a
-                                      // failure: why
+  std::string remark;                 // kInvalid, kWithheld, kUnheard, kDependency or kSuspect
+                                      // without a failure: why
   // Of a planner that weighs them (bayes) and only if nothing excludes it beforehand.
   double resolves = 0;  // the probability that it resolves the failure
   double value = 0;     // what that is worth, before its cost
@@ -339,16 +339,15 @@ struct PriorsAdopted {
 // One of these happened. To copy and to destroy a variant of so many is compiled once (event.cpp), not into every file that
 // touches an event.
 class EventWhat
-    : public std::variant<FailureDetected, FailureResolved, FailureLost, StrategyChosen,
-                          FailureHeldBack, AdaptationDone, AdaptationFailed, StrategyFailed,
-                          StrategyResumed, Undone, RoundSpent, RuleExhausted, ComponentLost,
-                          ComponentFound, RivalSeen, Trouble, OrderAccepted, OrderRefused,
-                          ActionHeldBack, ApprovalAsked, ApprovalLapsed, StrategyAbandoned,
-                          OrderCarriedOut, SilenceEnded, StormBegan, StormEnded, LastResortReached,
-                          LifecycleIntended, CameUp, OutcomePending, OutcomeCounted, FailureFlaps,
-                          JudgementSuspended, JudgementResumed, SleepNoticed, NeverSeen,
-                          PriorsAdopted, HostSilent, HostBack, ValueUnknown, LastResortDone,
-                          RuleBlind, RuleSees> {
+    : public std::variant<
+          FailureDetected, FailureResolved, FailureLost, StrategyChosen, FailureHeldBack,
+          AdaptationDone, AdaptationFailed, StrategyFailed, StrategyResumed, Undone, RoundSpent,
+          RuleExhausted, ComponentLost, ComponentFound, RivalSeen, Trouble, OrderAccepted,
+          OrderRefused, ActionHeldBack, ApprovalAsked, ApprovalLapsed, StrategyAbandoned,
+          OrderCarriedOut, SilenceEnded, StormBegan, StormEnded, LastResortReached,
+          LifecycleIntended, CameUp, OutcomePending, OutcomeCounted, FailureFlaps,
+          JudgementSuspended, JudgementResumed, SleepNoticed, NeverSeen, PriorsAdopted, HostSilent,
+          HostBack, ValueUnknown, LastResortDone, RuleBlind, RuleSees> {
  public:
   using Variant = variant;
   using variant::variant;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "diagnose/questions.h"
 #include "knowledge/undoes.h"
 #include "plan/allowed.h"
 #include "plan/also_ended.h"
@@ -119,6 +120,7 @@ void Manager::take_in(Time now, std::span<const Observation> observations) {
       restart(now_);
     } else if (const auto* lost = std::get_if<HearingLost>(&observation.what); lost && hears_) {
       hears_ = false;
+      executor_.forget_questions();
       knowledge_.events.tell(now_, JudgementSuspended{lost->reason});
     } else if (std::holds_alternative<HearingRegained>(observation.what) && !hears_) {
       hears_ = true;
@@ -128,7 +130,7 @@ void Manager::take_in(Time now, std::span<const Observation> observations) {
     monitor_.advance(now_);
     monitor_.observe(observation, now_);
     if (tells_of_silence(observation)) analyzer_.forgive_unheard(now_);
-    if (const auto* reply = std::get_if<Reply>(&observation.what)) executor_.answered(*reply, now_);
+    if (const auto* reply = std::get_if<Reply>(&observation.what)) answered(*reply, now_);
     if (const auto* order = std::get_if<Order>(&observation.what)) obey(*order, now_);
     if (const auto* told = std::get_if<PriorsTold>(&observation.what)) adopt(*told, now_);
     news_ |= is_news(observation);
@@ -140,6 +142,13 @@ void Manager::take_in(Time now, std::span<const Observation> observations) {
   if (hears_) analyzer_.advance(now_);
   governor_.advance(now_);
   news_ |= !knowledge_.events.empty();
+}
+
+// What is asked in order to plan tells of the component as any other question does.
+void Manager::answered(const Reply& reply, Time now) {
+  if (const auto component = executor_.proven_by(reply))
+    monitor_.observe({now, Probed{*component, true}}, now);
+  executor_.answered(reply, now);
 }
 
 // Nobody listened until `now`, so that no gap, no delay and no late answer proves anything.
@@ -158,7 +167,7 @@ void Manager::react(std::vector<Command>& commands) {
     const std::size_t asked = commands.size();
     executor_.advance(now_, commands);
     analyzer_.advance(now_);
-    if (news_ || now_ >= next_plan_) plan(now_);
+    if (news_ || now_ >= next_plan_) plan(now_, commands);
     begin_last_resorts(now_);
     executor_.advance(now_, commands);
     if (said == knowledge_.events.size() && asked == commands.size()) break;
@@ -251,13 +260,14 @@ void Manager::make_way_for(StrategyId strategy, Time now) {
   }
 }
 
-void Manager::plan(Time now) {
+void Manager::plan(Time now, std::vector<Command>& commands) {
   const std::vector<RuleId> failures = analyzer_.plannable(now);
   for (const RuleId failure : failures) {
     for (const StrategyId strategy : knowledge_.rules[failure].strategies)
       refresh_conditions(strategy, now);
   }
   for (const Decision& decision : allowed_plan(failures, now)) {
+    ask(decision, now, commands);
     if (decision.chosen) {
       // What was allowed when the plan was made may have been the last of its kind.
       const bool has_to_wait = governor_.holds_back(*decision.chosen, now) ||
@@ -281,6 +291,15 @@ void Manager::plan(Time now) {
   }
   news_ = false;
   next_plan_ = next_planning(now);
+}
+
+void Manager::ask(const Decision& decision, Time now, std::vector<Command>& commands) {
+  for (const ComponentId component : decision.asks) {
+    // Another failure may ask it, too.
+    if (knowledge_.components[component].questioned.at == now) continue;
+    executor_.ask(component, decision.candidates.front().strategy, diagnose::kAnswersWithin, now,
+                  commands);
+  }
 }
 
 // ---- last resorts

@@ -87,6 +87,7 @@ class Manager : public ManagingSystem {
 
  private:
   void take_in(Time now, std::span<const Observation> observations);
+  void answered(const Reply& reply, Time now);
   void restart(Time now);
   void react(std::vector<Command>& commands);
   void obey(const Order& order, Time now);
@@ -95,7 +96,8 @@ class Manager : public ManagingSystem {
   void forget(std::optional<RuleId> rule);
   void abandon_all(const std::string& reason, Time now);
   void make_way_for(StrategyId strategy, Time now);
-  void plan(Time now);
+  void plan(Time now, std::vector<Command>& commands);
+  void ask(const Decision& decision, Time now, std::vector<Command>& commands);
   void begin_last_resorts(Time now);
   void begin_last_resort(StrategyId strategy, Time now);
   void go_before_others(StrategyId last_resort, Time now);

@@ -244,7 +244,11 @@ void Monitor::on(Time at, const Probed& seen) {
   ComponentState& state = write_.components[seen.component];
   state.missed_probes = seen.answered ? 0 : state.missed_probes + 1;
   state.answers_probes |= seen.answered;
-  if (seen.answered) state.answered = at;
+  if (seen.answered) {
+    state.answered = at;
+    state.questioned.unanswered.reset();
+    state.questioned.is_pointless = false;
+  }
   const bool is_changing = hangs_in_transition(seen.component, at);
   if (is_changing) update_lifecycle_inputs(seen.component, at);
   update_alive(seen.component, at,
@@ -326,6 +330,7 @@ void Monitor::forget_process(ComponentId component, Time at) {
   state.is_rising = false;
   if (state.node_seen != kLongAgo) state.culprit_raised = kLongAgo;
   state.answers_probes = false;
+  state.questioned = {};
   state.transition_patience = {};
   if (state.lifecycle != Lifecycle::kUnknown) state.took_place = true;
   on(at, LifecycleRead{component, Lifecycle::kUnknown});

@@ -35,6 +35,8 @@ struct Decision {
   std::vector<Candidate>
       candidates;                   // every strategy of the rule, best first, with what excluded it
   std::vector<Suspect> suspects{};  // likeliest first; of a planner that weighs them
+  // Whose answer to the question whether they answer is to be known first.
+  std::vector<ComponentId> asks{};
 };
 
 class Planner {

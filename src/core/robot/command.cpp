@@ -29,6 +29,7 @@ struct Describe {
   std::string operator()(const ReadMode&) const { return "read mode"; }
   std::string operator()(const StopProcess&) const { return "stop process"; }
   std::string operator()(const StartProcess&) const { return "start process"; }
+  std::string operator()(const Probe&) const { return "ask whether it answers"; }
 };
 
 }  // namespace
@@ -36,7 +37,8 @@ struct Describe {
 bool is_read(const Command& command) {
   return std::holds_alternative<ReadLifecycle>(command.what) ||
          std::holds_alternative<ReadParameter>(command.what) ||
-         std::holds_alternative<ReadMode>(command.what);
+         std::holds_alternative<ReadMode>(command.what) ||
+         std::holds_alternative<Probe>(command.what);
 }
 
 std::string to_string(const Command& command) { return std::visit(Describe{}, command.what); }

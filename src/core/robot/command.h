@@ -44,6 +44,9 @@ struct ChangeMode {
 struct ReadMode {};
 inline constexpr const char* kUnknownMode = "unknown";
 
+// A question that changes nothing, to learn whether the node answers at all: kDone if it does.
+struct Probe {};
+
 // Ends the component's process: politely, then harder, until it is proven gone. Done when it is
 // gone, also if it was.
 struct StopProcess {
@@ -68,7 +71,7 @@ struct Command {
   CommandId id;
   ComponentId component;
   std::variant<ChangeLifecycle, ReadLifecycle, SetParameter, ReadParameter, CallService, ChangeMode,
-               ReadMode, StopProcess, StartProcess>
+               ReadMode, StopProcess, StartProcess, Probe>
       what;
   Duration timeout{};  // after which the adapter answers kTimedOut
   Purpose purpose{};

@@ -17,12 +17,6 @@ simulation::NodeTraits machine_traits() {
   return traits;
 }
 
-bool is_reading(const Command& command) {
-  return std::holds_alternative<ReadLifecycle>(command.what) ||
-         std::holds_alternative<ReadParameter>(command.what) ||
-         std::holds_alternative<ReadMode>(command.what);
-}
-
 bool take(std::vector<CommandId>& ids, CommandId id) { return std::erase(ids, id) > 0; }
 
 // As the operating system tells it. "stopped": it was asked to end, by culprit or by somebody else.
@@ -202,7 +196,7 @@ void TorturedRobot::observe(Time until, std::vector<Observation>& observations) 
 void TorturedRobot::execute(const Command& command) {
   if (random_.chance(noise_.lost_reply)) {
     unanswered_.push_back(command.id);
-  } else if (!is_reading(command) && random_.chance(noise_.false_success)) {
+  } else if (!is_read(command) && random_.chance(noise_.false_success)) {
     return reply(command, Outcome::kDone);
   } else if (random_.chance(noise_.false_failure)) {
     denied_.push_back(command.id);

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "diagnose/known_down.h"
+#include "diagnose/questions.h"
 #include "plan/also_ended.h"
 #include "plan/bayes/bayes_planner.h"
 #include "plan/beside_exhausted.h"
@@ -70,7 +71,8 @@ PlanningStep::PlanningStep(std::span<const RuleId> failures, const Knowledge& kn
       chances_(all_chances()),
       exclusions_(knowledge, found_, levels_, worked_on()),
       has_choice_(causes_.size(), false),
-      tries_(causes_.size()) {}
+      tries_(causes_.size()),
+      asks_(causes_.size()) {}
 
 std::vector<Decision> PlanningStep::run() {
   find_stakes();
@@ -80,6 +82,8 @@ std::vector<Decision> PlanningStep::run() {
        {Criticality::kError, Criticality::kWarning, Criticality::kNonCritical})
     select(level);
   go_round();
+  await_answers();
+  ask_again();
   return decisions();
 }
 
@@ -481,6 +485,35 @@ void PlanningStep::revive() {
   }
 }
 
+// Before something is taken down, those upstream that may hang are asked. It goes on waiting in the
+// place that it was chosen for: nothing that it stands against is begun meanwhile.
+void PlanningStep::await_answers() {
+  for (WeighedCandidate* weighed : best_first_) {
+    const Strategy& strategy = knowledge_.rules[weighed->candidate.strategy];
+    const bool has_to_wait = !weighed->candidate.excluded && !weighed->only_revives &&
+                             !strategy.is_last_resort && takes_down(strategy);
+    if (!has_to_wait) continue;
+    Questions questions =
+        questions_about(causes_[weighed->failure].rule, found_.troubles(), knowledge_);
+    asks_[weighed->failure] = std::move(questions.asks);
+    if (!questions.awaited) continue;
+    exclude(*weighed, {Condition::kSuspect, *questions.awaited, {}});
+    weighed->candidate.remark = "asked whether it answers";
+  }
+}
+
+// While one that did not answer explains a failure, it is asked again: it may only have been busy.
+void PlanningStep::ask_again() {
+  for (const RuleId rule : planned_) {
+    const std::size_t failure = causes_.index_of(rule);
+    const auto cause = cause_of(failure);
+    if (has_choice_[failure] || !cause || causes_[*cause].kind != CauseNode::Kind::kTrouble)
+      continue;
+    const ComponentId component = causes_[*cause].component;
+    if (is_to_be_asked_again(component, knowledge_)) asks_[failure].push_back(component);
+  }
+}
+
 void PlanningStep::choose(const WeighedCandidate& weighed) {
   has_choice_[weighed.failure] = true;
   sides_.push_back({tries_[weighed.failure], {weighed.place}});
@@ -621,7 +654,12 @@ std::vector<Decision> PlanningStep::decisions() {
     std::size_t& at = place[weighed->failure];
     if (at == causes_.size()) {
       at = found.size();
-      found.push_back({causes_[weighed->failure].rule, {}, true, {}, suspects(weighed->failure)});
+      found.push_back({causes_[weighed->failure].rule,
+                       {},
+                       true,
+                       {},
+                       suspects(weighed->failure),
+                       std::move(asks_[weighed->failure])});
       found.back().candidates.reserve(chances_[weighed->failure].size());
     }
     Decision& decision = found[at];

@@ -61,6 +61,8 @@ class PlanningStep {
   void go_round();
   void select(Criticality level);
   void choose(const WeighedCandidate& weighed);
+  void await_answers();
+  void ask_again();
   std::vector<WeighedCandidate*> chosen_together(const std::vector<WeighedCandidate*>& open) const;
   std::vector<WeighedCandidate*> weigh_together(const std::vector<WeighedCandidate*>& open,
                                                 const std::vector<WeighedCandidate*>& chosen) const;
@@ -86,9 +88,10 @@ class PlanningStep {
   std::vector<double> stakes_;  // by failure: W_i + sum_k share(i -> k) W_k
   std::vector<WeighedCandidate> weighed_;
   std::vector<WeighedCandidate*> best_first_;
-  std::vector<bool> has_choice_;         // by failure
-  std::vector<std::vector<Try>> tries_;  // by failure: what is left, in the order of u/c
-  std::vector<Side> sides_;              // of what was chosen so far
+  std::vector<bool> has_choice_;                // by failure
+  std::vector<std::vector<Try>> tries_;         // by failure: what is left, in the order of u/c
+  std::vector<Side> sides_;                     // of what was chosen so far
+  std::vector<std::vector<ComponentId>> asks_;  // by failure: Decision::asks
 };
 
 }  // namespace culprit::plan

@@ -1,0 +1,132 @@
+#include "diagnose/questions.h"
+
+#include <algorithm>
+
+namespace culprit::diagnose {
+namespace {
+
+using Vertex = DependencyGraph::Vertex;
+
+bool is_open(const Questioned& questioned, Time now) {
+  return questioned.is_open && now < later(questioned.at, kLongestQuestion);
+}
+
+bool may_be_asked_again(const Questioned& questioned, Time now) {
+  return !is_open(questioned, now) && now >= later(questioned.at, kAskedAgain);
+}
+
+// When each component proved last that it works: it joined the graph, it answered, or a message came
+// on a topic that it alone publishes.
+std::vector<Time> last_signs(const Knowledge& knowledge) {
+  std::vector<Time> signs(knowledge.rules.components.size());
+  for (std::size_t c = 0; c < signs.size(); ++c) {
+    const ComponentState& state = knowledge.components[ComponentId(c)];
+    signs[c] = std::max(state.answered, state.node_seen);
+  }
+  for (std::size_t t = 0; t < knowledge.rules.topics.size(); ++t) {
+    const auto& heard = knowledge.signals.rhythm(TopicId(t)).last;
+    if (!heard) continue;
+    if (const auto c = knowledge.graph.only_publisher(knowledge.rules.topics[t].name))
+      signs[c->index] = std::max(signs[c->index], *heard);
+  }
+  return signs;
+}
+
+// Could it answer? Not what is known to be dead, lost, or not heard.
+bool can_be_asked(ComponentId component, const Knowledge& knowledge) {
+  const ComponentState& state = knowledge.components[component];
+  return knowledge.sightings.has(component) && state.in_graph &&
+         state.process == ProcessState::kRunning && state.alive != false &&
+         state.lifecycle != Lifecycle::kTransition && !state.questioned.is_pointless &&
+         !knowledge.is_unheard(component);
+}
+
+// How many channels lie between each node and the nearest one of `from`, upstream of it.
+std::vector<std::size_t> distances_to(const std::vector<ComponentId>& from,
+                                      const Knowledge& knowledge) {
+  const std::size_t far = knowledge.graph.size();
+  std::vector<std::size_t> distances(far, far);
+  for (const ComponentId c : from) {
+    if (const auto vertex = knowledge.graph.vertex_of(c)) distances[*vertex] = 0;
+  }
+  bool goes_on = true;
+  for (std::size_t distance = 1; goes_on && distance < far; ++distance) {
+    goes_on = false;
+    knowledge.graph.for_each_channel(
+        [&](std::span<const Vertex> producers, std::span<const Vertex> consumers) {
+          const bool is_next = std::any_of(consumers.begin(), consumers.end(),
+                                           [&](Vertex v) { return distances[v] == distance - 1; });
+          for (const Vertex v : producers) {
+            if (!is_next || distances[v] != far) continue;
+            distances[v] = distance;
+            goes_on = true;
+          }
+        });
+  }
+  return distances;
+}
+
+void keep_nearest(std::vector<ComponentId>& components, RuleId failure,
+                  const Knowledge& knowledge) {
+  if (components.size() > kMostQuestions) {
+    const auto distances = distances_to(knowledge.rules[failure].components, knowledge);
+    std::stable_sort(components.begin(), components.end(), [&](ComponentId a, ComponentId b) {
+      return distances[*knowledge.graph.vertex_of(a)] < distances[*knowledge.graph.vertex_of(b)];
+    });
+    components.resize(kMostQuestions);
+  }
+}
+
+std::size_t open_questions(const Knowledge& knowledge) {
+  std::size_t open = 0;
+  for (std::size_t c = 0; c < knowledge.rules.components.size(); ++c)
+    open += is_open(knowledge.components[ComponentId(c)].questioned, knowledge.now) ? 1 : 0;
+  return open;
+}
+
+}  // namespace
+
+Questions questions_about(RuleId failure, std::span<const std::optional<TroubleSeen>> troubles,
+                          const Knowledge& knowledge) {
+  Questions questions;
+  if (symptom_of(failure, knowledge) != Symptom::kOutage) return questions;
+  const Time onset = onset_of(failure, knowledge).latest;
+  std::vector<ComponentId> silent;
+  for (const ComponentId c : knowledge.graph.upstream(knowledge.rules[failure].components)) {
+    if (!troubles[c.index] && can_be_asked(c, knowledge)) silent.push_back(c);
+  }
+  if (silent.empty()) return questions;
+  const std::vector<Time> signs = last_signs(knowledge);
+  std::erase_if(silent, [&](ComponentId c) { return signs[c.index] >= onset; });
+  std::sort(silent.begin(), silent.end(), [&](ComponentId a, ComponentId b) {
+    return knowledge.rules[a].name < knowledge.rules[b].name;
+  });
+  keep_nearest(silent, failure, knowledge);
+  std::size_t open = open_questions(knowledge);
+  for (const ComponentId c : silent) {
+    const Questioned& questioned = knowledge.components[c].questioned;
+    const bool is_asked_now =
+        open < kMostQuestions && may_be_asked_again(questioned, knowledge.now);
+    if (is_asked_now) {
+      questions.asks.push_back(c);
+      ++open;
+    }
+    if (!questions.awaited && (is_asked_now || is_open(questioned, knowledge.now)))
+      questions.awaited = c;
+  }
+  return questions;
+}
+
+bool is_overdue(ComponentId component, const Knowledge& knowledge) {
+  const ComponentState& state = knowledge.components[component];
+  const auto& asked = state.questioned.unanswered;
+  return asked && state.answers_probes && can_be_asked(component, knowledge) &&
+         last_signs(knowledge)[component.index] < *asked;
+}
+
+bool is_to_be_asked_again(ComponentId component, const Knowledge& knowledge) {
+  return is_overdue(component, knowledge) &&
+         may_be_asked_again(knowledge.components[component].questioned, knowledge.now);
+}
+
+}  // namespace culprit::diagnose

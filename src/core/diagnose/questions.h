@@ -1,0 +1,43 @@
+// Which components are asked whether they answer, before something is taken down.
+//
+// A supplier that hangs is found by periodic questions only after several went unanswered; until then
+// its consumer looks like the cause. So before an outage is repaired by taking something down, those
+// upstream are asked that gave no sign of life since it began, the nearest first. Asked are only
+// components that can answer as far as is known: one that never did, and was asked in vain, is not
+// asked again, and is not taken to hang.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "diagnose/trouble.h"
+
+namespace culprit::diagnose {
+
+// An answer that takes longer than this does not come.
+inline constexpr Duration kAnswersWithin = std::chrono::milliseconds(500);
+// So long the answer to a question is waited for: until it is known that none came.
+inline constexpr Duration kLongestQuestion = std::chrono::milliseconds(600);
+// A component is not asked again before.
+inline constexpr Duration kAskedAgain = std::chrono::seconds(2);
+// How many questions may be open at once.
+inline constexpr std::size_t kMostQuestions = 16;
+
+struct Questions {
+  std::vector<ComponentId> asks;       // to be asked now, nearest first
+  std::optional<ComponentId> awaited;  // whose answer is to be waited for; of those asked, too
+};
+
+// Before something is taken down for the failure. `troubles`: by component. For a failure that is no
+// outage nothing is asked.
+Questions questions_about(RuleId failure, std::span<const std::optional<TroubleSeen>> troubles,
+                          const Knowledge& knowledge);
+
+// Was the component asked in vain, so that it presumably hangs: it answered before, and gave no sign
+// of life since?
+bool is_overdue(ComponentId component, const Knowledge& knowledge);
+// Is it time to ask such a one again?
+bool is_to_be_asked_again(ComponentId component, const Knowledge& knowledge);
+
+}  // namespace culprit::diagnose

@@ -1,0 +1,110 @@
+#include "diagnose/questions.h"
+
+#include <gtest/gtest.h>
+
+#include "plan/bayes/test_scene.h"
+
+namespace culprit::diagnose {
+namespace {
+
+using namespace std::chrono_literals;
+using plan::failure_of;
+using plan::Scene;
+
+// map -> nav; navigation was silent from the 90th second on.
+class AMap : public ::testing::Test {
+ protected:
+  AMap() : scene_(rules()) {
+    scene_.link("map", "nav").fail("Nav");
+    scene_->states.state(scene_.rule("Nav")).onset = Onset{Time(89s), Time(90s)};
+    for (const char* each : {"map", "nav"}) state(each).in_graph = true;
+  }
+
+  static std::string rules() {
+    std::string text = failure_of("map", "Map") + failure_of("nav", "Nav");
+    text.replace(text.rfind("x > 1"), 5, "age(/cmd) > 1s");
+    text.replace(text.find("x > 1"), 5, "!alive(map)");
+    return text;
+  }
+  ComponentState& state(const char* component) {
+    return scene_->components[scene_.component(component)];
+  }
+  Questions questions() {
+    return questions_about(scene_.rule("Nav"), all_troubles(*scene_), *scene_);
+  }
+  bool is_asked() { return !questions().asks.empty(); }
+
+  Scene scene_;
+};
+
+TEST_F(AMap, IsAskedIfItGaveNoSignOfLifeSinceTheOutageBegan) {
+  state("map").answered = Time(89s);
+  EXPECT_EQ(questions().asks, std::vector{scene_.component("map")});
+  EXPECT_EQ(questions().awaited, scene_.component("map"));
+  state("map").answered = Time(91s);
+  EXPECT_FALSE(is_asked());
+}
+
+TEST_F(AMap, IsNotAskedWhereItGaveAnotherSign) {
+  const TopicId cmd(0);
+  EXPECT_TRUE(is_asked());
+  scene_->graph.endpoint_appeared("/map", EndpointKind::kPublisher, scene_.rules()[cmd].name);
+  scene_->signals.set_rhythm(cmd, {Time(91s), 100ms, 100ms, 1h});
+  EXPECT_FALSE(is_asked()) << "it sends what it alone publishes";
+  scene_->graph.endpoint_appeared("/nav", EndpointKind::kPublisher, scene_.rules()[cmd].name);
+  EXPECT_TRUE(is_asked()) << "somebody else may have sent that";
+  state("map").node_seen = Time(91s);
+  EXPECT_FALSE(is_asked()) << "it has just come";
+}
+
+TEST_F(AMap, IsNotAskedWhatIsKnown) {
+  state("map").questioned.is_pointless = true;
+  EXPECT_FALSE(is_asked()) << "it never answers";
+  state("map").questioned = {};
+  state("map").lifecycle = Lifecycle::kInactive;
+  EXPECT_FALSE(is_asked()) << "it is in trouble";
+  state("map").lifecycle = Lifecycle::kTransition;
+  EXPECT_FALSE(is_asked()) << "it has no time to answer";
+}
+
+TEST_F(AMap, IsAwaitedForAWhile) {
+  state("map").questioned.at = scene_->now - 550ms;
+  state("map").questioned.is_open = true;
+  EXPECT_FALSE(is_asked());
+  EXPECT_EQ(questions().awaited, scene_.component("map"));
+  state("map").questioned.at = scene_->now - 650ms;
+  EXPECT_EQ(questions().awaited, std::nullopt);
+}
+
+TEST_F(AMap, HangsIfItAnsweredBeforeAndDoesNotAnswer) {
+  ComponentState& map = state("map");
+  map.answered = Time(80s);
+  map.questioned.unanswered = Time(95s);
+  map.questioned.at = Time(99s);
+  EXPECT_EQ(trouble_of(scene_.component("map"), *scene_), std::nullopt) << "it may never answer";
+  map.answers_probes = true;
+  const auto seen = trouble_of(scene_.component("map"), *scene_);
+  ASSERT_TRUE(seen);
+  EXPECT_EQ(seen->trouble, Trouble::kHung);
+  EXPECT_EQ(seen->onset.earliest, Time(80s));
+  EXPECT_EQ(seen->onset.latest, Time(95s));
+  EXPECT_FALSE(is_to_be_asked_again(scene_.component("map"), *scene_));
+  map.questioned.at = Time(98s);
+  EXPECT_TRUE(is_to_be_asked_again(scene_.component("map"), *scene_));
+  map.node_seen = Time(96s);
+  EXPECT_EQ(trouble_of(scene_.component("map"), *scene_), std::nullopt) << "it came back";
+}
+
+// It hung when it answered last, not when that was noticed: it can be the cause of what came between.
+TEST_F(AMap, HungBeforeItsRuleNoticed) {
+  ComponentState& map = state("map");
+  map.answered = Time(80s);
+  map.alive = false;
+  map.alive_since = Time(99s);
+  const Onset onset = onset_now(scene_.rule("Map"), scene_->now, *scene_);
+  EXPECT_EQ(onset.earliest, Time(80s));
+  EXPECT_EQ(onset.latest, Time(99s));
+}
+
+}  // namespace
+}  // namespace culprit::diagnose
