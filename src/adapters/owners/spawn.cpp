@@ -95,7 +95,10 @@ void be_spared_no_more() {
 bool redirect(const char* log) {
   const int input = open("/dev/null", O_RDONLY);
   const int output = open(log, O_WRONLY | O_CREAT | O_APPEND, 0600);
-  if (output >= 0) fchmod(output, 0600);  // it may be an older culprit's, open to readers
+  // An older culprit's may be open to readers. A device is everybody's: it stays as it is.
+  struct stat log_status {};
+  if (output >= 0 && fstat(output, &log_status) == 0 && S_ISREG(log_status.st_mode))
+    fchmod(output, S_IRUSR | S_IWUSR);
   return input >= 0 && output >= 0 && dup2(input, STDIN_FILENO) >= 0 &&
          dup2(output, STDOUT_FILENO) >= 0 && dup2(output, STDERR_FILENO) >= 0;
 }

@@ -973,6 +973,19 @@ TEST(Supervisor, WhatItStartsIsNotSparedWhenMemoryRunsOut) {
   EXPECT_EQ(adjusted, "0");
 }
 
+// A log may be a device, which is everybody's.
+TEST(Supervisor, LeavesADeviceAsItIs) {
+  const auto mode_of_null = [] {
+    struct stat status {};
+    EXPECT_EQ(stat("/dev/null", &status), 0);
+    return status.st_mode & 07777;
+  };
+  const mode_t before = mode_of_null();
+  const int pid = *spawn(Program{{"true"}, {}, "/dev/null"});
+  waitpid(pid, nullptr, 0);
+  EXPECT_EQ(mode_of_null(), before);
+}
+
 // Any user can start a process with these variables.
 TEST(Supervisor, AMarkOfAnotherUsersProcessDoesNotCount) {
   if (geteuid() != 0) GTEST_SKIP() << "only root can become somebody else";
