@@ -58,6 +58,23 @@ Onset onset_of_node(RuleId failure, const Knowledge& knowledge) {
   return {std::min(onset.earliest, first), std::min(onset.latest, first)};
 }
 
+// Does the rule change modes, or read the lifecycle of a component?
+bool is_about_states(RuleId rule, const RuleSet& rules) {
+  const auto& inputs = rules[rule].inputs;
+  const bool reads_lifecycle = std::any_of(inputs.begin(), inputs.end(), [&](InputId id) {
+    return rules[id].kind == Input::Kind::kLifecycle;
+  });
+  const auto changes_mode = [](const Adaptation& a) {
+    return a.type == AdaptationType::kChangeMode;
+  };
+  return reads_lifecycle ||
+         std::any_of(rules[rule].strategies.begin(), rules[rule].strategies.end(),
+                     [&](StrategyId s) {
+                       return std::any_of(rules[s].adaptations.begin(), rules[s].adaptations.end(),
+                                          changes_mode);
+                     });
+}
+
 // Did its function never work while culprit watched?
 bool never_worked(RuleId rule, const Knowledge& knowledge) {
   return knowledge.states[rule].detection.last_false == kLongAgo;
@@ -170,9 +187,10 @@ void Causes::connect(const Knowledge& knowledge, const Reach& reach, const Paths
     clear(row, i);
     for (std::size_t j = 0; j < size(); ++j) {
       if (!has(row, j)) continue;
-      const bool is_first =
-          nodes_[j].kind == CauseNode::Kind::kTrouble && nodes_[j].trouble == Trouble::kNeverSeen;
-      if (is_first ? !never_worked(nodes_[i].rule, knowledge) : !can_precede(j, i)) clear(row, j);
+      const bool is_possible = nodes_[j].kind == CauseNode::Kind::kTrouble
+                                   ? can_explain(j, i, knowledge)
+                                   : can_precede(j, i);
+      if (!is_possible) clear(row, j);
     }
   }
   for (std::size_t u = 0; u < size(); ++u) {
@@ -223,6 +241,22 @@ void Causes::leave_out_slight(const Knowledge& knowledge) {
     if (!nodes_[i].is_rule()) continue;
     for_each(slight[level_of(rules[nodes_[i].rule])],
              [&](std::size_t cause) { clear(causes_[i], cause); });
+  }
+}
+
+// A supplier that was never there, or never active, explains only a function that never worked. What is
+// not active explains no rule that changes modes or reads lifecycles: these are what such rules are for.
+bool Causes::can_explain(std::size_t j, std::size_t i, const Knowledge& knowledge) const {
+  const RuleId rule = nodes_[i].rule;
+  switch (nodes_[j].trouble) {
+    case Trouble::kNeverSeen:
+      return never_worked(rule, knowledge);
+    case Trouble::kNotYetActive:
+      return never_worked(rule, knowledge) && !is_about_states(rule, knowledge.rules);
+    case Trouble::kNotActive:
+      return can_precede(j, i) && !is_about_states(rule, knowledge.rules);
+    default:
+      return can_precede(j, i);
   }
 }
 

@@ -84,6 +84,7 @@ class Causes {
   void connect_learned(const Knowledge& knowledge, std::size_t i);
   void connect_containers(const Knowledge& knowledge, std::size_t i);
   void leave_out_slight(const Knowledge& knowledge);
+  bool can_explain(std::size_t j, std::size_t i, const Knowledge& knowledge) const;
   bool can_precede(std::size_t j, std::size_t i) const;
   void find_loops(const BitRows& effects);
 

@@ -151,7 +151,11 @@ TEST(Diagnosis, ASupplierCountsWithoutARule) {
   EXPECT_LT(own(scene, "B"), 0.5) << "it hangs";
   scene->components[a].alive = true;
   scene->components[a].lifecycle = Lifecycle::kInactive;
-  EXPECT_LT(own(scene, "B"), 0.5) << "it is not active";
+  scene->components[a].was_active = true;
+  EXPECT_LT(own(scene, "B"), 0.5) << "it is not active any more";
+  scene->components[a].was_active = false;
+  scene->states.state(scene.rule("B")).detection.last_false = Time(50s);
+  EXPECT_DOUBLE_EQ(own(scene, "B"), 1) << "it worked without";
   scene->components[a].lifecycle = Lifecycle::kActive;
   EXPECT_DOUBLE_EQ(own(scene, "B"), 1);
 }
@@ -162,6 +166,7 @@ TEST(Diagnosis, AnOldTroubleExplainsNothingNew) {
   scene.link("a", "b");
   scene->now = Time(1000s);
   scene->components[scene.component("a")].lifecycle = Lifecycle::kInactive;
+  scene->components[scene.component("a")].was_active = true;
   scene->components[scene.component("a")].lifecycle_since = Time(100s);
   scene->states.state(scene.rule("B")).onset = Onset{Time(900s), Time(900s)};
   scene.fail("B");

@@ -26,7 +26,8 @@ std::optional<TroubleSeen> own_trouble(ComponentId component, const Knowledge& k
   if (state.alive == false) return TroubleSeen{Trouble::kLeft, at(state.alive_since)};
   const bool is_managed = state.lifecycle != Lifecycle::kUnknown;
   if (is_managed && state.lifecycle != Lifecycle::kActive)
-    return TroubleSeen{Trouble::kNotActive, at(state.lifecycle_since)};
+    return TroubleSeen{state.was_active ? Trouble::kNotActive : Trouble::kNotYetActive,
+                       at(state.lifecycle_since)};
   return std::nullopt;
 }
 
@@ -43,6 +44,7 @@ std::string_view to_string(Trouble trouble) {
     case Trouble::kHung:
       return "hangs";
     case Trouble::kNotActive:
+    case Trouble::kNotYetActive:
       return "is not active";
     case Trouble::kNeverSeen:
       return "was never seen";

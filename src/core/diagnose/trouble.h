@@ -15,9 +15,10 @@ enum class Trouble : std::uint8_t {
   kStopped,    // its process is stopped (SIGSTOP)
   kLeft,       // its node left the graph
   kHung,       // its process runs and does not answer: any more, or what it was asked (questions.h)
-  kNotActive,  // its lifecycle is known and is not `active`
-  kNeverSeen,  // it was not seen yet
-  kSilent      // a topic that it alone publishes, at a steady rate, is silent
+  kNotActive,  // its lifecycle was active, and is not any more
+  kNotYetActive,  // its lifecycle is known and was never active
+  kNeverSeen,     // it was not seen yet
+  kSilent         // a topic that it alone publishes, at a steady rate, is silent
 };
 
 // For people, after the component's name: "exited", "hangs".

@@ -45,6 +45,7 @@ struct ComponentState {
   Questioned questioned{};
   Lifecycle lifecycle = Lifecycle::kUnknown;
   Time lifecycle_since = kLongAgo;  // when it was read first in that state
+  bool was_active = false;          // it was read as active once
   Time changes_until = kNever;     // when a transition under way hangs; kNever: none is known to be
   Duration transition_patience{};  // that culprit has with each, if more than it needed before
   // Where its lifecycle should be: where it was last while no strategy was at it, or where one

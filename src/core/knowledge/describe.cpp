@@ -488,8 +488,12 @@ std::string describe_exclusion(const Candidate& candidate, const RuleSet& rules)
     case Condition::kAffected:
       return component + " is affected by a strategy chosen just now";
     case Condition::kDependency:
-      if (!candidate.failure && !candidate.remark.empty())
-        return component + " " + candidate.remark;
+      if (!candidate.failure && !candidate.remark.empty()) {
+        const auto& own = rules[candidate.strategy].components;
+        const bool is_own = std::binary_search(own.begin(), own.end(), candidate.component);
+        return is_own ? component + " " + candidate.remark
+                      : "it depends on " + component + ", which " + candidate.remark;
+      }
       return "it depends on " + component + ", which may be the cause" + because;
     case Condition::kOneEach:
       return "another strategy was chosen for the same failure";

@@ -148,6 +148,7 @@ void Monitor::on(Time at, const LifecycleRead& seen) {
   ComponentState& state = write_.components[seen.component];
   if (seen.state != state.lifecycle) state.lifecycle_since = at;
   state.lifecycle = seen.state;
+  state.was_active |= seen.state == Lifecycle::kActive;
   const bool is_primary = seen.state != Lifecycle::kUnknown && seen.state != Lifecycle::kTransition;
   if (seen.state != Lifecycle::kTransition) {
     state.changes_until = kNever;

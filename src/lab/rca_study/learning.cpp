@@ -155,7 +155,7 @@ class Learner {
         if (effect == resolved->rule || state.attempt ||
             !plant.passes(resolved->rule.index, effect.index))
           continue;
-        // Kappa is of a cause that is alone (plan/bayes/responsibility.h). What has no fault of its
+        // Kappa is of a cause that is alone (diagnose/diagnosis.h). What has no fault of its
         // own stands in a chain from it, or goes away by itself.
         const auto& active = knowledge.states.active();
         const bool is_alone = std::none_of(active.begin(), active.end(), [&](RuleId other) {

@@ -1,22 +1,24 @@
-// culprit's own planner: who is responsible, what would fix it, what is that worth, and which
-// strategies go together (docs/planning.md, and the headers beside this one).
+// culprit's own planner: which component is responsible, what would fix it, what is that worth, and
+// which strategies go together (docs/planning.md, and the headers beside this one).
 //
-// What only replaces processes that are known to be dead is chosen first, and waits for nobody
-// (plan/bayes/seen_down.h). Then, for each criticality level (inherited, plan/bayes/levels.h), from
-// ERROR down, the strategies are chosen that have the highest total worth (value minus expected
-// cost) and do not conflict: one for each failure, and no two that adapt a component or one and
-// another that depends on it. Left out beforehand is a strategy that
+// Strategies that only replace processes that are known to be dead are chosen first, and wait for no
+// other failure (diagnose/known_down.h). Then, for each criticality level (inherited,
+// plan/bayes/levels.h), from ERROR down, the strategies are chosen that have the highest total worth
+// (value minus expected cost) and do not conflict: one for each failure, and no two that adapt a
+// component or one and another that depends on it. Workarounds come last, beside the repair of their
+// cause. Left out beforehand is a strategy that
 //   1. was tried already, or
 //   2. is invalid in the present state of the system (its WHEN condition is not true, ...),
 //   3. adapts a component that is being adapted, or one that depends on such a component,
 //   4. is for a failure that is more likely the effect of another one (1 - R_i > 1/2),
-//   5. is for a failure that is expected to go away with one that was just resolved,
-//   6. adapts a component that depends on a suspicious one: whether that fails too is not known
-//      yet,
-//   7. adapts a component on which a more critical failure depends that is being worked on and that
+//   5. is for a failure that may be the echo of one that cleared a moment ago,
+//   6. is for a failure whose cause can still be detected (diagnose/awaited.h), or that already looks
+//      bad upstream (diagnose/imminent.h),
+//   7. is for a failure that repeatedly began together with another one that has its turn now,
+//   8. adapts a component on which a more critical failure depends that is being worked on and that
 //      it does not explain: the lower criticality never delays the higher. A failure that waits for
 //      a person is not being worked on (its cause is exhausted, or all that is left was refused).
-// 5 and 6 are waits of bounded length, and 3, 4 and 7 wait for failures that come to an end
+// 5 and 6 are waits of bounded length, and 3, 4, 7 and 8 wait for failures that come to an end
 // (resolved or exhausted) without waiting for this one, so every failure has its turn.
 //
 // A strategy that took effect and only waits for its verdict stands less in the way: one of a lower

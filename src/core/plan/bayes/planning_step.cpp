@@ -312,8 +312,8 @@ double PlanningStep::disruption(const Strategy& strategy) const {
 void PlanningStep::exclude(WeighedCandidate& weighed, double chance) const {
   const RuleId rule = causes_[weighed.failure].rule;
   const Strategy& strategy = knowledge_.rules[weighed.candidate.strategy];
-  // What is known to be dead, and a safe stop, wait for nobody but who has the component already.
-  if (weighed.only_revives || strategy.is_last_resort) {
+  // The replacement of a dead process waits for no failure but one that has the component already.
+  if (weighed.only_revives) {
     if (const auto held = exclusions_.reserved(weighed.level, weighed.affected))
       exclude(weighed, *held);
     return;

@@ -25,7 +25,7 @@
 //
 //     V_i = R_i Q_i (W_i + sum_k share(i -> k) W_k),    Q_i = min(1, sum_s u_s)
 //
-//   R_i           its responsibility (plan/bayes/responsibility.h)
+//   R_i           its responsibility (diagnose/diagnosis.h)
 //   W             1, 2 or 4: how much worse each level of criticality is than the one below it
 //   share(i -> k) the part of failure k that is put down to i, or how often k was seen to go away
 //                 with it; in one circle kappa(i -> k), as if i had been the first
