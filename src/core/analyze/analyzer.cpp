@@ -217,13 +217,13 @@ void Analyzer::look_at(RuleId id, Time now) {
 void Analyzer::evaluate_trigger(RuleId id, Time now) {
   RuleState& state = write_.states.state(id);
   const Slot value = value_of_trigger(id, now);
+  if (is_false(value) || is_false(state.detection.trigger)) state.detection.last_false = now;
   if (!same(value, state.detection.trigger, Type::kBool) ||
       state.detection.trigger_since == kLongAgo) {
     state.detection.trigger = value;
     state.detection.trigger_since = now;
   }
   if (!is_true(value)) state.detection.armed = true;
-  if (is_false(value)) state.detection.last_false = now;
   if (is_false(value) && state.left_off && !state.left_off->gone) forget_left_off(id, now);
   if (!state.detection.history.empty()) sample_history(id, now);
   blind_.evaluated(id, now);
@@ -312,7 +312,10 @@ void Analyzer::detect(RuleId id, Time now) {
     write_.states.begin_search(id, now);
   }
   state.onset = diagnose::onset_now(id, now, knowledge_);
-  if (!recurs) state.first_onset = state.onset->latest;
+  if (!recurs) {
+    state.first_onset = state.onset->latest;
+    state.worked_until = state.detection.last_false;
+  }
   if (!is_same) note_coincidence(id);
   for (const StrategyId strategy : knowledge_.rules[id].strategies) {
     const Strategy& last = knowledge_.rules[strategy];

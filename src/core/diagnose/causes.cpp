@@ -51,11 +51,10 @@ bool may_be_broken(RuleId rule, const RuleSet& rules) {
       });
 }
 
-// What comes and goes began with its first detection.
+// As a cause, what comes and goes began with its first detection; as an effect, with its last.
 Onset onset_of_node(RuleId failure, const Knowledge& knowledge) {
   const Onset onset = onset_of(failure, knowledge);
-  const Time first = first_onset_of(failure, knowledge);
-  return {std::min(onset.earliest, first), std::min(onset.latest, first)};
+  return {std::min(onset.earliest, first_onset_of(failure, knowledge)), onset.latest};
 }
 
 // Does the rule change modes, or read the lifecycle of a component?
@@ -128,7 +127,11 @@ void Causes::add_rules(const Knowledge& knowledge, std::span<const RuleId> immin
          {},
          {},
          {},
-         is_imminent ? onset_now(rule, knowledge.now, knowledge) : onset_of_node(rule, knowledge)});
+         is_imminent ? onset_now(rule, knowledge.now, knowledge) : onset_of_node(rule, knowledge),
+         is_imminent ? states[rule].detection.last_false : states[rule].worked_until});
+    CauseNode& node = nodes_.back();
+    node.first_onset = is_imminent ? node.onset.latest
+                                   : std::min(node.onset.latest, first_onset_of(rule, knowledge));
   }
 }
 
@@ -185,13 +188,12 @@ void Causes::connect(const Knowledge& knowledge, const Reach& reach, const Paths
     connect_learned(knowledge, i);
     connect_containers(knowledge, i);
     clear(row, i);
-    for (std::size_t j = 0; j < size(); ++j) {
-      if (!has(row, j)) continue;
+    for_each(row, [&](std::size_t j) {
       const bool is_possible = nodes_[j].kind == CauseNode::Kind::kTrouble
                                    ? can_explain(j, i, knowledge)
                                    : can_precede(j, i);
       if (!is_possible) clear(row, j);
-    }
+    });
   }
   for (std::size_t u = 0; u < size(); ++u) {
     if (nodes_[u].kind == CauseNode::Kind::kUnsupplied) set(causes_[index_of(nodes_[u].rule)], u);
@@ -266,9 +268,9 @@ bool Causes::can_precede(std::size_t j, std::size_t i) const {
 
 double Causes::timely(std::size_t j, std::size_t i) const {
   const Time began = nodes_[j].onset.latest;
-  const Time came = nodes_[i].onset.earliest;
-  if (began == kLongAgo || began == kNever || came <= later(began, kUsualDelay)) return 1;
-  return seconds(kUsualDelay) / seconds(came - began);
+  const Time worked = nodes_[i].worked_until;
+  if (began == kLongAgo || began == kNever || worked <= later(began, kUsualDelay)) return 1;
+  return seconds(kUsualDelay) / seconds(worked - began);
 }
 
 // Kosaraju: what is visited first from the last of one search, backwards, is a loop.

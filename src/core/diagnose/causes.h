@@ -28,7 +28,8 @@ namespace culprit::diagnose {
 
 inline constexpr std::size_t kLevels = 3;  // of criticality
 
-// An effect usually follows its cause within this time. Twice as late, it is half as likely.
+// An effect usually follows its cause within this time. If it was seen to be well for twice as long
+// while the cause was there, it is half as likely to be one.
 inline constexpr Duration kUsualDelay = std::chrono::seconds(5);
 // Learned couplings off the graph count from this mean on.
 inline constexpr double kKnownCoupling = 0.3;
@@ -45,6 +46,8 @@ struct CauseNode {
   Trouble trouble{};        // kTrouble
   std::string channel{};    // kUnsupplied: the topic or service
   Onset onset;
+  Time worked_until = kLongAgo;  // of a rule: when it was seen to be well last
+  Time first_onset = kNever;     // of a rule: the latest onset of its first detection
 
   bool is_rule() const { return kind == Kind::kFailure || kind == Kind::kImminent; }
 };
@@ -66,7 +69,8 @@ class Causes {
   // Is j a possible cause of i only because of what was learned, or because i lives in it?
   bool is_learned(std::size_t j, std::size_t i) const { return has(learned_[i], j); }
   bool lives_in(std::size_t i, std::size_t j) const { return has(hosts_[i], j); }
-  // How likely the effect i came so late after j, relative to one that came in the usual time: 0..1.
+  // How likely i is an effect of j although it was well for so long while j was there, relative to one
+  // that came in the usual time: 0..1.
   double timely(std::size_t j, std::size_t i) const;
 
   // The nodes of feedback loop c; most consist of one.

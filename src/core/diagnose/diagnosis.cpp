@@ -72,7 +72,7 @@ double Diagnosis::explained(std::size_t i) const {
 
 void Diagnosis::divide(const std::vector<std::size_t>& loop) {
   Time first = kNever;
-  for (const std::size_t i : loop) first = std::min(first, causes_[i].onset.latest);
+  for (const std::size_t i : loop) first = std::min(first, causes_[i].first_onset);
   double sum = 0;
   std::vector<double> weights;
   for (const std::size_t i : loop) sum += weights.emplace_back(weight(i, loop, first));
@@ -85,7 +85,7 @@ void Diagnosis::divide(const std::vector<std::size_t>& loop) {
 double Diagnosis::weight(std::size_t i, const std::vector<std::size_t>& loop, Time first) const {
   // Even one at which all was tried may be the cause: it can have failed by accident.
   constexpr double kLeast = 0.01;
-  const double delay = seconds(causes_[i].onset.latest - first) / seconds(knowledge_.rules.cycle);
+  const double delay = seconds(causes_[i].first_onset - first) / seconds(knowledge_.rules.cycle);
   double weight = std::max(kLeast, still_there(causes_[i].rule, knowledge_)) *
                   (prior_[i] / kCoincidence) / (1 + delay);
   for (const std::size_t k : loop) {

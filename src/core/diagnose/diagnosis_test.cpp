@@ -169,9 +169,10 @@ TEST(Diagnosis, AnOldTroubleExplainsNothingNew) {
   scene->components[scene.component("a")].was_active = true;
   scene->components[scene.component("a")].lifecycle_since = Time(100s);
   scene->states.state(scene.rule("B")).onset = Onset{Time(900s), Time(900s)};
+  scene->states.state(scene.rule("B")).worked_until = Time(900s);
   scene.fail("B");
   EXPECT_GT(own(scene, "B"), 0.5);
-  scene->states.state(scene.rule("B")).onset = Onset{Time(102s), Time(102s)};
+  scene->states.state(scene.rule("B")).worked_until = Time(102s);
   EXPECT_LT(own(scene, "B"), 0.5);
 }
 
