@@ -69,7 +69,7 @@ Expected<RangeOfSeconds> parse_range(std::string_view text) {
     return Error{
         fmt::format("'{}' ends before it begins; write the smaller value first, as in "
                     "{}..{}",
-                    text, to_string(*last), to_string(*first))};
+                    text, culprit::to_string(*last), culprit::to_string(*first))};
   if (*first < Duration::zero() || seconds(*last) > RcaFactors::kLongest_s)
     return Error{
         fmt::format("'{}' is not within 0..{:g}s; {}", text, RcaFactors::kLongest_s, kRemedy)};
