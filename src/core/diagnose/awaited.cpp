@@ -126,10 +126,13 @@ Awaiting Awaited::awaiting(RuleId failure) const {
                                   later(detected, kLongestEvidence));
     if (until > found.until) found = {until, *rule, false};
   };
+  // One reading of a common monitor tells of both: whether it settles is seen by that (Settling).
+  const bool has_echo = !is_value || knowledge_.latencies.is_late(failure);
   const auto fade = [&](const Two<Time>& gone) {
     const auto& [recovered_at, rule] = gone.without(failure);
-    if (!rule || onset.earliest > later(recovered_at, passing)) return;
-    const Time until = later(recovered_at, passing + clears_within(failure, knowledge_));
+    if (!rule || !has_echo || onset.earliest > later(recovered_at, passing)) return;
+    const Time until = std::min(later(recovered_at, passing + clears_within(failure, knowledge_)),
+                                later(state.first_detected(), kLongestEvidence));
     if (until > found.until) found = {until, *rule, true};
   };
   for (const ComponentId c : knowledge_.rules[failure].components) {

@@ -3,8 +3,8 @@
 //
 //     W_i = max_u min(b_i + E_u, d_i + kLongestEvidence)     quiet rules u upstream of i, of a
 //                                                            symptom that can cause i's
-//     Z_i = max_u r_u + passing + C_i                        rules u upstream of i that cleared lately,
-//                                                            if e_i <= r_u + passing
+//     Z_i = max_u min(r_u + passing + C_i,                   rules u upstream of i that cleared lately,
+//                     d_i + kLongestEvidence)                if e_i <= r_u + passing
 //
 //   e_i, E_u        onset and evidence time (timing.h); d_i the detection of i
 //   b_i             when i presumably began: l_i, less the presumed lateness of a value's rule, but at

@@ -1,5 +1,7 @@
 #include "diagnose/imminent.h"
 
+#include <algorithm>
+
 #include "language/evaluate.h"
 
 namespace culprit::diagnose {
@@ -30,6 +32,13 @@ bool fires_if_silence_lasts(RuleId rule, const Knowledge& knowledge) {
   return value.known && value.b;
 }
 
+bool nears_its_threshold(RuleId rule, const Knowledge& knowledge) {
+  const auto& inputs = knowledge.rules[rule].inputs;
+  return std::any_of(inputs.begin(), inputs.end(), [&](InputId id) {
+    return knowledge.rules[id].kind == Kind::kSignal && knowledge.signals.is_unusual(id);
+  });
+}
+
 }  // namespace
 
 std::optional<Slot> after_long_silence(const Input& input) {
@@ -51,7 +60,7 @@ bool is_imminent(RuleId rule, const Knowledge& knowledge) {
   const RuleState& state = knowledge.states[rule];
   if (state.phase != RulePhase::kQuiet || knowledge.now < state.quiet_until) return false;
   return is_coming(state, knowledge.rules[rule].policies) ||
-         fires_if_silence_lasts(rule, knowledge);
+         fires_if_silence_lasts(rule, knowledge) || nears_its_threshold(rule, knowledge);
 }
 
 std::vector<RuleId> imminent_rules(const Knowledge& knowledge) {

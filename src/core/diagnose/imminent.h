@@ -19,7 +19,9 @@ std::optional<Slot> after_long_silence(const Input& input);
 // The rule is quiet, and one of these holds:
 //   - its trigger is true, and its policy's time (FOR) is not over; or it was true in half as many
 //     evaluations as its HOLD needs;
-//   - topics that its trigger reads are silent for longer than usual, and it will fire if that lasts.
+//   - topics that its trigger reads are silent for longer than usual, and it will fire if that lasts;
+//   - the last reading of a signal that its trigger reads was nearer to firing it than any lately
+//     (SignalStore::is_unusual).
 bool is_imminent(RuleId rule, const Knowledge& knowledge);
 
 // All that are, ascending.

@@ -125,7 +125,7 @@ Duration evidence_within(RuleId quiet, Time onset, const Knowledge& knowledge) {
       if (rhythm.last && *rhythm.last <= onset)
         longest = std::max<Duration>(longest, kSilentGaps * rhythm.gap);
     } else if (!watches_a_component(input)) {
-      reads_value = true;
+      reads_value = knowledge.latencies.is_late(quiet);
     }
   }
   if (reads_value) {

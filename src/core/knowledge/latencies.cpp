@@ -65,13 +65,11 @@ Latencies::Latencies(const RuleSet& rules)
   }
   for (std::size_t r = 0; r < rules.rules.size(); ++r) {
     const auto& inputs = rules.rules[r].inputs;
-    is_late_[r] = std::any_of(inputs.begin(), inputs.end(),
-                              [&](InputId id) { return reads_value(rules[id]); });
-    const bool is_stated = std::any_of(inputs.begin(), inputs.end(), [&](InputId id) {
+    is_late_[r] = std::any_of(inputs.begin(), inputs.end(), [&](InputId id) {
       const std::string status = status_of(rules[id], rules);
       return reads_value(rules[id]) && (status.empty() || readers[status].size() < 2);
     });
-    if (!is_stated) continue;
+    if (!is_late_[r]) continue;
     const Duration most = least_impact(rules.rules[r], rules);
     stated_[r] = {Duration::zero(), most, std::max<Duration>(Duration::zero(), most - rules.cycle)};
   }
@@ -85,7 +83,7 @@ Latencies::Range Latencies::lateness(RuleId rule) const {
     const Duration least = std::max<Duration>(Duration::zero(), learned.range.least - cycle_);
     return {least, learned.range.most, least};
   }
-  if (stated.most == Duration::zero()) return stated;
+  if (!is_late_[rule.index]) return {};
   return {stated.least, stated.most + excess_, stated.presumed};
 }
 

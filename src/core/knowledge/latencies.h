@@ -9,8 +9,7 @@
 //             learned yet: the same author underestimated them
 //
 // A status that carries the values of several rules comes from one monitor, which sees all of them
-// at once: none of these rules is later than the others, and their lateness is zero until it was
-// learned. Triggers on topics alone have no lateness: their thresholds say when they fire.
+// at once: none of these rules is later than the others, and they have no lateness. Triggers on topics alone have no lateness: their thresholds say when they fire.
 #pragma once
 
 #include <vector>
@@ -40,11 +39,13 @@ class Latencies {
 
   explicit Latencies(const RuleSet& rules);
 
+  // Does the rule read a value of a monitor of its own? Only then it has a lateness.
+  bool is_late(RuleId rule) const { return is_late_[rule.index]; }
   // What was learned of the rule; or else what the rule file states.
   Range lateness(RuleId rule) const;
 
   // A proven repair took effect, and the rule's trigger was false so long `after` that. Ignored for
-  // rules that read only topics, components or parameters.
+  // rules that have no lateness.
   void cleared(RuleId rule, Duration after);
   const Learned& learned(RuleId rule) const { return learned_[rule.index]; }
   // For what was learned in an earlier run. Ignored for the same rules: the trigger may have changed.
