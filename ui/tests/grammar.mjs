@@ -36,7 +36,7 @@ ADAPTATION lidar restart 5
 
 RULE Odd
 POLICIES NON_CRITICAL
-TRIGGER mean(load, 3s) >= limit && min(load, 3s) <= 0.9 && max(load, 3s) < 0.95 && stddev(load, 3s) > 0.1
+TRIGGER mean(load, 3s) >= limit && min(load, 3s) <= 0.9 && max(load, 3s) < 0.95 && stddev(load, 3s) > 0.1 && !isnan(load)
 STRATEGY strategy3 50 10
 ADAPTATION slam restart 5
 

@@ -5,7 +5,6 @@
 #include <iterator>
 
 #include "diagnose/imminent.h"
-#include "diagnose/known_down.h"
 
 namespace culprit::diagnose {
 namespace {
@@ -104,7 +103,6 @@ Causes::Causes(const Knowledge& knowledge, const Reach& reach, const Paths& path
   add_unsupplied(knowledge);
   causes_ = BitRows(size(), size());
   learned_ = BitRows(size(), size());
-  hosts_ = BitRows(size(), size());
   loop_of_.resize(size());
   connect(knowledge, reach, paths);
   leave_out_slight(knowledge);
@@ -186,7 +184,6 @@ void Causes::connect(const Knowledge& knowledge, const Reach& reach, const Paths
                [&](std::size_t place) { add(row, touching[place]); });
     }
     connect_learned(knowledge, i);
-    connect_containers(knowledge, i);
     clear(row, i);
     for_each(row, [&](std::size_t j) {
       const bool is_possible = nodes_[j].kind == CauseNode::Kind::kTrouble
@@ -210,22 +207,6 @@ void Causes::connect_learned(const Knowledge& knowledge, std::size_t i) {
   }
 }
 
-// What lives in a dead process is an effect of its death, whatever the graph says.
-void Causes::connect_containers(const Knowledge& knowledge, std::size_t i) {
-  for (const ComponentId c : touched_by(nodes_[i].rule, knowledge)) {
-    const auto container = dead_container_of(c, knowledge);
-    if (!container) continue;
-    for (std::size_t j = 0; j < size(); ++j) {
-      const CauseNode& node = nodes_[j];
-      const auto touched = node.is_rule() ? touched_by(node.rule, knowledge)
-                                          : std::vector<ComponentId>{node.component};
-      if (!std::binary_search(touched.begin(), touched.end(), *container)) continue;
-      set(causes_[i], j);
-      set(hosts_[i], j);
-    }
-  }
-}
-
 // By level: what is less critical and no outage, and is only ever reconfigured. That is no cause: its
 // author finds nothing broken there, and what is bad may be old, for a publisher of better values is
 // out.
@@ -246,17 +227,20 @@ void Causes::leave_out_slight(const Knowledge& knowledge) {
   }
 }
 
-// A supplier that was never there, or never active, explains only a function that never worked. What is
-// not active explains no rule that changes modes or reads lifecycles: these are what such rules are for.
+// A supplier that was never there, or never active, explains only a function that never worked. A
+// lifecycle explains no rule that changes modes or reads lifecycles, which is about just that; and that of
+// a component container says nothing of the components in it.
 bool Causes::can_explain(std::size_t j, std::size_t i, const Knowledge& knowledge) const {
   const RuleId rule = nodes_[i].rule;
+  const bool is_of_state =
+      nodes_[j].trouble == Trouble::kNotActive || nodes_[j].trouble == Trouble::kNotYetActive;
+  if (is_of_state && (is_container(nodes_[j].component, knowledge.rules) ||
+                      is_about_states(rule, knowledge.rules)))
+    return false;
   switch (nodes_[j].trouble) {
     case Trouble::kNeverSeen:
-      return never_worked(rule, knowledge);
     case Trouble::kNotYetActive:
-      return never_worked(rule, knowledge) && !is_about_states(rule, knowledge.rules);
-    case Trouble::kNotActive:
-      return can_precede(j, i) && !is_about_states(rule, knowledge.rules);
+      return never_worked(rule, knowledge);
     default:
       return can_precede(j, i);
   }

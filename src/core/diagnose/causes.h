@@ -66,9 +66,8 @@ class Causes {
 
   // The possible causes of node i outside its own loop.
   std::span<const Word> causes(std::size_t i) const { return causes_[i]; }
-  // Is j a possible cause of i only because of what was learned, or because i lives in it?
+  // Is j a possible cause of i only because of what was learned?
   bool is_learned(std::size_t j, std::size_t i) const { return has(learned_[i], j); }
-  bool lives_in(std::size_t i, std::size_t j) const { return has(hosts_[i], j); }
   // How likely i is an effect of j although it was well for so long while j was there, relative to one
   // that came in the usual time: 0..1.
   double timely(std::size_t j, std::size_t i) const;
@@ -86,7 +85,6 @@ class Causes {
   void add_unsupplied(const Knowledge& knowledge);
   void connect(const Knowledge& knowledge, const Reach& reach, const Paths& paths);
   void connect_learned(const Knowledge& knowledge, std::size_t i);
-  void connect_containers(const Knowledge& knowledge, std::size_t i);
   void leave_out_slight(const Knowledge& knowledge);
   bool can_explain(std::size_t j, std::size_t i, const Knowledge& knowledge) const;
   bool can_precede(std::size_t j, std::size_t i) const;
@@ -96,7 +94,6 @@ class Causes {
   std::vector<std::size_t> places_;  // in nodes_, by RuleId
   BitRows causes_{0, 0};
   BitRows learned_{0, 0};
-  BitRows hosts_{0, 0};
   std::vector<std::size_t> loop_of_;
   std::vector<std::vector<std::size_t>> loops_;
 };

@@ -56,7 +56,6 @@ std::optional<std::size_t> Diagnosis::dead_in_loop(std::size_t i) const {
 }
 
 double Diagnosis::kappa(std::size_t j, std::size_t i) const {
-  if (causes_.lives_in(i, j)) return 1;
   if (!causes_[i].is_rule() || !causes_[j].is_rule()) return Coupling::kUsual;
   // Most failures have learned nothing: no need to search.
   if (knowledge_.couplings.of(causes_[i].rule).empty()) return Coupling::kUsual;

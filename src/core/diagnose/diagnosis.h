@@ -5,8 +5,7 @@
 //
 //   i           a node
 //   j           the nodes that may be its cause
-//   kappa       how surely i clears when j is resolved (knowledge/couplings.h); 1 if i lives in j's
-//               process and that is dead
+//   kappa       how surely i clears when j is resolved (knowledge/couplings.h)
 //   g           how likely i came so late after j (Causes::timely)
 //   X_i         the probability that one of the others explains i; 0 (so P = 1) if there is none
 //   pi_i        the probability that i has a cause of its own, before anything else is known of it:

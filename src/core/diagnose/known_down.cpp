@@ -8,14 +8,6 @@ bool is_known_down(ComponentId component, const Knowledge& knowledge) {
   return knowledge.components[component].process != ProcessState::kRunning;
 }
 
-std::optional<ComponentId> dead_container_of(ComponentId component, const Knowledge& knowledge) {
-  const auto& composed = knowledge.rules[component].composed;
-  if (!composed) return std::nullopt;
-  const auto container = knowledge.graph.component_of(composed->container);
-  const bool is_dead = container && *container != component && is_known_down(*container, knowledge);
-  return is_dead ? container : std::nullopt;
-}
-
 bool replaces(const Strategy& strategy, ComponentId component) {
   return std::any_of(
       strategy.adaptations.begin(), strategy.adaptations.end(), [&](const Adaptation& a) {
@@ -26,7 +18,7 @@ bool replaces(const Strategy& strategy, ComponentId component) {
 
 bool revives(const Strategy& strategy, const Knowledge& knowledge) {
   return std::any_of(strategy.components.begin(), strategy.components.end(), [&](ComponentId c) {
-    return is_known_down(c, knowledge) && !dead_container_of(c, knowledge) && replaces(strategy, c);
+    return is_known_down(c, knowledge) && replaces(strategy, c);
   });
 }
 

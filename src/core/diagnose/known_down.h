@@ -3,8 +3,7 @@
 //
 // Such a process does not come back by itself, whatever else is repaired, and nothing of it is left
 // that a replacement could disturb. So its component has a cause of its own, and its replacement
-// waits for no other failure. A component inside a dead component container is an effect: the
-// container comes first.
+// waits for no other failure.
 #pragma once
 
 #include "knowledge/knowledge.h"
@@ -13,12 +12,10 @@ namespace culprit::diagnose {
 
 // Is the process of `component` gone or stopped?
 bool is_known_down(ComponentId component, const Knowledge& knowledge);
-// The component container that `component` is loaded into, if its process is gone or stopped.
-std::optional<ComponentId> dead_container_of(ComponentId component, const Knowledge& knowledge);
 
 // Does the strategy start a process of `component`?
 bool replaces(const Strategy& strategy, ComponentId component);
-// Does it replace a process that is known to be down, and that no dead container explains?
+// Does it replace a process that is known to be down?
 bool revives(const Strategy& strategy, const Knowledge& knowledge);
 // Does a strategy of the rule do so?
 bool is_known_down(RuleId rule, const Knowledge& knowledge);

@@ -391,21 +391,6 @@ TEST(BayesPlanner, StaggersTheRepairsOfFailuresThatRepeatedlyBeginTogether) {
   EXPECT_EQ(scene.plan(kFewRedeployments), "A.restart") << "it did not help";
 }
 
-// Its container is dead, too: that comes first.
-TEST(BayesPlanner, ReplacesADeadContainerBeforeTheComponentsInIt) {
-  Scene scene(failure_of("box", "Box") +
-              "COMPONENT c NODE /c IN /box PLUGIN c::C\nRULE C\nPOLICIES ERROR\nTRIGGER x > 1\n"
-              "STRATEGY redeploy 90 10\nADAPTATION c redeploy 10\n");
-  scene.fail("Box").fail("C");
-  scene.process("box", ProcessState::kGone);
-  scene.process("c", ProcessState::kGone);
-  EXPECT_EQ(scene.plan(kBalanced), "Box.redeploy");
-  EXPECT_EQ(scene.candidate("C.redeploy").excluded, Condition::kDependency);
-  EXPECT_EQ(scene.candidate("C.redeploy").failure, scene.rule("Box"));
-  scene.process("box", ProcessState::kRunning);
-  EXPECT_EQ(scene.plan(kBalanced), "Box.redeploy C.redeploy");
-}
-
 TEST(BayesPlanner, SaysWhoIsSuspectedAndWhatItIsWorth) {
   Scene scene = robot();
   scene.fail("A").fail("B");

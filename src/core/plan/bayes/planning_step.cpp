@@ -46,12 +46,10 @@ constexpr Duration kWorkaroundGain = std::chrono::seconds(5);
 
 // Does it do nothing but replace processes that are known to be down?
 bool only_revives(const Strategy& strategy, const Knowledge& knowledge) {
-  const auto is_down = [&](ComponentId c) {
-    return is_known_down(c, knowledge) && !dead_container_of(c, knowledge);
-  };
   const std::vector<ComponentId> others = also_ended(strategy, knowledge);
-  return std::all_of(strategy.components.begin(), strategy.components.end(),
-                     [&](ComponentId c) { return is_down(c) && replaces(strategy, c); }) &&
+  return std::all_of(
+             strategy.components.begin(), strategy.components.end(),
+             [&](ComponentId c) { return is_known_down(c, knowledge) && replaces(strategy, c); }) &&
          std::all_of(others.begin(), others.end(),
                      [&](ComponentId c) { return is_known_down(c, knowledge); });
 }
