@@ -49,7 +49,20 @@ void WhatIf::change(const ResolvedChange& change) {
     undo_.push_back(
         [this, id, before = knowledge_.states[id].phase] { knowledge_.states.enter(id, before); });
     knowledge_.states.enter(id, RulePhase::kQuiet);
+    for (const InputId input : rules_[id].inputs) hear(rules_[input]);
   }
+}
+
+// A topic whose failure is resolved is not silent.
+void WhatIf::hear(const Input& input) {
+  using Kind = Input::Kind;
+  if (input.kind != Kind::kAge && input.kind != Kind::kRate && input.kind != Kind::kPhi) return;
+  const SignalStore::Rhythm before = knowledge_.signals.rhythm(input.topic);
+  undo_.push_back(
+      [this, topic = input.topic, before] { knowledge_.signals.set_rhythm(topic, before); });
+  SignalStore::Rhythm now = before;
+  now.last = knowledge_.now;
+  knowledge_.signals.set_rhythm(input.topic, now);
 }
 
 void WhatIf::change(const ComponentChange& change) {

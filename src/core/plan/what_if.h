@@ -64,6 +64,7 @@ class WhatIf {
   void change(const ComponentChange& change);
   void change(const WhenChange& change);
   void set_signals(ComponentId component);
+  void hear(const Input& input);
   void set_signal(InputId id, const Slot& value);
   template <class T>
   void set(T& place, T value);
