@@ -50,6 +50,10 @@ void WhatIf::change(const ResolvedChange& change) {
         [this, id, before = knowledge_.states[id].phase] { knowledge_.states.enter(id, before); });
     knowledge_.states.enter(id, RulePhase::kQuiet);
     for (const InputId input : rules_[id].inputs) hear(rules_[input]);
+    for (const ComponentId component : rules_[id].components) {
+      if (knowledge_.components[component].process != ProcessState::kRunning)
+        this->change(ComponentChange{component, ComponentChange::Situation::kAlive});
+    }
   }
 }
 
@@ -73,6 +77,7 @@ void WhatIf::change(const ComponentChange& change) {
   }
   ComponentState state = knowledge_.components[change.component];
   state.alive = change.situation != kAbsent;
+  if (change.situation != kAbsent) state.process = ProcessState::kRunning;
   if (change.situation == kActive) state.lifecycle = Lifecycle::kActive;
   if (change.situation == kInactive) state.lifecycle = Lifecycle::kInactive;
   if (change.situation == kAbsent) state.pid = state.node_pid = 0;
