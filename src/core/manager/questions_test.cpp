@@ -54,8 +54,7 @@ TEST(Questions, ASupplierThatHangsIsFoundWithoutARuleAndItsConsumerIsLeftAlone) 
   EXPECT_FALSE(robot.was_asked("nav: stop process")) << transcript(robot);
   EXPECT_EQ(robot.count("Nav waits: it depends on map, which was asked whether it answers"), 1u)
       << transcript(robot);
-  EXPECT_EQ(robot.count("Nav waits: it depends on map, which hangs"), 1u)
-      << transcript(robot);
+  EXPECT_EQ(robot.count("Nav waits: it depends on map, which hangs"), 1u) << transcript(robot);
   EXPECT_LE(robot.count_asked("map: ask"), 16u) << "once per 2 s at most" << transcript(robot);
 }
 

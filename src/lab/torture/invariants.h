@@ -101,7 +101,7 @@ class Invariants {
       left_dead_since_;            // by rule: its component is dead, and nothing is done; kNever
   std::vector<Time> last_resort_;  // by rule: when its last resort was begun, or took effect
   std::vector<Time> last_resort_missing_;  // by rule: since when it should have been begun; kNever
-  std::vector<Time> dead_since_;  // by component: that it is known to be dead; kNever: it is not
+  std::vector<Time> dead_since_;     // by component: that it is known to be dead; kNever: it is not
   std::vector<Time> unknown_since_;  // by rule: its trigger has no value; kNever: it has one
   // By rule: strategies that were executed since it was proven gone, and when it went away last.
   struct Search {
