@@ -163,8 +163,15 @@ TEST(Link, AsksWhetherANodeAnswersWhenItIsToldTo) {
   ASSERT_TRUE(linked.wait<Probed>([](const Probed& p) { return p.answered; }));
   const auto ask = [&] { return linked.ask(Probe{}, 500ms); };
   EXPECT_EQ(ask().outcome, Outcome::kDone);
+  std::promise<void> hangs;
   std::promise<void> goes_on;
-  std::thread hung([&] { robot.context.run([&] { goes_on.get_future().wait(); }); });
+  std::thread hung([&] {
+    robot.context.run([&] {
+      hangs.set_value();
+      goes_on.get_future().wait();
+    });
+  });
+  hangs.get_future().wait();
   EXPECT_EQ(ask().outcome, Outcome::kTimedOut) << "its callback hangs";
   goes_on.set_value();
   hung.join();
