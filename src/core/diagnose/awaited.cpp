@@ -78,10 +78,12 @@ void Awaited::collect(Time latest_onset) {
       if (!scc) continue;
       Place& place = places_[*scc];
       if (within > Duration::zero()) {
-        auto& own = is_gone ? place.own_again : place.own[at(symptom_of(rule, knowledge_))];
+        auto& own = (is_gone ? place.own_again : place.own)[at(symptom_of(rule, knowledge_))];
         own.add(Best<Duration>{within, rule});
       }
-      if (is_gone) place.own_gone.add(Best<Time>{recovered(rule, knowledge_), rule});
+      if (is_gone)
+        place.own_gone[at(symptom_of(rule, knowledge_))].add(
+            Best<Time>{recovered(rule, knowledge_), rule});
     }
   }
 }
@@ -95,11 +97,11 @@ void Awaited::carry() {
       for (const std::size_t s : {at(Symptom::kOutage), at(Symptom::kValue)}) {
         place.upstream[s].add(before.upstream[s]);
         place.upstream[s].add(before.own[s]);
+        place.upstream_again[s].add(before.upstream_again[s]);
+        place.upstream_again[s].add(before.own_again[s]);
+        place.upstream_gone[s].add(before.upstream_gone[s]);
+        place.upstream_gone[s].add(before.own_gone[s]);
       }
-      place.upstream_again.add(before.upstream_again);
-      place.upstream_again.add(before.own_again);
-      place.upstream_gone.add(before.upstream_gone);
-      place.upstream_gone.add(before.own_gone);
     }
   }
 }
@@ -140,14 +142,16 @@ Awaiting Awaited::awaiting(RuleId failure) const {
     if (!scc) continue;
     const Place& place = places_[*scc];
     for (const Symptom symptom : {Symptom::kOutage, Symptom::kValue}) {
-      if (symptom == Symptom::kValue && !is_value) continue;
-      wait_for(place.upstream[at(symptom)], first_onset, state.first_detected());
-      if (is_circle_[*scc]) wait_for(place.own[at(symptom)], first_onset, state.first_detected());
+      if (symptom == Symptom::kValue && !is_value) continue;  // no outage comes of a bad value
+      const std::size_t s = at(symptom);
+      wait_for(place.upstream[s], first_onset, state.first_detected());
+      wait_for(place.upstream_again[s], onset.latest, state.failing_since);
+      fade(place.upstream_gone[s]);
+      if (!is_circle_[*scc]) continue;
+      wait_for(place.own[s], first_onset, state.first_detected());
+      wait_for(place.own_again[s], onset.latest, state.failing_since);
+      fade(place.own_gone[s]);
     }
-    wait_for(place.upstream_again, onset.latest, state.failing_since);
-    if (is_circle_[*scc]) wait_for(place.own_again, onset.latest, state.failing_since);
-    fade(place.upstream_gone);
-    if (is_circle_[*scc]) fade(place.own_gone);
   }
   return found;
 }

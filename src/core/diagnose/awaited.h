@@ -3,7 +3,7 @@
 //
 //     W_i = max_u min(b_i + E_u, d_i + kLongestEvidence)     quiet rules u upstream of i, of a
 //                                                            symptom that can cause i's
-//     Z_i = max_u min(r_u + passing + C_i,                   rules u upstream of i that cleared lately,
+//     Z_i = max_u min(r_u + passing + C_i,                   such rules that cleared lately,
 //                     d_i + kLongestEvidence)                if e_i <= r_u + passing
 //
 //   e_i, E_u        onset and evidence time (timing.h); d_i the detection of i
@@ -62,11 +62,11 @@ class Awaited {
   struct Place {
     std::array<Two<Duration>, 2> own;       // E_u by symptom, of rules at this SCC
     std::array<Two<Duration>, 2> upstream;  // of those upstream of it
-    // Of rules that cleared lately: E_u, and r_u.
-    Two<Duration> own_again;
-    Two<Duration> upstream_again;
-    Two<Time> own_gone;
-    Two<Time> upstream_gone;
+    // Of rules that cleared lately, likewise: E_u, and r_u.
+    std::array<Two<Duration>, 2> own_again;
+    std::array<Two<Duration>, 2> upstream_again;
+    std::array<Two<Time>, 2> own_gone;
+    std::array<Two<Time>, 2> upstream_gone;
   };
 
   void collect(Time latest_onset);

@@ -115,5 +115,17 @@ TEST(Awaited, ATopicThatSentSinceTheOnsetIsProof) {
   EXPECT_FALSE(awaited());
 }
 
+// No outage comes of a bad value: neither one that can still show, nor one that cleared a moment ago.
+TEST(Awaited, AnOutageWaitsForNoBadValue) {
+  std::string text = failure_of("a", "A") + failure_of("b", "B");
+  text.replace(text.rfind("x > 1"), 5, "age(/out) > 500ms");
+  Scene scene(text);
+  scene.link("a", "b").fail("B", 9900ms);
+  scene->states.state(scene.rule("B")).onset = Onset{scene->now - 600ms, scene->now - 500ms};
+  scene->states.state(scene.rule("A")).detection.trigger = Slot::of(false);
+  scene->states.state(scene.rule("A")).gone_since = scene->now - 100ms;
+  EXPECT_FALSE(Awaited(*scene, scene->states.active()).of(scene.rule("B")));
+}
+
 }  // namespace
 }  // namespace culprit::diagnose

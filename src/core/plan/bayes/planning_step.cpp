@@ -488,8 +488,8 @@ void PlanningStep::revive() {
 void PlanningStep::await_answers() {
   for (WeighedCandidate* weighed : best_first_) {
     const Strategy& strategy = knowledge_.rules[weighed->candidate.strategy];
-    const bool has_to_wait = !weighed->candidate.excluded && !weighed->only_revives &&
-                             !strategy.is_last_resort && takes_down(strategy);
+    const bool has_to_wait =
+        !weighed->candidate.excluded && !weighed->only_revives && takes_down(strategy);
     if (!has_to_wait) continue;
     Questions questions =
         questions_about(causes_[weighed->failure].rule, found_.troubles(), knowledge_);
