@@ -316,7 +316,7 @@ void Analyzer::detect(RuleId id, Time now) {
     state.first_onset = state.onset->latest;
     state.worked_until = state.detection.last_false;
   }
-  if (!is_same) note_coincidence(id);
+  if (!is_same && !recurs) note_coincidence(id);
   for (const StrategyId strategy : knowledge_.rules[id].strategies) {
     const Strategy& last = knowledge_.rules[strategy];
     if (last.is_last_resort && !begins_anew(last)) write_.states.set_tried(strategy, false);

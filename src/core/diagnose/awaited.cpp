@@ -9,7 +9,7 @@ std::size_t at(Symptom symptom) { return static_cast<std::size_t>(symptom); }
 
 // When the rule's failure was really over.
 Time recovered(RuleId rule, const Knowledge& knowledge) {
-  return knowledge.states[rule].gone_since - knowledge.latencies.lateness(rule).least;
+  return knowledge.states[rule].gone_since - knowledge.latencies.lateness(rule).presumed;
 }
 
 bool cleared_lately(RuleId rule, const Knowledge& knowledge) {
@@ -20,27 +20,24 @@ bool cleared_lately(RuleId rule, const Knowledge& knowledge) {
 
 }  // namespace
 
-template <class Key>
-void Awaited::Two<Key>::add(const Best<Key>& other) {
+void Awaited::Two::add(const Best& other) {
   if (!other.rule) return;
   if (first.rule == other.rule) {
-    first.key = std::max(first.key, other.key);
-  } else if (!first.rule || other.key > first.key) {
+    first.within = std::max(first.within, other.within);
+  } else if (!first.rule || other.within > first.within) {
     second = first;
     first = other;
-  } else if (!second.rule || other.key > second.key) {
+  } else if (!second.rule || other.within > second.within) {
     second = other;
   }
 }
 
-template <class Key>
-void Awaited::Two<Key>::add(const Two& other) {
+void Awaited::Two::add(const Two& other) {
   add(other.first);
   add(other.second);
 }
 
-template <class Key>
-const Awaited::Best<Key>& Awaited::Two<Key>::without(RuleId rule) const {
+const Awaited::Best& Awaited::Two::without(RuleId rule) const {
   return first.rule == rule ? second : first;
 }
 
@@ -54,6 +51,7 @@ Awaited::Awaited(const Knowledge& knowledge, std::span<const RuleId> failures)
   for (const RuleId failure : failures)
     latest = std::max(latest, onset_of(failure, knowledge).latest);
   collect(latest);
+  collect_gone();
   carry();
   for (const RuleId failure : failures) look_at(failure);
 }
@@ -71,19 +69,27 @@ void Awaited::collect(Time latest_onset) {
   for (std::size_t r = 0; r < knowledge_.rules.rules.size(); ++r) {
     const RuleId rule(r);
     const Duration within = evidence_within(rule, latest_onset, knowledge_);
+    if (within == Duration::zero()) continue;
     const bool is_gone = cleared_lately(rule, knowledge_);
-    if (within == Duration::zero() && !is_gone) continue;
     for (const ComponentId c : knowledge_.rules[rule].components) {
       const auto scc = knowledge_.graph.scc_of(c);
       if (!scc) continue;
       Place& place = places_[*scc];
-      if (within > Duration::zero()) {
-        auto& own = (is_gone ? place.own_again : place.own)[at(symptom_of(rule, knowledge_))];
-        own.add(Best<Duration>{within, rule});
-      }
-      if (is_gone)
-        place.own_gone[at(symptom_of(rule, knowledge_))].add(
-            Best<Time>{recovered(rule, knowledge_), rule});
+      auto& own = (is_gone ? place.own_again : place.own)[at(symptom_of(rule, knowledge_))];
+      own.add(Best{within, rule});
+    }
+  }
+}
+
+void Awaited::collect_gone() {
+  for (std::size_t r = 0; r < knowledge_.rules.rules.size(); ++r) {
+    if (cleared_lately(RuleId(r), knowledge_)) gone_.emplace_back(r);
+  }
+  own_gone_ = BitRows(places_.size(), gone_.size());
+  upstream_gone_ = BitRows(places_.size(), gone_.size());
+  for (std::size_t g = 0; g < gone_.size(); ++g) {
+    for (const ComponentId c : knowledge_.rules[gone_[g]].components) {
+      if (const auto scc = knowledge_.graph.scc_of(c)) set(own_gone_[*scc], g);
     }
   }
 }
@@ -99,9 +105,9 @@ void Awaited::carry() {
         place.upstream[s].add(before.own[s]);
         place.upstream_again[s].add(before.upstream_again[s]);
         place.upstream_again[s].add(before.own_again[s]);
-        place.upstream_gone[s].add(before.upstream_gone[s]);
-        place.upstream_gone[s].add(before.own_gone[s]);
       }
+      add(upstream_gone_[scc], upstream_gone_[producer]);
+      add(upstream_gone_[scc], own_gone_[producer]);
     }
   }
 }
@@ -112,14 +118,13 @@ void Awaited::look_at(RuleId failure) {
 }
 
 Awaiting Awaited::awaiting(RuleId failure) const {
-  const Onset onset = onset_of(failure, knowledge_);
   const RuleState& state = knowledge_.states[failure];
+  const Time onset = onset_of(failure, knowledge_).latest;
   const Time first_onset = first_onset_of(failure, knowledge_);
   const bool is_value = symptom_of(failure, knowledge_) == Symptom::kValue;
-  const Duration passing = duration_of(kPassing, knowledge_.rules);
-  Awaiting found;
   const Duration lateness = presumed_lateness(failure, knowledge_);
-  const auto wait_for = [&](const Two<Duration>& evidence, Time latest, Time detected) {
+  Awaiting found;
+  const auto wait_for = [&](const Two& evidence, Time latest, Time detected) {
     const auto& [within, rule] = evidence.without(failure);
     if (!rule) return;
     const Duration least =
@@ -128,14 +133,11 @@ Awaiting Awaited::awaiting(RuleId failure) const {
                                   later(detected, kLongestEvidence));
     if (until > found.until) found = {until, *rule, false};
   };
-  // One reading of a common monitor tells of both: whether it settles is seen by that (Settling).
-  const bool has_echo = !is_value || knowledge_.latencies.is_late(failure);
-  const auto fade = [&](const Two<Time>& gone) {
-    const auto& [recovered_at, rule] = gone.without(failure);
-    if (!rule || !has_echo || onset.earliest > later(recovered_at, passing)) return;
-    const Time until = std::min(later(recovered_at, passing + clears_within(failure, knowledge_)),
-                                later(state.first_detected(), kLongestEvidence));
-    if (until > found.until) found = {until, *rule, true};
+  const auto fade = [&](std::span<const Word> gone) {
+    for_each(gone, [&](std::size_t g) {
+      const Time until = fades(failure, gone_[g]);
+      if (until > found.until) found = {until, gone_[g], true};
+    });
   };
   for (const ComponentId c : knowledge_.rules[failure].components) {
     const auto scc = knowledge_.graph.scc_of(c);
@@ -145,15 +147,28 @@ Awaiting Awaited::awaiting(RuleId failure) const {
       if (symptom == Symptom::kValue && !is_value) continue;  // no outage comes of a bad value
       const std::size_t s = at(symptom);
       wait_for(place.upstream[s], first_onset, state.first_detected());
-      wait_for(place.upstream_again[s], onset.latest, state.failing_since);
-      fade(place.upstream_gone[s]);
+      wait_for(place.upstream_again[s], onset, state.failing_since);
       if (!is_circle_[*scc]) continue;
       wait_for(place.own[s], first_onset, state.first_detected());
-      wait_for(place.own_again[s], onset.latest, state.failing_since);
-      fade(place.own_gone[s]);
+      wait_for(place.own_again[s], onset, state.failing_since);
     }
+    fade(upstream_gone_[*scc]);
+    if (is_circle_[*scc]) fade(own_gone_[*scc]);
   }
   return found;
+}
+
+Time Awaited::fades(RuleId failure, RuleId gone) const {
+  // One reading of a common monitor tells of both: whether it settles is seen by that (Settling).
+  const bool is_value = symptom_of(failure, knowledge_) == Symptom::kValue;
+  const bool has_echo = is_value ? knowledge_.latencies.is_late(failure)
+                                 : symptom_of(gone, knowledge_) == Symptom::kOutage;
+  const Onset onset = onset_of(failure, knowledge_);
+  const Time passed = later(recovered(gone, knowledge_), duration_of(kPassing, knowledge_.rules));
+  const bool can_be =
+      onset_of(gone, knowledge_).earliest <= onset.latest && onset.earliest <= passed;
+  if (gone == failure || !has_echo || !can_be) return kLongAgo;
+  return later(passed, std::min(clears_within(failure, knowledge_), kLongestEvidence));
 }
 
 std::optional<Awaiting> Awaited::of(RuleId failure) const {

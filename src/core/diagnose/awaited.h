@@ -3,8 +3,8 @@
 //
 //     W_i = max_u min(b_i + E_u, d_i + kLongestEvidence)     quiet rules u upstream of i, of a
 //                                                            symptom that can cause i's
-//     Z_i = max_u min(r_u + passing + C_i,                   such rules that cleared lately,
-//                     d_i + kLongestEvidence)                if e_i <= r_u + passing
+//     Z_i = max_u r_u + passing + C_i                        such rules that cleared lately, if
+//                                                            e_u <= l_i and e_i <= r_u + passing
 //
 //   e_i, E_u        onset and evidence time (timing.h); d_i the detection of i
 //   b_i             when i presumably began: l_i, less the presumed lateness of a value's rule, but at
@@ -24,6 +24,7 @@
 #include <optional>
 #include <vector>
 
+#include "diagnose/bit_rows.h"
 #include "diagnose/timing.h"
 
 namespace culprit::diagnose {
@@ -45,38 +46,40 @@ class Awaited {
   std::optional<Awaiting> of(RuleId failure) const;
 
  private:
-  template <class Key>
   struct Best {
-    Key key{};
+    Duration within{};
     std::optional<RuleId> rule;  // nothing: none
   };
   // The best and the second best of another rule: a failure does not wait for itself.
-  template <class Key>
   struct Two {
-    Best<Key> first;
-    Best<Key> second;
-    void add(const Best<Key>& other);
+    Best first;
+    Best second;
+    void add(const Best& other);
     void add(const Two& other);
-    const Best<Key>& without(RuleId rule) const;
+    const Best& without(RuleId rule) const;
   };
   struct Place {
-    std::array<Two<Duration>, 2> own;       // E_u by symptom, of rules at this SCC
-    std::array<Two<Duration>, 2> upstream;  // of those upstream of it
-    // Of rules that cleared lately, likewise: E_u, and r_u.
-    std::array<Two<Duration>, 2> own_again;
-    std::array<Two<Duration>, 2> upstream_again;
-    std::array<Two<Time>, 2> own_gone;
-    std::array<Two<Time>, 2> upstream_gone;
+    std::array<Two, 2> own;       // E_u by symptom, of rules at this SCC
+    std::array<Two, 2> upstream;  // of those upstream of it
+    // The same of rules that cleared lately.
+    std::array<Two, 2> own_again;
+    std::array<Two, 2> upstream_again;
   };
 
   void collect(Time latest_onset);
+  void collect_gone();
   void carry();
   void look_at(RuleId failure);
   Awaiting awaiting(RuleId failure) const;
+  // Until when the failure may be the echo of that one; kLongAgo: it is not.
+  Time fades(RuleId failure, RuleId gone) const;
 
   const Knowledge& knowledge_;
   std::vector<Place> places_;  // by SCC; empty: nothing can be awaited
   std::vector<bool> is_circle_;
+  std::vector<RuleId> gone_;  // those that cleared lately
+  BitRows own_gone_{0, 0};    // by SCC: which of them are there, and upstream of it
+  BitRows upstream_gone_{0, 0};
   std::vector<std::pair<RuleId, Awaiting>> found_;  // ascending
 };
 

@@ -335,7 +335,7 @@ void PlanningStep::exclude(WeighedCandidate& weighed, double chance) const {
 }
 
 // Does it give way to a failure that repeatedly began together with it, so that one can see whose
-// repair clears the other? The one that was tried less goes first; of equals the one by name, and the
+// repair clears the other? Not to an effect, which waits itself. The one that was tried less goes first; of equals the one by name, and the
 // other the next time.
 bool PlanningStep::exclude_coincidence(WeighedCandidate& weighed) const {
   const RuleId rule = causes_[weighed.failure].rule;
@@ -344,7 +344,7 @@ bool PlanningStep::exclude_coincidence(WeighedCandidate& weighed) const {
     return search.attempts - search.attempts_before;
   };
   for (const RuleId other : knowledge_.coincidences.of(rule)) {
-    if (!knowledge_.states.is_active(other)) continue;
+    if (!knowledge_.states.is_active(other) || cause_of(causes_.index_of(other))) continue;
     const auto& attempt = knowledge_.states[other].attempt;
     const bool is_other_spent =
         !attempt && knowledge_.states[other].search.retry_at > knowledge_.now;
