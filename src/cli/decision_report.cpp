@@ -44,13 +44,24 @@ Expected<std::optional<Entry>> decision_at(const journal::Reader& journal, std::
   }
 }
 
+std::string evidence_line(const Json& piece) {
+  std::string age;
+  if (piece.is_object() && piece.contains("age_ns"))
+    age = fmt::format(", for {:.2f} s", seconds(Duration(journal::integer_of(piece, "age_ns"))));
+  return fmt::format("{}{} ({}, {:+.1f})", text_of(piece, "text"), age, text_of(piece, "source"),
+                     journal::number_of(piece, "log_odds"));
+}
+
 std::string suspects_of(const Json& body) {
   const Json suspects = body.value("suspects", Json::array());
   if (!suspects.is_array() || suspects.empty()) return "";
   std::string out = "\nWho may be responsible\n";
-  for (const Json& each : suspects)
+  for (const Json& each : suspects) {
     out += fmt::format("  {:>3.0f} %  {}, by {}\n", 100 * journal::number_of(each, "probability"),
                        text_of(each, "component"), text_of(each, "failure"));
+    const Json evidence = each.is_object() ? each.value("evidence", Json::array()) : Json::array();
+    for (const Json& piece : evidence) out += "           " + evidence_line(piece) + "\n";
+  }
   return out;
 }
 

@@ -9,7 +9,7 @@ import { headlineOf, healthOf, type Incident, incidentsOf, type Known, listed } 
 import { usePaced } from './paced'
 import { doingOf, kSigns, type Tone } from './status'
 import { blindRules, clockAt, culprits, incidents, isLive, isNothingWatched, known, live, now, robot, rulesByComponent, selected, situation, state } from './store'
-import type { Candidate, Criticality, ManagerEvent } from './types'
+import type { Candidate, Criticality, Evidence, ManagerEvent } from './types'
 
 export const kWords: Record<Criticality, string> = {
   ERROR: 'error',
@@ -21,6 +21,25 @@ export const kWords: Record<Criticality, string> = {
 const knownIn = (view: View): Known => (view === live ? known : (c) => ({ isGone: view.situation.value.gone.has(c) }))
 const incidentsIn = (view: View) =>
   view === live ? incidents.value : incidentsOf(view.situation.value.failures, () => [], knownIn(view))
+
+const signed = (log_odds: number) => `${log_odds < 0 ? '−' : '+'}${Math.abs(log_odds).toFixed(1)}`
+
+function EvidenceList({ evidence }: { evidence: Evidence[] }) {
+  if (evidence.length === 0) return null
+  return (
+    <ul class="evidence">
+      {evidence.map((each) => (
+        <li>
+          {each.text}
+          {each.age_ns === undefined ? '' : `, for ${lasting(each.age_ns / 1e9)}`}{' '}
+          <small title="log-odds: above 0 it speaks for this suspect">
+            {each.source} {signed(each.log_odds)}
+          </small>
+        </li>
+      ))}
+    </ul>
+  )
+}
 
 export function Suspects({ decision, rule }: { decision: ManagerEvent; rule: string }) {
   const suspects = decision.suspects ?? []
@@ -36,7 +55,10 @@ export function Suspects({ decision, rule }: { decision: ManagerEvent; rule: str
               <meter min={0} max={1} value={s.probability} aria-label={`probability for ${s.component}`} />
             </td>
             <td class="number">{(100 * s.probability).toFixed(0)} %</td>
-            <td class="muted">{s.failure === rule ? '' : `by ${s.failure}`}</td>
+            <td class="muted">
+              {s.failure === rule ? '' : `by ${s.failure}`}
+              <EvidenceList evidence={s.evidence ?? []} />
+            </td>
           </tr>
         ))}
       </tbody>

@@ -100,6 +100,13 @@ export interface Suspect {
   component: string
   failure: string
   probability: number
+  evidence?: Evidence[]
+}
+export interface Evidence {
+  source: string
+  text: string
+  age_ns?: number
+  log_odds: number // below 0 it speaks against the suspect
 }
 export interface ManagerEvent {
   number: number // of this page's counting

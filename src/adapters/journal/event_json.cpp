@@ -231,9 +231,19 @@ class EventWriter {
       json_.member("component", name(suspect.component));
       json_.member("failure", name(suspect.failure));
       json_.member("probability", suspect.probability);
+      if (!suspect.evidence.empty())
+        add_each("evidence", suspect.evidence, [this](const Evidence& each) { add(each); });
       json_.end_object();
     });
     add_each("candidates", candidates, [this](const Candidate& candidate) { add(candidate); });
+  }
+  void add(const Evidence& evidence) const {
+    json_.begin_object();
+    json_.member("source", culprit::to_string(evidence.source));
+    json_.member("text", evidence.text);
+    if (evidence.age) json_.member("age_ns", evidence.age->count());
+    json_.member("log_odds", evidence.log_odds);
+    json_.end_object();
   }
   void add(const Candidate& candidate) const {
     json_.begin_object();

@@ -51,7 +51,7 @@ Awaited::Awaited(const Knowledge& knowledge, std::span<const RuleId> failures)
   for (const RuleId failure : failures)
     latest = std::max(latest, onset_of(failure, knowledge).latest);
   collect(latest);
-  collect_gone();
+  collect_past();
   carry();
   for (const RuleId failure : failures) look_at(failure);
 }
@@ -81,15 +81,32 @@ void Awaited::collect(Time latest_onset) {
   }
 }
 
-void Awaited::collect_gone() {
+void Awaited::collect_past() {
   for (std::size_t r = 0; r < knowledge_.rules.rules.size(); ++r) {
-    if (cleared_lately(RuleId(r), knowledge_)) gone_.emplace_back(r);
+    const RuleId rule(r);
+    if (cleared_lately(rule, knowledge_))
+      past_.push_back({rule,
+                       {},
+                       onset_of(rule, knowledge_).earliest,
+                       recovered(rule, knowledge_),
+                       symptom_of(rule, knowledge_)});
   }
-  own_gone_ = BitRows(places_.size(), gone_.size());
-  upstream_gone_ = BitRows(places_.size(), gone_.size());
-  for (std::size_t g = 0; g < gone_.size(); ++g) {
-    for (const ComponentId c : knowledge_.rules[gone_[g]].components) {
-      if (const auto scc = knowledge_.graph.scc_of(c)) set(own_gone_[*scc], g);
+  for (std::size_t c = 0; c < knowledge_.rules.components.size(); ++c) {
+    const auto& anew = knowledge_.components[ComponentId(c)].begun_anew;
+    if (anew && knowledge_.now < later(anew->done, kLongestEvidence))
+      past_.push_back({knowledge_.rules[anew->by].rule, ComponentId(c), anew->since, anew->done,
+                       Symptom::kOutage});
+  }
+  own_past_ = BitRows(places_.size(), past_.size());
+  upstream_past_ = BitRows(places_.size(), past_.size());
+  const auto mark = [&](ComponentId c, std::size_t p) {
+    if (const auto scc = knowledge_.graph.scc_of(c)) set(own_past_[*scc], p);
+  };
+  for (std::size_t p = 0; p < past_.size(); ++p) {
+    if (past_[p].begun_anew) {
+      mark(*past_[p].begun_anew, p);
+    } else {
+      for (const ComponentId c : knowledge_.rules[past_[p].rule].components) mark(c, p);
     }
   }
 }
@@ -106,8 +123,8 @@ void Awaited::carry() {
         place.upstream_again[s].add(before.upstream_again[s]);
         place.upstream_again[s].add(before.own_again[s]);
       }
-      add(upstream_gone_[scc], upstream_gone_[producer]);
-      add(upstream_gone_[scc], own_gone_[producer]);
+      add(upstream_past_[scc], upstream_past_[producer]);
+      add(upstream_past_[scc], own_past_[producer]);
     }
   }
 }
@@ -133,11 +150,10 @@ Awaiting Awaited::awaiting(RuleId failure) const {
                                   later(detected, kLongestEvidence));
     if (until > found.until) found = {until, *rule, false};
   };
-  const auto fade = [&](std::span<const Word> gone) {
-    for_each(gone, [&](std::size_t g) {
-      const Time until = fades(failure, gone_[g]);
-      if (until > found.until) found = {until, gone_[g], true};
-    });
+  const Duration passing = duration_of(kPassing, knowledge_.rules);
+  const auto fade = [&](const Past& past, Duration passed_on) {
+    const Time until = fades(failure, past, passed_on);
+    if (until > found.until) found = {until, past.rule, true, past.begun_anew};
   };
   for (const ComponentId c : knowledge_.rules[failure].components) {
     const auto scc = knowledge_.graph.scc_of(c);
@@ -152,22 +168,24 @@ Awaiting Awaited::awaiting(RuleId failure) const {
       wait_for(place.own[s], first_onset, state.first_detected());
       wait_for(place.own_again[s], onset, state.failing_since);
     }
-    fade(upstream_gone_[*scc]);
-    if (is_circle_[*scc]) fade(own_gone_[*scc]);
+    for_each(upstream_past_[*scc], [&](std::size_t p) { fade(past_[p], passing); });
+    for_each(own_past_[*scc], [&](std::size_t p) {
+      const bool is_its_own = past_[p].begun_anew == c;
+      if (is_its_own || is_circle_[*scc]) fade(past_[p], is_its_own ? Duration{} : passing);
+    });
   }
   return found;
 }
 
-Time Awaited::fades(RuleId failure, RuleId gone) const {
+Time Awaited::fades(RuleId failure, const Past& past, Duration passing) const {
   // One reading of a common monitor tells of both: whether it settles is seen by that (Settling).
   const bool is_value = symptom_of(failure, knowledge_) == Symptom::kValue;
-  const bool has_echo = is_value ? knowledge_.latencies.is_late(failure)
-                                 : symptom_of(gone, knowledge_) == Symptom::kOutage;
+  const bool has_echo =
+      is_value ? knowledge_.latencies.is_late(failure) : past.symptom == Symptom::kOutage;
   const Onset onset = onset_of(failure, knowledge_);
-  const Time passed = later(recovered(gone, knowledge_), duration_of(kPassing, knowledge_.rules));
-  const bool can_be =
-      onset_of(gone, knowledge_).earliest <= onset.latest && onset.earliest <= passed;
-  if (gone == failure || !has_echo || !can_be) return kLongAgo;
+  const Time passed = later(past.over, passing);
+  const bool is_same = !past.begun_anew && past.rule == failure;
+  if (is_same || !has_echo || past.began > onset.latest || onset.earliest > passed) return kLongAgo;
   return later(passed, std::min(clears_within(failure, knowledge_), kLongestEvidence));
 }
 

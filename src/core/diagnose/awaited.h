@@ -3,7 +3,9 @@
 //
 //     W_i = max_u min(b_i + E_u, d_i + kLongestEvidence)     quiet rules u upstream of i, of a
 //                                                            symptom that can cause i's
-//     Z_i = max_u r_u + passing + C_i                        such rules that cleared lately, if
+//     Z_i = max_u r_u + passing + C_i                        such rules that cleared lately, and
+//                                                            components upstream (or i's own) that a
+//                                                            strategy began anew lately, if
 //                                                            e_u <= l_i and e_i <= r_u + passing
 //
 //   e_i, E_u        onset and evidence time (timing.h); d_i the detection of i
@@ -11,8 +13,9 @@
 //                   most so early that a reading and a cycle of u are waited for after d_i. If i comes
 //                   and goes, b_i and d_i are those of the first time, but for rules u that cleared
 //                   lately: they may come and go with i
-//   r_u             when u recovered: it cleared then, less its least lateness
-//   passing         kPassing: how long a bad value usually takes along the graph
+//   r_u             when u recovered: it cleared then, less its presumed lateness; a component was
+//                   back then
+//   passing         kPassing: how long a bad value usually takes along the graph; 0 at i's own
 //   C_i             how long i shows it after its cause is gone (clears_within)
 //
 // Until W_i a cause may still be detected; until Z_i the failure may be the echo of one that is gone.
@@ -35,6 +38,8 @@ struct Awaiting {
   Time until = kLongAgo;
   RuleId because;        // the rule that can still fire, or cleared
   bool is_echo = false;  // the latter
+  // is_echo: that was down for a strategy of `because`.
+  std::optional<ComponentId> begun_anew{};
 };
 
 class Awaited {
@@ -67,19 +72,27 @@ class Awaited {
   };
 
   void collect(Time latest_onset);
-  void collect_gone();
+  void collect_past();
   void carry();
   void look_at(RuleId failure);
   Awaiting awaiting(RuleId failure) const;
-  // Until when the failure may be the echo of that one; kLongAgo: it is not.
-  Time fades(RuleId failure, RuleId gone) const;
+  // What is over, and may still be seen: a failure that cleared, or a component that was down.
+  struct Past {
+    RuleId rule;  // that cleared, or of the strategy
+    std::optional<ComponentId> begun_anew{};
+    Time began{};
+    Time over{};
+    Symptom symptom{};
+  };
+  // Until when the failure, to which it takes `passing`, may be the echo of that; kLongAgo: it is none.
+  Time fades(RuleId failure, const Past& past, Duration passing) const;
 
   const Knowledge& knowledge_;
   std::vector<Place> places_;  // by SCC; empty: nothing can be awaited
   std::vector<bool> is_circle_;
-  std::vector<RuleId> gone_;  // those that cleared lately
-  BitRows own_gone_{0, 0};    // by SCC: which of them are there, and upstream of it
-  BitRows upstream_gone_{0, 0};
+  std::vector<Past> past_;
+  BitRows own_past_{0, 0};  // by SCC: which of them are there, and upstream of it
+  BitRows upstream_past_{0, 0};
   std::vector<std::pair<RuleId, Awaiting>> found_;  // ascending
 };
 

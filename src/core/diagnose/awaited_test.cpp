@@ -78,12 +78,45 @@ TEST_F(TwoMonitors, TwoRulesThatAreEquallyLateNeedNotWait) {
 
 // A recovered a moment ago; what B shows may be the echo of that.
 TEST_F(TwoMonitors, AFailureMayBeTheEchoOfOneThatCleared) {
+  state("A").onset = Onset{scene_->now - 2s, scene_->now - 1500ms};
   state("A").gone_since = scene_->now - 500ms;
   const auto echo = awaited(900ms);
   ASSERT_TRUE(echo);
   EXPECT_TRUE(echo->is_echo);
   state("A").gone_since = scene_->now - 2s;
   EXPECT_FALSE(awaited(900ms)) << "that was too long ago";
+}
+
+// However long ago it was detected.
+TEST_F(TwoMonitors, AnOldFailureMayBeAnEcho) {
+  scene_.fail("A", -20s);
+  scene_->states.enter(scene_.rule("A"), RulePhase::kQuiet);
+  state("A").gone_since = scene_->now - 500ms;
+  EXPECT_TRUE(awaited(15s));
+}
+
+// A began after B: whether it is gone says nothing of B.
+TEST_F(TwoMonitors, WhatBeganLaterHasNoEchoInAnEarlierFailure) {
+  scene_.fail("A", 9s);
+  state("A").onset = Onset{scene_->now - 1500ms, scene_->now - 1s};
+  scene_->states.enter(scene_.rule("A"), RulePhase::kQuiet);
+  state("A").gone_since = scene_->now - 500ms;
+  EXPECT_FALSE(awaited(3s));
+}
+
+// A strategy had the component begin anew: its own rule and those downstream show that later.
+TEST_F(TwoMonitors, AFailureMayShowThatAStrategyTookItsComponentDown) {
+  state("A").detection.trigger = Slot();  // nothing else is waited for
+  const StrategyId strategy = scene_.strategy("B.restart");
+  for (const char* component : {"a", "b"}) {
+    scene_->components[scene_.component("a")].begun_anew.reset();
+    scene_->components[scene_.component(component)].begun_anew =
+        BegunAnew{strategy, scene_->now - 1500ms, scene_->now - 500ms};
+    const auto echo = awaited(400ms);
+    ASSERT_TRUE(echo) << component;
+    EXPECT_EQ(echo->begun_anew, scene_.component(component));
+    EXPECT_FALSE(awaited(2500ms)) << component << ": it failed before";
+  }
 }
 
 // One status tells of both: neither is later than the other.

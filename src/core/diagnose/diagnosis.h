@@ -55,6 +55,8 @@ class Diagnosis {
   double against_others(std::size_t i) const { return against_others_[i]; }
   // kappa(j -> i)
   double kappa(std::size_t j, std::size_t i) const;
+  // X_i, from all causes or all but one.
+  double explained(std::size_t i, std::optional<std::size_t> without = std::nullopt) const;
   // Is j alone enough for i to have no cause of its own, more likely than not?
   bool is_explained_by(std::size_t i, std::size_t j) const;
   // The node of i's loop that has a dead process, if it is alone enough for i. The operating system
@@ -75,7 +77,6 @@ class Diagnosis {
   bool is_enough(std::size_t j, std::size_t i) const;
   // kappa g
   double passes(std::size_t j, std::size_t i) const { return kappa(j, i) * causes_.timely(j, i); }
-  double explained(std::size_t i) const;
   void divide(const std::vector<std::size_t>& loop);
   double weight(std::size_t i, const std::vector<std::size_t>& loop, Time first) const;
 

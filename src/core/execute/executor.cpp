@@ -213,6 +213,7 @@ bool Executor::next_goal(Run& run, Time now) {
       return true;
     }
     write_.events.tell(now, AdaptationDone{run.strategy, run.adaptation, run.remark});
+    note_begun_anew(run, now);
     run.goals.clear();
     run.remark.clear();
     ++run.adaptation;
@@ -220,6 +221,17 @@ bool Executor::next_goal(Run& run, Time now) {
   write_.attempts.took_effect(run.strategy, now);
   write_.signals.touch(run.rule);
   return false;
+}
+
+// What others see of it meanwhile is shown later than it is over.
+void Executor::note_begun_anew(const Run& run, Time now) {
+  const Adaptation& adaptation = knowledge_.rules[run.strategy].adaptations[run.adaptation];
+  if (adaptation.type != AdaptationType::kRestart && adaptation.type != AdaptationType::kRedeploy)
+    return;
+  const BegunAnew done{run.strategy, std::min(attempt_of(run)->first_change, now), now};
+  write_.components[adaptation.component].begun_anew = done;
+  for (const ComponentId other : knowledge_.components[adaptation.component].ends_with)
+    write_.components[other].begun_anew = done;
 }
 
 // A process that was there, and ended before its component's READY was over, is started again: that is

@@ -92,6 +92,7 @@ class Executor {
   Purpose purpose_of(const Run& run) const;
   bool next_goal(Run& run, Time now);
   bool start_again(Run& run, Time now);
+  void note_begun_anew(const Run& run, Time now);
   bool next_undo(Run& run, Time now);
   bool is_held_by_last_resort(const execute::Undo& undo) const;
   void finish_goal(Run& run, Time now);

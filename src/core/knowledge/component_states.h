@@ -24,6 +24,13 @@ struct Questioned {
   bool is_pointless = false;
 };
 
+// A strategy had it begin anew.
+struct BegunAnew {
+  StrategyId by;
+  Time since{};  // the strategy's first change
+  Time done{};   // the component was back
+};
+
 struct ComponentState {
   bool in_graph = false;      // its node is there, and its process is not known to be gone
   Time node_seen = kLongAgo;  // when the node joined the graph last
@@ -56,6 +63,7 @@ struct ComponentState {
   bool is_rising = false;          // it was seen unconfigured, and is not active yet
   Time culprit_raised = kLongAgo;  // when culprit took it through its lifecycle last
   Time worked = kLongAgo;          // when its process was said to work last (ProcessWorked)
+  std::optional<BegunAnew> begun_anew{};  // the last time
   bool took_place = false;  // its process took another's place, and its lifecycle was not read yet
 
   std::vector<ComponentId> ends_with;  // other components whose processes end with its (EndsWith)

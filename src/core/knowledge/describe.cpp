@@ -473,6 +473,32 @@ std::string describe(const Event& event, const RuleSet& rules) {
   return escape_controls(std::visit(Describer(rules), event.what));
 }
 
+std::string_view to_string(EvidenceSource source) {
+  switch (source) {
+    case EvidenceSource::kKernel:
+      return "kernel";
+    case EvidenceSource::kMeasured:
+      return "measured";
+    case EvidenceSource::kAlarm:
+      return "alarm";
+    case EvidenceSource::kGraph:
+      return "graph";
+    case EvidenceSource::kLearned:
+      return "learned";
+    case EvidenceSource::kModel:
+      return "model";
+  }
+  return "";
+}
+
+std::string describe(const Evidence& evidence) {
+  std::string age;
+  if (evidence.age) age = ", for " + two_decimals(seconds(*evidence.age)) + " s";
+  char weight[16];
+  (void)std::snprintf(weight, sizeof weight, "%+.1f", evidence.log_odds);
+  return evidence.text + age + " (" + std::string(to_string(evidence.source)) + ", " + weight + ")";
+}
+
 std::string describe_exclusion(const Candidate& candidate, const RuleSet& rules) {
   const std::string& strategy = rules[candidate.strategy].name;
   const std::string& component = rules[candidate.component].name;
@@ -504,6 +530,8 @@ std::string describe_exclusion(const Candidate& candidate, const RuleSet& rules)
         return "it depends on " + component + ", which was " + candidate.remark;
       return "it depends on " + component + ", which may still prove to be the cause" + because;
     case Condition::kSettling:
+      if (!candidate.remark.empty())
+        return "it may only show that " + component + " " + candidate.remark;
       return "it is expected to go away now that " + rules[*candidate.failure].name +
              " is resolved";
     case Condition::kInTheWay:

@@ -50,11 +50,35 @@ struct Candidate {
   bool operator==(const Candidate&) const = default;
 };
 
+enum class EvidenceSource : std::uint8_t {
+  kKernel,    // the operating system says so
+  kMeasured,  // culprit heard it, or did not
+  kAlarm,     // a rule fires
+  kGraph,     // the graph or the lifecycle of nodes
+  kLearned,   // earlier failures
+  kModel      // how failures usually come about
+};
+// "kernel", "measured", "alarm", "graph", "learned", "model".
+std::string_view to_string(EvidenceSource source);
+
+// What speaks for a suspect, or against it (diagnose/evidence.h).
+struct Evidence {
+  EvidenceSource source = EvidenceSource::kModel;
+  std::string text;             // "camera exited"
+  std::optional<Duration> age;  // since when, if that is known
+  double log_odds = 0;          // its weight: natural logarithm; below 0 it speaks against it
+
+  bool operator==(const Evidence&) const = default;
+};
+// "camera exited 1.20 s ago (kernel, +2.9)"
+std::string describe(const Evidence& evidence);
+
 // Who may be responsible for a failure.
 struct Suspect {
   ComponentId component;
-  RuleId failure;          // that points at it: the failure itself, or one upstream
-  double probability = 0;  // that it is
+  RuleId failure;                    // that points at it: the failure itself, or one upstream
+  double probability = 0;            // that it is
+  std::vector<Evidence> evidence{};  // the heaviest first
 };
 
 // A failure was detected.

@@ -228,6 +228,12 @@ void add_factors(CLI::App& command, RcaFactors& factors) {
                   "False alarms of each detector per minute, each 1 to 5 s long")
       ->check(CLI::Range(0.0, RcaFactors::kMostFalseAlarms))
       ->capture_default_str();
+  command
+      .add_option("--faults-before", factors.faults_before,
+                  "Other faults of the same robot before each episode; managers keep the latencies "
+                  "that they learn from these")
+      ->check(CLI::Range(std::size_t{0}, RcaFactors::kMostFaultsBefore))
+      ->capture_default_str();
 }
 
 int study_rca(const RcaOptions& options) {
@@ -241,11 +247,9 @@ int study_rca(const RcaOptions& options) {
     return written ? kOk : fail(written.error(), kFailed);
   }
   if (options.explained) {
-    for (const std::string& planner : campaign->planners) {
-      const auto scenario =
-          study::rca::scenario_of(*campaign, campaign->settings.front(), *options.explained);
-      auto made = study::rca::make_planner(planner, campaign->objective, scenario);
-      fmt::print("{}\n{}\n", planner, study::rca::tell(scenario, std::move(*made)));
+    for (std::size_t p = 0; p < campaign->planners.size(); ++p) {
+      const auto run = study::rca::single_run(*campaign, {p, *options.explained});
+      fmt::print("{}\n{}\n", campaign->planners[p], study::rca::tell(*run));
     }
     return kOk;
   }
@@ -305,8 +309,8 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
                                     "each episode, instead of random ones")
                        ->type_name("FILE");
   const std::vector<std::string> factors = {
-      "--detector-latency", "--stated", "--pass",          "--delay",
-      "--unwatched",        "--hidden", "--common-causes", "--false-alarms"};
+      "--detector-latency", "--stated",        "--pass",         "--delay",        "--unwatched",
+      "--hidden",           "--common-causes", "--false-alarms", "--faults-before"};
   for (const std::string random : {"--components", "--faults", "--noise", "--cyclic",
                                    "--mixed-levels", "--flapping", "--unfixable", "--ignore"})
     scenario->excludes(random);

@@ -48,6 +48,22 @@ Costs costs_of(const RcaCampaign& campaign, const RcaScenario& scenario) {
   return costs;
 }
 
+// From other faults of the same robot, as many at a time as in the episode.
+Experience experience_of(const RcaCampaign& campaign, const RcaSetting& setting,
+                         const std::string& planner, const RcaScenario& scenario,
+                         const RuleSet& rules) {
+  Experience experience;
+  RcaScenario earlier = scenario;
+  for (std::size_t faults = 0; faults < setting.factors.faults_before;
+       faults += std::max<std::size_t>(1, earlier.faults.size())) {
+    earlier.seed = simulation::mix(earlier.seed);
+    earlier.faults = random_faults(setting, earlier.seed);
+    play(earlier, rules, std::move(*make_planner(planner, campaign.objective, earlier)),
+         experience);
+  }
+  return experience;
+}
+
 // Row by row, with the same robot: its rules are written and checked once.
 std::vector<EpisodeResult> play_all(const RcaCampaign& campaign, std::span<const RcaRow> rows,
                                     std::uint32_t episode) {
@@ -56,7 +72,8 @@ std::vector<EpisodeResult> play_all(const RcaCampaign& campaign, std::span<const
   std::vector<EpisodeResult> results;
   for (const RcaRow& row : rows) {
     auto planner = make_planner(row.planner, campaign.objective, scenario);
-    results.push_back(play(scenario, rules, std::move(*planner)));
+    Experience experience = experience_of(campaign, row.setting, row.planner, scenario, rules);
+    results.push_back(play(scenario, rules, std::move(*planner), experience));
   }
   return results;
 }
@@ -200,7 +217,8 @@ Expected<SingleRun> single_run(const RcaCampaign& campaign, RunId id) {
   const RcaScenario scenario = scenario_of(campaign, setting, id.run);
   auto made = make_planner(planner, campaign.objective, scenario);
   if (!made) return Error{made.error()};
-  return single_run(scenario, std::move(*made));
+  return single_run(scenario, std::move(*made),
+                    experience_of(campaign, setting, planner, scenario, rules_of(scenario)));
 }
 
 bool has_optimum(const RcaCampaign& campaign) {

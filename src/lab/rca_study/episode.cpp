@@ -144,7 +144,8 @@ class Clock {
 
 // `telling` may be null.
 EpisodeResult play(const RcaScenario& scenario, const RuleSet& rules,
-                   std::unique_ptr<const Planner> planner, SingleRun* telling) {
+                   std::unique_ptr<const Planner> planner, Experience& experience,
+                   SingleRun* telling) {
   EpisodeResult result;
   RcaRobot robot(scenario, rules);
   Clock clock(scenario, robot.plant());
@@ -153,6 +154,7 @@ EpisodeResult play(const RcaScenario& scenario, const RuleSet& rules,
   Manager::Options options;
   options.discovery = Duration::zero();
   Manager manager(rules, std::make_unique<TimedPlanner>(std::move(planner), result), options);
+  for (std::size_t r = 0; r < experience.size(); ++r) manager.set_latency(RuleId(r), experience[r]);
   Runtime runtime(manager, robot);
   runtime.on_events = [&](std::span<const Event> events) {
     judge.see(events);
@@ -161,6 +163,9 @@ EpisodeResult play(const RcaScenario& scenario, const RuleSet& rules,
   };
   runtime.run(robot.is_over(), Time(from_seconds(scenario.horizon_s)));
 
+  experience.clear();
+  for (std::size_t r = 0; r < rules.rules.size(); ++r)
+    experience.push_back(manager.knowledge().latencies.learned(RuleId(r)));
   judge.conclude();
   result.is_recovered = robot.plant().is_well();
   for (std::size_t c = 0; c < scenario.components.size(); ++c)
@@ -178,15 +183,17 @@ EpisodeResult play(const RcaScenario& scenario, const RuleSet& rules,
 }  // namespace
 
 EpisodeResult play(const RcaScenario& scenario, std::unique_ptr<const Planner> planner) {
-  return play(scenario, rules_of(scenario), std::move(planner));
+  Experience none;
+  return play(scenario, rules_of(scenario), std::move(planner), none);
 }
 
 EpisodeResult play(const RcaScenario& scenario, const RuleSet& rules,
-                   std::unique_ptr<const Planner> planner) {
-  return play(scenario, rules, std::move(planner), nullptr);
+                   std::unique_ptr<const Planner> planner, Experience& experience) {
+  return play(scenario, rules, std::move(planner), experience, nullptr);
 }
 
-SingleRun single_run(const RcaScenario& scenario, std::unique_ptr<const Planner> planner) {
+SingleRun single_run(const RcaScenario& scenario, std::unique_ptr<const Planner> planner,
+                     Experience experience) {
   SingleRun run;
   run.rules = rules_of(scenario);
   for (const InjectedFault& fault : scenario.faults) {
@@ -205,12 +212,11 @@ SingleRun single_run(const RcaScenario& scenario, std::unique_ptr<const Planner>
   std::stable_sort(
       run.incidents.begin(), run.incidents.end(),
       [](const TimelineEntry& a, const TimelineEntry& b) { return a.time_s < b.time_s; });
-  play(scenario, run.rules, std::move(planner), &run);
+  play(scenario, run.rules, std::move(planner), experience, &run);
   return run;
 }
 
-std::string tell(const RcaScenario& scenario, std::unique_ptr<const Planner> planner) {
-  const SingleRun run = single_run(scenario, std::move(planner));
+std::string tell(const SingleRun& run) {
   std::string text;
   for (const TimelineEntry& fault : run.incidents)
     text += fmt::format("{:9.3f}  {}\n", fault.time_s, fault.text);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "knowledge/latencies.h"
 #include "plan/planner.h"
 #include "rca_study/scenario.h"
 #include "study/single_run.h"
@@ -35,14 +36,19 @@ struct EpisodeResult {
   double planning_us = 0;  // wall time in all plans
 };
 
+// What was learned in earlier episodes on the same robot: how late each rule is. Empty: nothing.
+using Experience = std::vector<Latencies::Learned>;
+
 // `planner` decides. The same scenario and planner, the same result but for `planning_us`.
 EpisodeResult play(const RcaScenario& scenario, std::unique_ptr<const Planner> planner);
-// With the scenario's rules (rules.h), for whoever plays it more than once.
+// With the scenario's rules (rules.h), for callers that play it more than once; the manager has the
+// experience, and it is afterwards what the manager knows then.
 EpisodeResult play(const RcaScenario& scenario, const RuleSet& rules,
-                   std::unique_ptr<const Planner> planner);
+                   std::unique_ptr<const Planner> planner, Experience& experience);
 
 // The same, to look at moment by moment; and line by line, with the faults.
-SingleRun single_run(const RcaScenario& scenario, std::unique_ptr<const Planner> planner);
-std::string tell(const RcaScenario& scenario, std::unique_ptr<const Planner> planner);
+SingleRun single_run(const RcaScenario& scenario, std::unique_ptr<const Planner> planner,
+                     Experience experience);
+std::string tell(const SingleRun& run);
 
 }  // namespace culprit::study::rca

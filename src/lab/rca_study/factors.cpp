@@ -103,6 +103,7 @@ std::string describe(const RcaFactors& factors) {
   if (factors.common_causes > 0) add(fmt::format("common causes: {}", factors.common_causes));
   if (factors.false_alarms > 0)
     add(fmt::format("false alarms: {:g} a minute and detector", factors.false_alarms));
+  if (factors.faults_before > 0) add(fmt::format("after {} other faults", factors.faults_before));
   return all;
 }
 
@@ -117,6 +118,7 @@ std::string options_of(const RcaFactors& factors) {
   if (factors.hidden > 0) all += fmt::format(" --hidden {:g}%", 100 * factors.hidden);
   if (factors.common_causes > 0) all += fmt::format(" --common-causes {}", factors.common_causes);
   if (factors.false_alarms > 0) all += fmt::format(" --false-alarms {:g}", factors.false_alarms);
+  if (factors.faults_before > 0) all += fmt::format(" --faults-before {}", factors.faults_before);
   return all;
 }
 
@@ -131,6 +133,7 @@ Json to_json(const RcaFactors& factors) {
   if (factors.hidden > 0) json["hidden"] = factors.hidden;
   if (factors.common_causes > 0) json["common_causes"] = factors.common_causes;
   if (factors.false_alarms > 0) json["false_alarms"] = factors.false_alarms;
+  if (factors.faults_before > 0) json["faults_before"] = factors.faults_before;
   return json;
 }
 
@@ -146,6 +149,8 @@ Expected<RcaFactors> factors_from_json(const Json& json) {
   if (fields.has("common_causes"))
     factors.common_causes = fields.natural("common_causes", RcaFactors::kMostCommonCauses);
   factors.false_alarms = number_of(fields, "false_alarms", RcaFactors::kMostFalseAlarms, 0);
+  if (fields.has("faults_before"))
+    factors.faults_before = fields.natural("faults_before", RcaFactors::kMostFaultsBefore);
   if (const std::string complaint = fields.complaint(); !complaint.empty()) return Error{complaint};
   return factors;
 }

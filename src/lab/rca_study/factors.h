@@ -24,6 +24,7 @@ struct RcaFactors {
   static constexpr double kMostUnwatched = 0.9;  // so that a rule is left
   static constexpr std::size_t kMostCommonCauses = 10;
   static constexpr double kMostFalseAlarms = 60;
+  static constexpr std::size_t kMostFaultsBefore = 1000;
 
   RangeOfSeconds detector_latency_s{0, 0.4};  // from a change until a detector shows it
   bool states_latency = false;       // impacts include the latency of the component's detector
@@ -33,6 +34,7 @@ struct RcaFactors {
   double hidden = 0;                 // share of true dependencies that the graph does not show
   std::size_t common_causes = 0;     // each makes two components ill and is in neither
   double false_alarms = 0;           // of each detector in a minute, in the mean
+  std::size_t faults_before = 0;     // in earlier episodes, from which managers learn latencies
 
   bool operator==(const RcaFactors&) const = default;
 };

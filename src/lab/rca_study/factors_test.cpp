@@ -17,7 +17,7 @@ namespace {
 using testing::HasSubstr;
 
 // Every factor differs from the usual robots.
-RcaFactors all_factors() { return {{0, 3}, true, 0.5, {1, 2}, 0.3, 0.1, 2, 12}; }
+RcaFactors all_factors() { return {{0, 3}, true, 0.5, {1, 2}, 0.3, 0.1, 2, 12, 30}; }
 
 RcaSetting with(RcaFactors factors) {
   RcaSetting setting{20, 3, 0, false};
@@ -60,7 +60,7 @@ TEST(Factors, AreRecordedWhereTheyAreChosen) {
   EXPECT_EQ(*factors_from_json(to_json(all)), all);
   EXPECT_EQ(options_of(all),
             " --detector-latency 0..3s --stated --pass 50% --delay 1..2s --unwatched 30% --hidden "
-            "10% --common-causes 2 --false-alarms 12");
+            "10% --common-causes 2 --false-alarms 12 --faults-before 30");
   EXPECT_EQ(options_of({}) + describe({}), "");
   const auto refused = factors_from_json({{"hidden", 2}});
   ASSERT_FALSE(refused);
@@ -193,6 +193,20 @@ TEST(FalseAlarms, ComeAsOftenAsTheyAreSaidTo) {
   }
   // A pause of 10 s and an alarm of 3 s, in the mean.
   EXPECT_NEAR(alarms, 2900 / 13, 45);
+}
+
+// Detectors that are up to 3 s late, which nobody stated: what other faults taught makes it act on the
+// right components.
+TEST(Factors, LatenciesThatEarlierFaultsTaughtCount) {
+  const auto exact = [](std::size_t faults_before) {
+    RcaCampaign campaign;
+    campaign.settings = {with({.detector_latency_s = {0, 3}, .faults_before = faults_before})};
+    campaign.settings.front().ignores_plumbing = true;
+    campaign.planners = {"bayes"};
+    campaign.episodes = 30;
+    return run_campaign(campaign, 2, {})->front().exact.mean();
+  };
+  EXPECT_GT(exact(15), exact(0) + 0.2);
 }
 
 }  // namespace

@@ -96,6 +96,17 @@ std::string candidate_table(const Decision& decision, const Knowledge& knowledge
   return out;
 }
 
+std::string evidence_as_text(const Decision& decision, const RuleSet& rules) {
+  std::string out;
+  for (const Suspect& suspect : decision.suspects) {
+    out += fmt::format(
+        "  {} with {:.0f} %{}\n", rules[suspect.component].name, 100 * suspect.probability,
+        suspect.failure == decision.rule ? "" : ", by " + rules[suspect.failure].name);
+    for (const Evidence& each : suspect.evidence) out += "    " + describe(each) + "\n";
+  }
+  return out.empty() ? out : out + "\n";
+}
+
 std::string flips_as_text(const plan::ExplainedDecision& explained, const Knowledge& knowledge) {
   std::string out;
   for (std::size_t i = 0; i < explained.flips.size(); ++i) {
@@ -117,6 +128,7 @@ std::string as_text(const plan::ExplainedDecision& explained, const PlanReport& 
   return fmt::format(
              "{} ({}{})\n  {}\n\n", rules[rule].name, to_string(rules[rule].policies.criticality),
              failing ? fmt::format(", for {:.1f} s", *failing) : "", sentence(explained, rules)) +
+         evidence_as_text(explained.decision, rules) +
          candidate_table(explained.decision, report.knowledge) +
          flips_as_text(explained, report.knowledge) + "\n";
 }

@@ -391,6 +391,18 @@ TEST(BayesPlanner, StaggersTheRepairsOfFailuresThatRepeatedlyBeginTogether) {
   EXPECT_EQ(scene.plan(kFewRedeployments), "A.restart") << "it did not help";
 }
 
+// The effect waits for its cause; if the cause gave way to it as well, both would wait for ever.
+TEST(BayesPlanner, NoFailureGivesWayToAnEffect) {
+  Scene scene = robot();
+  scene.fail("A").fail("B").fail("D");
+  for (int i = 0; i < 2; ++i) {
+    scene->coincidences.began(scene.rule("B"), {});
+    scene->coincidences.began(scene.rule("D"), std::vector<RuleId>{scene.rule("B")});
+    scene->coincidences.began(scene.rule("A"), std::vector<RuleId>{scene.rule("B")});
+  }
+  EXPECT_EQ(scene.plan(kFewRedeployments), "A.restart D.restart");
+}
+
 TEST(BayesPlanner, SaysWhoIsSuspectedAndWhatItIsWorth) {
   Scene scene = robot();
   scene.fail("A").fail("B");

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "diagnose/evidence.h"
 #include "diagnose/known_down.h"
 #include "diagnose/questions.h"
 #include "plan/also_ended.h"
@@ -369,10 +370,13 @@ bool PlanningStep::exclude_unproven(WeighedCandidate& weighed, double chance) co
   const bool need_not_wait =
       chance >= kSure && !takes_down(knowledge_.rules[weighed.candidate.strategy]);
   const bool is_coupled =
+      awaiting->because == rule ||
       knowledge_.couplings.of(awaiting->because, rule).mean(Coupling::kUsual) > 0.5;
   if (need_not_wait || !is_coupled) return false;
   exclude(weighed, {awaiting->is_echo ? Condition::kSettling : Condition::kSuspect,
-                    likeliest_component(awaiting->because), awaiting->because});
+                    awaiting->begun_anew.value_or(likeliest_component(awaiting->because)),
+                    awaiting->because});
+  if (awaiting->begun_anew) weighed.candidate.remark = "was down for a strategy";
   return true;
 }
 
@@ -624,24 +628,28 @@ ComponentId PlanningStep::component_of(std::size_t node) const {
 }
 
 std::vector<Suspect> PlanningStep::suspects(std::size_t failure) const {
-  std::vector<Suspect> all;
-  all.reserve(BayesPlanner::kSuspects);
+  std::vector<std::pair<Suspect, std::size_t>> all;  // with their nodes
   const RuleId rule = causes_[failure].rule;
-  all.push_back({likeliest_component(rule), rule, diagnosis_.of(failure)});
+  all.push_back({{likeliest_component(rule), rule, diagnosis_.of(failure)}, failure});
   diagnosis_.for_each_share(failure, [&](std::size_t j, double share) {
-    all.push_back({component_of(j), causes_[j].is_rule() ? causes_[j].rule : rule, share});
+    all.push_back({{component_of(j), causes_[j].is_rule() ? causes_[j].rule : rule, share}, j});
   });
   const std::size_t shown = std::min(all.size(), BayesPlanner::kSuspects);
   std::partial_sort(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(shown), all.end(),
-                    [&](const Suspect& a, const Suspect& b) {
+                    [&](const auto& a, const auto& b) {
                       const auto key = [&](const Suspect& s) {
                         return std::pair<std::int64_t, const std::string&>(
                             -parts(s.probability), knowledge_.rules[s.failure].name);
                       };
-                      return key(a) < key(b);
+                      return key(a.first) < key(b.first);
                     });
   all.resize(shown);
-  return all;
+  std::vector<Suspect> suspects;
+  for (auto& [suspect, node] : all) {
+    suspect.evidence = evidence_for(node, failure, found_, knowledge_);
+    suspects.push_back(std::move(suspect));
+  }
+  return suspects;
 }
 
 std::vector<Decision> PlanningStep::decisions() {

@@ -1,0 +1,126 @@
+#include "diagnose/evidence.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnose/known_down.h"
+
+namespace culprit::diagnose {
+namespace {
+
+double logit(double p) { return std::log(p / (1 - p)); }
+
+double bounded(double log_odds) { return std::clamp(log_odds, -kSurely, kSurely); }
+
+// ln X, where 0 is a thousandth.
+double log_of(double explained) { return std::log(std::max(explained, std::exp(-kSurely))); }
+
+EvidenceSource source_of(Trouble trouble) {
+  switch (trouble) {
+    case Trouble::kExited:
+    case Trouble::kStopped:
+      return EvidenceSource::kKernel;
+    case Trouble::kHung:
+    case Trouble::kSilent:
+      return EvidenceSource::kMeasured;
+    case Trouble::kLeft:
+    case Trouble::kNotActive:
+    case Trouble::kNotYetActive:
+    case Trouble::kNeverSeen:
+      return EvidenceSource::kGraph;
+  }
+  return EvidenceSource::kGraph;
+}
+
+class Collector {
+ public:
+  Collector(const Examination& found, const Knowledge& knowledge)
+      : causes_(found.causes()), diagnosis_(found.diagnosis()), knowledge_(knowledge) {}
+
+  std::vector<Evidence> own(std::size_t i) {
+    const double explained = diagnosis_.explained(i);
+    for (const ComponentId c : touched_by(causes_[i].rule, knowledge_)) {
+      if (is_known_down(causes_[i].rule, knowledge_) && is_known_down(c, knowledge_))
+        add(EvidenceSource::kKernel, name(c) + " is gone or stopped",
+            knowledge_.components[c].process_since, logit(kKnownDown));
+    }
+    if (explained <= 0) {
+      add(EvidenceSource::kMeasured, "nothing upstream is wrong", kLongAgo, kSurely);
+    } else if (all_.empty()) {
+      add(EvidenceSource::kModel, "two faults at once are rare", kLongAgo, logit(kCoincidence));
+    }
+    if (explained > 0)
+      add(EvidenceSource::kModel, "causes do not always pass on", kLongAgo, -log_of(explained));
+    const std::size_t members = causes_.loops()[causes_.loop_of(i)].size();
+    if (members > 1) {
+      const double own = std::min(diagnosis_.against_others(i), 1 - std::exp(-kSurely));
+      add(EvidenceSource::kModel,
+          "it is one of a feedback loop of " + std::to_string(members) + " failures", kLongAgo,
+          logit(diagnosis_.of(i)) - logit(own));
+    }
+    return heaviest_first();
+  }
+
+  std::vector<Evidence> other(std::size_t j, std::size_t i) {
+    const CauseNode& node = causes_[j];
+    const double weight = log_of(diagnosis_.explained(i)) - log_of(diagnosis_.explained(i, j));
+    switch (node.kind) {
+      case CauseNode::Kind::kFailure:
+        add(EvidenceSource::kAlarm, name(node.rule) + " fires", node.onset.latest, weight);
+        break;
+      case CauseNode::Kind::kImminent:
+        add(EvidenceSource::kMeasured, name(node.rule) + " is about to fire", node.onset.latest,
+            weight);
+        break;
+      case CauseNode::Kind::kTrouble:
+        add(source_of(node.trouble),
+            name(node.component) + " " + std::string(to_string(node.trouble)), node.onset.latest,
+            weight);
+        break;
+      case CauseNode::Kind::kUnsupplied:
+        add(EvidenceSource::kGraph, "no node offers " + node.channel, kLongAgo, weight);
+        break;
+    }
+    const double timely = causes_.timely(j, i);
+    if (timely < 1)
+      add(EvidenceSource::kMeasured, name(causes_[i].rule) + " did not follow at once",
+          node.onset.latest, std::log(timely));
+    const double kappa = diagnosis_.kappa(j, i);
+    if (kappa != Coupling::kUsual)
+      add(EvidenceSource::kLearned,
+          kappa > Coupling::kUsual ? "they went away together before"
+                                   : "one stayed before when the other went away",
+          kLongAgo, std::log(kappa / Coupling::kUsual));
+    return heaviest_first();
+  }
+
+ private:
+  void add(EvidenceSource source, std::string text, Time since, double log_odds) {
+    std::optional<Duration> age;
+    if (since != kLongAgo && since <= knowledge_.now) age = knowledge_.now - since;
+    all_.push_back({source, std::move(text), age, bounded(log_odds)});
+  }
+  std::vector<Evidence> heaviest_first() {
+    std::stable_sort(all_.begin(), all_.end(), [](const Evidence& a, const Evidence& b) {
+      return std::abs(a.log_odds) > std::abs(b.log_odds);
+    });
+    return std::move(all_);
+  }
+  const std::string& name(RuleId rule) const { return knowledge_.rules[rule].name; }
+  const std::string& name(ComponentId component) const { return knowledge_.rules[component].name; }
+
+  const Causes& causes_;
+  const Diagnosis& diagnosis_;
+  const Knowledge& knowledge_;
+  std::vector<Evidence> all_;
+};
+
+}  // namespace
+
+std::vector<Evidence> evidence_for(std::size_t j, std::size_t i, const Examination& found,
+                                   const Knowledge& knowledge) {
+  Collector collector(found, knowledge);
+  return i == j ? collector.own(i) : collector.other(j, i);
+}
+
+}  // namespace culprit::diagnose

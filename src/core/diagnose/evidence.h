@@ -1,0 +1,33 @@
+// What speaks for a suspect, for people and for the journal.
+//
+// The probabilities come from a few pieces of evidence, each with a weight: by how much it moves the
+// natural logarithm of the odds that the suspect is the cause of the failure. Weights above 0 speak for
+// it. Certainty is shown as kSurely.
+//
+//   suspect                     evidence                             weight
+//   the failure's component     its process is gone or stopped       logit kKnownDown
+//                               others may explain the failure       logit kCoincidence, -ln X_i
+//                               nothing upstream is wrong            kSurely
+//                               it is in a feedback loop             logit R_i - logit P(own i)
+//   another cause j             what is wrong there (causes.h)       ln X_i - ln X_i without j
+//                               i worked for long beside it          ln g(j -> i)
+//                               they cleared together, or did not    ln kappa(j -> i) - ln kUsual
+//
+// Symbols: diagnosis.h.
+#pragma once
+
+#include <vector>
+
+#include "diagnose/examination.h"
+#include "knowledge/event.h"
+
+namespace culprit::diagnose {
+
+inline constexpr double kSurely = 6.9;  // 1,000 to 1
+
+// Of suspect `j` for failure `i`, nodes of found.causes(); the heaviest first. @pre j is i or one of
+// its causes
+std::vector<Evidence> evidence_for(std::size_t j, std::size_t i, const Examination& found,
+                                   const Knowledge& knowledge);
+
+}  // namespace culprit::diagnose

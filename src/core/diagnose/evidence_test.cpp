@@ -1,0 +1,93 @@
+#include "diagnose/evidence.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "plan/bayes/test_scene.h"
+
+namespace culprit::diagnose {
+namespace {
+
+using namespace std::chrono_literals;
+using plan::failure_of;
+using plan::Scene;
+using testing::ElementsAre;
+using testing::StartsWith;
+
+// a -> b -> c, each with a rule of its own.
+class EvidenceFor : public ::testing::Test {
+ protected:
+  EvidenceFor() : scene_(failure_of("a", "A") + failure_of("b", "B") + failure_of("c", "C")) {
+    scene_.link("a", "b").link("b", "c");
+  }
+  std::vector<Evidence> of(const char* suspect, const char* failure) {
+    const Examination found(*scene_, scene_->states.active());
+    const Causes& causes = found.causes();
+    return evidence_for(causes.index_of(scene_.rule(suspect)),
+                        causes.index_of(scene_.rule(failure)), found, *scene_);
+  }
+  std::vector<std::string> texts(const char* suspect, const char* failure) {
+    std::vector<std::string> all;
+    for (const Evidence& each : of(suspect, failure)) all.push_back(describe(each));
+    return all;
+  }
+
+  Scene scene_;
+};
+
+TEST_F(EvidenceFor, AFailureWithNothingUpstreamIsItsOwnCause) {
+  scene_.fail("A");
+  EXPECT_THAT(texts("A", "A"), ElementsAre("nothing upstream is wrong (measured, +6.9)"));
+}
+
+TEST_F(EvidenceFor, AnAlarmUpstreamSpeaksForIt) {
+  scene_.fail("A").fail("B");
+  const auto upstream = of("A", "B");
+  ASSERT_EQ(upstream.size(), 1u);
+  EXPECT_EQ(upstream.front().source, EvidenceSource::kAlarm);
+  EXPECT_EQ(upstream.front().text, "A fires");
+  EXPECT_GT(upstream.front().log_odds, 0);
+  EXPECT_THAT(texts("B", "B"), ElementsAre(StartsWith("two faults at once are rare (model, -2.9)"),
+                                           StartsWith("causes do not always pass on (model, +")));
+}
+
+// Of two alarms each speaks for itself only as far as the other leaves something to explain.
+TEST_F(EvidenceFor, OfTwoExplanationsEachWeighsLess) {
+  scene_.fail("A").fail("C");
+  const double alone = of("A", "C").front().log_odds;
+  scene_.fail("B");
+  EXPECT_LT(of("A", "C").front().log_odds, alone);
+}
+
+TEST_F(EvidenceFor, AProcessThatIsGoneIsProof) {
+  scene_.fail("A").fail("B");
+  scene_.process("b", ProcessState::kGone);
+  const auto own = of("B", "B");
+  EXPECT_EQ(own.front().source, EvidenceSource::kKernel);
+  EXPECT_EQ(own.front().text, "b is gone or stopped");
+  EXPECT_GT(own.front().log_odds, 2);
+}
+
+TEST_F(EvidenceFor, ASupplierInTroubleNeedsNoRule) {
+  scene_.fail("C");
+  scene_.process("b", ProcessState::kGone);
+  const Examination found(*scene_, scene_->states.active());
+  const std::size_t i = found.causes().index_of(scene_.rule("C"));
+  std::vector<std::string> all;
+  for_each(found.causes().causes(i), [&](std::size_t j) {
+    for (const Evidence& each : evidence_for(j, i, found, *scene_)) all.push_back(each.text);
+  });
+  EXPECT_THAT(all, ElementsAre("b exited"));
+}
+
+TEST_F(EvidenceFor, WhatWasLearnedCounts) {
+  scene_.fail("A").fail("B");
+  scene_->couplings.set(scene_.rule("A"), scene_.rule("B"), {1, 9});
+  const auto upstream = of("A", "B");
+  ASSERT_EQ(upstream.size(), 2u);
+  EXPECT_EQ(upstream.back().text, "one stayed before when the other went away");
+  EXPECT_LT(upstream.back().log_odds, 0);
+}
+
+}  // namespace
+}  // namespace culprit::diagnose
