@@ -9,8 +9,8 @@
 #include "link/service_call.h"
 #include "ros2/lifecycle.h"
 #include "ros2/parameter_store.h"
-#include "ros2/receive_thread.h"
 #include "ros2/services.h"
+#include "rtps/receive_thread.h"
 
 namespace culprit::ros2 {
 namespace {

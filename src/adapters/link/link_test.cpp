@@ -18,8 +18,8 @@
 #include "ros2/lifecycle_node.h"
 #include "ros2/live_test.h"
 #include "ros2/services.h"
-#include "ros2/test_datagram.h"
 #include "ros2/test_forger.h"
+#include "rtps/test_datagram.h"
 
 namespace culprit::ros2 {
 namespace {

@@ -9,7 +9,7 @@
 #include "base/mutex.h"
 #include "ros2/fast_dds.h"
 #include "ros2/names.h"
-#include "ros2/receive_watch.h"
+#include "rtps/receive_watch.h"
 
 namespace culprit::ros2 {
 

@@ -22,15 +22,15 @@
 #include <vector>
 
 #include "base/expected.h"
-#include "ros2/cdr.h"
-#include "ros2/datagram_filter.h"
-#include "ros2/datagram_sources.h"
-#include "ros2/endpoint_info.h"
-#include "ros2/guid.h"
-#include "ros2/haste.h"
 #include "ros2/options.h"
-#include "ros2/qos.h"
-#include "ros2/system_time.h"
+#include "rtps/cdr.h"
+#include "rtps/datagram_filter.h"
+#include "rtps/datagram_sources.h"
+#include "rtps/endpoint_info.h"
+#include "rtps/guid.h"
+#include "rtps/haste.h"
+#include "rtps/qos.h"
+#include "rtps/system_time.h"
 
 namespace culprit::ros2 {
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <system_error>
 
-#include "ros2/own_addresses.h"
-#include "ros2/udp_sockets.h"
+#include "rtps/own_addresses.h"
+#include "rtps/udp_sockets.h"
 
 namespace culprit::ros2 {
 namespace {

@@ -24,7 +24,7 @@
 
 #include "base/mutex.h"
 #include "base/time.h"
-#include "ros2/guid.h"
+#include "rtps/guid.h"
 
 namespace culprit::ros2 {
 

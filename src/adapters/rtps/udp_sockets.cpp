@@ -1,4 +1,4 @@
-#include "ros2/udp_sockets.h"
+#include "rtps/udp_sockets.h"
 
 #include <algorithm>
 #include <charconv>

@@ -39,10 +39,10 @@
 
 #include "base/live_clock.h"
 #include "base/mutex.h"
-#include "ros2/datagram_filter.h"
-#include "ros2/datagram_sources.h"
-#include "ros2/receive_thread.h"
-#include "ros2/udp_sockets.h"
+#include "rtps/datagram_filter.h"
+#include "rtps/datagram_sources.h"
+#include "rtps/receive_thread.h"
+#include "rtps/udp_sockets.h"
 
 namespace culprit::ros2::fast_dds {
 

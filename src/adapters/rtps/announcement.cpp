@@ -1,4 +1,4 @@
-#include "ros2/announcement.h"
+#include "rtps/announcement.h"
 
 #include <algorithm>
 #include <chrono>

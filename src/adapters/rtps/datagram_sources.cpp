@@ -1,10 +1,10 @@
-#include "ros2/datagram_sources.h"
+#include "rtps/datagram_sources.h"
 
 #include <algorithm>
 #include <cstring>
 #include <optional>
 
-#include "ros2/rtps_submessage.h"
+#include "rtps/submessage.h"
 
 namespace culprit::ros2 {
 namespace {

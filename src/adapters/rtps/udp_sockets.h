@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "ros2/datagram_sources.h"
+#include "rtps/datagram_sources.h"
 
 namespace culprit::ros2 {
 

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <utility>
 
-#include "ros2/cdr.h"
-#include "ros2/guid.h"
+#include "rtps/cdr.h"
+#include "rtps/guid.h"
 
 namespace culprit::ros2 {
 

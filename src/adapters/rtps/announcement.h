@@ -9,8 +9,8 @@
 #include <optional>
 #include <string_view>
 
-#include "ros2/cdr.h"
-#include "ros2/endpoint_info.h"
+#include "rtps/cdr.h"
+#include "rtps/endpoint_info.h"
 
 namespace culprit::ros2 {
 
