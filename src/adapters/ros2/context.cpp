@@ -53,8 +53,10 @@ FoundProcess Context::find_process(const Graph::FindProcess& find, ParticipantIn
       known->second.of.origin == info.origin)
     return known->second.found;
   FoundProcess found = find(info);
-  if (found.pid != 0)
+  if (found.pid != 0) {
+    participant_->prove(info.guid.prefix(), found.pid);
     proofs_.insert_or_assign(info.guid.prefix(), Proof{std::move(info), found, later(now, kLasts)});
+  }
   return found;
 }
 

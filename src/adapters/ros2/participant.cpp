@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <unistd.h>
 #include <utility>
 #include <variant>
 
@@ -394,6 +395,7 @@ class Participant::Impl {
     is_secured_ = options.security.has_value();
     likely_refusal_ = likely_refusal(options.security);
     reception_.sources->begin(guid_.prefix());
+    reception_.origins->prove(guid_.prefix(), getpid(), {});
     publisher_ = participant_->create_publisher(dds::PublisherQos());
     subscriber_ = participant_->create_subscriber(dds::SubscriberQos());
     topics_.emplace(*participant_);
@@ -436,6 +438,7 @@ class Participant::Impl {
   const Guid& guid() const { return guid_; }
   const DatagramSources& sources() const { return *reception_.sources; }
   const DatagramFilter& filter() const { return *reception_.filter; }
+  Origins& origins() { return *reception_.origins; }
   void look_at_receivers(Time now) {
     reception_.thread->look_at_sockets(
         [&](std::span<const int> sockets) { watch_.look(sockets, now); });
@@ -452,6 +455,7 @@ class Participant::Impl {
     if (const auto* gone = std::get_if<ParticipantGone>(&event)) {
       reception_.sources->forget(gone->guid.prefix());
       reception_.filter->forget(gone->guid.prefix());
+      reception_.origins->forget(gone->guid.prefix());
     }
     gate_->pass([&] {
       if (const auto* there = std::get_if<ParticipantInfo>(&event)) {
@@ -507,6 +511,10 @@ void Participant::on_round(std::function<void()> on_round) {
 DatagramSources::Origin Participant::origin_of(const GuidPrefix& participant) const {
   return impl_->sources().of(participant);
 }
+void Participant::prove(const GuidPrefix& participant, int pid) {
+  impl_->origins().prove(participant, pid, origin_of(participant).addresses);
+}
+Origins& Participant::origins() { return impl_->origins(); }
 Time Participant::heard_last(const GuidPrefix& participant) const {
   return impl_->sources().last_of(participant);
 }

@@ -29,6 +29,7 @@
 #include "rtps/endpoint_info.h"
 #include "rtps/guid.h"
 #include "rtps/haste.h"
+#include "rtps/origins.h"
 #include "rtps/qos.h"
 #include "rtps/system_time.h"
 
@@ -211,6 +212,9 @@ class Participant {
 
   // Where the datagrams of another participant came from so far.
   DatagramSources::Origin origin_of(const GuidPrefix& participant) const;
+  // Its process is this one, on this machine: from now on only what comes from that process counts as its (Origins).
+  void prove(const GuidPrefix& participant, int pid);
+  Origins& origins();
   // When its last one came; kLongAgo: it is not there.
   Time heard_last(const GuidPrefix& participant) const;
   // Since when nothing of its own came through one of its ports (DatagramSources).

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "rtps/own_addresses.h"
+#include "rtps/process_sockets.h"
 #include "rtps/udp_sockets.h"
 
 namespace culprit::ros2 {
@@ -53,18 +54,6 @@ std::vector<unsigned> users_of(const fs::path& process) {
   return {};
 }
 
-std::set<std::string> descriptors_of(const fs::path& process) {
-  std::set<std::string> links;
-  std::error_code error;
-  fs::directory_iterator files(process / "fd", error);
-  while (!error && files != fs::directory_iterator()) {
-    const fs::path target = fs::read_symlink(files->path(), error);
-    if (!error) links.insert(target.native());
-    files.increment(error);  // fails if the process went away meanwhile
-  }
-  return links;
-}
-
 bool holds(const fs::path& process, const std::vector<Candidates>& needed) {
   const std::set<std::string> links = descriptors_of(process);
   if (links.empty()) return false;
@@ -85,23 +74,8 @@ int to_pid(const fs::path& process) {
   return error == std::errc() && rest == name.data() + name.size() ? pid : 0;
 }
 
-// What the kernel says after the command, which is in parentheses and may hold anything.
-std::string stat_after_command(const fs::path& process) {
-  std::ifstream file(process / "stat");
-  std::string line;
-  std::getline(file, line);
-  const auto end = line.rfind(')');
-  return end == std::string::npos || end + 2 >= line.size() ? "" : line.substr(end + 2);
-}
-
-// In ticks since the machine was started; the latest if it cannot be told.
-std::uint64_t began(const fs::path& process) {
-  std::istringstream rest(stat_after_command(process));
-  std::string skipped;
-  for (int i = 0; i < 19; ++i) rest >> skipped;  // proc(5)
-  std::uint64_t ticks = 0;
-  return rest >> ticks ? ticks : UINT64_MAX;
-}
+// The latest if it cannot be told.
+std::uint64_t began(const fs::path& process) { return running_since(process).value_or(UINT64_MAX); }
 
 }  // namespace
 
@@ -180,8 +154,7 @@ FoundProcess ProcessFinder::prove(const ParticipantInfo& participant,
 }
 
 bool ProcessFinder::is_running(int pid) const {
-  const std::string state = stat_after_command(proc_ / std::to_string(pid));
-  return !state.empty() && state.front() != 'Z' && state.front() != 'X';
+  return running_since(proc_ / std::to_string(pid)).has_value();
 }
 
 }  // namespace culprit::ros2

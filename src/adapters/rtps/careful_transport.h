@@ -12,7 +12,8 @@
 // then frees twice what it knows of whoever leaves: a goodbye comes to a unicast and to a multicast
 // port (2.9, SecurityManager::remove_participant).
 //
-// It passes on only what the filter lets through (datagram_filter.h).
+// It passes on only what comes from where its participant is (origins.h), and what the filter lets through
+// (datagram_filter.h).
 //
 // Readers that have time (Haste::kSoon) have a port of their own. It is taken from the upper end of
 // those that RTPS 2.3 §9.6.1 gives to the domain's participants, where the last ones of many on one
@@ -41,6 +42,7 @@
 #include "base/mutex.h"
 #include "rtps/datagram_filter.h"
 #include "rtps/datagram_sources.h"
+#include "rtps/origins.h"
 #include "rtps/receive_thread.h"
 #include "rtps/udp_sockets.h"
 
@@ -56,6 +58,7 @@ struct Reception {
   // Of those who want nothing to be sent for a moment (Participant::Hold).
   std::shared_ptr<std::atomic<int>> holds = std::make_shared<std::atomic<int>>(0);
   std::shared_ptr<DatagramSources> sources = std::make_shared<DatagramSources>();
+  std::shared_ptr<Origins> origins = std::make_shared<Origins>();
   std::shared_ptr<DatagramFilter> filter = std::make_shared<DatagramFilter>();
   std::shared_ptr<ReceiveThread> thread = std::make_shared<ReceiveThread>();
   // Where readers that have time are sent to; 0: there is no such port.
@@ -283,6 +286,7 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
   void came(Receiver& receiver, const ReceiveThread::Datagram& datagram, const Locator& local,
             Haste haste) const {
     const UdpAddress& from = datagram.from;
+    if (!reception_.origins->counts(datagram.bytes, from, live_now())) return;
     reception_.sources->heard(datagram.bytes, from, live_now());
     const ByteView passed =
         reception_.filter->pass(datagram.bytes, DatagramFilter::Clock::now(), datagram.received);

@@ -14,6 +14,8 @@
 // heard last. Whoever has too many addresses is known to have too many.
 #pragma once
 
+#include <array>
+#include <compare>
 #include <cstdint>
 #include <list>
 #include <optional>
@@ -28,10 +30,12 @@
 
 namespace culprit::ros2 {
 
+using Ip = std::array<std::uint8_t, 4>;
+
 struct UdpAddress {
-  std::array<std::uint8_t, 4> ip{};
+  Ip ip{};
   std::uint16_t port = 0;
-  bool operator==(const UdpAddress&) const = default;
+  auto operator<=>(const UdpAddress&) const = default;
 };
 
 // All members may be called from any thread.
