@@ -167,6 +167,7 @@ Expected<void> Link::start() {
   publishing_ = std::make_unique<Timer>(executor_, kPublishPeriod, [this] {
     publish_again();
     tell_of_refused();
+    tell_of_foreign_sources();
     remind();
     listen_to_hosts();
     look_at_hosts();
@@ -558,6 +559,24 @@ void Link::tell_of_refused() {
   refused_ = refused.count;
   inbox_.put(LinkTrouble{std::to_string(refused.count) + " datagrams were kept out so far: " +
                          refused.why + "; who on this network sends that?"});
+}
+
+void Link::tell_of_foreign_sources() {
+  Origins& origins = context_->participant().origins();
+  origins.check(live_now());
+  for (const ForeignSource& source : origins.new_sources()) {
+    std::string name = "a node";
+    for (const Graph::NodeView& node : context_->graph().bare_nodes()) {
+      if (node.participant == source.in_name_of) name = node.node.name;
+    }
+    const std::string owner =
+        source.user ? ", a socket of user " + std::to_string(*source.user) : "";
+    const std::string process =
+        source.pid == 0 ? "" : " (process " + std::to_string(source.pid) + ")";
+    inbox_.put(LinkTrouble{
+        "datagrams from " + to_text(source.from) + owner + " speak for " + name + process +
+        ", which does not send from there; they are dropped. Find the program that sends them"});
+  }
 }
 
 // ---- commands

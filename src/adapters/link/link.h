@@ -126,6 +126,7 @@ class Link {
   void ask_silent_ones();
   void publish_again();
   void tell_of_refused();
+  void tell_of_foreign_sources();
   void on_namesakes(const NodeNamesakes& seen);
   void remind();
   void on_discovery(const DiscoveryEvent& event);

@@ -109,6 +109,24 @@ TEST(Origin, FarewellsOfAStrangerDoNotRemoveANodeWhoseProcessIsProven) {
   EXPECT_TRUE(watcher.sees_node_leave("/camera"));
 }
 
+// Fast DDS believes a participant that says that the endpoints of another have ended.
+TEST(Origin, AParticipantTellsOfItselfOnly) {
+  const TestDomain domain;
+  LiveContext watcher(domain.options());
+  Robot robot(domain, watcher);
+  ASSERT_TRUE(robot.is_seen);
+  const auto stranger = Participant::create(domain.options(), [](DiscoveryEvent) {});
+  ASSERT_TRUE(stranger);
+  ASSERT_TRUE(robot.within([&] { return robot.participants().size() == 2; }));
+  std::vector<Bytes> all = robot.farewells();
+  const GuidPrefix name = (*stranger)->guid().prefix();
+  for (Bytes& each : all) std::ranges::copy(name.bytes, each.begin() + 8);
+  const HostileProcess sends(all, robot.to, 200ms);
+  Origins& origins = watcher->participant().origins();
+  EXPECT_TRUE(robot.within([&] { return origins.dropped() > 2000; }));
+  EXPECT_FALSE(robot.has_lost_something());
+}
+
 TEST(Origin, FarewellsOfAStrangerRemoveANodeWhoseProcessIsNotKnown) {
   const TestDomain domain;
   LiveContext watcher(domain.options());

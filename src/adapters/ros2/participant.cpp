@@ -375,6 +375,7 @@ class Participant::Impl {
       if (!address) return Error{address.error()};
       server.host = std::move(*address);
     }
+    *reception_.relays = !options.servers.empty();
     static std::once_flag is_set_up;
     std::call_once(is_set_up, fast_dds::speak_through_sockets);
     participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(

@@ -22,13 +22,6 @@ bool is_local(const std::array<std::uint8_t, 4>& ip) {
   return ip[0] == 127 || own_addresses().contains(ip);
 }
 
-std::string to_text(const UdpAddress& address) {
-  std::string text;
-  for (const std::uint8_t part : address.ip)
-    text += (text.empty() ? "" : ".") + std::to_string(part);
-  return text + ":" + std::to_string(address.port);
-}
-
 // The sockets that one address may belong to: several where they share a port.
 using Candidates = std::vector<UdpSocket>;
 

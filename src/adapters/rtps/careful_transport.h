@@ -40,6 +40,7 @@
 
 #include "base/live_clock.h"
 #include "base/mutex.h"
+#include "rtps/claims.h"
 #include "rtps/datagram_filter.h"
 #include "rtps/datagram_sources.h"
 #include "rtps/origins.h"
@@ -57,6 +58,8 @@ struct Reception {
   std::shared_ptr<std::atomic<bool>> speaks = std::make_shared<std::atomic<bool>>(false);
   // Of those who want nothing to be sent for a moment (Participant::Hold).
   std::shared_ptr<std::atomic<int>> holds = std::make_shared<std::atomic<int>>(0);
+  // A discovery server may tell of others than itself.
+  std::shared_ptr<std::atomic<bool>> relays = std::make_shared<std::atomic<bool>>(false);
   std::shared_ptr<DatagramSources> sources = std::make_shared<DatagramSources>();
   std::shared_ptr<Origins> origins = std::make_shared<Origins>();
   std::shared_ptr<DatagramFilter> filter = std::make_shared<DatagramFilter>();
@@ -286,7 +289,7 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
   void came(Receiver& receiver, const ReceiveThread::Datagram& datagram, const Locator& local,
             Haste haste) const {
     const UdpAddress& from = datagram.from;
-    if (!reception_.origins->counts(datagram.bytes, from, live_now())) return;
+    if (!counts(datagram)) return;
     reception_.sources->heard(datagram.bytes, from, live_now());
     const ByteView passed =
         reception_.filter->pass(datagram.bytes, DatagramFilter::Clock::now(), datagram.received);
@@ -301,6 +304,17 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
     // where it depends on what is read whether anything of our own comes. Both have time.
     if (haste == Haste::kNow)
       reception_.sources->came_through(passed, static_cast<std::uint16_t>(local.port), live_now());
+  }
+
+  bool counts(const ReceiveThread::Datagram& datagram) const {
+    const Time now = live_now();
+    if (!reception_.origins->counts(datagram.bytes, datagram.from, now)) return false;
+    if (*reception_.relays) return true;
+    for (const GuidPrefix& other : others_announced(datagram.bytes)) {
+      const bool has_spoken = reception_.sources->may_speak_from(other, datagram.from);
+      if (!reception_.origins->may_tell_of(other, datagram.from, has_spoken, now)) return false;
+    }
+    return true;
   }
 
   static in_addr address_of(const Locator& locator) {

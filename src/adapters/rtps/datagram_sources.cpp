@@ -35,6 +35,13 @@ std::optional<std::size_t> size_of_submessage(std::span<const std::uint8_t> byte
 
 }  // namespace
 
+std::string to_text(const UdpAddress& address) {
+  std::string text;
+  for (const std::uint8_t part : address.ip)
+    text += (text.empty() ? "" : ".") + std::to_string(part);
+  return text + ":" + std::to_string(address.port);
+}
+
 void DatagramSources::heard(std::span<const std::uint8_t> datagram, const UdpAddress& from,
                             Time now) {
   if (!is_rtps(datagram)) return;
@@ -136,6 +143,13 @@ Time DatagramSources::last_of(const GuidPrefix& participant) const {
   const MutexLock lock(mutex_);
   const auto found = entries_.find(participant);
   return found == entries_.end() ? kLongAgo : found->second.last;
+}
+
+bool DatagramSources::may_speak_from(const GuidPrefix& participant, const UdpAddress& from) const {
+  const MutexLock lock(mutex_);
+  const auto found = entries_.find(participant);
+  if (found == entries_.end() || !found->second.is_kept || found->second.has_more) return true;
+  return std::ranges::find(found->second.addresses, from) != found->second.addresses.end();
 }
 
 DatagramSources::Origin DatagramSources::of(const GuidPrefix& participant) const {

@@ -20,6 +20,7 @@
 #include <list>
 #include <optional>
 #include <span>
+#include <string>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -37,6 +38,9 @@ struct UdpAddress {
   std::uint16_t port = 0;
   auto operator<=>(const UdpAddress&) const = default;
 };
+
+// "10.0.0.5:7410"
+std::string to_text(const UdpAddress& address);
 
 // All members may be called from any thread.
 class DatagramSources {
@@ -61,6 +65,8 @@ class DatagramSources {
   void forget(const GuidPrefix& participant);
 
   Origin of(const GuidPrefix& participant) const;
+  // False only of one that was discovered, and is known to have spoken from other addresses alone.
+  bool may_speak_from(const GuidPrefix& participant, const UdpAddress& from) const;
   // When the last one came; kLongAgo: nothing was heard, or it is not kept any more.
   Time last_of(const GuidPrefix& participant) const;
 

@@ -71,6 +71,21 @@ bool Origins::counts(std::span<const std::uint8_t> datagram, const UdpAddress& f
   return all_count;
 }
 
+bool Origins::may_tell_of(const GuidPrefix& other, const UdpAddress& from, bool has_spoken,
+                          Time now) {
+  const MutexLock lock(mutex_);
+  const auto found = proven_.find(other);
+  if (found == proven_.end() ? has_spoken : whose(found->second, from, now) != Whose::kForeign)
+    return true;
+  ++dropped_;
+  if (found == proven_.end()) {
+    note({from, std::nullopt, other, 0});
+  } else {
+    note(other, found->second, from);
+  }
+  return false;
+}
+
 Origins::Whose Origins::whose(Proven& proven, const UdpAddress& from, Time now) {
   if (!is_of_this_machine(from.ip, now)) return Whose::kForeign;
   if (find(proven, from) == Whose::kIts) return Whose::kIts;
@@ -186,8 +201,12 @@ void Origins::note(const GuidPrefix& participant, const Proven& proven, const Ud
     if (foreign == proven.foreign.end()) return;  // it is told of when its socket was looked up
     source.user = foreign->second.user;
   }
+  note(source);
+}
+
+void Origins::note(const ForeignSource& source) {
   const bool is_known = std::ranges::any_of(sources_, [&](const ForeignSource& each) {
-    return each.from.ip == from.ip && each.user == source.user;
+    return each.from.ip == source.from.ip && each.user == source.user;
   });
   if (!is_known && sources_.size() < kMostSources) sources_.push_back(source);
 }

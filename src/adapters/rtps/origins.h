@@ -44,12 +44,12 @@
 
 namespace culprit::ros2 {
 
-// A source of datagrams in somebody else's name.
+// A source of datagrams in somebody else's name, or that tell of somebody else.
 struct ForeignSource {
   UdpAddress from;               // of its first one
   std::optional<unsigned> user;  // of this machine, that made its socket, as far as that is known
   GuidPrefix in_name_of{};       // of its first one
-  int pid = 0;                   // the process in whose name it speaks
+  int pid = 0;                   // the process in whose name it speaks; 0: it is not known
   bool operator==(const ForeignSource&) const = default;
 };
 
@@ -75,6 +75,11 @@ class Origins {
 
   // Whether nobody is known to be the sender who may not speak in the names that the datagram has.
   bool counts(std::span<const std::uint8_t> datagram, const UdpAddress& from, Time now);
+
+  // Whether a datagram from there may tell something of another participant than its sender, in its sender's own name
+  // (claims.h): only from where that one speaks itself, too. `has_spoken`: one in that participant's name came from
+  // there, or that participant is not known.
+  bool may_tell_of(const GuidPrefix& other, const UdpAddress& from, bool has_spoken, Time now);
 
   // Looks whether the addresses that are known are still those of their processes. To be called about once a
   // second; a millisecond.
@@ -115,6 +120,7 @@ class Origins {
   static bool end(Proven& proven, const std::vector<UdpSocket>& table, Time now);
   void note(const GuidPrefix& participant, const Proven& proven, const UdpAddress& from)
       CULPRIT_REQUIRES(mutex_);
+  void note(const ForeignSource& source) CULPRIT_REQUIRES(mutex_);
 
   const std::filesystem::path proc_;
   const std::function<std::set<Ip>()> own_;
