@@ -13,6 +13,7 @@
 #include "link/list_parameter.h"
 #include "ros2/process_finder.h"
 #include "ros2/services.h"
+#include "rtps/origins.h"
 
 namespace culprit::ros2 {
 namespace {

@@ -11,6 +11,7 @@
 #include "ros2/live_test.h"
 #include "ros2/peer_process.h"
 #include "ros2/process_finder.h"
+#include "rtps/origins.h"
 #include "rtps/test_hostile_process.h"
 
 namespace culprit::ros2 {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+#include "base/live_clock.h"
 #include "base/mutex.h"
 #include "ros2/fast_dds.h"
 #include "ros2/names.h"
@@ -397,6 +398,7 @@ class Participant::Impl {
     likely_refusal_ = likely_refusal(options.security);
     reception_.sources->begin(guid_.prefix());
     reception_.origins->prove(guid_.prefix(), getpid(), {});
+    if (!is_secured_) reception_.origins->begin_to_bind(guid_.prefix());
     publisher_ = participant_->create_publisher(dds::PublisherQos());
     subscriber_ = participant_->create_subscriber(dds::SubscriberQos());
     topics_.emplace(*participant_);
@@ -452,6 +454,7 @@ class Participant::Impl {
     if (const auto* there = std::get_if<ParticipantInfo>(&event)) {
       reception_.sources->keep(there->guid.prefix());
       reception_.filter->know(there->guid.prefix());
+      reception_.origins->discovered(there->guid.prefix(), there->metatraffic, live_now());
     }
     if (const auto* gone = std::get_if<ParticipantGone>(&event)) {
       reception_.sources->forget(gone->guid.prefix());

@@ -29,11 +29,12 @@
 #include "rtps/endpoint_info.h"
 #include "rtps/guid.h"
 #include "rtps/haste.h"
-#include "rtps/origins.h"
 #include "rtps/qos.h"
 #include "rtps/system_time.h"
 
 namespace culprit::ros2 {
+
+class Origins;
 
 // By the vendor id that the participant announces (RTPS 2.3 §9.3.1.3).
 enum class Vendor : std::uint8_t { kFastDds, kCyclone, kOther };

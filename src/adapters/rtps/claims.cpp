@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "rtps/announcement.h"
 #include "rtps/speakers.h"
@@ -60,26 +61,45 @@ void add_keys(ByteView sample, const GuidPrefix& sender, std::vector<GuidPrefix>
   }
 }
 
+// Calls `found` with each submessage, its header included. What is damaged ends it.
+template <class Found>
+void for_each_submessage(ByteView datagram, Found found) {
+  if (!is_rtps(datagram)) return;
+  for (ByteView rest = datagram.subspan(rtps::kHeader); rest.size() >= rtps::kSubmessageHeader;) {
+    const std::size_t length = number_at(rest, 2, (rest[1] & 1) != 0);
+    const bool is_last = length == 0 && rest[0] != rtps::kPad && rest[0] != rtps::kInfoTime;
+    const std::size_t size = is_last ? rest.size() : rtps::kSubmessageHeader + length;
+    if (size > rest.size()) return;
+    found(rest.first(size));
+    rest = rest.subspan(std::min(rest.size(), (size + 3) & ~std::size_t{3}));
+  }
+}
+
 }  // namespace
 
 std::vector<GuidPrefix> others_announced(std::span<const std::uint8_t> datagram) {
   constexpr std::size_t kPrefixInInfoSource = rtps::kSubmessageHeader + 8;
   std::vector<GuidPrefix> others;
-  if (!is_rtps(datagram)) return others;
-  GuidPrefix sender = prefix_at(datagram, 8);
-  for (ByteView rest = datagram.subspan(rtps::kHeader); rest.size() >= rtps::kSubmessageHeader;) {
-    const std::uint8_t kind = rest[0];
-    const std::size_t length = number_at(rest, 2, (rest[1] & 1) != 0);
-    const bool is_last = length == 0 && kind != rtps::kPad && kind != rtps::kInfoTime;
-    const std::size_t size = is_last ? rest.size() : rtps::kSubmessageHeader + length;
-    if (size > rest.size()) return others;
-    if (kind == rtps::kInfoSource && size >= kPrefixInInfoSource + sender.bytes.size())
-      sender = prefix_at(rest, kPrefixInInfoSource);
-    if (kind == rtps::kData || kind == rtps::kDataFragment)
-      add_keys(rest.first(size), sender, others);
-    rest = rest.subspan(std::min(rest.size(), (size + 3) & ~std::size_t{3}));
-  }
+  std::optional<GuidPrefix> sender;
+  for_each_submessage(datagram, [&](ByteView each) {
+    if (!sender) sender = prefix_at(datagram, kPrefixInHeader);
+    if (each[0] == rtps::kInfoSource && each.size() >= kPrefixInInfoSource + sender->bytes.size())
+      sender = prefix_at(each, kPrefixInInfoSource);
+    if (each[0] == rtps::kData || each[0] == rtps::kDataFragment) add_keys(each, *sender, others);
+  });
   return others;
+}
+
+bool acknowledges(std::span<const std::uint8_t> datagram, const GuidPrefix& self) {
+  bool is_for_self = false;
+  bool does = false;
+  for_each_submessage(datagram, [&](ByteView each) {
+    if (each[0] == rtps::kInfoDestination)
+      is_for_self = each.size() >= rtps::kSubmessageHeader + self.bytes.size() &&
+                    prefix_at(each, rtps::kSubmessageHeader) == self;
+    does = does || (is_for_self && each[0] == rtps::kAckNack);
+  });
+  return does;
 }
 
 }  // namespace culprit::ros2

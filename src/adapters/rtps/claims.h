@@ -17,4 +17,8 @@ namespace culprit::ros2 {
 // later fragments of what comes in several, cannot be seen.
 std::vector<GuidPrefix> others_announced(std::span<const std::uint8_t> datagram);
 
+// Whether somebody acknowledges what `self` has written: an answer to its heartbeats (RTPS 2.3 §8.3.7.1), which
+// participants owe one another from their discovery on.
+bool acknowledges(std::span<const std::uint8_t> datagram, const GuidPrefix& self);
+
 }  // namespace culprit::ros2

@@ -10,7 +10,6 @@
 namespace culprit::ros2 {
 namespace {
 
-constexpr std::size_t kPrefixInHeader = 8;
 // Where a sample has its writer (RTPS 2.3 §9.4.5.3), and which announces a participant (§9.3.1.3).
 constexpr std::size_t kWriterInData = rtps::kSubmessageHeader + 8;
 constexpr std::array<std::uint8_t, 4> kAnnouncesParticipant = {0x00, 0x01, 0x00, 0xc2};

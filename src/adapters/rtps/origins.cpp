@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/live_clock.h"
+#include "rtps/claims.h"
 #include "rtps/process_sockets.h"
 #include "rtps/speakers.h"
 #include "rtps/udp_sockets.h"
@@ -49,19 +50,44 @@ void Origins::prove(const GuidPrefix& participant, int pid,
     (void)find(proven, each);
   }
   proven_.insert_or_assign(participant, std::move(proven));
+  elsewhere_.erase(participant);
 }
 
 void Origins::forget(const GuidPrefix& participant) {
   const MutexLock lock(mutex_);
   proven_.erase(participant);
+  elsewhere_.erase(participant);
+}
+
+void Origins::begin_to_bind(const GuidPrefix& self) {
+  const MutexLock lock(mutex_);
+  self_ = self;
+}
+
+void Origins::discovered(const GuidPrefix& participant, std::span<const UdpAddress> announced,
+                         Time now) {
+  const MutexLock lock(mutex_);
+  if (!self_ || participant == *self_ || proven_.contains(participant)) return;
+  if (elsewhere_.size() >= DatagramSources::kMostParticipants && !elsewhere_.contains(participant))
+    return;
+  Elsewhere& elsewhere = elsewhere_.try_emplace(participant, Elsewhere{.since = now}).first->second;
+  for (const UdpAddress& each : announced) {
+    // Each computer with containers has the address of a bridge, and it is often the same.
+    if (elsewhere.announced.size() < kMostIps && !is_of_this_machine(each.ip, now))
+      elsewhere.announced.insert(each.ip);
+  }
 }
 
 bool Origins::counts(std::span<const std::uint8_t> datagram, const UdpAddress& from, Time now) {
   if (!is_rtps(datagram)) return true;
   const MutexLock lock(mutex_);
-  if (proven_.empty()) return true;
   bool all_count = true;
   for_each_speaker(datagram, [&](const GuidPrefix& participant) CULPRIT_REQUIRES(mutex_) {
+    const auto elsewhere = elsewhere_.find(participant);
+    if (elsewhere != elsewhere_.end() && !counts(elsewhere->second, datagram, from.ip, now)) {
+      all_count = false;
+      note({from, std::nullopt, participant, 0});
+    }
     const auto found = proven_.find(participant);
     if (found == proven_.end() || whose(found->second, from, now) != Whose::kForeign) return;
     all_count = false;
@@ -69,6 +95,31 @@ bool Origins::counts(std::span<const std::uint8_t> datagram, const UdpAddress& f
   });
   if (!all_count) ++dropped_;
   return all_count;
+}
+
+bool Origins::counts(Elsewhere& elsewhere, std::span<const std::uint8_t> datagram, const Ip& ip,
+                     Time now) {
+  const Ip from = is_of_this_machine(ip, now) ? Ip{127, 0, 0, 1} : ip;
+  const bool is_known = elsewhere.heard.contains(from) || elsewhere.announced.contains(from);
+  if (elsewhere.is_bound) {
+    const Duration pause = now - elsewhere.last;
+    if (is_known) {
+      elsewhere.longest = std::max(elsewhere.longest, pause);
+      elsewhere.last = now;
+      return true;
+    }
+    if (pause < std::clamp(2 * elsewhere.longest, kQuiet, kLongestQuiet)) return false;
+    elsewhere = {.since = now, .heard = {from}, .last = now};
+    return true;
+  }
+  if (elsewhere.heard.size() < kMostIps) elsewhere.heard.insert(from);
+  elsewhere.last = now;
+  if (now < later(elsewhere.since, kAlone) || !self_ || !acknowledges(datagram, *self_))
+    return true;
+  elsewhere.is_bound = std::ranges::all_of(elsewhere.heard, [&](const Ip& each) {
+    return each == from || elsewhere.announced.contains(each);
+  });
+  return true;
 }
 
 bool Origins::may_tell_of(const GuidPrefix& other, const UdpAddress& from, bool has_spoken,

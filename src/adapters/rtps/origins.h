@@ -1,17 +1,25 @@
-// Which datagrams count: those of a participant whose process is proven come from a socket of that process.
+// Which datagrams count: those that come from where the participant in whose name they speak is known to be.
 //
 // RTPS has no proof of who sent a datagram. The kernel has one, for senders on this machine: its table of sockets
 // says which process has the address that the datagram came from. So once the process of a participant is known
 // (prove()), a datagram that speaks in its name (header or INFO_SRC, RTPS 2.3 §8.3.7) and comes from elsewhere is
 // dropped, before it has any effect.
 //
+// A participant whose process is not known, on another computer or in a container, is bound to the IP addresses that
+// it spoke from and announced (those of this machine are one), once it has answered us and nobody spoke in its name from elsewhere for kAlone. It
+// may move: another address counts when nothing comes from the old ones any more, for twice as long as it ever
+// paused (kQuiet at least). It may also stay unbound, if several speak in its name from the beginning. Then
+// everything counts.
+//
 // What this stops: a program on another machine, and one on this machine that has sockets of its own, whatever it
 // writes into its datagrams. The kernel drops what comes by the network and pretends to come from an address of
 // this machine.
 //
 // What it does not stop:
-//   - before a process is proven, everything counts, as it does for a process that cannot be proven: of another
-//     user without CAP_SYS_PTRACE, of another PID or network namespace (a container with a network of its own)
+//   - before a process is proven or a participant bound, everything counts. A process cannot be proven if it is of
+//     another user (without CAP_SYS_PTRACE), or of another PID or network namespace (a container). Its participant
+//     is bound to addresses only, which other programs of that computer or container have, too
+//   - another machine can write the address of a third one into its datagrams, as nothing on the way forbids it
 //   - root and CAP_NET_RAW can write any source into a datagram on the loopback interface
 //   - the same user can take a socket out of the process (pidfd_getfd), or run code in it (ptrace)
 //   - a program with thousands of sockets makes the tables slow to read; then a datagram from a socket that was not
@@ -64,6 +72,12 @@ class Origins {
   static constexpr std::size_t kMostAddresses = 64;  // kept of one participant that are not its own
   static constexpr std::size_t kMostSources = 64;    // told of
 
+  // Of a participant whose process is not known.
+  static constexpr Duration kAlone = std::chrono::seconds(5);
+  static constexpr Duration kQuiet = std::chrono::seconds(4);
+  static constexpr Duration kLongestQuiet = std::chrono::seconds(20);
+  static constexpr std::size_t kMostIps = 16;  // that it may have
+
   // `proc` is where the proc file system is mounted. `clock` measures how long a look takes.
   explicit Origins(std::filesystem::path proc = "/proc",
                    std::function<std::set<Ip>()> own = own_addresses,
@@ -72,6 +86,12 @@ class Origins {
   // The participant is of this process of this machine, and spoke from these addresses so far.
   void prove(const GuidPrefix& participant, int pid, std::span<const UdpAddress> spoke_from);
   void forget(const GuidPrefix& participant);
+
+  // Participants are bound to addresses, by what is acknowledged to `self`. Not in a secured domain, where the
+  // middleware has a better proof.
+  void begin_to_bind(const GuidPrefix& self);
+  // It was discovered, or announced itself again: at these addresses.
+  void discovered(const GuidPrefix& participant, std::span<const UdpAddress> announced, Time now);
 
   // Whether nobody is known to be the sender who may not speak in the names that the datagram has.
   bool counts(std::span<const std::uint8_t> datagram, const UdpAddress& from, Time now);
@@ -110,7 +130,19 @@ class Origins {
     std::optional<Time> ended;
     std::map<UdpAddress, Foreign> foreign;  // addresses that are not its
   };
+  // One whose process is not known.
+  struct Elsewhere {
+    Time since{};          // when it was discovered, or moved
+    std::set<Ip> heard{};  // it spoke from there
+    std::set<Ip> announced{};
+    bool is_bound = false;
+    Time last{};         // when it spoke last
+    Duration longest{};  // that it paused since it is bound
+  };
   enum class Whose : std::uint8_t { kIts, kForeign, kUnknown };
+
+  bool counts(Elsewhere& elsewhere, std::span<const std::uint8_t> datagram, const Ip& from,
+              Time now) CULPRIT_REQUIRES(mutex_);
 
   Whose whose(Proven& proven, const UdpAddress& from, Time now) CULPRIT_REQUIRES(mutex_);
   bool is_of_this_machine(const Ip& ip, Time now) CULPRIT_REQUIRES(mutex_);
@@ -128,6 +160,8 @@ class Origins {
 
   mutable Mutex mutex_;
   std::unordered_map<GuidPrefix, Proven> proven_ CULPRIT_GUARDED_BY(mutex_);
+  std::unordered_map<GuidPrefix, Elsewhere> elsewhere_ CULPRIT_GUARDED_BY(mutex_);
+  std::optional<GuidPrefix> self_ CULPRIT_GUARDED_BY(mutex_);
   std::set<Ip> own_ips_ CULPRIT_GUARDED_BY(mutex_);
   Time asked_for_own_ CULPRIT_GUARDED_BY(mutex_) = kLongAgo;
   Time next_look_ CULPRIT_GUARDED_BY(mutex_) = kLongAgo;

@@ -272,6 +272,78 @@ TEST_F(OriginsOfAMachine, OfASystemThatTellsNoInterfacesTheKnownOnesStay) {
   EXPECT_TRUE(failing.counts(TestDatagram(camera()).bytes(), {kOwn, 40'000}, kStart));
 }
 
+// The lidar is on another computer, and has answered from there.
+struct OriginsElsewhere : OriginsOfAMachine {
+  OriginsElsewhere() {
+    origins.begin_to_bind(self);
+    origins.discovered(lidar(), std::array{UdpAddress{kThere, 7410}}, kStart);
+  }
+  bool speaks(const Ip& from, Duration after) {
+    return counts({from, 7411}, later(kStart, after), lidar());
+  }
+  bool answers(const Ip& from, Duration after) {
+    Bytes to(self.bytes.begin(), self.bytes.end());
+    const TestDatagram datagram =
+        TestDatagram(lidar()).submessage(0x0e, 0, to).submessage(0x06, 0, Bytes(24));
+    return origins.counts(datagram.bytes(), {from, 7411}, later(kStart, after));
+  }
+  // From 6 s on.
+  void is_bound() {
+    EXPECT_TRUE(speaks(kThere, 1s));
+    EXPECT_TRUE(answers(kThere, 6s));
+  }
+
+  static constexpr Ip kThere = {203, 0, 113, 5};
+  static constexpr Ip kElsewhere = {203, 0, 113, 66};
+  const GuidPrefix self{{5, 5, 5}};
+};
+
+TEST_F(OriginsElsewhere, AreThoseFromWhichItAnswered) {
+  is_bound();
+  EXPECT_TRUE(speaks(kThere, 7s));
+  EXPECT_FALSE(speaks(kElsewhere, 7s));
+  EXPECT_FALSE(speaks(kOwn, 7s)) << "a program of this machine";
+  EXPECT_EQ(origins.new_sources().size(), 2u);
+}
+
+TEST_F(OriginsElsewhere, AreNotKnownBeforeItAnswered) {
+  EXPECT_TRUE(speaks(kThere, 6s));
+  EXPECT_TRUE(speaks(kElsewhere, 7s));
+}
+
+TEST_F(OriginsElsewhere, AreNotKnownWhereSeveralSpokeInItsNameFromTheBeginning) {
+  EXPECT_TRUE(speaks(kElsewhere, 1s));
+  is_bound();
+  EXPECT_TRUE(answers(kElsewhere, 7s));
+  EXPECT_TRUE(speaks(kThere, 8s)) << "the first one does not silence the other";
+}
+
+TEST_F(OriginsElsewhere, AreAllThatItAnnounced) {
+  const Ip wireless = {203, 0, 113, 6};
+  is_bound();
+  origins.discovered(lidar(), std::array{UdpAddress{wireless, 7410}}, later(kStart, 7s));
+  EXPECT_TRUE(speaks(wireless, 8s));
+  EXPECT_TRUE(speaks(kThere, 8s));
+}
+
+TEST_F(OriginsElsewhere, ChangeWhenItIsSilentAtTheOldOnes) {
+  is_bound();
+  for (int i = 1; i < 20; ++i) {
+    EXPECT_TRUE(speaks(kThere, 6s + i * 1s));
+    EXPECT_FALSE(speaks(kElsewhere, 6s + i * 1s + 500ms)) << i;
+  }
+  EXPECT_FALSE(speaks(kElsewhere, 26s));
+  EXPECT_TRUE(speaks(kElsewhere, 36s)) << "it moved";
+  EXPECT_TRUE(speaks(kThere, 37s)) << "and is not bound until it answers from there alone";
+}
+
+TEST_F(OriginsElsewhere, MatterNoMoreOnceItsProcessIsProven) {
+  is_bound();
+  origins.prove(lidar(), kPid, {});
+  EXPECT_TRUE(counts({kOwn, 40'000}, later(kStart, 7s), lidar()));
+  EXPECT_FALSE(speaks(kThere, 7s));
+}
+
 TEST(Origins, AreThoseOfTheKernel) {
   std::optional<TestSocket> its(std::in_place);
   const TestFork process(its->descriptor());

@@ -22,10 +22,11 @@ inline bool is_rtps(std::span<const std::uint8_t> datagram) {
   return datagram.size() >= rtps::kHeader && std::memcmp(datagram.data(), "RTPS", 4) == 0;
 }
 
+inline constexpr std::size_t kPrefixInHeader = 8;
+
 // Calls `found` with each of them; the caller holds what that requires. @pre is_rtps(datagram)
 template <class Found>
 void for_each_speaker(std::span<const std::uint8_t> datagram, Found found) CULPRIT_NOT_ANALYZED {
-  constexpr std::size_t kPrefixInHeader = 8;
   constexpr std::size_t kPrefixInInfoSource = rtps::kSubmessageHeader + 8;
   found(prefix_at(datagram, kPrefixInHeader));
   bool is_sure_of_place = true;
