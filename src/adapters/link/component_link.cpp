@@ -298,6 +298,13 @@ void ComponentLink::probe(int pid, std::function<Time()> heard) {
   read_anything(kProbe, Haste::kSoon, tell_of);
 }
 
+void ComponentLink::ask(std::function<void(bool answered)> then) {
+  const bool is_asked = read_anything(kProbe, Haste::kNow, [then](const CallResult& result) {
+    then(result.outcome == CallOutcome::kAnswered);
+  });
+  if (!is_asked) then(false);
+}
+
 // Of one with a lifecycle that is its state, which is told as by check_lifecycle().
 bool ComponentLink::read_anything(Duration patience, Haste haste,
                                   std::function<void(const CallResult&)> then) {

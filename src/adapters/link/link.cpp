@@ -406,8 +406,11 @@ void Link::on_joined(const GraphNode& node) {
   pids_[node.name] = node.pid;
   if (node.name == node_->name().full()) namesake_.joined(node, live_now());
   for (auto& [manager, systems] : systems_) std::erase(systems, node.name);
+  leaving_.erase(node.name);
+  vendors_.erase(node.name);
   const auto component = binding_.bind(node.name);
   if (!component) return;
+  if (node.pid == 0) vendors_.emplace(node.name, node.vendor);
   make_link(*component, node.name)->lives_in(node.pid);
   lives_on(*component, host);
   if (node.pid == 0 || needs_of(*component, rules_).is_to_answer) {
@@ -428,6 +431,45 @@ void Link::on_left(const std::string& node, bool was_lost) {
   probed_.erase(node);
   pids_.erase(node);
   if (node == node_->name().full()) namesake_.left();
+  const auto unproven = vendors_.extract(node);
+  if (unproven) return doubt_leaving(node, unproven.mapped());
+  vanished(node);
+}
+
+// Whoever is on the network can say that a node has left whose process is not known. If it is there, its middleware
+// announces it again: Fast DDS after 3 s, Cyclone DDS after 8 s.
+void Link::doubt_leaving(const std::string& node, Vendor vendor) {
+  constexpr auto kOfFastDds = std::chrono::seconds(4);
+  constexpr auto kOfOthers = std::chrono::seconds(9);
+  const std::uint64_t doubt = leaving_[node] = ++doubts_;
+  const auto patience = vendor == Vendor::kFastDds ? kOfFastDds : kOfOthers;
+  tasks_.post_at(Executor::Clock::now() + patience,
+                 [this, node, doubt] { ask_leaving(node, doubt); });
+}
+
+// The middleware may know its services still, if somebody said in its name only that it holds no node.
+void Link::ask_leaving(const std::string& node, std::uint64_t doubt) {
+  const auto is_open = [this, node, doubt] {
+    const auto found = leaving_.find(node);
+    return found != leaving_.end() && found->second == doubt;
+  };
+  const auto component = binding_.bind(node);
+  if (!is_open() || !component) return;
+  make_link(*component, node)->ask([this, node, is_open](bool answered) {
+    tasks_.post([this, node, is_open, answered] {
+      if (!is_open()) return;
+      if (!answered) {
+        leaving_.erase(node);
+        return vanished(node);
+      }
+      inbox_.put(LinkTrouble{
+          node + " was said to have left, and answers: somebody may speak in its name"});
+      doubt_leaving(node, Vendor::kFastDds);
+    });
+  });
+}
+
+void Link::vanished(const std::string& node) {
   const auto managed = systems_.extract(node);
   if (managed) {
     for (const std::string& system : managed.mapped()) inbox_.put(NodeVanished{system});

@@ -13,6 +13,7 @@
 #include "ros2/process_finder.h"
 #include "rtps/origins.h"
 #include "rtps/test_hostile_process.h"
+#include "rtps/udp_sockets.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -46,11 +47,13 @@ struct Robot {
     }
     return false;
   }
-  // Those that participants of one machine have (RTPS 2.3 §9.6.1).
+  // Those that participants of this machine have (RTPS 2.3 §9.6.1).
   static std::vector<std::uint16_t> ports(const TestDomain& domain) {
+    const std::uint32_t first = 7400 + 250 * domain.number();
     std::vector<std::uint16_t> all;
-    for (std::uint32_t i = 10; i < 40; ++i)
-      all.push_back(static_cast<std::uint16_t>(7400 + 250 * domain.number() + i));
+    for (const std::uint16_t port : bound_udp_ports()) {
+      if (port >= first && port < first + 250) all.push_back(port);
+    }
     return all;
   }
   std::vector<Bytes> farewells() {
