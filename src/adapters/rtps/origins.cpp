@@ -45,6 +45,7 @@ void Origins::prove(const GuidPrefix& participant, int pid,
   const auto known = proven_.find(participant);
   if (known != proven_.end() && known->second.pid == pid && known->second.began == *began) return;
   if (!look(proven, table, clock_())) return;
+  proven.looked = kLongAgo;  // it may just be opening sockets
   for (const UdpAddress& each : spoke_from) {
     own_ips_.insert(each.ip);  // whoever proved the process found them here
     (void)find(proven, each);

@@ -170,6 +170,12 @@ TEST_F(OriginsOfAMachine, ASocketThatItOpensLaterCountsAtOnce) {
   }
 }
 
+TEST_F(OriginsOfAMachine, ASocketThatItOpensRightAfterTheProofCountsAtOnce) {
+  prove();
+  machine.open(kPid, kAny, 41'000);
+  EXPECT_TRUE(counts({kOwn, 41'000}, later(kStart, 1ms)));
+}
+
 TEST_F(OriginsOfAMachine, AFloodInItsNameDoesNotSilenceIt) {
   prove();
   for (int i = 0; i < 1000; ++i) {
