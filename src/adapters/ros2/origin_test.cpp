@@ -101,7 +101,7 @@ TEST(Origin, FarewellsOfAStrangerDoNotRemoveANodeWhoseProcessIsProven) {
   Origins& origins = watcher->participant().origins();
   {
     const HostileProcess stranger(robot.farewells(), robot.to, 200ms);
-    EXPECT_TRUE(robot.within([&] { return origins.dropped() > 2000; }));
+    EXPECT_TRUE(robot.within([&] { return origins.dropped() > 500; }));
     EXPECT_FALSE(robot.has_lost_something());
   }
   const auto sources = origins.new_sources();
@@ -127,7 +127,7 @@ TEST(Origin, AParticipantTellsOfItselfOnly) {
   for (Bytes& each : all) std::ranges::copy(name.bytes, each.begin() + 8);
   const HostileProcess sends(all, robot.to, 200ms);
   Origins& origins = watcher->participant().origins();
-  EXPECT_TRUE(robot.within([&] { return origins.dropped() > 2000; }));
+  EXPECT_TRUE(robot.within([&] { return origins.dropped() > 500; }));
   EXPECT_FALSE(robot.has_lost_something());
 }
 

@@ -1,6 +1,7 @@
 // For tests: a process of its own that sends datagrams in the name of others, again and again.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdint>
@@ -17,12 +18,11 @@
 
 namespace culprit::ros2 {
 
-// What a stranger can say in the name of a participant to be rid of it: that it has left, that its endpoints have
-// ended, and that it holds no node. `info_writer` writes its ros_discovery_info; `no_nodes` is that as a payload.
-// Reliable readers take a number only if it is the next one, so several are tried.
+// What a stranger can say in the name of a participant to be rid of it: that its endpoints have ended, that it holds no
+// node, and that it has left. `info_writer` writes its ros_discovery_info; `no_nodes` is that as a payload. Reliable
+// readers take a number only if it is the next one, so some after it are tried, too.
 inline std::vector<Bytes> farewells(const Guid& participant, const std::vector<Guid>& endpoints,
                                     const Guid& info_writer, const Bytes& no_nodes) {
-  constexpr std::int64_t kTries = 64;
   const auto builtin = [&](std::uint8_t kind, std::uint8_t number) {
     Guid guid = participant;
     guid.bytes[12] = 0, guid.bytes[13] = kind, guid.bytes[14] = number, guid.bytes[15] = 0xc2;
@@ -30,13 +30,16 @@ inline std::vector<Bytes> farewells(const Guid& participant, const std::vector<G
   };
   const GuidPrefix name = participant.prefix();
   std::vector<Bytes> all;
-  for (std::int64_t i = 1; i <= kTries; ++i) {
-    for (const Guid& each : endpoints) {
-      const Guid announcer = each.is_reader() ? builtin(0, 4) : builtin(0, 3);
-      all.push_back(TestDatagram(name).farewell(announcer, i, each).bytes());
-    }
-    all.push_back(TestDatagram(name).sample(info_writer, i, no_nodes).bytes());
+  for (const Guid& each : endpoints) {
+    const auto announced = std::ranges::count_if(
+        endpoints, [&](const Guid& other) { return other.is_reader() == each.is_reader(); });
+    for (std::int64_t i = announced + 1; i <= announced + 4; ++i)
+      all.push_back(TestDatagram(name)
+                        .farewell(each.is_reader() ? builtin(0, 4) : builtin(0, 3), i, each)
+                        .bytes());
   }
+  for (std::int64_t i = 2; i < 40; ++i)
+    all.push_back(TestDatagram(name).sample(info_writer, i, no_nodes).bytes());
   all.push_back(TestDatagram(name).farewell(builtin(1, 0), 1000, participant).bytes());
   return all;
 }
