@@ -442,6 +442,7 @@ class Participant::Impl {
   const DatagramSources& sources() const { return *reception_.sources; }
   const DatagramFilter& filter() const { return *reception_.filter; }
   Origins& origins() { return *reception_.origins; }
+  void forget_sources(const GuidPrefix& of) { reception_.sources->forget(of); }
   void look_at_receivers(Time now) {
     reception_.thread->look_at_sockets(
         [&](std::span<const int> sockets) { watch_.look(sockets, now); });
@@ -516,7 +517,9 @@ DatagramSources::Origin Participant::origin_of(const GuidPrefix& participant) co
   return impl_->sources().of(participant);
 }
 void Participant::prove(const GuidPrefix& participant, int pid) {
-  impl_->origins().prove(participant, pid, origin_of(participant).addresses);
+  // What came from elsewhere in its name tells nothing of it.
+  if (!impl_->origins().prove(participant, pid, origin_of(participant).addresses))
+    impl_->forget_sources(participant);
 }
 Origins& Participant::origins() { return impl_->origins(); }
 Time Participant::heard_last(const GuidPrefix& participant) const {

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <memory>
 #include <netinet/in.h>
+#include <optional>
 #include <string>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -208,6 +209,35 @@ TEST(ProcessFinder, ASocketThatAnotherUserMadeProvesNothing) {
                 .find(participant({kLoopback, 0x1cf2}, {kLoopback, 0x1cf4}, 4242))
                 .pid,
             0);
+}
+
+TEST(ProcessFinder, KnowsWhoSpeaksThoughOthersSpeakInThatNameToo) {
+  std::optional<TestSocket> its(std::in_place);
+  const UdpAddress address = its->address();
+  const TestFork process(its->descriptor());
+  its.reset();
+  const TestSocket stranger;
+  ParticipantInfo info = participant(address, address);
+  info.origin.addresses.push_back(stranger.address());
+  EXPECT_EQ(ProcessFinder().find(info).pid, 0);
+  EXPECT_EQ(ProcessFinder().speaker(info), process.pid());
+  info.origin.addresses = {stranger.address()};
+  EXPECT_EQ(ProcessFinder().speaker(info), 0) << "it never spoke in that name";
+}
+
+// As the port for multicast is, which every participant has.
+TEST(ProcessFinder, APortThatOthersShareProvesNothing) {
+  std::optional<TestSocket> its(std::in_place);
+  std::optional<TestSocket> shared(std::in_place, kLoopback, TestSocket::Port::kShared);
+  const TestFork process(its->descriptor(), shared->descriptor());
+  const UdpAddress announced = its->address();
+  const UdpAddress multicast = shared->address();
+  its.reset();
+  shared.reset();
+  EXPECT_EQ(ProcessFinder().find(participant(announced, multicast)).pid, process.pid());
+  const TestSocket stranger(kLoopback, TestSocket::Port::kShared, multicast.port);
+  EXPECT_EQ(ProcessFinder().find(participant(announced, multicast)).pid, 0);
+  EXPECT_EQ(ProcessFinder().speaker(participant(announced, multicast)), 0);
 }
 
 TEST(ProcessFinder, SurvivesAMissingProcFileSystem) {

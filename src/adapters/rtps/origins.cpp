@@ -33,25 +33,35 @@ Origins::Origins(std::filesystem::path proc, std::function<std::set<Ip>()> own,
                  std::function<Time()> clock)
     : proc_(std::move(proc)), own_(std::move(own)), clock_(clock ? std::move(clock) : live_now) {}
 
-void Origins::prove(const GuidPrefix& participant, int pid,
+bool Origins::prove(const GuidPrefix& participant, int pid,
                     std::span<const UdpAddress> spoke_from) {
   const auto began = running_since(proc_ / std::to_string(pid));
-  if (!began) return;
+  if (!began) return true;
   Proven proven;
   proven.pid = pid;
   proven.began = *began;
   const std::vector<UdpSocket> table = udp_sockets(proc_);
   const MutexLock lock(mutex_);
   const auto known = proven_.find(participant);
-  if (known != proven_.end() && known->second.pid == pid && known->second.began == *began) return;
-  if (!look(proven, table, clock_())) return;
+  if (known != proven_.end() && known->second.pid == pid && known->second.began == *began)
+    return true;
+  if (!look(proven, table, clock_())) return true;
   proven.looked = kLongAgo;  // it may just be opening sockets
+  bool are_all_its = true;
   for (const UdpAddress& each : spoke_from) {
-    own_ips_.insert(each.ip);  // whoever proved the process found them here
-    (void)find(proven, each);
+    // Whoever found the process found it at addresses of this machine.
+    const bool is_its = find(proven, each) == Whose::kIts;
+    if (is_its) own_ips_.insert(each.ip);
+    are_all_its = are_all_its && is_its;
   }
   proven_.insert_or_assign(participant, std::move(proven));
   elsewhere_.erase(participant);
+  return are_all_its;
+}
+
+bool Origins::is_proven(const GuidPrefix& participant) const {
+  const MutexLock lock(mutex_);
+  return proven_.contains(participant);
 }
 
 void Origins::forget(const GuidPrefix& participant) {

@@ -83,8 +83,10 @@ class Origins {
                    std::function<std::set<Ip>()> own = own_addresses,
                    std::function<Time()> clock = {});
 
-  // The participant is of this process of this machine, and spoke from these addresses so far.
-  void prove(const GuidPrefix& participant, int pid, std::span<const UdpAddress> spoke_from);
+  // The participant is of this process of this machine, and spoke from these addresses so far. Gives whether all of
+  // them are of that process.
+  bool prove(const GuidPrefix& participant, int pid, std::span<const UdpAddress> spoke_from);
+  bool is_proven(const GuidPrefix& participant) const;
   void forget(const GuidPrefix& participant);
 
   // Participants are bound to addresses, by what is acknowledged to `self`. Not in a secured domain, where the
