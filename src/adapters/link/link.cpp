@@ -436,8 +436,8 @@ void Link::on_left(const std::string& node, bool was_lost) {
   vanished(node);
 }
 
-// Whoever is on the network can say that a node has left whose process is not known. If it is there, its middleware
-// announces it again: Fast DDS after 3 s, Cyclone DDS after 8 s.
+// Any program on the network can claim that a node has left whose process is not known. If the node is there, its
+// middleware announces it again: Fast DDS after 3 s, Cyclone DDS after 8 s.
 void Link::doubt_leaving(const std::string& node, Vendor vendor) {
   constexpr auto kOfFastDds = std::chrono::seconds(4);
   constexpr auto kOfOthers = std::chrono::seconds(9);

@@ -113,6 +113,30 @@ TEST(Origin, FarewellsOfAStrangerDoNotRemoveANodeWhoseProcessIsProven) {
   EXPECT_TRUE(watcher.sees_node_leave("/camera"));
 }
 
+TEST(Origin, FarewellsThatBeganBeforeItWasSeenDoNotKeepAProcessFromBeingProven) {
+  const TestDomain domain;
+  LiveContext listener(domain.options());
+  Robot robot(domain, listener);
+  ASSERT_TRUE(robot.is_seen);
+  std::vector<UdpAddress> to;  // also where nobody listens yet
+  for (std::uint32_t i = 10; i < 250; ++i)
+    to.push_back({{127, 0, 0, 1}, static_cast<std::uint16_t>(7400 + 250 * domain.number() + i)});
+  const HostileProcess stranger(robot.farewells(), to, 200ms);
+  LiveContext watcher(domain.options(), proving());
+  ASSERT_TRUE(watcher.sees_process("/camera", robot.process.pid()));
+  const std::uint64_t before = watcher->participant().origins().dropped();
+  EXPECT_TRUE(
+      robot.within([&] { return watcher->participant().origins().dropped() > before + 500; }));
+  const auto changes = watcher.changes().all();
+  const auto proven = std::ranges::find_if(changes, [&](const GraphChange& change) {
+    const auto* joined = std::get_if<NodeJoined>(&change);
+    return joined != nullptr && joined->node.pid == robot.process.pid();
+  });
+  EXPECT_TRUE(std::none_of(proven, changes.end(), [](const GraphChange& change) {
+    return std::holds_alternative<NodeLeft>(change);
+  }));
+}
+
 // Fast DDS believes a participant that says that the endpoints of another have ended.
 TEST(Origin, AParticipantTellsOfItselfOnly) {
   const TestDomain domain;
