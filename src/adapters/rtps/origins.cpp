@@ -159,8 +159,13 @@ Origins::Whose Origins::whose(Proven& proven, const UdpAddress& from, Time now) 
   if (now < later(proven.looked, kFresh)) return Whose::kForeign;
   if (now < next_look_) return Whose::kUnknown;
   const Time begin = clock_();
-  const std::vector<UdpSocket> table = udp_sockets(proc_);
-  const bool is_known = look(proven, table, now);
+  std::vector<UdpSocket> table = udp_sockets(proc_);
+  bool is_known = look(proven, table, now);
+  if (is_known && find(proven, from) != Whose::kIts) {
+    // The kernel may pass over a socket of a table that changes while it is read.
+    table = udp_sockets(proc_);
+    is_known = look(proven, table, now);
+  }
   const Duration took = clock_() - begin;
   next_look_ = later(now, took * (kShareOfTime - 1));
   if (!is_known) return Whose::kUnknown;
