@@ -298,11 +298,11 @@ void ComponentLink::probe(int pid, std::function<Time()> heard) {
   read_anything(kProbe, Haste::kSoon, tell_of);
 }
 
-void ComponentLink::ask(std::function<void(bool answered)> then) {
+void ComponentLink::ask(std::function<void(std::optional<GuidPrefix> answered)> then) {
   const bool is_asked = read_anything(kProbe, Haste::kNow, [then](const CallResult& result) {
-    then(result.outcome == CallOutcome::kAnswered);
+    then(result.outcome == CallOutcome::kAnswered ? std::optional(result.server) : std::nullopt);
   });
-  if (!is_asked) then(false);
+  if (!is_asked) then(std::nullopt);
 }
 
 // Of one with a lifecycle that is its state, which is told as by check_lifecycle().
