@@ -8,10 +8,10 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "ros2/cdr.h"
 #include "ros2/messages.h"
 #include "ros2/service_mapping.h"
 #include "ros2/services.h"
+#include "rtps/cdr.h"
 
 namespace {
 

@@ -24,9 +24,9 @@
 #include "robot/inbox.h"
 #include "ros2/options.h"
 #include "ros2/participant.h"
-#include "ros2/receive_thread.h"
-#include "ros2/test_datagram.h"
 #include "ros2/test_forger.h"
+#include "rtps/receive_thread.h"
+#include "rtps/test_datagram.h"
 #include "terminal/test_program.h"
 
 namespace culprit::cli {

@@ -10,8 +10,8 @@
 #include "base/text_file.h"
 #include "json/json.h"
 #include "recorder/recording_folder.h"
-#include "ros2/cdr.h"
 #include "ros2/messages.h"
+#include "rtps/cdr.h"
 #include "terminal/test_program.h"
 
 namespace culprit::cli {

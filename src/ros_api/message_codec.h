@@ -7,8 +7,8 @@
 
 #include "base/expected.h"
 #include "json/json.h"
-#include "ros2/cdr.h"
 #include "ros_api/culprit_types.h"
+#include "rtps/cdr.h"
 
 namespace culprit::ros_api {
 

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "ros2/context.h"
+#include "rtps/origins.h"
 #include "web/robot_json.h"
 
 namespace culprit::web {
@@ -24,6 +26,13 @@ double rounded_to_ms(double time) { return std::round(time * 1000) / 1000; }
 double HubObserver::wall_clock() {
   return seconds(std::chrono::system_clock::now().time_since_epoch());
 }
+
+void HubObserver::joined(ros2::NodeEntry& node) {
+  metrics_.count_dropped(
+      [&participant = node.context().participant()] { return participant.origins().dropped(); });
+}
+
+void HubObserver::leaves() { metrics_.count_dropped({}); }
 
 void HubObserver::begins(const Manager& manager, std::function<Remarks()> remarks, Time start) {
   manager_ = &manager;

@@ -30,6 +30,8 @@ class HubObserver : public live::Observer {
   HubObserver(Hub& hub, Metrics& metrics, WallClock wall = wall_clock)
       : hub_(hub), metrics_(metrics), wall_(std::move(wall)) {}
 
+  void joined(ros2::NodeEntry& node) override;
+  void leaves() override;
   // Remarks are shown with the components of their nodes.
   void begins(const Manager& manager, std::function<Remarks()> remarks, Time start) override;
   void stepped(const Runtime::Step& step) override;

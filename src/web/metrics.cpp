@@ -72,6 +72,12 @@ void Metrics::watch(const Manager& manager) {
   is_discovered_ = false;
 }
 
+void Metrics::count_dropped(std::function<std::uint64_t()> dropped) {
+  const MutexLock lock(dropped_mutex_);
+  if (dropped_) dropped_before_ += dropped_();
+  dropped_ = std::move(dropped);
+}
+
 void Metrics::stepped(Duration took, std::size_t observations, const Manager& manager) {
   constexpr auto kRelaxed = std::memory_order_relaxed;
   const auto bound = std::lower_bound(kStepBounds.begin(), kStepBounds.end(), seconds(took));
@@ -181,6 +187,13 @@ std::string Metrics::text() const {
   all("culprit_rule_blind", "gauge", "1 while the rule's trigger has no value.", counts.blind);
   all("culprit_components", "gauge", "Components of the rules by health.", counts.components);
   one("culprit_hears", "gauge", "1 while the robot can be heard.", hears_ ? 1 : 0);
+  {
+    const MutexLock dropping(dropped_mutex_);
+    one("culprit_foreign_datagrams_total", "counter",
+        "Datagrams that were dropped: they came from elsewhere than the participant that they "
+        "speak for.",
+        dropped_before_ + (dropped_ ? dropped_() : 0));
+  }
   one("culprit_approvals_pending", "gauge", "Strategies that wait for a person's word.",
       counts.approvals_pending);
   one("culprit_silences", "gauge", "Silences that hold now.", counts.silences);

@@ -9,6 +9,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 
@@ -28,6 +29,10 @@ class Metrics {
   void watch(const Manager& manager);
   // After each step of `manager`, which took so long.
   void stepped(Duration took, std::size_t observations, const Manager& manager);
+
+  // How many datagrams were dropped because they came from elsewhere than whom they speak for; it is asked from now
+  // on. Empty: it can be asked no more, and what it gave last stays.
+  void count_dropped(std::function<std::uint64_t()> dropped);
 
   // From any thread.
   std::uint64_t steps() const { return steps_; }
@@ -68,6 +73,11 @@ class Metrics {
   std::atomic<std::uint64_t> observations_ = 0;
   std::atomic<bool> is_discovered_ = false;
   std::atomic<bool> hears_ = true;
+
+  mutable Mutex dropped_mutex_;  // another one: what is called takes a lock
+  std::function<std::uint64_t()> dropped_ CULPRIT_GUARDED_BY(dropped_mutex_);
+  std::uint64_t dropped_before_ CULPRIT_GUARDED_BY(dropped_mutex_) =
+      0;  // by those that can be asked no more
 
   mutable Mutex mutex_;
   Counts counts_ CULPRIT_GUARDED_BY(mutex_);

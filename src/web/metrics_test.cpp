@@ -137,6 +137,17 @@ TEST_F(Counted, TellsWhetherTheRobotIsHeard) {
   EXPECT_THAT(metrics.text(), HasSubstr("culprit_hears 0\n"));
 }
 
+TEST_F(Counted, TellsOfDatagramsThatWereDroppedInAllSessions) {
+  EXPECT_THAT(metrics.text(), HasSubstr("culprit_foreign_datagrams_total 0\n"));
+  std::uint64_t dropped = 3;
+  metrics.count_dropped([&] { return dropped; });
+  EXPECT_THAT(metrics.text(), HasSubstr("culprit_foreign_datagrams_total 3\n"));
+  metrics.count_dropped({});
+  dropped = 2;
+  metrics.count_dropped([&] { return dropped; });
+  EXPECT_THAT(metrics.text(), HasSubstr("culprit_foreign_datagrams_total 5\n"));
+}
+
 TEST_F(Counted, HasEachStepInOneBucketAndInAllAbove) {
   robot.discover();
   const std::string steps = std::to_string(metrics.steps());

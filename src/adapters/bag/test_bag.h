@@ -13,7 +13,7 @@
 #include "base/test_expected.h"
 #include "base/test_folder.h"
 #include "journal/database.h"
-#include "ros2/cdr.h"
+#include "rtps/cdr.h"
 
 namespace culprit::bag::test {
 

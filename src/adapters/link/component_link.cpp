@@ -9,8 +9,8 @@
 #include "link/service_call.h"
 #include "ros2/lifecycle.h"
 #include "ros2/parameter_store.h"
-#include "ros2/receive_thread.h"
 #include "ros2/services.h"
+#include "rtps/receive_thread.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -296,6 +296,13 @@ void ComponentLink::probe(int pid, std::function<Time()> heard) {
     }
   };
   read_anything(kProbe, Haste::kSoon, tell_of);
+}
+
+void ComponentLink::ask(std::function<void(std::optional<GuidPrefix> answered)> then) {
+  const bool is_asked = read_anything(kProbe, Haste::kNow, [then](const CallResult& result) {
+    then(result.outcome == CallOutcome::kAnswered ? std::optional(result.server) : std::nullopt);
+  });
+  if (!is_asked) then(std::nullopt);
 }
 
 // Of one with a lifecycle that is its state, which is told as by check_lifecycle().

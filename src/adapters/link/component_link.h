@@ -54,6 +54,9 @@ class ComponentLink {
   // computer was heard after the answer was due: `heard` says when last, and is called from any thread.
   // Null: it is on this one.
   void probe(int pid, std::function<Time()> heard = {});
+  // Asks once, by the same read, whether the node is there, and gives the participant that answered, if any does.
+  // `then` may be called before this returns.
+  void ask(std::function<void(std::optional<GuidPrefix> answered)> then);
   // Its computer is known to be silent: what was not told yet never is.
   void forget_unanswered();
 

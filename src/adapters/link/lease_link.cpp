@@ -4,7 +4,7 @@
 
 #include "base/live_clock.h"
 #include "link/neighbour_hosts.h"
-#include "ros2/cdr.h"
+#include "rtps/cdr.h"
 
 namespace culprit::ros2 {
 namespace {

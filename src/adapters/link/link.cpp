@@ -13,6 +13,7 @@
 #include "link/list_parameter.h"
 #include "ros2/process_finder.h"
 #include "ros2/services.h"
+#include "rtps/origins.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -167,6 +168,7 @@ Expected<void> Link::start() {
   publishing_ = std::make_unique<Timer>(executor_, kPublishPeriod, [this] {
     publish_again();
     tell_of_refused();
+    tell_of_foreign_sources();
     remind();
     listen_to_hosts();
     look_at_hosts();
@@ -404,8 +406,14 @@ void Link::on_joined(const GraphNode& node) {
   pids_[node.name] = node.pid;
   if (node.name == node_->name().full()) namesake_.joined(node, live_now());
   for (auto& [manager, systems] : systems_) std::erase(systems, node.name);
+  leaving_.erase(node.name);
+  unproven_.erase(node.name);
   const auto component = binding_.bind(node.name);
   if (!component) return;
+  if (node.pid == 0) {
+    unproven_[node.name].vendor = node.vendor;
+    tasks_.post([this, name = node.name] { note_participant(name); });
+  }
   make_link(*component, node.name)->lives_in(node.pid);
   lives_on(*component, host);
   if (node.pid == 0 || needs_of(*component, rules_).is_to_answer) {
@@ -415,17 +423,69 @@ void Link::on_joined(const GraphNode& node) {
   }
 }
 
+// When the graph is done with the change.
+void Link::note_participant(const std::string& node) {
+  const auto unproven = unproven_.find(node);
+  if (unproven == unproven_.end()) return;
+  for (const Graph::NodeView& each : context_->graph().bare_nodes()) {
+    if (each.node.name == node) unproven->second.participant = each.participant;
+  }
+}
+
 void Link::on_left(const std::string& node, bool was_lost) {
   {
     const MutexLock lock(mutex_);
     nodes_elsewhere_.erase(node);
   }
-  if (const auto component = was_lost ? std::nullopt : binding_.bind(node))
-    lives_on(*component, "");
   for (auto& [topic, nodes] : publishers_) nodes.erase(node);
   probed_.erase(node);
   pids_.erase(node);
   if (node == node_->name().full()) namesake_.left();
+  const auto unproven = unproven_.extract(node);
+  if (unproven) return doubt_leaving(node, {unproven.mapped(), was_lost});
+  vanished(node, was_lost);
+}
+
+// Any program on the network can claim that a node has left whose process is not known. If the node is there, its
+// middleware announces it again: Fast DDS after 3 s, Cyclone DDS after 8 s.
+void Link::doubt_leaving(const std::string& node, Leaving leaving) {
+  constexpr auto kOfFastDds = std::chrono::seconds(4);
+  constexpr auto kOfOthers = std::chrono::seconds(9);
+  const auto patience = leaving.node.vendor == Vendor::kFastDds ? kOfFastDds : kOfOthers;
+  leaving.doubt = ++doubts_;
+  leaving_[node] = leaving;
+  tasks_.post_at(Executor::Clock::now() + patience,
+                 [this, node, doubt = leaving.doubt] { ask_leaving(node, doubt); });
+}
+
+// The middleware may know its services still, if somebody said in its name only that it holds no node.
+void Link::ask_leaving(const std::string& node, std::uint64_t doubt) {
+  const auto component = binding_.bind(node);
+  const auto found = leaving_.find(node);
+  if (!component || found == leaving_.end() || found->second.doubt != doubt) return;
+  make_link(*component, node)->ask([this, node, doubt](std::optional<GuidPrefix> answered) {
+    tasks_.post([this, node, doubt, answered] { believe_leaving(node, answered, doubt); });
+  });
+}
+
+void Link::believe_leaving(const std::string& node, std::optional<GuidPrefix> answered,
+                           std::uint64_t doubt) {
+  const auto found = leaving_.find(node);
+  if (found == leaving_.end() || found->second.doubt != doubt) return;
+  Leaving leaving = found->second;
+  if (answered != leaving.node.participant) {
+    leaving_.erase(found);
+    return vanished(node, leaving.was_lost);
+  }
+  if (!std::exchange(leaving.is_told, true))
+    inbox_.put(LinkTrouble{node + " was said to have left, and answers: somebody may speak in its "
+                                  "name. It counts as being there"});
+  doubt_leaving(node, leaving);
+}
+
+void Link::vanished(const std::string& node, bool was_lost) {
+  if (const auto component = was_lost ? std::nullopt : binding_.bind(node))
+    lives_on(*component, "");
   const auto managed = systems_.extract(node);
   if (managed) {
     for (const std::string& system : managed.mapped()) inbox_.put(NodeVanished{system});
@@ -558,6 +618,24 @@ void Link::tell_of_refused() {
   refused_ = refused.count;
   inbox_.put(LinkTrouble{std::to_string(refused.count) + " datagrams were kept out so far: " +
                          refused.why + "; who on this network sends that?"});
+}
+
+void Link::tell_of_foreign_sources() {
+  Origins& origins = context_->participant().origins();
+  origins.check(live_now());
+  for (const ForeignSource& source : origins.new_sources()) {
+    std::string name = "a node";
+    for (const Graph::NodeView& node : context_->graph().bare_nodes()) {
+      if (node.participant == source.in_name_of) name = node.node.name;
+    }
+    const std::string owner =
+        source.user ? ", a socket of user " + std::to_string(*source.user) : "";
+    const std::string process =
+        source.pid == 0 ? "" : " (process " + std::to_string(source.pid) + ")";
+    inbox_.put(LinkTrouble{
+        "datagrams from " + to_text(source.from) + owner + " speak for " + name + process +
+        ", which does not send from there; they are dropped. Find the program that sends them"});
+  }
 }
 
 // ---- commands

@@ -118,6 +118,13 @@ class Link {
   void give_memory_back_soon();
   void on_joined(const GraphNode& node);
   void on_left(const std::string& node, bool was_lost);
+  struct Leaving;
+  void note_participant(const std::string& node);
+  void doubt_leaving(const std::string& node, Leaving leaving);
+  void ask_leaving(const std::string& node, std::uint64_t doubt);
+  void believe_leaving(const std::string& node, std::optional<GuidPrefix> answered,
+                       std::uint64_t doubt);
+  void vanished(const std::string& node, bool was_lost);
   void on_system(const std::string& manager, const GraphEndpoint& service);
   void on_endpoint(const std::string& node, const GraphEndpoint& endpoint);
   void find_type(const std::string& node, const GraphEndpoint& endpoint, TopicWatch& watch);
@@ -126,6 +133,7 @@ class Link {
   void ask_silent_ones();
   void publish_again();
   void tell_of_refused();
+  void tell_of_foreign_sources();
   void on_namesakes(const NodeNamesakes& seen);
   void remind();
   void on_discovery(const DiscoveryEvent& event);
@@ -158,6 +166,21 @@ class Link {
   std::map<std::string, ToProbe> probed_;  // by node
   Namesake namesake_;
   std::map<std::string, int> pids_;  // of nodes that are there; 0 where it is not known
+  // Nodes of components whose process is not known, and the participant that has each.
+  struct Unproven {
+    Vendor vendor = Vendor::kOther;
+    GuidPrefix participant{};
+  };
+  std::map<std::string, Unproven> unproven_;
+  // Such nodes that are said to have left.
+  struct Leaving {
+    Unproven node;
+    bool was_lost = false;
+    std::uint64_t doubt = 0;  // which of all
+    bool is_told = false;     // that it answers all the same
+  };
+  std::map<std::string, Leaving> leaving_;
+  std::uint64_t doubts_ = 0;
   std::map<std::string, std::vector<std::string>> systems_;       // by the mode manager's node
   std::map<std::string, std::multiset<std::string>> publishers_;  // nodes, by watched topic
   // Those that are asked whether they know that the topic is listened to.

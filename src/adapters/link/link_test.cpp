@@ -18,8 +18,8 @@
 #include "ros2/lifecycle_node.h"
 #include "ros2/live_test.h"
 #include "ros2/services.h"
-#include "ros2/test_datagram.h"
 #include "ros2/test_forger.h"
+#include "rtps/test_datagram.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -123,6 +123,25 @@ struct Robot {
   LiveContext context;
   std::unique_ptr<LifecycleNode> managed;
 };
+
+// It announces the port of no process, so nobody knows whose it is.
+TEST(Link, WhoIsSaidToHaveLeftByNobodyKnowsWhomIsGivenTheTimeToComeBack) {
+  const TestDomain domain;
+  Linked linked(domain);
+  Forger robot(domain.options(), free_port());
+  robot.says_that_it_holds({"/", "robot", {}, {}});
+  ASSERT_TRUE(linked.sees("/robot"));
+  const auto left = [](const NodeVanished& n) { return n.node == "/robot"; };
+  robot.says_that_it_holds({"/", "other", {}, {}});
+  ASSERT_TRUE(linked.sees("/other"));
+  robot.says_that_it_holds({"/", "robot", {}, {}});
+  ASSERT_TRUE(linked.wait<NodeVanished>([](const NodeVanished& n) { return n.node == "/other"; }));
+  EXPECT_FALSE(linked.wait<NodeVanished>(left, 5s)) << "it came back";
+  const Time now = live_now();
+  robot.says_that_it_holds({"/", "other", {}, {}});
+  EXPECT_TRUE(linked.wait<NodeVanished>(left));
+  EXPECT_GE(live_now() - now, 4s);
+}
 
 TEST(Link, SeesNodesWithTheirProcessAndTheirState) {
   const TestDomain domain;
@@ -491,7 +510,8 @@ TEST(Link, HearsAWriterAgainWhoseNumbersWereForged) {
     if (writer && port != 0) break;
   }
   ASSERT_TRUE(writer && port != 0);
-  // Each a little ahead of the last, which nothing can object to: minutes of what it publishes.
+  // Each a little ahead of the last, which nothing can object to: minutes of what it publishes. The socket is of
+  // the robot's process.
   const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
   sockaddr_in to{};
   to.sin_family = AF_INET;
@@ -503,7 +523,6 @@ TEST(Link, HearsAWriterAgainWhoseNumbersWereForged) {
     sendto(socket, forged.bytes().data(), forged.bytes().size(), 0,
            reinterpret_cast<sockaddr*>(&to), sizeof to);
   }
-  close(socket);
   EXPECT_TRUE(linked.wait<LinkTrouble>([](const LinkTrouble& trouble) {
     return trouble.text.find("cannot be put together") != std::string::npos;
   })) << "it was not deaf, so this proves nothing";
@@ -512,6 +531,7 @@ TEST(Link, HearsAWriterAgainWhoseNumbersWereForged) {
     const auto* value = std::get_if<double>(&read.value);
     return linked.rules[read.signal].name == "visibility" && value != nullptr && *value > now;
   }));
+  close(socket);
 }
 
 TEST(Link, SurvivesHostileMessages) {

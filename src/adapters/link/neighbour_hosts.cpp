@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "ros2/own_addresses.h"
+#include "rtps/own_addresses.h"
 
 namespace culprit::ros2 {
 

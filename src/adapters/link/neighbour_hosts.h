@@ -17,8 +17,8 @@
 
 #include "base/mutex.h"
 #include "base/time.h"
-#include "ros2/guid.h"
 #include "ros2/participant.h"
+#include "rtps/guid.h"
 
 namespace culprit::ros2 {
 

@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "base/live_clock.h"
-#include "ros2/receive_thread.h"
+#include "rtps/receive_thread.h"
 
 namespace culprit::ros2 {
 

@@ -16,8 +16,8 @@
 
 #include "base/mutex.h"
 #include "base/time.h"
-#include "ros2/cdr.h"
-#include "ros2/guid.h"
+#include "rtps/cdr.h"
+#include "rtps/guid.h"
 
 namespace culprit::recorder {
 

@@ -17,7 +17,7 @@
 #include "recorder/mcap_writer.h"
 #include "recorder/message_ring.h"
 #include "recorder/recording_folder.h"
-#include "ros2/qos.h"
+#include "rtps/qos.h"
 
 namespace culprit::recorder {
 

@@ -5,7 +5,9 @@
 #include <utility>
 
 #include "base/live_clock.h"
+#include "ros2/process_finder.h"
 #include "ros2/type_description.h"
+#include "rtps/origins.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -53,8 +55,19 @@ FoundProcess Context::find_process(const Graph::FindProcess& find, ParticipantIn
       known->second.of.origin == info.origin)
     return known->second.found;
   FoundProcess found = find(info);
-  if (found.pid != 0)
+  if (found.pid != 0) {
+    participant_->prove(info.guid.prefix(), found.pid);
     proofs_.insert_or_assign(info.guid.prefix(), Proof{std::move(info), found, later(now, kLasts)});
+  } else if (!participant_->origins().is_proven(info.guid.prefix())) {
+    // Others speak in its name, too. From now on only its process counts, which is asked again what nodes it has.
+    const int speaker = ProcessFinder().speaker(info);
+    if (speaker == 0) return found;
+    participant_->prove(info.guid.prefix(), speaker);
+    tasks_.post([this, guid = info.guid] {
+      graph_.apply(DiscoveryInfo{guid, {}});
+      (void)listen_to_infos();  // if there is no new reader, the old one stays
+    });
+  }
   return found;
 }
 

@@ -13,8 +13,8 @@
 #include <string_view>
 #include <vector>
 
-#include "ros2/cdr.h"
-#include "ros2/guid.h"
+#include "rtps/cdr.h"
+#include "rtps/guid.h"
 
 namespace culprit::ros2 {
 

@@ -4,7 +4,7 @@
 #include <set>
 #include <string>
 
-#include "ros2/udp_sockets.h"
+#include "rtps/udp_sockets.h"
 
 namespace culprit::ros2 {
 namespace {

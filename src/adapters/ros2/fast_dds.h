@@ -30,9 +30,9 @@
 #include <fastrtps/utils/IPLocator.h>
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 
-#include "ros2/careful_transport.h"
 #include "ros2/participant.h"
 #include "ros2/type_description.h"
+#include "rtps/careful_transport.h"
 
 namespace culprit::ros2::fast_dds {
 

@@ -12,8 +12,8 @@
 
 #include "base/expected.h"
 #include "base/value.h"
-#include "ros2/cdr.h"
 #include "ros2/message_library.h"
+#include "rtps/cdr.h"
 
 namespace culprit::ros2 {
 

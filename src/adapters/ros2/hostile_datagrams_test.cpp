@@ -10,7 +10,7 @@
 #include "base/live_clock.h"
 #include "ros2/hearing.h"
 #include "ros2/live_test.h"
-#include "ros2/test_datagram.h"
+#include "rtps/test_datagram.h"
 
 namespace culprit::ros2 {
 namespace {

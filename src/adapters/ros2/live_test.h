@@ -1,8 +1,5 @@
 // For tests that speak DDS for real: a domain of their own, contexts with a thread, and waiting for
 // events.
-//
-// Nothing here measures time. A wait ends with the event that it waits for, however slow the
-// machine is; the time-out is only for tests that fail.
 #pragma once
 
 #include <chrono>
@@ -20,10 +17,9 @@
 #include "ros2/context.h"
 #include "ros2/domain_lock.h"
 #include "ros2/executor.h"
+#include "rtps/test_event_log.h"
 
 namespace culprit::ros2 {
-
-inline constexpr std::chrono::seconds kPatience(20);
 
 // Options for participants that only hear one another. Aborts the test program when no domain is
 // free.
@@ -46,48 +42,6 @@ class TestDomain {
   }
 
   DomainLock lock_ = reserve();
-};
-
-// What happened, in order; written by any thread, awaited by the test.
-template <class Event>
-class EventLog {
- public:
-  void add(Event event) {
-    // Notified under the lock: whoever waits may destroy the log as soon as it sees the event.
-    const MutexLock lock(mutex_);
-    events_.push_back(std::move(event));
-    added_.notify_all();
-  }
-
-  // Whether `done` became true of all events so far.
-  template <class Predicate>
-  bool wait(Predicate done) {
-    MutexLock lock(mutex_);
-    return added_.wait_for(lock, kPatience,
-                           [&]() CULPRIT_REQUIRES(mutex_) { return done(events_); });
-  }
-  bool wait_for_count(std::size_t count) {
-    return wait([count](const auto& events) { return events.size() >= count; });
-  }
-  template <class Predicate>
-  bool wait_for_one(Predicate is_it) {
-    return wait([&](const auto& events) {
-      for (const auto& event : events) {
-        if (is_it(event)) return true;
-      }
-      return false;
-    });
-  }
-
-  std::vector<Event> all() const {
-    const MutexLock lock(mutex_);
-    return events_;
-  }
-
- private:
-  mutable Mutex mutex_;
-  ConditionVariable added_;
-  std::vector<Event> events_ CULPRIT_GUARDED_BY(mutex_);
 };
 
 // A context whose executor runs on a thread of its own.

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "ros2/cdr.h"
 #include "ros2/message_library.h"
 #include "ros2/services.h"
+#include "rtps/cdr.h"
 
 namespace culprit::ros2 {
 namespace {

@@ -12,8 +12,8 @@
 
 #include "base/expected.h"
 #include "ros2/discovery_info.h"
-#include "ros2/endpoint_info.h"
 #include "ros2/security.h"
+#include "rtps/endpoint_info.h"
 
 namespace culprit::ros2 {
 

@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <unistd.h>
 #include <utility>
 #include <variant>
 
+#include "base/live_clock.h"
 #include "base/mutex.h"
 #include "ros2/fast_dds.h"
 #include "ros2/names.h"
-#include "ros2/receive_watch.h"
+#include "rtps/receive_watch.h"
 
 namespace culprit::ros2 {
 
@@ -374,6 +376,7 @@ class Participant::Impl {
       if (!address) return Error{address.error()};
       server.host = std::move(*address);
     }
+    *reception_.relays = !options.servers.empty();
     static std::once_flag is_set_up;
     std::call_once(is_set_up, fast_dds::speak_through_sockets);
     participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
@@ -394,6 +397,8 @@ class Participant::Impl {
     is_secured_ = options.security.has_value();
     likely_refusal_ = likely_refusal(options.security);
     reception_.sources->begin(guid_.prefix());
+    reception_.origins->prove(guid_.prefix(), getpid(), {});
+    if (!is_secured_) reception_.origins->begin_to_bind(guid_.prefix());
     publisher_ = participant_->create_publisher(dds::PublisherQos());
     subscriber_ = participant_->create_subscriber(dds::SubscriberQos());
     topics_.emplace(*participant_);
@@ -436,6 +441,8 @@ class Participant::Impl {
   const Guid& guid() const { return guid_; }
   const DatagramSources& sources() const { return *reception_.sources; }
   const DatagramFilter& filter() const { return *reception_.filter; }
+  Origins& origins() { return *reception_.origins; }
+  void forget_sources(const GuidPrefix& of) { reception_.sources->forget(of); }
   void look_at_receivers(Time now) {
     reception_.thread->look_at_sockets(
         [&](std::span<const int> sockets) { watch_.look(sockets, now); });
@@ -448,10 +455,12 @@ class Participant::Impl {
     if (const auto* there = std::get_if<ParticipantInfo>(&event)) {
       reception_.sources->keep(there->guid.prefix());
       reception_.filter->know(there->guid.prefix());
+      reception_.origins->discovered(there->guid.prefix(), there->metatraffic, live_now());
     }
     if (const auto* gone = std::get_if<ParticipantGone>(&event)) {
       reception_.sources->forget(gone->guid.prefix());
       reception_.filter->forget(gone->guid.prefix());
+      reception_.origins->forget(gone->guid.prefix());
     }
     gate_->pass([&] {
       if (const auto* there = std::get_if<ParticipantInfo>(&event)) {
@@ -507,6 +516,12 @@ void Participant::on_round(std::function<void()> on_round) {
 DatagramSources::Origin Participant::origin_of(const GuidPrefix& participant) const {
   return impl_->sources().of(participant);
 }
+void Participant::prove(const GuidPrefix& participant, int pid) {
+  // What came from elsewhere in its name tells nothing of it.
+  if (!impl_->origins().prove(participant, pid, origin_of(participant).addresses))
+    impl_->forget_sources(participant);
+}
+Origins& Participant::origins() { return impl_->origins(); }
 Time Participant::heard_last(const GuidPrefix& participant) const {
   return impl_->sources().last_of(participant);
 }

@@ -22,17 +22,19 @@
 #include <vector>
 
 #include "base/expected.h"
-#include "ros2/cdr.h"
-#include "ros2/datagram_filter.h"
-#include "ros2/datagram_sources.h"
-#include "ros2/endpoint_info.h"
-#include "ros2/guid.h"
-#include "ros2/haste.h"
 #include "ros2/options.h"
-#include "ros2/qos.h"
-#include "ros2/system_time.h"
+#include "rtps/cdr.h"
+#include "rtps/datagram_filter.h"
+#include "rtps/datagram_sources.h"
+#include "rtps/endpoint_info.h"
+#include "rtps/guid.h"
+#include "rtps/haste.h"
+#include "rtps/qos.h"
+#include "rtps/system_time.h"
 
 namespace culprit::ros2 {
+
+class Origins;
 
 // By the vendor id that the participant announces (RTPS 2.3 §9.3.1.3).
 enum class Vendor : std::uint8_t { kFastDds, kCyclone, kOther };
@@ -211,6 +213,9 @@ class Participant {
 
   // Where the datagrams of another participant came from so far.
   DatagramSources::Origin origin_of(const GuidPrefix& participant) const;
+  // Its process is this one, on this machine: from now on only what comes from that process counts as its (Origins).
+  void prove(const GuidPrefix& participant, int pid);
+  Origins& origins();
   // When its last one came; kLongAgo: it is not there.
   Time heard_last(const GuidPrefix& participant) const;
   // Since when nothing of its own came through one of its ports (DatagramSources).

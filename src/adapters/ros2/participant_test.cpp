@@ -587,6 +587,20 @@ TEST(Participant, AnUnknownPeerIsAnError) {
   EXPECT_FALSE(Participant::create(options, [](DiscoveryEvent) {}));
 }
 
+TEST(Participant, TheSourcesOfAnotherAreItsSockets) {
+  const TestDomain domain;
+  LiveContext watcher(domain.options()), robot(domain.options());
+  const NodeEntry node(*robot, {"/", "a"});
+  ASSERT_TRUE(watcher.sees_node("/a"));
+  const auto origin = watcher->participant().origin_of(robot->participant().guid().prefix());
+  EXPECT_TRUE(origin.is_complete);
+  ASSERT_FALSE(origin.addresses.empty());
+  for (const UdpAddress& each : origin.addresses) {
+    EXPECT_EQ(each.ip, (std::array<std::uint8_t, 4>{127, 0, 0, 1}));
+    EXPECT_GE(each.port, 1024);
+  }
+}
+
 TEST(Participant, ReadersComeAndGoWhileSamplesFlow) {
   Pair pair;
   std::atomic<bool> stop = false;

@@ -9,8 +9,9 @@
 #include <string>
 #include <system_error>
 
-#include "ros2/own_addresses.h"
-#include "ros2/udp_sockets.h"
+#include "rtps/own_addresses.h"
+#include "rtps/process_sockets.h"
+#include "rtps/udp_sockets.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -21,23 +22,28 @@ bool is_local(const std::array<std::uint8_t, 4>& ip) {
   return ip[0] == 127 || own_addresses().contains(ip);
 }
 
-std::string to_text(const UdpAddress& address) {
-  std::string text;
-  for (const std::uint8_t part : address.ip)
-    text += (text.empty() ? "" : ".") + std::to_string(part);
-  return text + ":" + std::to_string(address.port);
-}
-
 // The sockets that one address may belong to: several where they share a port.
-using Candidates = std::vector<UdpSocket>;
+struct Candidates {
+  std::vector<UdpSocket> sockets;
+  // One that other processes have, too, proves nothing: each of them may have sent what came from there.
+  bool is_exclusive = false;
+};
 
 Candidates bound_to(const UdpAddress& address, const std::vector<UdpSocket>& sockets) {
   Candidates found;
   for (const UdpSocket& socket : sockets) {
-    const bool fits =
-        socket.address.ip == std::array<std::uint8_t, 4>{} || socket.address.ip == address.ip;
-    if (fits && socket.address.port == address.port) found.push_back(socket);
+    const bool fits = socket.address.ip == Ip{} || socket.address.ip == address.ip;
+    if (fits && socket.address.port == address.port) found.sockets.push_back(socket);
   }
+  return found;
+}
+
+Candidates sends_from(const UdpAddress& address, const std::vector<UdpSocket>& sockets) {
+  Candidates found = bound_to(address, sockets);
+  found.is_exclusive = true;
+  const auto is_ipv4 = [](const UdpSocket& each) { return !each.is_ipv6; };
+  if (std::ranges::any_of(found.sockets, is_ipv4))
+    std::erase_if(found.sockets, [](const UdpSocket& each) { return each.is_ipv6; });
   return found;
 }
 
@@ -53,30 +59,28 @@ std::vector<unsigned> users_of(const fs::path& process) {
   return {};
 }
 
-std::set<std::string> descriptors_of(const fs::path& process) {
-  std::set<std::string> links;
-  std::error_code error;
-  fs::directory_iterator files(process / "fd", error);
-  while (!error && files != fs::directory_iterator()) {
-    const fs::path target = fs::read_symlink(files->path(), error);
-    if (!error) links.insert(target.native());
-    files.increment(error);  // fails if the process went away meanwhile
-  }
-  return links;
-}
+// Those of its sockets that are its own: a file of another user's socket may have been given to it.
+class Holdings {
+ public:
+  explicit Holdings(const fs::path& process)
+      : links_(descriptors_of(process)),
+        users_(links_.empty() ? std::vector<unsigned>() : users_of(process)) {}
 
-bool holds(const fs::path& process, const std::vector<Candidates>& needed) {
-  const std::set<std::string> links = descriptors_of(process);
-  if (links.empty()) return false;
-  const std::vector<unsigned> users = users_of(process);
-  const auto is_its = [&](const UdpSocket& socket) {
-    return links.contains(socket.link) &&
-           std::find(users.begin(), users.end(), socket.user) != users.end();
-  };
-  return std::all_of(needed.begin(), needed.end(), [&](const Candidates& each) {
-    return std::any_of(each.begin(), each.end(), is_its);
-  });
-}
+  bool has(const Candidates& each) const {
+    const auto is_its = [&](const UdpSocket& socket) {
+      return links_.contains(socket.link) && std::ranges::find(users_, socket.user) != users_.end();
+    };
+    return each.is_exclusive ? !each.sockets.empty() && std::ranges::all_of(each.sockets, is_its)
+                             : std::ranges::any_of(each.sockets, is_its);
+  }
+  bool has_all(const std::vector<Candidates>& all) const {
+    return std::ranges::all_of(all, [&](const Candidates& each) { return has(each); });
+  }
+
+ private:
+  std::set<std::string> links_;
+  std::vector<unsigned> users_;
+};
 
 int to_pid(const fs::path& process) {
   const std::string name = process.filename().native();
@@ -85,23 +89,8 @@ int to_pid(const fs::path& process) {
   return error == std::errc() && rest == name.data() + name.size() ? pid : 0;
 }
 
-// What the kernel says after the command, which is in parentheses and may hold anything.
-std::string stat_after_command(const fs::path& process) {
-  std::ifstream file(process / "stat");
-  std::string line;
-  std::getline(file, line);
-  const auto end = line.rfind(')');
-  return end == std::string::npos || end + 2 >= line.size() ? "" : line.substr(end + 2);
-}
-
-// In ticks since the machine was started; the latest if it cannot be told.
-std::uint64_t began(const fs::path& process) {
-  std::istringstream rest(stat_after_command(process));
-  std::string skipped;
-  for (int i = 0; i < 19; ++i) rest >> skipped;  // proc(5)
-  std::uint64_t ticks = 0;
-  return rest >> ticks ? ticks : UINT64_MAX;
-}
+// The latest if it cannot be told.
+std::uint64_t began(const fs::path& process) { return running_since(process).value_or(UINT64_MAX); }
 
 }  // namespace
 
@@ -131,7 +120,9 @@ bool ProcessFinder::has_ended(const ParticipantInfo& participant) const {
   if (!std::all_of(from.begin(), from.end(), is_here)) return false;
   const std::vector<UdpSocket> sockets = udp_sockets(proc_);
   if (sockets.empty()) return false;  // there is at least the one that this was heard by
-  const auto is_nobodys = [&](const UdpAddress& each) { return bound_to(each, sockets).empty(); };
+  const auto is_nobodys = [&](const UdpAddress& each) {
+    return bound_to(each, sockets).sockets.empty();
+  };
   return std::any_of(participant.metatraffic.begin(), participant.metatraffic.end(), is_nobodys) ||
          (participant.origin.is_complete && !from.empty() &&
           std::all_of(from.begin(), from.end(), is_nobodys));
@@ -155,33 +146,56 @@ FoundProcess ProcessFinder::prove(const ParticipantInfo& participant,
   const std::vector<UdpSocket> sockets = udp_sockets(proc_);
   std::vector<Candidates> needed;
   for (const UdpAddress& each : addresses) {
-    needed.push_back(bound_to(each, sockets));
-    if (needed.back().empty())
+    const bool is_heard =
+        std::ranges::find(participant.origin.addresses, each) != participant.origin.addresses.end();
+    needed.push_back(is_heard ? sends_from(each, sockets) : bound_to(each, sockets));
+    if (needed.back().sockets.empty())
       return {0, "no process of this machine has the socket " + to_text(each) +
                      " that it announces or sends from"};
   }
+  const int pid = oldest(
+      participant.pid, [&](const fs::path& process) { return Holdings(process).has_all(needed); });
+  if (pid != 0) return {pid, ""};
+  std::string all;
+  for (const UdpAddress& each : addresses) all += (all.empty() ? "" : ", ") + to_text(each);
+  return {0, "no process whose files can be seen holds all of its sockets (" + all +
+                 ") alone; of another user's, culprit may see them only with CAP_SYS_PTRACE"};
+}
 
-  // Forks of the process hold the same sockets: what it says helps to choose among those.
-  if (participant.pid > 0 && holds(proc_ / std::to_string(participant.pid), needed))
-    return {participant.pid, ""};
+int ProcessFinder::speaker(const ParticipantInfo& participant) const {
+  const std::vector<UdpSocket> sockets = udp_sockets(proc_);
+  std::vector<Candidates> announced;
+  for (const UdpAddress& each : participant.metatraffic) {
+    if (is_local(each.ip)) announced.push_back(bound_to(each, sockets));
+  }
+  std::vector<Candidates> heard;
+  for (const UdpAddress& each : participant.origin.addresses) {
+    if (is_local(each.ip)) heard.push_back(sends_from(each, sockets));
+  }
+  if (announced.empty() || heard.empty()) return 0;
+  return oldest(participant.pid, [&](const fs::path& process) {
+    const Holdings its(process);
+    return its.has_all(announced) &&
+           std::ranges::any_of(heard, [&](const Candidates& each) { return its.has(each); });
+  });
+}
+
+// Forks of a process hold the same sockets: what it says helps to choose among those.
+int ProcessFinder::oldest(int said, const std::function<bool(const fs::path&)>& is_it) const {
+  if (said > 0 && is_it(proc_ / std::to_string(said))) return said;
   int oldest = 0;
   std::error_code error;
   for (fs::directory_iterator i(proc_, error); !error && i != fs::directory_iterator();
        i.increment(error)) {
     const int pid = to_pid(i->path());
-    if (pid <= 0 || !holds(i->path(), needed)) continue;
+    if (pid <= 0 || !is_it(i->path())) continue;
     if (oldest == 0 || began(i->path()) < began(proc_ / std::to_string(oldest))) oldest = pid;
   }
-  if (oldest != 0) return {oldest, ""};
-  std::string all;
-  for (const UdpAddress& each : addresses) all += (all.empty() ? "" : ", ") + to_text(each);
-  return {0, "no process whose files can be seen holds all of its sockets (" + all +
-                 "); of another user's, culprit may see them only with CAP_SYS_PTRACE"};
+  return oldest;
 }
 
 bool ProcessFinder::is_running(int pid) const {
-  const std::string state = stat_after_command(proc_ / std::to_string(pid));
-  return !state.empty() && state.front() != 'Z' && state.front() != 'X';
+  return running_since(proc_ / std::to_string(pid)).has_value();
 }
 
 }  // namespace culprit::ros2

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <memory>
 #include <netinet/in.h>
+#include <optional>
 #include <string>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -14,6 +15,7 @@
 #include <gtest/gtest.h>
 
 #include "base/test_folder.h"
+#include "rtps/test_sockets.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -21,50 +23,8 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-using Ip = std::array<std::uint8_t, 4>;
-constexpr Ip kLoopback = {127, 0, 0, 1};
 constexpr Ip kOtherLoopback = {127, 0, 0, 2};
 constexpr Ip kElsewhere = {203, 0, 113, 1};  // 203.0.113.0/24 is for documentation only
-
-// A UDP socket on a port that the system chose.
-class Socket {
- public:
-  explicit Socket(const Ip& ip = kLoopback) : fd_(socket(AF_INET, SOCK_DGRAM, 0)) {
-    sockaddr_in to{};
-    to.sin_family = AF_INET;
-    std::memcpy(&to.sin_addr, ip.data(), ip.size());
-    socklen_t size = sizeof to;
-    bind(fd_, reinterpret_cast<const sockaddr*>(&to), size);
-    getsockname(fd_, reinterpret_cast<sockaddr*>(&to), &size);
-    address_ = {ip, ntohs(to.sin_port)};
-  }
-  ~Socket() { close(fd_); }
-  const UdpAddress& address() const { return address_; }
-  int descriptor() const { return fd_; }
-
- private:
-  int fd_;
-  UdpAddress address_;
-};
-
-// A process that was forked from this one and waits, with none of its files but one.
-class Fork {
- public:
-  explicit Fork(int kept) : pid_(fork()) {
-    if (pid_ != 0) return;
-    dup2(kept, 0);
-    closefrom(1);
-    for (;;) pause();
-  }
-  ~Fork() {
-    kill(pid_, SIGKILL);
-    waitpid(pid_, nullptr, 0);
-  }
-  int pid() const { return pid_; }
-
- private:
-  int pid_;
-};
 
 // Announces one address and sends from another.
 ParticipantInfo participant(const UdpAddress& announced, const UdpAddress& sends_from,
@@ -77,7 +37,7 @@ ParticipantInfo participant(const UdpAddress& announced, const UdpAddress& sends
 }
 
 struct Sockets {
-  Socket listens, sends;
+  TestSocket listens, sends;
   ParticipantInfo participant(int said_pid = 0) const {
     return ros2::participant(listens.address(), sends.address(), said_pid);
   }
@@ -101,8 +61,8 @@ TEST(ProcessFinder, CorrectsAFalseClaim) {
 }
 
 TEST(ProcessFinder, OfForksThatHoldTheSameItFindsTheOldest) {
-  const Socket socket;
-  const Fork fork(socket.descriptor());
+  const TestSocket socket;
+  const TestFork fork(socket.descriptor());
   const ParticipantInfo both = participant(socket.address(), socket.address());
   EXPECT_EQ(ProcessFinder().find(both).pid, getpid());
 }
@@ -148,8 +108,8 @@ TEST(ProcessFinder, OneForeignDatagramSpeaksAgainstIt) {
 }
 
 TEST(ProcessFinder, APortOfSomebodyElseProvesNothing) {
-  auto others = std::make_unique<Socket>();
-  const Fork victim(others->descriptor());
+  auto others = std::make_unique<TestSocket>();
+  const TestFork victim(others->descriptor());
   const UdpAddress announced = others->address();
   others.reset();  // the fork alone has it
   const Sockets sockets;
@@ -160,7 +120,7 @@ TEST(ProcessFinder, APortOfSomebodyElseProvesNothing) {
 }
 
 TEST(ProcessFinder, APortOfAnotherAddressIsAnother) {
-  const Socket listens(kOtherLoopback), sends;
+  const TestSocket listens(kOtherLoopback), sends;
   const UdpAddress announced{kLoopback, listens.address().port};
   EXPECT_EQ(ProcessFinder().find(participant(listens.address(), sends.address())).pid, getpid());
   EXPECT_EQ(ProcessFinder().find(participant(announced, sends.address())).pid, 0);
@@ -177,8 +137,8 @@ TEST(ProcessFinder, WithoutADatagramNothingIsProven) {
 
 TEST(ProcessFinder, KnowsNothingOfAClosedPort) {
   UdpAddress closed;
-  closed = Socket().address();
-  const Socket sends;
+  closed = TestSocket().address();
+  const TestSocket sends;
   EXPECT_THAT(ProcessFinder().find(participant(closed, sends.address(), getpid())).missing,
               HasSubstr("no process of this machine has the socket"));
 }
@@ -199,8 +159,8 @@ TEST(ProcessFinder, WhoseSocketsAreNobodysAnyMoreHasEnded) {
 
 TEST(ProcessFinder, WhoMayBeElsewhereIsNotKnownToHaveEnded) {
   UdpAddress closed;
-  closed = Socket().address();
-  const Socket sends;
+  closed = TestSocket().address();
+  const TestSocket sends;
   ParticipantInfo info = participant(closed, sends.address());
   info.metatraffic.push_back({kElsewhere, 7410});
   EXPECT_FALSE(ProcessFinder().find(info).has_ended);
@@ -249,6 +209,35 @@ TEST(ProcessFinder, ASocketThatAnotherUserMadeProvesNothing) {
                 .find(participant({kLoopback, 0x1cf2}, {kLoopback, 0x1cf4}, 4242))
                 .pid,
             0);
+}
+
+TEST(ProcessFinder, KnowsWhoSpeaksThoughOthersSpeakInThatNameToo) {
+  std::optional<TestSocket> its(std::in_place);
+  const UdpAddress address = its->address();
+  const TestFork process(its->descriptor());
+  its.reset();
+  const TestSocket stranger;
+  ParticipantInfo info = participant(address, address);
+  info.origin.addresses.push_back(stranger.address());
+  EXPECT_EQ(ProcessFinder().find(info).pid, 0);
+  EXPECT_EQ(ProcessFinder().speaker(info), process.pid());
+  info.origin.addresses = {stranger.address()};
+  EXPECT_EQ(ProcessFinder().speaker(info), 0) << "it never spoke in that name";
+}
+
+// As the port for multicast is, which every participant has.
+TEST(ProcessFinder, APortThatOthersShareProvesNothing) {
+  std::optional<TestSocket> its(std::in_place);
+  std::optional<TestSocket> shared(std::in_place, kLoopback, TestSocket::Port::kShared);
+  const TestFork process(its->descriptor(), shared->descriptor());
+  const UdpAddress announced = its->address();
+  const UdpAddress multicast = shared->address();
+  its.reset();
+  shared.reset();
+  EXPECT_EQ(ProcessFinder().find(participant(announced, multicast)).pid, process.pid());
+  const TestSocket stranger(kLoopback, TestSocket::Port::kShared, multicast.port);
+  EXPECT_EQ(ProcessFinder().find(participant(announced, multicast)).pid, 0);
+  EXPECT_EQ(ProcessFinder().speaker(participant(announced, multicast)), 0);
 }
 
 TEST(ProcessFinder, SurvivesAMissingProcFileSystem) {

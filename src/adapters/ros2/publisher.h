@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "base/expected.h"
-#include "ros2/cdr.h"
 #include "ros2/context.h"
 #include "ros2/participant.h"
+#include "rtps/cdr.h"
 
 namespace culprit::ros2 {
 

@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "ros2/names.h"
-#include "ros2/receive_thread.h"
+#include "rtps/receive_thread.h"
 
 namespace culprit::ros2 {
 namespace {

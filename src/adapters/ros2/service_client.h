@@ -30,12 +30,12 @@
 #include "base/expected.h"
 #include "base/mutex.h"
 #include "base/units.h"
-#include "ros2/cdr.h"
 #include "ros2/context.h"
 #include "ros2/executor.h"
-#include "ros2/guid.h"
 #include "ros2/participant.h"
 #include "ros2/service_mapping.h"
+#include "rtps/cdr.h"
+#include "rtps/guid.h"
 
 namespace culprit::ros2 {
 

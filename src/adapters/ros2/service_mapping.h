@@ -22,8 +22,8 @@
 #include <optional>
 #include <string_view>
 
-#include "ros2/cdr.h"
 #include "ros2/participant.h"
+#include "rtps/cdr.h"
 
 namespace culprit::ros2 {
 

@@ -17,12 +17,12 @@
 
 #include "base/expected.h"
 #include "base/mutex.h"
-#include "ros2/cdr.h"
 #include "ros2/context.h"
 #include "ros2/executor.h"
 #include "ros2/participant.h"
 #include "ros2/service_client.h"
 #include "ros2/service_mapping.h"
+#include "rtps/cdr.h"
 
 namespace culprit::ros2 {
 

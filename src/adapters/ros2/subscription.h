@@ -10,10 +10,10 @@
 
 #include "base/expected.h"
 #include "base/mutex.h"
-#include "ros2/cdr.h"
 #include "ros2/context.h"
 #include "ros2/executor.h"
 #include "ros2/participant.h"
+#include "rtps/cdr.h"
 
 namespace culprit::ros2 {
 

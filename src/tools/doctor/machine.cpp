@@ -9,7 +9,7 @@
 
 #include "owners/proc.h"
 #include "owners/start_of.h"
-#include "ros2/udp_sockets.h"
+#include "rtps/udp_sockets.h"
 
 namespace culprit::doctor {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <string_view>
 
-#include "ros2/endpoint_info.h"
+#include "rtps/endpoint_info.h"
 
 namespace culprit::doctor {
 

@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include "base/units.h"
-#include "ros2/qos.h"
+#include "rtps/qos.h"
 
 namespace culprit::suave {
 

@@ -8,9 +8,10 @@
 
 #include <optional>
 #include <string_view>
+#include <vector>
 
-#include "ros2/cdr.h"
-#include "ros2/endpoint_info.h"
+#include "rtps/cdr.h"
+#include "rtps/endpoint_info.h"
 
 namespace culprit::ros2 {
 
@@ -23,5 +24,9 @@ std::optional<EndpointInfo> read_announcement(ByteView payload, EndpointRole rol
 // Which endpoint ends. `parameters` are those of its submessage, whose order of bytes this is; `payload` is
 // its key, with its encapsulation, and may be empty. Nothing: none ends, or it is not said which.
 std::optional<Guid> read_end(ByteView parameters, Endianness order, ByteView payload);
+
+// Of which participants and endpoints something is announced, or that they have ended: every key that the lists name.
+// `parameters` and `payload` as above. What is damaged is passed over.
+std::vector<Guid> announced_keys(ByteView parameters, Endianness order, ByteView payload);
 
 }  // namespace culprit::ros2

@@ -1,4 +1,4 @@
-#include "ros2/announcement.h"
+#include "rtps/announcement.h"
 
 #include <algorithm>
 #include <chrono>
@@ -20,6 +20,7 @@ enum ParameterId : std::uint16_t {
   kPidPartition = 0x0029,
   kPidLifespan = 0x002b,
   kPidUserData = 0x002c,
+  kPidParticipantGuid = 0x0050,
   kPidEndpointGuid = 0x005a,
   kPidKeyHash = 0x0070,
   kPidStatusInfo = 0x0071
@@ -229,6 +230,19 @@ std::optional<Guid> read_end(ByteView parameters, Endianness order, ByteView pay
     return true;
   });
   return ends ? guid : std::nullopt;
+}
+
+std::vector<Guid> announced_keys(ByteView parameters, Endianness order, ByteView payload) {
+  std::vector<Guid> keys;
+  const auto read = [&](std::uint16_t id, Announced value) {
+    if (id != kPidParticipantGuid && id != kPidEndpointGuid && id != kPidKeyHash) return true;
+    const Guid said = value.guid();
+    if (value.ok()) keys.push_back(said);
+    return true;
+  };
+  for_each_parameter({parameters, order}, read);
+  if (const auto list = announced_list(payload)) for_each_parameter(*list, read);
+  return keys;
 }
 
 }  // namespace culprit::ros2

@@ -1,4 +1,4 @@
-#include "ros2/datagram_sources.h"
+#include "rtps/datagram_sources.h"
 
 #include <algorithm>
 #include <array>
@@ -6,8 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "ros2/live_test.h"
-#include "ros2/test_datagram.h"
+#include "rtps/test_datagram.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -173,20 +172,6 @@ TEST(DatagramSources, TooManyAddressesAreKnownToBeTooMany) {
     sources.heard(from(prefix(1)), {{127, 0, 0, 1}, port}, kNow);
   EXPECT_EQ(sources.of(prefix(1)).addresses.size(), DatagramSources::kMostAddresses);
   EXPECT_FALSE(sources.of(prefix(1)).is_complete);
-}
-
-TEST(DatagramSources, OfALiveParticipantAreItsSockets) {
-  const TestDomain domain;
-  LiveContext watcher(domain.options()), robot(domain.options());
-  const NodeEntry node(*robot, {"/", "a"});
-  ASSERT_TRUE(watcher.sees_node("/a"));
-  const auto origin = watcher->participant().origin_of(robot->participant().guid().prefix());
-  EXPECT_TRUE(origin.is_complete);
-  ASSERT_FALSE(origin.addresses.empty());
-  for (const UdpAddress& each : origin.addresses) {
-    EXPECT_EQ(each.ip, (std::array<std::uint8_t, 4>{127, 0, 0, 1}));
-    EXPECT_GE(each.port, 1024);
-  }
 }
 
 TEST(DatagramSources, TellSinceWhenNothingOfOurOwnCameThroughAPort) {

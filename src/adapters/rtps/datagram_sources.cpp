@@ -1,26 +1,19 @@
-#include "ros2/datagram_sources.h"
+#include "rtps/datagram_sources.h"
 
 #include <algorithm>
 #include <cstring>
 #include <optional>
 
-#include "ros2/rtps_submessage.h"
+#include "rtps/speakers.h"
+#include "rtps/submessage.h"
 
 namespace culprit::ros2 {
 namespace {
 
-constexpr std::size_t kPrefixInHeader = 8;
 // Where a sample has its writer (RTPS 2.3 §9.4.5.3), and which announces a participant (§9.3.1.3).
 constexpr std::size_t kWriterInData = rtps::kSubmessageHeader + 8;
 constexpr std::array<std::uint8_t, 4> kAnnouncesParticipant = {0x00, 0x01, 0x00, 0xc2};
 constexpr std::uint8_t kOfVendor = 0x80;  // these and higher kinds are a vendor's own (§8.3.3.2)
-constexpr std::size_t kPrefixInInfoSource = rtps::kSubmessageHeader + 8;
-
-GuidPrefix prefix_at(std::span<const std::uint8_t> bytes, std::size_t position) {
-  GuidPrefix prefix;
-  std::memcpy(prefix.bytes.data(), bytes.data() + position, prefix.bytes.size());
-  return prefix;
-}
 
 bool announces_participant(std::span<const std::uint8_t> data) {
   return (data[1] & (rtps::kHasPayload | rtps::kHasKey)) == rtps::kHasPayload &&
@@ -39,43 +32,25 @@ std::optional<std::size_t> size_of_submessage(std::span<const std::uint8_t> byte
   return size > bytes.size() ? std::nullopt : std::optional(size);
 }
 
-// Calls `found` with each participant that an INFO_SRC names; whoever calls has what that requires.
-template <class Found>
-void find_sources(std::span<const std::uint8_t> datagram, Found found) CULPRIT_NOT_ANALYZED {
-  bool is_sure_of_place = true;
-  for (std::size_t at = rtps::kHeader; at + rtps::kSubmessageHeader <= datagram.size();) {
-    if (datagram[at] == rtps::kInfoSource && at + kPrefixInInfoSource + 12 <= datagram.size())
-      found(prefix_at(datagram, at + kPrefixInInfoSource));
-    if (!is_sure_of_place) {
-      ++at;
-      continue;
-    }
-    const bool is_little = (datagram[at + 1] & 1) != 0;
-    const std::size_t low = datagram[at + (is_little ? 2 : 3)];
-    const std::size_t high = datagram[at + (is_little ? 3 : 2)];
-    const std::size_t length = high << 8 | low;
-    const bool reaches_the_end =
-        length == 0 && datagram[at] != rtps::kPad && datagram[at] != rtps::kInfoTime;
-    if (reaches_the_end) return;
-    // Implementations differ in where they go on after an odd length: then each place may count.
-    is_sure_of_place = length % 4 == 0;
-    at += rtps::kSubmessageHeader + length;
-  }
-}
-
 }  // namespace
+
+std::string to_text(const UdpAddress& address) {
+  std::string text;
+  for (const std::uint8_t part : address.ip)
+    text += (text.empty() ? "" : ".") + std::to_string(part);
+  return text + ":" + std::to_string(address.port);
+}
 
 void DatagramSources::heard(std::span<const std::uint8_t> datagram, const UdpAddress& from,
                             Time now) {
-  if (datagram.size() < rtps::kHeader || std::memcmp(datagram.data(), "RTPS", 4) != 0) return;
+  if (!is_rtps(datagram)) return;
   const MutexLock lock(mutex_);
-  note(prefix_at(datagram, kPrefixInHeader), from, now);
-  find_sources(datagram, [&](const GuidPrefix& participant)
-                             CULPRIT_REQUIRES(mutex_) { note(participant, from, now); });
+  for_each_speaker(datagram, [&](const GuidPrefix& participant)
+                                 CULPRIT_REQUIRES(mutex_) { note(participant, from, now); });
 }
 
 bool DatagramSources::is_still_there(std::span<const std::uint8_t> datagram) const {
-  if (datagram.size() < rtps::kHeader || std::memcmp(datagram.data(), "RTPS", 4) != 0) return false;
+  if (!is_rtps(datagram)) return false;
   std::size_t announced = 0;
   for (auto rest = datagram.subspan(rtps::kHeader); !rest.empty();) {
     const auto size = size_of_submessage(rest);
@@ -167,6 +142,13 @@ Time DatagramSources::last_of(const GuidPrefix& participant) const {
   const MutexLock lock(mutex_);
   const auto found = entries_.find(participant);
   return found == entries_.end() ? kLongAgo : found->second.last;
+}
+
+bool DatagramSources::may_speak_from(const GuidPrefix& participant, const UdpAddress& from) const {
+  const MutexLock lock(mutex_);
+  const auto found = entries_.find(participant);
+  if (found == entries_.end() || !found->second.is_kept || found->second.has_more) return true;
+  return std::ranges::find(found->second.addresses, from) != found->second.addresses.end();
 }
 
 DatagramSources::Origin DatagramSources::of(const GuidPrefix& participant) const {

@@ -28,9 +28,9 @@
 
 #include "base/expected.h"
 #include "base/mutex.h"
-#include "ros2/datagram_sources.h"
-#include "ros2/haste.h"
-#include "ros2/system_time.h"
+#include "rtps/datagram_sources.h"
+#include "rtps/haste.h"
+#include "rtps/system_time.h"
 
 namespace culprit::ros2 {
 

@@ -1,4 +1,4 @@
-#include "ros2/own_addresses.h"
+#include "rtps/own_addresses.h"
 
 #include <cstring>
 #include <ifaddrs.h>

@@ -1,4 +1,4 @@
-#include "ros2/datagram_filter.h"
+#include "rtps/datagram_filter.h"
 
 #include <algorithm>
 #include <memory>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ros2/test_datagram.h"
+#include "rtps/test_datagram.h"
 
 namespace culprit::ros2 {
 namespace {

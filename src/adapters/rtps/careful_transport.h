@@ -12,7 +12,8 @@
 // then frees twice what it knows of whoever leaves: a goodbye comes to a unicast and to a multicast
 // port (2.9, SecurityManager::remove_participant).
 //
-// It passes on only what the filter lets through (datagram_filter.h).
+// It passes on only what comes from where its participant is (origins.h), and what the filter lets through
+// (datagram_filter.h).
 //
 // Readers that have time (Haste::kSoon) have a port of their own. It is taken from the upper end of
 // those that RTPS 2.3 §9.6.1 gives to the domain's participants, where the last ones of many on one
@@ -39,10 +40,12 @@
 
 #include "base/live_clock.h"
 #include "base/mutex.h"
-#include "ros2/datagram_filter.h"
-#include "ros2/datagram_sources.h"
-#include "ros2/receive_thread.h"
-#include "ros2/udp_sockets.h"
+#include "rtps/claims.h"
+#include "rtps/datagram_filter.h"
+#include "rtps/datagram_sources.h"
+#include "rtps/origins.h"
+#include "rtps/receive_thread.h"
+#include "rtps/udp_sockets.h"
 
 namespace culprit::ros2::fast_dds {
 
@@ -55,7 +58,10 @@ struct Reception {
   std::shared_ptr<std::atomic<bool>> speaks = std::make_shared<std::atomic<bool>>(false);
   // Of those who want nothing to be sent for a moment (Participant::Hold).
   std::shared_ptr<std::atomic<int>> holds = std::make_shared<std::atomic<int>>(0);
+  // A discovery server may tell of others than itself.
+  std::shared_ptr<std::atomic<bool>> relays = std::make_shared<std::atomic<bool>>(false);
   std::shared_ptr<DatagramSources> sources = std::make_shared<DatagramSources>();
+  std::shared_ptr<Origins> origins = std::make_shared<Origins>();
   std::shared_ptr<DatagramFilter> filter = std::make_shared<DatagramFilter>();
   std::shared_ptr<ReceiveThread> thread = std::make_shared<ReceiveThread>();
   // Where readers that have time are sent to; 0: there is no such port.
@@ -283,6 +289,7 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
   void came(Receiver& receiver, const ReceiveThread::Datagram& datagram, const Locator& local,
             Haste haste) const {
     const UdpAddress& from = datagram.from;
+    if (!counts(datagram)) return;
     reception_.sources->heard(datagram.bytes, from, live_now());
     const ByteView passed =
         reception_.filter->pass(datagram.bytes, DatagramFilter::Clock::now(), datagram.received);
@@ -297,6 +304,17 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
     // where it depends on what is read whether anything of our own comes. Both have time.
     if (haste == Haste::kNow)
       reception_.sources->came_through(passed, static_cast<std::uint16_t>(local.port), live_now());
+  }
+
+  bool counts(const ReceiveThread::Datagram& datagram) const {
+    const Time now = live_now();
+    if (!reception_.origins->counts(datagram.bytes, datagram.from, now)) return false;
+    if (*reception_.relays) return true;
+    for (const GuidPrefix& other : others_announced(datagram.bytes)) {
+      const bool has_spoken = reception_.sources->may_speak_from(other, datagram.from);
+      if (!reception_.origins->may_tell_of(other, datagram.from, has_spoken, now)) return false;
+    }
+    return true;
   }
 
   static in_addr address_of(const Locator& locator) {

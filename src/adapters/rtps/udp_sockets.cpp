@@ -1,4 +1,4 @@
-#include "ros2/udp_sockets.h"
+#include "rtps/udp_sockets.h"
 
 #include <algorithm>
 #include <charconv>
@@ -53,12 +53,16 @@ std::optional<UdpSocket> parse_socket(std::string_view line) {
   return socket;
 }
 
-void add_sockets(const std::filesystem::path& table, std::vector<UdpSocket>& sockets) {
+void add_sockets(const std::filesystem::path& table, bool are_ipv6,
+                 std::vector<UdpSocket>& sockets) {
   std::ifstream file(table);
   std::string line;
   std::getline(file, line);  // the headings
   while (std::getline(file, line)) {
-    if (auto socket = parse_socket(line)) sockets.push_back(std::move(*socket));
+    auto socket = parse_socket(line);
+    if (!socket) continue;
+    socket->is_ipv6 = are_ipv6;
+    sockets.push_back(std::move(*socket));
   }
 }
 
@@ -66,7 +70,8 @@ void add_sockets(const std::filesystem::path& table, std::vector<UdpSocket>& soc
 
 std::vector<UdpSocket> udp_sockets(const std::filesystem::path& proc) {
   std::vector<UdpSocket> sockets;
-  for (const char* table : {"net/udp", "net/udp6"}) add_sockets(proc / table, sockets);
+  add_sockets(proc / "net/udp", false, sockets);
+  add_sockets(proc / "net/udp6", true, sockets);
   return sockets;
 }
 

@@ -1,8 +1,8 @@
-#include "ros2/announcement.h"
+#include "rtps/announcement.h"
 
 #include <gtest/gtest.h>
 
-#include "ros2/test_datagram.h"
+#include "rtps/test_datagram.h"
 
 namespace culprit::ros2 {
 namespace {

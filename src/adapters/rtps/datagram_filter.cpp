@@ -1,11 +1,11 @@
-#include "ros2/datagram_filter.h"
+#include "rtps/datagram_filter.h"
 
 #include <algorithm>
 #include <cstring>
 #include <optional>
 
-#include "ros2/announcement.h"
-#include "ros2/rtps_submessage.h"
+#include "rtps/announcement.h"
+#include "rtps/submessage.h"
 
 namespace culprit::ros2 {
 namespace {

@@ -1,4 +1,4 @@
-#include "ros2/receive_thread.h"
+#include "rtps/receive_thread.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "ros2/receive_watch.h"
+#include "rtps/receive_watch.h"
 
 #include <netinet/in.h>
 #include <sys/socket.h>

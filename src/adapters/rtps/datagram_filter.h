@@ -46,10 +46,10 @@
 #include <vector>
 
 #include "base/mutex.h"
-#include "ros2/cdr.h"
-#include "ros2/endpoint_info.h"
-#include "ros2/guid.h"
-#include "ros2/system_time.h"
+#include "rtps/cdr.h"
+#include "rtps/endpoint_info.h"
+#include "rtps/guid.h"
+#include "rtps/system_time.h"
 
 namespace culprit::ros2 {
 

@@ -1,4 +1,4 @@
-#include "ros2/cdr.h"
+#include "rtps/cdr.h"
 
 namespace culprit::ros2 {
 

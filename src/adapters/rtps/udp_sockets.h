@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "ros2/datagram_sources.h"
+#include "rtps/datagram_sources.h"
 
 namespace culprit::ros2 {
 
@@ -16,6 +16,7 @@ struct UdpSocket {
   UdpAddress address;  // ip 0.0.0.0: it is bound to none; of IPv6 the last four bytes
   unsigned user = 0;   // that made it
   std::string link;    // as the link of a file descriptor shows it: "socket:[12345]"
+  bool is_ipv6 = false;
 };
 
 // What cannot be read is left out: nothing where there are no such tables.

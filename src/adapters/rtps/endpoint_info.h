@@ -7,8 +7,8 @@
 #include <variant>
 #include <vector>
 
-#include "ros2/guid.h"
-#include "ros2/qos.h"
+#include "rtps/guid.h"
+#include "rtps/qos.h"
 
 namespace culprit::ros2 {
 

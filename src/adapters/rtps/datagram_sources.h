@@ -14,25 +14,33 @@
 // heard last. Whoever has too many addresses is known to have too many.
 #pragma once
 
+#include <array>
+#include <compare>
 #include <cstdint>
 #include <list>
 #include <optional>
 #include <span>
+#include <string>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "base/mutex.h"
 #include "base/time.h"
-#include "ros2/guid.h"
+#include "rtps/guid.h"
 
 namespace culprit::ros2 {
 
+using Ip = std::array<std::uint8_t, 4>;
+
 struct UdpAddress {
-  std::array<std::uint8_t, 4> ip{};
+  Ip ip{};
   std::uint16_t port = 0;
-  bool operator==(const UdpAddress&) const = default;
+  auto operator<=>(const UdpAddress&) const = default;
 };
+
+// "10.0.0.5:7410"
+std::string to_text(const UdpAddress& address);
 
 // All members may be called from any thread.
 class DatagramSources {
@@ -57,6 +65,8 @@ class DatagramSources {
   void forget(const GuidPrefix& participant);
 
   Origin of(const GuidPrefix& participant) const;
+  // False only of one that was discovered, and is known to have spoken from other addresses alone.
+  bool may_speak_from(const GuidPrefix& participant, const UdpAddress& from) const;
   // When the last one came; kLongAgo: nothing was heard, or it is not kept any more.
   Time last_of(const GuidPrefix& participant) const;
 

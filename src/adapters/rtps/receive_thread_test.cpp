@@ -1,4 +1,4 @@
-#include "ros2/receive_thread.h"
+#include "rtps/receive_thread.h"
 
 #include <arpa/inet.h>
 #include <semaphore>
@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "base/live_clock.h"
-#include "ros2/live_test.h"
+#include "rtps/test_event_log.h"
 
 namespace culprit::ros2 {
 namespace {

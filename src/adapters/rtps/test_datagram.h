@@ -6,8 +6,8 @@
 #include <string_view>
 #include <utility>
 
-#include "ros2/cdr.h"
-#include "ros2/guid.h"
+#include "rtps/cdr.h"
+#include "rtps/guid.h"
 
 namespace culprit::ros2 {
 
@@ -32,6 +32,11 @@ class TestDatagram {
     begin(0x15, 4).u16(0).u16(16).readers().entity(writer).sequence(sequence);
     return u32(0x0000'0100).u32(7).end();
   }
+  TestDatagram& sample(const Guid& writer, std::int64_t sequence, const Bytes& payload) {
+    begin(0x15, 4).u16(0).u16(16).readers().entity(writer).sequence(sequence);
+    append(payload);
+    return end();
+  }
   // The fragment `number`, from 1 on, of `size` bytes each, of a sample of `whole` bytes.
   TestDatagram& fragment(const Guid& writer, std::int64_t sequence, std::uint32_t number,
                          std::uint16_t size, std::uint32_t whole) {
@@ -49,7 +54,7 @@ class TestDatagram {
     append(parameters);
     return end();
   }
-  // That the endpoint has ended, as Fast DDS says it: all of it in inline parameters.
+  // That the endpoint, or the participant, has ended, as Fast DDS says it: all of it in inline parameters.
   TestDatagram& farewell(const Guid& announcer, std::int64_t sequence, const Guid& endpoint) {
     begin(0x15, 2).u16(0).u16(16).readers().entity(announcer).sequence(sequence);
     u16(0x70).u16(16);

@@ -1,0 +1,105 @@
+#include "rtps/claims.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "rtps/announcement.h"
+#include "rtps/speakers.h"
+#include "rtps/submessage.h"
+
+namespace culprit::ros2 {
+namespace {
+
+using Entity = std::array<std::uint8_t, 4>;
+
+// Those that announce participants, writers and readers, in plain and secured (RTPS 2.3 §9.3.1.3; DDS Security 1.1
+// §7.4.7.1).
+constexpr std::array<Entity, 6> kAnnouncers = {
+    Entity{0x00, 0x01, 0x00, 0xc2}, Entity{0x00, 0x00, 0x03, 0xc2}, Entity{0x00, 0x00, 0x04, 0xc2},
+    Entity{0xff, 0x01, 0x01, 0xc2}, Entity{0xff, 0x00, 0x03, 0xc2}, Entity{0xff, 0x00, 0x04, 0xc2}};
+constexpr std::size_t kToParameters = 6;  // where that is said
+constexpr std::size_t kWriter = 12;
+constexpr std::size_t kLeast = 24;  // bytes of a sample with its header
+
+std::uint16_t number_at(ByteView bytes, std::size_t at, bool is_little) {
+  return static_cast<std::uint16_t>(is_little ? bytes[at] | bytes[at + 1] << 8
+                                              : bytes[at] << 8 | bytes[at + 1]);
+}
+
+// Of a list with its end; of all the bytes where it has none.
+std::size_t size_of_list(ByteView bytes, bool is_little) {
+  constexpr std::uint16_t kEnd = 1;
+  for (std::size_t at = 0; at + 4 <= bytes.size();) {
+    const std::size_t length = number_at(bytes, at + 2, is_little);
+    if (number_at(bytes, at, is_little) == kEnd) return at + 4;
+    at += 4 + ((length + 3) & ~std::size_t{3});
+  }
+  return bytes.size();
+}
+
+void add_keys(ByteView sample, const GuidPrefix& sender, std::vector<GuidPrefix>& others) {
+  if (sample.size() < kLeast) return;
+  const bool announces = std::ranges::any_of(kAnnouncers, [&](const Entity& each) {
+    return std::equal(each.begin(), each.end(), sample.begin() + kWriter);
+  });
+  if (!announces) return;
+  const bool is_little = (sample[1] & 1) != 0;
+  const std::size_t begin = kToParameters + 2 + number_at(sample, kToParameters, is_little);
+  if (begin > sample.size()) return;
+  ByteView rest = sample.subspan(begin);
+  ByteView parameters;
+  if ((sample[1] & rtps::kHasParameters) != 0) {
+    parameters = rest.first(size_of_list(rest, is_little));
+    rest = rest.subspan(parameters.size());
+  }
+  const auto order = is_little ? Endianness::kLittle : Endianness::kBig;
+  for (const Guid& key : announced_keys(parameters, order, rest)) {
+    const GuidPrefix owner = key.prefix();
+    if (owner != sender && std::ranges::find(others, owner) == others.end())
+      others.push_back(owner);
+  }
+}
+
+// Calls `found` with each submessage, its header included. What is damaged ends it.
+template <class Found>
+void for_each_submessage(ByteView datagram, Found found) {
+  if (!is_rtps(datagram)) return;
+  for (ByteView rest = datagram.subspan(rtps::kHeader); rest.size() >= rtps::kSubmessageHeader;) {
+    const std::size_t length = number_at(rest, 2, (rest[1] & 1) != 0);
+    const bool is_last = length == 0 && rest[0] != rtps::kPad && rest[0] != rtps::kInfoTime;
+    const std::size_t size = is_last ? rest.size() : rtps::kSubmessageHeader + length;
+    if (size > rest.size()) return;
+    found(rest.first(size));
+    rest = rest.subspan(std::min(rest.size(), (size + 3) & ~std::size_t{3}));
+  }
+}
+
+}  // namespace
+
+std::vector<GuidPrefix> others_announced(std::span<const std::uint8_t> datagram) {
+  constexpr std::size_t kPrefixInInfoSource = rtps::kSubmessageHeader + 8;
+  std::vector<GuidPrefix> others;
+  std::optional<GuidPrefix> sender;
+  for_each_submessage(datagram, [&](ByteView each) {
+    if (!sender) sender = prefix_at(datagram, kPrefixInHeader);
+    if (each[0] == rtps::kInfoSource && each.size() >= kPrefixInInfoSource + sender->bytes.size())
+      sender = prefix_at(each, kPrefixInInfoSource);
+    if (each[0] == rtps::kData || each[0] == rtps::kDataFragment) add_keys(each, *sender, others);
+  });
+  return others;
+}
+
+bool acknowledges(std::span<const std::uint8_t> datagram, const GuidPrefix& self) {
+  bool is_for_self = false;
+  bool does = false;
+  for_each_submessage(datagram, [&](ByteView each) {
+    if (each[0] == rtps::kInfoDestination)
+      is_for_self = each.size() >= rtps::kSubmessageHeader + self.bytes.size() &&
+                    prefix_at(each, rtps::kSubmessageHeader) == self;
+    does = does || (is_for_self && each[0] == rtps::kAckNack);
+  });
+  return does;
+}
+
+}  // namespace culprit::ros2

@@ -1,0 +1,24 @@
+// Of which other participants a datagram tells something, in its sender's own name.
+//
+// Each participant announces itself and its own endpoints, and says when they end (RTPS 2.3 §8.5). Fast DDS believes
+// anybody who says that of anybody: it looks at the key, not at the writer. A discovery server alone has a reason to
+// speak of others.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "rtps/guid.h"
+
+namespace culprit::ros2 {
+
+// Whose keys are in the discovery data of the datagram that is not the sender's, each once. What is encrypted, and the
+// later fragments of what comes in several, cannot be seen.
+std::vector<GuidPrefix> others_announced(std::span<const std::uint8_t> datagram);
+
+// Whether somebody acknowledges what `self` has written: an answer to its heartbeats (RTPS 2.3 §8.3.7.1), which
+// participants owe one another from their discovery on.
+bool acknowledges(std::span<const std::uint8_t> datagram, const GuidPrefix& self);
+
+}  // namespace culprit::ros2

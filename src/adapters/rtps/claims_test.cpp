@@ -1,0 +1,82 @@
+#include "rtps/claims.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "rtps/test_datagram.h"
+
+namespace culprit::ros2 {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr GuidPrefix kSender{{1, 1}};
+constexpr GuidPrefix kOther{{2, 2}};
+constexpr GuidPrefix kThird{{3, 3}};
+
+Guid guid(const GuidPrefix& prefix, std::array<std::uint8_t, 4> entity) {
+  Guid all;
+  std::copy(prefix.bytes.begin(), prefix.bytes.end(), all.bytes.begin());
+  std::copy(entity.begin(), entity.end(), all.bytes.begin() + 12);
+  return all;
+}
+Guid of_writers() { return guid(kSender, {0, 0, 3, 0xc2}); }
+Guid of_participants() { return guid(kSender, {0, 1, 0, 0xc2}); }
+
+TEST(Claims, OfItselfAreNone) {
+  const Guid own = guid(kSender, {0, 0, 5, 3});
+  EXPECT_THAT(others_announced(TestDatagram(kSender).farewell(of_writers(), 1, own).bytes()),
+              IsEmpty());
+  EXPECT_THAT(
+      others_announced(TestDatagram(kSender)
+                           .announcement(of_writers(), 1, TestParameters().endpoint(own).end())
+                           .bytes()),
+      IsEmpty());
+}
+
+TEST(Claims, AreWhatEndsAndWhatBegins) {
+  const Guid other = guid(kOther, {0, 0, 5, 3});
+  const Guid third = guid(kThird, {0, 0, 1, 0xc1});
+  EXPECT_THAT(others_announced(TestDatagram(kSender).farewell(of_writers(), 1, other).bytes()),
+              ElementsAre(kOther));
+  const Bytes key(third.bytes.begin(), third.bytes.end());
+  EXPECT_THAT(others_announced(
+                  TestDatagram(kSender)
+                      .heartbeat(of_writers(), 1, 1)
+                      .announcement(of_participants(), 1, TestParameters().add(0x50, key).end())
+                      .announcement(of_writers(), 1, TestParameters().endpoint(other).end())
+                      .bytes()),
+              ElementsAre(kThird, kOther));
+}
+
+TEST(Claims, OfTheSourceThatIsNamedWithinTheDatagramAreItsOwn) {
+  Bytes source = {0, 0, 0, 0, 2, 3, 1, 15};
+  source.insert(source.end(), kOther.bytes.begin(), kOther.bytes.end());
+  const Guid other = guid(kOther, {0, 0, 5, 3});
+  EXPECT_THAT(others_announced(TestDatagram(kSender)
+                                   .submessage(0x0c, 0, source)
+                                   .farewell(of_writers(), 1, other)
+                                   .bytes()),
+              IsEmpty());
+}
+
+TEST(Claims, WhatProgramsWriteIsNone) {
+  const Guid other = guid(kOther, {0, 0, 5, 3});
+  EXPECT_THAT(others_announced(
+                  TestDatagram(kSender).farewell(guid(kSender, {0, 0, 9, 3}), 1, other).bytes()),
+              IsEmpty());
+}
+
+TEST(Claims, OfEveryCutOfADatagramAreRead) {
+  const Guid other = guid(kOther, {0, 0, 5, 3});
+  const Bytes whole = TestDatagram(kSender)
+                          .farewell(of_writers(), 1, other)
+                          .announcement(of_writers(), 1, TestParameters().endpoint(other).end())
+                          .bytes();
+  for (std::size_t size = 0; size < whole.size(); ++size)
+    (void)others_announced(std::span(whole).first(size));
+}
+
+}  // namespace
+}  // namespace culprit::ros2
