@@ -156,8 +156,13 @@ TEST_F(Composed, AContainerThatIsKilledComesBackOnceWithAllThatItHad) {
   const int first = pid_in(culprit.output(), "box");
   ASSERT_NE(first, 0) << culprit.output();
   kill(first, SIGKILL);
-  EXPECT_TRUE(culprit.prints("DetectorGone resolved")) << culprit.output();
-  EXPECT_TRUE(culprit.prints("TrackerGone resolved")) << culprit.output();
+  EXPECT_TRUE(culprit.prints("BoxGone resolved by box_redeploy")) << culprit.output();
+  EXPECT_TRUE(culprit.prints("DetectorGone went away")) << culprit.output();
+  EXPECT_TRUE(culprit.prints("TrackerGone went away")) << culprit.output();
+  // One dead process is one fault.
+  EXPECT_THAT(culprit.output(), HasSubstr("box is held responsible for BoxGone"));
+  EXPECT_THAT(culprit.output(), Not(HasSubstr("detector is held responsible")));
+  EXPECT_THAT(culprit.output(), Not(HasSubstr("tracker is held responsible")));
   EXPECT_TRUE(comes([&] { return pid_in(culprit.output(), "box") != first; }));
   EXPECT_EQ(said(), "loaded /detector\nloaded /tracker\nloaded /detector\nloaded /tracker\n")
       << culprit.output();

@@ -1,6 +1,8 @@
 // How nodes end, as the operating system tells it: one that was killed is not waited for, and a
 // launch that somebody ends is not started again.
 #include <csignal>
+#include <filesystem>
+#include <memory>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -88,6 +90,195 @@ TEST_F(Ends, ALaunchOfFiveThatSomebodyEndsIsNotStartedAgain) {
         << culprit.output();
   std::this_thread::sleep_for(2s);  // that nothing happens takes time
   EXPECT_THAT(culprit.output(), Not(HasSubstr("is held responsible")));
+}
+
+// A launch of two, of which one was killed by `signal` and replaced by culprit.
+struct Healed {
+  std::string rules;
+  std::unique_ptr<TestProgram> launcher;
+  std::unique_ptr<TestProgram> culprit;
+  int stand_in = 0;
+  int other = 0;  // the one that the launcher still runs
+};
+
+struct EndsHealed : Ends {
+  // `script`: what the launcher does on SIGTERM, with $all.
+  Healed healed(const std::string& script, const std::vector<std::string>& more = {}) {
+    Healed all;
+    std::string launch;
+    for (const char* name : {"a", "b"}) {
+      all.rules += rule(name, std::string("alive(") + name + ") == false");
+      launch += node(name) + " & all=\"$all $!\"; ";
+    }
+    all.launcher = std::make_unique<TestProgram>(
+        world, std::vector<std::string>{
+                   "sh", "-c", launch + "trap '" + script + "' TERM; while :; do sleep 0.1; done"});
+    all.culprit = start(all.rules, more);
+    for (const char* name : {"a", "b"})
+      EXPECT_TRUE(all.culprit->prints(std::string(name) + " is there (process "))
+          << all.culprit->output();
+    EXPECT_TRUE(all.culprit->prints("watching")) << all.culprit->output();
+    std::this_thread::sleep_for(1s);
+    const int first = pid_in(all.culprit->output(), "a");
+    all.other = pid_in(all.culprit->output(), "b");
+    kill(first, SIGKILL);
+    EXPECT_TRUE(all.culprit->prints("a_silent resolved by a_redeploy")) << all.culprit->output();
+    all.stand_in = pid_in(all.culprit->output(), "a");
+    EXPECT_NE(all.stand_in, first);
+    return all;
+  }
+  std::unique_ptr<TestProgram> start(const std::string& rules,
+                                     const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments{"culprit",
+                                       "run",
+                                       world.write("ends.rules", rules),
+                                       "--state-dir",
+                                       (world.folder() / "state").string(),
+                                       "--quiet",
+                                       "0",
+                                       "--settle",
+                                       "0.5"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return std::make_unique<TestProgram>(world, arguments);
+  }
+  std::string said_by(const std::vector<std::string>& arguments) const {
+    std::vector<std::string> all{"culprit"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    TestProgram program(world, all);
+    program.wait();
+    return program.output();
+  }
+  static bool is_gone(int pid) { return owners::state_letter(pid).value_or('Z') == 'Z'; }
+  static bool goes(int pid) {
+    for (const Time end = later(live_now(), TestProgram::kPatience); !is_gone(pid);) {
+      if (live_now() > end) return false;
+      std::this_thread::sleep_for(20ms);
+    }
+    return true;
+  }
+  static constexpr const char* kEndsAll = "for p in $all; do kill $p; done; wait; exit";
+};
+
+TEST_F(EndsHealed, WhatStandsInForOneOfALaunchEndsWithIt) {
+  const Healed all = healed(kEndsAll);
+  EXPECT_THAT(said_by({"status"}),
+              HasSubstr("Started by culprit: a (process " + std::to_string(all.stand_in) + ")"));
+  std::this_thread::sleep_for(2s);  // a person is slower than on_exit
+  all.launcher->signal(SIGTERM);
+  EXPECT_TRUE(all.culprit->prints("a and b stay down: a person ended the launch of process " +
+                                  std::to_string(all.launcher->pid())))
+      << all.culprit->output();
+  EXPECT_TRUE(goes(all.stand_in)) << all.culprit->output();
+  std::this_thread::sleep_for(3s);  // that nothing happens takes time
+  EXPECT_EQ(pid_in(all.culprit->output(), "a"), all.stand_in) << all.culprit->output();
+  EXPECT_EQ(pid_in(all.culprit->output(), "b"), all.other) << all.culprit->output();
+  EXPECT_THAT(said_by({"status"}), HasSubstr("Stays down: b: a person ended the launch"));
+  // One command brings it back.
+  said_by({"revive"});
+  EXPECT_TRUE(all.culprit->prints("b_silent resolved by b_redeploy")) << all.culprit->output();
+  EXPECT_TRUE(all.culprit->prints("a_silent resolved by a_redeploy")) << all.culprit->output();
+  EXPECT_THAT(said_by({"end-started"}), HasSubstr("end the processes that culprit started"));
+  EXPECT_TRUE(goes(pid_in(all.culprit->output(), "a"))) << all.culprit->output();
+  EXPECT_TRUE(goes(pid_in(all.culprit->output(), "b"))) << all.culprit->output();
+}
+
+// As with on_exit=Shutdown(), unless culprit is told that this is what the launch file says.
+TEST_F(EndsHealed, ALaunchThatEndsSoonAfterACrashStaysDownUnlessRevived) {
+  for (const bool revives : {false, true}) {
+    const Healed all = healed(
+        kEndsAll, revives ? std::vector<std::string>{"--revive"} : std::vector<std::string>{});
+    kill(all.stand_in, SIGKILL);
+    std::this_thread::sleep_for(200ms);
+    all.launcher->signal(SIGTERM);
+    if (revives) {
+      EXPECT_TRUE(all.culprit->prints("b_silent resolved by b_redeploy")) << all.culprit->output();
+    } else {
+      EXPECT_TRUE(all.culprit->prints("after a crashed; a person may have ended it"))
+          << all.culprit->output();
+      std::this_thread::sleep_for(3s);
+      EXPECT_EQ(pid_in(all.culprit->output(), "b"), all.other) << all.culprit->output();
+    }
+    all.culprit->signal(SIGTERM);
+    all.culprit->wait();
+    said_by({"end-started"});
+    EXPECT_TRUE(goes(pid_in(all.culprit->output(), "a"))) << all.culprit->output();
+    EXPECT_TRUE(goes(pid_in(all.culprit->output(), "b"))) << all.culprit->output();
+    std::filesystem::remove_all(world.folder() / "state");
+  }
+}
+
+TEST_F(EndsHealed, ALauncherThatCrashesLeavesItsNodesAndTheStandInRunning) {
+  const Healed all = healed(kEndsAll);
+  std::this_thread::sleep_for(2s);
+  all.launcher->signal(SIGKILL);
+  std::this_thread::sleep_for(4s);
+  EXPECT_FALSE(is_gone(all.stand_in)) << all.culprit->output();
+  EXPECT_FALSE(is_gone(all.other)) << all.culprit->output();
+  EXPECT_THAT(all.culprit->output(), Not(HasSubstr("stay")));
+  kill(all.other, SIGKILL);
+  EXPECT_TRUE(all.culprit->prints("b_silent resolved by b_redeploy")) << all.culprit->output();
+  for (const char* name : {"a", "b"}) kill(pid_in(all.culprit->output(), name), SIGKILL);
+}
+
+// One node of a launch that goes on is not the launch.
+TEST_F(EndsHealed, ANodeThatAPersonEndsAloneIsBroughtBackIntoItsLaunch) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const Healed all = healed(kEndsAll);
+    kill(all.other, signal);
+    EXPECT_TRUE(all.culprit->prints("b_silent resolved by b_redeploy")) << all.culprit->output();
+    const int second = pid_in(all.culprit->output(), "b");
+    std::this_thread::sleep_for(2s);
+    all.launcher->signal(SIGTERM);
+    EXPECT_TRUE(goes(second)) << all.culprit->output();
+    EXPECT_TRUE(goes(all.stand_in)) << all.culprit->output();
+    all.culprit->signal(SIGTERM);
+    all.culprit->wait();
+    std::filesystem::remove_all(world.folder() / "state");
+  }
+}
+
+// The next culprit knows what the one that was killed had started.
+TEST_F(EndsHealed, WhatAKilledCulpritHadStartedEndsWithItsLaunchAllTheSame) {
+  for (const bool is_next_there_first : {true, false}) {
+    const Healed all = healed(kEndsAll);
+    all.culprit->signal(SIGKILL);
+    all.culprit->wait();
+    std::unique_ptr<TestProgram> next;
+    const auto begin = [&] {
+      next = start(all.rules);
+      EXPECT_TRUE(next->prints("watching")) << next->output();
+    };
+    if (is_next_there_first) begin();
+    std::this_thread::sleep_for(2s);
+    EXPECT_FALSE(is_gone(all.stand_in));
+    all.launcher->signal(SIGTERM);
+    EXPECT_TRUE(goes(all.other));
+    all.launcher->wait();
+    if (!is_next_there_first) begin();
+    EXPECT_TRUE(goes(all.stand_in)) << next->output();
+    std::this_thread::sleep_for(3s);
+    EXPECT_EQ(pid_in(next->output(), "a"), is_next_there_first ? all.stand_in : 0)
+        << next->output();
+    next->signal(SIGTERM);
+    next->wait();
+    std::filesystem::remove_all(world.folder() / "state");
+  }
+}
+
+TEST_F(EndsHealed, WhatRunsOnIsNamedAtTheEndAndEndedOnRequest) {
+  const Healed all = healed(kEndsAll);
+  all.culprit->signal(SIGTERM);
+  all.culprit->wait();
+  const std::string process = "a (process " + std::to_string(all.stand_in);
+  EXPECT_THAT(all.culprit->output(), HasSubstr("culprit end-started ends them"));
+  EXPECT_THAT(all.culprit->output(), HasSubstr(process));
+  EXPECT_FALSE(is_gone(all.stand_in));
+  EXPECT_THAT(said_by({"end-started"}), HasSubstr("ends " + process));
+  EXPECT_TRUE(is_gone(all.stand_in));
+  EXPECT_FALSE(is_gone(all.other));
+  EXPECT_THAT(said_by({"end-started"}), HasSubstr("No process runs that a culprit started"));
+  all.launcher->signal(SIGTERM);
+  EXPECT_TRUE(goes(all.other));
 }
 
 }  // namespace

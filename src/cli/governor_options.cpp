@@ -88,6 +88,10 @@ void GovernorOptions::add_to(CLI::App& command) {
       .add_flag("--no-evidence", no_evidence,
                 "For the silence of others, also redeploy what runs and publishes")
       ->group(kGroup);
+  command
+      .add_flag("--revive", revive,
+                "Start a launch again that ended within 2 s of a crash (on_exit=Shutdown())")
+      ->group(kGroup);
 }
 
 Expected<Governor::Options> GovernorOptions::options() const {
@@ -112,6 +116,7 @@ Expected<Governor::Options> GovernorOptions::options() const {
                         from_seconds(healthy_seconds)};
   out.storm.share = storm_percent / 100.0;
   out.needs_evidence = !no_evidence;
+  out.revives_in_doubt = revive;
   return out;
 }
 
@@ -126,7 +131,8 @@ Json GovernorOptions::to_json() const {
           {"backoff_most", backoff_most_seconds},
           {"healthy", healthy_seconds},
           {"storm", storm_percent},
-          {"no_evidence", no_evidence}};
+          {"no_evidence", no_evidence},
+          {"revive", revive}};
 }
 
 GovernorOptions GovernorOptions::from_json(const Json& json) {
@@ -139,6 +145,7 @@ GovernorOptions GovernorOptions::from_json(const Json& json) {
   };
   options.approve = journal::flag_of(json, "approve");
   options.no_evidence = journal::flag_of(json, "no_evidence");
+  options.revive = journal::flag_of(json, "revive");
   time("quiet", options.quiet_seconds);
   intensity("intensity", options.overall);
   intensity("intensity_kind", options.per_kind);

@@ -22,6 +22,7 @@ struct GovernorOptions {
   double healthy_seconds = 0;
   int storm_percent = 0;
   bool no_evidence = false;
+  bool revive = false;
 
   GovernorOptions();  // as recommended
 

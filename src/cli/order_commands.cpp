@@ -8,9 +8,12 @@
 #include <fmt/core.h>
 
 #include "base/closest.h"
+#include "base/live_clock.h"
 #include "base/name_grammar.h"
 #include "cli/commands.h"
 #include "cli/give_order.h"
+#include "owners/started_processes.h"
+#include "ros2/options.h"
 #include "terminal/console.h"
 #include "terminal/seconds_option.h"
 
@@ -149,6 +152,44 @@ MakeOrder plain(const char* word) {
   };
 }
 
+// Without a culprit that answers: those that one left behind.
+int end_what_is_left(const WhichCulprit& which) {
+  const auto environment = ros2::options_from_environment();
+  if (!which.domain && !environment) return fail(environment.error(), kUsage);
+  const auto domain = which.domain ? *which.domain : environment->domain;
+  const auto processes = owners::started_processes(std::to_string(domain) + "/");
+  if (processes.empty()) {
+    say(stdout, "No process runs that a culprit started on domain {}.\n", domain);
+    return kOk;
+  }
+  for (const owners::StartedProcess& each : processes)
+    say(stdout, "ends {}\n", escape_controls(to_string(each, live_now())));
+  const auto left = owners::end_processes(processes);
+  for (const owners::StartedProcess& each : left)
+    say(stderr, "culprit: still there: {}\n", escape_controls(to_string(each, live_now())));
+  return left.empty() ? kOk : kFailed;
+}
+
+int end_started(const OrderOptions& options) {
+  const auto here = culprits_here(options.which);
+  if (!here) return fail(here.error(), kUsage);
+  if (!here->answering.empty()) return order(options, plain("end_started"));
+  for (const std::string& other : here->others)
+    say(stderr, "culprit: {}\n", escape_controls(other));
+  return end_what_is_left(options.which);
+}
+
+void add_end_started(CLI::App& app, int& exit_code) {
+  const auto options = std::make_shared<OrderOptions>();
+  CLI::App* command = app.add_subcommand(
+      "end-started",
+      "End the processes that culprit started, also those that a culprit left behind.\nA running "
+      "culprit keeps them down until culprit revive.");
+  command->add_option("--reason", options->reason, "Why, for the record");
+  options->which.add_to(*command);
+  command->callback([options, &exit_code] { exit_code = end_started(*options); });
+}
+
 }  // namespace
 
 void add_orders(CLI::App& app, int& exit_code) {
@@ -160,6 +201,10 @@ void add_orders(CLI::App& app, int& exit_code) {
   options->which.add_all_to(*pause);
   add_order(app, exit_code, "resume", "Let a culprit that is paused go on", plain("resume"),
             make());
+  add_order(app, exit_code, "revive",
+            "Let a running culprit start the components again that a person ended",
+            plain("revive"), make());
+  add_end_started(app, exit_code);
 
   options = make();
   CLI::App* silence = add_order(

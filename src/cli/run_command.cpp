@@ -13,6 +13,7 @@
 #include "live/rule_trust.h"
 #include "live/snapshots.h"
 #include "owners/spawn.h"
+#include "owners/started_processes.h"
 #include "ros_api/ros_api.h"
 #include "terminal/command.h"
 #include "terminal/console.h"
@@ -121,6 +122,15 @@ ros_api::OrderServices::Give orders_over_dds(const RunOptions& options,
 // After Ctrl-C. A disk can stall, and the middleware can hang with its locks held.
 constexpr Duration kEndsWithin = std::chrono::milliseconds(2800);
 
+// The processes that culprit started outlive it.
+void name_what_runs_on(const std::string& robot, std::FILE* remarks) {
+  const auto started = owners::started_processes(robot);
+  if (started.empty()) return;
+  say(remarks, "culprit: these processes that it started run on; culprit end-started ends them:\n");
+  for (const owners::StartedProcess& each : started)
+    say(remarks, "  {}\n", escape_controls(to_string(each, live_now())));
+}
+
 int run(const RunOptions& options) {
   owners::keep_files_private();
   auto rules = live::trusted_rules(options.rules, options.improvise, colour_of(STDERR_FILENO));
@@ -178,6 +188,7 @@ int run(const RunOptions& options) {
                      std::move(*role), keeper, *listener, &observers);
   running = &live;
   const std::string robot = name_of(rules->rules);
+  const std::string robot_key = fmt::format("{}/{}", who.domain, rules->rules.robot);
   const auto journal =
       options.no_journal ? std::filesystem::path() : options.journal_path(rules->rules);
   const std::size_t count = rules->rules.rules.size();
@@ -219,6 +230,7 @@ int run(const RunOptions& options) {
   signals.on_user_signal({});
   if (!ended) return fail(ended.error());
   say(remarks, "culprit: stopped; the robot goes on as it is\n");
+  name_what_runs_on(robot_key, remarks);
   return kOk;
 }
 

@@ -219,6 +219,25 @@ void add_people(const WhatCulpritSays& said, Lines& lines) {
   }
 }
 
+// What culprit started, and what a person ended.
+void add_started(const WhatCulpritSays& said, Lines& lines) {
+  const double now = number_at(said.state, "clock").value_or(0);
+  for (const Json& each : list_at(said.control, "started")) {
+    const auto since = number_at(each, "since");
+    const auto clock = since ? clock_at(said, *since) : std::nullopt;
+    const auto launcher = number_at(each, "launcher");
+    lines.push_back(fmt::format(
+        "  Started by culprit: {} (process {:.0f}){}{}", text_at(each, "component"),
+        number_at(each, "pid").value_or(0), clock ? " at " + by_the_clock(*clock, now) : "",
+        launcher ? fmt::format(", in place of one of process {:.0f}; it ends with that launch",
+                               *launcher)
+                 : "; it runs on when culprit ends"));
+  }
+  for (const Json& each : list_at(said.control, "down"))
+    lines.push_back("  Stays down: " + text_at(each, "component") + ": " + text_at(each, "text") +
+                    "; culprit revive starts it again");
+}
+
 std::string counts_line(const WhatCulpritSays& said) {
   const auto components = list_at(said.state, "components");
   const auto names = list_at(said.robot, "components");
@@ -306,6 +325,7 @@ std::vector<std::string> situation_lines(const WhatCulpritSays& said, Colour col
     add_incident(said, incident, colour, lines);
   add_blind(said, colour, lines);
   add_people(said, lines);
+  add_started(said, lines);
   lines.push_back(counts_line(said));
   return lines;
 }

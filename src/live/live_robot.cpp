@@ -289,7 +289,7 @@ void LiveRobot::end_process(CommandId command, ComponentId component, int pid,
                             owners::Ending ending, owners::Hangs hangs) {
   if (auto* units = units_.of(component))
     return units->stop(command, component, pid, ending, hangs);
-  supervisor_->stop(command, component, ending, hangs);
+  supervisor_->stop(command, component, pid, ending, hangs);
 }
 
 }  // namespace culprit::live

@@ -11,6 +11,7 @@
 #include "live/launch.h"
 #include "live/role.h"
 #include "live/setups.h"
+#include "owners/launch_note.h"
 #include "owners/proc.h"
 #include "replay/replay.h"
 
@@ -130,6 +131,15 @@ std::optional<Silenceable> translated(const Silenceable& what, const RuleSet& fr
   return found ? std::optional<Silenceable>(*found) : std::nullopt;
 }
 
+void add_what_stays_down(const Knowledge& knowledge, const RuleSet& next, History& past) {
+  for (std::size_t c = 0; c < knowledge.rules.components.size(); ++c) {
+    const auto departure = knowledge.departures.of(ComponentId(c), knowledge.now);
+    const auto same = journal::find_component(next, knowledge.rules.components[c].name);
+    if (departure && departure->what == Departures::What::kStaysDown && same)
+      past.push_back({knowledge.now, StaysDown{{*same}, departure->why, departure->launcher}});
+  }
+}
+
 // Verdicts that wait for their proof. None is due before the next session has had the time to see
 // the robot: what nobody looked at counts for nothing.
 History waiting_verdicts(const Knowledge& knowledge, const RuleSet& next, Time first) {
@@ -142,6 +152,7 @@ History waiting_verdicts(const Knowledge& knowledge, const RuleSet& next, Time f
     waiting.push_back({outcome.judged, OutcomePending{*same, outcome.has_helped && !outcome.is_back,
                                                       std::max(outcome.due, first)}});
   }
+  add_what_stays_down(knowledge, next, waiting);
   return waiting;
 }
 
@@ -379,6 +390,7 @@ void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
   const bool has_rivals = frame_.lease && !frame_.lease->key.empty();
   known.is_whole = known.is_whole && !has_rivals && beginning.last_rules == source_.text();
   forget_other_processes(known, beginning.past, rules_);
+  keep_down_what_ended_unseen(beginning);
   if (known.is_whole)
     robot_->link().prove_listening(later(robot_->now(), frame_.options.discovery));
   journal::Session session = session_of(frame_, std::string(source_.text()), rules_, domain_,
@@ -425,6 +437,7 @@ void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
     if (recorder_ != nullptr && step.commands.empty())
       recorder_->stepped(step.now, step.observations, {}, step.events);
     withdraw_doubles();
+    end_with_launches();
   };
   runtime_->on_events = [this](std::span<const Event> events) { tell(events); };
   robot_->link().publish(health(manager_->knowledge()));
@@ -473,6 +486,49 @@ void LiveSession::withdraw_doubles() {
         governor.silences(), [&](const auto& each) { return each.what == Silenceable(component); });
     return !is_silenced && manager_->knowledge().states.reservation(component) == nullptr;
   });
+}
+
+// A person's pause holds that back, too.
+void LiveSession::end_with_launches() {
+  if (manager_->autonomy() == Autonomy::kAdvise || manager_->governor().is_paused()) return;
+  const Departures& departures = manager_->knowledge().departures;
+  for (std::size_t c = 0; c < rules_.components.size(); ++c) {
+    const ComponentId component(c);
+    const int pid = departures.to_end(component);
+    if (pid == 0) {
+      ending_.erase(component);
+    } else if (std::exchange(ending_[component], pid) != pid) {
+      robot_->supervisor().end_with_launch(component);
+    }
+  }
+}
+
+// A launch of which no process of its own is left, and whose launcher ended while no culprit watched: a person may have
+// ended it. Of one component alone nobody could tell that from a crash.
+void LiveSession::keep_down_what_ended_unseen(RunBeginning& beginning) const {
+  if (frame_.options.launches || frame_.options.governor.revives_in_doubt) return;
+  std::map<int, std::set<ComponentId>> ended;  // by launcher
+  std::set<int> run_on;
+  for (const Event& event : beginning.past) {
+    const auto* found = std::get_if<ComponentFound>(&event.what);
+    if (found == nullptr || rules_[found->component].has_owner()) continue;
+    const owners::PlaceHeld place = owners::noted_launch(frame_.options.robot.supervisor.log_folder,
+                                                         rules_[found->component].name);
+    if (place.launcher == 0 || place.goes_on) continue;
+    ended[place.launcher].insert(found->component);
+    const auto began = owners::started_at(found->pid);
+    const bool is_there =
+        began && *began <= event.at && owners::state_letter(found->pid).value_or('Z') != 'Z';
+    if (is_there && !robot_->supervisor().has_started(found->component))
+      run_on.insert(place.launcher);
+  }
+  for (const auto& [launcher, components] : ended) {
+    if (components.size() < 2 || run_on.contains(launcher)) continue;
+    const Event event{
+        robot_->now(),
+        StaysDown{{components.begin(), components.end()}, StaysDown::Why::kUnseen, launcher}};
+    beginning.past.push_back(event);
+  }
 }
 
 void LiveSession::tell(std::span<const Event> events) {

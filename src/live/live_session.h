@@ -141,6 +141,8 @@ class LiveSession {
   void join_fleet();
   void leave_fleet();
   void withdraw_doubles();
+  void end_with_launches();
+  void keep_down_what_ended_unseen(RunBeginning& beginning) const;
   void tell(std::span<const Event> events);
 
   Frame frame_;
@@ -156,6 +158,7 @@ class LiveSession {
   std::optional<journal::Bequest> bequest_;  // while this one manages
   bool is_bequest_new_ = false;
   Time bequeathed_ = kLongAgo;
+  std::map<ComponentId, int> ending_;  // processes that were told to end with their launch
   std::atomic<bool> is_left_ = false;
   bool is_in_fleet_ = false;
   bool is_observed_ = false;

@@ -16,6 +16,7 @@ struct NumberOf {
   Number operator()(const LifecycleRead& o) const { return o.component.index; }
   Number operator()(const ProcessSeen& o) const { return o.component.index; }
   Number operator()(const LauncherSeen& o) const { return o.component.index; }
+  Number operator()(const StartedHere& o) const { return o.component.index; }
   Number operator()(const ProcessWorked& o) const { return o.component.index; }
   Number operator()(const HostReached& o) const { return o.component.index; }
   Number operator()(const LivesOn& o) const { return o.component.index; }

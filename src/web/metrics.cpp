@@ -41,7 +41,7 @@ std::string_view word_of(Restraint restraint) {
   constexpr std::string_view kWords[] = {
       "paused",   "quiet_period", "storm",     "graph_in_doubt", "interlock", "overall",
       "silenced", "refused",      "component", "class",          "backoff",   "identity",
-      "evidence", "never_seen",   "leaving",   "launch_ended",   "restarts"};
+      "evidence", "never_seen",   "leaving",   "launch_ended",   "container", "restarts"};
   static_assert(std::size(kWords) == static_cast<std::size_t>(Restraint::kRestarts) + 1);
   return kWords[static_cast<std::size_t>(restraint)];
 }

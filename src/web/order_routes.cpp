@@ -120,8 +120,12 @@ Expected<What> read(const Json& body, const RuleSet& rules) {
     return about_strategy(word, body, rules);
   if (word == "silence" || word == "lift") return about_silence(word, body, rules);
   if (word == "forget") return about_learning(body, rules);
+  if (word == "revive") return What(Revive{});
+  if (word == "end_started") return What(EndStarted{});
   return Error{
-      "'order' has to be pause, resume, dry_run, approve, refuse, silence, lift, run or forget"};
+      "'order' has to be pause, resume, dry_run, approve, refuse, silence, lift, run, forget, "
+      "revive "
+      "or end_started"};
 }
 
 Expected<Order> read_order(const Json& body, const RuleSet& rules, std::uint64_t number) {

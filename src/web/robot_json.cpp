@@ -235,13 +235,44 @@ Json graph_to_json(const Knowledge& knowledge) {
   return json;
 }
 
+namespace {
+
+// What culprit started and what runs, and what it stands in for.
+void add_started(const Knowledge& knowledge, Time start, Json& list) {
+  for (const Departures::Started& each : knowledge.departures.started()) {
+    Json entry{{"component", knowledge.rules[each.component].name},
+               {"pid", each.pid},
+               {"since", time_to_json(each.since, start)}};
+    entry["launcher"] = each.launcher == 0 ? Json(nullptr) : Json(each.launcher);
+    list.push_back(std::move(entry));
+  }
+}
+
+// What is not started again, since a person ended it, or may have.
+void add_down(const Knowledge& knowledge, Json& list) {
+  for (std::size_t c = 0; c < knowledge.rules.components.size(); ++c) {
+    const auto departure = knowledge.departures.of(ComponentId(c), knowledge.now);
+    if (!departure || departure->what != Departures::What::kStaysDown) continue;
+    const std::string& name = knowledge.rules.components[c].name;
+    list.push_back({{"component", name},
+                    {"why", culprit::to_string(departure->why)},
+                    {"text", describe(*departure, name)}});
+  }
+}
+
+}  // namespace
+
 Json control_to_json(const Manager& manager, Time start) {
   const RuleSet& rules = manager.knowledge().rules;
   Json json{{"paused", manager.governor().is_paused()},
             {"dry_run", manager.autonomy() == Autonomy::kAdvise},
             {"hears", manager.hears()},
             {"silences", Json::array()},
-            {"asked", Json::array()}};
+            {"asked", Json::array()},
+            {"started", Json::array()},
+            {"down", Json::array()}};
+  add_started(manager.knowledge(), start, json["started"]);
+  add_down(manager.knowledge(), json["down"]);
   for (const Governor::ActiveSilence& silence : manager.governor().silences()) {
     Json entry;
     if (const auto* component = std::get_if<ComponentId>(&silence.what)) {

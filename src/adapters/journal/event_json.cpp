@@ -35,6 +35,8 @@ struct WordOfOrder {
   const char* operator()(const LiftSilence&) const { return "lift_silence"; }
   const char* operator()(const RunStrategy&) const { return "run_strategy"; }
   const char* operator()(const Forget&) const { return "forget"; }
+  const char* operator()(const Revive&) const { return "revive"; }
+  const char* operator()(const EndStarted&) const { return "end_started"; }
 };
 
 // Writes, behind its type, what the event is about.
@@ -96,6 +98,13 @@ class EventWriter {
   void operator()(const ComponentFound& e) const {
     about(e.component);
     json_.member("pid", e.pid);
+  }
+  void operator()(const StaysDown& e) const {
+    add_names("components", e.components);
+    json_.member("why", culprit::to_string(e.why));
+    if (e.launcher != 0) json_.member("launcher", e.launcher);
+    if (e.fell) json_.member("fell", name(*e.fell));
+    if (e.why == StaysDown::Why::kDoubt) json_.member("after_ns", e.after.count());
   }
   void operator()(const NeverSeen& e) const {
     std::visit([this](auto id) { about(id); }, e.what);
@@ -367,6 +376,22 @@ class EventReader {
     event.how.rising = duration("rising_ns");
     return true;
   }
+  bool complete(StaysDown& event) const {
+    const auto why = reason_named(text_of(json_, "why"));
+    const auto names = json_.find("components");
+    if (!why || names == json_.end() || !names->is_array()) return false;
+    event.why = *why;
+    for (const Json& each : *names) {
+      const auto component =
+          each.is_string() ? find_component(rules_, each.get<std::string>()) : std::nullopt;
+      if (component) event.components.push_back(*component);
+    }
+    event.launcher =
+        static_cast<int>(std::clamp<std::int64_t>(integer_of(json_, "launcher"), 0, INT32_MAX));
+    event.fell = find_component(rules_, text_of(json_, "fell"));
+    event.after = duration("after_ns");
+    return !event.components.empty();
+  }
   bool complete(OutcomePending& event) const {
     event.has_helped = flag_of(json_, "helped");
     event.due = Time(Duration(integer_of(json_, "due")));
@@ -419,7 +444,8 @@ class EventReader {
       silence.what = *component_;
     }
     if (json_.contains("lasts_ns")) silence.lasts = duration("lasts_ns");
-    std::vector<decltype(Order::what)> all = {Pause{}, Resume{}, SetDryRun{true}, SetDryRun{false}};
+    std::vector<decltype(Order::what)> all = {Pause{},          Resume{}, SetDryRun{true},
+                                              SetDryRun{false}, Revive{}, EndStarted{}};
     if (rule_ || component_) {
       all.emplace_back(silence);
       all.emplace_back(LiftSilence{silence.what});

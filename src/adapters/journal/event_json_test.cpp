@@ -91,7 +91,12 @@ std::vector<EventWhat> samples() {
           RuleBlind{r, {Time(3ns), Unseen::kNeverSeen, "signal load", "lode"}},
           RuleBlind{r, {Time(3ns), Unseen::kStale, "load", ""}},
           RuleBlind{r, {Time(3ns), Unseen::kNoResult, "", ""}},
-          RuleSees{r, 4s}};
+          RuleSees{r, 4s},
+          StaysDown{{c}, StaysDown::Why::kPerson, 50},
+          StaysDown{{c}, StaysDown::Why::kDoubt, 50, c, 700ms},
+          StaysDown{{c}, StaysDown::Why::kOwner},
+          OrderAccepted{{1, "ada", "", Revive{}}},
+          OrderAccepted{{1, "ada", "", EndStarted{}}}};
 }
 
 std::vector<std::string> golden_rows() {
@@ -128,13 +133,14 @@ TEST(EventJson, WhatIsReadBackIsWrittenAgainWithTheSameNames) {
     EXPECT_EQ(event->at, Time(7ns));
     const Json again = to_json(*event, rules);
     for (const char* key :
-         {"type",   "rule",      "strategy", "component",  "adaptation", "order",
-          "pid",    "lifecycle", "driver",   "joining_ns", "helped",     "due",
-          "as",     "times",     "time_ns",  "lasts_ns",   "dry_run",    "succeeded",
-          "author", "since",     "why",      "input",      "near",       "blind_for_ns"})
+         {"type",     "rule",      "strategy", "component",  "adaptation", "order",
+          "pid",      "lifecycle", "driver",   "joining_ns", "helped",     "due",
+          "as",       "times",     "time_ns",  "lasts_ns",   "dry_run",    "succeeded",
+          "author",   "since",     "why",      "input",      "near",       "blind_for_ns",
+          "launcher", "fell",      "after_ns", "components"})
       EXPECT_EQ(again.value(key, Json()), row.value(key, Json())) << key << " of " << text;
   }
-  EXPECT_EQ(read, 43u) << "all but those whose rows do not tell enough";
+  EXPECT_EQ(read, 48u) << "all but those whose rows do not tell enough";
 }
 
 TEST(EventJson, ReadsNothingThatTheRulesDoNotHaveOrThatIsDamaged) {
@@ -153,6 +159,9 @@ TEST(EventJson, ReadsNothingThatTheRulesDoNotHaveOrThatIsDamaged) {
            R"({"type": "component_found", "component": "camera", "pid": 4294967297})",
            R"({"type": "lifecycle_intended", "component": "camera", "lifecycle": "tired"})",
            R"({"type": "rule_blind", "rule": "R", "why": "tired"})",
+           R"({"type": "stays_down", "components": ["camera"], "why": "tired"})",
+           R"({"type": "stays_down", "components": ["gone"], "why": "person"})",
+           R"({"type": "stays_down", "components": "camera", "why": "person"})",
            R"({"type": "order_accepted", "order": "silence", "component": "gone"})",
            R"({"type": "order_accepted", "order": "shout"})",
        })

@@ -31,6 +31,33 @@ bool replaces_older(const Event& event, History& kept) {
   return true;
 }
 
+// What stays down does so until it is found again, or a person orders otherwise. True for what is
+// about that alone.
+bool ends_stay(const Event& event, const RuleSet& rules, History& kept) {
+  if (std::holds_alternative<StaysDown>(event.what)) {
+    kept.push_back(event);
+    return true;
+  }
+  const auto* found = std::get_if<ComponentFound>(&event.what);
+  const auto* run = order_of<RunStrategy>(event);
+  const bool is_revival = order_of<Revive>(event) != nullptr;
+  if (found == nullptr && run == nullptr && !is_revival) return false;
+  for (Event& old : kept) {
+    auto* down = std::get_if<StaysDown>(&old.what);
+    if (down == nullptr) continue;
+    std::erase_if(down->components, [&](ComponentId component) {
+      const bool is_run =
+          run != nullptr && std::ranges::count(rules[run->strategy].components, component) > 0;
+      return is_revival || is_run || (found != nullptr && found->component == component);
+    });
+  }
+  std::erase_if(kept, [](const Event& old) {
+    const auto* down = std::get_if<StaysDown>(&old.what);
+    return down != nullptr && down->components.empty();
+  });
+  return is_revival;
+}
+
 // The oldest outcome of the strategy that waits does so no longer.
 void forget_pending(StrategyId strategy, History& kept) {
   const auto oldest = std::find_if(kept.begin(), kept.end(), [&](const Event& event) {
@@ -96,10 +123,10 @@ bool is_remembered(const Event& event) {
   if (const auto* chosen = std::get_if<StrategyChosen>(&event.what)) return !chosen->dry_run;
   return is_any_of<FailureDetected, FailureResolved, FailureLost, RoundSpent, LastResortReached,
                    LastResortDone, RuleExhausted, StrategyFailed, StrategyResumed, AdaptationDone,
-                   OutcomePending, OutcomeCounted, ComponentFound, LifecycleIntended, CameUp>(
-             event) ||
+                   OutcomePending, OutcomeCounted, ComponentFound, LifecycleIntended, CameUp,
+                   StaysDown>(event) ||
          order_of<RunStrategy>(event) != nullptr || order_of<Silence>(event) != nullptr ||
-         order_of<LiftSilence>(event) != nullptr;
+         order_of<LiftSilence>(event) != nullptr || order_of<Revive>(event) != nullptr;
 }
 
 History still_counting(const History& past, Time now, const RuleSet& rules) {
@@ -118,6 +145,7 @@ History still_counting(const History& past, Time now, const RuleSet& rules) {
       if (silence != nullptr && !is_over(*silence, event.at, now)) kept.push_back(event);
       continue;
     }
+    if (ends_stay(event, rules, kept)) continue;
     // Nobody looked on when it was due.
     const auto* pending = std::get_if<OutcomePending>(&event.what);
     if (pending != nullptr && pending->due <= now) continue;

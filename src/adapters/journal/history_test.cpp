@@ -38,6 +38,36 @@ TEST(History, AnOutcomeWaitsUntilItIsDueOrCounted) {
   EXPECT_EQ(count<OutcomePending>(still_counting(counted, Time(60s), r)), 0u);
 }
 
+TEST(History, WhatAPersonEndedStaysDownUntilItIsBackOrAPersonOrdersSo) {
+  const RuleSet r = *check(Source("t",
+                                  "COMPONENT a NODE /a\nCOMPONENT b NODE /b\nRULE R\n"
+                                  "POLICIES ERROR\nTRIGGER !alive(b)\nSTRATEGY s 90 10\n"
+                                  "ADAPTATION b restart 1\n"))
+                         .rules;
+  const ComponentId a(0);
+  const ComponentId b(1);
+  History past = {at(1s, ComponentFound{a, 7}), at(2s, StaysDown{{a, b}, StaysDown::Why::kPerson})};
+  const Time late(100h);
+  const auto down = [&](const History& of) {
+    std::size_t found = 0;
+    for (const Event& event : of) {
+      if (const auto* each = std::get_if<StaysDown>(&event.what)) found += each->components.size();
+    }
+    return found;
+  };
+  EXPECT_EQ(down(still_counting(past, late, r)), 2u);
+  EXPECT_EQ(down(history_from_json(to_json(past, r), r)), 2u);
+  past.push_back(at(3s, ComponentFound{a, 8}));
+  EXPECT_EQ(down(still_counting(past, late, r)), 1u);
+  History run = past;
+  run.push_back(at(4s, OrderAccepted{{1, "ada", "", RunStrategy{StrategyId(0)}}}));
+  EXPECT_EQ(down(still_counting(run, late, r)), 0u);
+  past.push_back(at(4s, OrderAccepted{{1, "ada", "", Revive{}}}));
+  EXPECT_EQ(down(still_counting(past, late, r)), 0u);
+  past.push_back(at(5s, StaysDown{{b}, StaysDown::Why::kOrder}));
+  EXPECT_EQ(down(still_counting(past, late, r)), 1u);
+}
+
 TEST(History, OutcomesAreReadBackAsTheyWereWritten) {
   const RuleSet r = rules();
   const History past = {

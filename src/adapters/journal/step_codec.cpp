@@ -33,7 +33,8 @@ enum class Tag : std::uint8_t {
   kPriorsTold = 26,
   kLivesOn = 27,
   kHostHeard = 28,
-  kListenerKnown = 29
+  kListenerKnown = 29,
+  kStartedHere = 30
 };
 
 enum class OrderTag : std::uint8_t {
@@ -45,8 +46,18 @@ enum class OrderTag : std::uint8_t {
   kSilence = 6,
   kLiftSilence = 7,
   kRunStrategy = 8,
-  kForget = 9
+  kForget = 9,
+  kRevive = 10,
+  kEndStarted = 11
 };
+
+// Of a launcher; together.
+constexpr std::uint8_t kEnded = 1;
+constexpr std::uint8_t kCrashed = 2;
+constexpr std::uint8_t kRanOthers = 4;
+
+// Beside a state of the lifecycle.
+constexpr std::uint8_t kShutDown = 0x80;
 
 enum class ValueTag : std::uint8_t {
   kNone = 0,
@@ -125,7 +136,7 @@ class Encoder {
   void write(const LifecycleRead& o, Duration age) {
     head(Tag::kLifecycleRead, age);
     out_.natural(o.component.index);
-    word(o.state);
+    out_.byte(static_cast<std::uint8_t>(o.state) | (o.is_shut_down ? kShutDown : 0));
   }
   void write(const ProcessSeen& o, Duration age) {
     const bool has_cause = o.cause != Cause::kUnknown;
@@ -140,7 +151,16 @@ class Encoder {
     head(Tag::kLauncherSeen, age);
     out_.natural(o.component.index);
     out_.integer(o.pid);
-    out_.byte(o.has_ended ? 1 : 0);
+    out_.byte(static_cast<std::uint8_t>((o.has_ended ? kEnded : 0) |
+                                        (o.has_crashed ? kCrashed : 0) |
+                                        (o.ran_others ? kRanOthers : 0)));
+  }
+  void write(const StartedHere& o, Duration age) {
+    head(Tag::kStartedHere, age);
+    out_.natural(o.component.index);
+    out_.integer(o.pid);
+    out_.integer(o.launcher);
+    out_.integer(o.runs_for.count());
   }
   void write(const ProcessWorked& o, Duration age) {
     head(Tag::kProcessWorked, age);
@@ -270,6 +290,8 @@ class Encoder {
     word(OrderTag::kRunStrategy);
     out_.natural(o.strategy.index);
   }
+  void write_order(const Revive&) { word(OrderTag::kRevive); }
+  void write_order(const EndStarted&) { word(OrderTag::kEndStarted); }
   void write_order(const Forget& o) {
     word(OrderTag::kForget);
     out_.byte(o.rule ? 1 : 0);
@@ -355,7 +377,10 @@ class Decoder {
       }
       case Tag::kLifecycleRead: {
         const auto component = id<ComponentId>(rules_.components.size());
-        return LifecycleRead{component, word(Lifecycle::kTransition)};
+        const std::uint8_t state = in_.byte();
+        const std::uint8_t primary = state & ~kShutDown;
+        if (primary > static_cast<std::uint8_t>(Lifecycle::kTransition)) in_.fail();
+        return LifecycleRead{component, static_cast<Lifecycle>(primary), (state & kShutDown) != 0};
       }
       case Tag::kProcessSeen:
       case Tag::kProcessSeenWithCause: {
@@ -364,13 +389,23 @@ class Decoder {
         seen.state = word(ProcessState::kGone);
         seen.pid = pid();
         seen.remark = in_.text();
-        if (tag == Tag::kProcessSeenWithCause) seen.cause = word(Cause::kWish);
+        if (tag == Tag::kProcessSeenWithCause) seen.cause = word(Cause::kOrder);
         return seen;
       }
       case Tag::kLauncherSeen: {
         const auto component = id<ComponentId>(rules_.components.size());
         const int launcher = pid();
-        return LauncherSeen{component, launcher, in_.byte() != 0};
+        const std::uint8_t how = in_.byte();
+        return LauncherSeen{component, launcher, (how & kEnded) != 0, (how & kCrashed) != 0,
+                            (how & kRanOthers) != 0};
+      }
+      case Tag::kStartedHere: {
+        StartedHere seen;
+        seen.component = id<ComponentId>(rules_.components.size());
+        seen.pid = pid();
+        seen.launcher = pid();
+        seen.runs_for = Duration(in_.integer());
+        return seen;
       }
       case Tag::kProcessWorked: {
         const auto component = id<ComponentId>(rules_.components.size());
@@ -482,6 +517,10 @@ class Decoder {
       case OrderTag::kForget:
         if (in_.byte() == 0) return Forget{};
         return Forget{id<RuleId>(rules_.rules.size())};
+      case OrderTag::kRevive:
+        return Revive{};
+      case OrderTag::kEndStarted:
+        return EndStarted{};
     }
     in_.fail();
     return Pause{};

@@ -44,7 +44,7 @@ decltype(Order::what) any_order() {
   const StrategyId strategy(*rc::gen::inRange<std::size_t>(0, 2));
   const Silenceable what =
       *rc::gen::arbitrary<bool>() ? Silenceable(ComponentId(1)) : Silenceable(RuleId(0));
-  switch (*rc::gen::inRange(0, 9)) {
+  switch (*rc::gen::inRange(0, 11)) {
     case 0:
       return Pause{};
     case 1:
@@ -61,6 +61,10 @@ decltype(Order::what) any_order() {
       return LiftSilence{what};
     case 7:
       return *rc::gen::arbitrary<bool>() ? Forget{RuleId(0)} : Forget{};
+    case 8:
+      return Revive{};
+    case 9:
+      return EndStarted{};
     default:
       return RunStrategy{strategy};
   }
@@ -69,7 +73,7 @@ decltype(Order::what) any_order() {
 ObservationWhat anything() {
   const std::string text = *rc::gen::arbitrary<std::string>();
   const ComponentId component(*rc::gen::inRange<std::size_t>(0, 2));
-  switch (*rc::gen::inRange(0, 27)) {
+  switch (*rc::gen::inRange(0, 28)) {
     case 0:
       return NodeAppeared{text, *rc::gen::positive<int>()};
     case 1:
@@ -87,10 +91,10 @@ ObservationWhat anything() {
     case 7:
       return ParameterRead{ParameterId(0), any_value()};
     case 8:
-      return LifecycleRead{component, Lifecycle::kTransition};
+      return LifecycleRead{component, Lifecycle::kTransition, *rc::gen::arbitrary<bool>()};
     case 9:
       return ProcessSeen{component, ProcessState::kStopped, 7, text,
-                         static_cast<Cause>(*rc::gen::inRange(0, 3))};
+                         static_cast<Cause>(*rc::gen::inRange(0, 4))};
     case 10:
       return Probed{component, *rc::gen::arbitrary<bool>()};
     case 11: {
@@ -119,7 +123,8 @@ ObservationWhat anything() {
       return EndsWith{component, std::vector<ComponentId>(*rc::gen::inRange<std::size_t>(0, 3),
                                                           ComponentId(1))};
     case 21:
-      return LauncherSeen{component, *rc::gen::inRange(0, 100000), *rc::gen::arbitrary<bool>()};
+      return LauncherSeen{component, *rc::gen::inRange(0, 100000), *rc::gen::arbitrary<bool>(),
+                          *rc::gen::arbitrary<bool>(), *rc::gen::arbitrary<bool>()};
     case 22:
       return PriorsTold{{{StrategyId(0), *rc::gen::arbitrary<double>(), 2.5}}, text};
     case 23:
@@ -128,6 +133,9 @@ ObservationWhat anything() {
       return HostHeard{text, *rc::gen::arbitrary<bool>()};
     case 25:
       return ListenerKnown{TopicId(0)};
+    case 26:
+      return StartedHere{component, *rc::gen::inRange(0, 100000), *rc::gen::inRange(0, 100000),
+                         Duration(*rc::gen::arbitrary<std::int64_t>())};
     default:
       return LinkTrouble{text};
   }

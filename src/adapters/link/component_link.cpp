@@ -201,6 +201,15 @@ void ComponentLink::tell(Lifecycle state, Told told) {
   if (told == Told::kAlways || state != before) inbox_.put(LifecycleRead{component_, state});
 }
 
+void ComponentLink::tell(const msg::TransitionEvent& event) {
+  const Lifecycle state = to_lifecycle(event.goal_state.id);
+  told_ = state;
+  const bool is_shut_down =
+      state == Lifecycle::kFinalized &&
+      static_cast<LifecycleState>(event.start_state.id) == LifecycleState::kShuttingDown;
+  inbox_.put(LifecycleRead{component_, state, is_shut_down});
+}
+
 void ComponentLink::watch_transitions() {
   const MutexLock lock(mutex_);
   if (transitions_) return;
@@ -209,7 +218,7 @@ void ComponentLink::watch_transitions() {
       RawSubscription::create(self_, node_ + "/transition_event", msg::TransitionEvent::kType, kQos,
                               PayloadUse::kWhole, [this](const Sample& sample) {
                                 const auto event = decode<msg::TransitionEvent>(sample.payload);
-                                if (event) tell(to_lifecycle(event->goal_state.id), Told::kAlways);
+                                if (event) tell(*event);
                               });
   if (subscription) transitions_ = std::move(*subscription);
 }

@@ -108,6 +108,7 @@ class ComponentLink {
   enum class Told : std::uint8_t { kAlways, kIfNew };
   void read_lifecycle(Duration patience, Told told, Haste haste);
   void tell(Lifecycle state, Told told);
+  void tell(const msg::TransitionEvent& event);
   void watch_transitions();
   void unanswered(Time due, const std::function<Time()>& heard);
   void read_parameters();

@@ -117,7 +117,7 @@ class Launched : public Kept {
       supervisor_->withdraw(kOne);
   }
   void order_redeploy() override {
-    supervisor_->stop(CommandId{++commands_}, kOne, Ending::kToStartAgain, Hangs::kYes);
+    supervisor_->stop(CommandId{++commands_}, kOne, 0, Ending::kToStartAgain, Hangs::kYes);
   }
   bool redeploy() override {
     order_redeploy();

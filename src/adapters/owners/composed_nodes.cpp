@@ -258,6 +258,8 @@ ComposedNodes::Answer ComposedNodes::stop_part(Container& container, const Erran
   const Component& part = rules_[errand.component];
   const Process process = process_of(container.node);
   const Process own = process_of(part.node);
+  // What is there now is the successor of what was meant, or none is.
+  if (errand.pid != 0 && own.pid != errand.pid && process.pid != errand.pid) return {};
   if (!process.is_there) {
     if (!own.is_there) return {};
     return {Outcome::kRefused, part.name + " is there without its container " + container.node +

@@ -11,6 +11,9 @@
 // ended, whoever ended it: who starts it loads what it had. What somebody unloaded on purpose before
 // is not loaded.
 //
+// A stop names the process that it is meant for. Once that has ended it is done, and nothing is unloaded from
+// a container that took its place.
+//
 // Proof before harm. A container is asked only if its process is known, by the proofs by which any
 // process is, and its answers count only if they come from that process. While two nodes have its
 // name none is asked.

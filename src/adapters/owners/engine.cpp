@@ -243,12 +243,14 @@ Expected<UnitState> Engine::state_of(const std::string& container) {
   } else if (*status == "created" || *status == "configured" || *status == "exited" ||
              *status == "stopped" || *status == "dead") {
     // Signals are how somebody stops it on purpose, too.
-    constexpr std::array kBySignal = {130, 137, 143};
+    constexpr std::int64_t kKilled = 137;
+    constexpr std::array<std::int64_t, 3> kBySignal = {130, kKilled, 143};
     const bool is_out_of_memory = member<bool>(said, "OOMKilled").value_or(false);
     const bool may_be_wanted =
         *code == 0 || std::find(kBySignal.begin(), kBySignal.end(), *code) != kBySignal.end();
     state.main_pid = 0;
     state.activity = is_out_of_memory || !may_be_wanted ? Activity::kFailed : Activity::kInactive;
+    state.is_orderly = state.activity == Activity::kInactive && *code != kKilled;
     state.result = is_out_of_memory ? "out of memory" : "exit code " + std::to_string(*code);
   } else {
     return Error{name() + " says that " + container + " is '" + one_line(*status) +

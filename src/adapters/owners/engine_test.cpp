@@ -106,6 +106,21 @@ TEST_F(ContainersOnAStandInForDocker, ThatExitedAreDead) {
   ASSERT_TRUE(seen);
 }
 
+// As docker stop leaves them. Whoever is killed may have hung.
+TEST_F(ContainersOnAStandInForDocker, ThatEndInAnOrderlyWayAreToldAsAnOrder) {
+  for (const int code : {0, 143, 137}) {
+    engine.add("slam");
+    engine.start("slam");
+    for (const int looks = engine.looks(); engine.looks() < looks + 2;)
+      std::this_thread::sleep_for(1ms);
+    engine.add("slam", {.status = "exited", .code = code});
+    const auto seen = wait_for<ProcessSeen>(
+        [](const ProcessSeen& each) { return each.state == ProcessState::kGone; });
+    ASSERT_TRUE(seen) << code;
+    EXPECT_EQ(seen->cause, code == 137 ? Cause::kUnknown : Cause::kOrder) << code;
+  }
+}
+
 // Signals are how somebody stops it on purpose, too.
 TEST_F(ContainersOnAStandInForDocker, ThatHadExitedBeforeAnybodyLookedAreDeadIfTheyFailed) {
   for (const int code : {0, 137, 1}) {

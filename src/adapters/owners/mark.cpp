@@ -1,5 +1,7 @@
 #include "owners/mark.h"
 
+#include <cstdint>
+#include <sstream>
 #include <unistd.h>
 
 #include "owners/proc.h"
@@ -10,6 +12,8 @@ namespace {
 constexpr const char* kComponentVariable = "CULPRIT_COMPONENT=";
 constexpr const char* kNamespaceVariable = "CULPRIT_PROCESS_COUNTS_IN=";
 
+constexpr const char* kPlaceVariable = "CULPRIT_IN_PLACE_OF=";
+
 std::string mark(const std::string& component) { return kComponentVariable + component; }
 
 }  // namespace
@@ -17,6 +21,29 @@ std::string mark(const std::string& component) { return kComponentVariable + com
 std::vector<std::string> mark_of(const std::string& component) {
   return {mark(component), kNamespaceVariable + pid_namespace_of(getpid())};
 }
+
+std::string to_text(int launcher) {
+  const auto began = start_ticks_of(launcher);
+  return began ? std::to_string(launcher) + "@" + std::to_string(*began) : "";
+}
+
+std::string in_place_of(int launcher) {
+  const std::string text = to_text(launcher);
+  return text.empty() ? "" : kPlaceVariable + text;
+}
+
+PlaceHeld place_in(const std::string& text) {
+  std::istringstream held(text);
+  PlaceHeld place;
+  char at = 0;
+  std::int64_t began = 0;
+  if (!(held >> place.launcher >> at >> began) || at != '@' || place.launcher <= 0) return {};
+  const bool has_ended = state_letter(place.launcher).value_or('Z') == 'Z';
+  place.goes_on = !has_ended && start_ticks_of(place.launcher) == began;
+  return place;
+}
+
+PlaceHeld place_held_by(int pid) { return place_in(value_of_variable(pid, kPlaceVariable)); }
 
 bool carries_mark(int pid, const std::string& component) {
   return has_variable(pid, mark(component));
@@ -29,6 +56,19 @@ bool is_what_was_launched(int pid) {
 
 std::string variable_of(int pid) {
   return kPidVariable + ("=" + std::to_string(own_number_of(pid)));
+}
+
+std::vector<MarkedProcess> marked_processes(const std::string& prefix) {
+  std::vector<MarkedProcess> all;
+  for (const int pid : all_processes()) {
+    std::string component = value_of_variable(pid, kComponentVariable);
+    const bool has_ended = state_letter(pid).value_or('X') == 'Z';
+    if (!component.starts_with(prefix) || has_ended || pid == getpid() ||
+        !is_what_was_launched(pid))
+      continue;
+    all.push_back({std::move(component), pid});
+  }
+  return all;
 }
 
 std::vector<int> launched_as(const std::string& component) {

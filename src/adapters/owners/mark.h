@@ -5,6 +5,8 @@
 // which process is, by its number, and a third where that number counts, for in another PID
 // namespace it is somebody else's.
 //
+// A process that stands in for one of a launch says of which: the number of the launcher, and when it began.
+//
 // Any user can start a process with these variables. So a mark counts only in a process of our own user: a component
 // whose LAUNCH changes the user (sudo, setpriv) is known for as long as the culprit runs that started it.
 #pragma once
@@ -20,6 +22,20 @@ inline constexpr const char* kPidVariable = "CULPRIT_PROCESS";
 // "0/sunset/camera".
 std::vector<std::string> mark_of(const std::string& component);
 
+// Added to the mark of a process that stands in for one that `launcher` had started. Empty: there is no such launcher.
+std::string in_place_of(int launcher);
+
+// The launcher that the process `pid`, or what started it, stands in for.
+struct PlaceHeld {
+  int launcher = 0;  // 0: it stands in for none
+  bool goes_on = false;
+};
+PlaceHeld place_held_by(int pid);
+
+// A launcher as text, "4711@123456", which no other process ever has. Empty: there is no such process.
+std::string to_text(int launcher);
+PlaceHeld place_in(const std::string& text);
+
 // Whether it, or what started it, carries the mark.
 bool carries_mark(int pid, const std::string& component);
 
@@ -28,6 +44,13 @@ bool is_what_was_launched(int pid);
 
 // What the process `pid` and all that it started have in their environment.
 std::string variable_of(int pid);
+
+// Likewise of all components whose mark begins with `prefix`: "0/sunset/", "0/".
+struct MarkedProcess {
+  std::string component;  // "0/sunset/camera"
+  int pid = 0;
+};
+std::vector<MarkedProcess> marked_processes(const std::string& prefix);
 
 // Processes that were launched as the component and have not ended.
 std::vector<int> launched_as(const std::string& component);

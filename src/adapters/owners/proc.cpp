@@ -31,20 +31,6 @@ std::string stat_after_command(int pid) {
   return end == std::string::npos || end + 2 >= line.size() ? "" : line.substr(end + 2);
 }
 
-// All processes that can be seen.
-std::vector<int> all_processes() {
-  std::vector<int> pids;
-  std::error_code error;
-  for (fs::directory_iterator i("/proc", error); !error && i != fs::directory_iterator();
-       i.increment(error)) {
-    const std::string name = i->path().filename().native();
-    int pid = 0;
-    const auto [rest, failed] = std::from_chars(name.data(), name.data() + name.size(), pid);
-    if (failed == std::errc() && rest == name.data() + name.size()) pids.push_back(pid);
-  }
-  return pids;
-}
-
 // The numbers that a process has, from the PID namespace of this /proc to the innermost that it is in (NSpid). `process` is a
 // number, or "self". Empty if there is no such process.
 std::vector<int> numbers_of(const std::string& process) {
@@ -247,17 +233,44 @@ std::string container_of(int pid) {
   return id;
 }
 
-std::optional<Time> started_at(int pid) {
+std::vector<int> all_processes() {
+  std::vector<int> pids;
+  std::error_code error;
+  for (fs::directory_iterator i("/proc", error); !error && i != fs::directory_iterator();
+       i.increment(error)) {
+    const std::string name = i->path().filename().native();
+    int pid = 0;
+    const auto [rest, failed] = std::from_chars(name.data(), name.data() + name.size(), pid);
+    if (failed == std::errc() && rest == name.data() + name.size()) pids.push_back(pid);
+  }
+  return pids;
+}
+
+std::optional<std::int64_t> start_ticks_of(int pid) {
   std::istringstream rest(stat_after_command(pid));
   std::string skipped;
   constexpr int kBefore = 19;  // fields between the command and starttime (proc(5))
   for (int i = 0; i < kBefore; ++i) rest >> skipped;
   std::int64_t ticks = 0;
-  if (!(rest >> ticks)) return std::nullopt;
+  return rest >> ticks ? std::optional(ticks) : std::nullopt;
+}
+
+std::optional<Time> started_at(int pid) {
+  const auto ticks = start_ticks_of(pid);
+  if (!ticks) return std::nullopt;
   const std::int64_t in_second = sysconf(_SC_CLK_TCK);
   // It counts from the start of the machine, sleep included; our clock leaves sleep out.
   const Duration sleep = now_on(CLOCK_BOOTTIME) - now_on(CLOCK_MONOTONIC);
-  return Time(std::chrono::nanoseconds(ticks * (1'000'000'000 / in_second)) - sleep);
+  return Time(std::chrono::nanoseconds(*ticks * (1'000'000'000 / in_second)) - sleep);
+}
+
+std::string value_of_variable(int pid, const std::string& prefix) {
+  if (!is_of_own_user(pid)) return "";
+  std::ifstream environment("/proc/" + std::to_string(pid) + "/environ", std::ios::binary);
+  for (std::string text; std::getline(environment, text, '\0');) {
+    if (text.starts_with(prefix)) return text.substr(prefix.size());
+  }
+  return "";
 }
 
 bool has_variable(int pid, const std::string& variable) {
@@ -339,6 +352,19 @@ std::vector<Relative> descendants_of(int pid) {
     }
   }
   return found;
+}
+
+std::vector<int> children_of(int pid) {
+  const std::string process = std::to_string(pid);
+  std::ifstream listed("/proc/" + process + "/task/" + process + "/children");
+  std::vector<int> pids{std::istream_iterator<int>(listed), {}};
+  // The kernel lists them by the thread that started them, if it was built to list them.
+  if (pids.empty()) pids = all_processes();
+  std::erase_if(pids, [&](int each) {
+    const Family family = family_of(each);
+    return family.parent != pid || family.state == 'Z' || family.state == 'X';
+  });
+  return pids;
 }
 
 std::vector<int> members_of_group(int leader) {

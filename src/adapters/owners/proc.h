@@ -40,6 +40,19 @@ Origin origin_of(int pid);
 // On live_now()'s clock, to a hundredth of a second.
 std::optional<Time> started_at(int pid);
 
+// All processes that can be seen.
+std::vector<int> all_processes();
+
+// When it began, in ticks of the kernel since the machine was started: with its number, which process it is.
+std::optional<std::int64_t> start_ticks_of(int pid);
+
+// What stands behind `prefix` ("NAME=") in the environment that the process was started with. Empty: nothing, or it is a
+// process of another user.
+std::string value_of_variable(int pid, const std::string& prefix);
+
+// Those that it started itself and that have not ended.
+std::vector<int> children_of(int pid);
+
 // Whether `variable` ("NAME=value") is in the environment that the process was started with. False for processes of
 // another user, also where this one may read theirs: any user can write anything into it.
 bool has_variable(int pid, const std::string& variable);

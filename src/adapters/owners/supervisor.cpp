@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "owners/bounded_log.h"
+#include "owners/launch_note.h"
 #include "owners/mark.h"
 
 namespace culprit::owners {
@@ -77,7 +78,8 @@ std::filesystem::path Supervisor::log_of(ComponentId component) const {
   return options_.log_folder / (rules_[component].name + ".log");
 }
 
-Program Supervisor::program_of(ComponentId component) const {
+// `launcher`: that it stands in for; 0: none.
+Program Supervisor::program_of(ComponentId component, int launcher) const {
   const Component& what = rules_[component];
   Program program{what.launch, options_.search_first, log_of(component), {}, {}};
   program.lifetime = options_.lifetime;
@@ -86,6 +88,8 @@ Program Supervisor::program_of(ComponentId component) const {
   if (!options_.robot.empty()) {
     for (std::string& each : mark_of(marked_as(component)))
       program.environment.push_back(std::move(each));
+    if (std::string place = in_place_of(launcher); !place.empty())
+      program.environment.push_back(std::move(place));
     program.pid_variable = kPidVariable;
   }
   return program;
@@ -155,15 +159,19 @@ Expected<void> Supervisor::begin_start(CommandId command, ComponentId component)
     meet(command, component);
     return {};
   }
-  Program program = program_of(component);
+  const int launcher = place_of(component);
+  note_launch(options_.log_folder, rules_[component].name, launcher);
+  Program program = program_of(component, launcher);
   program.kept_until_it_runs = lock->get();
   auto launch = Launch::begin(program, Until::kItRuns);
   if (!launch) return Error{launch.error()};
   // Nothing runs unwatched: if it cannot be held, the launch goes, and kills it.
   auto process = WatchedProcess::watch(launch->pid(), Relation::kChild);
   if (!process) return Error{process.error()};
-  members_.push_back({component, std::move(*process), ProcessState::kRunning, std::move(*launch),
-                      command, std::move(*lock)});
+  Member& member = members_.emplace_back(Member{++numbers_, component, std::move(*process),
+                                                ProcessState::kRunning, std::move(*launch), command,
+                                                std::move(*lock)});
+  member.launcher = launcher;
   return {};
 }
 
@@ -181,6 +189,7 @@ void Supervisor::finish_starts() {
       continue;
     }
     const int pid = member.process.pid();
+    inbox_.put(StartedHere{member.component, pid, member.launcher});
     inbox_.put(ProcessSeen{member.component, ProcessState::kRunning, pid, ""});
     inbox_.put(Reply{member.command, Outcome::kDone, Value(std::int64_t{pid}), ""});
   }
@@ -224,13 +233,21 @@ void Supervisor::watch(ComponentId component, int pid, Relation relation) {
     if (is_first) tell_of_unit(component, pid);
   }
   note_launcher(component, pid, is_others);
-  Member& member = members_.emplace_back(Member{component, std::move(*process)});
-  if (relation != Relation::kAdopted && carries_mark(pid, marked_as(component)))
-    member.awaited = live_now();
+  Member& member = members_.emplace_back(Member{++numbers_, component, std::move(*process)});
+  const bool is_marked = carries_mark(pid, marked_as(component));
+  if (relation != Relation::kAdopted && is_marked) member.awaited = live_now();
+  const PlaceHeld place = is_marked ? place_held_by(pid) : PlaceHeld{};
+  if (is_marked) {
+    const auto began = started_at(pid);
+    inbox_.put(StartedHere{component, pid, place.launcher,
+                           began ? std::max(Duration::zero(), live_now() - *began) : Duration()});
+  }
   inbox_.put(ProcessSeen{component, ProcessState::kRunning, pid, ""});
   const auto launcher = launchers_.find(component);
   if (launcher != launchers_.end() && launcher->second.held)
     inbox_.put(LauncherSeen{component, launcher->second.pid, false});
+  if (place.launcher != 0 && !place.goes_on)
+    inbox_.put(LauncherSeen{component, place.launcher, true});
   wake();
 }
 
@@ -274,8 +291,31 @@ std::optional<std::string> Supervisor::hold_of(const Member& member) {
   return std::nullopt;
 }
 
+// Another one of the component may run in place of a process of that launch.
+void Supervisor::hold_launcher(ComponentId component, int launcher) {
+  Launcher& held = launchers_[component] = Launcher{launcher, started_at(launcher)};
+  held.held = FileDescriptor(static_cast<int>(syscall(SYS_pidfd_open, launcher, 0)));
+  look_at_children(held);
+}
+
+// A launcher may end before it is noticed that what it started has.
+void Supervisor::look_at_children(Launcher& launcher) {
+  if (launcher.held && goes_on(launcher)) launcher.children = children_of(launcher.pid);
+}
+
+// The launcher of the component, if it runs; 0: there is none.
+int Supervisor::place_of(ComponentId component) const {
+  const auto launcher = launchers_.find(component);
+  return launcher != launchers_.end() && goes_on(launcher->second) ? launcher->second.pid : 0;
+}
+
 void Supervisor::note_launcher(ComponentId component, int pid, bool is_others) {
-  const Origin origin = is_others ? origin_of(pid) : Origin{Origin::What::kEnded, 0};
+  const PlaceHeld place = is_others ? PlaceHeld{} : place_held_by(pid);
+  Origin origin = is_others ? origin_of(pid) : Origin{Origin::What::kEnded, 0};
+  if (place.goes_on) origin = {Origin::What::kKnown, place.launcher};
+  const bool is_known = origin.what == Origin::What::kKnown;
+  if (is_others)
+    note_launch(options_.log_folder, rules_[component].name, is_known ? origin.pid : 0);
   switch (origin.what) {
     case Origin::What::kEnded:
       launchers_[component] = Launcher{};
@@ -283,12 +323,8 @@ void Supervisor::note_launcher(ComponentId component, int pid, bool is_others) {
     case Origin::What::kUnknown:
       launchers_.erase(component);
       return;
-    case Origin::What::kKnown: {
-      const auto identity = identity_of(origin.pid);
-      Launcher& launcher = launchers_[component] =
-          Launcher{origin.pid, started_at(origin.pid), identity ? to_string(*identity) : ""};
-      launcher.held = FileDescriptor(static_cast<int>(syscall(SYS_pidfd_open, origin.pid, 0)));
-    }
+    case Origin::What::kKnown:
+      return hold_launcher(component, origin.pid);
   }
 }
 
@@ -302,23 +338,10 @@ bool Supervisor::goes_on(const Launcher& launcher) {
 void Supervisor::tell_ended_launchers() {
   for (auto& [component, launcher] : launchers_) {
     if (!launcher.held || !is_readable(launcher.held.get())) continue;
+    const ProcessEnd end = end_of(launcher.pid, launcher.held.get());
     launcher.held = FileDescriptor();
-    inbox_.put(LauncherSeen{component, launcher.pid, true});
-  }
-}
-
-void Supervisor::look_at_launchers(Time now) {
-  for (auto& [component, launcher] : launchers_) {
-    if (launcher.child_ended == kLongAgo) continue;
-    const bool ends_with_it = !goes_on(launcher);
-    if (!ends_with_it && now < later(launcher.child_ended, kEndsWith)) continue;
-    launcher.child_ended = kLongAgo;
-    if (ends_with_it)
-      inbox_.put(LinkTrouble{
-          "process " + std::to_string(launcher.pid) + " (" + launcher.what + ") had started " +
-          rules_[component].name +
-          ", and ended with it; so may have what else it started. If its launch file says "
-          "on_exit=Shutdown(), leave that out for what culprit redeploys"});
+    inbox_.put(LauncherSeen{component, launcher.pid, true, end.cause == Cause::kFault,
+                            launcher.ran_others});
   }
 }
 
@@ -349,8 +372,12 @@ std::optional<std::string> Supervisor::why_not_end(ComponentId component, Ending
   return std::nullopt;
 }
 
-void Supervisor::stop(CommandId command, ComponentId component, Ending ending, Hangs hangs) {
+void Supervisor::stop(CommandId command, ComponentId component, int pid, Ending ending,
+                      Hangs hangs) {
   const MutexLock lock(mutex_);
+  std::set<std::uint64_t> meant = meant_by(component, pid);
+  if (meant.empty() && !is_gone(component))
+    return answer(command, Outcome::kDone, "process " + std::to_string(pid) + " has a successor");
   if (auto why = why_not_end(component, ending))
     return answer(command, Outcome::kRefused, std::move(*why));
   const auto trial = std::ranges::find(trials_, component, &Trial::component);
@@ -359,7 +386,7 @@ void Supervisor::stop(CommandId command, ComponentId component, Ending ending, H
     if (hangs == Hangs::kYes) trial->hangs = hangs;
   } else if (ending == Ending::kForGood || is_gone(component) || is_left_to_launcher(component) ||
              shutdown_of(component) != nullptr) {
-    begin_shutdown(command, component, hangs);
+    begin_shutdown(command, component, hangs, std::move(meant));
   } else {
     const auto environment = environment_of(component);
     if (!environment)
@@ -368,9 +395,14 @@ void Supervisor::stop(CommandId command, ComponentId component, Ending ending, H
                         " is not ended, for it could not be started again: " + environment.error());
     const auto lock_of_start = lock_start_of(component);
     if (!lock_of_start) return answer(command, Outcome::kRefused, lock_of_start.error());
-    auto launch = Launch::begin(program_of(component), Until::kItCouldRun);
+    auto launch = Launch::begin(program_of(component, 0), Until::kItCouldRun);
     if (!launch) return answer(command, Outcome::kRefused, launch.error());
-    trials_.push_back({{command}, component, std::move(*launch), later(live_now(), kTrial), hangs});
+    trials_.push_back({{command},
+                       component,
+                       std::move(*launch),
+                       later(live_now(), kTrial),
+                       hangs,
+                       std::move(meant)});
   }
   wake();
 }
@@ -387,7 +419,7 @@ void Supervisor::finish_trials(Time now) {
                                        "; does the file system of its program answer?"});
     for (const CommandId command : trial.commands) {
       if (could_run) {
-        begin_shutdown(command, trial.component, trial.hangs);
+        begin_shutdown(command, trial.component, trial.hangs, trial.meant);
       } else {
         answer(command, Outcome::kRefused,
                name + " is not ended, for it could not be started again: " + could_run.error());
@@ -400,7 +432,7 @@ void Supervisor::finish_trials(Time now) {
 
 Supervisor::Shutdown* Supervisor::shutdown_of(ComponentId component) {
   const auto found = std::ranges::find_if(shutdowns_, [&](const Shutdown& s) {
-    return s.component == component && !s.only_started && s.escalate != kNever;
+    return s.component == component && !s.is_of_launch && s.escalate != kNever;
   });
   return found == shutdowns_.end() ? nullptr : &*found;
 }
@@ -413,19 +445,48 @@ void Supervisor::hurry(Shutdown& shutdown) {
   if (shutdown.signal == SIGTERM) shutdown.escalate = live_now();
 }
 
-void Supervisor::begin_shutdown(CommandId command, ComponentId component, Hangs hangs) {
-  if (Shutdown* const present = shutdown_of(component)) {
+void Supervisor::begin_shutdown(CommandId command, ComponentId component, Hangs hangs,
+                                std::set<std::uint64_t> meant) {
+  Shutdown* const present = shutdown_of(component);
+  if (present != nullptr && std::ranges::includes(present->meant, meant)) {
     if (hangs == Hangs::kYes) hurry(*present);
-    shutdowns_.push_back({command, component, hangs});
+    shutdowns_.push_back({command, component, hangs, std::move(meant)});
     return;
   }
   for (Member& member : members_) {
-    if (member.component != component || member.process.relation() != Relation::kAdopted) continue;
+    if (!meant.contains(member.number) || member.process.relation() != Relation::kAdopted) continue;
     member.left = descendants_of(member.process.pid());
     member.left_at = live_now();
   }
-  Shutdown& shutdown = shutdowns_.emplace_back(Shutdown{command, component, hangs});
+  Shutdown& shutdown =
+      shutdowns_.emplace_back(Shutdown{command, component, hangs, std::move(meant)});
   shutdown.escalate = live_now();
+}
+
+// A process that was started before it, as `ros2 run` was, is meant, too. One that began later is a successor.
+std::set<std::uint64_t> Supervisor::meant_by(ComponentId component, int pid) const {
+  std::set<std::uint64_t> numbers = members_of(component);
+  const auto last = ended_.find(component);
+  const bool has_ended = last != ended_.end() && last->second.first == pid;
+  if (pid != 0 && has_ended && !is_known(component, pid))
+    std::erase_if(numbers, [&](std::uint64_t number) { return number > last->second.second; });
+  return numbers;
+}
+
+std::set<std::uint64_t> Supervisor::members_of(ComponentId component) const {
+  std::set<std::uint64_t> numbers;
+  for (const Member& member : members_) {
+    if (member.component == component) numbers.insert(member.number);
+  }
+  return numbers;
+}
+
+std::set<std::uint64_t> Supervisor::started_members_of(ComponentId component) const {
+  std::set<std::uint64_t> numbers;
+  for (const Member& member : members_) {
+    if (member.component == component && was_started(member)) numbers.insert(member.number);
+  }
+  return numbers;
 }
 
 // ---- one too many
@@ -447,8 +508,20 @@ std::set<int> Supervisor::started(ComponentId component) const {
 
 void Supervisor::withdraw(ComponentId component) {
   const MutexLock lock(mutex_);
-  Shutdown& shutdown = shutdowns_.emplace_back(Shutdown{{}, component, Hangs::kNo});
-  shutdown.only_started = true;
+  begin_shutdown({}, component, Hangs::kNo, started_members_of(component));
+  wake();
+}
+
+void Supervisor::end_with_launch(ComponentId component) {
+  const MutexLock lock(mutex_);
+  std::set<std::uint64_t> meant = started_members_of(component);
+  for (const Shutdown& under_way : shutdowns_) {
+    for (const std::uint64_t number : under_way.meant) meant.erase(number);
+  }
+  if (meant.empty()) return;
+  Shutdown& shutdown =
+      shutdowns_.emplace_back(Shutdown{{}, component, Hangs::kNo, std::move(meant)});
+  shutdown.is_of_launch = true;
   shutdown.escalate = live_now();
   wake();
 }
@@ -458,8 +531,8 @@ bool Supervisor::was_started(const Member& member) const {
          carries_mark(member.process.pid(), marked_as(member.component));
 }
 
-bool Supervisor::is_meant(const Shutdown& shutdown, const Member& member) const {
-  return member.component == shutdown.component && (!shutdown.only_started || was_started(member));
+bool Supervisor::is_meant(const Shutdown& shutdown, const Member& member) {
+  return shutdown.meant.contains(member.number);
 }
 
 bool Supervisor::is_over(const Shutdown& shutdown) const {
@@ -472,7 +545,8 @@ void Supervisor::stop_all() {
   for (const Member& member : members_) {
     if (member.process.relation() == Relation::kChild) started.insert(member.component);
   }
-  for (const ComponentId component : started) begin_shutdown({}, component, Hangs::kNo);
+  for (const ComponentId component : started)
+    begin_shutdown({}, component, Hangs::kNo, members_of(component));
   wake();
   something_ended_.wait(lock, [&]() CULPRIT_REQUIRES(mutex_) {
     return std::all_of(started.begin(), started.end(),
@@ -507,11 +581,15 @@ void Supervisor::end_member(Member& member) {
       std::ranges::any_of(shutdowns_, [&](const Shutdown& s) { return is_meant(s, member); });
   inbox_.put(ProcessSeen{member.component, ProcessState::kGone, member.process.pid(), end.remark,
                          is_ours ? Cause::kWish : end.cause});
+  ended_[member.component] = {member.process.pid(), member.number};
   tell_what_stays(member);
   const auto launcher = launchers_.find(member.component);
-  const bool was_its = member.process.relation() == Relation::kAdopted;
-  if (was_its && launcher != launchers_.end() && launcher->second.pid != 0)
-    launcher->second.child_ended = live_now();
+  const bool is_others = member.process.relation() == Relation::kAdopted;
+  if (is_others && launcher != launchers_.end()) {
+    look_at_children(launcher->second);
+    launcher->second.ran_others = std::ranges::any_of(
+        launcher->second.children, [&](int child) { return child != member.process.pid(); });
+  }
 }
 
 // Ctrl-Z stops what was started together, and who started it.
@@ -567,10 +645,7 @@ void Supervisor::run() {
     for (const auto& [component, launcher] : launchers_) {
       if (launcher.held) watched.push_back({launcher.held.get(), POLLIN, 0});
     }
-    const bool is_awaited = std::ranges::any_of(
-        launchers_, [](const auto& each) { return each.second.child_ended != kLongAgo; });
-    const Time until =
-        members_.empty() && !is_awaited ? next_deadline() : std::min(next_look, next_deadline());
+    const Time until = members_.empty() ? next_deadline() : std::min(next_look, next_deadline());
     const auto wait =
         until == kNever ? Duration(-1) : std::max(Duration::zero(), until - live_now());
     lock.unlock();
@@ -593,6 +668,7 @@ void Supervisor::run() {
     if (now < next_look_at_logs) continue;
     next_look_at_logs = later(now, kLogPeriod);
     for (const Member& member : members_) logs.push_back(log_of(member.component));
+    for (auto& [component, launcher] : launchers_) look_at_children(launcher);
   }
 }
 
@@ -615,7 +691,6 @@ void Supervisor::look(Time now) {
   finish_trials(now);
   finish_shutdowns(now);
   tell_ended_launchers();
-  look_at_launchers(now);
   something_ended_.notify_all();
 }
 
@@ -663,10 +738,12 @@ void Supervisor::escalate(Shutdown& shutdown, Time now) {
     shutdown.escalate = later(now, kFirm);
   } else if (shutdown.signal == SIGINT) {
     shutdown.signal = SIGTERM;
-    shutdown.escalate = later(now, kFirm);
+    shutdown.escalate = later(now, shutdown.is_of_launch ? kOfLaunch : kFirm);
   } else {
     shutdown.signal = SIGINT;
-    shutdown.escalate = later(now, shutdown.hangs == Hangs::kYes ? kHung : kPolite);
+    shutdown.escalate = later(now, shutdown.is_of_launch           ? kOfLaunch
+                                   : shutdown.hangs == Hangs::kYes ? kHung
+                                                                   : kPolite);
   }
   for (const Member& member : members_) {
     if (is_meant(shutdown, member)) member.process.signal(shutdown.signal);

@@ -23,8 +23,11 @@
 // That a process ended is told at once, with how, and whether somebody wanted that (process_end.h); what culprit itself
 // ended was wanted. Who started what culprit did not start is told, and when that one has ended.
 //
-// Who starts a process that culprit did not start is told of when it ends with it, as ros2 launch does
-// where that says on_exit=Shutdown(): it ends all that it had started then.
+// A process that is started while the launcher of the component's first one runs stands in for that one: its mark names
+// the launcher (StartedHere). Whether it is to end with the launch is up to the manager; it then ends as ros2 launch
+// ends its own, by end_with_launch().
+//
+// An order to stop is meant for the processes that run when it comes. Their successors are not ended by it.
 //
 // Whatever it started goes on running when the supervisor ends, unless stop_all() was called or its
 // lifetime is the starter's.
@@ -59,6 +62,8 @@ class Supervisor {
   static constexpr Duration kPolite = std::chrono::seconds(2);
   static constexpr Duration kFirm = std::chrono::seconds(1);
   static constexpr Duration kHung = std::chrono::milliseconds(300);
+  // As ros2 launch: sigterm_timeout, sigkill_timeout.
+  static constexpr Duration kOfLaunch = std::chrono::seconds(5);
   // Of what was started and whose node is not there yet it is looked this often whether it works,
   // for so long.
   static constexpr Duration kWorkPeriod = std::chrono::seconds(1);
@@ -69,8 +74,6 @@ class Supervisor {
   static constexpr Duration kLogPeriod = std::chrono::seconds(1);
   // What stands for less may be part of a stop that is on its way through a launch.
   static constexpr Duration kStopSettles = std::chrono::milliseconds(50);
-  // A launcher that ends within this time after what it started ended because of that.
-  static constexpr Duration kEndsWith = std::chrono::seconds(10);
   // How long the trial of a start may take.
   static constexpr Duration kTrial = std::chrono::seconds(5);
 
@@ -99,7 +102,9 @@ class Supervisor {
   // replies when they are gone. Refuses if one of them is not proven to be the component's, or if
   // it could not be started again: then none is ended. Where that is under way already, it only waits
   // for its end, and hurries it if it is known to hang by now.
-  void stop(CommandId command, ComponentId component, Ending ending, Hangs hangs = Hangs::kNo);
+  // `pid`: the process that is meant; 0: whichever runs. If it has ended and only its successor runs, replies at once.
+  void stop(CommandId command, ComponentId component, int pid, Ending ending,
+            Hangs hangs = Hangs::kNo);
 
   // Watches the process that had this number at `known` as the component's, for its node is there;
   // one that began later is another. Tells that it is gone if it is. Does nothing if it is watched already.
@@ -122,11 +127,16 @@ class Supervisor {
   // nothing else: it is not needed, for somebody else started one, too.
   void withdraw(ComponentId component);
 
+  // Likewise, as ros2 launch ends what it started: SIGINT, after kOfLaunch SIGTERM, after kOfLaunch SIGKILL. Does
+  // nothing where that is under way.
+  void end_with_launch(ComponentId component);
+
   // Ends every process that was started here, and waits until all are gone.
   void stop_all();
 
  private:
   struct Member {
+    std::uint64_t number;  // no other has it
     ComponentId component;
     WatchedProcess process;
     ProcessState state = ProcessState::kRunning;
@@ -141,6 +151,7 @@ class Supervisor {
     std::vector<Relative> left{};  // what somebody else's had started when its end was ordered
     Time left_at{};
     std::optional<Time> stands_since{};  // while it is not told yet that it was stopped
+    int launcher = 0;  // that it stands in for, while its program does not run yet
   };
   // A start that is tried before an end.
   struct Trial {
@@ -149,29 +160,31 @@ class Supervisor {
     Launch launch;
     Time until;
     Hangs hangs;
+    std::set<std::uint64_t> meant;
   };
   // A shutdown under way.
   struct Shutdown {
     CommandId command;  // number 0: nobody waits for a reply
     ComponentId component;
     Hangs hangs = Hangs::kNo;
-    bool only_started = false;  // what others started goes on
-    int signal = 0;             // sent last
-    Time escalate = kNever;     // when the next one is due; kNever: another shutdown sees to that
+    std::set<std::uint64_t> meant{};  // members
+    bool is_of_launch = false;        // it takes as long as ros2 launch
+    int signal = 0;                   // sent last
+    Time escalate = kNever;  // when the next one is due; kNever: another shutdown sees to that
   };
 
   // Who started a component that culprit did not start.
   struct Launcher {
     int pid = 0;  // 0: it has ended, or it was a supervisor, since that had ended
     std::optional<Time> began{};
-    std::string what{};           // it runs
-    Time child_ended = kLongAgo;  // and it was not looked since whether it did, too
+    std::vector<int> children{};  // when it was looked last, each kLogPeriod
+    bool ran_others = false;      // when the component's process had ended
     FileDescriptor held{};        // until it ended, which is told
   };
 
   std::string marked_as(ComponentId component) const;
   std::filesystem::path log_of(ComponentId component) const;
-  Program program_of(ComponentId component) const;
+  Program program_of(ComponentId component, int launcher) const;
   Expected<std::vector<std::string>> environment_of(ComponentId component) const;
   Expected<FileDescriptor> lock_start_of(ComponentId component) const;
   void answer(CommandId command, Outcome outcome, std::string text) const;
@@ -184,6 +197,10 @@ class Supervisor {
   static std::optional<std::string> hold_of(const Member& member);
   void tell_of_unit(ComponentId component, int pid) const;
   void note_launcher(ComponentId component, int pid, bool is_others) CULPRIT_REQUIRES(mutex_);
+  void hold_launcher(ComponentId component, int launcher) CULPRIT_REQUIRES(mutex_);
+  int place_of(ComponentId component) const CULPRIT_REQUIRES(mutex_);
+  std::set<std::uint64_t> members_of(ComponentId component) const CULPRIT_REQUIRES(mutex_);
+  std::set<std::uint64_t> meant_by(ComponentId component, int pid) const CULPRIT_REQUIRES(mutex_);
   bool is_left_to_launcher(ComponentId component) const CULPRIT_REQUIRES(mutex_);
   std::optional<std::string> why_not_end(ComponentId component, Ending ending) const
       CULPRIT_REQUIRES(mutex_);
@@ -192,7 +209,7 @@ class Supervisor {
   void finish_shutdowns(Time now) CULPRIT_REQUIRES(mutex_);
   void tell_what_stays(const Member& member) const;
   static bool goes_on(const Launcher& launcher);
-  void look_at_launchers(Time now) CULPRIT_REQUIRES(mutex_);
+  static void look_at_children(Launcher& launcher);
 
   void run();
   void look(Time now) CULPRIT_REQUIRES(mutex_);
@@ -201,12 +218,13 @@ class Supervisor {
   bool is_known(ComponentId component, int pid) const CULPRIT_REQUIRES(mutex_);
   bool is_gone(ComponentId component) const CULPRIT_REQUIRES(mutex_);
   bool was_started(const Member& member) const;
-  bool is_meant(const Shutdown& shutdown, const Member& member) const;
+  static bool is_meant(const Shutdown& shutdown, const Member& member);
   bool is_over(const Shutdown& shutdown) const CULPRIT_REQUIRES(mutex_);
   Shutdown* shutdown_of(ComponentId component) CULPRIT_REQUIRES(mutex_);
   static void hurry(Shutdown& shutdown);
-  void begin_shutdown(CommandId command, ComponentId component, Hangs hangs)
-      CULPRIT_REQUIRES(mutex_);
+  void begin_shutdown(CommandId command, ComponentId component, Hangs hangs,
+                      std::set<std::uint64_t> meant) CULPRIT_REQUIRES(mutex_);
+  std::set<std::uint64_t> started_members_of(ComponentId component) const CULPRIT_REQUIRES(mutex_);
   void end_member(Member& member) CULPRIT_REQUIRES(mutex_);
   Cause cause_of_stop(const Member& member) const CULPRIT_REQUIRES(mutex_);
   static bool is_settled(Member& member, ProcessState state, Time now);
@@ -226,6 +244,9 @@ class Supervisor {
   std::map<ComponentId, Identity> identities_
       CULPRIT_GUARDED_BY(mutex_);  // of what others started, when it was found first
   std::map<ComponentId, Launcher> launchers_ CULPRIT_GUARDED_BY(mutex_);
+  std::uint64_t numbers_ CULPRIT_GUARDED_BY(mutex_) = 0;  // of members
+  std::map<ComponentId, std::pair<int, std::uint64_t>> ended_
+      CULPRIT_GUARDED_BY(mutex_);  // the last process that ended, and which member it was
   bool is_ending_ CULPRIT_GUARDED_BY(mutex_) = false;
   FileDescriptor wake_;
   std::thread thread_;

@@ -26,6 +26,7 @@
 #include "owners/mark.h"
 #include "owners/proc.h"
 #include "owners/spawn.h"
+#include "owners/started_processes.h"
 #include "owners/test_process.h"
 #include "owners/watched_process.h"
 
@@ -70,14 +71,14 @@ class Supervised {
     return pid == nullptr ? 0 : static_cast<int>(std::get<std::int64_t>(*pid));
   }
   void stop() {
-    supervisor->stop({2}, ComponentId(0), Ending::kForGood);
+    supervisor->stop({2}, ComponentId(0), 0, Ending::kForGood);
     EXPECT_EQ(reply_to({2}).outcome, Outcome::kDone);
   }
   std::string trouble() {
     return wait<LinkTrouble>([](const LinkTrouble&) { return true; }).text;
   }
   Reply stop_to_start_again() {
-    supervisor->stop({7}, ComponentId(0), Ending::kToStartAgain);
+    supervisor->stop({7}, ComponentId(0), 0, Ending::kToStartAgain);
     return reply_to({7});
   }
   const std::filesystem::path& folder() const { return folder_; }
@@ -89,6 +90,9 @@ class Supervised {
   }
   LauncherSeen launcher() {
     return wait<LauncherSeen>([](const LauncherSeen&) { return true; });
+  }
+  StartedHere started() {
+    return wait<StartedHere>([](const StartedHere&) { return true; });
   }
   int worked() {
     return wait<ProcessWorked>([](const ProcessWorked&) { return true; }).pid;
@@ -180,7 +184,7 @@ TEST(Supervisor, LeavesWhatIsRespawnedToItsLauncher) {
   Supervised c(Supervised::Declared{"LAUNCH \"sleep 2000\" RESPAWNED"});
   const int first = launcher.child();
   c.supervisor->adopt(ComponentId(0), first, live_now());
-  c.supervisor->stop({3}, ComponentId(0), Ending::kForGood);
+  c.supervisor->stop({3}, ComponentId(0), 0, Ending::kForGood);
   EXPECT_EQ(c.reply_to({3}).outcome, Outcome::kRefused) << "it would come back";
   EXPECT_TRUE(exists(first));
   EXPECT_EQ(c.stop_to_start_again().outcome, Outcome::kDone);
@@ -264,15 +268,96 @@ int a_child_of(int launcher) {
 }
 
 // As ros2 launch does where the launch file says on_exit=Shutdown().
-TEST(Supervisor, TellsThatALauncherEndedWithWhatItStarted) {
-  Supervised c("sleep 1000");
-  const auto launcher = spawn({{"sh", "-c", "sleep 1000; sleep 0.1"}, {}, "/dev/null"});
+TEST(Supervisor, TellsHowALauncherEndedAndWhetherItRanOthers) {
+  for (const bool runs_others : {false, true}) {
+    Supervised c("sleep 1000");
+    const std::string others = runs_others ? "sleep 1 & " : "";
+    const auto launcher =
+        spawn({{"sh", "-c", others + "sleep 1000 & wait $!; exit 0"}, {}, "/dev/null"});
+    ASSERT_TRUE(launcher);
+    int child = 0;
+    while (child == 0) {
+      for (const Relative& each : descendants_of(*launcher)) {
+        std::ifstream command("/proc/" + std::to_string(each.pid) + "/cmdline", std::ios::binary);
+        std::string text(std::istreambuf_iterator<char>(command), {});
+        if (text.find("1000") != std::string::npos && text.starts_with("sleep")) child = each.pid;
+      }
+    }
+    c.supervisor->adopt(ComponentId(0), child, live_now());
+    EXPECT_FALSE(c.launcher().has_ended);
+    kill(child, SIGKILL);
+    const LauncherSeen seen = c.launcher();
+    EXPECT_TRUE(seen.has_ended);
+    EXPECT_FALSE(seen.has_crashed);
+    EXPECT_EQ(seen.ran_others, runs_others);
+    waitpid(*launcher, nullptr, 0);
+  }
+}
+
+// What culprit starts while the launcher runs stands in for the launch, and says so itself.
+TEST(Supervisor, WhatItStartsWhileTheLauncherRunsStandsInForTheLaunch) {
+  Supervised c("sleep 1000", "0/stand_in");
+  const auto launcher = spawn({{"sh", "-c", "sleep 1000 & sleep 1001 & wait"}, {}, "/dev/null"});
   ASSERT_TRUE(launcher);
   const int child = a_child_of(*launcher);
   c.supervisor->adopt(ComponentId(0), child, live_now());
   kill(child, SIGKILL);
-  EXPECT_NE(c.trouble().find("had started c, and ended with it"), std::string::npos);
+  c.state(ProcessState::kGone);
+  const int pid = c.start();
+  EXPECT_EQ(place_held_by(pid).launcher, *launcher);
+  EXPECT_TRUE(place_held_by(pid).goes_on);
+  // The next culprit knows it by its mark.
+  c.supervise();
+  const StartedHere again = c.started();
+  EXPECT_EQ(again.pid, pid);
+  EXPECT_EQ(again.launcher, *launcher);
+  EXPECT_FALSE(c.launcher().has_ended);
+  const auto listed = started_processes("0/stand_in");
+  ASSERT_EQ(listed.size(), 1u);
+  EXPECT_EQ(listed[0].component, "c");
+  EXPECT_EQ(listed[0].launcher, *launcher);
+  kill(*launcher, SIGKILL);
   waitpid(*launcher, nullptr, 0);
+  const LauncherSeen ended = c.launcher();
+  EXPECT_TRUE(ended.has_ended);
+  EXPECT_TRUE(ended.has_crashed);
+  EXPECT_FALSE(place_held_by(pid).goes_on);
+  // A culprit that comes after the end is told of it at once.
+  c.supervise();
+  EXPECT_TRUE(c.launcher().has_ended);
+  c.supervisor->end_with_launch(ComponentId(0));
+  EXPECT_EQ(c.state(ProcessState::kGone).cause, Cause::kWish);
+  EXPECT_TRUE(started_processes("0/stand_in").empty());
+}
+
+// With no culprit there any more.
+TEST(StartedProcesses, AreEndedAsALaunchEndsThem) {
+  const test::TestFolder folder;
+  Supervised c("sh -c \"trap '' INT; sleep 1000 & while :; do wait; done\"", "0/left_behind");
+  const int pid = c.start();
+  const auto found = started_processes("0/left_behind");
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].pid, pid);
+  EXPECT_EQ(found[0].launcher, 0);
+  auto another = found;
+  another[0].since -= 10s;  // a process that had the number before
+  EXPECT_TRUE(end_processes(another).empty());
+  EXPECT_EQ(started_processes("0/left_behind").size(), 1u);
+  EXPECT_TRUE(end_processes(found).empty());
+  EXPECT_TRUE(started_processes("0/left_behind").empty());
+}
+
+// Its launcher started another one meanwhile.
+TEST(Supervisor, AStopThatIsMeantForAProcessNeverReachesItsSuccessor) {
+  Supervised c("sleep 1000");
+  const int first = c.start();
+  kill(first, SIGKILL);
+  c.state(ProcessState::kGone);
+  const int second = c.start();
+  c.supervisor->stop({9}, ComponentId(0), first, Ending::kToStartAgain);
+  EXPECT_EQ(c.reply_to({9}).outcome, Outcome::kDone);
+  EXPECT_EQ(kill(second, 0), 0);
+  EXPECT_NE(state_letter(second).value_or('Z'), 'Z');
 }
 
 // Whether somebody wanted the end of a process, whoever started it.
@@ -284,7 +369,7 @@ TEST(Supervisor, TellsWhetherAnEndWasWanted) {
   EXPECT_EQ(own.state(ProcessState::kGone).cause, Cause::kWish);
   kill(own.start(), SIGSTOP);
   EXPECT_EQ(own.state(ProcessState::kStopped).cause, Cause::kFault);
-  own.supervisor->stop({2}, ComponentId(0), Ending::kForGood);
+  own.supervisor->stop({2}, ComponentId(0), 0, Ending::kForGood);
   const ProcessSeen by_culprit = own.state(ProcessState::kGone);
   EXPECT_EQ(by_culprit.remark, "killed by signal 9") << "it was stopped";
   EXPECT_EQ(by_culprit.cause, Cause::kWish);
@@ -382,7 +467,7 @@ TEST(Supervisor, StartsAndStopsPolitely) {
   const int pid = c.start();
   EXPECT_TRUE(exists(pid));
   EXPECT_EQ(getpgid(pid), pid) << "it leads its own process group";
-  c.supervisor->stop({2}, ComponentId(0), Ending::kForGood);
+  c.supervisor->stop({2}, ComponentId(0), 0, Ending::kForGood);
   EXPECT_EQ(c.state(ProcessState::kGone).remark, "killed by signal 2");
   EXPECT_EQ(c.reply_to({2}).outcome, Outcome::kDone);
 }
@@ -413,7 +498,7 @@ TEST(Supervisor, KillsWhatHangsSoon) {
   Supervised c("sh -c 'trap \\\"\\\" INT TERM; echo ready; while true; do sleep 0.1; done'");
   const int pid = c.start();
   c.log_when("ready");
-  c.supervisor->stop({2}, ComponentId(0), Ending::kForGood, Hangs::kYes);
+  c.supervisor->stop({2}, ComponentId(0), 0, Ending::kForGood, Hangs::kYes);
   EXPECT_EQ(c.state(ProcessState::kGone).remark, "killed by signal 9") << "not by SIGTERM";
   EXPECT_EQ(c.reply_to({2}).outcome, Outcome::kDone);
   EXPECT_FALSE(exists(pid));
@@ -423,8 +508,8 @@ TEST(Supervisor, KillsSoonWhatIsKnownToHangOnlyWhileItIsEnded) {
   Supervised c("sh -c 'trap \\\"\\\" INT TERM; echo ready; while true; do sleep 0.1; done'");
   const int pid = c.start();
   c.log_when("ready");
-  c.supervisor->stop({2}, ComponentId(0), Ending::kToStartAgain);
-  c.supervisor->stop({3}, ComponentId(0), Ending::kToStartAgain, Hangs::kYes);
+  c.supervisor->stop({2}, ComponentId(0), 0, Ending::kToStartAgain);
+  c.supervisor->stop({3}, ComponentId(0), 0, Ending::kToStartAgain, Hangs::kYes);
   EXPECT_EQ(c.state(ProcessState::kGone).remark, "killed by signal 9") << "not by SIGTERM";
   EXPECT_EQ(c.reply_to({3}).outcome, Outcome::kDone);
   EXPECT_FALSE(exists(pid));
@@ -433,8 +518,8 @@ TEST(Supervisor, KillsSoonWhatIsKnownToHangOnlyWhileItIsEnded) {
 TEST(Supervisor, AnswersAllWhoWaitForOneEnd) {
   Supervised c("sleep 1000");
   c.start();
-  c.supervisor->stop({2}, ComponentId(0), Ending::kForGood);
-  c.supervisor->stop({3}, ComponentId(0), Ending::kForGood, Hangs::kYes);
+  c.supervisor->stop({2}, ComponentId(0), 0, Ending::kForGood);
+  c.supervisor->stop({3}, ComponentId(0), 0, Ending::kForGood, Hangs::kYes);
   EXPECT_EQ(c.reply_to({2}).outcome, Outcome::kDone);
   EXPECT_EQ(c.reply_to({3}).outcome, Outcome::kDone);
 }
@@ -530,13 +615,13 @@ TEST(Supervisor, DoesNotReplaceWhatADebuggerHolds) {
   ptrace(PTRACE_INTERRUPT, pid, nullptr, nullptr);
   for (const Time end = live_now() + 20s; state_letter(pid) != 't' && live_now() < end;)
     std::this_thread::sleep_for(1ms);
-  c.supervisor->stop({3}, ComponentId(0), Ending::kToStartAgain, Hangs::kYes);
+  c.supervisor->stop({3}, ComponentId(0), 0, Ending::kToStartAgain, Hangs::kYes);
   const Reply refused = c.reply_to({3});
   EXPECT_EQ(refused.outcome, Outcome::kRefused);
   EXPECT_NE(refused.text.find("is not replaced while a debugger holds it"), std::string::npos)
       << refused.text;
   EXPECT_TRUE(exists(pid));
-  c.supervisor->stop({4}, ComponentId(0), Ending::kForGood, Hangs::kYes);
+  c.supervisor->stop({4}, ComponentId(0), 0, Ending::kForGood, Hangs::kYes);
   EXPECT_EQ(c.reply_to({4}).outcome, Outcome::kDone);
 }
 
@@ -607,7 +692,7 @@ TEST(Supervisor, AdoptsAndEndsAProcessThatWasThere) {
   ASSERT_TRUE(foreign);
   c.supervisor->adopt(ComponentId(0), *foreign, live_now());
   EXPECT_EQ(c.state(ProcessState::kRunning).pid, *foreign);
-  c.supervisor->stop({2}, ComponentId(0), Ending::kForGood);
+  c.supervisor->stop({2}, ComponentId(0), 0, Ending::kForGood);
   EXPECT_EQ(c.reply_to({2}).outcome, Outcome::kDone);
   EXPECT_FALSE(exists(*foreign)) << "what is a child of this program is reaped, too";
 }
@@ -693,7 +778,7 @@ TEST(Supervisor, TakesOverWhatAnotherOneOfTheSameRobotStarted) {
   EXPECT_EQ(second.state(ProcessState::kRunning).pid, pid);
   second.supervisor->start({3}, ComponentId(0));
   EXPECT_EQ(second.reply_to({3}).outcome, Outcome::kRefused);
-  second.supervisor->stop({2}, ComponentId(0), Ending::kForGood);
+  second.supervisor->stop({2}, ComponentId(0), 0, Ending::kForGood);
   EXPECT_EQ(second.reply_to({2}).outcome, Outcome::kDone);
   EXPECT_FALSE(exists(pid));
   EXPECT_NE(second.start(), pid);
@@ -726,7 +811,7 @@ TEST(Supervisor, AdoptsAProcessAgainOnlyIfItIsTheSameOne) {
   c.supervisor->adopt_again(ComponentId(0), *foreign, live_now());
   c.supervisor->start({3}, ComponentId(0));
   EXPECT_EQ(c.reply_to({3}).outcome, Outcome::kRefused);
-  c.supervisor->stop({4}, ComponentId(0), Ending::kForGood);
+  c.supervisor->stop({4}, ComponentId(0), 0, Ending::kForGood);
   EXPECT_EQ(c.reply_to({4}).outcome, Outcome::kDone);
   EXPECT_FALSE(exists(*foreign));
 }
@@ -851,12 +936,12 @@ TEST(Supervisor, DoesNotEndAnotherProgramThanTheComponentWas) {
   ASSERT_TRUE(becomes(node, "sleep"));
   ASSERT_TRUE(becomes(victim, "tail"));
   c.supervisor->adopt(ComponentId(0), node, live_now());
-  c.supervisor->stop({2}, ComponentId(0), Ending::kForGood);
+  c.supervisor->stop({2}, ComponentId(0), 0, Ending::kForGood);
   EXPECT_EQ(c.reply_to({2}).outcome, Outcome::kDone);
   EXPECT_FALSE(is_alive(node));
 
   c.supervisor->adopt(ComponentId(0), victim, live_now());
-  c.supervisor->stop({3}, ComponentId(0), Ending::kForGood);
+  c.supervisor->stop({3}, ComponentId(0), 0, Ending::kForGood);
   const Reply reply = c.reply_to({3});
   EXPECT_EQ(reply.outcome, Outcome::kRefused);
   EXPECT_NE(reply.text.find("tail of user"), std::string::npos) << reply.text;
@@ -877,7 +962,7 @@ TEST(Supervisor, LeavesTheGroupOfSomebodyElseAloneAndSaysWhatStays) {
   const int child = started.front().pid;
   ASSERT_TRUE(becomes(child, "sleep"));
   c.supervisor->adopt(ComponentId(0), node, live_now());
-  c.supervisor->stop({2}, ComponentId(0), Ending::kForGood);
+  c.supervisor->stop({2}, ComponentId(0), 0, Ending::kForGood);
   const std::string told = c.trouble();
   EXPECT_EQ(told, "c was ended, and what it had started goes on: process " + std::to_string(child) +
                       " (sleep)");

@@ -251,6 +251,7 @@ Expected<UnitState> SystemdBus::state_of(const std::string& unit) {
   auto result = text(*path, kServiceUnit, "Result");
   if (!result) return Error{result.error()};
   state.result = std::move(*result);
+  state.is_orderly = state.activity == UnitState::Activity::kInactive && state.result == "success";
   return state;
 }
 

@@ -192,9 +192,12 @@ void Units::look_at(ComponentId component, const UnitState& state) {
       state.activity == Activity::kFailed && (is_first || before->second != Activity::kFailed);
   before_.insert_or_assign(component, state.activity);
   if (state.is_over() && (has_failed || has_ended)) {
+    const bool is_ours = ended_here_.contains(component);
     inbox_.put(ProcessSeen{component, ProcessState::kGone, is_here() ? state.last_main_pid : 0,
-                           in_words(state, name_of(component))});
+                           in_words(state, name_of(component)),
+                           state.is_orderly && !is_ours ? Cause::kOrder : Cause::kUnknown});
   }
+  if (!state.is_over()) ended_here_.erase(component);
 }
 
 // That it is lost is said at once; that it is back, when its nodes had the time to be heard again.
@@ -386,6 +389,7 @@ bool Units::begin_end(Errand& errand, const UnitState& state) {
   const auto asked =
       is_to_replace ? bus.restart(name, polite_for(errand)) : bus.stop(name, polite_for(errand));
   if (!asked) return answer(errand, Outcome::kRefused, asked.error());
+  ended_here_.insert(errand.component);
   errand.was_asked = true;
   errand.main_pid = state.main_pid;
   const bool acts = !is_here() || (!is_stopped(errand.pid) && !is_stopped(errand.main_pid));

@@ -25,6 +25,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <thread>
 #include <vector>
 
@@ -158,6 +159,7 @@ class Units {
   Engine docker_{EngineContainer::Engine::kDocker, host_};
   Engine podman_{EngineContainer::Engine::kPodman, host_};
   std::map<ComponentId, UnitState::Activity> before_;
+  std::set<ComponentId> ended_here_;  // on culprit's request, and not seen to run since
   std::map<ComponentId, Elsewhere> elsewhere_;
   int failures_ = 0;          // in a row, to ask the computer
   bool is_reached_ = true;    // as it was told

@@ -237,6 +237,24 @@ TEST_F(UnitsOnAStandInForSystemd, ThatFailedBeforeAnybodyLookedAreDead) {
   EXPECT_EQ(seen->remark, "lidar.service failed: exit-code");
 }
 
+// As systemctl stop leaves them; what culprit ended itself is not a person's order.
+TEST_F(UnitsOnAStandInForSystemd, ThatEndInAnOrderlyWayAreToldAsAnOrder) {
+  for (const bool by_culprit : {false, true}) {
+    const int pid = by_culprit ? now_running() : running();
+    std::this_thread::sleep_for(2 * Units::kIdlePeriod);  // it was seen to run
+    if (by_culprit) {
+      EXPECT_EQ(stop(pid, Ending::kForGood).outcome, Outcome::kDone);
+    } else {
+      systemd.say("inactive", 0);
+    }
+    const auto seen = wait_for<ProcessSeen>(
+        [](const ProcessSeen& each) { return each.state == ProcessState::kGone; });
+    ASSERT_TRUE(seen);
+    EXPECT_EQ(seen->cause, by_culprit ? Cause::kUnknown : Cause::kOrder);
+    systemd.say("", 0);
+  }
+}
+
 // Somebody may have stopped it on purpose.
 TEST_F(UnitsOnAStandInForSystemd, ThatWereInactiveFromTheBeginningProveNothing) {
   EXPECT_EQ(stop(0).outcome, Outcome::kDone);

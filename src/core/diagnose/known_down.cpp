@@ -2,10 +2,13 @@
 
 #include <algorithm>
 
+#include "knowledge/awaited_container.h"
+
 namespace culprit::diagnose {
 
 bool is_known_down(ComponentId component, const Knowledge& knowledge) {
-  return knowledge.components[component].process != ProcessState::kRunning;
+  return knowledge.components[component].process != ProcessState::kRunning &&
+         !awaited_container(component, knowledge);
 }
 
 bool replaces(const Strategy& strategy, ComponentId component) {

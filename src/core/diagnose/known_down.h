@@ -3,14 +3,15 @@
 //
 // Such a process does not come back by itself, whatever else is repaired, and nothing of it is left
 // that a replacement could disturb. So its component has a cause of its own, and its replacement
-// waits for no other failure.
+// waits for no other failure. What ended with its container has none: the container's replacement brings
+// it back.
 #pragma once
 
 #include "knowledge/knowledge.h"
 
 namespace culprit::diagnose {
 
-// Is the process of `component` gone or stopped?
+// Is the process of `component` gone or stopped, and no container's replacement awaited?
 bool is_known_down(ComponentId component, const Knowledge& knowledge);
 
 // Does the strategy start a process of `component`?

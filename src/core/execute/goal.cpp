@@ -147,10 +147,10 @@ Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowled
     case AdaptationType::kRedeploy: {
       GoneGoal gone;
       PresentGoal back = present(adaptation, knowledge);
-      // systemd may be faster than the news of the end; and a container may be replaced for one of
-      // those that it loads.
+      // A process that took its place meanwhile is not ended. systemd may be faster than the news of the
+      // end; and a container may be replaced for one of those that it loads.
       const Component& component = knowledge.rules[adaptation.component];
-      if (component.has_owner() || component.composed ||
+      if (component.has_owner() || component.composed || state.known_pid() != 0 ||
           is_container(adaptation.component, knowledge.rules)) {
         gone.pid = state.known_pid();
         back.instead_of = gone.pid;

@@ -4,6 +4,8 @@
 #include <cassert>
 
 #include "execute/evidence.h"
+#include "knowledge/awaited_container.h"
+#include "knowledge/describe.h"
 #include "language/evaluate.h"
 
 namespace culprit {
@@ -37,14 +39,18 @@ Governor::Held in_words(const Departures::Departure& departure, const std::strin
   const std::string launcher = "process " + std::to_string(departure.launcher);
   switch (departure.what) {
     case What::kIsEnding:
+      if (departure.launcher == 0)
+        return {Restraint::kLeaving,
+                component + " ended in an orderly way; its owner is asked whether it was told to",
+                departure.until};
       return {Restraint::kLeaving,
-              "what " + launcher + " had started is being ended, " + component + " with it",
+              "the launch of " + launcher + " is being ended, " + component + " with it",
               departure.until};
-    case What::kHasEnded:
-      return {Restraint::kLaunchEnded,
-              "somebody ended " + launcher + " and what it had started, " + component +
-                  " with it; start it again, or order this strategy",
-              departure.until};
+    case What::kStaysDown:
+      return {
+          Restraint::kLaunchEnded,
+          describe(departure, component) + "; start it again, or let culprit do it: culprit revive",
+          departure.until};
     case What::kIsBack:
       break;
   }
@@ -128,6 +134,16 @@ std::optional<std::string> Governor::objection(const Order& order, Autonomy auto
                  return is_there ? std::nullopt : Objection("it is not silenced");
                },
                [&](const RunStrategy& o) { return objection_to_run(o.strategy, autonomy); },
+               [&](const Revive&) -> Objection {
+                 return stays_anything_down() ? std::nullopt : Objection("nothing stays down");
+               },
+               [&](const EndStarted&) -> Objection {
+                 if (autonomy == Autonomy::kAdvise) return "culprit only advises, and ends nothing";
+                 if (is_paused_) return "culprit is paused, and ends nothing; resume it first";
+                 return knowledge_.departures.started().empty()
+                            ? Objection("nothing runs that culprit started")
+                            : std::nullopt;
+               },
                [&](const Forget& o) -> Objection {
                  if (o.rule && o.rule->index >= rules.rules.size()) return "there is no such rule";
                  return std::nullopt;
@@ -193,7 +209,8 @@ void Governor::obey(const Order& order, Time now) {
                  std::erase_if(silences_, [&](const ActiveSilence& s) { return s.what == o.what; });
                },
                // The manager's.
-               [](const SetDryRun&) {}, [](const RunStrategy&) {}, [](const Forget&) {}},
+               [](const SetDryRun&) {}, [](const RunStrategy&) {}, [](const Forget&) {},
+               [](const Revive&) {}, [](const EndStarted&) {}},
       order.what);
 }
 
@@ -257,6 +274,7 @@ std::optional<Governor::Held> Governor::restraint_on(StrategyId id, Time now) co
   if (auto reason = launch_of_the_unseen(knowledge_.rules[id], knowledge_))
     return Held{Restraint::kNeverSeen, std::move(*reason), kNever};
   if (auto held = departure(knowledge_.rules[id], now)) return held;
+  if (auto held = container_to_come(knowledge_.rules[id])) return held;
   if (auto held = lack_of_evidence(knowledge_.rules[id], now)) return held;
   return limits_.on(id, now);
 }
@@ -301,6 +319,27 @@ std::optional<Governor::Held> Governor::departure(const Strategy& strategy, Time
     if (departure) return in_words(*departure, knowledge_.rules[component].name);
   }
   return std::nullopt;
+}
+
+// The container loads it again; to unload or to load it meanwhile would be in the way of that.
+std::optional<Governor::Held> Governor::container_to_come(const Strategy& strategy) const {
+  for (const ComponentId component : strategy.components) {
+    const auto container = awaited_container(component, knowledge_);
+    const bool is_its_own = container && std::ranges::count(strategy.components, *container) > 0;
+    if (container && !is_its_own)
+      return Held{Restraint::kContainer,
+                  knowledge_.rules[component].name + " ended with its container " +
+                      knowledge_.rules[*container].name + ", which is being replaced and loads it",
+                  later(knowledge_.now, knowledge_.rules.cycle)};
+  }
+  return std::nullopt;
+}
+
+bool Governor::stays_anything_down() const {
+  for (std::size_t c = 0; c < knowledge_.rules.components.size(); ++c) {
+    if (knowledge_.departures.stays_down(ComponentId(c))) return true;
+  }
+  return false;
 }
 
 std::optional<Governor::Held> Governor::lack_of_evidence(const Strategy& strategy, Time now) const {

@@ -34,6 +34,8 @@ class Governor {
     Limits::Options limits{};
     StormWatch::Options storm{};
     bool needs_evidence = false;  // before a process is ended (evidence.h)
+    // A launch that ends so soon after a crash that it may have ended because of that is started again.
+    bool revives_in_doubt = false;
 
     // Nothing is limited unless it is asked for: a study measures the planner. This is what a
     // robot is run with; why these numbers, says docs/governor.md.
@@ -118,6 +120,8 @@ class Governor {
   std::optional<std::string> objection_by_when(const Strategy& strategy) const;
   std::optional<Held> restraint_by_person(StrategyId strategy) const;
   std::optional<Held> departure(const Strategy& strategy, Time now) const;
+  std::optional<Held> container_to_come(const Strategy& strategy) const;
+  bool stays_anything_down() const;
   std::optional<Held> lack_of_evidence(const Strategy& strategy, Time now) const;
   // What no person can order either.
   std::optional<Held> interlock() const;

@@ -4,8 +4,17 @@
 #include <utility>
 
 namespace culprit {
+namespace {
 
-Departures::Departures(const RuleSet& rules) : members_(rules.components.size()) {}
+// A crash, and the good-bye on the wire that shows it to be an orderly end after all.
+constexpr Duration kOneEnd = std::chrono::milliseconds(100);
+
+}  // namespace
+
+Departures::Departures(const RuleSet& rules) : members_(rules.components.size()) {
+  for (std::size_t c = 0; c < rules.components.size(); ++c)
+    members_[c].has_owner = rules.components[c].has_owner();
+}
 
 const Departures::Launch* Departures::launch_of(ComponentId component) const {
   const int launcher = members_[component.index].launcher;
@@ -17,66 +26,299 @@ Departures::Launch* Departures::launch_of(ComponentId component) {
   return const_cast<Launch*>(std::as_const(*this).launch_of(component));
 }
 
-bool Departures::was_ended(const Launch& launch, const Member& member) const {
-  return launch.ended != kNever && launch.is_wish && launch.left > 1 && member.has_left;
+// ---- what is seen
+
+void Departures::arrived(ComponentId component, int pid, Time at) {
+  Member& member = members_[component.index];
+  has_changed_ = true;
+  if (pid != 0 && member.started_pid == pid) {
+    member.is_there = true;
+    member.has_left = false;
+    return;
+  }
+  // Of a launch that ended unseen there may be a new one, which has been there for long.
+  const bool is_back = member.down && member.down != StaysDown::Why::kUnseen;
+  member = {.is_there = true, .has_owner = member.has_owner};
+  if (is_back) member.back = at;
+  forget_unused_launches();
 }
 
-void Departures::arrived(ComponentId component, Time at) {
-  Member& member = members_[component.index];
-  const Launch* launch = launch_of(component);
-  const bool is_back = launch != nullptr && was_ended(*launch, member);
-  member = {};
-  if (is_back) member.back = at;
-  std::erase_if(launches_, [&](const Launch& each) {
-    return std::ranges::find(members_, each.launcher, &Member::launcher) == members_.end();
-  });
+void Departures::started_here(const StartedHere& seen, Time at) {
+  Member& member = members_[seen.component.index];
+  has_changed_ = true;
+  member.started_pid = seen.pid;
+  member.since = at - seen.runs_for;
+  member.is_ours = true;
+  member.launcher = seen.launcher;
+  if (seen.launcher != 0 && launch_of(seen.component) == nullptr)
+    launches_.push_back({.launcher = seen.launcher});
+  forget_unused_launches();
 }
 
 void Departures::launched(ComponentId component, int launcher) {
-  members_[component.index].launcher = launcher;
-  members_[component.index].has_left = false;
-  if (launcher == 0) return;
-  // A number that was given out anew is another launcher.
-  std::erase_if(launches_,
-                [&](const Launch& l) { return l.launcher == launcher && l.ended != kNever; });
-  if (launch_of(component) == nullptr) launches_.push_back({.launcher = launcher});
+  Member& member = members_[component.index];
+  has_changed_ = true;
+  if (!member.is_ours || member.launcher != launcher) {
+    member.launcher = launcher;
+    member.is_ours = false;
+    member.has_left = false;
+    if (launcher == 0) return;
+    // PIDs are reused: another launcher has the number of one that ended.
+    std::erase_if(launches_,
+                  [&](const Launch& l) { return l.launcher == launcher && l.ended != kNever; });
+    if (launch_of(component) == nullptr) launches_.push_back({.launcher = launcher});
+  }
+  if (Launch* launch = launch_of(component)) launch->was_seen = true;
 }
 
-void Departures::launcher_ended(int launcher, Time at) {
-  const auto found = std::ranges::find(launches_, launcher, &Launch::launcher);
-  if (found != launches_.end() && found->ended == kNever) found->ended = at;
+void Departures::launcher_ended(const LauncherSeen& seen, Time at) {
+  const auto found = std::ranges::find(launches_, seen.pid, &Launch::launcher);
+  if (found == launches_.end()) return;
+  has_changed_ = true;
+  found->ran_others |= seen.ran_others;
+  if (found->ended != kNever) return;
+  found->ended = at;
+  found->has_crashed = seen.has_crashed;
 }
 
 void Departures::left(ComponentId component, Time at) {
+  Member& member = members_[component.index];
   Launch* launch = launch_of(component);
-  if (launch == nullptr || std::exchange(members_[component.index].has_left, true)) return;
-  const bool is_first = later(launch->left_at, kTogether) < at;
-  if (is_first) {
+  const bool was_crash = member.has_left && member.has_crashed && launch != nullptr &&
+                         launch->fell == component && at <= later(launch->fell_at, kOneEnd);
+  if (was_crash) {
+    launch->fell_at = std::exchange(launch->fell_before, kLongAgo);
+    launch->fell.reset();
+    member.has_crashed = false;
+  } else if (std::exchange(member.has_left, true)) {
+    return;
+  }
+  has_changed_ = true;
+  if (member.has_owner) member.owner_is_asked_until = later(at, kAlone);
+  if (launch == nullptr) return;
+  if (launch->left == 0 || later(launch->left_at, kTogether) < at) {
     launch->left = 0;
-    launch->is_wish = later(launch->fell_at, kTogether) < at;
+    launch->left_first = at;
   }
   ++launch->left;
   launch->left_at = at;
 }
 
 void Departures::fell(ComponentId component, Time at) {
+  Member& member = members_[component.index];
+  if (std::exchange(member.has_left, true)) return;
+  has_changed_ = true;
+  member.has_crashed = true;
   Launch* launch = launch_of(component);
-  if (launch == nullptr || std::exchange(members_[component.index].has_left, true)) return;
-  launch->fell_at = at;
+  if (launch == nullptr) return;
+  const bool are_leaving = launch->left > 0 && later(launch->left_at, kTogether) >= at;
+  if (are_leaving || launch->ended != kNever) return;
+  launch->fell_before = std::exchange(launch->fell_at, at);
+  launch->fell = component;
+}
+
+void Departures::ended_here(ComponentId component, Time at) {
+  if (std::exchange(members_[component.index].has_left, true)) return;
+  has_changed_ = true;
+  if (Launch* launch = launch_of(component)) launch->ended_here_at = at;
+}
+
+void Departures::lost(ComponentId component) {
+  has_changed_ |= !std::exchange(members_[component.index].has_left, true);
+}
+
+void Departures::ended_by_order(ComponentId component, StaysDown::Why why) {
+  Member& member = members_[component.index];
+  if (member.down) return;
+  has_changed_ = true;
+  member.down = why;
+  member.is_told = false;
+}
+
+void Departures::is_up(ComponentId component) {
+  Member& member = members_[component.index];
+  if (member.down == StaysDown::Why::kShutDown) member.down.reset();
+}
+
+// ---- what people order
+
+void Departures::revive(std::optional<ComponentId> component) {
+  for (std::size_t c = 0; c < members_.size(); ++c) {
+    if (component && component->index != c) continue;
+    Member& member = members_[c];
+    if (!std::exchange(member.down, std::nullopt)) continue;
+    member.launcher = 0;
+    member.owner_is_asked_until = kLongAgo;
+  }
+  forget_unused_launches();
+}
+
+void Departures::end_started() {
+  for (Member& member : members_) {
+    if (!member.is_ours || !member.is_there || member.has_left || member.down) continue;
+    member.down = StaysDown::Why::kOrder;
+    member.is_told = false;
+    has_changed_ = true;
+  }
+}
+
+// ---- what follows
+
+bool Departures::is_original_left(const Launch& launch) const {
+  return std::ranges::any_of(members_, [&](const Member& m) {
+    return m.launcher == launch.launcher && !m.is_ours && !m.has_left;
+  });
+}
+
+bool Departures::has_stand_in(const Launch& launch) const {
+  return std::ranges::any_of(
+      members_, [&](const Member& m) { return m.launcher == launch.launcher && m.is_ours; });
+}
+
+bool Departures::is_any_orphan() const {
+  return std::ranges::any_of(members_, [](const Member& m) {
+    return m.is_there && !m.is_ours && !m.has_left && m.launcher == 0;
+  });
+}
+
+// @pre its launcher has ended
+Departures::Verdict Departures::verdict(const Launch& launch, Time now) const {
+  if (launch.has_crashed) return {Verdict::What::kGoesOn};
+  const bool are_leaving = launch.left > 0 && launch.left_first <= later(launch.ended, kTogether) &&
+                           launch.ended <= later(launch.left_at, kTogether);
+  const bool is_over = (are_leaving && launch.left > 1) || !is_original_left(launch);
+  if (!is_over) {
+    const Time until = later(launch.ended, kTogether);
+    return now < until ? Verdict{Verdict::What::kOpen, until} : Verdict{Verdict::What::kGoesOn};
+  }
+  // culprit did not run when the launcher ended, so it may have crashed: then others run on.
+  if (!launch.was_seen) {
+    const Time until = later(launch.ended, kAlone);
+    if (now < until) return {Verdict::What::kOpen, until};
+    if (is_any_orphan()) return {Verdict::What::kGoesOn};
+    return {Verdict::What::kEnded, kNever, StaysDown::Why::kUnseen};
+  }
+  if (!are_leaving && !launch.ran_others && !has_stand_in(launch)) return {Verdict::What::kGoesOn};
+  const Time began = are_leaving ? std::min(launch.left_first, launch.ended) : launch.ended;
+  const auto is_soon_after = [&](Time at) {
+    return at != kLongAgo && at <= began && began <= later(at, kDoubt);
+  };
+  if (is_soon_after(launch.ended_here_at)) return {Verdict::What::kBroken};
+  if (!is_soon_after(launch.fell_at))
+    return {Verdict::What::kEnded, kNever, StaysDown::Why::kPerson};
+  if (!are_leaving && !launch.ran_others) return {Verdict::What::kGoesOn};
+  if (revives_) return {Verdict::What::kBroken};
+  return {Verdict::What::kEnded, kNever, StaysDown::Why::kDoubt, began - launch.fell_at};
+}
+
+// Its components are of no launch from now on.
+void Departures::dissolve(const Launch& launch) {
+  const int launcher = launch.launcher;
+  for (Member& member : members_) {
+    if (member.launcher == launcher) member.launcher = 0;
+  }
+}
+
+Departures::Settled Departures::settle(Time now) {
+  Settled settled;
+  if (!has_changed_ && now < settles_at_) return settled;
+  has_changed_ = false;
+  settles_at_ = kNever;
+  for (Launch& launch : launches_) {
+    if (launch.ended == kNever) continue;
+    if (launch.verdict.what == Verdict::What::kOpen) launch.verdict = verdict(launch, now);
+    switch (launch.verdict.what) {
+      case Verdict::What::kOpen:
+        settles_at_ = std::min(settles_at_, launch.verdict.until);
+        break;
+      case Verdict::What::kBroken:
+        settled.broken.push_back(launch.launcher);
+        dissolve(launch);
+        break;
+      case Verdict::What::kGoesOn:
+        dissolve(launch);
+        break;
+      case Verdict::What::kEnded:
+        for (Member& member : members_) {
+          const bool runs = !member.is_ours && !member.has_left;
+          if (member.launcher != launch.launcher || runs || member.down) continue;
+          member.down = launch.verdict.why;
+          member.is_told = false;
+        }
+        break;
+    }
+  }
+  for (std::size_t c = 0; c < members_.size(); ++c) {
+    Member& member = members_[c];
+    if (!member.down || std::exchange(member.is_told, true)) continue;
+    StaysDown down{{ComponentId(c)}, *member.down};
+    const Launch* launch = launch_of(ComponentId(c));
+    if (launch != nullptr && launch->verdict.what == Verdict::What::kEnded) {
+      down.launcher = launch->launcher;
+      if (down.why == StaysDown::Why::kDoubt) {
+        down.fell = launch->fell;
+        down.after = launch->verdict.after;
+      }
+    }
+    const auto same = std::ranges::find_if(settled.down, [&](const StaysDown& each) {
+      return each.why == down.why && each.launcher == down.launcher;
+    });
+    if (same == settled.down.end()) {
+      settled.down.push_back(std::move(down));
+    } else {
+      same->components.emplace_back(c);
+    }
+  }
+  forget_unused_launches();
+  return settled;
+}
+
+void Departures::remember(const StaysDown& told) {
+  for (const ComponentId component : told.components) {
+    Member& member = members_[component.index];
+    member.down = told.why;
+    member.is_told = true;
+    member.has_left = true;
+  }
+}
+
+void Departures::forget_unused_launches() {
+  std::erase_if(launches_, [&](const Launch& each) {
+    return std::ranges::find(members_, each.launcher, &Member::launcher) == members_.end();
+  });
 }
 
 std::optional<Departures::Departure> Departures::of(ComponentId component, Time now) const {
   const Member& member = members_[component.index];
   if (member.back != kLongAgo && now < later(member.back, kBack))
     return Departure{What::kIsBack, member.launcher, later(member.back, kBack)};
+  if (member.down) return Departure{What::kStaysDown, member.launcher, kNever, *member.down};
+  if (now < member.owner_is_asked_until)
+    return Departure{What::kIsEnding, 0, member.owner_is_asked_until};
   const Launch* launch = launch_of(component);
   if (launch == nullptr || launch->left == 0) return std::nullopt;
-  if (was_ended(*launch, member)) return Departure{What::kHasEnded, launch->launcher, kNever};
+  const bool together = launch->left > 1 || (has_stand_in(*launch) && !is_original_left(*launch));
   const Time until = launch->ended != kNever
                          ? later(std::max(launch->left_at, launch->ended), kAlone)
-                         : later(launch->left_at, launch->left > 1 ? kTogether : kAlone);
+                         : later(launch->left_at, together ? kTogether : kAlone);
   if (until <= now) return std::nullopt;
   return Departure{What::kIsEnding, launch->launcher, until};
+}
+
+int Departures::to_end(ComponentId component) const {
+  const Member& member = members_[component.index];
+  return member.down && member.is_ours && member.is_there && !member.has_left ? member.started_pid
+                                                                              : 0;
+}
+
+std::vector<Departures::Started> Departures::started() const {
+  std::vector<Started> all;
+  for (std::size_t c = 0; c < members_.size(); ++c) {
+    const Member& member = members_[c];
+    if (member.is_ours && member.is_there && !member.has_left)
+      all.push_back({ComponentId(c), member.started_pid, member.launcher, member.since});
+  }
+  return all;
 }
 
 }  // namespace culprit

@@ -1,25 +1,31 @@
-// Who leaves, and whether that is a launch which somebody ends.
+// Which components leave together, whether a person ended them, and what culprit started in their place.
 //
-// What one process has started (a launch file, a shell) ends with it: on Ctrl-C all get the same
-// signal, and end one after the other, each in its own time. Whoever started one of them anew
-// meanwhile would fight the person who pressed it. So, of what has one launcher:
+// A launch is a process (a launch file, a shell) with the components that it started. On Ctrl-C all of
+// them get the same signal, and end one after the other, each in its own time. A component that culprit
+// starts while its launcher runs stands in for the launch: it belongs to the launch, and ends with it.
 //
-//   one left by somebody's wish     the others may be about to: nobody knows for kAlone
-//   several did                     they leave together, until none has for kTogether
-//   and their launcher ended        that was the wish. What left is not there to be brought back
-//                                   until somebody starts it again
-//   somebody started it again       it has kBack to speak
+//   one component leaves politely      the others may be about to: it is kept back for kAlone
+//   several do                         they leave together, until none has for kTogether
+//   the launcher ends with them        the launch has ended. Its components stay down until a person
+//                                      starts one again, or orders so (Revive)
+//   a person started it again          it has kBack to come up
 //
-// A launch may also end because something in it broke (on_exit=Shutdown() in a launch file), or
-// because culprit ended something in it. That is nobody's wish: once its launcher has ended, too,
-// what left may be brought back.
+// A launch that lived on for kDoubt after a crash was ended by a person. One that ends sooner may have
+// ended because of the crash (on_exit=Shutdown() in a launch file): that is in doubt. These are not the
+// end of a launch:
+//
+//   the launcher crashed, or only its own process ended      its nodes run on
+//   all that it ran had crashed                              it had nothing left to do
+//   culprit ended one of its components within kDoubt        the launch ended because of that
 #pragma once
 
 #include <optional>
 #include <vector>
 
 #include "base/time.h"
+#include "knowledge/stays_down.h"
 #include "language/rule_set.h"
+#include "robot/observation.h"
 
 namespace culprit {
 
@@ -29,55 +35,140 @@ class Departures {
   // ros2 launch asks a second time after 5 s, and kills after another 5 s.
   static constexpr Duration kTogether = std::chrono::seconds(11);
   static constexpr Duration kBack = std::chrono::seconds(10);
+  static constexpr Duration kDoubt = std::chrono::seconds(2);
 
   explicit Departures(const RuleSet& rules);
+  // A launch that ends in doubt is taken for one that broke: its components may be started again.
+  void revive_in_doubt() { revives_ = true; }
 
-  // A process of the component began. Who started it is not known, or it is culprit.
-  void arrived(ComponentId component, Time at);
-  // It was started by process `launcher`, which is no supervisor, and not culprit.
+  // ---- what is seen
+
+  // A process of the component began.
+  void arrived(ComponentId component, int pid, Time at);
+  // culprit started that process; told before it arrives.
+  void started_here(const StartedHere& seen, Time at);
+  // Another process, `launcher`, which is no supervisor, started it.
   void launched(ComponentId component, int launcher);
-  void launcher_ended(int launcher, Time at);
-  // It left: of its own or of somebody's will, as it seems. Again, for what left already: nothing.
+  void launcher_ended(const LauncherSeen& seen, Time at);
+  // It left: of its own or of a person's will, as it seems. Again, for what left already: nothing.
   void left(ComponentId component, Time at);
-  // It did not want to: it broke, or culprit ended it.
+  // It crashed.
   void fell(ComponentId component, Time at);
-  // It is gone, and nobody knows why.
-  void lost(ComponentId component) { members_[component.index].has_left = true; }
+  // culprit ended it.
+  void ended_here(ComponentId component, Time at);
+  // It is gone, and it is not known why.
+  void lost(ComponentId component);
+  // A person told its owner to end it (systemctl stop, docker stop), or shut its node down.
+  void ended_by_order(ComponentId component, StaysDown::Why why);
+  // Its node is not shut down any more.
+  void is_up(ComponentId component);
+
+  // ---- what people order
+
+  // Nothing stays down for what happened until now; of one component, or of all.
+  void revive(std::optional<ComponentId> component = {});
+  // Every component whose process culprit started stays down.
+  void end_started();
+
+  // ---- what follows
+
+  // What is decided now of launches that have ended.
+  struct Settled {
+    std::vector<StaysDown> down;  // the components that stay down from now on
+    std::vector<int>
+        broken;  // launchers that ended with one component, so that the others start again
+  };
+  Settled settle(Time now);
+  Time next_settling() const { return settles_at_; }
+  // What an earlier run told.
+  void remember(const StaysDown& told);
 
   enum class What : std::uint8_t {
-    kIsEnding,  // the launch that the component belongs to
-    kHasEnded,  // likewise, because somebody wished it
-    kIsBack     // it was started again a moment ago
+    kIsEnding,   // the launch that the component belongs to
+    kStaysDown,  // it has ended
+    kIsBack      // it was started again a moment ago
   };
   struct Departure {
     What what = What::kIsEnding;
     int launcher = 0;
     Time until = kNever;
+    StaysDown::Why why = StaysDown::Why::kPerson;  // kStaysDown
   };
   // Nothing: it may be adapted.
   std::optional<Departure> of(ComponentId component, Time now) const;
+  bool stays_down(ComponentId component) const {
+    return members_[component.index].down.has_value();
+  }
+
+  // A process that culprit started and that runs.
+  struct Started {
+    ComponentId component;
+    int pid = 0;
+    int launcher = 0;  // of the launch that it stands in for; 0: of none
+    Time since{};
+  };
+  std::vector<Started> started() const;
+  // The process of the component that culprit started and that is to end, since the component stays
+  // down; 0: there is none.
+  int to_end(ComponentId component) const;
 
  private:
+  // On a launch whose launcher has ended.
+  struct Verdict {
+    enum class What : std::uint8_t {
+      kOpen,    // until then, or until more is seen
+      kGoesOn,  // it is no launch any more, and what is left of it is as any other
+      kBroken,  // likewise, and it ended because one of its components had
+      kEnded
+    } what = What::kOpen;
+    Time until = kNever;
+    StaysDown::Why why = StaysDown::Why::kPerson;
+    Duration after{};  // kDoubt
+  };
   struct Launch {
     int launcher = 0;
-    int left = 0;             // how many, since one fell last or none had left for kTogether
-    Time left_at = kLongAgo;  // the last one of them
-    Time fell_at = kLongAgo;  // one that did not want to
-    bool is_wish = false;     // the first of those that left was followed, and none fell before
-    Time ended = kNever;      // the launcher
+    int left = 0;              // how many, since none had left for kTogether
+    Time left_first = kNever;  // of them
+    Time left_at = kLongAgo;   // the last one of them
+    Time fell_at = kLongAgo;   // the last crash before they began to leave
+    std::optional<ComponentId> fell{};
+    Time fell_before = kLongAgo;    // the crash before that one
+    Time ended_here_at = kLongAgo;  // culprit ended one
+    Time ended = kNever;            // the launcher
+    bool has_crashed = false;       // it did
+    bool ran_others = false;        // when a component's process ended
+    bool was_seen = false;          // to run
+    Verdict verdict{};
   };
   struct Member {
     int launcher = 0;  // 0: none is known
+    bool is_there = false;
     bool has_left = false;
-    Time back = kLongAgo;  // after its launch had been ended
+    bool has_crashed = false;  // that was how it left
+    bool has_owner = false;    // UNIT, CONTAINER
+    int started_pid = 0;       // that culprit started last
+    Time since{};              // when it did
+    bool is_ours = false;      // the process that is there, or was last
+    Time back = kLongAgo;      // after it had stayed down
+    Time owner_is_asked_until = kLongAgo;
+    std::optional<StaysDown::Why> down{};
+    bool is_told = false;  // that it stays down
   };
 
   Launch* launch_of(ComponentId component);
   const Launch* launch_of(ComponentId component) const;
-  bool was_ended(const Launch& launch, const Member& member) const;
+  bool is_original_left(const Launch& launch) const;
+  bool has_stand_in(const Launch& launch) const;
+  bool is_any_orphan() const;
+  Verdict verdict(const Launch& launch, Time now) const;
+  void dissolve(const Launch& launch);
+  void forget_unused_launches();
 
   std::vector<Member> members_;  // by component
   std::vector<Launch> launches_;
+  bool revives_ = false;
+  bool has_changed_ = false;
+  Time settles_at_ = kNever;
 };
 
 }  // namespace culprit

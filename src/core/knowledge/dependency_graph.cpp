@@ -24,12 +24,21 @@ DependencyGraph::DependencyGraph(const RuleSet& rules)
   for (std::size_t c = 0; c < rules.components.size(); ++c) {
     if (!rules.components[c].node.empty()) intern_node(rules.components[c].node);
   }
-  for (const Dependency& d : rules.dependencies) {
-    const NodeId consumer = place_of(d.consumer);
-    const NodeId producer = place_of(d.producer);
-    nodes_[consumer.index].declared_producers.push_back(producer);
-    nodes_[producer.index].declared_consumers.push_back(consumer);
+  for (const Dependency& d : rules.dependencies) declare(d.consumer, d.producer);
+  // A component ends with its container.
+  for (std::size_t c = 0; c < rules.components.size(); ++c) {
+    const ComponentId component(c);
+    if (const auto container = container_of(component, rules)) declare(component, *container);
   }
+}
+
+void DependencyGraph::declare(ComponentId consumer, ComponentId producer) {
+  const NodeId from = place_of(consumer);
+  const NodeId to = place_of(producer);
+  std::vector<NodeId>& known = nodes_[from.index].declared_producers;
+  if (from == to || std::ranges::find(known, to) != known.end()) return;
+  known.push_back(to);
+  nodes_[to.index].declared_consumers.push_back(from);
 }
 
 NodeId DependencyGraph::add_node() {

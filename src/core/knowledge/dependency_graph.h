@@ -153,6 +153,7 @@ class DependencyGraph {
   };
   enum class Direction : std::uint8_t { kUpstream, kDownstream };
 
+  void declare(ComponentId consumer, ComponentId producer);
   NodeId add_node();
   // Makes one if the component has none. It gets its name when the node is seen.
   NodeId place_of(ComponentId component);

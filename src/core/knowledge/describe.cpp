@@ -204,6 +204,34 @@ class Describer {
                 ? ". Nothing is heard of any other computer: it may be this one that is cut off"
                 : "");
   }
+  std::string operator()(const StaysDown& e) const {
+    std::vector<std::string> names;
+    for (const ComponentId each : e.components) names.push_back(rules_[each].name);
+    const bool is_one = names.size() == 1;
+    const std::string who = listed(names) + (is_one ? " stays down: " : " stay down: ");
+    const std::string launcher = "process " + std::to_string(e.launcher);
+    const std::string remedy = std::string("; start ") + (is_one ? "it" : "them") +
+                               " again, or let culprit do it: culprit revive";
+    switch (e.why) {
+      case StaysDown::Why::kPerson:
+        return who + "a person ended the launch of " + launcher + remedy;
+      case StaysDown::Why::kDoubt:
+        return who + "the launch of " + launcher + " ended " + to_string(e.after) + " after " +
+               (e.fell ? rules_[*e.fell].name : "a component") +
+               " crashed; a person may have ended it, or its on_exit=Shutdown()" + remedy +
+               ". To start it again at once next time: culprit run --revive";
+      case StaysDown::Why::kUnseen:
+        return who + "the launch ended while culprit did not watch, so a person may have ended it" +
+               remedy;
+      case StaysDown::Why::kOwner:
+        return who + "its owner ended it in an orderly way, as on a person's order" + remedy;
+      case StaysDown::Why::kShutDown:
+        return who + "its node was shut down" + remedy;
+      case StaysDown::Why::kOrder:
+        return who + "a person ended what culprit had started" + remedy;
+    }
+    return who;
+  }
   std::string operator()(const HostBack& e) const { return e.host + " is heard again"; }
   std::string operator()(const ValueUnknown& e) const {
     const Input& input = rules_[e.input];
@@ -237,6 +265,8 @@ class Describer {
     return "the silence of " + name_of(o.what) + " is lifted";
   }
   std::string operator()(const RunStrategy& o) const { return "run " + with_rule(o.strategy); }
+  std::string operator()(const Revive&) const { return "start the components again that stay down"; }
+  std::string operator()(const EndStarted&) const { return "end the processes that culprit started"; }
   std::string operator()(const Forget& o) const {
     return "forget what was learned of " + (o.rule ? name_of(*o.rule) : "all strategies");
   }
@@ -392,6 +422,28 @@ std::string describe(const Input& input, const RuleSet& rules) {
       return call("isnan", rules[input.signal].name);
   }
   return "";
+}
+
+std::string describe(const Departures::Departure& departure, const std::string& component) {
+  const std::string launch = "the launch of process " + std::to_string(departure.launcher);
+  switch (departure.why) {
+    case StaysDown::Why::kPerson:
+      return departure.launcher == 0 ? "a person ended the launch of " + component
+                                     : "a person ended " + launch + ", " + component + " with it";
+    case StaysDown::Why::kDoubt:
+      return (departure.launcher == 0 ? "the launch of " + component : launch) +
+             " ended soon after a crash; a person may have ended it";
+    case StaysDown::Why::kUnseen:
+      return "the launch of " + component +
+             " ended while culprit did not watch; a person may have ended it";
+    case StaysDown::Why::kOwner:
+      return "the owner of " + component + " ended it in an orderly way, as on a person's order";
+    case StaysDown::Why::kShutDown:
+      return "the node of " + component + " was shut down";
+    case StaysDown::Why::kOrder:
+      return "a person ended " + component + ", which culprit had started";
+  }
+  return component + " stays down";
 }
 
 std::string listed(const std::vector<std::string>& items) {

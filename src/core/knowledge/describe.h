@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "knowledge/departures.h"
 #include "knowledge/event.h"
 
 namespace culprit {
@@ -15,6 +16,9 @@ std::string_view to_string(OutcomeCounted::As as);
 
 // As an expression has it: "segmentation_entropy", "age(/rgb)", "mean(load, 2s)"
 std::string describe(const Input& input, const RuleSet& rules);
+
+// Why it stays down: "a person ended the launch of process 50, camera with it". @pre it does
+std::string describe(const Departures::Departure& departure, const std::string& component);
 
 // "87.3 %", "60 %"
 std::string to_string(Probability probability);

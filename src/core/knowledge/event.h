@@ -8,6 +8,7 @@
 
 #include "knowledge/blindness.h"
 #include "knowledge/coming_up.h"
+#include "knowledge/stays_down.h"
 #include "knowledge/why_unknown.h"
 #include "language/rule_set.h"
 #include "robot/observation.h"
@@ -259,7 +260,8 @@ enum class Restraint : std::uint8_t {
   kEvidence,            // the process that it would end runs and publishes, or may hang
   kNeverSeen,           // it would start what was never seen
   kLeaving,             // what was started together is being ended together
-  kLaunchEnded,         // somebody has ended it, or has just started it again
+  kLaunchEnded,         // a person ended it, or may have, or has just started it again
+  kContainer,           // its container is being replaced, and then loads it
   kRestarts,            // it was restarted too often: a person must look
   kImpossible           // a last resort that cannot be carried out in the robot's present state
 };
@@ -371,7 +373,7 @@ class EventWhat
           OrderCarriedOut, SilenceEnded, StormBegan, StormEnded, LastResortReached,
           LifecycleIntended, CameUp, OutcomePending, OutcomeCounted, FailureFlaps,
           JudgementSuspended, JudgementResumed, SleepNoticed, NeverSeen, PriorsAdopted, HostSilent,
-          HostBack, ValueUnknown, LastResortDone, RuleBlind, RuleSees> {
+          HostBack, ValueUnknown, LastResortDone, RuleBlind, RuleSees, StaysDown> {
  public:
   using Variant = variant;
   using variant::variant;

@@ -41,6 +41,7 @@ constexpr std::array<EventWords, kKinds> kWords = [] {
       row<RuleExhausted>("rule_exhausted", "EXHAUSTED", kError, Tone::kAlarm, kStrong),
       row<ComponentLost>("component_lost", "lost", kWarning, Tone::kAlarm),
       row<ComponentFound>("component_found", "found", kInfo, Tone::kRelief),
+      row<StaysDown>("stays_down", "stays down", kWarning, Tone::kPerson, kStrong),
       row<NeverSeen>("never_seen", "never seen", kWarning, Tone::kWarning),
       row<RuleBlind>("rule_blind", "BLIND", kWarning, Tone::kWarning, kStrong),
       row<RuleSees>("rule_sees", "sees", kInfo, Tone::kRelief),

@@ -9,6 +9,7 @@
 //   ComponentFound                                                   which process it last ran in
 //   LifecycleIntended                                                where a new process is brought
 //   CameUp                                                           how long it is waited for
+//   StaysDown, OrderAccepted of Revive                               what a person ended
 //
 // Events of other kinds say nothing here.
 #pragma once

@@ -253,6 +253,17 @@ inline bool is_container(ComponentId component, const RuleSet& rules) {
          });
 }
 
+// The component that loads it; nothing: it lives in no container, or no component has that node.
+inline std::optional<ComponentId> container_of(ComponentId component, const RuleSet& rules) {
+  const auto& composed = rules[component].composed;
+  if (!composed) return std::nullopt;
+  for (std::size_t c = 0; c < rules.components.size(); ++c) {
+    if (rules.components[c].node == composed->container && c != component.index)
+      return ComponentId(c);
+  }
+  return std::nullopt;
+}
+
 // How long `cycles` last with this rule set.
 inline Duration duration_of(Cycles cycles, const RuleSet& rules) {
   return rules.cycle * cycles.count;

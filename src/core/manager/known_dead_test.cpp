@@ -269,9 +269,9 @@ RULE E
 constexpr int kLauncher = 50;
 const std::vector<std::string> kFive = {"a", "b", "c", "d", "e"};
 
-TestRobot launch_of_five() {
-  TestRobot robot(kFiveRules);
-  for (const std::string& name : kFive) robot.add(name, {}, "/" + name);
+TestRobot launch_of_five(const Manager::Options& options = {}) {
+  TestRobot robot(kFiveRules, std::make_unique<BayesPlanner>(), options);
+  for (const std::string& name : kFive) robot.add(name, {}, "/" + name).launcher = kLauncher;
   robot.discover();
   for (const std::string& name : kFive) {
     robot.tell(EndpointAppeared{"/" + name, EndpointKind::kPublisher, "/" + name});
@@ -279,6 +279,12 @@ TestRobot launch_of_five() {
   }
   robot.run_for(6s);
   return robot;
+}
+
+Manager::Options reviving() {
+  Manager::Options options;
+  options.governor.revives_in_doubt = true;
+  return options;
 }
 
 void end_launcher(TestRobot& robot) {
@@ -294,10 +300,12 @@ TEST(ALaunch, OfFiveThatSomebodyEndsIsNotStartedAgain) {
   end_launcher(robot);
   robot.run_for(1min);
   EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
-  EXPECT_EQ(robot.count("A.redeploy_a is held back: what process 50 had started is being ended"),
-            1u)
+  EXPECT_EQ(robot.count("A.redeploy_a is held back: the launch of process 50 is being ended"), 1u)
       << transcript(robot);
-  EXPECT_EQ(robot.count("is held back: somebody ended process 50"), 5u) << transcript(robot);
+  EXPECT_EQ(robot.count("is held back: a person ended the launch of process 50"), 5u)
+      << transcript(robot);
+  EXPECT_EQ(robot.count("a, b, c, d and e stay down: a person ended the launch of process 50"), 1u)
+      << transcript(robot);
   for (const std::string& name : kFive) robot.start_by_hand(name);
   robot.run_for(Departures::kBack);
   EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
@@ -331,9 +339,31 @@ TEST(ALaunch, OfWhichOneAloneEndedIsCompletedAgain) {
   EXPECT_GE(chosen->at - left, Departures::kAlone);
 }
 
-// on_exit=Shutdown(): its launcher ended the rest because one had broken.
-TEST(ALaunch, ThatEndsBecauseOneBrokeIsBroughtBack) {
+// on_exit=Shutdown(), or a person who was quick.
+TEST(ALaunch, ThatEndsSoonAfterACrashStaysDownAndSaysWhy) {
   TestRobot robot = launch_of_five();
+  robot.kill("a");
+  robot.run_for(500ms);
+  for (const std::string name : {"b", "c", "d", "e"}) robot.leave(name);
+  robot.run_for(200ms);
+  end_launcher(robot);
+  robot.run_for(100ms);
+  EXPECT_EQ(robot.count("stay down: the launch of process 50 ended 500ms after a crashed"), 1u)
+      << transcript(robot);
+  EXPECT_TRUE(robot.manager().knowledge().departures.stays_down(robot.id("a")));
+  const std::size_t asked = robot.asked.size();
+  robot.run_for(1min);
+  EXPECT_EQ(robot.asked.size(), asked) << transcript(robot);
+  robot.order({1, "anna", "", Revive{}});
+  robot.run_for(1min);
+  for (const std::string name : {"b", "c", "d", "e"})
+    EXPECT_TRUE(robot.works(name)) << name << transcript(robot);
+  EXPECT_FALSE(robot.manager().knowledge().departures.stays_down(robot.id("a")));
+}
+
+// on_exit=Shutdown(): its launcher ended the rest because one had broken.
+TEST(ALaunch, ThatEndsBecauseOneBrokeIsBroughtBackWithRevive) {
+  TestRobot robot = launch_of_five(reviving());
   robot.kill("a");
   robot.run_for(50ms);
   for (const std::string name : {"b", "c", "d", "e"}) robot.leave(name);
@@ -353,6 +383,230 @@ TEST(ALaunch, ThatEndsBecauseCulpritEndedOneIsBroughtBack) {
   end_launcher(robot);
   robot.run_for(1min);
   for (const std::string& name : kFive) EXPECT_TRUE(robot.works(name)) << name << transcript(robot);
+}
+
+// It had nothing left to run.
+TEST(ALaunch, OfOneThatCrashedEndsWithItAndItIsBroughtBack) {
+  TestRobot robot = launch_of_five();
+  for (const std::string name : {"b", "c", "d", "e"})
+    robot.tell(LauncherSeen{robot.id(name), kLauncher + 1, false});
+  robot.kill("a");
+  robot.tell(LauncherSeen{robot.id("a"), kLauncher, true});
+  robot.run_for(5s);
+  EXPECT_TRUE(robot.works("a")) << transcript(robot);
+  EXPECT_EQ(robot.count("stays down"), 0u) << transcript(robot);
+  robot.kill("a");
+  robot.run_for(20s);
+  EXPECT_TRUE(robot.works("a")) << "it stands in for nothing any more" << transcript(robot);
+}
+
+// It ran others, which the rules do not name.
+TEST(ALaunch, OfOthersThatEndsSoonAfterACrashStaysDown) {
+  TestRobot robot = launch_of_five();
+  for (const std::string name : {"b", "c", "d", "e"})
+    robot.tell(LauncherSeen{robot.id(name), kLauncher + 1, false});
+  robot.kill("a");
+  robot.tell(LauncherSeen{robot.id("a"), kLauncher, true, false, true});
+  robot.run_for(1min);
+  EXPECT_EQ(robot.count("a stays down: the launch of process 50"), 1u) << transcript(robot);
+}
+
+// What culprit started in place of one of a launch ends with the launch, whenever that is.
+TEST(ALaunch, TakesWhatStandsInForOneOfItAlong) {
+  for (const Duration after : {Duration(500ms), Duration(3s), Duration(8s), Duration(30s)}) {
+    TestRobot robot = launch_of_five();
+    const auto& departures = robot.manager().knowledge().departures;
+    robot.kill("a");
+    robot.run_for(after);
+    for (const std::string name : {"b", "c", "d", "e"}) robot.leave(name);
+    robot.run_for(300ms);
+    EXPECT_EQ(departures.to_end(robot.id("a")), 0) << "its launcher runs";
+    end_launcher(robot);
+    robot.run_for(5s);
+    for (const std::string& name : kFive)
+      EXPECT_TRUE(departures.stays_down(robot.id(name))) << name << transcript(robot);
+    EXPECT_EQ(departures.to_end(robot.id("a")), robot["a"].pid) << transcript(robot);
+    const std::size_t asked = robot.asked.size();
+    robot.leave("a");
+    robot.run_for(1min);
+    EXPECT_EQ(robot.asked.size(), asked) << transcript(robot);
+    EXPECT_TRUE(departures.started().empty());
+  }
+}
+
+// One of two, so that only one of it leaves by itself.
+TEST(ALaunch, OfTwoOfWhichOneWasReplacedIsEndedByAPerson) {
+  TestRobot robot = launch_of_five();
+  for (const std::string name : {"c", "d", "e"})
+    robot.tell(LauncherSeen{robot.id(name), kLauncher + 1, false});
+  robot.kill("a");
+  robot.run_for(3s);
+  ASSERT_TRUE(robot.works("a")) << transcript(robot);
+  const std::size_t asked = robot.asked.size();
+  robot.leave("b");
+  robot.run_for(8s);  // its launcher takes its time
+  EXPECT_EQ(robot.asked.size(), asked) << transcript(robot);
+  robot.tell(LauncherSeen{robot.id("b"), kLauncher, true});
+  robot.run_for(1min);
+  EXPECT_EQ(robot.asked.size(), asked) << transcript(robot);
+  EXPECT_EQ(robot.count("a and b stay down: a person ended the launch of process 50"), 1u)
+      << transcript(robot);
+  EXPECT_FALSE(robot.manager().knowledge().departures.stays_down(robot.id("c")));
+}
+
+// Its nodes run on, and so does what stands in for one of them.
+TEST(ALaunch, WhoseLauncherCrashesRunsOn) {
+  for (const bool is_known : {true, false}) {
+    TestRobot robot = launch_of_five();
+    robot.kill("a");
+    robot.run_for(3s);
+    robot.tell(LauncherSeen{robot.id("b"), kLauncher, true, is_known});
+    robot.run_for(1min);
+    EXPECT_EQ(robot.count("stay"), 0u) << transcript(robot);
+    robot.kill("b");
+    robot.run_for(5s);
+    EXPECT_TRUE(robot.works("b")) << transcript(robot);
+    EXPECT_EQ(robot.manager().knowledge().departures.to_end(robot.id("a")), 0);
+  }
+}
+
+// A strategy that has begun is left where it is.
+TEST(ALaunch, ThatEndsWhileOneOfItIsBroughtBackIsNotStartedAgain) {
+  TestRobot robot = launch_of_five();
+  robot["a"].start_time = 4s;
+  robot.kill("a");
+  robot.run_for(2500ms);
+  for (const std::string name : {"b", "c", "d", "e"}) robot.leave(name);
+  end_launcher(robot);
+  robot.run_for(100ms);
+  EXPECT_EQ(robot.count("A.redeploy_a is left where it is: a stays down"), 1u) << transcript(robot);
+  robot.run_for(1min);
+  EXPECT_EQ(robot.count_asked("start process"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.manager().knowledge().departures.to_end(robot.id("a")), robot["a"].pid);
+}
+
+// PIDs are reused.
+TEST(ALaunch, IsNotTakenForAnEarlierOneWithItsNumber) {
+  TestRobot robot = launch_of_five();
+  for (const std::string& name : kFive) robot.leave(name);
+  end_launcher(robot);
+  robot.run_for(1s);
+  for (const std::string& name : kFive) {
+    robot.start_by_hand(name);
+    robot.tell(LauncherSeen{robot.id(name), kLauncher, false});
+  }
+  robot.run_for(15s);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+  robot.kill("a");
+  robot.run_for(5s);
+  EXPECT_TRUE(robot.works("a")) << transcript(robot);
+}
+
+// What an earlier culprit told counts, until a person orders otherwise.
+TEST(ALaunch, ThatWasEndedStaysDownForTheNextCulprit) {
+  TestRobot robot = launch_of_five();
+  for (const std::string& name : kFive) robot.leave(name);
+  end_launcher(robot);
+  robot.run_for(1s);
+  History past;
+  for (const Event& event : robot.events) {
+    if (std::holds_alternative<StaysDown>(event.what)) past.push_back(event);
+  }
+  ASSERT_EQ(past.size(), 1u);
+  Manager::Options options;
+  options.start = robot.now;
+  auto next = std::make_unique<Manager>(robot.rules(), std::make_unique<BayesPlanner>(), options);
+  next->remember(past);
+  KnownRobot known = robot.manager().knowledge().known_robot();
+  next->remember(known);
+  robot.replace_manager(std::move(next));
+  robot.run_for(1min);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+  robot.order({1, "anna", "", Revive{}});
+  robot.run_for(1min);
+  EXPECT_TRUE(robot.works("c")) << transcript(robot);
+}
+
+// What a culprit that was killed had started stands in for a launch that has ended since.
+TEST(ALaunch, ThatEndedWhileNoCulpritRanTakesItsStandInAlong) {
+  for (const bool are_others_there : {false, true}) {
+    TestRobot robot = launch_of_five();
+    if (!are_others_there) {
+      for (const std::string name : {"b", "c", "d", "e"})
+        robot["" + name].process = ProcessState::kGone;
+    }
+    Manager::Options options;
+    options.start = robot.now;
+    robot.replace_manager(
+        std::make_unique<Manager>(robot.rules(), std::make_unique<BayesPlanner>(), options));
+    robot.tell(StartedHere{robot.id("a"), 400, kLauncher, 1min});
+    robot.tell(ProcessSeen{robot.id("a"), ProcessState::kRunning, 400, ""});
+    robot.tell(LauncherSeen{robot.id("a"), kLauncher, true});
+    if (are_others_there)
+      robot.tell(ProcessSeen{robot.id("b"), ProcessState::kRunning, robot["b"].pid, ""});
+    robot.run_for(3s);
+    const auto& departures = robot.manager().knowledge().departures;
+    EXPECT_EQ(departures.to_end(robot.id("a")), are_others_there ? 0 : 400) << transcript(robot);
+    ASSERT_EQ(departures.started().size(), 1u);
+    EXPECT_GT(robot.now - departures.started().front().since, 1min);
+  }
+}
+
+TEST(ALaunch, WhatCulpritStartedIsEndedOnAPersonsOrder) {
+  TestRobot robot = launch_of_five();
+  robot.order({1, "anna", "", EndStarted{}});
+  EXPECT_EQ(robot.count("nothing runs that culprit started"), 1u) << transcript(robot);
+  robot.kill("a");
+  robot.run_for(5s);
+  robot.order({2, "anna", "", EndStarted{}});
+  robot.run_for(100ms);
+  EXPECT_EQ(robot.count("a stays down: a person ended what culprit had started"), 1u)
+      << transcript(robot);
+  EXPECT_EQ(robot.manager().knowledge().departures.to_end(robot.id("a")), robot["a"].pid);
+  robot.leave("a");
+  robot.run_for(1min);
+  EXPECT_EQ(robot.count_asked("start process"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.manager().knowledge().departures.stays_down(robot.id("b")), false);
+}
+
+// ---- what its owner was told to end, and what was shut down
+
+TEST(AnOwner, ThatWasToldToEndItsProcessIsNotToldToStartItAgain) {
+  std::string rules = kPatientRules;
+  rules.replace(rules.find("LAUNCH \"camera\""), 15, "UNIT camera.service");
+  TestRobot robot = robot_with(rules);
+  robot.leave("camera");  // the kernel is faster than systemd
+  robot.run_for(500ms);
+  robot.tell(ProcessSeen{robot.id("camera"), ProcessState::kGone, robot["camera"].pid,
+                         "camera.service is inactive", Cause::kOrder});
+  robot.run_for(1min);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+  EXPECT_EQ(robot.count("camera stays down: its owner ended it in an orderly way"), 1u)
+      << transcript(robot);
+  robot.start_by_hand("camera");
+  robot.run_for(15s);
+  robot.kill("camera");
+  robot.run_for(5s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+}
+
+TEST(AShutdown, OfANodeIsNotUndone) {
+  const std::string rules = std::string(kPatientRules) + R"(
+RULE CameraInactive
+  POLICIES ERROR
+  TRIGGER lifecycle(camera) != "active"
+    STRATEGY renew 90 10
+      ADAPTATION camera redeploy 10
+)";
+  for (const bool is_shut_down : {true, false}) {
+    TestRobot robot = robot_with(rules);
+    robot["camera"].state = Lifecycle::kFinalized;
+    robot.tell(LifecycleRead{robot.id("camera"), Lifecycle::kFinalized, is_shut_down});
+    robot.run_for(10s);
+    EXPECT_EQ(robot.asked.empty(), is_shut_down) << transcript(robot);
+    EXPECT_EQ(robot.count("camera stays down: its node was shut down"), is_shut_down ? 1u : 0u)
+        << transcript(robot);
+  }
 }
 
 TEST(ALaunch, IsNotInTheWayOfWhatItDidNotStart) {

@@ -73,6 +73,7 @@ Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, O
       discovered_(later(options.start, options.discovery)),
       now_(options.start),
       held_back_(rules.rules.size()) {
+  if (options.governor.revives_in_doubt) knowledge_.departures.revive_in_doubt();
   knowledge_.beliefs.set_forgetting(options.forgetting);
   knowledge_.couplings.set_forgetting(options.forgetting);
   knowledge_.finding = options.governor.limits.quiet_downstream;
@@ -90,6 +91,10 @@ void Manager::remember(const History& past) {
 void Manager::resume(Interrupted interrupted) {
   if (autonomy_ == Autonomy::kAdvise) return;
   const StrategyId strategy = interrupted.strategy;
+  const bool is_down = std::ranges::any_of(
+      knowledge_.rules[strategy].components,
+      [&](ComponentId component) { return knowledge_.departures.stays_down(component); });
+  if (is_down) return;
   executor_.resume(std::move(interrupted), now_, discovered_);
   governor_.began(strategy, now_);
 }
@@ -140,6 +145,7 @@ void Manager::take_in(Time now, std::span<const Observation> observations) {
   knowledge_.now = now_;
   monitor_.advance(now_);
   if (hears_) analyzer_.advance(now_);
+  abandon_what_stays_down(now_);
   governor_.advance(now_);
   news_ |= !knowledge_.events.empty();
 }
@@ -190,10 +196,16 @@ void Manager::obey(const Order& order, Time now) {
     autonomy_ = dry_run->is_on ? Autonomy::kAdvise : Autonomy::kAct;
     knowledge_.states.advise_anew();
   } else if (const auto* run = std::get_if<RunStrategy>(&order.what)) {
+    for (const ComponentId component : knowledge_.rules[run->strategy].components)
+      knowledge_.departures.revive(component);
     if (knowledge_.rules[run->strategy].is_last_resort) go_before_others(run->strategy, now);
     begin(run->strategy, now);
   } else if (const auto* forgotten = std::get_if<Forget>(&order.what)) {
     forget(forgotten->rule);
+  } else if (std::holds_alternative<Revive>(order.what)) {
+    knowledge_.departures.revive();
+  } else if (std::holds_alternative<EndStarted>(order.what)) {
+    knowledge_.departures.end_started();
   }
 }
 
@@ -242,6 +254,27 @@ void Manager::abandon_all(const std::string& reason, Time now) {
     if (!last_resort) continue;
     knowledge_.events.tell(now, StrategyAbandoned{last_resort->strategy, reason});
     analyzer_.abandon_last_resort(RuleId(r), now);
+  }
+}
+
+// A strategy that had begun before starts no component again that a person ended.
+void Manager::abandon_what_stays_down(Time now) {
+  const bool is_any_new = std::ranges::any_of(knowledge_.events, [](const Event& event) {
+    return std::holds_alternative<StaysDown>(event.what);
+  });
+  if (!is_any_new) return;
+  const std::vector<RuleId> active = knowledge_.states.active();
+  for (const RuleId id : active) {
+    const auto& attempt = knowledge_.states[id].attempt;
+    if (!attempt) continue;
+    const auto& components = knowledge_.rules[attempt->strategy].components;
+    const auto down = std::ranges::find_if(components, [&](ComponentId component) {
+      return knowledge_.departures.stays_down(component);
+    });
+    if (down == components.end()) continue;
+    knowledge_.events.tell(
+        now, StrategyAbandoned{attempt->strategy, knowledge_.rules[*down].name + " stays down"});
+    analyzer_.abandon(id, now);
   }
 }
 

@@ -94,6 +94,7 @@ class Manager : public ManagingSystem {
   void adopt(const PriorsTold& told, Time now);
   void refresh_conditions(StrategyId strategy, Time now);
   void forget(std::optional<RuleId> rule);
+  void abandon_what_stays_down(Time now);
   void abandon_all(const std::string& reason, Time now);
   void make_way_for(StrategyId strategy, Time now);
   void plan(Time now, std::vector<Command>& commands);

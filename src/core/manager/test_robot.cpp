@@ -275,6 +275,7 @@ void TestRobot::resolve_fault(Component& c, const Command& command, bool is_done
 void TestRobot::start(Component& c, const Command& command) {
   c.start(++last_pid_);
   reply(command, Outcome::kDone, Value(std::int64_t{c.pid}));
+  observe(StartedHere{command.component, c.pid, c.launcher});
   observe(ProcessSeen{command.component, ProcessState::kRunning, c.pid, ""});
   if (c.dies_at_start) {
     return later(50ms, [this, &c, command] {

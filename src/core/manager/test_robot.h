@@ -52,6 +52,7 @@ class TestRobot {
     Duration activates_itself_after{};
     bool leaves_before_it_ends = false;  // the graph, as nodes in Python do
     bool fails_to_activate = false;      // with an error: it falls back to unconfigured
+    int launcher = 0;    // of the launch in which what culprit starts takes its place; 0: none
     std::string host{};  // another computer, where nobody can start or end it; empty: this one
   };
   Component& operator[](const std::string& name) { return components_.at(name); }

@@ -105,6 +105,7 @@ Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time dis
 
 void Monitor::observe(const Observation& observation, Time at) {
   std::visit([&](const auto& seen) { on(at, seen); }, observation.what);
+  settle_departures(at);
 }
 
 void Monitor::restart(Time now) {
@@ -131,6 +132,7 @@ void Monitor::restart(Time now) {
 }
 
 void Monitor::advance(Time now) {
+  settle_departures(now);
   while (const auto due = deadlines_.pop_due(now)) {
     if (*due < knowledge_.rules.inputs.size()) {
       update(InputId(*due), now);

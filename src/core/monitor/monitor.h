@@ -7,6 +7,7 @@
 // therefore costs no evaluation at all.
 #pragma once
 
+#include <algorithm>
 #include <set>
 #include <span>
 #include <string>
@@ -87,7 +88,9 @@ class Monitor {
 
   // Lets time pass: updates every value whose deadline has come.
   void advance(Time now);
-  Time next_deadline() const { return deadlines_.next(); }
+  Time next_deadline() const {
+    return std::min(deadlines_.next(), knowledge_.departures.next_settling());
+  }
 
   // Brings the values up to date that `program` reads. Triggers need no such thing (see above); a
   // WHEN condition or a parameter's new value does.
@@ -149,6 +152,8 @@ class Monitor {
   void on(Time at, const HostHeard& seen);
   void on(Time at, const EndsWith& seen);
   void on(Time at, const LauncherSeen& seen);
+  void on(Time at, const StartedHere& seen);
+  void settle_departures(Time now);
   void on(Time, const Reply&) {}  // the executor's
   void on(Time, const Order&) {}  // the governor's
   void on(Time at, const LinkTrouble& seen);

@@ -141,6 +141,7 @@ void Monitor::remember(const History& past) {
       state.coming_up = came_up->how;
       if (came_up->how.driver == ComingUp::Driver::kCulprit) state.culprit_raised = event.at;
     }
+    if (const auto* down = std::get_if<StaysDown>(&event.what)) write_.departures.remember(*down);
   }
 }
 
@@ -163,6 +164,9 @@ void Monitor::on(Time at, const LifecycleRead& seen) {
   if (is_primary && !state.took_place && knowledge_.states.reservation(seen.component) == nullptr)
     write_.components.intend_lifecycle(seen.component, seen.state, at, write_.events);
   if (seen.state != Lifecycle::kUnknown) state.took_place = false;
+  if (seen.is_shut_down && knowledge_.states.reservation(seen.component) == nullptr)
+    write_.departures.ended_by_order(seen.component, StaysDown::Why::kShutDown);
+  if (is_primary && seen.state != Lifecycle::kFinalized) write_.departures.is_up(seen.component);
   note_rise(seen.component, seen.state, at);
   if (is_up(seen.state) && state.awaits_ends_until != kLongAgo)
     await_ends_no_more(seen.component, at);
@@ -224,7 +228,7 @@ void Monitor::on(Time at, const ProcessSeen& seen) {
       seen.pid != present && (seen.pid != 0 || knowledge_.rules[seen.component].has_owner());
   if (is_other && state.in_graph && seen.state != ProcessState::kRunning) return;
   if (seen.state == ProcessState::kRunning && seen.pid != state.pid)
-    write_.departures.arrived(seen.component, at);
+    write_.departures.arrived(seen.component, seen.pid, at);
   set_process(state, seen.state, at);
   state.pid = seen.pid;
   state.process_remark = seen.remark;

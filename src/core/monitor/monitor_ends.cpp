@@ -5,8 +5,22 @@
 namespace culprit {
 
 void Monitor::on(Time at, const LauncherSeen& seen) {
-  if (seen.has_ended) return write_.departures.launcher_ended(seen.pid, at);
+  if (seen.has_ended) return write_.departures.launcher_ended(seen, at);
   write_.departures.launched(seen.component, seen.pid);
+}
+
+void Monitor::on(Time at, const StartedHere& seen) { write_.departures.started_here(seen, at); }
+
+// Whether a person ended it is known once its launcher has ended, too.
+void Monitor::settle_departures(Time now) {
+  Departures::Settled settled = write_.departures.settle(now);
+  for (StaysDown& down : settled.down) write_.events.tell(now, std::move(down));
+  for (const int launcher : settled.broken)
+    write_.events.tell(now,
+                       Trouble{"process " + std::to_string(launcher) +
+                               " ended all that it had started when one component of it ended. "
+                               "If its launch file says on_exit=Shutdown(), leave that out for "
+                               "what culprit redeploys"});
 }
 
 // Before what was known of its node is forgotten.
@@ -28,12 +42,17 @@ void Monitor::note_end(const ProcessSeen& seen, Time at) {
   const bool has_said_good_bye = !knowledge_.components[component].in_graph;
   note_no_longer_dead(component);
   if (knowledge_.states.reservation(component) != nullptr) {
-    write_.departures.fell(component, at);  // it is culprit that is at it
+    write_.departures.ended_here(component, at);
+  } else if (seen.cause == Cause::kOrder) {
+    write_.departures.left(component, at);
+    write_.departures.ended_by_order(component, StaysDown::Why::kOwner);
   } else if (has_said_good_bye) {
     write_.departures.lost(component);
   } else if (seen.cause == Cause::kWish) {
     write_.departures.left(component, at);
-  } else if (seen.cause == Cause::kUnknown) {
+  } else if (seen.cause == Cause::kFault) {
+    write_.departures.fell(component, at);
+  } else {
     write_.departures.lost(component);
   }
   if (!has_said_good_bye && seen.cause == Cause::kFault)
@@ -52,8 +71,6 @@ void Monitor::note_farewell(ComponentId component, Time at) {
 
 void Monitor::note_known_dead(ComponentId component, Time at) {
   write_.components.set_known_dead(component, at);
-  if (knowledge_.components[component].process == ProcessState::kGone)
-    write_.departures.fell(component, at);
   touch_topics_of(component);
 }
 

@@ -92,6 +92,7 @@ enum class Lifecycle : std::uint8_t {
 struct LifecycleRead {
   ComponentId component;
   Lifecycle state = Lifecycle::kUnknown;
+  bool is_shut_down = false;  // kFinalized: a shutdown was asked for; no error led there
 };
 
 enum class ProcessState : std::uint8_t {
@@ -106,8 +107,9 @@ enum class Cause : std::uint8_t {
   kUnknown,
   kFault,  // a signal that nobody ends a process with politely, or another exit code than 0; it was
            // stopped, and who started it was not
-  kWish    // exit code 0, SIGINT, SIGTERM or SIGHUP; culprit ended it; it was stopped with its
+  kWish,   // exit code 0, SIGINT, SIGTERM or SIGHUP; culprit ended it; it was stopped with its
            // launcher
+  kOrder   // its owner ended it in an orderly way, as systemctl stop and docker stop do
 };
 
 // What the operating system says about the process behind a component.
@@ -124,6 +126,17 @@ struct LauncherSeen {
   ComponentId component;
   int pid = 0;
   bool has_ended = false;
+  bool has_crashed = false;  // it has ended so; false if that is not known
+  bool ran_others = false;   // other processes, when the component's had ended
+};
+
+// culprit started the component's process `pid`, in this run or an earlier one. Told before its
+// ProcessSeen.
+struct StartedHere {
+  ComponentId component;
+  int pid = 0;
+  int launcher = 0;     // that had started the process in whose place it stands; 0: there is none
+  Duration runs_for{};  // until now
 };
 
 // A process whose node is still awaited did something since it was started, or since this was told
@@ -250,7 +263,7 @@ class ObservationWhat
                           ProcessSeen, Probed, Reply, LinkTrouble, Order, NamesakesSeen,
                           HearingLost, HearingRegained, Overslept, StatusHeard, ParametersListed,
                           ProcessWorked, HostReached, EndsWith, LauncherSeen, PriorsTold, LivesOn,
-                          HostHeard, ListenerKnown> {
+                          HostHeard, ListenerKnown, StartedHere> {
  public:
   using Variant = variant;
   using variant::variant;

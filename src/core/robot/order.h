@@ -55,11 +55,18 @@ struct Forget {
   std::optional<RuleId> rule{};
 };
 
+// What stays down may be started again: a person had ended it, or may have (StaysDown).
+struct Revive {};
+
+// What culprit started is ended, and stays down.
+struct EndStarted {};
+
 struct Order {
   std::uint64_t number = 0;  // of the sender's choosing, for it to know the answer by
   std::string author;        // who says so, for the record
   std::string reason;        // may be empty
-  std::variant<Pause, Resume, SetDryRun, Approve, Refuse, Silence, LiftSilence, RunStrategy, Forget>
+  std::variant<Pause, Resume, SetDryRun, Approve, Refuse, Silence, LiftSilence, RunStrategy, Forget,
+               Revive, EndStarted>
       what;
 };
 

@@ -81,6 +81,8 @@ std::optional<Observation> Translation::operator()(const Observation& observatio
     is_known = renumber(process->component, components_);
   } else if (auto* launcher = std::get_if<LauncherSeen>(&out.what)) {
     is_known = renumber(launcher->component, components_);
+  } else if (auto* started = std::get_if<StartedHere>(&out.what)) {
+    is_known = renumber(started->component, components_);
   } else if (auto* worked = std::get_if<ProcessWorked>(&out.what)) {
     is_known = renumber(worked->component, components_);
   } else if (auto* reached = std::get_if<HostReached>(&out.what)) {

@@ -1,0 +1,31 @@
+#include "knowledge/stays_down.h"
+
+namespace culprit {
+
+std::string_view to_string(StaysDown::Why why) {
+  switch (why) {
+    case StaysDown::Why::kPerson:
+      return "person";
+    case StaysDown::Why::kDoubt:
+      return "doubt";
+    case StaysDown::Why::kUnseen:
+      return "unseen";
+    case StaysDown::Why::kOwner:
+      return "owner";
+    case StaysDown::Why::kShutDown:
+      return "shut_down";
+    case StaysDown::Why::kOrder:
+      return "order";
+  }
+  return "";
+}
+
+std::optional<StaysDown::Why> reason_named(std::string_view name) {
+  using enum StaysDown::Why;
+  for (const StaysDown::Why each : {kPerson, kDoubt, kUnseen, kOwner, kShutDown, kOrder}) {
+    if (to_string(each) == name) return each;
+  }
+  return std::nullopt;
+}
+
+}  // namespace culprit
