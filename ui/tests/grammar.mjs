@@ -66,7 +66,7 @@ ADAPTATION arm call home "data: true" 4
 STRATEGY others 50 10
 ADAPTATION eye redeploy 10
 ADAPTATION lidar start 10
-ADAPTATION wheel stop 10
+THEN ADAPTATION wheel stop 10
 ADAPTATION slam call clear 1
 
 TEMPLATE looked_after(name, topic, patience = 2s, start = 50)
@@ -224,10 +224,11 @@ export async function writesEveryRow() {
       ['arm', 'change_mode', { mode: 'SLOW' }, '4'],
       ['arm', 'call', { service: 'home', request: 'data: true' }, '4'],
     ]
-    const kAlone = [['eye', 'redeploy', {}, '10'], ['lidar', 'start', {}, '10'], ['wheel', 'stop', {}, '10'], ['slam', 'call', { service: 'clear' }, '1']]
+    const kAlone = [['eye', 'redeploy', {}, '10'], ['lidar', 'start', {}, '10'], ['wheel', 'stop', {}, '10', 'then'], ['slam', 'call', { service: 'clear' }, '1']]
     const adaptations = async (within, all) => {
-      for (const [place, [who, type, members, impact]] of all.entries()) {
+      for (const [place, [who, type, members, impact, step]] of all.entries()) {
         if (place > 0) await add('Adaptation', within)
+        if (step) await check(within, step)
         await enter(within, 'component', who)
         await choose(within, 'type', type)
         for (const [member, value] of Object.entries(members)) await enter(within, member, value)

@@ -119,12 +119,27 @@ bool Knowledge::is_known_gone(ComponentId component) const {
   return state.pid != 0 && state.process == ProcessState::kGone && state.alive == false;
 }
 
+// A strategy in steps may also find done what an earlier try did for the start, and take that back.
 bool Knowledge::only_starts_the_gone(const Strategy& strategy) const {
-  return std::ranges::all_of(strategy.adaptations, [&](const Adaptation& adaptation) {
-    const bool starts =
-        adaptation.type == AdaptationType::kRedeploy || adaptation.type == AdaptationType::kStart;
-    return starts && rules[adaptation.component].can_start() && is_known_gone(adaptation.component);
-  });
+  using enum AdaptationType;
+  bool starts_any = false;
+  for (const Adaptation& adaptation : strategy.adaptations) {
+    const ComponentId component = adaptation.component;
+    const bool starts = adaptation.type == kRedeploy || adaptation.type == kStart;
+    const bool takes_back = std::ranges::any_of(strategy.adaptations, [&](const Adaptation& a) {
+      return a.type == kDeactivate && a.component == component && &a < &adaptation;
+    });
+    const bool is_done_step =
+        (adaptation.type == kStop && is_known_gone(component)) ||
+        (adaptation.type == kDeactivate && components[component].lifecycle == Lifecycle::kInactive);
+    if (starts && rules[component].can_start() && is_known_gone(component)) {
+      starts_any = true;
+    } else if (!strategy.has_steps() ||
+               !(is_done_step || (adaptation.type == kActivate && takes_back))) {
+      return false;
+    }
+  }
+  return starts_any;
 }
 
 Time Knowledge::began(ComponentId component) const {

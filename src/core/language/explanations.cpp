@@ -212,11 +212,13 @@ std::vector<Explanation> value_explanations() {
 std::vector<Explanation> rule_explanations() {
   return {
       {Code::kContradiction, "a strategy contradicts itself",
-       "All adaptations of a strategy are applied together. One that undoes or repeats another, or "
-       "that reconfigures a process which the same strategy ends, cannot have been meant: the "
+       "All adaptations of one step are applied together. One that undoes or repeats another, or "
+       "that reconfigures a process which the same step ends, cannot have been meant: the "
        "robot would be left in whichever state came last. A restart beside a redeploy of the same "
-       "component is in vain. A component may be started again after it was stopped. Alternatives "
-       "are strategies of their own.",
+       "component is in vain. A component may be started again after it was stopped. THEN begins a "
+       "step: a later step may take back what an earlier one did, as in deactivate THEN redeploy "
+       "another component THEN activate. Without THEN culprit takes such a strategy for steps, and "
+       "warns. Alternatives are strategies of their own.",
        "RULE CameraFails\n  POLICIES ERROR\n  TRIGGER rate(/robot/image) < 1\n"
        "    STRATEGY again 50 10\n      ADAPTATION camera deactivate 5\n"
        "      ADAPTATION camera activate 5\n",

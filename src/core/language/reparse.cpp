@@ -80,7 +80,7 @@ class Mover {
     move(range);
   }
   void move(syntax::Adaptation& a) const {
-    auto& [component, type, subject, topic, request, value, impact, span] = a;
+    auto& [component, type, subject, topic, request, value, impact, span, begins_step] = a;
     move(component);
     move(subject);
     move(topic);

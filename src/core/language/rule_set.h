@@ -166,12 +166,13 @@ struct Input {
 struct Adaptation {
   ComponentId component;
   AdaptationType type = AdaptationType::kSetParameter;
-  std::string subject;    // parameter, mode or service (absolute, or relative to the node)
-  ParameterId parameter;  // the same parameter; where there is one
-  Program value;          // set, increase and decrease parameter
-  std::string topic;      // change_communication
-  std::string request{};  // call: what the service is asked, "data: true"; empty: nothing
-  Cycles impact;          // paper: i_exec,a
+  std::string subject;       // parameter, mode or service (absolute, or relative to the node)
+  ParameterId parameter;     // the same parameter; where there is one
+  Program value;             // set, increase and decrease parameter
+  std::string topic;         // change_communication
+  std::string request{};     // call: what the service is asked, "data: true"; empty: nothing
+  Cycles impact;             // paper: i_exec,a
+  bool begins_step = false;  // THEN, or it takes back what was done for the one above
 };
 
 struct Strategy {
@@ -183,8 +184,13 @@ struct Strategy {
   bool is_last_resort = false;
   Duration within{};  // of a last resort: what the rule's other strategies have from the detection
   std::vector<Adaptation> adaptations;
-  Cycles impact;                        // paper: i_exec,s, the maximum over the adaptations
+  // paper: i_exec,s, the maximum over the adaptations. Of steps: the sum over them of their maxima.
+  Cycles impact;
   std::vector<ComponentId> components;  // that it adapts, each once, ascending
+
+  bool has_steps() const {
+    return std::ranges::any_of(adaptations, [](const Adaptation& a) { return a.begins_step; });
+  }
 };
 
 struct Policies {

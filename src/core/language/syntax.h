@@ -165,6 +165,7 @@ struct Adaptation {
   Seldom<Expression> value;
   Number impact;
   Span span;
+  bool begins_step = false;  // THEN: it begins when the one above is proven
 };
 
 struct Strategy {

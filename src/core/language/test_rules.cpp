@@ -292,7 +292,9 @@ void rule(File& file) {
     file.line(words({"STRATEGY", identifier(), number(), number(),
                      maybe(words({"LASTRESORT", maybe(words({"WITHIN", duration()}))})),
                      maybe(words({"WHEN", expression(2)}))}));
-    for (int adaptations = below(3); adaptations >= 0; --adaptations) file.line(adaptation_line());
+    file.line(adaptation_line());
+    for (int adaptations = below(3); adaptations > 0; --adaptations)
+      file.line(words({maybe("THEN"), adaptation_line()}));
     if (below(8) == 0) file.line(declaration());
   }
 }

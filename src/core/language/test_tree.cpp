@@ -63,7 +63,7 @@ class Writer {
 
   void put(const syntax::Adaptation& a) {
     all(a.component, std::string(keyword(a.type)), a.subject, a.topic, a.request, a.value, a.impact,
-        a.span);
+        a.span, a.begins_step);
   }
   void put(const syntax::Strategy& s) {
     all(s.name, s.probability, s.confidence, s.when, s.adaptations, s.is_last_resort, s.within,

@@ -43,6 +43,10 @@ struct Form {
   std::vector<std::string_view> types;
 };
 
+// What may stand in front of a keyword, and the member that says so.
+inline constexpr std::string_view kStepKeyword = "ADAPTATION";
+inline constexpr Clause kStep{"THEN", "then", Part::kFlag};
+
 // Statements of one keyword follow each other.
 std::span<const Form> forms();
 

@@ -19,6 +19,12 @@ class StatementReader {
       : source_(source), lexemes_(lexemes) {}
 
   Json read() {
+    if (text(0) == kStep.word) {
+      lexemes_ = lexemes_.subspan(1);
+      Json statement = read();
+      statement[std::string(kStep.member)] = true;
+      return statement;
+    }
     for (const Form& form : forms()) {
       if (fits(form)) return read(form);
     }
