@@ -13,7 +13,7 @@ COMPONENT arm NODE /arm LAUNCH "ros2 run arms arm" ENV "SPEED=2" SETUP /opt/arms
 COMPONENT lidar NODE /lidar UNIT lidar.service USER HOST robot@rover2 LIFECYCLE launcher
 COMPONENT slam NODE /slam CONTAINER podman slam
 COMPONENT eye NODE /eye IN /perception PLUGIN detect::Eye PACKAGE detect PARAMETERS /etc/eye.yaml REMAP image:=/rgb
-COMPONENT wheel NODE /wheel RESPAWNED LIFECYCLE self
+COMPONENT wheel NODE /wheel /wheel/odometry RESPAWNED LIFECYCLE self
 DEPENDENCY slam ON lidar eye
 IGNORE TOPIC /rosout /clock
 INTERLOCK limit == 1
@@ -134,7 +134,7 @@ export async function writesEveryRow() {
     await component('lidar', 'systemd', { unit: 'lidar.service', user: true, host: 'robot@rover2', lifecycle: 'launcher' })
     await component('slam', 'docker or podman', { container: 'podman slam' })
     await component('eye', 'a component container', { in: '/perception', plugin: 'detect::Eye', package: 'detect', parameters: '/etc/eye.yaml', remap: 'image:=/rgb' })
-    await component('wheel', 'its launcher, again and again', { lifecycle: 'self' })
+    await component('wheel', 'its launcher, again and again', { node: '/wheel /wheel/odometry', lifecycle: 'self' })
 
     await add('Dependency')
     await say('Dependency arm', { producers: 'lidar eye', consumer: 'slam' })

@@ -171,7 +171,7 @@ class Encoder {
   void write(const Probed& o, Duration age) {
     head(Tag::kProbed, age);
     out_.natural(o.component.index);
-    out_.byte(o.answered ? 1 : 0);
+    out_.byte(static_cast<std::uint8_t>((o.node & 0x7f) << 1 | (o.answered ? 1 : 0)));
   }
   void write(const Reply& o, Duration age) {
     head(Tag::kReply, age);
@@ -397,7 +397,8 @@ class Decoder {
       }
       case Tag::kProbed: {
         const auto component = id<ComponentId>(rules_.components.size());
-        return Probed{component, in_.byte() != 0};
+        const std::uint8_t how = in_.byte();
+        return Probed{component, (how & 1) != 0, static_cast<std::uint8_t>(how >> 1)};
       }
       case Tag::kReply:
         return reply();

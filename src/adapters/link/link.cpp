@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/tool_names.h"
+#include "base/tracer.h"
 #include "link/list_parameter.h"
 #include "ros2/process_finder.h"
 #include "ros2/services.h"
@@ -406,6 +407,7 @@ void Link::on_joined(const GraphNode& node) {
   for (auto& [manager, systems] : systems_) std::erase(systems, node.name);
   const auto component = binding_.bind(node.name);
   if (!component) return;
+  if (is_other_node(*component, node.name)) return other_node_joined(*component, node);
   make_link(*component, node.name)->lives_in(node.pid);
   lives_on(*component, host);
   if (node.pid == 0 || needs_of(*component, rules_).is_to_answer) {
@@ -415,13 +417,30 @@ void Link::on_joined(const GraphNode& node) {
   }
 }
 
+bool Link::is_other_node(ComponentId component, const std::string& node) const {
+  return binding_.has_several(component) && binding_.node_of(component) != node;
+}
+
+void Link::other_node_joined(ComponentId component, const GraphNode& node) {
+  const auto& others = binding_.other_nodes(component);
+  const auto place = std::ranges::find(others, node.name) - others.begin();
+  auto client = ServiceClient::create(
+      node_->entry(), {node.name + "/get_parameters", std::string(srv::GetParameters::kType)},
+      qos::kParameterServices);
+  if (!client) return;  // a secured domain need not allow it
+  other_nodes_[node.name] = {component,
+                             static_cast<std::uint8_t>(std::min<std::ptrdiff_t>(place + 1, 127)),
+                             node.pid, std::move(*client)};
+}
+
 void Link::on_left(const std::string& node, bool was_lost) {
   {
     const MutexLock lock(mutex_);
     nodes_elsewhere_.erase(node);
   }
-  if (const auto component = was_lost ? std::nullopt : binding_.bind(node))
-    lives_on(*component, "");
+  other_nodes_.erase(node);
+  const auto component = was_lost ? std::nullopt : binding_.bind(node);
+  if (component && !is_other_node(*component, node)) lives_on(*component, "");
   for (auto& [topic, nodes] : publishers_) nodes.erase(node);
   probed_.erase(node);
   pids_.erase(node);
@@ -450,7 +469,8 @@ void Link::on_system(const std::string& manager, const GraphEndpoint& service) {
 void Link::on_endpoint(const std::string& node, const GraphEndpoint& endpoint) {
   if (endpoint.kind == EndpointKind::kServer) {
     const auto component = binding_.bind(node);
-    if (component) make_link(*component, node)->service_seen(endpoint);
+    if (component && !is_other_node(*component, node))
+      make_link(*component, node)->service_seen(endpoint);
     if (endpoint.type == srv::ChangeMode::kType) on_system(node, endpoint);
   }
   if (endpoint.kind == EndpointKind::kPublisher) {
@@ -476,7 +496,7 @@ void Link::find_type(const std::string& node, const GraphEndpoint& endpoint, Top
 
 void Link::on_parameter_event(const msg::ParameterEvent& event) {
   const auto component = binding_.bind(event.node);
-  if (!component) return;
+  if (!component || is_other_node(*component, event.node)) return;
   for (const auto* changes : {&event.new_parameters, &event.changed_parameters}) {
     for (const msg::Parameter& changed : *changes) {
       for (std::size_t p = 0; p < rules_.parameters.size(); ++p) {
@@ -507,12 +527,27 @@ void Link::probe() {
       link->probe(each.pid, [this, host] { return hosts_->heard(host); });
     }
   }
+  probe_other_nodes();
   for (const Parameter& parameter : rules_.parameters) {
     if (ComponentLink* link = link_of(parameter.component)) link->check_parameters();
   }
   for (const Input& input : rules_.inputs) {
     if (input.kind != Input::Kind::kLifecycle || are_probed.contains(input.component)) continue;
     if (ComponentLink* link = link_of(input.component)) link->check_lifecycle();
+  }
+}
+
+void Link::probe_other_nodes() {
+  constexpr Duration kPatience = std::chrono::milliseconds(500);
+  for (const auto& each : other_nodes_) {
+    const OtherNode& other = each.second;
+    other.client->call(encode(srv::GetParameters::Request{}), Repeat::kUntilAnswered, kPatience,
+                       [this, component = other.component, place = other.place,
+                        pid = other.pid](const CallResult& result) {
+                         const bool has_answered = result.outcome == CallOutcome::kAnswered;
+                         const bool is_held = !has_answered && pid != 0 && is_traced(pid);
+                         if (!is_held) inbox_.put(Probed{component, has_answered, place});
+                       });
   }
 }
 

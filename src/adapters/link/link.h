@@ -118,6 +118,9 @@ class Link {
   void give_memory_back_soon();
   void on_joined(const GraphNode& node);
   void on_left(const std::string& node, bool was_lost);
+  bool is_other_node(ComponentId component, const std::string& node) const;
+  void other_node_joined(ComponentId component, const GraphNode& node);
+  void probe_other_nodes();
   void on_system(const std::string& manager, const GraphEndpoint& service);
   void on_endpoint(const std::string& node, const GraphEndpoint& endpoint);
   void find_type(const std::string& node, const GraphEndpoint& endpoint, TopicWatch& watch);
@@ -156,6 +159,14 @@ class Link {
     int pid = 0;  // 0: not known
   };
   std::map<std::string, ToProbe> probed_;  // by node
+  // Nodes that the process of a component has besides: whether they answer.
+  struct OtherNode {
+    ComponentId component;
+    std::uint8_t place = 1;  // Probed::node
+    int pid = 0;
+    std::unique_ptr<ServiceClient> client;
+  };
+  std::map<std::string, OtherNode> other_nodes_;  // by node
   Namesake namesake_;
   std::map<std::string, int> pids_;  // of nodes that are there; 0 where it is not known
   std::map<std::string, std::vector<std::string>> systems_;       // by the mode manager's node

@@ -23,6 +23,7 @@ DependencyGraph::DependencyGraph(const RuleSet& rules)
   ignored_.insert(rules.ignored_topics.begin(), rules.ignored_topics.end());
   for (std::size_t c = 0; c < rules.components.size(); ++c) {
     if (!rules.components[c].node.empty()) intern_node(rules.components[c].node);
+    for (const std::string& other : rules.components[c].other_nodes) intern_node(other);
   }
   for (const Dependency& d : rules.dependencies) {
     const NodeId consumer = place_of(d.consumer);
@@ -56,7 +57,12 @@ std::optional<NodeId> DependencyGraph::intern_node(const std::string& name) {
   std::optional<NodeId> id;
   if (component) id = nodes_of_components_[component->index];
   if (!id) id = add_node();
-  nodes_[id->index].name = name;
+  const bool is_other = component && binding_.node_of(*component) != name;
+  if (is_other) {
+    ++nodes_[id->index].names;
+  } else {
+    nodes_[id->index].name = name;
+  }
   nodes_[id->index].component = component;
   if (component) nodes_of_components_[component->index] = id;
   node_ids_[name] = *id;
@@ -78,18 +84,46 @@ std::optional<DependencyGraph::ChannelId> DependencyGraph::intern_channel(Endpoi
 bool DependencyGraph::node_appeared(const std::string& node) {
   const auto id = intern_node(node);
   if (!id || nodes_[id->index].is_present) return false;
+  Node& here = nodes_[id->index];
+  if (here.names > 1) {
+    parts_.insert(node);
+    if (!missing_node(*here.component).empty()) return false;
+  }
   whole_.reset();
   ++changes_;
-  return nodes_[id->index].is_present = true;
+  return here.is_present = true;
 }
 
 bool DependencyGraph::node_vanished(const std::string& node) {
   const auto id = node_ids_.find(node);
+  parts_.erase(node);
   if (id == node_ids_.end() || !nodes_[id->second.index].is_present) return false;
   nodes_[id->second.index].is_present = false;
   ++changes_;
   whole_.reset();
   return true;
+}
+
+void DependencyGraph::component_vanished(ComponentId component) {
+  node_vanished(binding_.node_of(component));
+  for (const std::string& other : binding_.other_nodes(component)) node_vanished(other);
+}
+
+bool DependencyGraph::has_any_node(ComponentId component) const {
+  if (!has_several_nodes(component)) return is_present(component);
+  return parts_.contains(binding_.node_of(component)) ||
+         std::ranges::any_of(binding_.other_nodes(component),
+                             [&](const std::string& other) { return parts_.contains(other); });
+}
+
+std::string DependencyGraph::missing_node(ComponentId component) const {
+  if (!has_several_nodes(component))
+    return is_present(component) ? "" : binding_.node_of(component);
+  if (!parts_.contains(binding_.node_of(component))) return binding_.node_of(component);
+  for (const std::string& other : binding_.other_nodes(component)) {
+    if (!parts_.contains(other)) return other;
+  }
+  return "";
 }
 
 void DependencyGraph::keep_ends(ComponentId component, bool is_kept) {

@@ -40,7 +40,6 @@ class DependencyGraph {
 
   // Each gives whether anything changed.
   bool node_appeared(const std::string& node);
-  // Also when a process is known to be dead before its node's lease runs out.
   bool node_vanished(const std::string& node);
   bool endpoint_appeared(const std::string& node, EndpointKind kind, const std::string& name);
   bool endpoint_vanished(const std::string& node, EndpointKind kind, const std::string& name);
@@ -53,7 +52,15 @@ class DependencyGraph {
   // Another number whenever a node or an end came or went.
   std::uint64_t changes() const { return changes_; }
 
+  // Of a component with several nodes: all of them are.
   bool is_present(ComponentId component) const;
+  // Any of its nodes is.
+  bool has_any_node(ComponentId component) const;
+  // The first of its nodes that is not there; empty: none is missing.
+  std::string missing_node(ComponentId component) const;
+  bool has_several_nodes(ComponentId component) const { return binding_.has_several(component); }
+  // All nodes of the component: as when its process is known to be dead.
+  void component_vanished(ComponentId component);
   // The full name of the component's node; empty while an undeclared one was not seen.
   const std::string& node_name(ComponentId component) const { return binding_.node_of(component); }
   // The component that this node is, if it is one.
@@ -136,7 +143,8 @@ class DependencyGraph {
   };
   struct Node {
     std::string name;
-    bool is_present = false;
+    bool is_present = false;  // with all its names
+    std::uint32_t names = 1;  // of a component with several nodes, which are one here: theirs
     bool keeps_ends = false;
     std::optional<ComponentId> component;
     std::vector<ChannelId> consumes;
@@ -184,6 +192,7 @@ class DependencyGraph {
   std::vector<Node> nodes_;
   std::vector<Channel> channels_;
   std::unordered_map<std::string, NodeId> node_ids_;
+  std::unordered_set<std::string> parts_;  // nodes that are there, of components with several
   std::unordered_map<std::string, ChannelId> channel_ids_;  // key: 't' or 's', then the name
   std::vector<std::optional<NodeId>> nodes_of_components_;
   std::unordered_set<std::string> ignored_;

@@ -55,6 +55,27 @@ class Graph {
 
 using Names = std::vector<std::string>;
 
+TEST(DependencyGraph, TheNodesOfOneProcessAreOne) {
+  Graph graph(
+      "COMPONENT controller NODE /controller /costmap\nCOMPONENT lidar NODE /lidar\n"
+      "COMPONENT base NODE /base\n");
+  graph.node("/lidar").node("/base").node("/controller");
+  graph.link("/lidar", "/scan", "/costmap").link("/controller", "/cmd_vel", "/base");
+  graph.link("/costmap", "/costmap", "/controller");
+  EXPECT_EQ(graph.upstream("base"), (Names{"controller", "lidar"}));
+  EXPECT_FALSE((*graph).is_present(ComponentId(0)));
+  EXPECT_EQ((*graph).missing_node(ComponentId(0)), "/costmap");
+  graph.node("/costmap");
+  EXPECT_TRUE((*graph).is_present(ComponentId(0)));
+  EXPECT_EQ((*graph).publisher_count("/costmap"), 1u);
+  (*graph).node_vanished("/costmap");
+  EXPECT_FALSE((*graph).is_present(ComponentId(0)));
+  EXPECT_TRUE((*graph).has_any_node(ComponentId(0)));
+  EXPECT_EQ(graph.downstream("lidar"), (Names{"base", "controller"}));
+  (*graph).component_vanished(ComponentId(0));
+  EXPECT_FALSE((*graph).has_any_node(ComponentId(0)));
+}
+
 constexpr const char* kThree =
     "COMPONENT camera NODE /camera\nCOMPONENT fusion NODE /fusion\nCOMPONENT seg NODE /seg\n";
 

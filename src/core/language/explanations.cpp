@@ -550,7 +550,7 @@ const LiveInventory& example_robot() {
     LiveInventory::Node& camera = robot.nodes["/robot/camera"];
     camera.parameters = {{"exposure", Value(0.5)}};
     camera.lifecycle = "active";
-    robot.nodes["/left/wheel"];
+    robot.nodes["/left/wheel"].pid = 41;
     robot.nodes["/right/wheel"];
     robot.nodes["/left/arm"];
     robot.nodes["/right/arm"];

@@ -208,7 +208,7 @@ class Parser {
       if (clause.text == "NODE" && !component.node) {
         s.next();
         component.node = read_.ros_name(s, "the node's full name");
-        if (!component.node) return false;
+        if (!component.node || !other_nodes(s, component)) return false;
       } else if (clause.text == "LAUNCH" && !component.launch) {
         s.next();
         component.launch = read_.text(s, "the launch command",
@@ -286,6 +286,16 @@ class Parser {
       }
     }
     into_->components.push_back(std::move(component));
+    return true;
+  }
+
+  // Of the same process.
+  bool other_nodes(Scanner& s, syntax::Component& component) {
+    while (!s.at_end() && source_.text()[s.position()] == '/') {
+      auto node = read_.ros_name(s, "the full name of another node of the process");
+      if (!node) return false;
+      component.other_nodes.push_back(std::move(*node));
+    }
     return true;
   }
 

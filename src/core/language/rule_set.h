@@ -72,6 +72,14 @@ struct Component {
 
   Seldom<Composition> composed{};  // its container is asked to load and to unload it
 
+  // More nodes of its process. The component is there while all of them are; `node` is the one that
+  // is asked and changed.
+  std::vector<std::string> other_nodes{};
+
+  bool has_node(std::string_view full_name) const {
+    return node == full_name || std::ranges::find(other_nodes, full_name) != other_nodes.end();
+  }
+
   Seldom<EngineContainer> engine{};  // that runs it: its engine is asked likewise
 
   // Whether somebody else runs it, whose word of its process is proof.

@@ -145,19 +145,9 @@ void Symbols::declare_component(const syntax::Component& written) {
                       written.lifecycle,
                       written.is_respawned,
                       written.ready.value_or(Duration::zero())};
-  if (written.node) {
-    const std::string& node = written.node->text;
-    const auto first = components_by_node_.find(name_hash(node), [&](std::uint32_t place) {
-      return rules_.components[place].node == node;
-    });
-    if (first) {
-      diagnostics_.push_back(
-          {Code::kDuplicateName, Severity::kError, written.node->span,
-           "this node is component '" + rules_.components[*first].name + "' already",
-           "declare each node once"});
-    } else {
-      components_by_node_.add(name_hash(node), rules_.components.size());
-    }
+  if (written.node) declare_node(*written.node, component);
+  for (const syntax::Name& other : written.other_nodes) {
+    if (declare_node(other, component)) component.other_nodes.push_back(other.text);
   }
   declare_launch(written, component);
   if (written.unit) component.unit = declared_unit(written);
@@ -166,6 +156,24 @@ void Symbols::declare_component(const syntax::Component& written) {
   declare_composition(written, component);
   declared_components_.push_back(written.name.text);
   add_component(std::move(component));
+}
+
+// Whether no component has it yet.
+bool Symbols::declare_node(const syntax::Name& node, const Component& component) {
+  const auto first = components_by_node_.find(name_hash(node.text), [&](std::uint32_t place) {
+    return place == rules_.components.size() ? component.has_node(node.text)
+                                             : rules_.components[place].has_node(node.text);
+  });
+  if (!first) {
+    components_by_node_.add(name_hash(node.text), rules_.components.size());
+    return true;
+  }
+  const bool is_own = *first == rules_.components.size();
+  const std::string& owner = is_own ? component.name : rules_.components[*first].name;
+  diagnostics_.push_back({Code::kDuplicateName, Severity::kError, node.span,
+                          "this node is component '" + owner + "' already",
+                          "declare each node once"});
+  return false;
 }
 
 ComponentId Symbols::add_component(Component component) {
@@ -506,7 +514,7 @@ std::optional<ComponentId> Symbols::known_component(std::string_view name) const
   // A full node name may stand for the component that is declared with it.
   if (!found && name.starts_with('/'))
     found = components_by_node_.find(name_hash(name), [&](std::uint32_t place) {
-      return rules_.components[place].node == name;
+      return rules_.components[place].has_node(name);
     });
   return found ? std::optional(ComponentId(*found)) : std::nullopt;
 }

@@ -145,6 +145,7 @@ class Symbols {
   void declare_broken(const syntax::BrokenDeclaration& broken);
   bool first_declaration(const syntax::Name& name, const char* what);
   void declare_component(const syntax::Component& component);
+  bool declare_node(const syntax::Name& node, const Component& component);
   const Component* other_of_owner(std::string owner);
   const Component* other_of_launch(const std::vector<std::string>& command);
   void declare_launch(const syntax::Component& written, Component& component);

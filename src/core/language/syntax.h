@@ -104,6 +104,7 @@ struct Component {
   Seldom<Name> parameters{};
   Seldom<Name> remaps{};  // "a:=b c:=d"
   LifecycleDriver lifecycle = LifecycleDriver::kUndeclared;
+  std::vector<Name> other_nodes{};  // of the same process
 };
 
 struct Dependency {

@@ -145,7 +145,8 @@ std::string range() {
 }
 
 std::string component_line() {
-  const std::string node = maybe(words({"NODE", ros_name()}));
+  const std::string other = "/" + identifier() + "/" + identifier();
+  const std::string node = maybe(words({"NODE", ros_name(), maybe(other)}));
   const std::string launch = maybe(words({"LAUNCH", text()}));
   const std::string around = words({maybe(words({"ENV", text()})), maybe(words({"SETUP", name()})),
                                     maybe(words({"CWD", name()}))});

@@ -47,6 +47,7 @@ Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time dis
       signals_(knowledge.rules.signals.size()),
       derived_(knowledge.rules.inputs.size()),
       component_inputs_(knowledge.rules.components.size()),
+      part_misses_(knowledge.rules.components.size()),
       parameter_inputs_(knowledge.rules.parameters.size()),
       parameter_signals_(knowledge.rules.parameters.size()),
       diagnostic_inputs_(knowledge.rules.diagnostics.size()),
@@ -149,7 +150,9 @@ void Monitor::advance(Time now) {
       continue;
     }
     if (*due > knowledge_.rules.inputs.size() + 1) {
-      await_ends_no_more(ComponentId(*due - knowledge_.rules.inputs.size() - 2), now);
+      const ComponentId component(*due - knowledge_.rules.inputs.size() - 2);
+      await_ends_no_more(component, now);
+      note_missing_part(component, now);
       continue;
     }
     for (std::size_t c = 0; c < knowledge_.rules.components.size(); ++c) {

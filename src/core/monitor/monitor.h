@@ -211,6 +211,10 @@ class Monitor {
   void note_known_dead(ComponentId component, Time at);
   void note_no_longer_dead(ComponentId component);
   void touch_topics_of(ComponentId component);
+  void note_part_vanished(ComponentId component, const std::string& node, Time at);
+  void note_part_probed(const Probed& seen, Time at);
+  bool has_hung_part(ComponentId component) const;
+  void note_missing_part(ComponentId component, Time at);
   void note_rise(ComponentId component, Lifecycle state, Time at);
   void note_end_of_start(ComponentId component, Time at);
   bool hangs_in_transition(ComponentId component, Time now) const;
@@ -250,6 +254,13 @@ class Monitor {
   std::vector<Signal> signals_;
   std::vector<Derived> derived_;
   std::vector<std::vector<InputId>> component_inputs_;
+  // Of the component's other nodes, in their order: questions that were not answered.
+  struct PartMisses {
+    int count = 0;
+    bool is_reliable = true;  // it has answered from the first question on
+    bool has_answered = false;
+  };
+  std::vector<std::vector<PartMisses>> part_misses_;  // by component
   std::vector<std::vector<InputId>> parameter_inputs_;
   std::vector<std::vector<SignalId>> parameter_signals_;
   std::vector<std::vector<InputId>> diagnostic_inputs_;

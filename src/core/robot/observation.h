@@ -166,6 +166,7 @@ struct EndsWith {
 struct Probed {
   ComponentId component;
   bool answered = false;
+  std::uint8_t node = 0;  // of a component with several: which of them, from 0
 };
 
 // How a command ended. A command that gets no Reply within its time is settled by reading the state

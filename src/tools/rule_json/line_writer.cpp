@@ -19,6 +19,8 @@ const char* describe(Part part) {
       return "a name: a text that is not empty";
     case Part::kNames:
       return "names: an array of texts that are not empty";
+    case Part::kNodes:
+      return "a name, or an array of names";
     case Part::kNamePair:
       return "two names: an array of two texts that are not empty";
     case Part::kText:
@@ -124,6 +126,8 @@ Words words(Part part, const Json& value) {
       return name_words(value);
     case Part::kNames:
       return names_words(value);
+    case Part::kNodes:
+      return value.is_array() ? names_words(value) : name_words(value);
     case Part::kNamePair:
       return pair_words(value, name_words, " ");
     case Part::kText:

@@ -82,6 +82,13 @@ class StatementReader {
         while (next_ < lexemes_.size()) names.push_back(name_to_json(take()));
         return names;
       }
+      case Part::kNodes: {
+        Json nodes = Json::array();
+        do {
+          nodes.push_back(name_to_json(take()));
+        } while (next_ < lexemes_.size() && lexemes_[next_].kind == Lexeme::Kind::kName);
+        return nodes.size() == 1 ? nodes[0] : nodes;
+      }
       case Part::kNamePair: {
         Json first = name_to_json(take());
         return Json::array({std::move(first), name_to_json(take())});
