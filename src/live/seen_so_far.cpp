@@ -17,6 +17,7 @@ struct NumberOf {
   Number operator()(const ProcessSeen& o) const { return o.component.index; }
   Number operator()(const LauncherSeen& o) const { return o.component.index; }
   Number operator()(const ProcessWorked& o) const { return o.component.index; }
+  Number operator()(const UsageSeen& o) const { return o.component.index; }
   Number operator()(const HostReached& o) const { return o.component.index; }
   Number operator()(const LivesOn& o) const { return o.component.index; }
   Number operator()(const EndsWith& o) const { return o.component.index; }

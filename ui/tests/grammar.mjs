@@ -24,7 +24,7 @@ SIGNAL gain PARAMETER eye gain
 
 RULE Silent
 POLICIES ERROR FOR 500ms HOLD 3/5 COOLDOWN 10s ATTEMPTS 6
-TRIGGER age(/scan) > 500ms && rate(/scan) < 5 && phi(/scan) > 8
+TRIGGER age(/scan FROM lidar) > 500ms && rate(/scan) < 5 && phi(/scan) > 8
 STRATEGY strategy 50 10
 ADAPTATION arm restart 5
 
@@ -42,7 +42,7 @@ ADAPTATION slam restart 5
 
 RULE Changed
 POLICIES OK REPORT
-TRIGGER changed(heat) && heat > 80
+TRIGGER changed(heat) && heat > 80 && frozen(heat, 2s) && cpu(arm) > 1.5 && memory(arm) >= 800
 
 RULE Level
 POLICIES DEGRADED
@@ -182,7 +182,7 @@ export async function writesEveryRow() {
     await enter(rule, 'hold n/k', '3/5')
     await enter(rule, 'cooldown', '10s')
     await enter(rule, 'attempts', '6')
-    await clause(rule, 0, 'silent', { [name]: '/scan', [much]: '500ms' })
+    await clause(rule, 0, 'silent', { [name]: '/scan FROM lidar', [much]: '500ms' })
     await clause(rule, 1, 'slow', { [name]: '/scan', [much]: '5' })
     await clause(rule, 2, 'odd', { [name]: '/scan', [much]: '8' })
     rule = await newRule('Dead', 'WARNING')
@@ -199,6 +199,9 @@ export async function writesEveryRow() {
     await check(rule, 'only report')
     await clause(rule, 0, 'changed', { [name]: 'heat' })
     await clause(rule, 1, 'value', { [name]: 'heat', 'how it compares': '>', [much]: '80' })
+    await clause(rule, 2, 'frozen', { 'over how long': '2s', [name]: 'heat' })
+    await clause(rule, 3, 'cpu', { [name]: 'arm', 'how it compares': '>', [much]: '1.5' })
+    await clause(rule, 4, 'memory', { [name]: 'arm', 'how it compares': '>=', [much]: '800' })
     rule = await newRule('Level', 'DEGRADED')
     await clause(rule, 0, 'level', { [name]: 'motor', 'how it compares': '>=', [much]: '2' })
     await clause(rule, 1, 'parameter', { [name]: 'eye', 'which parameter': 'exposure', 'how it compares': '==', [much]: '7' })

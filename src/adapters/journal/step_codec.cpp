@@ -33,7 +33,8 @@ enum class Tag : std::uint8_t {
   kPriorsTold = 26,
   kLivesOn = 27,
   kHostHeard = 28,
-  kListenerKnown = 29
+  kListenerKnown = 29,
+  kUsageSeen = 30
 };
 
 enum class OrderTag : std::uint8_t {
@@ -146,6 +147,12 @@ class Encoder {
     head(Tag::kProcessWorked, age);
     out_.natural(o.component.index);
     out_.integer(o.pid);
+  }
+  void write(const UsageSeen& o, Duration age) {
+    head(Tag::kUsageSeen, age);
+    out_.natural(o.component.index);
+    out_.real(o.cores);
+    out_.real(o.mib);
   }
   void write(const HostReached& o, Duration age) {
     head(Tag::kHostReached, age);
@@ -375,6 +382,12 @@ class Decoder {
       case Tag::kProcessWorked: {
         const auto component = id<ComponentId>(rules_.components.size());
         return ProcessWorked{component, pid()};
+      }
+      case Tag::kUsageSeen: {
+        UsageSeen seen{id<ComponentId>(rules_.components.size())};
+        seen.cores = in_.real();
+        seen.mib = in_.real();
+        return seen;
       }
       case Tag::kHostReached: {
         const auto component = id<ComponentId>(rules_.components.size());

@@ -158,8 +158,11 @@ Expected<void> Link::start() {
   if (auto declared = declare_parameters(); !declared) return declared;
 
   for (std::size_t t = 0; t < rules_.topics.size(); ++t) {
-    watches_.emplace(rules_.topics[t].name,
-                     std::make_unique<TopicWatch>(node_->entry(), TopicId(t), rules_, inbox_));
+    const std::string& name = rules_.topics[t].name;
+    if (watches_.contains(name)) continue;
+    auto watch = std::make_unique<TopicWatch>(node_->entry(), TopicId(t), rules_, inbox_);
+    watch->asks_for_writers([this, name] { tasks_.post([this, name] { tell_writers(name); }); });
+    watches_.emplace(name, std::move(watch));
   }
   auto watch = DiagnosticsWatch::create(node_->entry(), rules_, inbox_);
   if (!watch) return Error{watch.error()};
@@ -171,7 +174,12 @@ Expected<void> Link::start() {
     remind();
     listen_to_hosts();
     look_at_hosts();
+    tell_usage();
   });
+  for (const Input& input : rules_.inputs) {
+    if (input.kind == Input::Kind::kCpu || input.kind == Input::Kind::kMemory)
+      meters_.try_emplace(input.component);
+  }
   hosts_ = std::make_unique<NeighbourHosts>([this](const GuidPrefix& participant) {
     return context_->participant().heard_last(participant);
   });
@@ -484,6 +492,15 @@ void Link::on_endpoint(const std::string& node, const GraphEndpoint& endpoint) {
   inbox_.put(EndpointAppeared{node, endpoint.kind, endpoint.name});
 }
 
+void Link::tell_writers(const std::string& topic) {
+  TopicWatch::Writers writers;
+  for (const auto& [writer, node] : context_->graph().publishers_of(topic)) {
+    const auto component = binding_.bind(node);
+    if (component) writers[writer] = *component;
+  }
+  watches_.at(topic)->knows_writers(std::move(writers));
+}
+
 void Link::find_type(const std::string& node, const GraphEndpoint& endpoint, TopicWatch& watch) {
   if (!watch.reads_fields()) return watch.publisher_seen(endpoint.type, endpoint.qos, nullptr);
   const auto pid = pids_.find(node);
@@ -534,6 +551,17 @@ void Link::probe() {
   for (const Input& input : rules_.inputs) {
     if (input.kind != Input::Kind::kLifecycle || are_probed.contains(input.component)) continue;
     if (ComponentLink* link = link_of(input.component)) link->check_lifecycle();
+  }
+}
+
+// Only of a process on this machine that is proven to be the node's.
+void Link::tell_usage() {
+  for (auto& [component, meter] : meters_) {
+    const auto pid = pids_.find(binding_.node_of(component));
+    const auto usage =
+        pid == pids_.end() || pid->second == 0 ? std::nullopt : usage_of(pid->second);
+    const auto cores = usage ? meter.look(pid->second, *usage, live_now()) : std::nullopt;
+    if (cores) inbox_.put(UsageSeen{component, *cores, usage->resident_mib});
   }
 }
 

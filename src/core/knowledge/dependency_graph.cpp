@@ -244,6 +244,20 @@ std::optional<ComponentId> DependencyGraph::only_publisher(const std::string& to
   return publishers.size() == 1 ? nodes_[publishers.front().index].component : std::nullopt;
 }
 
+std::size_t DependencyGraph::publisher_count(const Topic& topic) const {
+  if (!topic.publisher) return publisher_count(topic.name);
+  return publishes(*topic.publisher, topic.name) ? 1 : 0;
+}
+
+bool DependencyGraph::publishes(ComponentId component, const Topic& topic) const {
+  return (!topic.publisher || *topic.publisher == component) && publishes(component, topic.name);
+}
+
+std::optional<ComponentId> DependencyGraph::only_publisher(const Topic& topic) const {
+  if (!topic.publisher) return only_publisher(topic.name);
+  return publishes(*topic.publisher, topic.name) ? topic.publisher : std::nullopt;
+}
+
 bool DependencyGraph::was_published(const std::string& topic) const {
   const auto known = channel_ids_.find('t' + topic);
   if (known == channel_ids_.end()) return false;

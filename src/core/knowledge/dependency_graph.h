@@ -86,6 +86,10 @@ class DependencyGraph {
   bool publishes(ComponentId component, const std::string& topic) const;
   // The component that alone publishes it; nothing if none or several do, or a node that is none.
   std::optional<ComponentId> only_publisher(const std::string& topic) const;
+  // The same of a topic of the rules: of one with a FROM only that publisher counts.
+  std::size_t publisher_count(const Topic& topic) const;
+  bool publishes(ComponentId component, const Topic& topic) const;
+  std::optional<ComponentId> only_publisher(const Topic& topic) const;
   // Nodes published it, and none does now.
   bool was_published(const std::string& topic) const;
   // Those that any node publishes now. Sorted.

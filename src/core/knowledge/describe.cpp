@@ -357,11 +357,11 @@ std::string describe(const Input& input, const RuleSet& rules) {
     case kSignal:
       return rules[input.signal].name;
     case kRate:
-      return call("rate", rules[input.topic].name);
+      return call("rate", rules.label(input.topic));
     case kAge:
-      return call("age", rules[input.topic].name);
+      return call("age", rules.label(input.topic));
     case kPhi:
-      return call("phi", rules[input.topic].name);
+      return call("phi", rules.label(input.topic));
     case kAlive:
       return call("alive", rules[input.component].name);
     case kLifecycle:
@@ -382,6 +382,12 @@ std::string describe(const Input& input, const RuleSet& rules) {
       return call("stddev", rules[input.signal].name);
     case kChanged:
       return call("changed", rules[input.signal].name);
+    case kFrozen:
+      return call("frozen", rules[input.signal].name);
+    case kCpu:
+      return call("cpu", rules[input.component].name);
+    case kMemory:
+      return call("memory", rules[input.component].name);
     case kIsNan:
       return call("isnan", rules[input.signal].name);
   }

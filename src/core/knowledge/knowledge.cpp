@@ -13,6 +13,8 @@ bool was_read(const Input& input, const Sightings& sightings) {
     case Input::Kind::kAge:
     case Input::Kind::kPhi:
     case Input::Kind::kAlive:
+    case Input::Kind::kCpu:
+    case Input::Kind::kMemory:
       return false;
     case Input::Kind::kLifecycle:
       return sightings.was_lifecycle_read(input.component);
@@ -29,9 +31,8 @@ void note_heard(const Knowledge& knowledge, KnownRobot& known) {
   const RuleSet& rules = knowledge.rules;
   const Sightings& sightings = knowledge.sightings;
   for (std::size_t t = 0; t < rules.topics.size(); ++t) {
-    const std::string& name = rules.topics[t].name;
-    if (sightings.was_heard(TopicId(t)) && knowledge.graph.publisher_count(name) == 1)
-      known.heard.push_back(name);
+    if (sightings.was_heard(TopicId(t)) && knowledge.graph.publisher_count(rules.topics[t]) == 1)
+      known.heard.push_back(rules.label(TopicId(t)));
   }
   std::set<std::string> values;
   for (const Input& input : rules.inputs) {
@@ -85,6 +86,8 @@ std::string value_name(const Input& input, const RuleSet& rules) {
     case Input::Kind::kAge:
     case Input::Kind::kPhi:
     case Input::Kind::kAlive:
+    case Input::Kind::kCpu:
+    case Input::Kind::kMemory:
       return "";
     case Input::Kind::kLifecycle:
       return "lifecycle " + rules[input.component].name;
@@ -108,7 +111,7 @@ KnownRobot Knowledge::known_robot() const {
                            graph.ends_of(component), components[component].node_pid});
   }
   for (std::size_t t = 0; t < rules.topics.size(); ++t) {
-    if (sightings.has(TopicId(t))) known.topics.push_back(rules.topics[t].name);
+    if (sightings.has(TopicId(t))) known.topics.push_back(rules.label(TopicId(t)));
   }
   note_heard(*this, known);
   return known;

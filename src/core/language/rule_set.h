@@ -95,6 +95,7 @@ struct Component {
 
 struct Topic {
   std::string name;
+  std::optional<ComponentId> publisher{};  // FROM: only what this one publishes
 };
 
 // A parameter that the rules read or write.
@@ -151,7 +152,10 @@ struct Input {
     kMax,
     kStddev,
     kChanged,  // signal: its value became another within the last cycle
-    kIsNan     // signal: its value is not a number
+    kIsNan,    // signal: its value is not a number
+    kFrozen,   // signal: its value stayed as it is for the window, though samples came
+    kCpu,      // component: cores that its process uses
+    kMemory    // component: MiB of memory that its process holds
   };
   Kind kind = Kind::kSignal;
   Type type = Type::kDouble;
@@ -248,6 +252,13 @@ struct RuleSet {
   std::vector<Interlock> interlocks;
 
   Cycles heaviest;  // paper: i_max, the highest impact of any strategy
+
+  // "/scan", "/scan FROM lidar_front"
+  std::string label(TopicId id) const {
+    const Topic& topic = topics[id.index];
+    return topic.publisher ? topic.name + " FROM " + components[topic.publisher->index].name
+                           : topic.name;
+  }
 
   const Component& operator[](ComponentId id) const { return components[id.index]; }
   const Topic& operator[](TopicId id) const { return topics[id.index]; }

@@ -596,9 +596,17 @@ std::uint32_t known_or_new(const std::string& name, std::vector<Entry>& table,
 
 }  // namespace
 
-TopicId Symbols::topic(const std::string& name) {
-  const TopicId id(known_or_new(name, rules_.topics, topics_));
-  if (uses_ != nullptr) uses_->topics.push_back({name, id, id});
+TopicId Symbols::topic(const std::string& name, std::optional<ComponentId> publisher) {
+  const auto known = topics_.find(name_hash(name), [&](std::uint32_t place) {
+    const Topic& topic = rules_.topics[place];
+    return topic.name == name && topic.publisher == publisher;
+  });
+  const TopicId id(known.value_or(static_cast<std::uint32_t>(rules_.topics.size())));
+  if (!known) {
+    topics_.add(name_hash(name), id.index);
+    rules_.topics.push_back({name, publisher});
+  }
+  if (uses_ != nullptr) uses_->topics.push_back({name, publisher, id, id});
   return id;
 }
 
@@ -729,6 +737,8 @@ void renumber(Input& input, const Symbols::Uses& uses) {
       return;
     case kAlive:
     case kLifecycle:
+    case kCpu:
+    case kMemory:
       input.component = uses.now(input.component);
       return;
     case kParameter:
@@ -745,6 +755,7 @@ void renumber(Input& input, const Symbols::Uses& uses) {
     case kStddev:
     case kChanged:
     case kIsNan:
+    case kFrozen:
       input.signal = uses.now(input.signal);
       return;
   }
@@ -760,7 +771,10 @@ void Symbols::ask_again(Uses& uses, std::uint32_t moved_by) {
     renew(c, component(c.name));
   }
   for (auto& s : uses.signals) renew(s, *known_signal(s.name));
-  for (auto& t : uses.topics) renew(t, topic(t.name));
+  for (auto& t : uses.topics) {
+    if (t.publisher) t.publisher = uses.now(*t.publisher);
+    renew(t, topic(t.name, t.publisher));
+  }
   for (auto& d : uses.diagnostics) renew(d, diagnostic(d.name));
   for (auto& p : uses.parameters) {
     p.component = uses.now(p.component);

@@ -71,6 +71,7 @@ class Symbols {
     };
     struct OfTopic {
       std::string name;
+      std::optional<ComponentId> publisher;
       TopicId id, was;
     };
     struct OfDiagnostic {
@@ -123,7 +124,7 @@ class Symbols {
   SignalId signal(const syntax::Name& name);
   // A signal that the file uses and does not declare, in a lenient check; a strict one has said so.
   bool is_looked_up(const std::string& signal);
-  TopicId topic(const std::string& name);
+  TopicId topic(const std::string& name, std::optional<ComponentId> publisher = std::nullopt);
   DiagnosticId diagnostic(const std::string& name);
   ParameterId parameter(ComponentId component, const std::string& name);
   InputId input(const Input& wanted);

@@ -68,6 +68,7 @@ std::string call(int depth) {
     if (i > 0) out += maybe_blanks() + ",";
     const bool is_expression = function.arguments[i] == Argument::kExpression;
     out += maybe_blanks() + (is_expression ? expression(depth) : coin() ? name() : ros_name());
+    if (function.arguments[i] == Argument::kTopic && coin()) out += " FROM " + component();
   }
   return out + maybe_blanks() + ")";
 }

@@ -122,7 +122,8 @@ class Monitor {
     std::optional<Time> overflowed;              // when the window held too much the last time
     bool is_overflow_told = false;
     std::vector<double> deviations;  // kPhi: for each threshold
-    // kChanged: the first reading since the last gap, the last one that was another, and its value.
+    // kChanged, kFrozen: the first reading since the last gap, the last one that was another, and its
+    // value.
     std::optional<Time> known_since;
     std::optional<Time> changed;
     Value last_value;
@@ -142,6 +143,7 @@ class Monitor {
   void on(Time at, const ProcessSeen& seen);
   void on(Time at, const Probed& seen);
   void on(Time at, const ProcessWorked& seen);
+  void on(Time at, const UsageSeen& seen);
   void on(Time at, const StatusHeard& seen);
   void on(Time at, const ParametersListed& seen);
   void on(Time at, const HostReached& seen);
@@ -167,6 +169,8 @@ class Monitor {
   void update_window(InputId id, Time now);
   void note_change(InputId id, const Value& value, Time at, bool is_after_gap);
   void update_changed(InputId id, Time now);
+  void update_frozen(InputId id, Time now);
+  Duration pause_of(const Input& input) const;
   void put(InputId id, const Slot& value, const Signal& signal);
   bool is_stale(SignalId signal, Time now) const;
   WhyUnknown why_unknown(SignalId signal, Time now) const;
@@ -182,6 +186,8 @@ class Monitor {
 
   // Whether a component that publishes the topic joined the graph since then.
   bool has_begun_since(Time before, TopicId topic) const;
+  std::vector<TopicId> topics_of(std::optional<ComponentId> publisher,
+                                 const std::string& name) const;
   void see(TopicId topic, Time at);
   // From when on a topic that has not spoken is silent; kNever while it was not seen.
   Time silent_from(TopicId topic) const;
@@ -205,6 +211,7 @@ class Monitor {
   void await_ends_no_more(ComponentId component, Time at);
   void keep_ends(ComponentId component);
   void forget_process(ComponentId component, Time at);
+  void forget_usage(ComponentId component);
   void note_process(const ProcessSeen& seen, Time at);
   void note_end(const ProcessSeen& seen, Time at);
   void note_farewell(ComponentId component, Time at);
@@ -250,7 +257,7 @@ class Monitor {
   bool is_deaf_ = false;
   std::set<std::string> silent_hosts_;  // that were told of
   std::vector<Topic> topics_;
-  std::unordered_map<std::string, TopicId> topic_ids_;
+  std::unordered_map<std::string, std::vector<TopicId>> topic_ids_;  // by name
   std::vector<Signal> signals_;
   std::vector<Derived> derived_;
   std::vector<std::vector<InputId>> component_inputs_;

@@ -25,9 +25,9 @@ constexpr int kMissedAlone = 5;
 // It alone publishes a topic that rules watch, with a rhythm that is known.
 bool is_heard_of(ComponentId component, const Knowledge& knowledge) {
   for (std::size_t t = 0; t < knowledge.rules.topics.size(); ++t) {
-    const std::string& name = knowledge.rules.topics[t].name;
+    const Topic& topic = knowledge.rules.topics[t];
     if (knowledge.signals.rhythm(TopicId(t)).longest > Duration::zero() &&
-        knowledge.graph.publishes(component, name) && knowledge.graph.publisher_count(name) == 1)
+        knowledge.graph.publishes(component, topic) && knowledge.graph.publisher_count(topic) == 1)
       return true;
   }
   return false;
@@ -145,10 +145,10 @@ void Monitor::on(Time, const NamesakesSeen& seen) {
 
 void Monitor::on(Time at, const EndpointAppeared& seen) {
   write_.graph.endpoint_appeared(seen.node, seen.kind, seen.name);
-  if (const auto component = knowledge_.graph.component_of(seen.node)) note_ends(*component, at);
+  const auto component = knowledge_.graph.component_of(seen.node);
+  if (component) note_ends(*component, at);
   if (seen.kind != EndpointKind::kPublisher) return;
-  const auto topic = topic_ids_.find(seen.name);
-  if (topic != topic_ids_.end()) see(topic->second, at);
+  for (const TopicId topic : topics_of(component, seen.name)) see(topic, at);
 }
 
 void Monitor::on(Time, const EndpointVanished& seen) {
@@ -314,6 +314,23 @@ void Monitor::on(Time at, const ProcessWorked& seen) {
   if (seen.pid == state.pid && state.process == ProcessState::kRunning) state.worked = at;
 }
 
+void Monitor::on(Time, const UsageSeen& seen) {
+  if (knowledge_.components[seen.component].process != ProcessState::kRunning) return;
+  for (const InputId id : component_inputs_[seen.component.index]) {
+    const Kind kind = knowledge_.rules[id].kind;
+    if (kind == Kind::kCpu) write_.signals.set(id, Slot::of(seen.cores));
+    if (kind == Kind::kMemory) write_.signals.set(id, Slot::of(seen.mib));
+  }
+}
+
+// The usage of a process does not hold for the one that follows it.
+void Monitor::forget_usage(ComponentId component) {
+  for (const InputId id : component_inputs_[component.index]) {
+    const Kind kind = knowledge_.rules[id].kind;
+    if (kind == Kind::kCpu || kind == Kind::kMemory) write_.signals.forget(id);
+  }
+}
+
 void Monitor::on(Time at, const HostReached& seen) {
   write_.components.set_out_of_reach(seen.component, !seen.is_reached);
   update_alive(seen.component, at, "its node left the graph");
@@ -377,6 +394,7 @@ void Monitor::forget_process(ComponentId component, Time at) {
   ComponentState& state = write_.components[component];
   if (state.in_graph) expect_no_more();
   forget_what_was_heard_of(component, at);
+  forget_usage(component);
   state.in_graph = false;
   state.node_pid = 0;
   state.is_rising = false;
@@ -416,9 +434,10 @@ bool Monitor::is_silent(ComponentId component, Time now) const {
   constexpr Duration kLeast = std::chrono::seconds(1);
   for (std::size_t t = 0; t < knowledge_.rules.topics.size(); ++t) {
     const SignalStore::Rhythm& rhythm = knowledge_.signals.rhythm(TopicId(t));
-    const std::string& name = knowledge_.rules.topics[t].name;
+    const culprit::Topic& topic = knowledge_.rules.topics[t];
     if (!rhythm.last || rhythm.longest <= Duration::zero() ||
-        !knowledge_.graph.publishes(component, name) || knowledge_.graph.publisher_count(name) != 1)
+        !knowledge_.graph.publishes(component, topic) ||
+        knowledge_.graph.publisher_count(topic) != 1)
       continue;
     const Duration pause = std::max(kLeast, rhythm.longest + rhythm.longest / 2);
     if (now - heard_since(std::max(*rhythm.last, knowledge_.components[component].node_seen)) <

@@ -169,6 +169,7 @@ class Completion {
   }
 
   std::vector<Proposal> argument(const OpenCall& call) {
+    if (words_.back() == "FROM") return components();
     const bool has_place = call.index < call.function->arguments.size();
     switch (has_place ? call.function->arguments[call.index] : Argument::kExpression) {
       case Argument::kTopic:
