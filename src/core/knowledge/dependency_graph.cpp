@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "base/ros_names.h"
+
 namespace culprit {
 namespace {
 
@@ -76,7 +78,8 @@ std::optional<DependencyGraph::ChannelId> DependencyGraph::intern_channel(Endpoi
   if (known != channel_ids_.end()) return known->second;
   if (channels_.size() >= kMaxChannels) return std::nullopt;
   const ChannelId id(channels_.size());
-  channels_.push_back({name, is_service(kind), {}, {}, 0});
+  const bool is_heartbeat = !is_service(kind) && own_name(name) == "bond";
+  channels_.push_back({name, is_service(kind), is_heartbeat, {}, {}, 0});
   channel_ids_[key] = id;
   return id;
 }
@@ -282,12 +285,30 @@ bool DependencyGraph::counts(const End& end, const Channel& channel, bool produc
   return producer && channel.live_producers == 0;
 }
 
+bool DependencyGraph::is_data_flow(const Channel& channel) const {
+  if (channel.is_heartbeat) return false;
+  if (channel.is_service) return true;
+  const auto collect = [&](const std::vector<End>& ends, bool are_producers,
+                           std::vector<NodeId>& nodes) {
+    nodes.clear();
+    for (const End& end : ends) {
+      if (counts(end, channel, are_producers)) nodes.push_back(end.node);
+    }
+    std::ranges::sort(nodes);
+  };
+  collect(channel.producers, true, producing_);
+  if (producing_.size() < 2) return true;
+  collect(channel.consumers, false, consuming_);
+  return producing_ != consuming_;
+}
+
 std::optional<std::string> DependencyGraph::unsupplied_input(ComponentId component) const {
   const auto node = nodes_of_components_[component.index];
   std::optional<std::string> first;
   if (!node) return first;
   for (const ChannelId id : nodes_[node->index].consumes) {
     const Channel& channel = channels_[id.index];
+    if (channel.is_heartbeat) continue;
     const bool is_supplied =
         std::any_of(channel.producers.begin(), channel.producers.end(),
                     [&](const End& end) { return counts(end, channel, true); });
@@ -322,7 +343,7 @@ bool DependencyGraph::reads_others(ComponentId component) const {
   return !own.declared_producers.empty() || std::ranges::any_of(own.consumes, [&](ChannelId id) {
     const Channel& channel = channels_[id.index];
     const auto end = std::ranges::find(channel.consumers, *node, &End::node);
-    return counts(*end, channel, false) &&
+    return is_data_flow(channel) && counts(*end, channel, false) &&
            std::ranges::any_of(channel.producers, [&](const End& each) {
              return each.node != *node && counts(each, channel, true);
            });
@@ -394,6 +415,10 @@ const std::vector<ComponentId>& DependencyGraph::reach(std::span<const Component
       std::uint32_t& passed = visited_[nodes_.size() + channel_id.index];
       if (passed == search_) continue;
       const Channel& channel = channels_[channel_id.index];
+      if (!is_data_flow(channel)) {
+        passed = search_;
+        continue;
+      }
       const auto& near = up ? channel.consumers : channel.producers;
       const auto own =
           std::find_if(near.begin(), near.end(), [&](const End& e) { return e.node == id; });
@@ -419,6 +444,7 @@ void DependencyGraph::find_links(Whole& whole) const {
     }
   }
   for (const Channel& channel : channels_) {
+    if (!is_data_flow(channel)) continue;
     Whole::Link link{end(), 0, 0};
     for (const End& each : channel.producers) {
       if (counts(each, channel, true)) ends.push_back(each.node.index);
@@ -467,6 +493,7 @@ std::vector<std::string> DependencyGraph::nodes() const {
 std::vector<DependencyGraph::Edge> DependencyGraph::edges() const {
   std::vector<Edge> edges;
   for (const Channel& channel : channels_) {
+    if (!is_data_flow(channel)) continue;
     for (const End& consumer : channel.consumers) {
       for (const End& producer : channel.producers) {
         if (consumer.node == producer.node) continue;

@@ -5,6 +5,10 @@
 // channels (topics and services), so a channel with p producers and c consumers costs p + c, not p
 // * c.
 //
+// Some topics carry no data that anybody waits for: heartbeats (a topic called `bond`, as Nav2's servers
+// and managers have one), and any topic that all its nodes both publish and subscribe to. They make
+// no edges.
+//
 // The graph remembers what it must not forget in a failure: a node that is gone still is what its
 // consumers wait for. So a vanished end of a channel goes on counting while its node is gone, and a
 // vanished producer also while nobody else produces on that channel. A change that a living node
@@ -159,6 +163,7 @@ class DependencyGraph {
   struct Channel {
     std::string name;
     bool is_service = false;
+    bool is_heartbeat = false;  // by its name
     std::vector<End> producers;
     std::vector<End> consumers;
     std::uint32_t live_producers = 0;
@@ -172,6 +177,7 @@ class DependencyGraph {
   std::optional<NodeId> intern_node(const std::string& name);
   std::optional<ChannelId> intern_channel(EndpointKind kind, const std::string& name);
   bool counts(const End& end, const Channel& channel, bool producer) const;
+  bool is_data_flow(const Channel& channel) const;
   std::vector<NodeId> publishers_of(const std::string& topic) const;
   // All that counts now, in one piece: a plan reads it several times.
   struct Whole {
@@ -209,6 +215,7 @@ class DependencyGraph {
   mutable std::vector<std::uint32_t> visited_;
   mutable std::uint32_t search_ = 0;
   mutable std::vector<NodeId> frontier_;
+  mutable std::vector<NodeId> producing_, consuming_;  // of is_data_flow()
   mutable std::vector<ComponentId> found_;
 };
 

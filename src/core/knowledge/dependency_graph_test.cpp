@@ -55,6 +55,24 @@ class Graph {
 
 using Names = std::vector<std::string>;
 
+constexpr const char* kThree =
+    "COMPONENT camera NODE /camera\nCOMPONENT fusion NODE /fusion\nCOMPONENT seg NODE /seg\n";
+
+TEST(DependencyGraph, HeartbeatsAndWhatAllShareAreNoDataFlow) {
+  for (const char* topic : {"/bond", "/robot1/bond", "/peers"}) {
+    Graph graph(kThree);
+    graph.node("/camera").node("/fusion").node("/seg");
+    for (const char* node : {"/camera", "/fusion", "/seg"}) graph.link(node, topic, node);
+    EXPECT_EQ(graph.upstream("camera"), Names{}) << topic;
+    EXPECT_TRUE((*graph).edges().empty()) << topic;
+    EXPECT_FALSE((*graph).reads_others(ComponentId(0))) << topic;
+    EXPECT_NE((*graph).scc_of(ComponentId(0)), (*graph).scc_of(ComponentId(1))) << topic;
+    // One that only listens waits for the others, but for a heartbeat.
+    graph.node("/watcher").link("/camera", topic, "/watcher");
+    EXPECT_EQ((*graph).edges().empty(), std::string(topic) != "/peers") << topic;
+  }
+}
+
 TEST(DependencyGraph, TheNodesOfOneProcessAreOne) {
   Graph graph(
       "COMPONENT controller NODE /controller /costmap\nCOMPONENT lidar NODE /lidar\n"
@@ -75,9 +93,6 @@ TEST(DependencyGraph, TheNodesOfOneProcessAreOne) {
   (*graph).component_vanished(ComponentId(0));
   EXPECT_FALSE((*graph).has_any_node(ComponentId(0)));
 }
-
-constexpr const char* kThree =
-    "COMPONENT camera NODE /camera\nCOMPONENT fusion NODE /fusion\nCOMPONENT seg NODE /seg\n";
 
 Graph pipeline() {
   Graph graph(kThree);
