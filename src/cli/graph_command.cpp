@@ -3,10 +3,12 @@
 
 #include <fmt/core.h>
 
+#include "base/ros_names.h"
 #include "cli/commands.h"
 #include "cli/rule_graph.h"
 #include "json/json.h"
 #include "knowledge/dependency_graph.h"
+#include "knowledge/dependency_path.h"
 #include "live/live_robot.h"
 #include "live/rule_file.h"
 #include "ros2/options.h"
@@ -21,6 +23,7 @@ struct GraphOptions {
   double wait_seconds = 3;
   bool json = false;
   bool dot = false;
+  std::vector<std::string> why;  // two nodes; empty: all is shown
 };
 
 using Edges = std::vector<DependencyGraph::Edge>;
@@ -126,6 +129,45 @@ void print_dot(const Picture& picture) {
   fmt::print("}}\n");
 }
 
+// The node that `name` means: its full name, or its own one where only one is called so.
+Expected<std::string> node_called(const std::string& name, const Picture& picture) {
+  if (picture.nodes.contains(name)) return name;
+  std::vector<std::string> fitting;
+  std::vector<std::string_view> all;
+  for (const auto& [node, place] : picture.nodes) {
+    all.push_back(node);
+    if (own_name(node) == name) fitting.push_back(node);
+  }
+  if (fitting.size() == 1) return fitting.front();
+  if (fitting.size() > 1)
+    return Error{
+        fmt::format("'{}' could be {} or {}: write the full name", name, fitting[0], fitting[1])};
+  const std::string near = closest_full_name(name.starts_with('/') ? name : "/" + name, all);
+  return Error{fmt::format("the robot has no node '{}'{}", name,
+                           near.empty() ? "" : "; did you mean " + near + "?")};
+}
+
+void print_path(const std::vector<DependencyGraph::Edge>& path) {
+  fmt::print("{} depends on {}:\n", path.front().consumer, path.back().producer);
+  for (const auto& edge : path)
+    fmt::print("  {} needs {}  through {}\n", edge.consumer, edge.producer, edge.channel);
+}
+
+// In both directions: two nodes may depend on one another.
+int explain_tie(const std::vector<std::string>& names, const Picture& picture) {
+  const auto first = node_called(names[0], picture);
+  if (!first) return fail(first.error());
+  const auto second = node_called(names[1], picture);
+  if (!second) return fail(second.error());
+  const auto there = dependency_path(picture.edges, *first, *second);
+  const auto back = dependency_path(picture.edges, *second, *first);
+  if (!there.empty()) print_path(there);
+  if (!back.empty()) print_path(back);
+  if (there.empty() && back.empty())
+    fmt::print("nothing ties {} and {}: neither depends on the other\n", *first, *second);
+  return kOk;
+}
+
 int show_rule_graph(const GraphOptions& options) {
   const auto loaded =
       live::read_rules(options.rules, Strictness::kLenient, colour_of(STDERR_FILENO));
@@ -145,6 +187,7 @@ int show_graph(const GraphOptions& options) {
     fmt::print(stderr, "culprit: {}\n", picture.error());
     return kFailed;
   }
+  if (!options.why.empty()) return explain_tie(options.why, *picture);
   if (options.json) {
     print_json(*picture);
   } else if (options.dot) {
@@ -172,6 +215,13 @@ void add_graph(CLI::App& app, int& exit_code) {
   command
       ->add_flag("--dot", options->dot, "For Graphviz: culprit graph --dot | dot -Tsvg > robot.svg")
       ->excludes(json);
+  command
+      ->add_option("--why", options->why,
+                   "Show the path by which one of two nodes depends on the other")
+      ->type_name("NODE")
+      ->expected(2)
+      ->excludes(json)
+      ->excludes(rules);
   add_seconds(*command, "--wait", options->wait_seconds, "How long to look", 0.1, 600)
       ->excludes(rules);
   command->callback([options, &exit_code] { exit_code = show_graph(*options); });

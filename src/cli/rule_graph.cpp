@@ -44,6 +44,8 @@ std::vector<ComponentId> read_by(const Rule& rule, const RuleSet& rules) {
     switch (input.kind) {
       case Input::Kind::kAlive:
       case Input::Kind::kLifecycle:
+      case Input::Kind::kCpu:
+      case Input::Kind::kMemory:
         all.push_back(input.component);
         break;
       case Input::Kind::kParameter:
@@ -56,12 +58,15 @@ std::vector<ComponentId> read_by(const Rule& rule, const RuleSet& rules) {
       case Input::Kind::kStddev:
       case Input::Kind::kChanged:
       case Input::Kind::kIsNan:
+      case Input::Kind::kFrozen:
         if (const auto* parameter = std::get_if<ParameterId>(&rules[input.signal].source))
           of_parameter(*parameter);
         break;
       case Input::Kind::kRate:
       case Input::Kind::kAge:
       case Input::Kind::kPhi:
+        if (const auto& publisher = rules[input.topic].publisher) all.push_back(*publisher);
+        break;
       case Input::Kind::kLevel:
         break;
     }

@@ -18,6 +18,7 @@ struct NumberOf {
   Number operator()(const LauncherSeen& o) const { return o.component.index; }
   Number operator()(const StartedHere& o) const { return o.component.index; }
   Number operator()(const ProcessWorked& o) const { return o.component.index; }
+  Number operator()(const UsageSeen& o) const { return o.component.index; }
   Number operator()(const HostReached& o) const { return o.component.index; }
   Number operator()(const LivesOn& o) const { return o.component.index; }
   Number operator()(const EndsWith& o) const { return o.component.index; }
@@ -90,6 +91,7 @@ void SeenSoFar::note(const Observation& observation) {
 // Of those in a row that nobody answered, only a few decide anything.
 void SeenSoFar::probed(const Probed& probed, Entry entry) {
   constexpr int kMostCounted = 10;
+  if (probed.node > 0) return;  // of its other nodes the next answer tells
   const auto known = unanswered_.find(probed.component);
   if (probed.answered) {
     if (known != unanswered_.end()) unanswered_.erase(known);

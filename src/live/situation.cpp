@@ -29,13 +29,6 @@ std::string names_of_components(const std::vector<ComponentId>& components, cons
   return listed(names);
 }
 
-std::string actions_of(StrategyId strategy, const RuleSet& rules) {
-  std::vector<std::string> actions;
-  for (const Adaptation& each : rules[strategy].adaptations)
-    actions.push_back(describe(each, rules));
-  return listed(actions);
-}
-
 // "dead", "stopped", "hung"; empty: it works, as far as is known.
 std::string_view condition_of(const ComponentState& state) {
   if (!state.alive || *state.alive) return "";
@@ -229,10 +222,11 @@ std::string Situation::doing_about(const Incident& incident, const Manager& mana
   if (phase == RulePhase::kExhausted) return "nothing helped";
   if (manager.governor().is_paused()) return "nothing is done: culprit is paused";
   if (incident.awaits_approval && root.blamed)
-    return "waits for approval: " + actions_of(*root.blamed, rules);
+    return "waits for approval: " + actions_of(rules[*root.blamed], rules);
   if (root.blamed && phase == RulePhase::kAttempting)
-    return "being repaired: " + actions_of(*root.blamed, rules);
-  if (root.blamed && root.is_advice) return "would be repaired: " + actions_of(*root.blamed, rules);
+    return "being repaired: " + actions_of(rules[*root.blamed], rules);
+  if (root.blamed && root.is_advice)
+    return "would be repaired: " + actions_of(rules[*root.blamed], rules);
   if (!root.held_back.empty()) return "not repaired: " + root.held_back;
   return "nothing is done yet";
 }

@@ -70,13 +70,10 @@ struct Additions {
 }  // namespace
 
 Json strategy_message(StrategyId strategy, const RuleSet& rules) {
-  Json actions = Json::array();
-  for (const Adaptation& each : rules[strategy].adaptations)
-    actions.push_back(describe(each, rules));
   return {{"rule", rules[rules[strategy].rule].name},
           {"name", rules[strategy].name},
           {"components", names_of_all(rules[strategy].components, rules)},
-          {"actions", std::move(actions)},
+          {"actions", action_list(rules[strategy], rules)},
           {"resolves", nullptr},
           {"cost", nullptr}};
 }

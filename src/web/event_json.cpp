@@ -31,11 +31,8 @@ struct Additions {
       json["candidates"] = Json::array();
       for (const Candidate& c : e.candidates) json["candidates"].push_back(to_json(c, rules));
     }
-    if constexpr (std::is_same_v<What, StrategyChosen>) {
-      json["actions"] = Json::array();
-      for (const Adaptation& a : rules[e.strategy].adaptations)
-        json["actions"].push_back(describe(a, rules));
-    }
+    if constexpr (std::is_same_v<What, StrategyChosen>)
+      json["actions"] = action_list(rules[e.strategy], rules);
     if constexpr (requires { e.retry_at; }) json["retry_at"] = time_to_json(e.retry_at, start);
     if constexpr (requires { e.until; }) json["until"] = time_to_json(e.until, start);
   }

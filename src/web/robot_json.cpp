@@ -17,8 +17,7 @@ Json strategy_to_json(const Strategy& strategy, const RuleSet& rules) {
             {"impact", strategy.impact.count},
             {"components", names_of(strategy.components, rules)},
             {"prior", {prior.alpha, prior.beta}},
-            {"actions", Json::array()}};
-  for (const Adaptation& a : strategy.adaptations) json["actions"].push_back(describe(a, rules));
+            {"actions", action_list(strategy, rules)}};
   return json;
 }
 

@@ -2,9 +2,9 @@
 // with.
 import { freeName, inTemplates, plainStatements, type RuleDocument, type Statement } from './rule_document'
 
-// How a member is entered and shown: a pair as "docker slam", a range as "0..1", a hold as "3/5", arguments as "lidar, /scan",
+// How a member is entered and shown: one name or several as "/a /b", a pair as "docker slam", a range as "0..1", a hold as "3/5", arguments as "lidar, /scan",
 // parameters as "name, hz = 10".
-export type FieldKind = 'text' | 'number' | 'hold' | 'list' | 'pair' | 'range' | 'arguments' | 'parameters'
+export type FieldKind = 'text' | 'names' | 'number' | 'hold' | 'list' | 'pair' | 'range' | 'arguments' | 'parameters'
 export interface Member {
   kind?: FieldKind | 'flag' // text
   label?: string // its name
@@ -47,7 +47,7 @@ export const kDeclarations: Record<string, Declaration> = {
     title: 'Component',
     members: {
       name: {},
-      node: { begins: '/my_node', list: 'nodes' },
+      node: { kind: 'names', begins: '/my_node', list: 'nodes' },
       launch: { wide: true },
       env: { begins: 'NAME=value', needs: ['launch'] },
       setup: { begins: '/opt/ros/humble/setup.bash', needs: ['launch'] },

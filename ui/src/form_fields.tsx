@@ -11,7 +11,7 @@ export interface Props {
   change: Take
 }
 
-const kBetween: Record<FieldKind, string> = { text: '', number: '', hold: '/', list: ' ', pair: ' ', range: '..', arguments: ', ', parameters: ', ' }
+const kBetween: Record<FieldKind, string> = { text: '', names: ' ', number: '', hold: '/', list: ' ', pair: ' ', range: '..', arguments: ', ', parameters: ', ' }
 function shown(value: unknown, kind: FieldKind): string {
   if (value === undefined) return ''
   if (!Array.isArray(value)) return String(value)
@@ -37,6 +37,7 @@ function valueOf(entered: string, kind: FieldKind, isOptional: boolean): unknown
   if (entered === '' && (kind === 'arguments' || kind === 'parameters')) return []
   if (entered === '') return isOptional ? undefined : new Error('something has to stand here')
   if (kind === 'text') return entered
+  if (kind === 'names') return /\s/.test(entered) ? entered.split(/\s+/) : entered
   if (kind === 'list') return entered.split(/[\s,]+/)
   if (kind === 'arguments' || kind === 'parameters') {
     const each = (entered.match(kArgument) ?? []).map((part) => part.trim())

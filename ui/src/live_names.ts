@@ -35,7 +35,7 @@ export function follow(text: () => string): () => void {
 export function parametersOf(component: string, document: RuleDocument): string[] {
   const declared = document.statements.find((s) => s.statement === 'COMPONENT' && s.name === component)
   const nodes = Object.entries(names.value.nodes).filter(([node]) =>
-    declared?.node ? node === declared.node : ownName(node) === component
+    declared?.node ? node === [declared.node].flat()[0] : ownName(node) === component
   )
   const used = document.statements
     .filter((s) => s.statement === 'ADAPTATION' && s.component === component && s.parameter !== undefined)

@@ -24,7 +24,13 @@ import { graph } from './store'
 const listOf = (member: string, component: string) =>
   ({ topic: 'topics', service: 'services', parameter: `parameters of ${component}` })[member]
 
-function AdaptationForm({ document, change, place }: Props & { place: number }) {
+// A strategy begins with no THEN.
+function withoutAdaptation(document: RuleDocument, place: number, isFirst: boolean): RuleDocument {
+  const isNext = document.statements[place + 1]?.statement === 'ADAPTATION'
+  return replaced(isFirst && isNext ? withMember(document, place + 1, 'then', undefined) : document, place, 1)
+}
+
+function AdaptationForm({ document, change, place, isFirst }: Props & { place: number; isFirst: boolean }) {
   const statement = document.statements[place]
   const type = String(statement.type)
   const field = (member: string) => (
@@ -32,6 +38,7 @@ function AdaptationForm({ document, change, place }: Props & { place: number }) 
   )
   return (
     <div class="adaptation" role="group" aria-label="Adaptation">
+      {!isFirst && <Check {...{ document, change, place }} member="then" label="then" />}
       <Field {...{ document, change, place }} member="component" label="component" list="components" />
       <Choice
         label="type"
@@ -41,7 +48,7 @@ function AdaptationForm({ document, change, place }: Props & { place: number }) 
       />
       {(kAdaptations[type] ?? []).map(field)}
       <Field {...{ document, change, place }} member="impact" label="impact" kind="number" />
-      <Remove what="adaptation" onClick={() => change((d) => replaced(d, place, 1))} />
+      <Remove what="adaptation" onClick={() => change((d) => withoutAdaptation(d, place, isFirst))} />
     </div>
   )
 }
@@ -67,7 +74,7 @@ function StrategyForm({ document, change, place }: Props & { place: number }) {
         <Remove what={`strategy ${name}`} onClick={() => change((d) => replaced(d, place, end - place))} />
       </div>
       {adaptations.map((i) => (
-        <AdaptationForm key={i} {...{ document, change }} place={i} />
+        <AdaptationForm key={i} {...{ document, change }} place={i} isFirst={i === adaptations[0]} />
       ))}
       <button type="button" onClick={() => change((d) => replaced(d, end, 0, newAdaptation('set_parameter', { statement: 'ADAPTATION', component: componentOf(d, place) })))}>
         + Adaptation

@@ -100,6 +100,7 @@ export function newAdaptation(type: string, before: Statement): Statement {
   const usual = (of: unknown) => kImpacts[String(of)] ?? kLightImpact
   const isUsual = before.impact === undefined || before.impact === usual(before.type)
   statement.impact = isUsual ? usual(type) : before.impact
+  if (before.then) statement.then = before.then
   if (before.above) statement.above = before.above
   if (before.comment) statement.comment = before.comment
   return statement

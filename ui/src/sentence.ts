@@ -12,9 +12,12 @@ export const kKinds = {
   least: 'the least of a signal over',
   most: 'the most of a signal over',
   spread: 'the spread of a signal over',
+  frozen: 'a signal repeats its value for',
   changed: 'a signal has changed',
   parameter: 'a parameter of a component',
   level: 'the level of a diagnostic',
+  cpu: 'the cores that a component uses',
+  memory: 'the memory that a component uses, in MiB',
   text: 'an expression',
 } as const
 export type Kind = keyof typeof kKinds
@@ -39,8 +42,8 @@ export const kComparisons: Record<string, string> = {
   '==': 'is',
   '!=': 'is not',
 }
-export const kCompared: Kind[] = ['state', 'value', 'mean', 'least', 'most', 'spread', 'parameter', 'level']
-export const kWindows: Kind[] = ['mean', 'least', 'most', 'spread']
+export const kCompared: Kind[] = ['state', 'value', 'mean', 'least', 'most', 'spread', 'parameter', 'level', 'cpu', 'memory']
+export const kWindows: Kind[] = ['mean', 'least', 'most', 'spread', 'frozen']
 const kFunctions: Partial<Record<Kind, string>> = { mean: 'mean', least: 'min', most: 'max', spread: 'stddev' }
 
 const overWindow = ({ kind, name, how, value, second }: Clause) => `${kFunctions[kind]}(${name}, ${second}) ${how} ${value}`
@@ -55,6 +58,9 @@ const kWritten: Record<Kind, (c: Clause) => string> = {
   least: overWindow,
   most: overWindow,
   spread: overWindow,
+  frozen: ({ name, second }) => `frozen(${name}, ${second})`,
+  cpu: ({ name, how, value }) => `cpu(${name}) ${how} ${value}`,
+  memory: ({ name, how, value }) => `memory(${name}) ${how} ${value}`,
   changed: ({ name }) => `changed(${name})`,
   parameter: ({ name, how, value, second }) => `parameter(${name}, ${second}) ${how} ${value}`,
   level: ({ name, how, value }) => `level(${name}) ${how} ${value}`,
@@ -62,21 +68,25 @@ const kWritten: Record<Kind, (c: Clause) => string> = {
 }
 
 const kName = String.raw`(?<name>[^\s(),]+|"[^"]*")`
+const kTopic = String.raw`(?<name>(?:[^\s(),]+|"[^"]*")(?: FROM [^\s(),]+)?)` // of one publisher
 const kWord = String.raw`(?<name>\w+)`
 const kHow = String.raw`(?<how>>=|<=|>|<|==|!=)`
 const kValue = String.raw`(?<value>-?[\w.]+|"[^"]*")`
 const kSecond = String.raw`(?<second>[^\s(),]+|"[^"]*")`
 const kForms = (
   [
-    ['silent', `age\\(${kName}\\) > (?<value>[\\w.]+)`],
-    ['slow', `rate\\(${kName}(?:, ${kSecond})?\\) < (?<value>[\\w.]+)`],
-    ['odd', `phi\\(${kName}\\) > (?<value>[\\w.]+)`],
+    ['silent', `age\\(${kTopic}\\) > (?<value>[\\w.]+)`],
+    ['slow', `rate\\(${kTopic}(?:, ${kSecond})?\\) < (?<value>[\\w.]+)`],
+    ['odd', `phi\\(${kTopic}\\) > (?<value>[\\w.]+)`],
     ['dead', `alive\\(${kWord}\\) == false`],
     ['state', `lifecycle\\(${kWord}\\) (?<how>==|!=) "(?<value>\\w+)"`],
     ['mean', `mean\\(${kWord}, ${kSecond}\\) ${kHow} ${kValue}`],
     ['least', `min\\(${kWord}, (?<second>[\\d.]+[a-z]+)\\) ${kHow} ${kValue}`],
     ['most', `max\\(${kWord}, (?<second>[\\d.]+[a-z]+)\\) ${kHow} ${kValue}`],
     ['spread', `stddev\\(${kWord}, ${kSecond}\\) ${kHow} ${kValue}`],
+    ['frozen', `frozen\\(${kWord}, ${kSecond}\\)`],
+    ['cpu', `cpu\\(${kWord}\\) ${kHow} ${kValue}`],
+    ['memory', `memory\\(${kWord}\\) ${kHow} ${kValue}`],
     ['changed', `changed\\(${kWord}\\)`],
     ['parameter', `parameter\\(${kName}, ${kSecond}\\) ${kHow} ${kValue}`],
     ['level', `level\\(${kName}\\) ${kHow} ${kValue}`],
@@ -138,6 +148,9 @@ const kUsual: Partial<Record<Kind, Partial<Clause>>> = {
   least: { how: '<', value: '0', second: '2s' },
   most: { how: '>', value: '0', second: '2s' },
   spread: { how: '>', value: '1', second: '2s' },
+  frozen: { second: '2s' },
+  cpu: { how: '>', value: '0.9' },
+  memory: { how: '>', value: '1000' },
   parameter: { how: '==', value: '0', second: 'my_parameter' },
   level: { how: '>=', value: '2' },
   text: { value: 'true' },

@@ -13,7 +13,7 @@ const kStates = ['unconfigured', 'inactive', 'active', 'finalized']
 type About = 'topics' | 'components' | 'signals' | 'diagnostics' | ''
 const kAbout: Record<Kind, About> = {
   silent: 'topics', slow: 'topics', odd: 'topics', dead: 'components', state: 'components', parameter: 'components', level: 'diagnostics',
-  value: 'signals', mean: 'signals', least: 'signals', most: 'signals', spread: 'signals', changed: 'signals', text: '',
+  value: 'signals', mean: 'signals', least: 'signals', most: 'signals', spread: 'signals', frozen: 'signals', changed: 'signals', cpu: 'components', memory: 'components', text: '',
 }
 const kStandIns: Record<About, string> = { topics: '/topic', components: 'my_node', signals: 'my_signal', diagnostics: 'my_status', '': '' }
 
@@ -29,15 +29,15 @@ function firstName(kind: Kind, document: RuleDocument): string {
 // What it is now, if the robot that runs has it.
 function nowOf({ kind, name, second }: Clause): string {
   if (kAbout[kind] === 'topics') {
-    const topic = stateOfTopic(name)
+    const topic = stateOfTopic(name.split(' ')[0])
     if (!topic || topic.rate === null) return ''
     return kind === 'slow' ? `${topic.rate.toFixed(1)} Hz` : topic.age === null ? '' : lasting(topic.age)
   }
-  if (kAbout[kind] === 'components' && kind !== 'parameter') {
+  if (kind === 'dead' || kind === 'state') {
     const component = stateOfComponent(name)
     return (kind === 'state' ? component?.lifecycle : component?.process) ?? ''
   }
-  const input = kind === 'parameter' ? `parameter(${name}, ${second})` : kind === 'level' ? `level(${name})` : name
+  const input = kind === 'parameter' ? `parameter(${name}, ${second})` : kind === 'level' || kind === 'cpu' || kind === 'memory' ? `${kind}(${name})` : kind === 'frozen' ? `frozen(${name}, ${second})` : name
   const value = state.value?.inputs[robot.value?.inputs.indexOf(input) ?? -1]
   return value === undefined || value === null ? '' : typeof value === 'number' ? String(Number(value.toPrecision(3))) : String(value)
 }
@@ -117,7 +117,7 @@ function ClauseForm({ document, clause, word, take, remove }: ClauseProps) {
           ))}
         </select>
       )}
-      {kind !== 'state' && kind !== 'dead' && kind !== 'changed' && (
+      {kind !== 'state' && kind !== 'dead' && kind !== 'changed' && kind !== 'frozen' && (
         <Typed
           label={kind === 'text' ? 'the expression' : 'how much'}
           class={kind === 'text' ? '' : 'amount'}

@@ -13,7 +13,7 @@ COMPONENT arm NODE /arm LAUNCH "ros2 run arms arm" ENV "SPEED=2" SETUP /opt/arms
 COMPONENT lidar NODE /lidar UNIT lidar.service USER HOST robot@rover2 LIFECYCLE launcher
 COMPONENT slam NODE /slam CONTAINER podman slam
 COMPONENT eye NODE /eye IN /perception PLUGIN detect::Eye PACKAGE detect PARAMETERS /etc/eye.yaml REMAP image:=/rgb
-COMPONENT wheel NODE /wheel RESPAWNED LIFECYCLE self
+COMPONENT wheel NODE /wheel /wheel/odometry RESPAWNED LIFECYCLE self
 DEPENDENCY slam ON lidar eye
 IGNORE TOPIC /rosout /clock
 INTERLOCK limit == 1
@@ -24,7 +24,7 @@ SIGNAL gain PARAMETER eye gain
 
 RULE Silent
 POLICIES ERROR FOR 500ms HOLD 3/5 COOLDOWN 10s ATTEMPTS 6
-TRIGGER age(/scan) > 500ms && rate(/scan) < 5 && phi(/scan) > 8
+TRIGGER age(/scan FROM lidar) > 500ms && rate(/scan) < 5 && phi(/scan) > 8
 STRATEGY strategy 50 10
 ADAPTATION arm restart 5
 
@@ -42,7 +42,7 @@ ADAPTATION slam restart 5
 
 RULE Changed
 POLICIES OK REPORT
-TRIGGER changed(heat) && heat > 80
+TRIGGER changed(heat) && heat > 80 && frozen(heat, 2s) && cpu(arm) > 1.5 && memory(arm) >= 800
 
 RULE Level
 POLICIES DEGRADED
@@ -66,7 +66,7 @@ ADAPTATION arm call home "data: true" 4
 STRATEGY others 50 10
 ADAPTATION eye redeploy 10
 ADAPTATION lidar start 10
-ADAPTATION wheel stop 10
+THEN ADAPTATION wheel stop 10
 ADAPTATION slam call clear 1
 
 TEMPLATE looked_after(name, topic, patience = 2s, start = 50)
@@ -134,7 +134,7 @@ export async function writesEveryRow() {
     await component('lidar', 'systemd', { unit: 'lidar.service', user: true, host: 'robot@rover2', lifecycle: 'launcher' })
     await component('slam', 'docker or podman', { container: 'podman slam' })
     await component('eye', 'a component container', { in: '/perception', plugin: 'detect::Eye', package: 'detect', parameters: '/etc/eye.yaml', remap: 'image:=/rgb' })
-    await component('wheel', 'its launcher, again and again', { lifecycle: 'self' })
+    await component('wheel', 'its launcher, again and again', { node: '/wheel /wheel/odometry', lifecycle: 'self' })
 
     await add('Dependency')
     await say('Dependency arm', { producers: 'lidar eye', consumer: 'slam' })
@@ -182,7 +182,7 @@ export async function writesEveryRow() {
     await enter(rule, 'hold n/k', '3/5')
     await enter(rule, 'cooldown', '10s')
     await enter(rule, 'attempts', '6')
-    await clause(rule, 0, 'silent', { [name]: '/scan', [much]: '500ms' })
+    await clause(rule, 0, 'silent', { [name]: '/scan FROM lidar', [much]: '500ms' })
     await clause(rule, 1, 'slow', { [name]: '/scan', [much]: '5' })
     await clause(rule, 2, 'odd', { [name]: '/scan', [much]: '8' })
     rule = await newRule('Dead', 'WARNING')
@@ -199,6 +199,9 @@ export async function writesEveryRow() {
     await check(rule, 'only report')
     await clause(rule, 0, 'changed', { [name]: 'heat' })
     await clause(rule, 1, 'value', { [name]: 'heat', 'how it compares': '>', [much]: '80' })
+    await clause(rule, 2, 'frozen', { 'over how long': '2s', [name]: 'heat' })
+    await clause(rule, 3, 'cpu', { [name]: 'arm', 'how it compares': '>', [much]: '1.5' })
+    await clause(rule, 4, 'memory', { [name]: 'arm', 'how it compares': '>=', [much]: '800' })
     rule = await newRule('Level', 'DEGRADED')
     await clause(rule, 0, 'level', { [name]: 'motor', 'how it compares': '>=', [much]: '2' })
     await clause(rule, 1, 'parameter', { [name]: 'eye', 'which parameter': 'exposure', 'how it compares': '==', [much]: '7' })
@@ -224,10 +227,11 @@ export async function writesEveryRow() {
       ['arm', 'change_mode', { mode: 'SLOW' }, '4'],
       ['arm', 'call', { service: 'home', request: 'data: true' }, '4'],
     ]
-    const kAlone = [['eye', 'redeploy', {}, '10'], ['lidar', 'start', {}, '10'], ['wheel', 'stop', {}, '10'], ['slam', 'call', { service: 'clear' }, '1']]
+    const kAlone = [['eye', 'redeploy', {}, '10'], ['lidar', 'start', {}, '10'], ['wheel', 'stop', {}, '10', 'then'], ['slam', 'call', { service: 'clear' }, '1']]
     const adaptations = async (within, all) => {
-      for (const [place, [who, type, members, impact]] of all.entries()) {
+      for (const [place, [who, type, members, impact, step]] of all.entries()) {
         if (place > 0) await add('Adaptation', within)
+        if (step) await check(within, step)
         await enter(within, 'component', who)
         await choose(within, 'type', type)
         for (const [member, value] of Object.entries(members)) await enter(within, member, value)

@@ -52,7 +52,8 @@ BagReading::BagReading(const RuleSet& rules, const BagContents& contents,
 BagReading::Plan BagReading::plan_for(const BagTopic& topic) {
   Plan plan;
   for (std::size_t t = 0; t < rules_.topics.size(); ++t) {
-    if (rules_.topics[t].name == topic.name) plan.topic = TopicId(t);
+    if (rules_.topics[t].name == topic.name && !rules_.topics[t].publisher)
+      plan.topic = TopicId(t);
   }
   plan_fields(topic, plan);
   if (topic.encoding != "cdr") return plan;
@@ -93,8 +94,12 @@ std::vector<std::string> BagReading::missing() const {
     return std::any_of(contents_.topics().begin(), contents_.topics().end(), is_it);
   };
   std::vector<std::string> missing = unreadable_;
-  for (const Topic& topic : rules_.topics) {
-    if (!has([&](const BagTopic& each) { return each.name == topic.name; }))
+  for (std::size_t t = 0; t < rules_.topics.size(); ++t) {
+    const Topic& topic = rules_.topics[t];
+    if (topic.publisher)
+      missing.push_back("topic " + rules_.label(TopicId(t)) +
+                        ": a recording does not say who published a message");
+    else if (!has([&](const BagTopic& each) { return each.name == topic.name; }))
       missing.push_back("topic " + topic.name);
   }
   if (diagnostics_.is_wanted() &&

@@ -26,8 +26,9 @@ std::string text_of(const Program& program) {
 std::string definition_of(const Strategy& strategy, const RuleSet& rules) {
   std::string text;
   for (const Adaptation& each : strategy.adaptations)
-    text += rules[each.component].name + "|" + std::to_string(static_cast<int>(each.type)) + "|" +
-            each.subject + "|" + each.topic + "|" + each.request + "|" + text_of(each.value) + "\n";
+    text += (each.begins_step ? "THEN " : "") + rules[each.component].name + "|" +
+            std::to_string(static_cast<int>(each.type)) + "|" + each.subject + "|" + each.topic +
+            "|" + each.request + "|" + text_of(each.value) + "\n";
   journal::Hasher hasher;
   return journal::to_hex(hasher.of(text)).substr(0, 16);
 }

@@ -34,7 +34,8 @@ enum class Tag : std::uint8_t {
   kLivesOn = 27,
   kHostHeard = 28,
   kListenerKnown = 29,
-  kStartedHere = 30
+  kStartedHere = 30,
+  kUsageSeen = 31
 };
 
 enum class OrderTag : std::uint8_t {
@@ -167,6 +168,12 @@ class Encoder {
     out_.natural(o.component.index);
     out_.integer(o.pid);
   }
+  void write(const UsageSeen& o, Duration age) {
+    head(Tag::kUsageSeen, age);
+    out_.natural(o.component.index);
+    out_.real(o.cores);
+    out_.real(o.mib);
+  }
   void write(const HostReached& o, Duration age) {
     head(Tag::kHostReached, age);
     out_.natural(o.component.index);
@@ -191,7 +198,7 @@ class Encoder {
   void write(const Probed& o, Duration age) {
     head(Tag::kProbed, age);
     out_.natural(o.component.index);
-    out_.byte(o.answered ? 1 : 0);
+    out_.byte(static_cast<std::uint8_t>((o.node & 0x7f) << 1 | (o.answered ? 1 : 0)));
   }
   void write(const Reply& o, Duration age) {
     head(Tag::kReply, age);
@@ -411,6 +418,12 @@ class Decoder {
         const auto component = id<ComponentId>(rules_.components.size());
         return ProcessWorked{component, pid()};
       }
+      case Tag::kUsageSeen: {
+        UsageSeen seen{id<ComponentId>(rules_.components.size())};
+        seen.cores = in_.real();
+        seen.mib = in_.real();
+        return seen;
+      }
       case Tag::kHostReached: {
         const auto component = id<ComponentId>(rules_.components.size());
         return HostReached{component, in_.byte() != 0};
@@ -432,7 +445,8 @@ class Decoder {
       }
       case Tag::kProbed: {
         const auto component = id<ComponentId>(rules_.components.size());
-        return Probed{component, in_.byte() != 0};
+        const std::uint8_t how = in_.byte();
+        return Probed{component, (how & 1) != 0, static_cast<std::uint8_t>(how >> 1)};
       }
       case Tag::kReply:
         return reply();

@@ -73,7 +73,7 @@ decltype(Order::what) any_order() {
 ObservationWhat anything() {
   const std::string text = *rc::gen::arbitrary<std::string>();
   const ComponentId component(*rc::gen::inRange<std::size_t>(0, 2));
-  switch (*rc::gen::inRange(0, 28)) {
+  switch (*rc::gen::inRange(0, 29)) {
     case 0:
       return NodeAppeared{text, *rc::gen::positive<int>()};
     case 1:
@@ -96,7 +96,8 @@ ObservationWhat anything() {
       return ProcessSeen{component, ProcessState::kStopped, 7, text,
                          static_cast<Cause>(*rc::gen::inRange(0, 4))};
     case 10:
-      return Probed{component, *rc::gen::arbitrary<bool>()};
+      return Probed{component, *rc::gen::arbitrary<bool>(),
+                    *rc::gen::inRange<std::uint8_t>(0, 128)};
     case 11: {
       Reply reply{{*rc::gen::arbitrary<std::uint64_t>()}, Outcome::kTimedOut, {}, text};
       if (*rc::gen::arbitrary<bool>()) reply.value = any_value();
@@ -136,6 +137,8 @@ ObservationWhat anything() {
     case 26:
       return StartedHere{component, *rc::gen::inRange(0, 100000), *rc::gen::inRange(0, 100000),
                          Duration(*rc::gen::arbitrary<std::int64_t>())};
+    case 27:
+      return UsageSeen{component, *rc::gen::arbitrary<double>(), 120.5};
     default:
       return LinkTrouble{text};
   }

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/tool_names.h"
+#include "base/tracer.h"
 #include "link/list_parameter.h"
 #include "ros2/process_finder.h"
 #include "ros2/services.h"
@@ -158,8 +159,11 @@ Expected<void> Link::start() {
   if (auto declared = declare_parameters(); !declared) return declared;
 
   for (std::size_t t = 0; t < rules_.topics.size(); ++t) {
-    watches_.emplace(rules_.topics[t].name,
-                     std::make_unique<TopicWatch>(node_->entry(), TopicId(t), rules_, inbox_));
+    const std::string& name = rules_.topics[t].name;
+    if (watches_.contains(name)) continue;
+    auto watch = std::make_unique<TopicWatch>(node_->entry(), TopicId(t), rules_, inbox_);
+    watch->asks_for_writers([this, name] { tasks_.post([this, name] { tell_writers(name); }); });
+    watches_.emplace(name, std::move(watch));
   }
   auto watch = DiagnosticsWatch::create(node_->entry(), rules_, inbox_);
   if (!watch) return Error{watch.error()};
@@ -172,7 +176,12 @@ Expected<void> Link::start() {
     remind();
     listen_to_hosts();
     look_at_hosts();
+    tell_usage();
   });
+  for (const Input& input : rules_.inputs) {
+    if (input.kind == Input::Kind::kCpu || input.kind == Input::Kind::kMemory)
+      meters_.try_emplace(input.component);
+  }
   hosts_ = std::make_unique<NeighbourHosts>([this](const GuidPrefix& participant) {
     return context_->participant().heard_last(participant);
   });
@@ -414,6 +423,7 @@ void Link::on_joined(const GraphNode& node) {
     unproven_[node.name].vendor = node.vendor;
     tasks_.post([this, name = node.name] { note_participant(name); });
   }
+  if (is_other_node(*component, node.name)) return other_node_joined(*component, node);
   make_link(*component, node.name)->lives_in(node.pid);
   lives_on(*component, host);
   if (node.pid == 0 || needs_of(*component, rules_).is_to_answer) {
@@ -432,11 +442,28 @@ void Link::note_participant(const std::string& node) {
   }
 }
 
+bool Link::is_other_node(ComponentId component, const std::string& node) const {
+  return binding_.has_several(component) && binding_.node_of(component) != node;
+}
+
+void Link::other_node_joined(ComponentId component, const GraphNode& node) {
+  const auto& others = binding_.other_nodes(component);
+  const auto place = std::ranges::find(others, node.name) - others.begin();
+  auto client = ServiceClient::create(
+      node_->entry(), {node.name + "/get_parameters", std::string(srv::GetParameters::kType)},
+      qos::kParameterServices);
+  if (!client) return;  // a secured domain need not allow it
+  other_nodes_[node.name] = {component,
+                             static_cast<std::uint8_t>(std::min<std::ptrdiff_t>(place + 1, 127)),
+                             node.pid, std::move(*client)};
+}
+
 void Link::on_left(const std::string& node, bool was_lost) {
   {
     const MutexLock lock(mutex_);
     nodes_elsewhere_.erase(node);
   }
+  other_nodes_.erase(node);
   for (auto& [topic, nodes] : publishers_) nodes.erase(node);
   probed_.erase(node);
   pids_.erase(node);
@@ -484,8 +511,8 @@ void Link::believe_leaving(const std::string& node, std::optional<GuidPrefix> an
 }
 
 void Link::vanished(const std::string& node, bool was_lost) {
-  if (const auto component = was_lost ? std::nullopt : binding_.bind(node))
-    lives_on(*component, "");
+  const auto component = was_lost ? std::nullopt : binding_.bind(node);
+  if (component && !is_other_node(*component, node)) lives_on(*component, "");
   const auto managed = systems_.extract(node);
   if (managed) {
     for (const std::string& system : managed.mapped()) inbox_.put(NodeVanished{system});
@@ -510,7 +537,8 @@ void Link::on_system(const std::string& manager, const GraphEndpoint& service) {
 void Link::on_endpoint(const std::string& node, const GraphEndpoint& endpoint) {
   if (endpoint.kind == EndpointKind::kServer) {
     const auto component = binding_.bind(node);
-    if (component) make_link(*component, node)->service_seen(endpoint);
+    if (component && !is_other_node(*component, node))
+      make_link(*component, node)->service_seen(endpoint);
     if (endpoint.type == srv::ChangeMode::kType) on_system(node, endpoint);
   }
   if (endpoint.kind == EndpointKind::kPublisher) {
@@ -522,6 +550,15 @@ void Link::on_endpoint(const std::string& node, const GraphEndpoint& endpoint) {
   }
   if (is_service(endpoint.kind) && is_for_management(endpoint.name)) return;
   inbox_.put(EndpointAppeared{node, endpoint.kind, endpoint.name});
+}
+
+void Link::tell_writers(const std::string& topic) {
+  TopicWatch::Writers writers;
+  for (const auto& [writer, node] : context_->graph().publishers_of(topic)) {
+    const auto component = binding_.bind(node);
+    if (component) writers[writer] = *component;
+  }
+  watches_.at(topic)->knows_writers(std::move(writers));
 }
 
 void Link::find_type(const std::string& node, const GraphEndpoint& endpoint, TopicWatch& watch) {
@@ -536,7 +573,7 @@ void Link::find_type(const std::string& node, const GraphEndpoint& endpoint, Top
 
 void Link::on_parameter_event(const msg::ParameterEvent& event) {
   const auto component = binding_.bind(event.node);
-  if (!component) return;
+  if (!component || is_other_node(*component, event.node)) return;
   for (const auto* changes : {&event.new_parameters, &event.changed_parameters}) {
     for (const msg::Parameter& changed : *changes) {
       for (std::size_t p = 0; p < rules_.parameters.size(); ++p) {
@@ -567,12 +604,38 @@ void Link::probe() {
       link->probe(each.pid, [this, host] { return hosts_->heard(host); });
     }
   }
+  probe_other_nodes();
   for (const Parameter& parameter : rules_.parameters) {
     if (ComponentLink* link = link_of(parameter.component)) link->check_parameters();
   }
   for (const Input& input : rules_.inputs) {
     if (input.kind != Input::Kind::kLifecycle || are_probed.contains(input.component)) continue;
     if (ComponentLink* link = link_of(input.component)) link->check_lifecycle();
+  }
+}
+
+// Only of a process on this machine that is proven to be the node's.
+void Link::tell_usage() {
+  for (auto& [component, meter] : meters_) {
+    const auto pid = pids_.find(binding_.node_of(component));
+    const auto usage =
+        pid == pids_.end() || pid->second == 0 ? std::nullopt : usage_of(pid->second);
+    const auto cores = usage ? meter.look(pid->second, *usage, live_now()) : std::nullopt;
+    if (cores) inbox_.put(UsageSeen{component, *cores, usage->resident_mib});
+  }
+}
+
+void Link::probe_other_nodes() {
+  constexpr Duration kPatience = std::chrono::milliseconds(500);
+  for (const auto& each : other_nodes_) {
+    const OtherNode& other = each.second;
+    other.client->call(encode(srv::GetParameters::Request{}), Repeat::kUntilAnswered, kPatience,
+                       [this, component = other.component, place = other.place,
+                        pid = other.pid](const CallResult& result) {
+                         const bool has_answered = result.outcome == CallOutcome::kAnswered;
+                         const bool is_held = !has_answered && pid != 0 && is_traced(pid);
+                         if (!is_held) inbox_.put(Probed{component, has_answered, place});
+                       });
   }
 }
 

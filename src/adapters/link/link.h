@@ -25,6 +25,7 @@
 #include "link/lease_link.h"
 #include "link/namesake.h"
 #include "link/neighbour_hosts.h"
+#include "link/process_usage.h"
 #include "link/simulated_clock.h"
 #include "link/topic_watch.h"
 #include "link/type_finder.h"
@@ -125,8 +126,13 @@ class Link {
   void believe_leaving(const std::string& node, std::optional<GuidPrefix> answered,
                        std::uint64_t doubt);
   void vanished(const std::string& node, bool was_lost);
+  bool is_other_node(ComponentId component, const std::string& node) const;
+  void other_node_joined(ComponentId component, const GraphNode& node);
+  void probe_other_nodes();
+  void tell_usage();
   void on_system(const std::string& manager, const GraphEndpoint& service);
   void on_endpoint(const std::string& node, const GraphEndpoint& endpoint);
+  void tell_writers(const std::string& topic);
   void find_type(const std::string& node, const GraphEndpoint& endpoint, TopicWatch& watch);
   void on_parameter_event(const msg::ParameterEvent& event);
   void probe();
@@ -163,7 +169,16 @@ class Link {
     ComponentId component;
     int pid = 0;  // 0: not known
   };
-  std::map<std::string, ToProbe> probed_;  // by node
+  std::map<std::string, ToProbe> probed_;     // by node
+  std::map<ComponentId, UsageMeter> meters_;  // of those whose usage the rules read
+  // Nodes that the process of a component has besides: whether they answer.
+  struct OtherNode {
+    ComponentId component;
+    std::uint8_t place = 1;  // Probed::node
+    int pid = 0;
+    std::unique_ptr<ServiceClient> client;
+  };
+  std::map<std::string, OtherNode> other_nodes_;  // by node
   Namesake namesake_;
   std::map<std::string, int> pids_;  // of nodes that are there; 0 where it is not known
   // Nodes of components whose process is not known, and the participant that has each.

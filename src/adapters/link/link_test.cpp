@@ -406,6 +406,48 @@ TEST(Link, ReadsFieldsRhythmsAndDiagnostics) {
       << "all that the rules name was found";
 }
 
+TEST(Link, TellsWhichOfTwoNodesPublished) {
+  const TestDomain domain;
+  Robot robot(domain);
+  LiveContext context(domain.options());
+  std::unique_ptr<LifecycleNode> other;
+  context.run([&] { other = std::move(*LifecycleNode::create(*context, {"/", "other"}, {})); });
+  auto of_robot = robot.publisher<msg::Float64>("/scan");
+  auto of_other = std::move(*other->node().create_publisher<msg::Float64>("/scan"));
+  Linked linked(domain, {},
+                "COMPONENT robot NODE /robot\nCOMPONENT other NODE /other\nRULE R\n"
+                "POLICIES ERROR REPORT\nTRIGGER age(/scan FROM robot) > 1h || "
+                "age(/scan FROM other) > 1h || age(/scan) > 1h\n");
+  const auto is_of = [](std::size_t topic) {
+    return [topic](const SampleArrived& seen) { return seen.topic == TopicId(topic); };
+  };
+  Timer timer(robot.context->executor(), 20ms, [&] { of_robot.publish(msg::Float64{1}); });
+  EXPECT_TRUE(linked.wait<SampleArrived>(is_of(0)));
+  EXPECT_TRUE(linked.wait<SampleArrived>(is_of(2))) << "who listens to all hears it, too";
+  EXPECT_FALSE(linked.has_seen<SampleArrived>(is_of(1)));
+  Timer another(context->executor(), 20ms, [&] { of_other.publish(msg::Float64{1}); });
+  EXPECT_TRUE(linked.wait<SampleArrived>(is_of(1)));
+}
+
+TEST(Link, AsksEachNodeOfAProcessAndMeasuresIt) {
+  const TestDomain domain;
+  Robot robot(domain);
+  std::unique_ptr<LifecycleNode> costmap;
+  robot.context.run([&] {
+    costmap = std::move(*LifecycleNode::create(*robot.context, {"/", "costmap"}, {}));
+  });
+  Linked linked(domain, {},
+                "COMPONENT robot NODE /robot /costmap\nRULE R\nPOLICIES ERROR REPORT\n"
+                "TRIGGER !alive(robot) || cpu(robot) > 90 || memory(robot) > 1000000\n");
+  EXPECT_TRUE(linked.wait<Probed>([](const Probed& p) { return p.answered && p.node == 1; }));
+  const auto usage = linked.wait<UsageSeen>([](const UsageSeen&) { return true; });
+  ASSERT_TRUE(usage);
+  EXPECT_GE(usage->cores, 0);
+  EXPECT_GT(usage->mib, 1);
+  EXPECT_FALSE(linked.has_seen<LifecycleRead>(
+      [](const LifecycleRead& r) { return r.component != ComponentId(0); }));
+}
+
 // Of many a second most lie in their socket for a moment. A silence begins when the last one came.
 TEST(Link, KnowsWhenMessagesCameThatItReadsLater) {
   const TestDomain domain;

@@ -33,6 +33,8 @@ std::vector<std::string> nodes_of(const Component& component) {
 
 void add(ComponentId component, const RuleSet& rules, Rights& rights) {
   const ComponentNeeds needs = needs_of(component, rules);
+  for (const std::string& other : rules[component].other_nodes)
+    rights.calls.push_back(other + "/get_parameters");
   for (const std::string& node : nodes_of(rules[component])) {
     rights.subscribes.push_back(node + "/transition_event");
     rights.calls.push_back(node + "/get_state");

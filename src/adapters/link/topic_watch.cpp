@@ -22,17 +22,61 @@ Time arrival_of(const Sample& sample) {
 
 TopicWatch::TopicWatch(NodeEntry& self, TopicId topic, const RuleSet& rules, Inbox& inbox)
     : self_(self), topic_(topic), rules_(rules), inbox_(inbox) {
-  counts_ = std::any_of(rules.inputs.begin(), rules.inputs.end(), [&](const Input& input) {
-    using enum Input::Kind;
-    return (input.kind == kRate || input.kind == kAge || input.kind == kPhi) &&
-           input.topic == topic;
-  });
+  for (std::size_t t = 0; t < rules.topics.size(); ++t) {
+    const Topic& each = rules.topics[t];
+    const bool is_counted =
+        std::any_of(rules.inputs.begin(), rules.inputs.end(), [&](const Input& input) {
+          using enum Input::Kind;
+          return (input.kind == kRate || input.kind == kAge || input.kind == kPhi) &&
+                 input.topic == TopicId(t);
+        });
+    if (each.name != rules[topic].name || !is_counted) continue;
+    if (each.publisher)
+      of_publishers_.push_back({TopicId(t), *each.publisher});
+    else
+      whole_ = TopicId(t);
+  }
+  counts_ = whole_ || !of_publishers_.empty();
+}
+
+void TopicWatch::knows_writers(Writers writers) {
+  const MutexLock lock(mutex_);
+  writers_ = std::move(writers);
+}
+
+// Empty while the writer is not known, or if its node is no component.
+std::optional<ComponentId> TopicWatch::publisher_of(const Guid& writer) {
+  constexpr Duration kAskedAgain = std::chrono::seconds(1);
+  {
+    const MutexLock lock(mutex_);
+    const auto known = writers_.find(writer);
+    if (known != writers_.end()) return known->second;
+  }
+  const Time now = live_now();
+  if (later(asked_, kAskedAgain) <= now && ask_for_writers_) {
+    asked_ = now;
+    ask_for_writers_();
+  }
+  return std::nullopt;
+}
+
+void TopicWatch::on_arrival(const Sample& sample) {
+  has_heard_ = true;
+  if (!counts_) return;
+  const Time at = arrival_of(sample);
+  const std::uint32_t published = published_since(sample.identity);
+  if (whole_) inbox_.put({at, SampleArrived{*whole_, published}}, Urgency::kSoon);
+  if (of_publishers_.empty()) return;
+  const auto publisher = publisher_of(sample.identity.writer);
+  for (const auto& [topic, wanted] : of_publishers_) {
+    if (wanted == publisher) inbox_.put({at, SampleArrived{topic, published}}, Urgency::kSoon);
+  }
 }
 
 bool TopicWatch::reads_fields() const {
   return std::any_of(rules_.signals.begin(), rules_.signals.end(), [&](const Signal& signal) {
     const auto* field = std::get_if<TopicField>(&signal.source);
-    return field != nullptr && field->topic == topic_;
+    return field != nullptr && rules_[field->topic].name == rules_[topic_].name;
   });
 }
 
@@ -61,14 +105,7 @@ Expected<void> TopicWatch::listen(const std::string& type, Keys keys) {
   auto listener = TopicListener::open(
       self_, rules_[topic_].name, type, keys,
       fields_.empty() ? PayloadUse::kHeader : PayloadUse::kWhole,
-      {.on_arrival =
-           [this](const Sample& sample) {
-             has_heard_ = true;
-             if (counts_)
-               inbox_.put(
-                   {arrival_of(sample), SampleArrived{topic_, published_since(sample.identity)}},
-                   Urgency::kSoon);
-           },
+      {.on_arrival = [this](const Sample& sample) { on_arrival(sample); },
        .on_message = [this](const Sample& sample) { on_message(sample); },
        .on_unheard = [this] { on_unheard(); }});
   if (!listener) return Error{listener.error()};
@@ -81,7 +118,7 @@ Expected<void> TopicWatch::listen(const std::string& type, Keys keys) {
 bool TopicWatch::compile_fields(const std::string& type, const Expected<MessageLibrary*>& library) {
   for (std::size_t s = 0; s < rules_.signals.size(); ++s) {
     const auto* field = std::get_if<TopicField>(&rules_.signals[s].source);
-    if (field == nullptr || field->topic != topic_) continue;
+    if (field == nullptr || rules_[field->topic].name != rules_[topic_].name) continue;
     const std::string signal = "signal " + rules_.signals[s].name + ": ";
     if (!library) {
       tell_once(signal + library.error());
@@ -122,7 +159,7 @@ void TopicWatch::on_unheard() {
                            " come, but cannot be put together: they are too large, or lost in "
                            "part; only that they come is known"});
   }
-  if (counts_) inbox_.put(SampleArrived{topic_, 1}, Urgency::kSoon);
+  if (whole_) inbox_.put(SampleArrived{*whole_, 1}, Urgency::kSoon);
 }
 
 // How many samples the writer wrote since the last one that came here, this one included.

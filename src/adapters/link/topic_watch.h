@@ -4,6 +4,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
@@ -11,6 +12,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "base/mutex.h"
+#include "base/time.h"
 #include "language/rule_set.h"
 #include "link/topic_listener.h"
 #include "robot/inbox.h"
@@ -21,7 +24,16 @@ namespace culprit::ros2 {
 class TopicWatch {
  public:
   // All references must outlive the watch.
+  // `topic` is the first of its name; those of single publishers (FROM) are watched with it.
   TopicWatch(NodeEntry& self, TopicId topic, const RuleSet& rules, Inbox& inbox);
+
+  // Which component has made each writer of the topic.
+  using Writers = std::unordered_map<Guid, ComponentId>;
+  // `ask` is called when a writer is heard that is not known, and that may matter: on any thread, at
+  // most once a second. Before a publisher is seen.
+  void asks_for_writers(std::function<void()> ask) { ask_for_writers_ = std::move(ask); }
+  // From any thread.
+  void knows_writers(Writers writers);
 
   // Whether it takes a message's type to watch it, not only that it comes.
   bool reads_fields() const;
@@ -48,6 +60,8 @@ class TopicWatch {
   Expected<void> listen(const std::string& type, Keys keys);
   void tell_once(std::string trouble);
   void on_message(const Sample& sample);
+  void on_arrival(const Sample& sample);
+  std::optional<ComponentId> publisher_of(const Guid& writer);
   void on_unheard();
   std::uint32_t published_since(const SampleIdentity& identity);
 
@@ -55,13 +69,25 @@ class TopicWatch {
   const TopicId topic_;
   const RuleSet& rules_;
   Inbox& inbox_;
-  bool counts_ = false;  // the rules read the topic's rhythm
+  struct OfPublisher {
+    TopicId topic;
+    ComponentId publisher;
+  };
+  std::optional<TopicId> whole_;            // whatever who publishes it
+  std::vector<OfPublisher> of_publishers_;  // FROM
+  bool counts_ = false;                     // the rules read the rhythm of any of them
+  std::function<void()> ask_for_writers_;
   std::string type_;
   std::set<std::string> told_;  // troubles: each publisher has the same ones
 
   // Of the receive thread, once the listener exists.
   std::vector<Field> fields_;
   std::unordered_map<Guid, std::int64_t> last_sequence_;  // by writer
+
+  Time asked_ = kLongAgo;  // for writers
+
+  Mutex mutex_;
+  Writers writers_ CULPRIT_GUARDED_BY(mutex_);
 
   std::atomic<bool> has_heard_ = false;
   std::atomic<bool> told_unheard_ =

@@ -369,6 +369,17 @@ int Graph::process_of(const GuidPrefix& prefix) const {
   return peer == peers_.end() ? 0 : peer->second.pid;
 }
 
+std::vector<std::pair<Guid, std::string>> Graph::publishers_of(const std::string& topic) const {
+  std::vector<std::pair<Guid, std::string>> publishers;
+  for (const auto& [guid, node] : owners_) {
+    const Endpoint* found = find(guid);
+    const bool is_it = found != nullptr && found->ros && found->ros->name == topic &&
+                       found->ros->kind == EndpointKind::kPublisher;
+    if (is_it) publishers.emplace_back(guid, node);
+  }
+  return publishers;
+}
+
 const EndpointInfo* Graph::endpoint(const Guid& guid) const {
   const Endpoint* found = find(guid);
   return found == nullptr ? nullptr : &found->info;

@@ -130,6 +130,8 @@ class Graph {
   // Null when they are not known (any more).
   const ParticipantInfo* participant(const GuidPrefix& prefix) const;
   const EndpointInfo* endpoint(const Guid& guid) const;
+  // The endpoints that publish the topic, each with its node.
+  std::vector<std::pair<Guid, std::string>> publishers_of(const std::string& topic) const;
   // Its process on this machine; 0: it is elsewhere, or not proven, or not known.
   int process_of(const GuidPrefix& prefix) const;
 

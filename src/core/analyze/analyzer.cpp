@@ -22,9 +22,11 @@ bool may_be_of(ComponentId component, const Input& input, const Knowledge& knowl
     case Kind::kRate:
     case Kind::kAge:
     case Kind::kPhi:
-      return knowledge.graph.publishes(component, knowledge.rules[input.topic].name);
+      return knowledge.graph.publishes(component, knowledge.rules[input.topic]);
     case Kind::kAlive:
     case Kind::kLifecycle:
+    case Kind::kCpu:
+    case Kind::kMemory:
       return input.component == component;
     case Kind::kParameter:
       return knowledge.rules.parameters[input.parameter.index].component == component;

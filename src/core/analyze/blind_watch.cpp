@@ -16,9 +16,14 @@ bool is_of_topic(const Input& input) {
   return input.kind == Kind::kRate || input.kind == Kind::kAge || input.kind == Kind::kPhi;
 }
 
+bool is_of_component(const Input& input) {
+  return input.kind == Kind::kAlive || input.kind == Kind::kLifecycle || input.kind == Kind::kCpu ||
+         input.kind == Kind::kMemory;
+}
+
 bool is_of_signal(const Input& input) {
-  return !is_of_topic(input) && input.kind != Kind::kAlive && input.kind != Kind::kLifecycle &&
-         input.kind != Kind::kParameter && input.kind != Kind::kLevel;
+  return !is_of_topic(input) && !is_of_component(input) && input.kind != Kind::kParameter &&
+         input.kind != Kind::kLevel;
 }
 
 // The monitor forgets a signal at its STALE, and a window empties by itself.
@@ -31,10 +36,8 @@ bool keeps_last_value(const Input& input, const RuleSet& rules) {
 Nameable never_seen_of(const Input& input, const Knowledge& knowledge) {
   const Sightings& sightings = knowledge.sightings;
   if (is_of_topic(input)) return input.topic;
+  if (is_of_component(input)) return input.component;
   switch (input.kind) {
-    case Kind::kAlive:
-    case Kind::kLifecycle:
-      return input.component;
     case Kind::kParameter: {
       const ComponentId component = knowledge.rules[input.parameter].component;
       if (!sightings.has(component)) return component;
@@ -60,7 +63,7 @@ std::string name_of(const Nameable& what, const RuleSet& rules) {
   if (const auto* parameter = std::get_if<ParameterId>(&what))
     return "parameter " + rules[*parameter].name + " of " + rules[rules[*parameter].component].name;
   if (const auto* signal = std::get_if<SignalId>(&what)) return "signal " + rules[*signal].name;
-  if (const auto* topic = std::get_if<TopicId>(&what)) return rules[*topic].name;
+  if (const auto* topic = std::get_if<TopicId>(&what)) return rules.label(*topic);
   return rules[std::get<ComponentId>(what)].name;
 }
 
@@ -234,6 +237,8 @@ std::optional<Unseen> BlindWatch::why_without_value(InputId id, Time now) const 
       return unless_seen(sightings.has(input.topic));
     case Kind::kAlive:
     case Kind::kLifecycle:
+    case Kind::kCpu:
+    case Kind::kMemory:
       return unless_seen(sightings.has(input.component));
     case Kind::kParameter:
       return unless_seen(sightings.was_read(input.parameter));

@@ -53,7 +53,7 @@ std::optional<ComponentId> KnownSilence::behind(RuleId rule) const {
 
 // Whoever alone publishes the topic, spoke since its process began, and does so no more.
 std::optional<ComponentId> KnownSilence::silent_through(TopicId topic, RuleId rule) const {
-  const auto component = knowledge_.graph.only_publisher(knowledge_.rules[topic].name);
+  const auto component = knowledge_.graph.only_publisher(knowledge_.rules[topic]);
   const auto& heard = knowledge_.signals.rhythm(topic).last;
   if (!component || !heard) return std::nullopt;
   const ComponentState& state = knowledge_.components[*component];

@@ -26,7 +26,7 @@ std::vector<Time> last_signs(const Knowledge& knowledge) {
   for (std::size_t t = 0; t < knowledge.rules.topics.size(); ++t) {
     const auto& heard = knowledge.signals.rhythm(TopicId(t)).last;
     if (!heard) continue;
-    if (const auto c = knowledge.graph.only_publisher(knowledge.rules.topics[t].name))
+    if (const auto c = knowledge.graph.only_publisher(knowledge.rules.topics[t]))
       signs[c->index] = std::max(signs[c->index], *heard);
   }
   return signs;

@@ -68,7 +68,7 @@ std::vector<std::optional<TroubleSeen>> all_troubles(const Knowledge& knowledge)
     const TopicId topic(t);
     const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(topic);
     if (!is_silent(topic, knowledge.now, knowledge) || !is_steady(rhythm)) continue;
-    const auto component = knowledge.graph.only_publisher(knowledge.rules[topic].name);
+    const auto component = knowledge.graph.only_publisher(knowledge.rules[topic]);
     if (component && !all[component->index] && !knowledge.is_unheard(*component))
       all[component->index] =
           TroubleSeen{Trouble::kSilent, {*rhythm.last, later(*rhythm.last, rhythm.gap)}};

@@ -41,8 +41,8 @@ std::optional<TopicId> heard_topic(ComponentId component, const Knowledge& knowl
     const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(TopicId(t));
     if (!rhythm.last || rhythm.interval <= Duration::zero()) continue;
     if (later(*rhythm.last, 2 * rhythm.interval + kSlack) < now) continue;
-    const std::string& name = knowledge.rules.topics[t].name;
-    if (knowledge.graph.publishes(component, name) && knowledge.graph.publisher_count(name) == 1)
+    const Topic& topic = knowledge.rules.topics[t];
+    if (knowledge.graph.publishes(component, topic) && knowledge.graph.publisher_count(topic) == 1)
       return TopicId(t);
   }
   return std::nullopt;
@@ -58,9 +58,9 @@ std::optional<Time> silent_since(ComponentId component, const Rule& rule,
                              input.kind == Input::Kind::kPhi;
     if (!is_of_topic) continue;
     const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(input.topic);
-    const std::string& name = knowledge.rules[input.topic].name;
+    const Topic& topic = knowledge.rules[input.topic];
     const bool is_its =
-        knowledge.graph.publishes(component, name) && knowledge.graph.publisher_count(name) == 1;
+        knowledge.graph.publishes(component, topic) && knowledge.graph.publisher_count(topic) == 1;
     const bool is_known = rhythm.last && rhythm.interval > Duration::zero();
     if (is_its && is_known && later(*rhythm.last, rhythm.interval + rhythm.interval / 2) < now)
       since = std::max(since.value_or(kLongAgo), *rhythm.last);
@@ -82,13 +82,12 @@ std::optional<std::string> contradiction(const Strategy& strategy, const Knowled
       continue;
     // Its own outage, or one of nobody knows whom, speaks against it.
     const bool is_suspect = std::any_of(silent->begin(), silent->end(), [&](TopicId topic) {
-      const std::string& name = rules[topic].name;
-      return knowledge.graph.publishes(component, name) ||
-             knowledge.graph.publisher_count(name) == 0;
+      return knowledge.graph.publishes(component, rules[topic]) ||
+             knowledge.graph.publisher_count(rules[topic]) == 0;
     });
     const auto heard = is_suspect ? std::nullopt : heard_topic(component, knowledge, now);
     if (heard)
-      return rules[component].name + " runs and publishes " + rules[*heard].name +
+      return rules[component].name + " runs and publishes " + rules.label(*heard) +
              "; what is silent is not its";
   }
   return std::nullopt;

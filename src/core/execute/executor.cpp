@@ -55,8 +55,9 @@ bool Executor::take_up(Run& run, Time now) {
   if (now < run.from) return false;
   const Interrupted interrupted = *std::exchange(run.interrupted, std::nullopt);
   write_.events.tell(now, StrategyResumed{run.strategy});
-  run.undo = execute::undo_of(interrupted, knowledge_.rules);
+  run.undo = execute::undo_of(interrupted, knowledge_);
   if (interrupted.has_failed) {
+    run.adaptation = interrupted.adaptations_done;
     write_.attempts.undo(run.strategy);
     write_.signals.touch(run.rule);
     return true;
@@ -199,6 +200,7 @@ bool Executor::next_goal(Run& run, Time now) {
       run.goals = std::move(*goals);
       take_owed(adaptation, run.goals);
       run.goal = 0;
+      if (adaptation.begins_step) run.started = kNever;
     }
     if (run.goal < run.goals.size()) {
       execute::Goal& goal = run.goals[run.goal];
@@ -268,11 +270,7 @@ void Executor::finish_goal(Run& run, Time now) {
   const Adaptation& adaptation = knowledge_.rules[run.strategy].adaptations[run.adaptation];
   // A last resort is to last: whether the failure is gone is not what it is for.
   const bool is_to_last = knowledge_.rules[run.strategy].is_last_resort;
-  if (!is_to_last && pursuit.has_changed_anything() && pursuit.before()) {
-    if (auto goal = execute::undoing(pursuit.goal(), adaptation.type, *pursuit.before())) {
-      run.undo.push_back({pursuit.component(), std::move(*goal)});
-    }
-  }
+  if (!is_to_last && pursuit.has_changed_anything()) note_undo(run);
   if (pursuit.is_reached()) {
     // Where it was brought last counts; a restart takes it through another state.
     const auto rest = run.goals.begin() + static_cast<std::ptrdiff_t>(run.goal) + 1;
@@ -295,20 +293,85 @@ void Executor::finish_goal(Run& run, Time now) {
   run.pursuit.reset();
 }
 
-bool Executor::next_undo(Run& run, Time now) {
-  std::erase_if(run.undo, [&](const execute::Undo& undo) {
-    if (is_held_by_last_resort(undo)) return true;
-    if (knowledge_.components[undo.component].process != ProcessState::kGone) return false;
-    undo_at_next_start(run.strategy, undo, now);
-    return true;
-  });
-  if (run.undo.empty()) {
-    write_.attempts.undone(run.strategy);
-    write_.signals.touch(run.rule);
-    return false;
+// How the goal that was pursued last is taken back. A state that two steps change is brought
+// back to where it was before the first.
+void Executor::note_undo(Run& run) {
+  const Pursuit& pursuit = *run.pursuit;
+  const auto& adaptations = knowledge_.rules[run.strategy].adaptations;
+  const Adaptation& adaptation = adaptations[run.adaptation];
+  if (adaptation.type == AdaptationType::kStop) {
+    if (!pursuit.is_reached() || !execute::is_started_again(run.adaptation, adaptations)) return;
+    const Lifecycle before = knowledge_.components[adaptation.component].intended_lifecycle;
+    for (Goal& goal : execute::starting_again(adaptation, before, knowledge_))
+      run.undo.push_back({adaptation.component, std::move(goal)});
+  } else if (pursuit.before()) {
+    auto goal = execute::undoing(pursuit.goal(), adaptation.type, *pursuit.before());
+    const bool is_known = goal && std::ranges::any_of(run.undo, [&](const execute::Undo& known) {
+                            return known.component == pursuit.component() &&
+                                   execute::are_of_one_thing(known.goal, *goal);
+                          });
+    if (goal && !is_known) run.undo.push_back({pursuit.component(), std::move(*goal)});
   }
-  run.pursuit.emplace(run.undo.back().goal, run.undo.back().component, now);
-  return true;
+}
+
+bool Executor::next_undo(Run& run, Time now) {
+  for (; !run.undo.empty(); run.undo.pop_back()) {
+    const execute::Undo& undo = run.undo.back();
+    const ComponentState& state = knowledge_.components[undo.component];
+    const bool starts = std::holds_alternative<execute::PresentGoal>(undo.goal);
+    if (is_held_by_last_resort(undo)) continue;
+    if (starts && (state.alive == true || (state.pid != 0 && state.process != ProcessState::kGone)))
+      continue;  // it is there
+    if (const auto missing = missing_for(run, undo)) {
+      write_.events.tell(
+          now, Undone{run.strategy,
+                      knowledge_.rules[undo.component].name + ": " + execute::describe(undo.goal) +
+                          ": it may depend on " + knowledge_.rules[missing->component].name +
+                          ", which " + missing->why,
+                      false});
+      continue;
+    }
+    if (!starts && state.process == ProcessState::kGone) {
+      undo_at_next_start(run.strategy, undo, now);
+      continue;
+    }
+    run.pursuit.emplace(undo.goal, undo.component, now);
+    return true;
+  }
+  write_.attempts.undone(run.strategy);
+  write_.signals.touch(run.rule);
+  return false;
+}
+
+// The component that keeps another one, which the strategy took down, from being brought up again: one
+// that was adapted after it, or that it depends on, and that is down or could not be brought up.
+std::optional<Executor::Missing> Executor::missing_for(const Run& run,
+                                                       const execute::Undo& undo) const {
+  const Strategy& strategy = knowledge_.rules[run.strategy];
+  const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&undo.goal);
+  const bool activates = lifecycle != nullptr && lifecycle->target == Lifecycle::kActive &&
+                         knowledge_.components[undo.component].lifecycle != Lifecycle::kActive;
+  const bool starts = std::holds_alternative<execute::PresentGoal>(undo.goal);
+  if (strategy.components.size() < 2 || (!activates && !starts)) return std::nullopt;
+  const auto is_down = [&](ComponentId c) {
+    return c != undo.component && knowledge_.components[c].alive == false;
+  };
+  bool is_later = false;
+  for (std::size_t i = 0; i < strategy.adaptations.size(); ++i) {
+    const Adaptation& adaptation = strategy.adaptations[i];
+    const bool brings_up = adaptation.type == AdaptationType::kActivate ||
+                           adaptation.type == AdaptationType::kRestart || launches(adaptation);
+    const bool has_failed = i == run.adaptation && brings_up;
+    if (adaptation.component == undo.component) {
+      is_later = true;
+    } else if (is_later && is_down(adaptation.component)) {
+      return Missing{adaptation.component, "is down"};
+    } else if (is_later && has_failed) {
+      return Missing{adaptation.component, "could not be brought up"};
+    }
+  }
+  const auto upstream = knowledge_.graph.first_upstream(undo.component, is_down);
+  return upstream ? std::optional(Missing{*upstream, "is down"}) : std::nullopt;
 }
 
 // A last resort has changed the same since, and that stays.

@@ -2,7 +2,8 @@
 //
 // A strategy's adaptations are carried out in the order they are written, each to its proof
 // (goal.h), before the next begins. If one cannot be carried out, or the verdict is that the
-// strategy failed, what was changed is undone in reverse order where it can be. From its choice to
+// strategy failed, what was changed is undone in reverse order where it can be. A component that was
+// taken down while another one was adapted is not brought up again where that one is down. From its choice to
 // the end of its undoing a strategy has its components to itself, but for last resorts: these go
 // beside it, are not undone, and what they changed is not undone by others either.
 #pragma once
@@ -93,7 +94,13 @@ class Executor {
   bool next_goal(Run& run, Time now);
   bool start_again(Run& run, Time now);
   void note_begun_anew(const Run& run, Time now);
+  void note_undo(Run& run);
   bool next_undo(Run& run, Time now);
+  struct Missing {
+    ComponentId component;
+    const char* why = "";
+  };
+  std::optional<Missing> missing_for(const Run& run, const execute::Undo& undo) const;
   bool is_held_by_last_resort(const execute::Undo& undo) const;
   void finish_goal(Run& run, Time now);
   void finish_undo(Run& run, Time now);

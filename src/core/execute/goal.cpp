@@ -167,12 +167,14 @@ Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowled
       return goals;
     }
     case AdaptationType::kStart: {
+      if (state.alive == true) return std::vector<Goal>{};  // somebody else was there first
       std::vector<Goal> goals{present(adaptation, knowledge)};
       if (state.intended_lifecycle != Lifecycle::kUnknown)
         goals.push_back(bringing_up(adaptation, Lifecycle::kActive, knowledge));
       return goals;
     }
     case AdaptationType::kStop:
+      if (state.alive == false && state.known_pid() == 0) return std::vector<Goal>{};
       return std::vector<Goal>{GoneGoal{}};
     case AdaptationType::kChangeMode:
       return std::vector<Goal>{ModeGoal{adaptation.subject}};
@@ -182,6 +184,24 @@ Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowled
           adaptation.request}};
   }
   return std::vector<Goal>{};
+}
+
+bool is_started_again(std::size_t place, const std::vector<Adaptation>& adaptations) {
+  if (adaptations[place].type != AdaptationType::kStop) return false;
+  return std::any_of(adaptations.begin() + static_cast<std::ptrdiff_t>(place), adaptations.end(),
+                     [&](const Adaptation& later) {
+                       return later.type == AdaptationType::kStart &&
+                              later.component == adaptations[place].component;
+                     });
+}
+
+std::vector<Goal> starting_again(const Adaptation& stop, Lifecycle before,
+                                 const Knowledge& knowledge) {
+  std::vector<Goal> goals;
+  if (before == Lifecycle::kActive || before == Lifecycle::kInactive)
+    goals.push_back(bringing_up(stop, before, knowledge));
+  goals.push_back(present(stop, knowledge));
+  return goals;
 }
 
 std::optional<Look> look_for(const Goal& goal) {
@@ -214,6 +234,12 @@ std::optional<Goal> undoing(const Goal& goal, AdaptationType type, const Reply& 
   if (std::holds_alternative<LifecycleGoal>(goal) && switches && was_settled)
     return LifecycleGoal{*state, {}};
   return std::nullopt;
+}
+
+bool are_of_one_thing(const Goal& a, const Goal& b) {
+  if (a.index() != b.index()) return false;
+  const auto* parameter = std::get_if<ParameterGoal>(&a);
+  return parameter == nullptr || parameter->name == std::get<ParameterGoal>(b).name;
 }
 
 std::string describe(const Goal& goal) {

@@ -80,6 +80,12 @@ LifecycleGoal bringing_up(const Adaptation& adaptation, Lifecycle target,
 // parameter is unknown now.
 Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowledge& knowledge);
 
+// Whether the adaptation at `place` stops a component that a later one starts again.
+bool is_started_again(std::size_t place, const std::vector<Adaptation>& adaptations);
+// How a component that `stop` ended, when it was `before`, is brought back: the last goal first.
+std::vector<Goal> starting_again(const Adaptation& stop, Lifecycle before,
+                                 const Knowledge& knowledge);
+
 // How to look at the state that `goal` is about; nothing for goals that the knowledge answers.
 using Look = std::variant<ReadParameter, ReadLifecycle, ReadMode>;
 std::optional<Look> look_for(const Goal& goal);
@@ -87,6 +93,9 @@ std::optional<Look> look_for(const Goal& goal);
 // The goal that brings back what was read before the change; nothing if a change of this kind is
 // not undone, or what was read is no state to go back to: an unknown mode, a number that is none.
 std::optional<Goal> undoing(const Goal& goal, AdaptationType type, const Reply& before);
+
+// Whether both are about the same state: one parameter, the lifecycle, the mode.
+bool are_of_one_thing(const Goal& a, const Goal& b);
 
 // For people: "exposure = 0.5", "active", "stopped".
 std::string describe(const Goal& goal);

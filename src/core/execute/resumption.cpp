@@ -88,11 +88,20 @@ Resumption resumption_of(const Interrupted& interrupted, const Knowledge& knowle
   return resumption;
 }
 
-std::vector<Undo> undo_of(const Interrupted& interrupted, const RuleSet& rules) {
+std::vector<Undo> undo_of(const Interrupted& interrupted, const Knowledge& knowledge) {
+  const auto& adaptations = knowledge.rules[interrupted.strategy].adaptations;
   std::vector<Undo> all;
   for (const Interrupted::Request& request : interrupted.requests) {
     const Command& command = request.command;
     if (command.purpose.undoes) continue;
+    const Adaptation& adaptation = adaptations[command.purpose.adaptation];
+    if (std::holds_alternative<StopProcess>(command.what) &&
+        is_started_again(command.purpose.adaptation, adaptations)) {
+      const auto* was = std::get_if<Lifecycle>(&command.purpose.before);
+      for (Goal& goal : starting_again(adaptation, was ? *was : Lifecycle::kUnknown, knowledge))
+        all.push_back({command.component, std::move(goal)});
+      continue;
+    }
     std::optional<Goal> changed;
     if (const auto* set = std::get_if<SetParameter>(&command.what)) {
       changed = ParameterGoal{set->name, set->value, ParameterGoal::Kind::kSet, {}};
@@ -102,7 +111,6 @@ std::vector<Undo> undo_of(const Interrupted& interrupted, const RuleSet& rules) 
       changed = LifecycleGoal{};
     }
     if (!changed) continue;
-    const auto& adaptation = rules[interrupted.strategy].adaptations[command.purpose.adaptation];
     const Reply before{{}, Outcome::kDone, command.purpose.before, ""};
     if (auto goal = undoing(*changed, adaptation.type, before))
       all.push_back({command.component, std::move(*goal)});

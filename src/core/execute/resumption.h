@@ -27,6 +27,6 @@ struct Undo {
   ComponentId component;
   Goal goal;
 };
-std::vector<Undo> undo_of(const Interrupted& interrupted, const RuleSet& rules);
+std::vector<Undo> undo_of(const Interrupted& interrupted, const Knowledge& knowledge);
 
 }  // namespace culprit::execute

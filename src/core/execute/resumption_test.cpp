@@ -66,7 +66,7 @@ TEST(Resumption, IsAnAttemptAtItsFailureOfWhichNothingIsLearned) {
 
 TEST(Resumption, BringsBackAllThatWasChangedIfTheStrategyDoesNotHelp) {
   Left left;
-  const std::vector<Undo> undo = undo_of(left.tuned(), left.rules);
+  const std::vector<Undo> undo = undo_of(left.tuned(), left.knowledge);
   ASSERT_EQ(undo.size(), 2u);
   const auto& parameter = std::get<ParameterGoal>(undo[0].goal);
   EXPECT_EQ(parameter.name, "gain");
@@ -79,7 +79,7 @@ TEST(Resumption, UndoesNoUndoing) {
   Left left;
   Interrupted tuned = left.tuned();
   for (auto& request : tuned.requests) request.command.purpose.undoes = true;
-  EXPECT_TRUE(undo_of(tuned, left.rules).empty());
+  EXPECT_TRUE(undo_of(tuned, left.knowledge).empty());
 }
 
 // Lets the executor go on with a robot that obeys; gives how often something was changed.

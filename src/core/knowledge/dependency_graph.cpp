@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "base/ros_names.h"
+
 namespace culprit {
 namespace {
 
@@ -23,6 +25,7 @@ DependencyGraph::DependencyGraph(const RuleSet& rules)
   ignored_.insert(rules.ignored_topics.begin(), rules.ignored_topics.end());
   for (std::size_t c = 0; c < rules.components.size(); ++c) {
     if (!rules.components[c].node.empty()) intern_node(rules.components[c].node);
+    for (const std::string& other : rules.components[c].other_nodes) intern_node(other);
   }
   for (const Dependency& d : rules.dependencies) declare(d.consumer, d.producer);
   // A component ends with its container.
@@ -65,7 +68,12 @@ std::optional<NodeId> DependencyGraph::intern_node(const std::string& name) {
   std::optional<NodeId> id;
   if (component) id = nodes_of_components_[component->index];
   if (!id) id = add_node();
-  nodes_[id->index].name = name;
+  const bool is_other = component && binding_.node_of(*component) != name;
+  if (is_other) {
+    ++nodes_[id->index].names;
+  } else {
+    nodes_[id->index].name = name;
+  }
   nodes_[id->index].component = component;
   if (component) nodes_of_components_[component->index] = id;
   node_ids_[name] = *id;
@@ -79,7 +87,8 @@ std::optional<DependencyGraph::ChannelId> DependencyGraph::intern_channel(Endpoi
   if (known != channel_ids_.end()) return known->second;
   if (channels_.size() >= kMaxChannels) return std::nullopt;
   const ChannelId id(channels_.size());
-  channels_.push_back({name, is_service(kind), {}, {}, 0});
+  const bool is_heartbeat = !is_service(kind) && own_name(name) == "bond";
+  channels_.push_back({name, is_service(kind), is_heartbeat, {}, {}, 0});
   channel_ids_[key] = id;
   return id;
 }
@@ -87,18 +96,46 @@ std::optional<DependencyGraph::ChannelId> DependencyGraph::intern_channel(Endpoi
 bool DependencyGraph::node_appeared(const std::string& node) {
   const auto id = intern_node(node);
   if (!id || nodes_[id->index].is_present) return false;
+  Node& here = nodes_[id->index];
+  if (here.names > 1) {
+    parts_.insert(node);
+    if (!missing_node(*here.component).empty()) return false;
+  }
   whole_.reset();
   ++changes_;
-  return nodes_[id->index].is_present = true;
+  return here.is_present = true;
 }
 
 bool DependencyGraph::node_vanished(const std::string& node) {
   const auto id = node_ids_.find(node);
+  parts_.erase(node);
   if (id == node_ids_.end() || !nodes_[id->second.index].is_present) return false;
   nodes_[id->second.index].is_present = false;
   ++changes_;
   whole_.reset();
   return true;
+}
+
+void DependencyGraph::component_vanished(ComponentId component) {
+  node_vanished(binding_.node_of(component));
+  for (const std::string& other : binding_.other_nodes(component)) node_vanished(other);
+}
+
+bool DependencyGraph::has_any_node(ComponentId component) const {
+  if (!has_several_nodes(component)) return is_present(component);
+  return parts_.contains(binding_.node_of(component)) ||
+         std::ranges::any_of(binding_.other_nodes(component),
+                             [&](const std::string& other) { return parts_.contains(other); });
+}
+
+std::string DependencyGraph::missing_node(ComponentId component) const {
+  if (!has_several_nodes(component))
+    return is_present(component) ? "" : binding_.node_of(component);
+  if (!parts_.contains(binding_.node_of(component))) return binding_.node_of(component);
+  for (const std::string& other : binding_.other_nodes(component)) {
+    if (!parts_.contains(other)) return other;
+  }
+  return "";
 }
 
 void DependencyGraph::keep_ends(ComponentId component, bool is_kept) {
@@ -219,6 +256,20 @@ std::optional<ComponentId> DependencyGraph::only_publisher(const std::string& to
   return publishers.size() == 1 ? nodes_[publishers.front().index].component : std::nullopt;
 }
 
+std::size_t DependencyGraph::publisher_count(const Topic& topic) const {
+  if (!topic.publisher) return publisher_count(topic.name);
+  return publishes(*topic.publisher, topic.name) ? 1 : 0;
+}
+
+bool DependencyGraph::publishes(ComponentId component, const Topic& topic) const {
+  return (!topic.publisher || *topic.publisher == component) && publishes(component, topic.name);
+}
+
+std::optional<ComponentId> DependencyGraph::only_publisher(const Topic& topic) const {
+  if (!topic.publisher) return only_publisher(topic.name);
+  return publishes(*topic.publisher, topic.name) ? topic.publisher : std::nullopt;
+}
+
 bool DependencyGraph::was_published(const std::string& topic) const {
   const auto known = channel_ids_.find('t' + topic);
   if (known == channel_ids_.end()) return false;
@@ -243,12 +294,30 @@ bool DependencyGraph::counts(const End& end, const Channel& channel, bool produc
   return producer && channel.live_producers == 0;
 }
 
+bool DependencyGraph::is_data_flow(const Channel& channel) const {
+  if (channel.is_heartbeat) return false;
+  if (channel.is_service) return true;
+  const auto collect = [&](const std::vector<End>& ends, bool are_producers,
+                           std::vector<NodeId>& nodes) {
+    nodes.clear();
+    for (const End& end : ends) {
+      if (counts(end, channel, are_producers)) nodes.push_back(end.node);
+    }
+    std::ranges::sort(nodes);
+  };
+  collect(channel.producers, true, producing_);
+  if (producing_.size() < 2) return true;
+  collect(channel.consumers, false, consuming_);
+  return producing_ != consuming_;
+}
+
 std::optional<std::string> DependencyGraph::unsupplied_input(ComponentId component) const {
   const auto node = nodes_of_components_[component.index];
   std::optional<std::string> first;
   if (!node) return first;
   for (const ChannelId id : nodes_[node->index].consumes) {
     const Channel& channel = channels_[id.index];
+    if (channel.is_heartbeat) continue;
     const bool is_supplied =
         std::any_of(channel.producers.begin(), channel.producers.end(),
                     [&](const End& end) { return counts(end, channel, true); });
@@ -283,7 +352,7 @@ bool DependencyGraph::reads_others(ComponentId component) const {
   return !own.declared_producers.empty() || std::ranges::any_of(own.consumes, [&](ChannelId id) {
     const Channel& channel = channels_[id.index];
     const auto end = std::ranges::find(channel.consumers, *node, &End::node);
-    return counts(*end, channel, false) &&
+    return is_data_flow(channel) && counts(*end, channel, false) &&
            std::ranges::any_of(channel.producers, [&](const End& each) {
              return each.node != *node && counts(each, channel, true);
            });
@@ -355,6 +424,10 @@ const std::vector<ComponentId>& DependencyGraph::reach(std::span<const Component
       std::uint32_t& passed = visited_[nodes_.size() + channel_id.index];
       if (passed == search_) continue;
       const Channel& channel = channels_[channel_id.index];
+      if (!is_data_flow(channel)) {
+        passed = search_;
+        continue;
+      }
       const auto& near = up ? channel.consumers : channel.producers;
       const auto own =
           std::find_if(near.begin(), near.end(), [&](const End& e) { return e.node == id; });
@@ -380,6 +453,7 @@ void DependencyGraph::find_links(Whole& whole) const {
     }
   }
   for (const Channel& channel : channels_) {
+    if (!is_data_flow(channel)) continue;
     Whole::Link link{end(), 0, 0};
     for (const End& each : channel.producers) {
       if (counts(each, channel, true)) ends.push_back(each.node.index);
@@ -428,6 +502,7 @@ std::vector<std::string> DependencyGraph::nodes() const {
 std::vector<DependencyGraph::Edge> DependencyGraph::edges() const {
   std::vector<Edge> edges;
   for (const Channel& channel : channels_) {
+    if (!is_data_flow(channel)) continue;
     for (const End& consumer : channel.consumers) {
       for (const End& producer : channel.producers) {
         if (consumer.node == producer.node) continue;

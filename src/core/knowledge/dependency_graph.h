@@ -5,6 +5,10 @@
 // channels (topics and services), so a channel with p producers and c consumers costs p + c, not p
 // * c.
 //
+// Some topics carry no data that anybody waits for: heartbeats (a topic called `bond`, as Nav2's servers
+// and managers have one), and any topic that all its nodes both publish and subscribe to. They make
+// no edges.
+//
 // The graph remembers what it must not forget in a failure: a node that is gone still is what its
 // consumers wait for. So a vanished end of a channel goes on counting while its node is gone, and a
 // vanished producer also while nobody else produces on that channel. A change that a living node
@@ -40,7 +44,6 @@ class DependencyGraph {
 
   // Each gives whether anything changed.
   bool node_appeared(const std::string& node);
-  // Also when a process is known to be dead before its node's lease runs out.
   bool node_vanished(const std::string& node);
   bool endpoint_appeared(const std::string& node, EndpointKind kind, const std::string& name);
   bool endpoint_vanished(const std::string& node, EndpointKind kind, const std::string& name);
@@ -53,7 +56,15 @@ class DependencyGraph {
   // Another number whenever a node or an end came or went.
   std::uint64_t changes() const { return changes_; }
 
+  // Of a component with several nodes: all of them are.
   bool is_present(ComponentId component) const;
+  // Any of its nodes is.
+  bool has_any_node(ComponentId component) const;
+  // The first of its nodes that is not there; empty: none is missing.
+  std::string missing_node(ComponentId component) const;
+  bool has_several_nodes(ComponentId component) const { return binding_.has_several(component); }
+  // All nodes of the component: as when its process is known to be dead.
+  void component_vanished(ComponentId component);
   // The full name of the component's node; empty while an undeclared one was not seen.
   const std::string& node_name(ComponentId component) const { return binding_.node_of(component); }
   // The component that this node is, if it is one.
@@ -79,6 +90,10 @@ class DependencyGraph {
   bool publishes(ComponentId component, const std::string& topic) const;
   // The component that alone publishes it; nothing if none or several do, or a node that is none.
   std::optional<ComponentId> only_publisher(const std::string& topic) const;
+  // The same of a topic of the rules: of one with a FROM only that publisher counts.
+  std::size_t publisher_count(const Topic& topic) const;
+  bool publishes(ComponentId component, const Topic& topic) const;
+  std::optional<ComponentId> only_publisher(const Topic& topic) const;
   // Nodes published it, and none does now.
   bool was_published(const std::string& topic) const;
   // Those that any node publishes now. Sorted.
@@ -136,7 +151,8 @@ class DependencyGraph {
   };
   struct Node {
     std::string name;
-    bool is_present = false;
+    bool is_present = false;  // with all its names
+    std::uint32_t names = 1;  // of a component with several nodes, which are one here: theirs
     bool keeps_ends = false;
     std::optional<ComponentId> component;
     std::vector<ChannelId> consumes;
@@ -147,6 +163,7 @@ class DependencyGraph {
   struct Channel {
     std::string name;
     bool is_service = false;
+    bool is_heartbeat = false;  // by its name
     std::vector<End> producers;
     std::vector<End> consumers;
     std::uint32_t live_producers = 0;
@@ -161,6 +178,7 @@ class DependencyGraph {
   std::optional<NodeId> intern_node(const std::string& name);
   std::optional<ChannelId> intern_channel(EndpointKind kind, const std::string& name);
   bool counts(const End& end, const Channel& channel, bool producer) const;
+  bool is_data_flow(const Channel& channel) const;
   std::vector<NodeId> publishers_of(const std::string& topic) const;
   // All that counts now, in one piece: a plan reads it several times.
   struct Whole {
@@ -185,6 +203,7 @@ class DependencyGraph {
   std::vector<Node> nodes_;
   std::vector<Channel> channels_;
   std::unordered_map<std::string, NodeId> node_ids_;
+  std::unordered_set<std::string> parts_;  // nodes that are there, of components with several
   std::unordered_map<std::string, ChannelId> channel_ids_;  // key: 't' or 's', then the name
   std::vector<std::optional<NodeId>> nodes_of_components_;
   std::unordered_set<std::string> ignored_;
@@ -197,6 +216,7 @@ class DependencyGraph {
   mutable std::vector<std::uint32_t> visited_;
   mutable std::uint32_t search_ = 0;
   mutable std::vector<NodeId> frontier_;
+  mutable std::vector<NodeId> producing_, consuming_;  // of is_data_flow()
   mutable std::vector<ComponentId> found_;
 };
 

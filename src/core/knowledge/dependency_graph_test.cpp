@@ -58,6 +58,42 @@ using Names = std::vector<std::string>;
 constexpr const char* kThree =
     "COMPONENT camera NODE /camera\nCOMPONENT fusion NODE /fusion\nCOMPONENT seg NODE /seg\n";
 
+TEST(DependencyGraph, HeartbeatsAndWhatAllShareAreNoDataFlow) {
+  for (const char* topic : {"/bond", "/robot1/bond", "/peers"}) {
+    Graph graph(kThree);
+    graph.node("/camera").node("/fusion").node("/seg");
+    for (const char* node : {"/camera", "/fusion", "/seg"}) graph.link(node, topic, node);
+    EXPECT_EQ(graph.upstream("camera"), Names{}) << topic;
+    EXPECT_TRUE((*graph).edges().empty()) << topic;
+    EXPECT_FALSE((*graph).reads_others(ComponentId(0))) << topic;
+    EXPECT_NE((*graph).scc_of(ComponentId(0)), (*graph).scc_of(ComponentId(1))) << topic;
+    // One that only listens waits for the others, but for a heartbeat.
+    graph.node("/watcher").link("/camera", topic, "/watcher");
+    EXPECT_EQ((*graph).edges().empty(), std::string(topic) != "/peers") << topic;
+  }
+}
+
+TEST(DependencyGraph, TheNodesOfOneProcessAreOne) {
+  Graph graph(
+      "COMPONENT controller NODE /controller /costmap\nCOMPONENT lidar NODE /lidar\n"
+      "COMPONENT base NODE /base\n");
+  graph.node("/lidar").node("/base").node("/controller");
+  graph.link("/lidar", "/scan", "/costmap").link("/controller", "/cmd_vel", "/base");
+  graph.link("/costmap", "/costmap", "/controller");
+  EXPECT_EQ(graph.upstream("base"), (Names{"controller", "lidar"}));
+  EXPECT_FALSE((*graph).is_present(ComponentId(0)));
+  EXPECT_EQ((*graph).missing_node(ComponentId(0)), "/costmap");
+  graph.node("/costmap");
+  EXPECT_TRUE((*graph).is_present(ComponentId(0)));
+  EXPECT_EQ((*graph).publisher_count("/costmap"), 1u);
+  (*graph).node_vanished("/costmap");
+  EXPECT_FALSE((*graph).is_present(ComponentId(0)));
+  EXPECT_TRUE((*graph).has_any_node(ComponentId(0)));
+  EXPECT_EQ(graph.downstream("lidar"), (Names{"base", "controller"}));
+  (*graph).component_vanished(ComponentId(0));
+  EXPECT_FALSE((*graph).has_any_node(ComponentId(0)));
+}
+
 Graph pipeline() {
   Graph graph(kThree);
   graph.node("/camera")

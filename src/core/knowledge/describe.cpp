@@ -44,9 +44,6 @@ class Describer {
       blamed.push_back(rules_[component].name);
     std::vector<std::string> failures{rules_[strategy.rule].name};
     for (const RuleId explained : e.explains) failures.push_back(rules_[explained].name);
-    std::vector<std::string> actions;
-    for (const Adaptation& adaptation : strategy.adaptations)
-      actions.push_back(describe(adaptation, rules_));
     std::vector<std::string> ended;
     for (const ComponentId component : e.also_ended) ended.push_back(rules_[component].name);
     const std::string with = ended.empty() ? "" : ", which also ends " + listed(ended);
@@ -58,8 +55,8 @@ class Describer {
       reason += ", cost " + two_decimals(chosen->cost);
     }
     return listed(blamed) + (blamed.size() == 1 ? " is" : " are") + " held responsible for " +
-           listed(failures) + doubt(e) + ": " + (e.dry_run ? "would " : "") + listed(actions) +
-           with + " (" + reason + ")";
+           listed(failures) + doubt(e) + ": " + (e.dry_run ? "would " : "") +
+           actions_of(strategy, rules_) + with + " (" + reason + ")";
   }
   std::string operator()(const FailureHeldBack& e) const {
     if (e.candidates.empty()) return "";
@@ -157,11 +154,8 @@ class Describer {
     return with_rule(e.strategy) + " is held back: " + e.reason;
   }
   std::string operator()(const ApprovalAsked& e) const {
-    const Strategy& strategy = rules_[e.strategy];
-    std::vector<std::string> actions;
-    for (const Adaptation& adaptation : strategy.adaptations)
-      actions.push_back(describe(adaptation, rules_));
-    return "shall " + with_rule(e.strategy) + " " + listed(actions) + "? It waits for approval";
+    return "shall " + with_rule(e.strategy) + " " + actions_of(rules_[e.strategy], rules_) +
+           "? It waits for approval";
   }
   std::string operator()(const ApprovalLapsed& e) const {
     return with_rule(e.strategy) + " needs no approval any more";
@@ -393,11 +387,11 @@ std::string describe(const Input& input, const RuleSet& rules) {
     case kSignal:
       return rules[input.signal].name;
     case kRate:
-      return call("rate", rules[input.topic].name);
+      return call("rate", rules.label(input.topic));
     case kAge:
-      return call("age", rules[input.topic].name);
+      return call("age", rules.label(input.topic));
     case kPhi:
-      return call("phi", rules[input.topic].name);
+      return call("phi", rules.label(input.topic));
     case kAlive:
       return call("alive", rules[input.component].name);
     case kLifecycle:
@@ -418,6 +412,12 @@ std::string describe(const Input& input, const RuleSet& rules) {
       return call("stddev", rules[input.signal].name);
     case kChanged:
       return call("changed", rules[input.signal].name);
+    case kFrozen:
+      return call("frozen", rules[input.signal].name);
+    case kCpu:
+      return call("cpu", rules[input.component].name);
+    case kMemory:
+      return call("memory", rules[input.component].name);
     case kIsNan:
       return call("isnan", rules[input.signal].name);
   }
@@ -452,6 +452,21 @@ std::string listed(const std::vector<std::string>& items) {
     if (i > 0) out += i + 1 == items.size() ? " and " : ", ";
     out += items[i];
   }
+  return out;
+}
+
+std::vector<std::string> action_list(const Strategy& strategy, const RuleSet& rules) {
+  std::vector<std::string> actions;
+  for (const Adaptation& each : strategy.adaptations)
+    actions.push_back((each.begins_step ? "then " : "") + describe(each, rules));
+  return actions;
+}
+
+std::string actions_of(const Strategy& strategy, const RuleSet& rules) {
+  const auto actions = action_list(strategy, rules);
+  if (!strategy.has_steps()) return listed(actions);
+  std::string out;
+  for (const std::string& action : actions) out += (out.empty() ? "" : ", ") + action;
   return out;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "knowledge/departures.h"
 #include "knowledge/event.h"
@@ -31,6 +32,10 @@ std::string describe(const Order& order, const RuleSet& rules);
 
 // "restart camera", "set exposure of camera"
 std::string describe(const Adaptation& adaptation, const RuleSet& rules);
+
+// "deactivate planner", "then redeploy driver": one each. And all of them in one sentence.
+std::vector<std::string> action_list(const Strategy& strategy, const RuleSet& rules);
+std::string actions_of(const Strategy& strategy, const RuleSet& rules);
 
 // "camera is responsible for RGBDead and SegmentationDead: restart camera (cost 0.70)". May be
 // empty: nothing worth a line.

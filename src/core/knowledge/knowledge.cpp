@@ -13,6 +13,8 @@ bool was_read(const Input& input, const Sightings& sightings) {
     case Input::Kind::kAge:
     case Input::Kind::kPhi:
     case Input::Kind::kAlive:
+    case Input::Kind::kCpu:
+    case Input::Kind::kMemory:
       return false;
     case Input::Kind::kLifecycle:
       return sightings.was_lifecycle_read(input.component);
@@ -29,9 +31,8 @@ void note_heard(const Knowledge& knowledge, KnownRobot& known) {
   const RuleSet& rules = knowledge.rules;
   const Sightings& sightings = knowledge.sightings;
   for (std::size_t t = 0; t < rules.topics.size(); ++t) {
-    const std::string& name = rules.topics[t].name;
-    if (sightings.was_heard(TopicId(t)) && knowledge.graph.publisher_count(name) == 1)
-      known.heard.push_back(name);
+    if (sightings.was_heard(TopicId(t)) && knowledge.graph.publisher_count(rules.topics[t]) == 1)
+      known.heard.push_back(rules.label(TopicId(t)));
   }
   std::set<std::string> values;
   for (const Input& input : rules.inputs) {
@@ -85,6 +86,8 @@ std::string value_name(const Input& input, const RuleSet& rules) {
     case Input::Kind::kAge:
     case Input::Kind::kPhi:
     case Input::Kind::kAlive:
+    case Input::Kind::kCpu:
+    case Input::Kind::kMemory:
       return "";
     case Input::Kind::kLifecycle:
       return "lifecycle " + rules[input.component].name;
@@ -108,7 +111,7 @@ KnownRobot Knowledge::known_robot() const {
                            graph.ends_of(component), components[component].node_pid});
   }
   for (std::size_t t = 0; t < rules.topics.size(); ++t) {
-    if (sightings.has(TopicId(t))) known.topics.push_back(rules.topics[t].name);
+    if (sightings.has(TopicId(t))) known.topics.push_back(rules.label(TopicId(t)));
   }
   note_heard(*this, known);
   return known;
@@ -119,12 +122,27 @@ bool Knowledge::is_known_gone(ComponentId component) const {
   return state.pid != 0 && state.process == ProcessState::kGone && state.alive == false;
 }
 
+// A strategy in steps may also find done what an earlier try did for the start, and take that back.
 bool Knowledge::only_starts_the_gone(const Strategy& strategy) const {
-  return std::ranges::all_of(strategy.adaptations, [&](const Adaptation& adaptation) {
-    const bool starts =
-        adaptation.type == AdaptationType::kRedeploy || adaptation.type == AdaptationType::kStart;
-    return starts && rules[adaptation.component].can_start() && is_known_gone(adaptation.component);
-  });
+  using enum AdaptationType;
+  bool starts_any = false;
+  for (const Adaptation& adaptation : strategy.adaptations) {
+    const ComponentId component = adaptation.component;
+    const bool starts = adaptation.type == kRedeploy || adaptation.type == kStart;
+    const bool takes_back = std::ranges::any_of(strategy.adaptations, [&](const Adaptation& a) {
+      return a.type == kDeactivate && a.component == component && &a < &adaptation;
+    });
+    const bool is_done_step =
+        (adaptation.type == kStop && is_known_gone(component)) ||
+        (adaptation.type == kDeactivate && components[component].lifecycle == Lifecycle::kInactive);
+    if (starts && rules[component].can_start() && is_known_gone(component)) {
+      starts_any = true;
+    } else if (!strategy.has_steps() ||
+               !(is_done_step || (adaptation.type == kActivate && takes_back))) {
+      return false;
+    }
+  }
+  return starts_any;
 }
 
 Time Knowledge::began(ComponentId component) const {

@@ -19,6 +19,8 @@ bool reads_value(const Input& input) {
     case Kind::kAlive:
     case Kind::kLifecycle:
     case Kind::kParameter:
+    case Kind::kCpu:
+    case Kind::kMemory:
       return false;
     case Kind::kSignal:
     case Kind::kLevel:
@@ -28,6 +30,7 @@ bool reads_value(const Input& input) {
     case Kind::kStddev:
     case Kind::kChanged:
     case Kind::kIsNan:
+    case Kind::kFrozen:
       return true;
   }
   return true;

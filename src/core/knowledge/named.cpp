@@ -30,6 +30,8 @@ class Finder {
         return add(input.topic, knowledge_.sightings.has(input.topic));
       case Input::Kind::kAlive:
       case Input::Kind::kLifecycle:
+      case Input::Kind::kCpu:
+      case Input::Kind::kMemory:
         return;
       case Input::Kind::kParameter:
         return add(input.parameter, knowledge_.components[input.parameter].has_value());

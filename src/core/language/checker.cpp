@@ -468,6 +468,10 @@ class Checker {
     strategy.components.reserve(written.adaptations.size());
     for (const syntax::Adaptation& adaptation : written.adaptations)
       add_adaptation(adaptation, strategy);
+    const auto begins_step = steps_of(written);
+    for (std::size_t i = 0; i < begins_step.size(); ++i)
+      strategy.adaptations[i].begins_step = begins_step[i];
+    strategy.impact = impact_of(strategy.adaptations);
     check_contradictions(written, diagnostics_);
 
     sort_unique(strategy.components);
@@ -476,6 +480,18 @@ class Checker {
     rules_.heaviest = std::max(rules_.heaviest, strategy.impact);
     rules_.rules[rule.index].strategies.push_back(id);
     rules_.strategies.push_back(std::move(strategy));
+  }
+
+  static Cycles impact_of(const std::vector<Adaptation>& adaptations) {
+    Cycles whole, step;
+    for (const Adaptation& each : adaptations) {
+      if (each.begins_step) {
+        whole.count += step.count;
+        step = {};
+      }
+      step = std::max(step, each.impact);
+    }
+    return {whole.count + step.count};
   }
 
   // Nothing where a hundred times as much is no whole percent either.
@@ -508,7 +524,6 @@ class Checker {
       }
     }
     strategy.components.push_back(adaptation.component);
-    strategy.impact = std::max(strategy.impact, adaptation.impact);
     strategy.adaptations.push_back(std::move(adaptation));
   }
 

@@ -72,6 +72,10 @@ std::string known_of(InputId id, const RuleSet& rules) {
       return ": an age is not negative";
     case Input::Kind::kPhi:
       return ": phi is not negative";
+    case Input::Kind::kCpu:
+      return ": a share of a core is not negative";
+    case Input::Kind::kMemory:
+      return ": a size is not negative";
     case Input::Kind::kLevel:
       return ": a level is 0, 1, 2 or 3";
     case Input::Kind::kLifecycle:
@@ -222,7 +226,7 @@ void find_short_windows(const Typed& e, const RuleSet& rules, std::vector<Diagno
   const Input& rate = rules[input->input];
   for (const double hertz : thresholds_of(e)) {
     if (hertz <= 0 || seconds(rate.window) * hertz >= 1) continue;
-    const std::string topic = rules[rate.topic].name;
+    const std::string topic = rules.label(rate.topic);
     found.push_back({Code::kShortWindow, Severity::kWarning, e.span,
                      "within " + to_string(rate.window) + ", a topic of " + plain_number(hertz) +
                          " Hz sends nothing now and then",

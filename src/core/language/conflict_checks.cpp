@@ -123,6 +123,10 @@ std::vector<Doing> doings_of(const RuleConditions& rule, const RuleSet& rules) {
     for (std::size_t i = 0; i < adaptations.size(); ++i) {
       auto effect = effect_of(adaptations[i]);
       if (!effect) continue;
+      // The effect of a step is not left behind if a later step changes the same thing.
+      std::erase_if(doings, [&](const Doing& earlier) {
+        return earlier.strategy == strategy && earlier.effect.thing == effect->thing;
+      });
       const Span span = rule.strategies[s]->adaptations[i].span;
       doings.push_back({&rule, strategy, adaptations[i].component, span, std::move(*effect)});
     }

@@ -95,7 +95,8 @@ std::vector<Explanation> name_explanations() {
        Strictness::kStrict},
       {Code::kUnknownFunction, "there is no function of this name",
        "Expressions call rate, age, phi, alive, lifecycle, parameter, level, mean, min, max, "
-       "stddev, changed, isnan, abs, pow and sqrt. Functions of your own do not exist; CONST names "
+       "stddev, changed, isnan, frozen, cpu, memory, abs, pow and sqrt. Functions of your own do "
+       "not exist; CONST names "
        "values.",
        rule_with("frequency(/robot/image) < 1"), rule_with("rate(/robot/image) < 1")},
       {Code::kUnknownAdaptation, "there is no adaptation of this name",
@@ -212,11 +213,13 @@ std::vector<Explanation> value_explanations() {
 std::vector<Explanation> rule_explanations() {
   return {
       {Code::kContradiction, "a strategy contradicts itself",
-       "All adaptations of a strategy are applied together. One that undoes or repeats another, or "
-       "that reconfigures a process which the same strategy ends, cannot have been meant: the "
+       "All adaptations of one step are applied together. One that undoes or repeats another, or "
+       "that reconfigures a process which the same step ends, cannot have been meant: the "
        "robot would be left in whichever state came last. A restart beside a redeploy of the same "
-       "component is in vain. A component may be started again after it was stopped. Alternatives "
-       "are strategies of their own.",
+       "component is in vain. A component may be started again after it was stopped. THEN begins a "
+       "step: a later step may take back what an earlier one did, as in deactivate THEN redeploy "
+       "another component THEN activate. Without THEN culprit takes such a strategy for steps, and "
+       "warns. Alternatives are strategies of their own.",
        "RULE CameraFails\n  POLICIES ERROR\n  TRIGGER rate(/robot/image) < 1\n"
        "    STRATEGY again 50 10\n      ADAPTATION camera deactivate 5\n"
        "      ADAPTATION camera activate 5\n",
@@ -548,7 +551,7 @@ const LiveInventory& example_robot() {
     LiveInventory::Node& camera = robot.nodes["/robot/camera"];
     camera.parameters = {{"exposure", Value(0.5)}};
     camera.lifecycle = "active";
-    robot.nodes["/left/wheel"];
+    robot.nodes["/left/wheel"].pid = 41;
     robot.nodes["/right/wheel"];
     robot.nodes["/left/arm"];
     robot.nodes["/right/arm"];

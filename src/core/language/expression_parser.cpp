@@ -198,7 +198,7 @@ class ExpressionParser {
           Code::kUnknownFunction, e.name.span, "there is no function '" + e.name.text + "'",
           near.empty()
               ? "known functions: rate age phi alive lifecycle parameter level mean min max stddev "
-                "changed isnan abs pow sqrt"
+                "changed isnan frozen cpu memory abs pow sqrt"
               : "did you mean '" + near + "'?",
           replacement(e.name.span, near));
     }
@@ -233,6 +233,18 @@ class ExpressionParser {
       return fail(Code::kSyntax, e.span, "a name is missing here",
                   "usage: " + std::string(function.usage));
     }
+    if (function.arguments[index] != Argument::kTopic || scanner_.peek().text != "FROM") return e;
+    scanner_.next();
+    Expression publisher;
+    publisher.kind = Kind::kName;
+    publisher.name = scanner_.next_name();
+    publisher.span = publisher.name.span;
+    if (publisher.name.text.empty())
+      return fail(
+          Code::kSyntax, publisher.span, "a component is missing here",
+          "write the component or the node that publishes it: " + e.name.text + " FROM camera");
+    e.span.end = publisher.span.end;
+    e.children.push_back(std::move(publisher));
     return e;
   }
 

@@ -47,6 +47,8 @@ Interval first_interval(const Input& input, const RuleSet& rules) {
     case Input::Kind::kRate:
     case Input::Kind::kAge:
     case Input::Kind::kPhi:
+    case Input::Kind::kCpu:
+    case Input::Kind::kMemory:
       return {0, kInfinity};
     case Input::Kind::kLevel:
       return {0, 3};
@@ -55,6 +57,7 @@ Interval first_interval(const Input& input, const RuleSet& rules) {
     case Input::Kind::kParameter:
     case Input::Kind::kChanged:
     case Input::Kind::kIsNan:
+    case Input::Kind::kFrozen:
       break;
   }
   return {};

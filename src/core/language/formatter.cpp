@@ -54,7 +54,7 @@ const Table* find_table(std::string_view keyword) {
 std::uint32_t indentation_of(std::string_view keyword) {
   if (keyword == "POLICIES" || keyword == "TRIGGER") return 2;
   if (keyword == "STRATEGY") return 4;
-  return keyword == "ADAPTATION" ? 6 : 0;
+  return keyword == "ADAPTATION" || keyword == "THEN" ? 6 : 0;
 }
 
 // ---- One statement: which tokens touch

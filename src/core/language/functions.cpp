@@ -7,10 +7,15 @@ namespace {
 
 using enum Argument;
 
-constexpr std::array<FunctionInfo, 16> kFunctions = {{
-    {Function::kRate, "rate", "rate(topic) or rate(topic, window)", {kTopic, kExpression}, 1, 2},
-    {Function::kAge, "age", "age(topic)", {kTopic, kTopic}, 1, 1},
-    {Function::kPhi, "phi", "phi(topic)", {kTopic, kTopic}, 1, 1},
+constexpr std::array<FunctionInfo, 19> kFunctions = {{
+    {Function::kRate,
+     "rate",
+     "rate(topic) or rate(topic, window); topic FROM component: of one publisher",
+     {kTopic, kExpression},
+     1,
+     2},
+    {Function::kAge, "age", "age(topic) or age(topic FROM component)", {kTopic, kTopic}, 1, 1},
+    {Function::kPhi, "phi", "phi(topic) or phi(topic FROM component)", {kTopic, kTopic}, 1, 1},
     {Function::kAlive, "alive", "alive(component)", {kComponent, kComponent}, 1, 1},
     {Function::kLifecycle, "lifecycle", "lifecycle(component)", {kComponent, kComponent}, 1, 1},
     {Function::kParameter,
@@ -26,6 +31,9 @@ constexpr std::array<FunctionInfo, 16> kFunctions = {{
     {Function::kStddev, "stddev", "stddev(signal, window)", {kExpression, kExpression}, 2, 2},
     {Function::kChanged, "changed", "changed(signal)", {kExpression, kExpression}, 1, 1},
     {Function::kIsNan, "isnan", "isnan(signal)", {kExpression, kExpression}, 1, 1},
+    {Function::kFrozen, "frozen", "frozen(signal, window)", {kExpression, kExpression}, 2, 2},
+    {Function::kCpu, "cpu", "cpu(component)", {kComponent, kComponent}, 1, 1},
+    {Function::kMemory, "memory", "memory(component)", {kComponent, kComponent}, 1, 1},
     {Function::kAbs, "abs", "abs(number)", {kExpression, kExpression}, 1, 1},
     {Function::kPow, "pow", "pow(base, exponent)", {kExpression, kExpression}, 2, 2},
     {Function::kSqrt, "sqrt", "sqrt(number)", {kExpression, kExpression}, 1, 1},

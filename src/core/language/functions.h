@@ -22,6 +22,9 @@ enum class Function : std::uint8_t {
   kStddev,
   kChanged,
   kIsNan,
+  kFrozen,
+  kCpu,
+  kMemory,
   kAbs,
   kPow,
   kSqrt

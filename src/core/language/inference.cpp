@@ -119,6 +119,9 @@ class Inference {
         return Type::kDouble;
       case Function::kAge:
         return Type::kDuration;
+      case Function::kCpu:
+      case Function::kMemory:
+        return Type::kDouble;
       case Function::kAlive:
         return Type::kBool;
       case Function::kLifecycle:
@@ -132,6 +135,10 @@ class Inference {
       }
       case Function::kChanged:
         infer(e.children[0], std::nullopt);
+        return Type::kBool;
+      case Function::kFrozen:
+        infer(e.children[0], std::nullopt);
+        infer(e.children[1], Type::kDuration);
         return Type::kBool;
       case Function::kIsNan:
         infer(e.children[0], Type::kDouble);

@@ -108,8 +108,13 @@ void check_unused(const syntax::File& file, const RuleSet& rules,
     for (const ComponentId id : strategy.components) use(id);
   }
   for (const Input& input : rules.inputs) {
-    if (input.kind == Input::Kind::kAlive || input.kind == Input::Kind::kLifecycle)
-      use(input.component);
+    using enum Input::Kind;
+    const bool is_of_component = input.kind == kAlive || input.kind == kLifecycle ||
+                                 input.kind == kCpu || input.kind == kMemory;
+    if (is_of_component) use(input.component);
+  }
+  for (const Topic& topic : rules.topics) {
+    if (topic.publisher) use(*topic.publisher);
   }
   for (const Parameter& parameter : rules.parameters) use(parameter.component);
   for (const Dependency& dependency : rules.dependencies) {

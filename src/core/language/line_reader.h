@@ -24,6 +24,9 @@ namespace culprit {
 // The words that nothing can be named by.
 std::span<const std::string_view> reserved_words();
 
+// A component's own name, or the full name of its node.
+bool is_component_reference(std::string_view name);
+
 class LineReader {
  public:
   LineReader(const Source& source, std::vector<Diagnostic>& diagnostics)

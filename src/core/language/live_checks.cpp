@@ -37,6 +37,7 @@ class LiveChecks {
     for (const Component& c : rules.components) {
       components_.emplace(c.name, &c);
       if (!c.node.empty()) components_.emplace(c.node, &c);
+      for (const std::string& other : c.other_nodes) components_.emplace(other, &c);
     }
     for (const Signal& s : rules.signals) {
       if (std::holds_alternative<LookedUp>(s.source)) looked_up_.emplace(s.name, &s);
@@ -67,6 +68,7 @@ class LiveChecks {
     for (const syntax::Component& component : file_.components) {
       owner(component);
       several_nodes(component);
+      other_nodes(component);
     }
     for (std::size_t r = 0; r < file_.rules.size(); ++r) {
       for (std::size_t i = 0; i < file_.rules[r].strategies.size(); ++i) {
@@ -177,6 +179,24 @@ class LiveChecks {
                       "'" + c->name + "' could be '" + fitting[0] + "' or '" + fitting[1] + "'",
                       "say which with NODE " + fitting[0] + " or NODE " + fitting[1],
                       {}});
+  }
+
+  // Nodes of one component are one process.
+  void other_nodes(const syntax::Component& written) {
+    const Component* c = component_of(written.name.text);
+    const auto main = c == nullptr ? robot_.nodes.end() : robot_.nodes.find(c->node);
+    for (const syntax::Name& other : written.other_nodes) {
+      const auto found = robot_.nodes.find(other.text);
+      if (found == robot_.nodes.end()) {
+        warn(Code::kNoSuchNode, other.span, "the robot has no node '" + other.text + "'",
+             "start it, or correct the name; the component counts as dead while it is missing",
+             closest_full_name(other.text, names_of(robot_.nodes)));
+      } else if (main != robot_.nodes.end() && main->second.pid != found->second.pid) {
+        warn(Code::kNoSuchNode, other.span,
+             "node '" + other.text + "' is of another process than '" + c->node + "'",
+             "declare it as a component of its own");
+      }
+    }
   }
 
   void topic(const Occurrence& o) {

@@ -77,8 +77,10 @@ bool LiveInterest::includes_node(const std::string& full_name) const {
 
 LiveInterest interest_of(const RuleSet& rules) {
   LiveInterest interest;
-  for (const Component& component : rules.components)
+  for (const Component& component : rules.components) {
     interest.nodes.insert(component.node.empty() ? component.name : component.node);
+    interest.nodes.insert(component.other_nodes.begin(), component.other_nodes.end());
+  }
   for (const Topic& topic : rules.topics) interest.fields_of_topics[topic.name];
   for (const Signal& signal : rules.signals) {
     if (const auto* field = std::get_if<TopicField>(&signal.source))

@@ -128,7 +128,10 @@ class Collector {
     const syntax::Expression& e = call.children[i];
     switch (place) {
       case Argument::kTopic:
-        return add(OccurrenceKind::kTopic, e.name);
+        add(OccurrenceKind::kTopic, e.name);
+        for (const syntax::Expression& publisher : e.children)
+          add(OccurrenceKind::kComponent, publisher.name);
+        return;
       case Argument::kComponent:
         return add(OccurrenceKind::kComponent, e.name);
       case Argument::kParameter:

@@ -60,6 +60,7 @@ class Parser {
         Statement{"TRIGGER", &Parser::trigger},
         Statement{"STRATEGY", &Parser::strategy},
         Statement{"ADAPTATION", &Parser::adaptation},
+        Statement{"THEN", &Parser::step},
         Statement{"INCLUDE", &Parser::include},
         Statement{"TEMPLATE", &Parser::begin_template},
         Statement{"END", &Parser::end_template},
@@ -96,7 +97,7 @@ class Parser {
                !near.empty() ? "did you mean " + near + "?"
                              : "a line begins with one of ROBOT CYCLE CONST COMPONENT DEPENDENCY "
                                "IGNORE INTERLOCK SIGNAL RULE POLICIES TRIGGER STRATEGY ADAPTATION "
-                               "INCLUDE TEMPLATE END USE",
+                               "THEN INCLUDE TEMPLATE END USE",
                replacement(head.span, near));
     broken();
     broken_declaration(near, s);
@@ -207,7 +208,7 @@ class Parser {
       if (clause.text == "NODE" && !component.node) {
         s.next();
         component.node = read_.ros_name(s, "the node's full name");
-        if (!component.node) return false;
+        if (!component.node || !other_nodes(s, component)) return false;
       } else if (clause.text == "LAUNCH" && !component.launch) {
         s.next();
         component.launch = read_.text(s, "the launch command",
@@ -285,6 +286,16 @@ class Parser {
       }
     }
     into_->components.push_back(std::move(component));
+    return true;
+  }
+
+  // Of the same process.
+  bool other_nodes(Scanner& s, syntax::Component& component) {
+    while (!s.at_end() && source_.text()[s.position()] == '/') {
+      auto node = read_.ros_name(s, "the full name of another node of the process");
+      if (!node) return false;
+      component.other_nodes.push_back(std::move(*node));
+    }
     return true;
   }
 
@@ -591,6 +602,24 @@ class Parser {
     }
     rule.strategies.back() = {std::move(*name), *probability, *confidence, std::move(when), {},
                               is_last_resort,   within,       false};
+    return true;
+  }
+
+  // THEN ADAPTATION …: a step of its own.
+  bool step(Scanner& s) {
+    const Span then = keyword_;
+    const Token word = s.peek();
+    if (!inside_rule("THEN") || !read_.expect_word(s, "ADAPTATION")) return false;
+    keyword_ = word.span;
+    const auto& strategies = into_->rules.back().strategies;
+    const bool is_first = !strategies.empty() && strategies.back().adaptations.empty() &&
+                          !strategies.back().has_broken_adaptation;
+    if (is_first)
+      return read_.fail(Code::kOutOfPlace, then, "THEN needs an ADAPTATION above it",
+                        "begin the first step with ADAPTATION",
+                        Edit{{then.begin, word.span.begin}, ""});
+    if (!adaptation(s)) return false;
+    into_->rules.back().strategies.back().adaptations.back().begins_step = true;
     return true;
   }
 

@@ -44,13 +44,14 @@ class Mover {
   void move(syntax::Component& c) const {
     auto& [name, node, launch, setup, environment, folder, is_required, is_respawned, ready, unit,
            is_users_unit, engine, engine_container, host, container, plugin, package, parameters,
-           remaps, lifecycle] = c;
+           remaps, lifecycle, other_nodes] = c;
     move(name);
     move(node);
     move(launch);
     for (auto* part : {&setup, &environment, &folder, &unit, &engine, &engine_container, &host,
                        &container, &plugin, &package, &parameters, &remaps})
       move(*part);
+    move(other_nodes);
   }
   void move(syntax::Dependency& d) const {
     auto& [consumer, producers] = d;
@@ -80,7 +81,7 @@ class Mover {
     move(range);
   }
   void move(syntax::Adaptation& a) const {
-    auto& [component, type, subject, topic, request, value, impact, span] = a;
+    auto& [component, type, subject, topic, request, value, impact, span, begins_step] = a;
     move(component);
     move(subject);
     move(topic);

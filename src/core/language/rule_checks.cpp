@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -122,6 +123,48 @@ class Done {
   std::map<std::string_view, const Adaptation*> by_parameter_;
 };
 
+// The state in which earlier steps left a component. A step may take back what one before it did.
+class Left {
+ public:
+  // Why `next` cannot follow; null if it can.
+  const char* contradiction_of(const Adaptation& next) const {
+    if (process_ == kStop && next.type == kStop) return "this component is stopped already";
+    if (process_ == kStop && next.type != kStart) return "an earlier step stopped the component";
+    if (process_ != kStop && process_ && next.type == kStart)
+      return "this component is started already";
+    if (lifecycle_ == next.type) return "this is done already";
+    return nullptr;
+  }
+  void add(const Adaptation& a) {
+    if (a.type == kStart || a.type == kStop || a.type == kRedeploy) {
+      process_ = a.type;
+      lifecycle_.reset();
+    }
+    if (a.type == kActivate || a.type == kDeactivate) lifecycle_ = a.type;
+    if (a.type == kRestart) lifecycle_ = kActivate;
+  }
+
+ private:
+  std::optional<AdaptationType> process_;
+  std::optional<AdaptationType> lifecycle_;  // activated or deactivated, and not started anew since
+};
+
+// Whether the one at `place` brings up again what an earlier one took down, and something else is
+// adapted between the two.
+bool takes_back(const std::vector<Adaptation>& all, std::size_t place) {
+  const Adaptation& up = all[place];
+  if (up.type != kActivate && up.type != kStart) return false;
+  bool is_between = false;
+  for (std::size_t i = place; i-- > 0;) {
+    if (all[i].component.text != up.component.text) {
+      is_between = true;
+    } else {
+      return is_between && all[i].type == (up.type == kStart ? kStop : kDeactivate);
+    }
+  }
+  return false;
+}
+
 // Of all components, one behind the other: a list for each would be thousands of small blocks.
 class Producers {
  public:
@@ -145,23 +188,59 @@ class Producers {
 
 }  // namespace
 
+std::vector<bool> steps_of(const syntax::Strategy& strategy) {
+  const auto& all = strategy.adaptations;
+  std::vector<bool> begins(all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) begins[i] = all[i].begins_step;
+  if (std::ranges::find(begins, true) != begins.end()) return begins;
+  for (std::size_t i = 0; i < all.size(); ++i) begins[i] = takes_back(all, i);
+  return begins;
+}
+
 void check_contradictions(const syntax::Strategy& strategy, std::vector<Diagnostic>& diagnostics) {
+  const auto& all = strategy.adaptations;
+  if (all.size() < 2) return;
+  const auto begins_step = steps_of(strategy);
+  std::map<std::string_view, Left> left_by_component;  // by earlier steps
+  std::size_t begin = 0;                               // of the step
   const auto report = [&](const syntax::Adaptation& adaptation, const char* why) {
+    Left before = left_by_component[adaptation.component.text];
+    for (const auto* each = &all[begin]; each != &adaptation; ++each) {
+      if (each->component.text == adaptation.component.text) before.add(*each);
+    }
+    const bool may_follow = before.contradiction_of(adaptation) == nullptr;
     diagnostics.push_back(
         {Code::kContradiction, why == kRestartInVain ? Severity::kWarning : Severity::kError,
          adaptation.span, "strategy '" + strategy.name.text + "' contradicts itself: " + why,
-         "split it into two strategies, or remove one of the adaptations"});
+         may_follow ? "write THEN ADAPTATION if it is a later step, or remove one of the two"
+                    : "split it into two strategies, or remove one of the adaptations"});
   };
-  if (strategy.adaptations.size() < 2) return;
-  std::map<std::string_view, Done> done_by_component;
-  for (const syntax::Adaptation& adaptation : strategy.adaptations) {
-    Done& done = done_by_component[adaptation.component.text];
-    if (const char* why = done.contradiction_of(adaptation)) report(adaptation, why);
-    done.add(adaptation);
+  while (begin < all.size()) {
+    std::size_t end = begin + 1;
+    while (end < all.size() && !begins_step[end]) ++end;
+    std::map<std::string_view, Done> done_by_component;
+    for (std::size_t i = begin; i < end; ++i) {
+      const syntax::Adaptation& adaptation = all[i];
+      Done& done = done_by_component[adaptation.component.text];
+      const char* why = left_by_component[adaptation.component.text].contradiction_of(adaptation);
+      if (why == nullptr) why = done.contradiction_of(adaptation);
+      if (why != nullptr) report(adaptation, why);
+      done.add(adaptation);
+    }
+    for (const auto& [component, done] : done_by_component) {
+      if (const syntax::Adaptation* last = done.presence().taken_back())
+        report(*last, "the component is both started and stopped");
+    }
+    for (std::size_t i = begin; i < end; ++i) left_by_component[all[i].component.text].add(all[i]);
+    begin = end;
   }
-  for (const auto& [component, done] : done_by_component) {
-    if (const syntax::Adaptation* last = done.presence().taken_back())
-      report(*last, "the component is both started and stopped");
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!begins_step[i] || all[i].begins_step) continue;
+    diagnostics.push_back({Code::kContradiction, Severity::kWarning, all[i].span,
+                           "strategy '" + strategy.name.text + "' takes '" + all[i].component.text +
+                               "' down and brings it up again in steps",
+                           "write THEN ADAPTATION where a step begins",
+                           Edit{{all[i].span.begin, all[i].span.begin}, "THEN "}});
   }
 }
 

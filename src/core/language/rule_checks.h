@@ -9,8 +9,13 @@
 
 namespace culprit {
 
-// A strategy that contradicts itself: it adds a node twice, activates and deactivates it, redeploys
-// and reconfigures it, sets one parameter twice.
+// For each adaptation whether it begins a step: THEN. Without any THEN, one that brings up again what
+// an earlier one took down for an adaptation between the two.
+std::vector<bool> steps_of(const syntax::Strategy& strategy);
+
+// A strategy that contradicts itself: in one step, it adds a node twice, activates and deactivates it,
+// redeploys and reconfigures it, sets one parameter twice. A step may take back what an earlier one
+// did, but cannot follow where a component was stopped.
 void check_contradictions(const syntax::Strategy& strategy, std::vector<Diagnostic>& diagnostics);
 
 // Strategies that need a LAUNCH command that is not there, and rules for which no strategy is left

@@ -72,6 +72,14 @@ struct Component {
 
   Seldom<Composition> composed{};  // its container is asked to load and to unload it
 
+  // More nodes of its process. The component is there while all of them are; `node` is the one that
+  // is asked and changed.
+  std::vector<std::string> other_nodes{};
+
+  bool has_node(std::string_view full_name) const {
+    return node == full_name || std::ranges::find(other_nodes, full_name) != other_nodes.end();
+  }
+
   Seldom<EngineContainer> engine{};  // that runs it: its engine is asked likewise
 
   // Whether somebody else runs it, whose word of its process is proof.
@@ -87,6 +95,7 @@ struct Component {
 
 struct Topic {
   std::string name;
+  std::optional<ComponentId> publisher{};  // FROM: only what this one publishes
 };
 
 // A parameter that the rules read or write.
@@ -143,7 +152,10 @@ struct Input {
     kMax,
     kStddev,
     kChanged,  // signal: its value became another within the last cycle
-    kIsNan     // signal: its value is not a number
+    kIsNan,    // signal: its value is not a number
+    kFrozen,   // signal: its value stayed as it is for the window, though samples came
+    kCpu,      // component: cores that its process uses
+    kMemory    // component: MiB of memory that its process holds
   };
   Kind kind = Kind::kSignal;
   Type type = Type::kDouble;
@@ -166,12 +178,13 @@ struct Input {
 struct Adaptation {
   ComponentId component;
   AdaptationType type = AdaptationType::kSetParameter;
-  std::string subject;    // parameter, mode or service (absolute, or relative to the node)
-  ParameterId parameter;  // the same parameter; where there is one
-  Program value;          // set, increase and decrease parameter
-  std::string topic;      // change_communication
-  std::string request{};  // call: what the service is asked, "data: true"; empty: nothing
-  Cycles impact;          // paper: i_exec,a
+  std::string subject;       // parameter, mode or service (absolute, or relative to the node)
+  ParameterId parameter;     // the same parameter; where there is one
+  Program value;             // set, increase and decrease parameter
+  std::string topic;         // change_communication
+  std::string request{};     // call: what the service is asked, "data: true"; empty: nothing
+  Cycles impact;             // paper: i_exec,a
+  bool begins_step = false;  // THEN, or it takes back what was done for the one above
 };
 
 struct Strategy {
@@ -183,8 +196,13 @@ struct Strategy {
   bool is_last_resort = false;
   Duration within{};  // of a last resort: what the rule's other strategies have from the detection
   std::vector<Adaptation> adaptations;
-  Cycles impact;                        // paper: i_exec,s, the maximum over the adaptations
+  // paper: i_exec,s, the maximum over the adaptations. Of steps: the sum over them of their maxima.
+  Cycles impact;
   std::vector<ComponentId> components;  // that it adapts, each once, ascending
+
+  bool has_steps() const {
+    return std::ranges::any_of(adaptations, [](const Adaptation& a) { return a.begins_step; });
+  }
 };
 
 struct Policies {
@@ -234,6 +252,13 @@ struct RuleSet {
   std::vector<Interlock> interlocks;
 
   Cycles heaviest;  // paper: i_max, the highest impact of any strategy
+
+  // "/scan", "/scan FROM lidar_front"
+  std::string label(TopicId id) const {
+    const Topic& topic = topics[id.index];
+    return topic.publisher ? topic.name + " FROM " + components[topic.publisher->index].name
+                           : topic.name;
+  }
 
   const Component& operator[](ComponentId id) const { return components[id.index]; }
   const Topic& operator[](TopicId id) const { return topics[id.index]; }

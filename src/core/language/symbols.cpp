@@ -145,19 +145,9 @@ void Symbols::declare_component(const syntax::Component& written) {
                       written.lifecycle,
                       written.is_respawned,
                       written.ready.value_or(Duration::zero())};
-  if (written.node) {
-    const std::string& node = written.node->text;
-    const auto first = components_by_node_.find(name_hash(node), [&](std::uint32_t place) {
-      return rules_.components[place].node == node;
-    });
-    if (first) {
-      diagnostics_.push_back(
-          {Code::kDuplicateName, Severity::kError, written.node->span,
-           "this node is component '" + rules_.components[*first].name + "' already",
-           "declare each node once"});
-    } else {
-      components_by_node_.add(name_hash(node), rules_.components.size());
-    }
+  if (written.node) declare_node(*written.node, component);
+  for (const syntax::Name& other : written.other_nodes) {
+    if (declare_node(other, component)) component.other_nodes.push_back(other.text);
   }
   declare_launch(written, component);
   if (written.unit) component.unit = declared_unit(written);
@@ -166,6 +156,24 @@ void Symbols::declare_component(const syntax::Component& written) {
   declare_composition(written, component);
   declared_components_.push_back(written.name.text);
   add_component(std::move(component));
+}
+
+// Whether no component has it yet.
+bool Symbols::declare_node(const syntax::Name& node, const Component& component) {
+  const auto first = components_by_node_.find(name_hash(node.text), [&](std::uint32_t place) {
+    return place == rules_.components.size() ? component.has_node(node.text)
+                                             : rules_.components[place].has_node(node.text);
+  });
+  if (!first) {
+    components_by_node_.add(name_hash(node.text), rules_.components.size());
+    return true;
+  }
+  const bool is_own = *first == rules_.components.size();
+  const std::string& owner = is_own ? component.name : rules_.components[*first].name;
+  diagnostics_.push_back({Code::kDuplicateName, Severity::kError, node.span,
+                          "this node is component '" + owner + "' already",
+                          "declare each node once"});
+  return false;
 }
 
 ComponentId Symbols::add_component(Component component) {
@@ -506,7 +514,7 @@ std::optional<ComponentId> Symbols::known_component(std::string_view name) const
   // A full node name may stand for the component that is declared with it.
   if (!found && name.starts_with('/'))
     found = components_by_node_.find(name_hash(name), [&](std::uint32_t place) {
-      return rules_.components[place].node == name;
+      return rules_.components[place].has_node(name);
     });
   return found ? std::optional(ComponentId(*found)) : std::nullopt;
 }
@@ -588,9 +596,17 @@ std::uint32_t known_or_new(const std::string& name, std::vector<Entry>& table,
 
 }  // namespace
 
-TopicId Symbols::topic(const std::string& name) {
-  const TopicId id(known_or_new(name, rules_.topics, topics_));
-  if (uses_ != nullptr) uses_->topics.push_back({name, id, id});
+TopicId Symbols::topic(const std::string& name, std::optional<ComponentId> publisher) {
+  const auto known = topics_.find(name_hash(name), [&](std::uint32_t place) {
+    const Topic& topic = rules_.topics[place];
+    return topic.name == name && topic.publisher == publisher;
+  });
+  const TopicId id(known.value_or(static_cast<std::uint32_t>(rules_.topics.size())));
+  if (!known) {
+    topics_.add(name_hash(name), id.index);
+    rules_.topics.push_back({name, publisher});
+  }
+  if (uses_ != nullptr) uses_->topics.push_back({name, publisher, id, id});
   return id;
 }
 
@@ -721,6 +737,8 @@ void renumber(Input& input, const Symbols::Uses& uses) {
       return;
     case kAlive:
     case kLifecycle:
+    case kCpu:
+    case kMemory:
       input.component = uses.now(input.component);
       return;
     case kParameter:
@@ -737,6 +755,7 @@ void renumber(Input& input, const Symbols::Uses& uses) {
     case kStddev:
     case kChanged:
     case kIsNan:
+    case kFrozen:
       input.signal = uses.now(input.signal);
       return;
   }
@@ -752,7 +771,10 @@ void Symbols::ask_again(Uses& uses, std::uint32_t moved_by) {
     renew(c, component(c.name));
   }
   for (auto& s : uses.signals) renew(s, *known_signal(s.name));
-  for (auto& t : uses.topics) renew(t, topic(t.name));
+  for (auto& t : uses.topics) {
+    if (t.publisher) t.publisher = uses.now(*t.publisher);
+    renew(t, topic(t.name, t.publisher));
+  }
   for (auto& d : uses.diagnostics) renew(d, diagnostic(d.name));
   for (auto& p : uses.parameters) {
     p.component = uses.now(p.component);

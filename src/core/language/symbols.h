@@ -71,6 +71,7 @@ class Symbols {
     };
     struct OfTopic {
       std::string name;
+      std::optional<ComponentId> publisher;
       TopicId id, was;
     };
     struct OfDiagnostic {
@@ -123,7 +124,7 @@ class Symbols {
   SignalId signal(const syntax::Name& name);
   // A signal that the file uses and does not declare, in a lenient check; a strict one has said so.
   bool is_looked_up(const std::string& signal);
-  TopicId topic(const std::string& name);
+  TopicId topic(const std::string& name, std::optional<ComponentId> publisher = std::nullopt);
   DiagnosticId diagnostic(const std::string& name);
   ParameterId parameter(ComponentId component, const std::string& name);
   InputId input(const Input& wanted);
@@ -145,6 +146,7 @@ class Symbols {
   void declare_broken(const syntax::BrokenDeclaration& broken);
   bool first_declaration(const syntax::Name& name, const char* what);
   void declare_component(const syntax::Component& component);
+  bool declare_node(const syntax::Name& node, const Component& component);
   const Component* other_of_owner(std::string owner);
   const Component* other_of_launch(const std::vector<std::string>& command);
   void declare_launch(const syntax::Component& written, Component& component);

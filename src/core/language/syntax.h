@@ -50,7 +50,7 @@ struct Expression {
   enum class Kind : std::uint8_t {
     kLiteral,  // *literal
     kName,   // name: a constant, a signal; as an argument also a topic, a component, a parameter, a
-             // diagnostic
+             // diagnostic. Of a topic, children[0] is the one that publishes it, if there is a FROM
     kUnary,  // op children[0]
     kBinary,       // children[0] op children[1]
     kConditional,  // children[0] ? children[1] : children[2]
@@ -104,6 +104,7 @@ struct Component {
   Seldom<Name> parameters{};
   Seldom<Name> remaps{};  // "a:=b c:=d"
   LifecycleDriver lifecycle = LifecycleDriver::kUndeclared;
+  std::vector<Name> other_nodes{};  // of the same process
 };
 
 struct Dependency {
@@ -165,6 +166,7 @@ struct Adaptation {
   Seldom<Expression> value;
   Number impact;
   Span span;
+  bool begins_step = false;  // THEN: it begins when the one above is proven
 };
 
 struct Strategy {

@@ -53,6 +53,7 @@ const std::vector<std::string> kLines = {
     "      ADAPTATION camera activate 3",
     "      ADAPTATION camera deactivate 3",
     "      ADAPTATION lidar redeploy 10",
+    "      THEN ADAPTATION camera activate 3",
     "      ADAPTATION lidr redeploy 1",
     "      ADAPTATION camera set_parameter gain entropy * 2 3",
     "      ADAPTATION camera set_parameter gain \"high\" 3",

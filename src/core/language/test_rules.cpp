@@ -68,6 +68,7 @@ std::string call(int depth) {
     if (i > 0) out += maybe_blanks() + ",";
     const bool is_expression = function.arguments[i] == Argument::kExpression;
     out += maybe_blanks() + (is_expression ? expression(depth) : coin() ? name() : ros_name());
+    if (function.arguments[i] == Argument::kTopic && coin()) out += " FROM " + component();
   }
   return out + maybe_blanks() + ")";
 }
@@ -145,7 +146,8 @@ std::string range() {
 }
 
 std::string component_line() {
-  const std::string node = maybe(words({"NODE", ros_name()}));
+  const std::string other = "/" + identifier() + "/" + identifier();
+  const std::string node = maybe(words({"NODE", ros_name(), maybe(other)}));
   const std::string launch = maybe(words({"LAUNCH", text()}));
   const std::string around = words({maybe(words({"ENV", text()})), maybe(words({"SETUP", name()})),
                                     maybe(words({"CWD", name()}))});
@@ -292,7 +294,9 @@ void rule(File& file) {
     file.line(words({"STRATEGY", identifier(), number(), number(),
                      maybe(words({"LASTRESORT", maybe(words({"WITHIN", duration()}))})),
                      maybe(words({"WHEN", expression(2)}))}));
-    for (int adaptations = below(3); adaptations >= 0; --adaptations) file.line(adaptation_line());
+    file.line(adaptation_line());
+    for (int adaptations = below(3); adaptations > 0; --adaptations)
+      file.line(words({maybe("THEN"), adaptation_line()}));
     if (below(8) == 0) file.line(declaration());
   }
 }

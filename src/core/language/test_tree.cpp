@@ -49,7 +49,8 @@ class Writer {
   void put(const syntax::Component& c) {
     all(c.name, c.node, c.launch, c.setup, c.environment, c.folder, c.is_required, c.is_respawned,
         c.ready, c.unit, c.is_users_unit, c.engine, c.engine_container, c.host, c.container,
-        c.plugin, c.package, c.parameters, c.remaps, static_cast<std::int64_t>(c.lifecycle));
+        c.plugin, c.package, c.parameters, c.remaps, static_cast<std::int64_t>(c.lifecycle),
+        c.other_nodes);
   }
   void put(const syntax::Dependency& d) { all(d.consumer, d.producers); }
   void put(const DiagnosticSource& s) { all(s.status, s.key); }
@@ -63,7 +64,7 @@ class Writer {
 
   void put(const syntax::Adaptation& a) {
     all(a.component, std::string(keyword(a.type)), a.subject, a.topic, a.request, a.value, a.impact,
-        a.span);
+        a.span, a.begins_step);
   }
   void put(const syntax::Strategy& s) {
     all(s.name, s.probability, s.confidence, s.when, s.adaptations, s.is_last_resort, s.within,

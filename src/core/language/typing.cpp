@@ -6,6 +6,7 @@
 #include "language/compiler.h"
 #include "language/evaluate.h"
 #include "language/functions.h"
+#include "language/line_reader.h"
 
 namespace culprit {
 namespace {
@@ -340,6 +341,21 @@ class Typer {
         wanted.signal = *signal;
         return input(wanted, Type::kBool);
       }
+      case Function::kFrozen: {
+        const auto signal = signal_argument(e.children[0], "frozen(signal, window)");
+        if (!signal) return std::nullopt;
+        const auto length = window_argument(e.children[1]);
+        if (!length) return std::nullopt;
+        wanted.kind = Input::Kind::kFrozen;
+        wanted.signal = *signal;
+        wanted.window = *length;
+        return input(wanted, Type::kBool);
+      }
+      case Function::kCpu:
+      case Function::kMemory:
+        wanted.kind = function == Function::kCpu ? Input::Kind::kCpu : Input::Kind::kMemory;
+        wanted.component = symbols_.component(e.children[0].name);
+        return input(wanted, Type::kDouble);
       case Function::kIsNan: {
         const auto signal = signal_argument(e.children[0], "isnan(signal)");
         if (!signal) return std::nullopt;
@@ -432,7 +448,17 @@ class Typer {
   }
 
   std::optional<TopicId> topic_argument(const Expression& e) {
-    if (e.name.text.starts_with('/') && e.name.text.size() > 1) return symbols_.topic(e.name.text);
+    if (e.name.text.starts_with('/') && e.name.text.size() > 1) {
+      std::optional<ComponentId> publisher;
+      if (!e.children.empty()) {
+        const syntax::Name& name = e.children[0].name;
+        if (!is_component_reference(name.text))
+          return fail(Code::kBadRosName, name.span, "'" + name.text + "' names no component",
+                      "write the name of a component, or the full name of its node");
+        publisher = symbols_.component(name);
+      }
+      return symbols_.topic(e.name.text, publisher);
+    }
     return fail(Code::kBadRosName, e.span, "'" + e.name.text + "' is no full topic name",
                 "write it with its namespace, as in /robot/camera/image");
   }

@@ -128,5 +128,39 @@ TEST(Windows, AnUncoveredWindowResolvesNothing) {
   EXPECT_EQ(robot.count("DriverFrozen resolved"), 1u) << transcript(robot);
 }
 
+TEST(Windows, AValueThatRepeatsItselfIsFrozen) {
+  Played played(
+      "SIGNAL x TOPIC /x FIELD data\n"
+      "RULE Frozen\nPOLICIES WARNING REPORT\nTRIGGER frozen(x, 2s)\n");
+  for (int i = 0; i < 100; ++i)
+    played.observe(100ms * i, SignalRead{SignalId(0), Value(i < 50 ? 0.1 * i : 4.9)});
+  EXPECT_THAT(played.detected, ElementsAre(std::pair("Frozen", 6900ms)));
+}
+
+// Nor is one that was heard for a shorter time, or that changes.
+TEST(Windows, ASilentSignalIsNotFrozen) {
+  Played played(
+      "SIGNAL x TOPIC /x FIELD data STALE 500ms\n"
+      "RULE Frozen\nPOLICIES WARNING REPORT\nTRIGGER frozen(x, 2s)\n");
+  for (int i = 0; i < 19; ++i) played.observe(100ms * i, SignalRead{SignalId(0), Value(1.0)});
+  for (int i = 0; i < 19; ++i) played.observe(5s + 100ms * i, SignalRead{SignalId(0), Value(1.0)});
+  for (int i = 0; i < 60; ++i)
+    played.observe(10s + 100ms * i, SignalRead{SignalId(0), Value(i / 10 % 2 == 0 ? 1.0 : 2.0)});
+  played.wait_until(30s);
+  EXPECT_THAT(played.detected, IsEmpty());
+}
+
+TEST(Windows, TheUsageOfAProcessIsThatOfThePresentOne) {
+  Played played(
+      "COMPONENT c NODE /c\n"
+      "RULE Busy\nPOLICIES WARNING REPORT\nTRIGGER cpu(c) > 0.9 && memory(c) > 100\n");
+  played.observe(0s, ProcessSeen{ComponentId(0), ProcessState::kRunning, 7, ""},
+                 NodeAppeared{"/c", 7}, UsageSeen{ComponentId(0), 0.5, 200});
+  played.observe(1s, UsageSeen{ComponentId(0), 1.0, 90});
+  EXPECT_THAT(played.detected, IsEmpty());
+  played.observe(2s, UsageSeen{ComponentId(0), 1.0, 120});
+  EXPECT_THAT(played.detected, ElementsAre(std::pair("Busy", 2s)));
+}
+
 }  // namespace
 }  // namespace culprit::test

@@ -47,6 +47,7 @@ Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time dis
       signals_(knowledge.rules.signals.size()),
       derived_(knowledge.rules.inputs.size()),
       component_inputs_(knowledge.rules.components.size()),
+      part_misses_(knowledge.rules.components.size()),
       parameter_inputs_(knowledge.rules.parameters.size()),
       parameter_signals_(knowledge.rules.parameters.size()),
       diagnostic_inputs_(knowledge.rules.diagnostics.size()),
@@ -75,14 +76,17 @@ Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time dis
       case Kind::kStddev:
       case Kind::kChanged:
       case Kind::kIsNan:
+      case Kind::kFrozen:
         signals_[input.signal.index].inputs.push_back(id);
-        if (input.window > Duration::zero()) {
+        if (input.window > Duration::zero() && input.kind != Kind::kFrozen) {
           const Duration longest_pause = rules[input.signal].stale.value_or(input.window);
           derived_[i].values.emplace(statistic(input.kind), input.window, longest_pause);
         }
         break;
       case Kind::kAlive:
       case Kind::kLifecycle:
+      case Kind::kCpu:
+      case Kind::kMemory:
         component_inputs_[input.component.index].push_back(id);
         break;
       case Kind::kParameter:
@@ -94,7 +98,7 @@ Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time dis
     }
   }
   for (std::size_t t = 0; t < rules.topics.size(); ++t)
-    topic_ids_.emplace(rules.topics[t].name, TopicId(t));
+    topic_ids_[rules.topics[t].name].emplace_back(t);
   for (std::size_t s = 0; s < rules.signals.size(); ++s) {
     if (const auto* parameter = std::get_if<ParameterId>(&rules.signals[s].source)) {
       parameter_signals_[parameter->index].push_back(SignalId(s));
@@ -151,7 +155,9 @@ void Monitor::advance(Time now) {
       continue;
     }
     if (*due > knowledge_.rules.inputs.size() + 1) {
-      await_ends_no_more(ComponentId(*due - knowledge_.rules.inputs.size() - 2), now);
+      const ComponentId component(*due - knowledge_.rules.inputs.size() - 2);
+      await_ends_no_more(component, now);
+      note_missing_part(component, now);
       continue;
     }
     for (std::size_t c = 0; c < knowledge_.rules.components.size(); ++c) {
@@ -184,10 +190,24 @@ void Monitor::remember(const KnownRobot& known) {
     write_.graph.remember(id, part.ends);
   }
   for (const std::string& name : known.topics) {
-    const auto topic = topic_ids_.find(name);
-    if (topic != topic_ids_.end()) see(topic->second, start_);
+    for (std::size_t t = 0; t < knowledge_.rules.topics.size(); ++t) {
+      if (knowledge_.rules.label(TopicId(t)) == name) see(TopicId(t), start_);
+    }
   }
   expect(known);
+}
+
+// Those of the rules that are what `publisher` publishes as `name`; nothing: a node that is none.
+std::vector<TopicId> Monitor::topics_of(std::optional<ComponentId> publisher,
+                                        const std::string& name) const {
+  std::vector<TopicId> topics;
+  const auto known = topic_ids_.find(name);
+  if (known == topic_ids_.end()) return topics;
+  for (const TopicId topic : known->second) {
+    const auto& wanted = knowledge_.rules[topic].publisher;
+    if (!wanted || wanted == publisher) topics.push_back(topic);
+  }
+  return topics;
 }
 
 void Monitor::tell_never_seen(Time at) {
@@ -220,6 +240,8 @@ void Monitor::update(InputId id, Time now) {
       break;
     case Kind::kChanged:
       return update_changed(id, now);
+    case Kind::kFrozen:
+      return update_frozen(id, now);
     case Kind::kMean:
     case Kind::kMin:
     case Kind::kMax:

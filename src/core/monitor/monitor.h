@@ -125,7 +125,8 @@ class Monitor {
     std::optional<Time> overflowed;              // when the window held too much the last time
     bool is_overflow_told = false;
     std::vector<double> deviations;  // kPhi: for each threshold
-    // kChanged: the first reading since the last gap, the last one that was another, and its value.
+    // kChanged, kFrozen: the first reading since the last gap, the last one that was another, and its
+    // value.
     std::optional<Time> known_since;
     std::optional<Time> changed;
     Value last_value;
@@ -145,6 +146,7 @@ class Monitor {
   void on(Time at, const ProcessSeen& seen);
   void on(Time at, const Probed& seen);
   void on(Time at, const ProcessWorked& seen);
+  void on(Time at, const UsageSeen& seen);
   void on(Time at, const StatusHeard& seen);
   void on(Time at, const ParametersListed& seen);
   void on(Time at, const HostReached& seen);
@@ -172,6 +174,8 @@ class Monitor {
   void update_window(InputId id, Time now);
   void note_change(InputId id, const Value& value, Time at, bool is_after_gap);
   void update_changed(InputId id, Time now);
+  void update_frozen(InputId id, Time now);
+  Duration pause_of(const Input& input) const;
   void put(InputId id, const Slot& value, const Signal& signal);
   bool is_stale(SignalId signal, Time now) const;
   WhyUnknown why_unknown(SignalId signal, Time now) const;
@@ -187,6 +191,8 @@ class Monitor {
 
   // Whether a component that publishes the topic joined the graph since then.
   bool has_begun_since(Time before, TopicId topic) const;
+  std::vector<TopicId> topics_of(std::optional<ComponentId> publisher,
+                                 const std::string& name) const;
   void see(TopicId topic, Time at);
   // From when on a topic that has not spoken is silent; kNever while it was not seen.
   Time silent_from(TopicId topic) const;
@@ -210,12 +216,17 @@ class Monitor {
   void await_ends_no_more(ComponentId component, Time at);
   void keep_ends(ComponentId component);
   void forget_process(ComponentId component, Time at);
+  void forget_usage(ComponentId component);
   void note_process(const ProcessSeen& seen, Time at);
   void note_end(const ProcessSeen& seen, Time at);
   void note_farewell(ComponentId component, Time at);
   void note_known_dead(ComponentId component, Time at);
   void note_no_longer_dead(ComponentId component);
   void touch_topics_of(ComponentId component);
+  void note_part_vanished(ComponentId component, const std::string& node, Time at);
+  void note_part_probed(const Probed& seen, Time at);
+  bool has_hung_part(ComponentId component) const;
+  void note_missing_part(ComponentId component, Time at);
   void note_rise(ComponentId component, Lifecycle state, Time at);
   void note_end_of_start(ComponentId component, Time at);
   bool hangs_in_transition(ComponentId component, Time now) const;
@@ -251,10 +262,17 @@ class Monitor {
   bool is_deaf_ = false;
   std::set<std::string> silent_hosts_;  // that were told of
   std::vector<Topic> topics_;
-  std::unordered_map<std::string, TopicId> topic_ids_;
+  std::unordered_map<std::string, std::vector<TopicId>> topic_ids_;  // by name
   std::vector<Signal> signals_;
   std::vector<Derived> derived_;
   std::vector<std::vector<InputId>> component_inputs_;
+  // Of the component's other nodes, in their order: questions that were not answered.
+  struct PartMisses {
+    int count = 0;
+    bool is_reliable = true;  // it has answered from the first question on
+    bool has_answered = false;
+  };
+  std::vector<std::vector<PartMisses>> part_misses_;  // by component
   std::vector<std::vector<InputId>> parameter_inputs_;
   std::vector<std::vector<SignalId>> parameter_signals_;
   std::vector<std::vector<InputId>> diagnostic_inputs_;

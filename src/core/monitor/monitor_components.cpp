@@ -25,9 +25,9 @@ constexpr int kMissedAlone = 5;
 // It alone publishes a topic that rules watch, with a rhythm that is known.
 bool is_heard_of(ComponentId component, const Knowledge& knowledge) {
   for (std::size_t t = 0; t < knowledge.rules.topics.size(); ++t) {
-    const std::string& name = knowledge.rules.topics[t].name;
+    const Topic& topic = knowledge.rules.topics[t];
     if (knowledge.signals.rhythm(TopicId(t)).longest > Duration::zero() &&
-        knowledge.graph.publishes(component, name) && knowledge.graph.publisher_count(name) == 1)
+        knowledge.graph.publishes(component, topic) && knowledge.graph.publisher_count(topic) == 1)
       return true;
   }
   return false;
@@ -47,22 +47,29 @@ bool is_up(Lifecycle state) {
 }  // namespace
 
 void Monitor::on(Time at, const NodeAppeared& seen) {
+  const auto known = knowledge_.graph.component_of(seen.node);
+  const bool had_part = known && knowledge_.graph.has_any_node(*known);
   write_.graph.node_appeared(seen.node);
   const auto component = knowledge_.graph.component_of(seen.node);
   if (!component) return;
   write_.sightings.note(*component, at);
   ComponentState& state = write_.components[*component];
-  const bool same_process = seen.pid != 0 && seen.pid == state.node_pid && state.in_graph;
-  const bool was_another = seen.pid != 0 && state.node_pid != 0 && !same_process && state.in_graph;
+  const bool was_in_graph = state.in_graph;
+  const bool joins_part = had_part && !was_in_graph && seen.pid == state.node_pid;
+  const bool same_process =
+      joins_part || (seen.pid != 0 && seen.pid == state.node_pid && was_in_graph);
+  const bool was_another = seen.pid != 0 && state.node_pid != 0 && !same_process && was_in_graph;
   if (!same_process) forget_process(*component, at);
-  state.in_graph = true;
+  state.in_graph = knowledge_.graph.is_present(*component);
   state.is_missed = false;
   state.node_seen = at;
   state.node_pid = seen.pid;
   state.missed_probes = 0;
+  part_misses_[component->index].clear();
   if (seen.pid != state.pid || seen.pid == 0) set_process(state, ProcessState::kRunning, at);
   if (state.process == ProcessState::kRunning) note_no_longer_dead(*component);
-  if (!same_process) await_ends(*component, at);
+  if (!same_process || !was_in_graph) await_ends(*component, at);
+  if (!state.in_graph) return;  // the others have as long to come as its ends
   const bool was_alive = state.alive == true;
   update_alive(*component, at, "");
   // A mode manager offers services in the node's name, and may be seen before the node is: then it is the node's
@@ -81,7 +88,8 @@ void Monitor::await_ends(ComponentId component, Time at) {
 
 void Monitor::note_ends(ComponentId component, Time at) {
   const ComponentState& state = knowledge_.components[component];
-  if (state.awaits_ends_until != kLongAgo && knowledge_.graph.has_all_ends(component))
+  const bool is_whole = knowledge_.graph.is_present(component);
+  if (state.awaits_ends_until != kLongAgo && is_whole && knowledge_.graph.has_all_ends(component))
     await_ends_no_more(component, at);
 }
 
@@ -105,6 +113,8 @@ void Monitor::on(Time at, const NodeVanished& seen) {
   write_.graph.node_vanished(seen.node);
   const auto component = knowledge_.graph.component_of(seen.node);
   if (!component) return;
+  if (knowledge_.graph.has_several_nodes(*component) && knowledge_.graph.has_any_node(*component))
+    return note_part_vanished(*component, seen.node, at);
   // A process in Python leaves the graph before it ends; how it ends is not known yet, and by then it
   // may have been told to.
   if (knowledge_.states.reservation(*component) == nullptr) note_end_of_start(*component, at);
@@ -115,6 +125,19 @@ void Monitor::on(Time at, const NodeVanished& seen) {
   update_alive(*component, at, "its node left the graph");
 }
 
+// The process of the others is still there, as far as is known.
+void Monitor::note_part_vanished(ComponentId component, const std::string& node, Time at) {
+  ComponentState& state = write_.components[component];
+  note_farewell(component, at);
+  if (node == knowledge_.graph.node_name(component)) {
+    const int pid = state.node_pid;
+    forget_process(component, at);
+    state.node_pid = pid;
+  }
+  state.in_graph = false;
+  update_alive(component, at, "its node " + node + " left the graph");
+}
+
 void Monitor::on(Time, const NamesakesSeen& seen) {
   const auto component = knowledge_.graph.component_of(seen.node);
   if (component) write_.components[*component].namesakes = seen.others;
@@ -122,10 +145,10 @@ void Monitor::on(Time, const NamesakesSeen& seen) {
 
 void Monitor::on(Time at, const EndpointAppeared& seen) {
   write_.graph.endpoint_appeared(seen.node, seen.kind, seen.name);
-  if (const auto component = knowledge_.graph.component_of(seen.node)) note_ends(*component, at);
+  const auto component = knowledge_.graph.component_of(seen.node);
+  if (component) note_ends(*component, at);
   if (seen.kind != EndpointKind::kPublisher) return;
-  const auto topic = topic_ids_.find(seen.name);
-  if (topic != topic_ids_.end()) see(topic->second, at);
+  for (const TopicId topic : topics_of(component, seen.name)) see(topic, at);
 }
 
 void Monitor::on(Time, const EndpointVanished& seen) {
@@ -237,7 +260,7 @@ void Monitor::on(Time at, const ProcessSeen& seen) {
   note_process(seen, at);
   if (seen.state == ProcessState::kGone) {
     if (has_crashed(seen.remark)) note_end_of_start(seen.component, at);
-    write_.graph.node_vanished(knowledge_.graph.node_name(seen.component));
+    write_.graph.component_vanished(seen.component);
     forget_process(seen.component, at);
   }
   update_alive(seen.component, at,
@@ -246,6 +269,7 @@ void Monitor::on(Time at, const ProcessSeen& seen) {
 
 void Monitor::on(Time at, const Probed& seen) {
   if (is_deaf_ && !seen.answered) return;
+  if (seen.node > 0) return note_part_probed(seen, at);
   ComponentState& state = write_.components[seen.component];
   state.missed_probes = seen.answered ? 0 : state.missed_probes + 1;
   state.answers_probes |= seen.answered;
@@ -262,9 +286,53 @@ void Monitor::on(Time at, const Probed& seen) {
                                         : "its process runs, but it does not answer and is silent");
 }
 
+// Another node of its process. A node without an executor of its own answers only now and then, or
+// never: only one that has answered from the beginning can cease to.
+void Monitor::note_part_probed(const Probed& seen, Time at) {
+  std::vector<PartMisses>& parts = part_misses_[seen.component.index];
+  parts.resize(std::max<std::size_t>(parts.size(), seen.node));
+  PartMisses& part = parts[seen.node - 1u];
+  part.has_answered |= seen.answered;
+  part.is_reliable &= part.has_answered;
+  part.count = seen.answered || !part.is_reliable ? 0 : part.count + 1;
+  const auto& nodes = knowledge_.rules[seen.component].other_nodes;
+  const std::string name = seen.node <= nodes.size() ? nodes[seen.node - 1u] : "";
+  update_alive(seen.component, at, "its process runs, but its node " + name + " does not answer");
+}
+
+// It began, and not all of its nodes have come.
+void Monitor::note_missing_part(ComponentId component, Time at) {
+  const DependencyGraph& graph = knowledge_.graph;
+  if (graph.has_several_nodes(component) && graph.has_any_node(component) &&
+      !graph.is_present(component))
+    update_alive(component, at, "its node " + graph.missing_node(component) + " is not there");
+}
+
+bool Monitor::has_hung_part(ComponentId component) const {
+  return std::ranges::any_of(part_misses_[component.index],
+                             [](const PartMisses& part) { return part.count >= kMissedAlone; });
+}
+
 void Monitor::on(Time at, const ProcessWorked& seen) {
   ComponentState& state = write_.components[seen.component];
   if (seen.pid == state.pid && state.process == ProcessState::kRunning) state.worked = at;
+}
+
+void Monitor::on(Time, const UsageSeen& seen) {
+  if (knowledge_.components[seen.component].process != ProcessState::kRunning) return;
+  for (const InputId id : component_inputs_[seen.component.index]) {
+    const Kind kind = knowledge_.rules[id].kind;
+    if (kind == Kind::kCpu) write_.signals.set(id, Slot::of(seen.cores));
+    if (kind == Kind::kMemory) write_.signals.set(id, Slot::of(seen.mib));
+  }
+}
+
+// The usage of a process does not hold for the one that follows it.
+void Monitor::forget_usage(ComponentId component) {
+  for (const InputId id : component_inputs_[component.index]) {
+    const Kind kind = knowledge_.rules[id].kind;
+    if (kind == Kind::kCpu || kind == Kind::kMemory) write_.signals.forget(id);
+  }
 }
 
 void Monitor::on(Time at, const HostReached& seen) {
@@ -330,6 +398,7 @@ void Monitor::forget_process(ComponentId component, Time at) {
   ComponentState& state = write_.components[component];
   if (state.in_graph) expect_no_more();
   forget_what_was_heard_of(component, at);
+  forget_usage(component);
   state.in_graph = false;
   state.node_pid = 0;
   state.is_rising = false;
@@ -369,9 +438,10 @@ bool Monitor::is_silent(ComponentId component, Time now) const {
   constexpr Duration kLeast = std::chrono::seconds(1);
   for (std::size_t t = 0; t < knowledge_.rules.topics.size(); ++t) {
     const SignalStore::Rhythm& rhythm = knowledge_.signals.rhythm(TopicId(t));
-    const std::string& name = knowledge_.rules.topics[t].name;
+    const culprit::Topic& topic = knowledge_.rules.topics[t];
     if (!rhythm.last || rhythm.longest <= Duration::zero() ||
-        !knowledge_.graph.publishes(component, name) || knowledge_.graph.publisher_count(name) != 1)
+        !knowledge_.graph.publishes(component, topic) ||
+        knowledge_.graph.publisher_count(topic) != 1)
       continue;
     const Duration pause = std::max(kLeast, rhythm.longest + rhythm.longest / 2);
     if (now - heard_since(std::max(*rhythm.last, knowledge_.components[component].node_seen)) <
@@ -383,8 +453,8 @@ bool Monitor::is_silent(ComponentId component, Time now) const {
 
 void Monitor::update_alive(ComponentId component, Time at, const std::string& remark) {
   ComponentState& state = write_.components[component];
-  const bool is_alive =
-      state.in_graph && state.process == ProcessState::kRunning && !does_not_answer(component, at);
+  const bool answers = !does_not_answer(component, at) && !has_hung_part(component);
+  const bool is_alive = state.in_graph && state.process == ProcessState::kRunning && answers;
   if (!knowledge_.sightings.has(component)) return;           // it may be a name that nobody has
   if (!is_alive && !state.alive && at < discovered_) return;  // it may still be discovered
   const bool may_be_unheard = is_deaf_ || at < graced_ || state.is_out_of_reach;

@@ -84,10 +84,11 @@ void Monitor::note_no_longer_dead(ComponentId component) {
 // The rules that read whether they come have to be looked at.
 void Monitor::touch_topics_of(ComponentId component) {
   for (const KnownRobot::End& end : knowledge_.graph.ends_of(component)) {
-    const auto topic = topic_ids_.find(end.name);
-    if (end.kind != EndpointKind::kPublisher || topic == topic_ids_.end()) continue;
-    topics_[topic->second.index].is_known_silent = true;
-    for (const InputId id : topics_[topic->second.index].inputs) write_.signals.touch(id);
+    if (end.kind != EndpointKind::kPublisher) continue;
+    for (const TopicId topic : topics_of(component, end.name)) {
+      topics_[topic.index].is_known_silent = true;
+      for (const InputId id : topics_[topic.index].inputs) write_.signals.touch(id);
+    }
   }
 }
 

@@ -41,6 +41,7 @@ void Monitor::read_signal(SignalId signal, const Value& value, Time at) {
   const bool had_rhythm = state.interval > Duration::zero();
   const bool is_after_gap =
       !state.last || (declared.stale && later(*state.last, *declared.stale) < at);
+  const std::optional<Time> before = state.last;
   if (state.last) state.interval = smoothed(state.interval, at - *state.last);
   const bool has_rhythm = state.interval > Duration::zero();
   state.last = at;
@@ -65,6 +66,10 @@ void Monitor::read_signal(SignalId signal, const Value& value, Time at) {
       case Kind::kChanged:
         note_change(id, value, at, is_after_gap);
         update_changed(id, at);
+        continue;
+      case Kind::kFrozen:
+        note_change(id, value, at, !before || later(*before, pause_of(input)) < at);
+        update_frozen(id, at);
         continue;
       default: {
         Derived& derived = derived_[id.index];
@@ -218,6 +223,31 @@ void Monitor::update_changed(InputId id, Time now) {
   deadlines_.set(id.index, next);
 }
 
+// Longer than that between two samples, and nobody knows what the value was meanwhile.
+Duration Monitor::pause_of(const Input& input) const {
+  return knowledge_.rules[input.signal].stale.value_or(input.window);
+}
+
+// Only what is read again and again shows that its value stands still: what does not come is silent.
+void Monitor::update_frozen(InputId id, Time now) {
+  const Input& input = knowledge_.rules[id];
+  const Derived& derived = derived_[id.index];
+  const auto& last = signals_[input.signal.index].last;
+  if (!derived.known_since || later(*last, pause_of(input)) <= now) {
+    deadlines_.clear(id.index);
+    const bool has_paused = derived.known_since.has_value();
+    return write_.signals.forget(
+        id, has_paused ? WhyUnknown::kNotCovered : why_unknown(input.signal, now));
+  }
+  if (*last < later(*derived.known_since, input.window)) {
+    write_.signals.forget(id, WhyUnknown::kNotCovered);
+  } else {
+    const Time same_since = std::max(*derived.known_since, derived.changed.value_or(kLongAgo));
+    write_.signals.set(id, Slot::of(later(same_since, input.window) <= *last));
+  }
+  deadlines_.set(id.index, later(*last, pause_of(input)));
+}
+
 // Samples from before a gap in hearing no longer count. A value that changed in the gap changes when it
 // is read next: many are published only when they change.
 void Monitor::begin_windows_anew(Time now) {
@@ -227,9 +257,14 @@ void Monitor::begin_windows_anew(Time now) {
       derived.values->begin_anew();
       update_window(InputId(i), now);
     } else if (derived.known_since) {
-      derived.known_since = now;
       derived.changed.reset();
-      update_changed(InputId(i), now);
+      if (knowledge_.rules.inputs[i].kind == Kind::kFrozen) {
+        derived.known_since.reset();
+        update_frozen(InputId(i), now);
+      } else {
+        derived.known_since = now;
+        update_changed(InputId(i), now);
+      }
     }
   }
 }

@@ -47,8 +47,9 @@ void Monitor::expect(const KnownRobot& known) {
   }
   const auto note = [&](const std::vector<std::string>& names, std::vector<bool>& marks) {
     for (const std::string& name : names) {
-      const auto topic = topic_ids_.find(name);
-      if (topic != topic_ids_.end()) marks[topic->second.index] = true;
+      for (std::size_t t = 0; t < marks.size(); ++t) {
+        if (rules.label(TopicId(t)) == name) marks[t] = true;
+      }
     }
   };
   note(known.topics, expected.seen);
@@ -107,15 +108,16 @@ bool Monitor::is_there(ComponentId component) const {
 
 bool Monitor::is_there(TopicId topic) const {
   const Topic& state = topics_[topic.index];
-  const bool is_awaited = expected_->seen[topic.index] ||
-                          knowledge_.graph.publisher_count(knowledge_.rules[topic].name) > 0;
+  const bool is_awaited =
+      expected_->seen[topic.index] || knowledge_.graph.publisher_count(knowledge_.rules[topic]) > 0;
   // Of a topic whose rhythm nobody asks for only the fields are read, which are values.
   return state.inputs.empty() || !is_awaited || state.last || certainly_silent(topic);
 }
 
 bool Monitor::is_there(InputId id) const {
   const Input& input = knowledge_.rules[id];
-  if (is_rhythm(input) || input.kind == Kind::kAlive) return true;
+  const bool is_measured = input.kind == Kind::kCpu || input.kind == Kind::kMemory;
+  if (is_rhythm(input) || input.kind == Kind::kAlive || is_measured) return true;
   if (input.kind == Kind::kLifecycle || input.kind == Kind::kParameter ||
       input.kind == Kind::kLevel)
     return knowledge_.signals[id].known;
@@ -125,12 +127,12 @@ bool Monitor::is_there(InputId id) const {
 
 // Who alone would publish it.
 std::optional<ComponentId> Monitor::certainly_silent(TopicId topic) const {
-  const std::string& name = knowledge_.rules[topic].name;
+  const culprit::Topic& rule_topic = knowledge_.rules[topic];
   if (!expected_->heard[topic.index] || !topics_[topic.index].listened) return std::nullopt;
-  if (knowledge_.graph.publisher_count(name) != 1) return std::nullopt;
+  if (knowledge_.graph.publisher_count(rule_topic) != 1) return std::nullopt;
   for (const Expected::Part& part : expected_->parts) {
     if (part.pid != 0 && knowledge_.components[part.component].node_pid == part.pid &&
-        knowledge_.graph.publishes(part.component, name))
+        knowledge_.graph.publishes(part.component, rule_topic))
       return part.component;
   }
   return std::nullopt;
@@ -139,9 +141,8 @@ std::optional<ComponentId> Monitor::certainly_silent(TopicId topic) const {
 // Its process is gone, or is another now, which has all the time that it needs.
 void Monitor::forget_what_was_heard_of(ComponentId component, Time now) {
   for (const KnownRobot::End& end : knowledge_.graph.ends_of(component)) {
-    const auto topic = topic_ids_.find(end.name);
-    if (end.kind == EndpointKind::kPublisher && topic != topic_ids_.end())
-      write_.sightings.unhear(topic->second);
+    if (end.kind != EndpointKind::kPublisher) continue;
+    for (const TopicId topic : topics_of(component, end.name)) write_.sightings.unhear(topic);
   }
   for (Topic& topic : topics_) {
     if (!topic.silent_since || topic.silent_one != component) continue;

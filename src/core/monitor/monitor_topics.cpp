@@ -49,13 +49,12 @@ void Monitor::on(Time at, const SampleArrived& seen) {
 
 // Whoever publishes it, or something that it depends on: either keeps it from speaking for a while.
 bool Monitor::has_begun_since(Time before, TopicId topic) const {
-  const std::string& name = knowledge_.rules[topic].name;
   const auto is_new = [&](ComponentId component) {
     return knowledge_.components[component].node_seen >= before;
   };
   for (std::size_t c = 0; c < knowledge_.rules.components.size(); ++c) {
     const ComponentId component(c);
-    if (!knowledge_.graph.publishes(component, name)) continue;
+    if (!knowledge_.graph.publishes(component, knowledge_.rules[topic])) continue;
     if (is_new(component)) return true;
     const std::vector<ComponentId>& upstream = knowledge_.graph.upstream(component);
     if (std::any_of(upstream.begin(), upstream.end(), is_new)) return true;

@@ -65,6 +65,24 @@ std::string obstacle(const Adaptation& adaptation, const Knowledge& knowledge) {
   }
 }
 
+// Whether there is nothing left to do for it: an earlier try may have got so far.
+bool is_met(const Adaptation& adaptation, const Knowledge& knowledge) {
+  const ComponentState& state = knowledge.components[adaptation.component];
+  const bool is_alive = state.alive.value_or(false);
+  switch (adaptation.type) {
+    case AdaptationType::kActivate:
+      return is_alive && state.lifecycle == Lifecycle::kActive;
+    case AdaptationType::kDeactivate:
+      return is_alive && state.lifecycle == Lifecycle::kInactive;
+    case AdaptationType::kStart:
+      return is_alive;
+    case AdaptationType::kStop:
+      return state.alive == false && state.known_pid() == 0;
+    default:
+      return false;
+  }
+}
+
 // Both set the same thing of one component, and not a whole process.
 bool is_set_by_both(const Adaptation& a, const Adaptation& b) {
   const auto is_of_lifecycle = [](const Adaptation& each) {
@@ -148,7 +166,8 @@ std::optional<Invalid> impossibility(const Strategy& strategy, const Knowledge& 
     if (cannot_be_reached(adaptation, knowledge))
       return Invalid{adaptation.component, knowledge.why_unheard(adaptation.component), true};
     const std::string reason = obstacle(adaptation, knowledge);
-    if (!reason.empty()) {
+    const bool is_done_step = strategy.has_steps() && is_met(adaptation, knowledge);
+    if (!reason.empty() && !is_done_step) {
       return Invalid{adaptation.component,
                      knowledge.rules[adaptation.component].name + " " + reason};
     }

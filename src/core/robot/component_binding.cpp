@@ -6,6 +6,9 @@ ComponentBinding::ComponentBinding(const RuleSet& rules) {
   for (std::size_t c = 0; c < rules.components.size(); ++c) {
     const Component& component = rules.components[c];
     nodes_.push_back(component.node);
+    others_.push_back(component.other_nodes);
+    for (const std::string& other : component.other_nodes)
+      components_.emplace(other, ComponentId(c));
     if (component.node.empty()) {
       without_node_.emplace(component.name, ComponentId(c));
     } else {

@@ -146,6 +146,14 @@ struct ProcessWorked {
   int pid = 0;
 };
 
+// What the component's process uses: the processor since this was told last, in cores, and memory in
+// RAM. Told again and again, of components whose usage the rules read.
+struct UsageSeen {
+  ComponentId component;
+  double cores = 0;
+  double mib = 0;
+};
+
 // The computer that runs a component (HOST) cannot be asked, or can be again. Of a component that is
 // not heard of meanwhile nobody knows whether it works.
 struct HostReached {
@@ -179,6 +187,7 @@ struct EndsWith {
 struct Probed {
   ComponentId component;
   bool answered = false;
+  std::uint8_t node = 0;  // of a component with several: which of them, from 0
 };
 
 // How a command ended. A command that gets no Reply within its time is settled by reading the state
@@ -263,7 +272,7 @@ class ObservationWhat
                           ProcessSeen, Probed, Reply, LinkTrouble, Order, NamesakesSeen,
                           HearingLost, HearingRegained, Overslept, StatusHeard, ParametersListed,
                           ProcessWorked, HostReached, EndsWith, LauncherSeen, PriorsTold, LivesOn,
-                          HostHeard, ListenerKnown, StartedHere> {
+                          HostHeard, ListenerKnown, StartedHere, UsageSeen> {
  public:
   using Variant = variant;
   using variant::variant;

@@ -230,6 +230,7 @@ class CurveReader {
         case Input::Kind::kStddev:
         case Input::Kind::kChanged:
         case Input::Kind::kIsNan:
+        case Input::Kind::kFrozen:
           follow_signal(rule, input.signal);
           break;
         case Input::Kind::kAge:
@@ -249,6 +250,8 @@ class CurveReader {
           break;
         case Input::Kind::kAlive:
         case Input::Kind::kLifecycle:
+        case Input::Kind::kCpu:
+        case Input::Kind::kMemory:
           break;  // no numbers; the marks tell
       }
     }

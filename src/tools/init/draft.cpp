@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 #include <set>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -87,17 +88,22 @@ class Draft {
       : seen_(seen), recipes_(usable_recipes(seen)) {
     for (const auto& [name, node] : seen_.robot.nodes) {
       if (is_tool_node(name) || !is_valid_topic_name(name)) continue;
-      if (const auto why = why_not(name, node)) {
+      if (const std::string main = main_of(name, node); main != name) {
+        if (node.parameters) others_[main].push_back(name);
+      } else if (const auto why = why_not(name, node)) {
         if (!known.components.contains(name)) left_out_.push_back(name + ": " + *why);
       } else {
         nodes_.push_back(name);
       }
     }
     names_ = component_names(nodes_, known);
+    for (const std::string& node : nodes_) {
+      for (const std::string& other : others_[node]) names_.emplace(other, names_.at(node));
+    }
     for (const std::string& name : known.taken) declared_.take(name);
-    for (const auto& each : names_) {
-      declared_.take(each.second);
-      declared_.take(each.second, "_failed");
+    for (const std::string& node : nodes_) {
+      declared_.take(names_.at(node));
+      declared_.take(names_.at(node), "_failed");
     }
     if (packs == Packs::kChosen) packs_ = packs_for(seen_, names_, left_out_);
   }
@@ -123,6 +129,32 @@ class Draft {
   }
 
  private:
+  // The node of its process that the component is declared by: the node itself if it is alone, or if
+  // its process loads components. One that has told its parameters answers; one with a shorter path is
+  // seldom made by another.
+  std::string main_of(const std::string& name, const LiveInventory::Node& node) const {
+    if (node.pid == 0 || recipes_.contains(name) || !container_of(node.pid).empty()) return name;
+    const auto rank = [](const std::string& each, const LiveInventory::Node& its) {
+      return std::tuple(!its.parameters.has_value(), std::ranges::count(each, '/'), each.size(),
+                        each);
+    };
+    auto best = rank(name, node);
+    for (const auto& [other, its] : seen_.robot.nodes) {
+      if (its.pid == node.pid && !is_tool_node(other) && is_valid_topic_name(other))
+        best = std::min(best, rank(other, its));
+    }
+    return std::get<3>(best);
+  }
+
+  // The node of the process that loads components; empty: none.
+  std::string container_of(int pid) const {
+    for (const auto& [name, its] : seen_.robot.nodes) {
+      if (its.pid == pid && seen_.robot.services.contains(name + "/_container/load_node"))
+        return name;
+    }
+    return "";
+  }
+
   // Why it cannot be started again; nothing if it can.
   std::optional<std::string> why_not(const std::string& name,
                                      const LiveInventory::Node& node) const {
@@ -133,12 +165,20 @@ class Draft {
     const auto start = seen_.starts.find(name);
     if (start == seen_.starts.end())
       return fmt::format("it could not be read how process {} was started", node.pid);
+    const std::string container = container_of(node.pid);
     for (const auto& [other, its] : seen_.robot.nodes) {
-      if (other != name && its.pid == node.pid && !is_tool_node(other) && !recipes_.contains(other))
+      if (container.empty() || other == name || its.pid != node.pid || is_tool_node(other) ||
+          recipes_.contains(other))
+        continue;
+      if (name == container)
         return fmt::format(
-            "it lives in process {} with {}. Write what loads it: IN {} PLUGIN ..., "
-            "or give a dump of its launch file: --launch",
-            node.pid, other, other);
+            "it loads {}, and how is not known: give a dump of its launch file: "
+            "--launch",
+            other);
+      return fmt::format(
+          "it lives in process {} with {}. Write what loads it: IN {} PLUGIN ..., "
+          "or give a dump of its launch file: --launch",
+          node.pid, container, container);
     }
     if (start->second.declare.starts_with("CONTAINER"))
       return start->second.owner + " runs it. Write CONTAINER with the engine and its name there";
@@ -215,8 +255,15 @@ class Draft {
     const PackUse* pack = pack_of(node);
     const bool is_managed = !seen_.robot.nodes.at(node).lifecycle.empty();
     add(Part::Kind::kComponent, node,
-        "COMPONENT " + names_.at(node) + " NODE " + node + " " + owner_of(node) +
+        "COMPONENT " + names_.at(node) + " NODE " + all_nodes(node) + " " + owner_of(node) +
             (pack != nullptr && pack->has_launcher && is_managed ? " LIFECYCLE launcher\n" : "\n"));
+  }
+
+  // With the others of its process.
+  std::string all_nodes(const std::string& node) const {
+    const auto others = others_.find(node);
+    return others == others_.end() ? node
+                                   : fmt::format("{} {}", node, fmt::join(others->second, " "));
   }
 
   std::string owner_of(const std::string& node) const {
@@ -233,8 +280,12 @@ class Draft {
     std::string text;
     std::string trigger = "!alive(" + name + ")";
     for (const auto& [topic, what] : seen_.robot.topics) {
-      if (is_topic_of_ros(topic) || !is_valid_topic_name(topic) ||
-          what.publishers != std::set{node})
+      const auto is_its = [&](const std::string& each) {
+        const auto component = names_.find(each);
+        return component != names_.end() && component->second == name;
+      };
+      if (is_topic_of_ros(topic) || !is_valid_topic_name(topic) || what.publishers.empty() ||
+          !std::ranges::all_of(what.publishers, is_its))
         continue;
       const auto limit = silence_of(seen_, topic);
       if (!limit) continue;
@@ -254,10 +305,20 @@ class Draft {
                        percent, impact);
   }
 
+  // Whether the nodes belong to more than one component, as far as they are declared.
+  bool are_of_several(const std::set<std::string>& nodes) const {
+    std::set<std::string> components;
+    for (const std::string& node : nodes) {
+      const auto component = names_.find(node);
+      components.insert(component == names_.end() ? node : component->second);
+    }
+    return components.size() > 1;
+  }
+
   void topics_without_rule() {
     for (const auto& [topic, what] : seen_.robot.topics) {
       if (is_topic_of_ros(topic) || !what.is_published()) continue;
-      if (what.publishers.size() > 1) {
+      if (are_of_several(what.publishers)) {
         left_out_.push_back(topic +
                             ": several nodes publish it, so its silence has no one to blame");
       } else if (const auto limit = silence_of(seen_, topic);
@@ -270,6 +331,7 @@ class Draft {
   const Sighting& seen_;
   const std::map<std::string, Recipe> recipes_;
   std::vector<std::string> nodes_;
+  std::map<std::string, std::vector<std::string>> others_;  // of the same process, by its main node
   std::map<std::string, std::string> names_;
   Names declared_;
   std::vector<std::string> left_out_;

@@ -136,11 +136,30 @@ TEST(Draft, WhatCannotBeStartedAgainIsListedWithTheReason) {
   seen.robot.nodes["/far"] = {};
   seen.robot.nodes["/part"] = {.parameters = {}, .lifecycle = "", .pid = 12};
   seen.starts["/part"] = seen.starts["/robot/camera"];
+  seen.robot.services["/lidar/_container/load_node"] = "composition_interfaces/srv/LoadNode";
   const std::string text = draft(seen);
   EXPECT_THAT(text, HasSubstr("# /far: its process is not on this machine"));
-  EXPECT_THAT(text, HasSubstr("# /part: it lives in process 12 with /lidar."));
-  EXPECT_THAT(text, HasSubstr("# /lidar: it lives in process 12 with /part."));
+  EXPECT_THAT(text, HasSubstr("# /part: it lives in process 12 with /lidar. Write what loads it: "
+                              "IN /lidar PLUGIN"));
+  EXPECT_THAT(text, HasSubstr("# /lidar: it loads /part, and how is not known"));
   EXPECT_THAT(text, Not(HasSubstr("COMPONENT lidar")));
+}
+
+// As Nav2's servers have it: a costmap of their own, and clients that answer nothing.
+TEST(Draft, TheNodesOfOneProcessAreOneComponent) {
+  Sighting seen = robot();
+  using Told = std::map<std::string, std::optional<Value>>;
+  seen.robot.nodes["/lidar"].parameters = Told{};
+  seen.robot.nodes["/map/map"] = {.parameters = Told{}, .lifecycle = "active", .pid = 12};
+  seen.robot.nodes["/lidar_client"] = {.parameters = {}, .lifecycle = "", .pid = 12};
+  seen.starts["/map/map"] = seen.starts["/lidar_client"] = seen.starts["/lidar"];
+  seen.robot.topics["/map"].publishers = {"/map/map"};
+  seen.rhythms["/map"] = {301, 30s, 130ms};
+  const std::string text = draft(seen);
+  EXPECT_THAT(text, HasSubstr("COMPONENT lidar NODE /lidar /map/map UNIT lidar.service\n"));
+  EXPECT_THAT(text, HasSubstr("TRIGGER !alive(lidar) || age(/map) > "));
+  EXPECT_THAT(text, Not(HasSubstr("lidar_client")));
+  EXPECT_EQ(component(rules_of(seen), "lidar").other_nodes, std::vector<std::string>{"/map/map"});
 }
 
 TEST(Draft, WithoutARhythmThereIsNoSilence) {

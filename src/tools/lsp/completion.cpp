@@ -83,11 +83,17 @@ class Completion {
     // The word under the cursor is what is being typed.
     const bool is_typing = !before.empty() && before.back() != ' ' && before.back() != '\t';
     if (is_typing && !words_.empty()) words_.pop_back();
+    // A step is completed as its adaptation.
+    if (!words_.empty() && words_.front() == "THEN") {
+      words_.erase(words_.begin());
+      is_step_ = true;
+    }
   }
 
   std::vector<Proposal> find() {
+    if (words_.empty() && is_step_) return keywords({"ADAPTATION"});
     if (words_.empty()) {
-      return keywords({"RULE", "POLICIES", "TRIGGER", "STRATEGY", "ADAPTATION", "COMPONENT",
+      return keywords({"RULE", "POLICIES", "TRIGGER", "STRATEGY", "ADAPTATION", "THEN", "COMPONENT",
                        "SIGNAL", "CONST", "DEPENDENCY", "IGNORE", "INTERLOCK", "ROBOT", "CYCLE",
                        "INCLUDE", "USE", "TEMPLATE", "END"});
     }
@@ -163,6 +169,7 @@ class Completion {
   }
 
   std::vector<Proposal> argument(const OpenCall& call) {
+    if (words_.back() == "FROM") return components();
     const bool has_place = call.index < call.function->arguments.size();
     switch (has_place ? call.function->arguments[call.index] : Argument::kExpression) {
       case Argument::kTopic:
@@ -241,6 +248,7 @@ class Completion {
   const LiveInventory* robot_;
   const std::vector<std::string>& files_;
   std::vector<std::string> words_;
+  bool is_step_ = false;  // THEN stands in front of them
 };
 
 // The parameters of the template whose lines are around `offset`.

@@ -7,7 +7,9 @@ namespace {
 
 struct Namer {
   const RuleSet& rules;
-  std::string operator()(const Topic& topic) const { return topic.name; }
+  std::string operator()(const Topic& topic) const {
+    return topic.publisher ? topic.name + " FROM " + rules[*topic.publisher].name : topic.name;
+  }
   std::string operator()(const Signal& signal) const { return signal.name; }
   std::string operator()(const StatusLevel& status) const { return status.name; }
   std::string operator()(const Component& component) const { return component.name; }
@@ -85,6 +87,8 @@ std::optional<Observation> Translation::operator()(const Observation& observatio
     is_known = renumber(started->component, components_);
   } else if (auto* worked = std::get_if<ProcessWorked>(&out.what)) {
     is_known = renumber(worked->component, components_);
+  } else if (auto* usage = std::get_if<UsageSeen>(&out.what)) {
+    is_known = renumber(usage->component, components_);
   } else if (auto* reached = std::get_if<HostReached>(&out.what)) {
     is_known = renumber(reached->component, components_);
   } else if (auto* lives = std::get_if<LivesOn>(&out.what)) {

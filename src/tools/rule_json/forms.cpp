@@ -18,7 +18,7 @@ std::vector<Form> table() {
       {"CONST", {name, {"=", "value", kExpression}}, {}, {}},
       {"COMPONENT",
        {name},
-       {{"NODE", "node", kName},
+       {{"NODE", "node", kNodes},
         {"LAUNCH", "launch", kText},
         {"ENV", "env", kText},
         {"SETUP", "setup", kName},

@@ -17,6 +17,7 @@ enum class Part : std::uint8_t {
   kType,        // one of the form's types: a string
   kName,        // a name of any kind: a string
   kNames,       // names up to the end of the line: an array of strings
+  kNodes,       // one name, or several that follow each other: a string, or an array of strings
   kNamePair,    // two names, one behind the other: an array of two strings
   kText,        // a quoted text: a string
   kNumber,      // not negative: a number
@@ -42,6 +43,10 @@ struct Form {
   std::vector<Clause> free;   // behind those, each or not, in any order
   std::vector<std::string_view> types;
 };
+
+// The word that may stand in front of this keyword, and the member that says so.
+inline constexpr std::string_view kStepKeyword = "ADAPTATION";
+inline constexpr Clause kStep{"THEN", "then", Part::kFlag};
 
 // Statements of one keyword follow each other.
 std::span<const Form> forms();

@@ -19,6 +19,8 @@ const char* describe(Part part) {
       return "a name: a text that is not empty";
     case Part::kNames:
       return "names: an array of texts that are not empty";
+    case Part::kNodes:
+      return "a name, or an array of names";
     case Part::kNamePair:
       return "two names: an array of two texts that are not empty";
     case Part::kText:
@@ -124,6 +126,8 @@ Words words(Part part, const Json& value) {
       return name_words(value);
     case Part::kNames:
       return names_words(value);
+    case Part::kNodes:
+      return value.is_array() ? names_words(value) : name_words(value);
     case Part::kNamePair:
       return pair_words(value, name_words, " ");
     case Part::kText:
@@ -202,7 +206,7 @@ std::string LineWriter::write() {
     return "";
   }
   refuse_other_members(*form);
-  line_ = form->keyword;
+  line_ = step_word(*form) + std::string(form->keyword);
   for (const Clause& clause : form->fixed) {
     if (statement_.contains(clause.member)) {
       add(clause);
@@ -254,6 +258,15 @@ bool LineWriter::has_type_of(const Form& form) const {
                      [&](std::string_view known) { return *type == known; });
 }
 
+// "THEN " if the statement begins a step; empty if not.
+std::string LineWriter::step_word(const Form& form) const {
+  const auto step = statement_.find(kStep.member);
+  if (form.keyword != kStepKeyword || step == statement_.end() || *step == false) return "";
+  if (*step == true) return std::string(kStep.word) + " ";
+  complain_(std::string(kStep.member), std::string("this must be ") + describe(kStep.part), "");
+  return "";
+}
+
 void LineWriter::complain_of_kind() const {
   const auto text_of = [&](const char* member) {
     const auto value = statement_.find(member);
@@ -277,6 +290,7 @@ void LineWriter::refuse_other_members(const Form& form) const {
   std::vector<std::string_view> known = {"statement", "above", "comment"};
   for (const Clause& clause : form.fixed) known.push_back(clause.member);
   for (const Clause& clause : form.free) known.push_back(clause.member);
+  if (form.keyword == kStepKeyword) known.push_back(kStep.member);
   for (const auto& [member, value] : statement_.items()) {
     if (std::find(known.begin(), known.end(), member) == known.end())
       complain_(member, "this statement has no such member", nearest(member, known));

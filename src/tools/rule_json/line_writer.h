@@ -36,6 +36,7 @@ class LineWriter {
  private:
   const Form* choose_form() const;
   bool has_type_of(const Form& form) const;
+  std::string step_word(const Form& form) const;
   void complain_of_kind() const;
   void refuse_other_members(const Form& form) const;
   void add(const Clause& clause);

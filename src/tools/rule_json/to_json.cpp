@@ -19,6 +19,12 @@ class StatementReader {
       : source_(source), lexemes_(lexemes) {}
 
   Json read() {
+    if (text(0) == kStep.word) {
+      lexemes_ = lexemes_.subspan(1);
+      Json statement = read();
+      statement[std::string(kStep.member)] = true;
+      return statement;
+    }
     for (const Form& form : forms()) {
       if (fits(form)) return read(form);
     }
@@ -75,6 +81,13 @@ class StatementReader {
         Json names = Json::array();
         while (next_ < lexemes_.size()) names.push_back(name_to_json(take()));
         return names;
+      }
+      case Part::kNodes: {
+        Json nodes = Json::array();
+        do {
+          nodes.push_back(name_to_json(take()));
+        } while (next_ < lexemes_.size() && lexemes_[next_].kind == Lexeme::Kind::kName);
+        return nodes.size() == 1 ? nodes[0] : nodes;
       }
       case Part::kNamePair: {
         Json first = name_to_json(take());

@@ -25,7 +25,7 @@ Names::Names(const RuleSet& rules, std::vector<Diagnostic>& diagnostics)
   for (std::size_t i = 0; i < rules.components.size(); ++i)
     components_.emplace(rules.components[i].name, ComponentId(i));
   for (std::size_t i = 0; i < rules.topics.size(); ++i)
-    topics_.emplace(rules.topics[i].name, TopicId(i));
+    topics_.emplace(rules.label(TopicId(i)), TopicId(i));
   for (std::size_t i = 0; i < rules.signals.size(); ++i)
     signals_.emplace(rules.signals[i].name, SignalId(i));
   for (std::size_t i = 0; i < rules.diagnostics.size(); ++i)

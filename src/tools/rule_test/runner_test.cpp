@@ -271,6 +271,25 @@ TEST(Runner, AValueThatIsNotANumberIsSeenByARuleForIt) {
             1);
 }
 
+// ---- one publisher of several
+
+TEST(Runner, OneOfTwoPublishersIsSilent) {
+  const Played played = play(
+      "COMPONENT front PUBLISHES /scan\nCOMPONENT rear PUBLISHES /scan\n"
+      "TOPIC /scan FROM front 0s: 10Hz 7s: silent\nTOPIC /scan FROM rear 0s: 10Hz\n"
+      "ADAPTATION front redeploy HEALS /scan\nRUN 20s\n"
+      "EXPECT FrontSilent DETECTED AFTER 7s\nEXPECT NOT AllSilent DETECTED\n"
+      "EXPECT front BLAMED FOR FrontSilent\nEXPECT NO STRATEGY OF rear\n",
+      "COMPONENT front NODE /front /front/filter LAUNCH \"front\"\n"
+      "COMPONENT rear NODE /rear LAUNCH \"rear\"\n"
+      "RULE FrontSilent\n  POLICIES ERROR\n  TRIGGER age(/scan FROM front) > 1s || !alive(front)\n"
+      "    STRATEGY front_redeploy 90 10\n      ADAPTATION front redeploy 25\n"
+      "RULE RearSilent\n  POLICIES ERROR\n  TRIGGER age(/scan FROM rear) > 1s\n"
+      "    STRATEGY rear_redeploy 90 10\n      ADAPTATION rear redeploy 25\n"
+      "RULE AllSilent\n  POLICIES WARNING REPORT\n  TRIGGER age(/scan) > 1s\n");
+  EXPECT_TRUE(played.result.is_ok()) << played.text();
+}
+
 // ---- the same again
 
 TEST(Runner, PlaysTheSameTestTheSameWay) {

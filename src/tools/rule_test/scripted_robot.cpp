@@ -134,15 +134,19 @@ KnownRobot ScriptedRobot::declared() const {
     if (!is_absent(ComponentId(c)))
       known.parts.push_back({rules_.components[c].name, components_[c].node, {}});
   }
-  for (const Topic& topic : rules_.topics) {
+  for (std::size_t t = 0; t < rules_.topics.size(); ++t) {
+    const Topic& topic = rules_.topics[t];
     const std::pair publisher(EndpointKind::kPublisher, topic.name);
-    const auto publishes = [&](const Component& c) {
-      return std::ranges::find(c.endpoints, publisher) != c.endpoints.end();
-    };
-    const bool has_publisher = std::ranges::any_of(components_, publishes);
-    const bool is_there = std::ranges::any_of(
-        components_, [&](const Component& c) { return c.is_in_graph && publishes(c); });
-    if (is_there || !has_publisher) known.topics.push_back(topic.name);
+    bool has_publisher = false;
+    bool is_there = false;
+    for (std::size_t c = 0; c < components_.size(); ++c) {
+      const auto& ends = components_[c].endpoints;
+      const bool is_meant = !topic.publisher || *topic.publisher == ComponentId(c);
+      if (!is_meant || std::ranges::find(ends, publisher) == ends.end()) continue;
+      has_publisher = true;
+      is_there |= components_[c].is_in_graph;
+    }
+    if (is_there || !has_publisher) known.topics.push_back(rules_.label(TopicId(t)));
   }
   return known;
 }
@@ -176,6 +180,11 @@ void ScriptedRobot::speak(Voice& voice) {
   voice.next = later(voice.next, voice.period);
   if (const auto* topic = std::get_if<TopicId>(&voice.subject)) {
     tell(SampleArrived{*topic, 1});
+    // A trigger that reads the whole topic counts it, too.
+    for (std::size_t t = 0; rules_[*topic].publisher && t < rules_.topics.size(); ++t) {
+      if (rules_.topics[t].name == rules_[*topic].name && !rules_.topics[t].publisher)
+        tell(SampleArrived{TopicId(t), 1});
+    }
   } else if (const auto* signal = std::get_if<SignalId>(&voice.subject)) {
     tell(SignalRead{*signal, *voice.value});
   } else if (const auto* diagnostic = std::get_if<DiagnosticId>(&voice.subject)) {
@@ -239,6 +248,7 @@ void ScriptedRobot::appear(ComponentId id) {
   if (!component.is_in_graph) return;
   tell(ProcessSeen{id, ProcessState::kRunning, component.pid, ""});
   tell(NodeAppeared{component.node, component.pid});
+  for (const std::string& other : rules_[id].other_nodes) tell(NodeAppeared{other, component.pid});
   for (const auto& [kind, name] : component.endpoints)
     tell(EndpointAppeared{component.node, kind, name});
   if (component.state != Lifecycle::kUnknown) tell(LifecycleRead{id, component.state});
@@ -282,10 +292,20 @@ void ScriptedRobot::probe(ComponentId id, int pid) {
   });
 }
 
+// A topic without a FROM is that of all its publishers.
 void ScriptedRobot::heal(const std::vector<Subject>& subjects) {
   has_changed_ = true;
+  const auto is_meant = [&](const Subject& healed, const Subject& subject) {
+    const auto* whole = std::get_if<TopicId>(&healed);
+    const auto* topic = std::get_if<TopicId>(&subject);
+    const bool is_of_whole = whole != nullptr && topic != nullptr && !rules_[*whole].publisher &&
+                             rules_[*whole].name == rules_[*topic].name;
+    return healed == subject || is_of_whole;
+  };
   for (Voice& voice : voices_) {
-    if (std::find(subjects.begin(), subjects.end(), voice.subject) == subjects.end()) continue;
+    if (std::ranges::none_of(
+            subjects, [&](const Subject& healed) { return is_meant(healed, voice.subject); }))
+      continue;
     std::erase_if(voice.stretches, [&](const Stretch& s) {
       return s.from > Duration::zero() && Time{s.from} <= now_;
     });

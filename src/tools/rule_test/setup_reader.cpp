@@ -106,10 +106,12 @@ bool SetupReader::each_endpoint(Scanner& s, ComponentId id, EndpointKind kind, c
 bool SetupReader::publishes(ComponentId id, const Name& name) {
   const bool is_topic = name.text.starts_with('/');
   if (is_topic) scenario_->endpoints.push_back({id, EndpointKind::kPublisher, name.text});
-  const bool is_read =
-      !is_topic || std::any_of(rules_.topics.begin(), rules_.topics.end(),
-                               [&](const Topic& t) { return t.name == name.text; });
-  if (!is_read) return true;
+  for (std::size_t t = 0; is_topic && t < rules_.topics.size(); ++t) {
+    const auto& [read, publisher] = rules_.topics[t];
+    if (read == name.text && (!publisher || *publisher == id))
+      scenario_->origins.push_back({id, TopicId(t)});
+  }
+  if (is_topic) return true;
   const auto subject = names_.topic_or_signal(name);
   if (subject) scenario_->origins.push_back({id, *subject});
   return subject.has_value();
@@ -142,7 +144,15 @@ bool SetupReader::initial_state(Scanner& s, ComponentId id) {
 // ---- courses
 
 bool SetupReader::topic(Scanner& s) {
-  const auto name = read_.ros_name(s, "a topic");
+  auto name = read_.ros_name(s, "a topic");
+  if (name && s.peek().text == "FROM") {
+    s.next();
+    const auto publisher = read_.component_reference(s);
+    const auto component = publisher ? names_.component(*publisher) : std::nullopt;
+    if (!component) return false;
+    name->text += " FROM " + rules_[*component].name;
+    name->span.end = publisher->span.end;
+  }
   const auto id = name ? names_.topic(*name) : std::nullopt;
   return id && course(s, *id);
 }

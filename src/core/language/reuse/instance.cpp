@@ -170,6 +170,7 @@ std::vector<Replacement> DeclaredNames::below(const std::string& space, const sy
     insert(name.span.begin + (quoted ? 1 : 0), space);
   };
   for (const syntax::Component& c : tree.components) {
+    for (const syntax::Name& other : c.other_nodes) full_name(other);
     if (c.node) {
       full_name(*c.node);
     } else {

@@ -1,0 +1,30 @@
+#include "link/process_usage.h"
+
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+namespace culprit::ros2 {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST(ProcessUsage, IsReadOfAProcessThatRuns) {
+  const auto own = usage_of(getpid());
+  ASSERT_TRUE(own);
+  EXPECT_GE(own->processor, Duration::zero());
+  EXPECT_GT(own->resident_mib, 0.5);
+  EXPECT_FALSE(usage_of(-1));
+}
+
+TEST(UsageMeter, MeasuresBetweenTwoLooksAtOneProcess) {
+  UsageMeter meter;
+  EXPECT_FALSE(meter.look(7, {10s, 1}, Time(100s)));
+  EXPECT_EQ(meter.look(7, {10s + 500ms, 1}, Time(101s)), 0.5);
+  EXPECT_EQ(meter.look(7, {13s + 500ms, 1}, Time(103s)), 1.5);
+  EXPECT_FALSE(meter.look(8, {1s, 1}, Time(104s)));
+  EXPECT_EQ(meter.look(8, {1s, 1}, Time(105s)), 0.0);
+}
+
+}  // namespace
+}  // namespace culprit::ros2

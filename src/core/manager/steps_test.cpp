@@ -1,0 +1,155 @@
+// Strategies in steps (THEN): what is taken down for a repair, and when it comes up again.
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "manager/manager.h"
+#include "manager/test_robot.h"
+
+namespace culprit::test {
+namespace {
+
+// A planner that commands a driver: no topic shows that it must not run without it.
+std::string arm_with(const std::string& adaptations, const std::string& policies = "") {
+  return "COMPONENT planner NODE /planner LAUNCH \"planner\"\n"
+         "COMPONENT driver NODE /driver LAUNCH \"driver\"\n"
+         "COMPONENT light NODE /light LAUNCH \"light\"\n"
+         "RULE Silent\n  POLICIES ERROR " +
+         policies +
+         "\n  TRIGGER age(/joints) > 500ms\n"
+         "    STRATEGY in_steps 80 10\n" +
+         adaptations;
+}
+
+constexpr const char* kAround =
+    "      ADAPTATION planner deactivate 2\n"
+    "      THEN ADAPTATION driver redeploy 10\n"
+    "      THEN ADAPTATION planner activate 2\n";
+constexpr const char* kStopped =
+    "      ADAPTATION planner stop 2\n"
+    "      THEN ADAPTATION driver redeploy 10\n"
+    "      THEN ADAPTATION planner start 10\n";
+
+TestRobot robot_with(const std::string& rules) {
+  TestRobot robot(rules);
+  robot.add("planner");
+  robot.add("driver", {}, "/joints");
+  robot.add("light");
+  robot.discover();
+  robot.run_for(7s);
+  return robot;
+}
+
+std::size_t place_of(const TestRobot& robot, const std::string& request) {
+  const auto found = std::ranges::find_if(
+      robot.asked, [&](const std::string& line) { return line.starts_with(request); });
+  return static_cast<std::size_t>(found - robot.asked.begin());
+}
+
+TEST(Steps, EachBeginsWhenTheOneBeforeIsProven) {
+  TestRobot robot = robot_with(arm_with(kAround));
+  robot["driver"].fault = "redeploy";
+  robot["driver"].start_time = 2s;
+  bool was_there_first = true;
+  robot.after_step = [&] {
+    const auto& driver = robot["driver"];
+    const bool is_up = driver.is_in_graph && driver.process == ProcessState::kRunning;
+    if (!is_up && robot.was_asked("planner: activate")) was_there_first = false;
+  };
+  robot.run_for(20s);
+  EXPECT_TRUE(was_there_first) << transcript(robot);
+  EXPECT_LT(place_of(robot, "planner: deactivate"), place_of(robot, "driver: stop"))
+      << transcript(robot);
+  EXPECT_LT(place_of(robot, "driver: start"), place_of(robot, "planner: activate"))
+      << transcript(robot);
+  EXPECT_TRUE(robot.works("planner")) << transcript(robot);
+  EXPECT_EQ(robot.count("Silent resolved by in_steps"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("deactivate planner, then redeploy driver, then activate planner"), 1u)
+      << transcript(robot);
+}
+
+TEST(Steps, UndoingDoesNotActivateWhatCommandsADeadDriver) {
+  TestRobot robot = robot_with(arm_with(kAround, "ATTEMPTS 1"));
+  robot["driver"].dies_at_start = true;
+  robot.kill("driver");
+  robot.run_for(40s);
+  EXPECT_FALSE(robot.was_asked("planner: activate")) << transcript(robot);
+  EXPECT_EQ(robot["planner"].state, Lifecycle::kInactive) << transcript(robot);
+  EXPECT_GE(robot.count("cannot be undone: planner: active: it may depend on driver"), 1u)
+      << transcript(robot);
+  EXPECT_GE(robot.count("Silent is exhausted"), 1u) << transcript(robot);
+}
+
+// Two lines without THEN say as much: the driver is redeployed behind a planner that is inactive.
+TEST(Steps, NorDoesUndoingAStrategyWithoutSteps) {
+  TestRobot robot =
+      robot_with(arm_with("      ADAPTATION planner deactivate 2\n"
+                          "      ADAPTATION driver redeploy 10\n",
+                          "ATTEMPTS 1"));
+  robot["driver"].dies_at_start = true;
+  robot.kill("driver");
+  robot.run_for(40s);
+  EXPECT_FALSE(robot.was_asked("planner: activate")) << transcript(robot);
+}
+
+TEST(Steps, UndoingGoesBackwardsWhereAllIsUp) {
+  TestRobot robot =
+      robot_with(arm_with("      ADAPTATION planner deactivate 2\n"
+                          "      THEN ADAPTATION driver redeploy 10\n"
+                          "      THEN ADAPTATION light set_parameter red true 2\n"
+                          "      THEN ADAPTATION planner activate 2\n",
+                          "ATTEMPTS 1"));
+  robot["light"].refuses = true;
+  robot["driver"].fault = "nothing helps";
+  robot.run_for(40s);
+  EXPECT_EQ(robot["planner"].state, Lifecycle::kActive) << transcript(robot);
+  EXPECT_EQ(robot.count("planner: active again"), 1u) << transcript(robot);
+}
+
+TEST(Steps, WhatIsStoppedForARepairIsStartedAgainInUndoing) {
+  TestRobot robot =
+      robot_with(arm_with("      ADAPTATION planner stop 2\n"
+                          "      THEN ADAPTATION light set_parameter red true 2\n"
+                          "      THEN ADAPTATION planner start 10\n",
+                          "ATTEMPTS 1"));
+  robot["light"].refuses = true;
+  robot["driver"].fault = "nothing helps";
+  robot.run_for(40s);
+  EXPECT_TRUE(robot.works("planner")) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("planner: start"), 1u) << transcript(robot);
+}
+
+TEST(Steps, WhatIsStoppedStaysStoppedWhileTheDriverIsDown) {
+  TestRobot robot = robot_with(arm_with(kStopped, "ATTEMPTS 1"));
+  robot["driver"].dies_at_start = true;
+  robot.kill("driver");
+  robot.run_for(40s);
+  EXPECT_FALSE(robot.was_asked("planner: start")) << transcript(robot);
+  EXPECT_EQ(robot["planner"].process, ProcessState::kGone) << transcript(robot);
+}
+
+// The first try has left the planner inactive, or stopped: that step is done already.
+TEST(Steps, TheNextTryGoesOnFromWhatTheFirstOneLeft) {
+  for (const char* steps : {kAround, kStopped}) {
+    TestRobot robot = robot_with(arm_with(steps));
+    robot["driver"].dies_at_start = true;
+    robot.kill("driver");
+    robot.run_for(10s);
+    ASSERT_FALSE(robot.works("driver")) << transcript(robot);
+    robot["driver"].dies_at_start = false;
+    robot.run_for(120s);
+    EXPECT_TRUE(robot.works("driver")) << transcript(robot);
+    EXPECT_TRUE(robot.works("planner")) << transcript(robot);
+  }
+}
+
+TEST(Steps, TheImpactIsTheSumOfTheirs) {
+  const RuleSet rules = robot_with(arm_with("      ADAPTATION planner deactivate 2\n"
+                                            "      ADAPTATION light restart 5\n"
+                                            "      THEN ADAPTATION driver redeploy 10\n"))
+                            .rules();
+  EXPECT_EQ(rules.strategies[0].impact.count, 15);
+}
+
+}  // namespace
+}  // namespace culprit::test
