@@ -18,6 +18,7 @@ struct NumberOf {
   Number operator()(const LauncherSeen& o) const { return o.component.index; }
   Number operator()(const ProcessWorked& o) const { return o.component.index; }
   Number operator()(const HostReached& o) const { return o.component.index; }
+  Number operator()(const StartBarred& o) const { return o.component.index; }
   Number operator()(const LivesOn& o) const { return o.component.index; }
   Number operator()(const EndsWith& o) const { return o.component.index; }
   Number operator()(const ParametersListed& o) const { return o.component.index; }

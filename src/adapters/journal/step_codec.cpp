@@ -33,7 +33,8 @@ enum class Tag : std::uint8_t {
   kPriorsTold = 26,
   kLivesOn = 27,
   kHostHeard = 28,
-  kListenerKnown = 29
+  kListenerKnown = 29,
+  kStartBarred = 30
 };
 
 enum class OrderTag : std::uint8_t {
@@ -216,6 +217,11 @@ class Encoder {
     head(Tag::kParametersListed, age);
     out_.natural(o.component.index);
     texts(o.names);
+  }
+  void write(const StartBarred& o, Duration age) {
+    head(Tag::kStartBarred, age);
+    out_.natural(o.component.index);
+    out_.text(o.missing);
   }
   void write(const ListenerKnown& o, Duration age) {
     head(Tag::kListenerKnown, age);
@@ -415,6 +421,10 @@ class Decoder {
         return HearingRegained{};
       case Tag::kOverslept:
         return Overslept{Duration(in_.integer())};
+      case Tag::kStartBarred: {
+        const auto component = id<ComponentId>(rules_.components.size());
+        return StartBarred{component, in_.text()};
+      }
       case Tag::kListenerKnown:
         return ListenerKnown{id<TopicId>(rules_.topics.size())};
       case Tag::kPriorsTold: {

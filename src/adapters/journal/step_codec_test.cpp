@@ -69,7 +69,7 @@ decltype(Order::what) any_order() {
 ObservationWhat anything() {
   const std::string text = *rc::gen::arbitrary<std::string>();
   const ComponentId component(*rc::gen::inRange<std::size_t>(0, 2));
-  switch (*rc::gen::inRange(0, 27)) {
+  switch (*rc::gen::inRange(0, 28)) {
     case 0:
       return NodeAppeared{text, *rc::gen::positive<int>()};
     case 1:
@@ -128,6 +128,8 @@ ObservationWhat anything() {
       return HostHeard{text, *rc::gen::arbitrary<bool>()};
     case 25:
       return ListenerKnown{TopicId(0)};
+    case 26:
+      return StartBarred{component, text};
     default:
       return LinkTrouble{text};
   }

@@ -26,6 +26,9 @@
 // Who starts a process that culprit did not start is told of when it ends with it, as ros2 launch does
 // where that says on_exit=Shutdown(): it ends all that it had started then.
 //
+// A start that fails because a file is not there, its program or its parameters, is reported with the path
+// (StartBarred), and tried all but its last step every kMissingPeriod until it would succeed.
+//
 // Whatever it started goes on running when the supervisor ends, unless stop_all() was called or its
 // lifetime is the starter's.
 #pragma once
@@ -71,6 +74,8 @@ class Supervisor {
   static constexpr Duration kStopSettles = std::chrono::milliseconds(50);
   // A launcher that ends within this time after what it started ended because of that.
   static constexpr Duration kEndsWith = std::chrono::seconds(10);
+  // How often it is looked whether what a start needs is there by now.
+  static constexpr Duration kMissingPeriod = std::chrono::milliseconds(500);
   // How long the trial of a start may take.
   static constexpr Duration kTrial = std::chrono::seconds(5);
 
@@ -150,6 +155,12 @@ class Supervisor {
     Time until;
     Hangs hangs;
   };
+  // A start that needs what is not there, and the trial that looks for it.
+  struct Barred {
+    ComponentId component;
+    std::optional<Launch> trial{};
+    Time next = kLongAgo;  // look, while no trial is under way
+  };
   // A shutdown under way.
   struct Shutdown {
     CommandId command;  // number 0: nobody waits for a reply
@@ -189,6 +200,9 @@ class Supervisor {
       CULPRIT_REQUIRES(mutex_);
   void finish_starts() CULPRIT_REQUIRES(mutex_);
   void finish_trials(Time now) CULPRIT_REQUIRES(mutex_);
+  void note_missing(const Launch& launch, ComponentId component, const std::string& what)
+      CULPRIT_REQUIRES(mutex_);
+  void look_for_missing(Time now) CULPRIT_REQUIRES(mutex_);
   void finish_shutdowns(Time now) CULPRIT_REQUIRES(mutex_);
   void tell_what_stays(const Member& member) const;
   static bool goes_on(const Launcher& launcher);
@@ -222,6 +236,7 @@ class Supervisor {
   ConditionVariable something_ended_;
   std::vector<Member> members_ CULPRIT_GUARDED_BY(mutex_);
   std::vector<Trial> trials_ CULPRIT_GUARDED_BY(mutex_);
+  std::vector<Barred> barred_ CULPRIT_GUARDED_BY(mutex_);
   std::vector<Shutdown> shutdowns_ CULPRIT_GUARDED_BY(mutex_);
   std::map<ComponentId, Identity> identities_
       CULPRIT_GUARDED_BY(mutex_);  // of what others started, when it was found first

@@ -273,7 +273,15 @@ void TestRobot::resolve_fault(Component& c, const Command& command, bool is_done
 }
 
 void TestRobot::start(Component& c, const Command& command) {
+  if (!c.start_missing.empty()) {
+    observe(StartBarred{command.component, c.start_missing});
+    return reply(command, Outcome::kUnreachable, {}, c.start_missing);
+  }
   c.start(++last_pid_);
+  if (c.answers_after_start > Duration::zero()) {
+    c.answers = false;
+    later(c.answers_after_start, [&c] { c.answers = true; });
+  }
   reply(command, Outcome::kDone, Value(std::int64_t{c.pid}));
   observe(ProcessSeen{command.component, ProcessState::kRunning, c.pid, ""});
   if (c.dies_at_start) {

@@ -45,8 +45,10 @@ class TestRobot {
     bool loses_replies = false;       // does it, and the answer is lost
     Duration lateness{};              // with which it is reported that no answer came
     bool dies_at_start = false;
+    std::string start_missing{};  // why it cannot be started: "there is no program 'camera'"
     bool ends_only_if_killed = false;
     Duration start_time = 300ms;
+    Duration answers_after_start{};  // until then it is busy loading
     Lifecycle state_at_start = Lifecycle::kActive;
     // A timer of its own activates it so long after its start. It ends if somebody was there first.
     Duration activates_itself_after{};

@@ -145,6 +145,7 @@ class Monitor {
   void on(Time at, const StatusHeard& seen);
   void on(Time at, const ParametersListed& seen);
   void on(Time at, const HostReached& seen);
+  void on(Time at, const StartBarred& seen);
   void on(Time at, const LivesOn& seen);
   void on(Time at, const HostHeard& seen);
   void on(Time at, const EndsWith& seen);
