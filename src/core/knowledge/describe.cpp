@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "base/duration_words.h"
 #include "base/name_grammar.h"
 
 namespace culprit {
@@ -192,7 +193,7 @@ class Describer {
     return "the robot can be heard again; all ages begin anew";
   }
   std::string operator()(const SleepNoticed& e) const {
-    return "culprit stood still for " + to_string(e.time) + "; all ages begin anew";
+    return "culprit stood still for " + in_words(e.time) + "; all ages begin anew";
   }
   std::string operator()(const HostSilent& e) const {
     std::vector<std::string> names;
