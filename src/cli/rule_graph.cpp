@@ -62,6 +62,7 @@ std::vector<ComponentId> read_by(const Rule& rule, const RuleSet& rules) {
       case Input::Kind::kRate:
       case Input::Kind::kAge:
       case Input::Kind::kPhi:
+      case Input::Kind::kLoss:
       case Input::Kind::kLevel:
         break;
     }

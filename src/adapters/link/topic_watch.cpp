@@ -24,7 +24,8 @@ TopicWatch::TopicWatch(NodeEntry& self, TopicId topic, const RuleSet& rules, Inb
     : self_(self), topic_(topic), rules_(rules), inbox_(inbox) {
   counts_ = std::any_of(rules.inputs.begin(), rules.inputs.end(), [&](const Input& input) {
     using enum Input::Kind;
-    return (input.kind == kRate || input.kind == kAge || input.kind == kPhi) &&
+    return (input.kind == kRate || input.kind == kAge || input.kind == kPhi ||
+            input.kind == kLoss) &&
            input.topic == topic;
   });
 }

@@ -22,6 +22,7 @@ bool may_be_of(ComponentId component, const Input& input, const Knowledge& knowl
     case Kind::kRate:
     case Kind::kAge:
     case Kind::kPhi:
+    case Kind::kLoss:
       return knowledge.graph.publishes(component, knowledge.rules[input.topic].name);
     case Kind::kAlive:
     case Kind::kLifecycle:

@@ -369,6 +369,8 @@ std::string describe(const Input& input, const RuleSet& rules) {
       return call("age", rules[input.topic].name);
     case kPhi:
       return call("phi", rules[input.topic].name);
+    case kLoss:
+      return call("loss", rules[input.topic].name);
     case kAlive:
       return call("alive", rules[input.component].name);
     case kLifecycle:

@@ -12,6 +12,7 @@ bool was_read(const Input& input, const Sightings& sightings) {
     case Input::Kind::kRate:
     case Input::Kind::kAge:
     case Input::Kind::kPhi:
+    case Input::Kind::kLoss:
     case Input::Kind::kAlive:
       return false;
     case Input::Kind::kLifecycle:
@@ -84,6 +85,7 @@ std::string value_name(const Input& input, const RuleSet& rules) {
     case Input::Kind::kRate:
     case Input::Kind::kAge:
     case Input::Kind::kPhi:
+    case Input::Kind::kLoss:
     case Input::Kind::kAlive:
       return "";
     case Input::Kind::kLifecycle:

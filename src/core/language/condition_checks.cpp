@@ -72,6 +72,8 @@ std::string known_of(InputId id, const RuleSet& rules) {
       return ": an age is not negative";
     case Input::Kind::kPhi:
       return ": phi is not negative";
+    case Input::Kind::kLoss:
+      return ": loss is a share from 0 to 1";
     case Input::Kind::kLevel:
       return ": a level is 0, 1, 2 or 3";
     case Input::Kind::kLifecycle:

@@ -94,7 +94,7 @@ std::vector<Explanation> name_explanations() {
        "COMPONENT camera NODE /robot/camera\n" + rule_with("rate(/robot/image) < 1"),
        Strictness::kStrict},
       {Code::kUnknownFunction, "there is no function of this name",
-       "Expressions call rate, age, phi, alive, lifecycle, parameter, level, mean, min, max, "
+       "Expressions call rate, age, phi, loss, alive, lifecycle, parameter, level, mean, min, max, "
        "stddev, changed, isnan, abs, pow and sqrt. Functions of your own do not exist; CONST names "
        "values.",
        rule_with("frequency(/robot/image) < 1"), rule_with("rate(/robot/image) < 1")},

@@ -48,6 +48,8 @@ Interval first_interval(const Input& input, const RuleSet& rules) {
     case Input::Kind::kAge:
     case Input::Kind::kPhi:
       return {0, kInfinity};
+    case Input::Kind::kLoss:
+      return {0, 1};
     case Input::Kind::kLevel:
       return {0, 3};
     case Input::Kind::kLifecycle:

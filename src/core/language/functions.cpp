@@ -7,10 +7,11 @@ namespace {
 
 using enum Argument;
 
-constexpr std::array<FunctionInfo, 16> kFunctions = {{
+constexpr std::array<FunctionInfo, 17> kFunctions = {{
     {Function::kRate, "rate", "rate(topic) or rate(topic, window)", {kTopic, kExpression}, 1, 2},
     {Function::kAge, "age", "age(topic)", {kTopic, kTopic}, 1, 1},
     {Function::kPhi, "phi", "phi(topic)", {kTopic, kTopic}, 1, 1},
+    {Function::kLoss, "loss", "loss(topic)", {kTopic, kTopic}, 1, 1},
     {Function::kAlive, "alive", "alive(component)", {kComponent, kComponent}, 1, 1},
     {Function::kLifecycle, "lifecycle", "lifecycle(component)", {kComponent, kComponent}, 1, 1},
     {Function::kParameter,

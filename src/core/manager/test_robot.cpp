@@ -179,8 +179,13 @@ void TestRobot::run_for(Duration time) {
       if (topic.next > now) continue;
       topic.next += topic.period;
       if (!works(topic.producer)) continue;
+      if (loses && loses(topic.name)) {
+        ++topic.lost;
+        continue;
+      }
+      const std::uint32_t sent = std::exchange(topic.lost, 0u) + 1;
       for (std::size_t t = 0; t < rules_->topics.size(); ++t) {
-        if (rules_->topics[t].name == topic.name) observe(SampleArrived{TopicId(t), 1});
+        if (rules_->topics[t].name == topic.name) observe(SampleArrived{TopicId(t), sent});
       }
     }
     while (!agenda_.empty() && agenda_.begin()->first <= now) {

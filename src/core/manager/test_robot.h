@@ -97,6 +97,8 @@ class TestRobot {
   std::size_t count_asked(const std::string& part) const;
   bool was_asked(const std::string& part) const { return count_asked(part) > 0; }
 
+  // Whether the message that is sent now on this topic is lost on the way to the manager.
+  std::function<bool(const std::string& topic)> loses;
   // Called after each step of the manager.
   std::function<void()> after_step;
   // Called after each step and before its commands are served. If it gives false they never are:
@@ -118,6 +120,7 @@ class TestRobot {
     std::string producer;
     Duration period;
     Time next{};
+    std::uint32_t lost = 0;  // since the last one that came
   };
   template <class What>
   void observe(What what) {
