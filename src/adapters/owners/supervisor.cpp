@@ -346,7 +346,8 @@ void Supervisor::look_at_launchers(Time now) {
     const bool ends_with_it = !goes_on(launcher);
     if (!ends_with_it && now < later(launcher.child_ended, kEndsWith)) continue;
     launcher.child_ended = kLongAgo;
-    if (ends_with_it)
+    // Once for all that it had started.
+    if (ends_with_it && hinted_.insert(launcher.pid).second)
       inbox_.put(LinkTrouble{
           "process " + std::to_string(launcher.pid) + " (" + launcher.what + ") had started " +
           rules_[component].name +

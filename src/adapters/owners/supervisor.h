@@ -241,6 +241,7 @@ class Supervisor {
   std::map<ComponentId, Identity> identities_
       CULPRIT_GUARDED_BY(mutex_);  // of what others started, when it was found first
   std::map<ComponentId, Launcher> launchers_ CULPRIT_GUARDED_BY(mutex_);
+  std::set<int> hinted_ CULPRIT_GUARDED_BY(mutex_);  // launchers whose end with a child was told
   bool is_ending_ CULPRIT_GUARDED_BY(mutex_) = false;
   FileDescriptor wake_;
   std::thread thread_;
