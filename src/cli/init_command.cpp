@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -11,6 +13,7 @@
 #include "cli/load_rules.h"
 #include "cli/unified_diff.h"
 #include "init/draft.h"
+#include "init/lasting.h"
 #include "init/look.h"
 #include "init/marks.h"
 #include "init/update.h"
@@ -95,6 +98,9 @@ int draft_rules(const InitOptions& options) {
   auto seen = look(options);
   if (!seen) return fail(seen.error());
   take(std::move(*dump), options, *seen);
+  const init::Kept kept = init::keep_parameters(
+      *seen, has_file ? std::filesystem::absolute(options.output).native() : "");
+  for (const std::string& note : kept.notes) say(stderr, "culprit: {}\n", note);
   const auto text = format({"the draft", init::draft(*seen, options.wanted_packs())});
   if (!text) return fail(text.error());
   const Expansion rules =
@@ -109,6 +115,14 @@ int draft_rules(const InitOptions& options) {
   if (!parameters.empty() && std::filesystem::exists(seen->parameter_file))
     return fail(seen->parameter_file + " is there already; name another draft, or move it away",
                 kUsage);
+  for (const init::KeptFile& each : kept.files) {
+    if (std::filesystem::exists(each.path))
+      return fail(each.path + " is there already; name another draft, or move it away", kUsage);
+  }
+  for (const init::KeptFile& each : kept.files) {
+    if (const auto written = write_text(each.path, each.text); !written)
+      return fail(written.error());
+  }
   if (!parameters.empty()) {
     if (const auto written = write_text(seen->parameter_file, parameters); !written)
       return fail(written.error());
@@ -164,8 +178,10 @@ struct ParameterUpdate {
   std::string note{};
 };
 
-Expected<ParameterUpdate> parameter_update(const InitOptions& options, const init::Sighting& seen) {
-  ParameterUpdate update{seen.parameter_file};
+Expected<ParameterUpdate> parameter_update(
+    const InitOptions& options, const std::string& file,
+    const std::function<std::string(std::string)>& wanted_of) {
+  ParameterUpdate update{file};
   std::error_code error;
   if (std::filesystem::exists(update.file, error)) {
     auto text = read_text(update.file);
@@ -173,14 +189,14 @@ Expected<ParameterUpdate> parameter_update(const InitOptions& options, const ini
     update.before = std::move(*text);
   }
   const bool is_ours = update.before && init::is_as_written(*update.before);
-  std::string wanted = init::parameters_text(seen, is_ours ? *update.before : "");
+  std::string wanted = wanted_of(is_ours ? *update.before : "");
   if (wanted.empty() || update.before == wanted) return update;
   if (update.before && !options.output.empty() && options.output != options.update)
     return Error{update.file + " is there already; name another draft, or move it away"};
   if (update.before && !is_ours) {
     update.note =
         update.file +
-        " is not as culprit wrote it, and stays as it is: compare it with the launch dump yourself";
+        " is not as culprit wrote it, and stays as it is: compare it with the robot's yourself";
     return update;
   }
   std::vector<LineEdit> edits;
@@ -221,18 +237,37 @@ int update_rules(const InitOptions& options) {
   if (!seen) return fail(seen.error());
   take(std::move(*dump), options, *seen);
 
-  const auto parameters = parameter_update(options, *seen);
-  if (!parameters) return fail(parameters.error(), kUsage);
+  const init::Kept kept =
+      init::keep_parameters(*seen, std::filesystem::absolute(options.update).native());
+  std::vector<ParameterUpdate> parameters;
+  auto of_dump = parameter_update(options, seen->parameter_file, [&](const std::string& before) {
+    return init::parameters_text(*seen, before);
+  });
+  if (!of_dump) return fail(of_dump.error(), kUsage);
+  parameters.push_back(std::move(*of_dump));
+  for (const init::KeptFile& each : kept.files) {
+    auto of_launch =
+        parameter_update(options, each.path, [&](const std::string&) { return each.text; });
+    if (!of_launch) return fail(of_launch.error(), kUsage);
+    parameters.push_back(std::move(*of_launch));
+  }
   const init::Update update = init::update(*text, *rules, *seen, options.wanted_packs());
   const ChangedText now = changed(options.update, *text, update);
   const Expansion after = expand({options.update, now.after}, rule_files::load);
   if (!after.mistakes.empty()) return fail(render(after.mistakes, after.source));
   if (const Checked checked = check(after); !checked.rules)
     return fail(render(checked.diagnostics, after.source));
-  say(stdout, "{}{}", parameters->diff, now.diff);
-  for (const std::string& note : update.notes) say(stderr, "culprit: {}\n", note);
-  if (!parameters->note.empty()) say(stderr, "culprit: {}\n", parameters->note);
-  if (update.changes.empty() && parameters->after.empty())
+  for (const ParameterUpdate& each : parameters) say(stdout, "{}", each.diff);
+  say(stdout, "{}", now.diff);
+  for (const auto* notes : {&update.notes, &kept.notes}) {
+    for (const std::string& note : *notes) say(stderr, "culprit: {}\n", note);
+  }
+  for (const ParameterUpdate& each : parameters) {
+    if (!each.note.empty()) say(stderr, "culprit: {}\n", each.note);
+  }
+  const bool is_as_it_was = std::ranges::all_of(
+      parameters, [](const ParameterUpdate& each) { return each.after.empty(); });
+  if (update.changes.empty() && is_as_it_was)
     say(stderr, "culprit: {} needs no change for this robot\n", options.update);
   if (options.output.empty()) return kOk;
   const auto present = read_text(options.update);
@@ -240,7 +275,9 @@ int update_rules(const InitOptions& options) {
     return fail(options.update +
                 " was changed while the robot was watched, and stays as it is; run it again");
   }
-  if (const auto written = write_parameters(*parameters); !written) return fail(written.error());
+  for (const ParameterUpdate& each : parameters) {
+    if (const auto written = write_parameters(each); !written) return fail(written.error());
+  }
   if (is_in_place && update.changes.empty()) return kOk;
   if (const auto written = write_text(options.output, now.after); !written)
     return fail(written.error());

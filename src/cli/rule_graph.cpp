@@ -65,6 +65,7 @@ std::vector<ComponentId> read_by(const Rule& rule, const RuleSet& rules) {
       case Input::Kind::kRate:
       case Input::Kind::kAge:
       case Input::Kind::kPhi:
+      case Input::Kind::kLoss:
         if (const auto& publisher = rules[input.topic].publisher) all.push_back(*publisher);
         break;
       case Input::Kind::kLevel:

@@ -13,6 +13,7 @@
 #include "live/robot_survey.h"
 #include "live/setups.h"
 #include "owners/found_owner.h"
+#include "owners/launch_difference.h"
 #include "owners/parameter_file.h"
 #include "owners/plugin_index.h"
 #include "owners/remote_program.h"
@@ -39,16 +40,23 @@ bool look_until(Enough is_enough, Time end, const std::stop_token& stop) {
 std::string report(const Source& source, const RuleSet& rules, const LiveInventory& robot,
                    std::uint32_t domain) {
   const auto found = findings(rules, robot);
-  const auto missing = missing_on(robot, source);
+  std::vector<Diagnostic> missing = missing_on(robot, source);
+  const auto others = std::ranges::stable_partition(
+      missing, [](const Diagnostic& each) { return each.code != Code::kRunsOtherwise; });
+  const std::vector<Diagnostic> runs_otherwise(others.begin(), others.end());
+  missing.erase(others.begin(), others.end());
   std::string text =
       found.empty()
           ? fmt::format("culprit: domain {} has nothing that {} names\n", domain, source.name())
           : fmt::format("culprit: {} names, and the robot on domain {} has:\n", source.name(),
                         domain);
   for (const std::string& line : found) text += "  " + line + "\n";
-  if (missing.empty()) return text;
-  text += fmt::format("culprit: {} names, and the robot has not:\n", source.name());
+  if (!missing.empty())
+    text += fmt::format("culprit: {} names, and the robot has not:\n", source.name());
   for (const Diagnostic& each : missing) text += render(each, source);
+  if (!runs_otherwise.empty())
+    text += fmt::format("culprit: components run otherwise than {} says:\n", source.name());
+  for (const Diagnostic& each : runs_otherwise) text += render(each, source);
   return text;
 }
 
@@ -154,6 +162,22 @@ void find_request_troubles(const RuleSet& rules, ros2::Survey& survey, const std
   }
 }
 
+// In what a component that runs differs from what its LAUNCH would start.
+void find_launch_differences(const RuleSet& rules, LiveInventory& robot) {
+  using Clause = LiveInventory::LaunchTrouble::Clause;
+  for (const Component& component : rules.components) {
+    const std::string node = robot.node_of(component);
+    if (component.launch.empty() || node.empty()) continue;
+    const int pid = robot.nodes.at(node).pid;
+    const auto process = pid == 0 ? std::nullopt : owners::running_process(pid);
+    if (!process) continue;
+    for (const std::string& each :
+         owners::launch_differences(component.launch, component.folder, node, *process))
+      robot.launch_troubles.push_back({component.name, Clause::kRunning, component.launch.front(),
+                                       component.name + " " + each});
+  }
+}
+
 // What its container, where that runs, could not load.
 void find_composition_troubles(const Component& component, LiveInventory& robot) {
   using Clause = LiveInventory::LaunchTrouble::Clause;
@@ -193,6 +217,7 @@ LiveInventory look_for(const std::vector<const RuleSet*>& rules, ros2::Survey& s
   for (const RuleSet* each : rules) {
     find_owners(*each, robot);
     find_owner_troubles(*each, stop, robot);
+    find_launch_differences(*each, robot);
     find_request_troubles(*each, survey, stop, robot);
     for (const Component& component : each->components) {
       if (stop.stop_requested()) break;

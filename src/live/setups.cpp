@@ -10,6 +10,7 @@
 #include "live/rule_trust.h"
 #include "owners/setup.h"
 #include "owners/spawn.h"
+#include "owners/start_needs.h"
 
 namespace culprit::live {
 namespace {
@@ -48,6 +49,8 @@ std::optional<Trouble> trouble_of(const Component& component) {
   // Looked for where culprit run looks for it.
   owners::Program program{component.launch, {own_folder()}, "/dev/null", component.environment};
   program.folder = component.folder;
+  program.needs = owners::start_needs(
+      component.launch, owners::value_in_environment("AMENT_PREFIX_PATH", component.environment));
   if (const auto could = could_run(program); !could)
     return Trouble{component.name, Trouble::Clause::kLaunch, component.launch.front(),
                    could.error()};
@@ -70,7 +73,7 @@ std::vector<Environment> environments_of(const RuleSet& rules) {
 
 std::vector<Trouble> launch_troubles(const RuleSet& rules, const std::stop_token& stop) {
   // All that a trouble depends on: of many components of one program there is one answer.
-  using Asked = std::tuple<const std::string&, const std::string&, const std::string&,
+  using Asked = std::tuple<const std::vector<std::string>&, const std::string&, const std::string&,
                            const std::vector<std::string>&>;
   std::map<Asked, std::optional<Trouble>> answers;
   std::vector<Trouble> all;
@@ -78,7 +81,7 @@ std::vector<Trouble> launch_troubles(const RuleSet& rules, const std::stop_token
     if (stop.stop_requested()) break;
     if (component.launch.empty()) continue;
     const auto [answer, is_new] = answers.try_emplace(
-        Asked(component.launch.front(), component.setup, component.folder, component.environment));
+        Asked(component.launch, component.setup, component.folder, component.environment));
     if (is_new) answer->second = trouble_of(component);
     if (!answer->second) continue;
     all.push_back(*answer->second);

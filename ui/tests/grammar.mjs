@@ -52,7 +52,7 @@ ADAPTATION eye restart 5
 
 RULE Written
 POLICIES FAILURE
-TRIGGER load > 0 ? abs(load - 1) * 2 + pow(heat, 2) / 3 > sqrt(heat) : !alive(slam) && +1 % 2 == 1 && true != isnan(heat)
+TRIGGER load > 0 ? abs(load - 1) * 2 + pow(heat, 2) / 3 > sqrt(heat) : !alive(slam) && +1 % 2 == 1 && true != isnan(heat) && loss(/scan) < 0.5
 STRATEGY everything 70 20 LASTRESORT WITHIN 1s WHEN heat < 90
 ADAPTATION eye set_parameter gain 0.5 2
 ADAPTATION eye increase_parameter exposure 1 2
@@ -206,7 +206,7 @@ export async function writesEveryRow() {
     await clause(rule, 0, 'level', { [name]: 'motor', 'how it compares': '>=', [much]: '2' })
     await clause(rule, 1, 'parameter', { [name]: 'eye', 'which parameter': 'exposure', 'how it compares': '==', [much]: '7' })
     rule = await newRule('Written', 'FAILURE')
-    await clause(rule, 0, 'text', { 'the expression': 'load > 0 ? abs(load - 1) * 2 + pow(heat, 2) / 3 > sqrt(heat) : !alive(slam) && +1 % 2 == 1 && true != isnan(heat)' })
+    await clause(rule, 0, 'text', { 'the expression': 'load > 0 ? abs(load - 1) * 2 + pow(heat, 2) / 3 > sqrt(heat) : !alive(slam) && +1 % 2 == 1 && true != isnan(heat) && loss(/scan) < 0.5' })
 
     // Strategies with every adaptation.
     const strategy = (which) => form.getByRole('group', { name: `Strategy ${which}`, exact: true })

@@ -35,7 +35,8 @@ enum class Tag : std::uint8_t {
   kHostHeard = 28,
   kListenerKnown = 29,
   kStartedHere = 30,
-  kUsageSeen = 31
+  kUsageSeen = 31,
+  kStartBarred = 32
 };
 
 enum class OrderTag : std::uint8_t {
@@ -243,6 +244,11 @@ class Encoder {
     head(Tag::kParametersListed, age);
     out_.natural(o.component.index);
     texts(o.names);
+  }
+  void write(const StartBarred& o, Duration age) {
+    head(Tag::kStartBarred, age);
+    out_.natural(o.component.index);
+    out_.text(o.missing);
   }
   void write(const ListenerKnown& o, Duration age) {
     head(Tag::kListenerKnown, age);
@@ -464,6 +470,10 @@ class Decoder {
         return HearingRegained{};
       case Tag::kOverslept:
         return Overslept{Duration(in_.integer())};
+      case Tag::kStartBarred: {
+        const auto component = id<ComponentId>(rules_.components.size());
+        return StartBarred{component, in_.text()};
+      }
       case Tag::kListenerKnown:
         return ListenerKnown{id<TopicId>(rules_.topics.size())};
       case Tag::kPriorsTold: {

@@ -246,6 +246,18 @@ void ComponentLink::read_parameters() {
   }
 }
 
+void ComponentLink::ask_time_source(std::function<void()> then) {
+  ServiceClient* client = parameter_reader();
+  if (client == nullptr) return;
+  client->call(encode(srv::GetParameters::Request{{"use_sim_time"}}), Repeat::kUntilAnswered,
+               kJoining, [then = std::move(then)](const CallResult& result) {
+                 if (result.outcome != CallOutcome::kAnswered) return;
+                 const auto response = decode<srv::GetParameters::Response>(result.reply);
+                 if (response && response->values.size() == 1 && response->values[0].bool_value)
+                   then();
+               });
+}
+
 // One that answered once, and ceases to, hangs.
 void ComponentLink::note_that_it_answers() {
   read_anything(kJoining, Haste::kSoon, [this](const CallResult& result) {

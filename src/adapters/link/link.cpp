@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <iterator>
 #include <malloc.h>
 #include <set>
 #include <unistd.h>
 
+#include "base/duration_words.h"
+#include "base/live_clock.h"
 #include "base/tool_names.h"
 #include "base/tracer.h"
 #include "link/list_parameter.h"
@@ -125,6 +128,7 @@ Link::~Link() {
   hearing_.reset();
   parameter_events_.reset();
   diagnostics_watch_.reset();
+  made_clock_ = nullptr;
   clock_.reset();
   watches_.clear();
   links_.clear();
@@ -177,6 +181,7 @@ Expected<void> Link::start() {
     listen_to_hosts();
     look_at_hosts();
     tell_usage();
+    look_at_clocks();
   });
   for (const Input& input : rules_.inputs) {
     if (input.kind == Input::Kind::kCpu || input.kind == Input::Kind::kMemory)
@@ -198,6 +203,7 @@ Expected<void> Link::start() {
     auto clock = SimulatedClock::open(node_->entry());
     if (!clock) return Error{clock.error()};
     clock_ = std::move(*clock);
+    made_clock_ = clock_.get();
   }
   probing_ = std::make_unique<Timer>(executor_, kProbePeriod, [this] { probe(); });
   thread_ = std::thread([this] { executor_.run(); });
@@ -212,16 +218,67 @@ Time Link::sure_to_hear(Time now) const {
 Time Link::doubtful() const {
   const Time now = live_now();
   const Time sure = sure_to_hear(now);
-  return clock_ ? std::min(sure, clock_->doubtful(now)) : sure;
+  const SimulatedClock* followed = clock();
+  return followed != nullptr ? std::min(sure, followed->doubtful(now)) : sure;
+}
+
+// Null: it is not followed.
+const SimulatedClock* Link::clock() const {
+  const SimulatedClock* made = made_clock_;
+  const bool is_followed = made != nullptr && (options_.use_sim_time || made->has_begun());
+  return is_followed ? made : nullptr;
+}
+
+// On the executor's thread.
+void Link::follow_clock(const std::string& node) {
+  if (clock_) return;
+  auto clock = SimulatedClock::open(node_->entry());
+  if (!clock) return inbox_.put(LinkTrouble{clock.error()});
+  simulated_node_ = node;
+  simulated_since_ = live_now();
+  clock_ = std::move(*clock);
+  made_clock_ = clock_.get();
+}
+
+void Link::look_at_clocks() {
+  timespec steady{};
+  clock_gettime(CLOCK_BOOTTIME, &steady);
+  const Duration running =
+      std::chrono::seconds(steady.tv_sec) + std::chrono::nanoseconds(steady.tv_nsec);
+  if (const auto step = system_clock_.look(running, Duration(wall_now()))) {
+    const bool is_back = *step < Duration::zero();
+    inbox_.put(LinkTrouble{
+        "the system clock of this computer was set " + std::string(is_back ? "back" : "ahead") +
+        " by " + in_words(std::chrono::abs(*step)) +
+        (is_back ? ": timers of rclpy, and all that wait until a time of day, stand "
+                   "still until it has caught up; a restart of their nodes helps"
+                 : ": timers that wait until a time of day fire at once")});
+  }
+  if (simulated_node_.empty() || told_of_clock_) return;
+  constexpr Duration kClockComes = std::chrono::seconds(10);
+  if (clock() != nullptr) {
+    told_of_clock_ = true;
+    inbox_.put(
+        LinkTrouble{simulated_node_ +
+                    " uses simulated time (use_sim_time): culprit follows /clock, and judges "
+                    "nothing while that stands still or jumps"});
+  } else if (!told_of_no_clock_ && live_now() > later(simulated_since_, kClockComes)) {
+    told_of_no_clock_ = true;
+    inbox_.put(
+        LinkTrouble{simulated_node_ +
+                    " uses simulated time (use_sim_time), and no node publishes /clock: its "
+                    "timers stand still; start the simulation, or set use_sim_time to false"});
+  }
 }
 
 bool Link::is_paused() const {
   const Time now = live_now();
-  return clock_ && sure_to_hear(now) > now && clock_->doubtful(now) <= now;
+  const SimulatedClock* followed = clock();
+  return followed != nullptr && sure_to_hear(now) > now && followed->doubtful(now) <= now;
 }
 
 std::string Link::doubt() const {
-  if (is_paused()) return clock_->doubt(live_now());
+  if (is_paused()) return clock()->doubt(live_now());
   const Time now = live_now();
   return lease_ && lease_->sure_until(now) <= now
              ? "culprit was away so long that another one may manage this robot by now; it listens"
@@ -490,6 +547,8 @@ void Link::ask_leaving(const std::string& node, std::uint64_t doubt) {
   const auto component = binding_.bind(node);
   const auto found = leaving_.find(node);
   if (!component || found == leaving_.end() || found->second.doubt != doubt) return;
+  // Only the node that the component is named after is asked.
+  if (is_other_node(*component, node)) return believe_leaving(node, std::nullopt, doubt);
   make_link(*component, node)->ask([this, node, doubt](std::optional<GuidPrefix> answered) {
     tasks_.post([this, node, doubt, answered] { believe_leaving(node, answered, doubt); });
   });
@@ -537,8 +596,17 @@ void Link::on_system(const std::string& manager, const GraphEndpoint& service) {
 void Link::on_endpoint(const std::string& node, const GraphEndpoint& endpoint) {
   if (endpoint.kind == EndpointKind::kServer) {
     const auto component = binding_.bind(node);
-    if (component && !is_other_node(*component, node))
-      make_link(*component, node)->service_seen(endpoint);
+    const bool is_main = component && !is_other_node(*component, node);
+    if (is_main) make_link(*component, node)->service_seen(endpoint);
+    // A secured domain need not allow that question.
+    const bool is_to_be_asked = is_main && !options_.use_sim_time &&
+                                !options_.participant.security &&
+                                endpoint.name == node + "/get_parameters";
+    if (is_to_be_asked) {
+      make_link(*component, node)->ask_time_source([this, node] {
+        tasks_.post([this, node] { follow_clock(node); });
+      });
+    }
     if (endpoint.type == srv::ChangeMode::kType) on_system(node, endpoint);
   }
   if (endpoint.kind == EndpointKind::kPublisher) {

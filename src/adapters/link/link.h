@@ -8,6 +8,7 @@
 // rules read, and it uses no shared memory.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <map>
 #include <memory>
@@ -20,6 +21,7 @@
 
 #include "base/mutex.h"
 #include "language/rule_set.h"
+#include "link/clock_step.h"
 #include "link/component_link.h"
 #include "link/diagnostics_watch.h"
 #include "link/lease_link.h"
@@ -59,7 +61,9 @@ class Link {
     // Announced to other culprits, of which one manages the robot (manager_lease.h). Nothing: this
     // one never will.
     std::optional<LeaseLink::Options> lease{};
-    bool use_sim_time = false;  // the robot is simulated: its time is /clock (simulated_clock.h)
+    // The robot is simulated: its time is /clock (simulated_clock.h), also before anybody publishes that.
+    // Without it /clock is followed once it runs, if a component's node has use_sim_time.
+    bool use_sim_time = false;
   };
 
   // `rules` and `inbox` must outlive the link. Errors: the domain cannot be joined.
@@ -142,6 +146,9 @@ class Link {
   void tell_of_foreign_sources();
   void on_namesakes(const NodeNamesakes& seen);
   void remind();
+  void follow_clock(const std::string& node);
+  void look_at_clocks();
+  const SimulatedClock* clock() const;
   void on_discovery(const DiscoveryEvent& event);
   void listen_to_hosts();
   void look_at_hosts();
@@ -162,7 +169,14 @@ class Link {
   std::optional<Publisher<msg::DiagnosticArray>> diagnostics_;
   std::map<std::string, std::unique_ptr<TopicWatch>> watches_;  // by topic
   std::unique_ptr<TypeFinder> types_;
-  std::unique_ptr<SimulatedClock> clock_;  // if the robot is simulated
+  // If the robot is simulated, or a node says that it is. Made on the executor's thread, once.
+  std::unique_ptr<SimulatedClock> clock_;
+  std::atomic<const SimulatedClock*> made_clock_ = nullptr;  // for the other threads
+  std::string simulated_node_;                               // the first that has use_sim_time
+  Time simulated_since_ = kLongAgo;                          // when that was known
+  bool told_of_clock_ = false;
+  bool told_of_no_clock_ = false;
+  ClockStep system_clock_;
   std::unique_ptr<DiagnosticsWatch> diagnostics_watch_;
   std::unique_ptr<Subscription> parameter_events_;
   struct ToProbe {

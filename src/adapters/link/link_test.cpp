@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <arpa/inet.h>
+#include <array>
 #include <atomic>
 #include <filesystem>
 #include <fstream>
@@ -17,8 +18,10 @@
 #include "ros2/lifecycle.h"
 #include "ros2/lifecycle_node.h"
 #include "ros2/live_test.h"
+#include "ros2/publisher.h"
 #include "ros2/services.h"
 #include "ros2/test_forger.h"
+#include "ros2/timer.h"
 #include "rtps/test_datagram.h"
 
 namespace culprit::ros2 {
@@ -804,6 +807,53 @@ TEST(Link, LosesSightOfANodeThatLeaves) {
     ASSERT_TRUE(linked.sees("/robot"));
   }
   EXPECT_TRUE(linked.wait<NodeVanished>([](const NodeVanished& n) { return n.node == "/robot"; }));
+}
+
+// ---- simulated time, without an option
+
+TEST(Link, FollowsTheClockOfNodesThatUseSimulatedTimeAndSaysSo) {
+  const TestDomain domain;
+  Robot robot(domain);
+  robot.context.run([&] {
+    const msg::Parameter use{"use_sim_time", to_parameter_value(Value(true))};
+    EXPECT_TRUE(robot.managed->node().parameters().set(std::array{use}).successful);
+  });
+  auto clock = RawPublisher::create(robot.managed->node().entry(), SimulatedClock::kTopic,
+                                    "rosgraph_msgs/msg/Clock", {});
+  ASSERT_TRUE(clock);
+  std::atomic<bool> runs = true;
+  std::int32_t shown = 0;
+  std::unique_ptr<Timer> ticks;
+  robot.context.run([&] {
+    ticks = std::make_unique<Timer>(robot.context->executor(), 20ms, [&] {
+      if (runs) (*clock)->publish(encode(msg::Time{1, static_cast<std::uint32_t>(++shown)}));
+    });
+  });
+  Linked linked(domain);
+  EXPECT_TRUE(linked.wait<LinkTrouble>([](const LinkTrouble& told) {
+    return told.text.find("/robot uses simulated time (use_sim_time): culprit follows /clock") == 0;
+  }));
+  runs = false;
+  for (const Time end = live_now() + kPatience; !linked.link->is_paused();) {
+    ASSERT_LT(live_now(), end);
+    std::this_thread::sleep_for(10ms);
+  }
+  EXPECT_EQ(linked.link->doubt(), "the simulated time stands still");
+  robot.context.run([&] { ticks.reset(); });
+}
+
+TEST(Link, SaysThatNodesWaitForAClockThatNobodyPublishes) {
+  const TestDomain domain;
+  Robot robot(domain);
+  robot.context.run([&] {
+    const msg::Parameter use{"use_sim_time", to_parameter_value(Value(true))};
+    EXPECT_TRUE(robot.managed->node().parameters().set(std::array{use}).successful);
+  });
+  Linked linked(domain);
+  EXPECT_TRUE(linked.wait<LinkTrouble>([](const LinkTrouble& told) {
+    return told.text.find("no node publishes /clock") != std::string::npos;
+  }));
+  EXPECT_FALSE(linked.link->is_paused()) << "what does not exist is not followed";
 }
 
 }  // namespace

@@ -39,6 +39,11 @@ void SimulatedClock::tick(Duration shown, Time now) {
 
 bool SimulatedClock::has_just_jumped(Time now) const { return now < later(jumped_, kAfterJump); }
 
+bool SimulatedClock::has_begun() const {
+  const MutexLock lock(mutex_);
+  return shown_.has_value();
+}
+
 Time SimulatedClock::doubtful(Time now) const {
   const MutexLock lock(mutex_);
   if (has_just_jumped(now)) return kLongAgo;

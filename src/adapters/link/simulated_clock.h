@@ -34,6 +34,8 @@ class SimulatedClock {
 
   // Until when it is sure that it runs; in the past: it stands still. From any thread, as the next.
   Time doubtful(Time now) const;
+  // Whether anybody has published it.
+  bool has_begun() const;
   // What is not sure, if that time has come.
   std::string doubt(Time now) const;
 

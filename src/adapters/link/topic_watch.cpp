@@ -27,7 +27,8 @@ TopicWatch::TopicWatch(NodeEntry& self, TopicId topic, const RuleSet& rules, Inb
     const bool is_counted =
         std::any_of(rules.inputs.begin(), rules.inputs.end(), [&](const Input& input) {
           using enum Input::Kind;
-          return (input.kind == kRate || input.kind == kAge || input.kind == kPhi) &&
+          return (input.kind == kRate || input.kind == kAge || input.kind == kPhi ||
+                  input.kind == kLoss) &&
                  input.topic == TopicId(t);
         });
     if (each.name != rules[topic].name || !is_counted) continue;

@@ -24,22 +24,13 @@ extern char** environ;
 namespace culprit::owners {
 namespace {
 
-// In `added`, or else in our own environment.
-std::string value_of(const std::string& variable, const std::vector<std::string>& added) {
-  for (const std::string& each : added) {
-    if (each.starts_with(variable + "=")) return each.substr(variable.size() + 1);
-  }
-  const char* own = std::getenv(variable.c_str());
-  return own == nullptr ? "" : own;
-}
-
 // Where the program may be, in the order of looking.
 std::vector<std::string> places_of(const Program& program) {
   const std::string& name = program.arguments.front();
   if (name.find('/') != std::string::npos) return {name};
   std::vector<std::string> places;
   for (const auto& folder : program.search_first) places.push_back((folder / name).native());
-  std::istringstream list(value_of("PATH", program.environment));
+  std::istringstream list(value_in_environment("PATH", program.environment));
   for (std::string folder; std::getline(list, folder, ':');)
     places.push_back((folder.empty() ? "." : folder) + "/" + name);
   return places;
@@ -56,7 +47,8 @@ struct Preparation {
   const char* folder;  // to run in; null: as it is
   char* const* arguments;
   char* const* environment;
-  char* pid_digits;  // where the pid's are to be written; null: nowhere
+  char* const* const* needs;  // of each need its places
+  char* pid_digits;           // where the pid's are to be written; null: nowhere
   int kept;
   Until until;
   pid_t ends_with;  // whose end ends it; 0: nobody's
@@ -103,6 +95,21 @@ bool redirect(const char* log) {
          dup2(output, STDOUT_FILENO) >= 0 && dup2(output, STDERR_FILENO) >= 0;
 }
 
+const char* first_readable(char* const* places) {
+  for (; *places != nullptr; ++places) {
+    if (access(*places, R_OK) == 0) return *places;
+  }
+  return nullptr;
+}
+
+// A time of the file that lies ahead says nothing: the clock was set back.
+bool is_being_written(const char* path) {
+  struct stat status {};
+  if (stat(path, &status) != 0) return true;
+  const std::int64_t age = time(nullptr) - std::int64_t{status.st_mtime};
+  return age >= 0 && age <= Launch::kSettles;
+}
+
 const char* first_executable(char* const* places) {
   for (; *places != nullptr; ++places) {
     struct stat status {};
@@ -133,11 +140,27 @@ bool has_interpreter(const char* path) {
 constexpr int kReport = STDERR_FILENO + 1;
 constexpr int kKept = kReport + 1;
 
-enum class Step : std::int32_t { kPrepare, kFind, kOpenLog, kEnterFolder, kRun };
+enum class Step : std::int32_t { kPrepare, kFind, kOpenLog, kEnterFolder, kNeed, kRun };
 struct Failure {
   Step step;
-  std::int32_t why;  // errno
+  std::int32_t why;        // errno
+  std::int32_t which = 0;  // of kNeed
 };
+
+bool is_of_missing(const Failure& failure) {
+  const bool is_absent = failure.why == ENOENT || failure.why == ENOTDIR;
+  switch (failure.step) {
+    case Step::kFind:
+    case Step::kNeed:
+      return true;
+    case Step::kEnterFolder:
+      return is_absent;
+    case Step::kRun:
+      return is_absent || failure.why == ETXTBSY;
+    default:
+      return false;
+  }
+}
 
 // In the child. Comes back only if it fails, or if it is not to be run.
 Failure become(const Preparation& ready, int report) {
@@ -161,7 +184,14 @@ Failure become(const Preparation& ready, int report) {
   if (ready.folder != nullptr && chdir(ready.folder) != 0) return {Step::kEnterFolder, errno};
   const char* path = first_executable(ready.places);
   if (path == nullptr) return {Step::kFind, ENOENT};
-  if (ready.until == Until::kItCouldRun) return {Step::kRun, has_interpreter(path) ? 0 : errno};
+  bool is_written = ready.until == Until::kItIsReady && is_being_written(path);
+  for (std::int32_t need = 0; ready.needs[need] != nullptr; ++need) {
+    const char* file = first_readable(ready.needs[need]);
+    if (file == nullptr) return {Step::kNeed, ENOENT, need};
+    is_written |= ready.until == Until::kItIsReady && is_being_written(file);
+  }
+  if (is_written) return {Step::kRun, ETXTBSY};
+  if (ready.until != Until::kItRuns) return {Step::kRun, has_interpreter(path) ? 0 : errno};
   if (ready.pid_digits != nullptr) write_pid(ready.pid_digits);
   reset_signals();
   execve(path, ready.arguments, ready.environment);
@@ -169,7 +199,9 @@ Failure become(const Preparation& ready, int report) {
 }
 
 std::string description(const Failure& failure, const std::string& name,
-                        const std::filesystem::path& log, const std::filesystem::path& folder) {
+                        const std::filesystem::path& log, const std::filesystem::path& folder,
+                        const std::vector<std::string>& needs) {
+  if (failure.step == Step::kNeed) return needs[static_cast<std::size_t>(failure.which)];
   if (failure.step == Step::kFind)
     return "there is no program '" + name + "'" +
            (name.find('/') == std::string::npos ? " in PATH" : ", or it is not executable");
@@ -183,6 +215,15 @@ std::string description(const Failure& failure, const std::string& name,
 }
 
 }  // namespace
+
+std::string value_in_environment(const std::string& variable,
+                                 const std::vector<std::string>& added) {
+  for (const std::string& each : added) {
+    if (each.starts_with(variable + "=")) return each.substr(variable.size() + 1);
+  }
+  const char* own = std::getenv(variable.c_str());
+  return own == nullptr ? "" : own;
+}
 
 void keep_files_private() { umask_of_programs = umask(S_IRWXG | S_IRWXO); }
 
@@ -224,12 +265,20 @@ Expected<Launch> Launch::begin(const Program& program, Until until) {
   const std::vector<char*> argument_pointers = pointers_to(arguments);
   const std::vector<char*> place_pointers = pointers_to(places);
   const std::vector<char*> environment = pointers_to(variables);
+  std::vector<std::vector<std::string>> need_places;
+  std::vector<std::vector<char*>> need_pointers;
+  std::vector<char* const*> needs;
+  for (const StartNeed& need : program.needs) need_places.push_back(need.places);
+  for (std::vector<std::string>& each : need_places) need_pointers.push_back(pointers_to(each));
+  for (const std::vector<char*>& each : need_pointers) needs.push_back(each.data());
+  needs.push_back(nullptr);
   const Preparation ready{
       place_pointers.data(),
       program.log.c_str(),
       program.folder.empty() ? nullptr : program.folder.c_str(),
       argument_pointers.data(),
       environment.data(),
+      needs.data(),
       program.pid_variable.empty() ? nullptr : &variables.back()[program.pid_variable.size() + 1],
       program.kept_until_it_runs,
       until,
@@ -238,7 +287,7 @@ Expected<Launch> Launch::begin(const Program& program, Until until) {
 
   const std::string& name = program.arguments.front();
   const auto failed = [&](int why) {
-    return Error{description({Step::kPrepare, why}, name, program.log, program.folder)};
+    return Error{description({Step::kPrepare, why}, name, program.log, program.folder, {})};
   };
   std::array<int, 2> report{};
   if (pipe2(report.data(), O_CLOEXEC) != 0) return failed(errno);
@@ -268,7 +317,9 @@ Launch::Launch(Launch&& other) noexcept
       until_(other.until_),
       name_(std::move(other.name_)),
       log_(std::move(other.log_)),
-      folder_(std::move(other.folder_)) {}
+      folder_(std::move(other.folder_)),
+      needs_(std::move(other.needs_)),
+      is_missing_something_(other.is_missing_something_) {}
 
 Launch& Launch::operator=(Launch&& other) noexcept {
   std::swap(pid_, other.pid_);
@@ -277,6 +328,8 @@ Launch& Launch::operator=(Launch&& other) noexcept {
   std::swap(name_, other.name_);
   std::swap(log_, other.log_);
   std::swap(folder_, other.folder_);
+  std::swap(needs_, other.needs_);
+  std::swap(is_missing_something_, other.is_missing_something_);
   return *this;
 }
 
@@ -302,8 +355,9 @@ Expected<void> Launch::outcome() {
   while (size < 0 && errno == EINTR);
   report_ = FileDescriptor();
   const bool has_failed = size == sizeof failure;
-  if (has_failed || until_ == Until::kItCouldRun) waitpid(pid, nullptr, 0);
-  if (has_failed) return Error{description(failure, name_, log_, folder_)};
+  if (has_failed || until_ != Until::kItRuns) waitpid(pid, nullptr, 0);
+  is_missing_something_ = has_failed && is_of_missing(failure);
+  if (has_failed) return Error{description(failure, name_, log_, folder_, needs_)};
   return {};
 }
 

@@ -17,6 +17,12 @@ enum class Lifetime : std::uint8_t {
   kStarter  // it is killed with the thread that started it: for worlds that are gone with theirs
 };
 
+// A file that a program reads when it starts, beside itself.
+struct StartNeed {
+  std::vector<std::string> places;  // it has to be in one of them
+  std::string missing;              // for people, if it is in none: "there is no file /a.yaml"
+};
+
 struct Program {
   std::vector<std::string> arguments;  // the first is the program, with or without a path
   std::vector<std::filesystem::path> search_first;  // where to look for it before PATH
@@ -30,17 +36,21 @@ struct Program {
   int kept_until_it_runs = -1;
   Lifetime lifetime = Lifetime::kOwn;
   std::filesystem::path folder{};  // where it runs; empty: where we do
+  std::vector<StartNeed> needs{};  // without these it is not started
 };
 
 enum class Until : std::uint8_t {
   kItRuns,
-  kItCouldRun  // all is done but the last step: the program is not run
+  kItCouldRun,  // all is done but the last step: the program is not run
+  kItIsReady    // likewise, and its files were not written for kSettles: no build is at them
 };
 
 // A start under way: the process is there, whether the program runs will be known. It may take as
 // long as the file system that the program is on.
 class Launch {
  public:
+  static constexpr std::int64_t kSettles = 1;  // seconds
+
   // The new process leads a session and a process group of its own (a Ctrl-C at culprit's terminal
   // is not for it), reads nothing, inherits the environment, no open file
   // and no capability that whoever started this program gave it, has default signal handling, and is not spared
@@ -62,6 +72,10 @@ class Launch {
   // entered. @pre not called yet
   Expected<void> outcome();
 
+  // After outcome(): did it fail because a file that it needs, the program or its folder is not there,
+  // or is being written? Then a later start may succeed without any other change.
+  bool is_missing_something() const { return is_missing_something_; }
+
  private:
   Launch(int pid, FileDescriptor report, Until until, const Program& program)
       : pid_(pid),
@@ -69,7 +83,9 @@ class Launch {
         until_(until),
         name_(program.arguments.front()),
         log_(program.log),
-        folder_(program.folder) {}
+        folder_(program.folder) {
+    for (const StartNeed& need : program.needs) needs_.push_back(need.missing);
+  }
 
   int pid_;  // 0: it is over, or moved from
   FileDescriptor report_;
@@ -77,6 +93,8 @@ class Launch {
   std::string name_;
   std::filesystem::path log_;
   std::filesystem::path folder_;
+  std::vector<std::string> needs_;
+  bool is_missing_something_ = false;
 };
 
 // From now on only this user can read the files that this process makes (umask), so that no other user can lock them
@@ -85,6 +103,10 @@ void keep_files_private();
 
 // As execve(2) takes them, with a null behind. They point into `texts`.
 std::vector<char*> pointers_to(std::vector<std::string>& texts);
+
+// The value that a program gets of `variable`: from `added`, or else from our own environment. Empty: none.
+std::string value_in_environment(const std::string& variable,
+                                 const std::vector<std::string>& added);
 
 // What we have in our environment, without what `added` has a value for, and `added`.
 std::vector<std::string> environment_with(const std::vector<std::string>& added);

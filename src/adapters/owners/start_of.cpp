@@ -18,12 +18,18 @@ std::vector<std::string> texts_of(const fs::path& file) {
 }  // namespace
 
 std::optional<Started> start_of(int pid) {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/" + std::to_string(pid) + "/exe", error);
+  if (error || program.native().ends_with(" (deleted)")) return std::nullopt;
+  return started_as(pid);
+}
+
+std::optional<Started> started_as(int pid) {
   const fs::path process = "/proc/" + std::to_string(pid);
   Started started{texts_of(process / "cmdline"), texts_of(process / "environ"), {}};
   std::error_code error;
   const fs::path program = fs::read_symlink(process / "exe", error);
-  const bool is_gone = error || program.native().ends_with(" (deleted)");
-  if (is_gone || started.command.empty()) return std::nullopt;
+  if (error || started.command.empty()) return std::nullopt;
   started.folder = fs::read_symlink(process / "cwd", error);
   // What it is called by may matter to it; but a name alone depends on PATH, and a path on a folder.
   if (!started.command.front().starts_with('/')) started.command.front() = program;

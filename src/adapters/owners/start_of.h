@@ -13,7 +13,9 @@ struct Started {
   std::string folder;                    // that it is in now
 };
 
-// Nothing: there is no such process, or it may not be looked into.
+// Nothing: there is no such process, or it may not be looked into, or its program was removed or replaced.
 std::optional<Started> start_of(int pid);
+// Likewise, also if its program was removed or replaced.
+std::optional<Started> started_as(int pid);
 
 }  // namespace culprit::owners

@@ -15,6 +15,7 @@
 #include "owners/bounded_log.h"
 #include "owners/launch_note.h"
 #include "owners/mark.h"
+#include "owners/start_needs.h"
 
 namespace culprit::owners {
 namespace {
@@ -85,6 +86,8 @@ Program Supervisor::program_of(ComponentId component, int launcher) const {
   program.lifetime = options_.lifetime;
   program.folder = what.folder;
   if (const auto environment = environment_of(component)) program.environment = *environment;
+  program.needs = start_needs(program.arguments,
+                              value_in_environment("AMENT_PREFIX_PATH", program.environment));
   if (!options_.robot.empty()) {
     for (std::string& each : mark_of(marked_as(component)))
       program.environment.push_back(std::move(each));
@@ -180,6 +183,7 @@ void Supervisor::finish_starts() {
   for (Member& member : members_) {
     if (!member.launch || !is_readable(member.launch->descriptor())) continue;
     const auto runs = member.launch->outcome();
+    if (!runs) note_missing(*member.launch, member.component, runs.error());
     member.launch.reset();
     member.lock = FileDescriptor();
     member.awaited = live_now();
@@ -194,6 +198,35 @@ void Supervisor::finish_starts() {
     inbox_.put(Reply{member.command, Outcome::kDone, Value(std::int64_t{pid}), ""});
   }
   std::erase_if(members_, [](const Member& m) { return m.state == ProcessState::kGone; });
+}
+
+// ---- starts that cannot happen now
+
+void Supervisor::note_missing(const Launch& launch, ComponentId component,
+                              const std::string& what) {
+  if (!launch.is_missing_something()) return;
+  inbox_.put(StartBarred{component, what});
+  if (std::ranges::find(barred_, component, &Barred::component) == barred_.end())
+    barred_.push_back({component, {}, later(live_now(), kMissingPeriod)});
+}
+
+// Nobody waits for the file system: another process looks.
+void Supervisor::look_for_missing(Time now) {
+  std::erase_if(barred_, [&](Barred& each) CULPRIT_REQUIRES(mutex_) {
+    if (each.trial && is_readable(each.trial->descriptor())) {
+      const auto is_ready = each.trial->outcome();
+      const bool is_there = is_ready || !each.trial->is_missing_something();
+      each.trial.reset();
+      each.next = later(now, kMissingPeriod);
+      if (is_there) inbox_.put(StartBarred{each.component, ""});
+      return is_there;
+    }
+    if (each.trial || now < each.next) return false;
+    each.next = later(now, kMissingPeriod);
+    if (auto launch = Launch::begin(program_of(each.component), Until::kItIsReady))
+      each.trial = std::move(*launch);
+    return false;
+  });
 }
 
 // ---- taking over what runs
@@ -417,6 +450,7 @@ void Supervisor::finish_trials(Time now) {
                 : Expected<void>(Error{"its start was tried and hung for " +
                                        culprit::to_string(kTrial) +
                                        "; does the file system of its program answer?"});
+    if (is_over && !could_run) note_missing(trial.launch, trial.component, could_run.error());
     for (const CommandId command : trial.commands) {
       if (could_run) {
         begin_shutdown(command, trial.component, trial.hangs, trial.meant);
@@ -619,6 +653,9 @@ Time Supervisor::next_deadline() const {
   Time next = kNever;
   for (const Shutdown& shutdown : shutdowns_) next = std::min(next, shutdown.escalate);
   for (const Trial& trial : trials_) next = std::min(next, trial.until);
+  for (const Barred& each : barred_) {
+    if (!each.trial) next = std::min(next, each.next);
+  }
   for (const Member& member : members_) {
     if (member.stands_since) next = std::min(next, later(*member.stands_since, kStopSettles));
   }
@@ -642,6 +679,9 @@ void Supervisor::run() {
       if (member.launch) watched.push_back({member.launch->descriptor(), POLLIN, 0});
     }
     for (const Trial& trial : trials_) watched.push_back({trial.launch.descriptor(), POLLIN, 0});
+    for (const Barred& each : barred_) {
+      if (each.trial) watched.push_back({each.trial->descriptor(), POLLIN, 0});
+    }
     for (const auto& [component, launcher] : launchers_) {
       if (launcher.held) watched.push_back({launcher.held.get(), POLLIN, 0});
     }
@@ -689,6 +729,7 @@ void Supervisor::look(Time now) {
   }
   std::erase_if(members_, [](const Member& m) { return m.state == ProcessState::kGone; });
   finish_trials(now);
+  look_for_missing(now);
   finish_shutdowns(now);
   tell_ended_launchers();
   something_ended_.notify_all();

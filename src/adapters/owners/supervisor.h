@@ -29,6 +29,9 @@
 //
 // An order to stop is meant for the processes that run when it comes. Their successors are not ended by it.
 //
+// A start that fails because a file is not there, its program or its parameters, is reported with the path
+// (StartBarred), and tried all but its last step every kMissingPeriod until it would succeed.
+//
 // Whatever it started goes on running when the supervisor ends, unless stop_all() was called or its
 // lifetime is the starter's.
 #pragma once
@@ -74,6 +77,8 @@ class Supervisor {
   static constexpr Duration kLogPeriod = std::chrono::seconds(1);
   // What stands for less may be part of a stop that is on its way through a launch.
   static constexpr Duration kStopSettles = std::chrono::milliseconds(50);
+  // How often it is looked whether what a start needs is there by now.
+  static constexpr Duration kMissingPeriod = std::chrono::milliseconds(500);
   // How long the trial of a start may take.
   static constexpr Duration kTrial = std::chrono::seconds(5);
 
@@ -162,6 +167,12 @@ class Supervisor {
     Hangs hangs;
     std::set<std::uint64_t> meant;
   };
+  // A start that needs what is not there, and the trial that looks for it.
+  struct Barred {
+    ComponentId component;
+    std::optional<Launch> trial{};
+    Time next = kLongAgo;  // look, while no trial is under way
+  };
   // A shutdown under way.
   struct Shutdown {
     CommandId command;  // number 0: nobody waits for a reply
@@ -206,6 +217,9 @@ class Supervisor {
       CULPRIT_REQUIRES(mutex_);
   void finish_starts() CULPRIT_REQUIRES(mutex_);
   void finish_trials(Time now) CULPRIT_REQUIRES(mutex_);
+  void note_missing(const Launch& launch, ComponentId component, const std::string& what)
+      CULPRIT_REQUIRES(mutex_);
+  void look_for_missing(Time now) CULPRIT_REQUIRES(mutex_);
   void finish_shutdowns(Time now) CULPRIT_REQUIRES(mutex_);
   void tell_what_stays(const Member& member) const;
   static bool goes_on(const Launcher& launcher);
@@ -240,6 +254,7 @@ class Supervisor {
   ConditionVariable something_ended_;
   std::vector<Member> members_ CULPRIT_GUARDED_BY(mutex_);
   std::vector<Trial> trials_ CULPRIT_GUARDED_BY(mutex_);
+  std::vector<Barred> barred_ CULPRIT_GUARDED_BY(mutex_);
   std::vector<Shutdown> shutdowns_ CULPRIT_GUARDED_BY(mutex_);
   std::map<ComponentId, Identity> identities_
       CULPRIT_GUARDED_BY(mutex_);  // of what others started, when it was found first

@@ -94,6 +94,12 @@ class Supervised {
   StartedHere started() {
     return wait<StartedHere>([](const StartedHere&) { return true; });
   }
+  std::string missing() {
+    return wait<StartBarred>([](const StartBarred& s) { return !s.missing.empty(); }).missing;
+  }
+  void nothing_missing() {
+    wait<StartBarred>([](const StartBarred& s) { return s.missing.empty(); });
+  }
   int worked() {
     return wait<ProcessWorked>([](const ProcessWorked&) { return true; }).pid;
   }
@@ -178,6 +184,65 @@ class Respawning {
   int pid_;
   bool is_ended_ = false;
 };
+
+// ---- starts that cannot happen now
+
+// A program that runs for a while, and can be taken away and brought back as a build does it.
+struct Barred : testing::Test {
+  void build() {
+    const std::filesystem::path made = folder / "made";
+    std::ofstream(made) << "#!/bin/sh\nexec sleep 1000\n";
+    std::filesystem::permissions(made, std::filesystem::perms::owner_all);
+    std::filesystem::rename(made, folder / "driver");
+  }
+  std::string program() const { return (folder / "driver").native(); }
+  test::TestFolder folder;
+};
+
+TEST_F(Barred, AStartWithoutItsProgramSaysWhichOneIsMissingAndWhenItIsBack) {
+  Supervised c(program());
+  c.supervisor->start({1}, ComponentId(0));
+  EXPECT_EQ(c.missing(), "there is no program '" + program() + "', or it is not executable");
+  EXPECT_EQ(c.reply_to({1}).outcome, Outcome::kUnreachable);
+  build();
+  c.nothing_missing();
+  EXPECT_NE(c.start(), 0);
+}
+
+TEST_F(Barred, AStartWithoutItsParametersSaysWhichFileIsMissing) {
+  build();
+  const std::string file = (folder / "launch_params_x").native();
+  Supervised c(program() + " --ros-args --params-file " + file);
+  c.supervisor->start({1}, ComponentId(0));
+  EXPECT_EQ(c.missing(), "there is no parameter file '" + file + "'");
+  std::ofstream(file) << "/**:\n";
+  c.nothing_missing();
+  EXPECT_NE(c.start(), 0);
+}
+
+TEST_F(Barred, NothingIsEndedThatCouldNotBeStartedAgain) {
+  build();
+  Supervised c(program());
+  const int pid = c.start();
+  std::filesystem::remove(program());
+  c.supervisor->stop({3}, ComponentId(0), Ending::kToStartAgain);
+  EXPECT_EQ(c.missing(), "there is no program '" + program() + "', or it is not executable");
+  EXPECT_EQ(c.reply_to({3}).outcome, Outcome::kRefused);
+  EXPECT_EQ(kill(pid, 0), 0) << "it goes on";
+  build();
+  c.nothing_missing();
+  EXPECT_EQ(c.stop_to_start_again().outcome, Outcome::kDone);
+}
+
+TEST_F(Barred, WhatIsBeingWrittenIsWaitedFor) {
+  Supervised c(program());
+  c.supervisor->start({1}, ComponentId(0));
+  c.missing();
+  const Time since = live_now();
+  build();
+  c.nothing_missing();
+  EXPECT_GE(live_now() - since, 500ms) << "a build may still be at it";
+}
 
 TEST(Supervisor, LeavesWhatIsRespawnedToItsLauncher) {
   const Respawning launcher;

@@ -183,6 +183,7 @@ void Units::look_at_all() {
 // anybody looked.
 void Units::look_at(ComponentId component, const UnitState& state) {
   if (!state.is_loaded) return;
+  if (barred_.erase(component) > 0) inbox_.put(StartBarred{component, ""});
   note_main_process(component, state);
   const auto before = before_.find(component);
   const bool is_first = before == before_.end();
@@ -280,8 +281,11 @@ bool Units::advance(Errand& errand) {
     if (errand.was_asked && live_now() < std::min(errand.until, errand.latest)) return false;
     return answer(errand, errand.was_asked ? Outcome::kTimedOut : Outcome::kRefused, state.error());
   }
-  if (!state->is_loaded)
-    return answer(errand, Outcome::kRefused, not_loaded(name, *state, owner).message);
+  if (!state->is_loaded) {
+    const std::string why = not_loaded(name, *state, owner).message;
+    if (barred_.insert(errand.component).second) inbox_.put(StartBarred{errand.component, why});
+    return answer(errand, Outcome::kRefused, why);
+  }
   if (!errand.was_asked) note_main_process(errand.component, *state);
   const bool is_start = errand.kind == Errand::Kind::kStart;
   if (!errand.was_asked) return is_start ? begin_start(errand, *state) : begin_end(errand, *state);

@@ -168,6 +168,7 @@ class Units {
   std::map<ComponentId, std::pair<int, int>> found_with_;
   std::map<ComponentId, Found> last_found_;
   std::vector<ComingUp> coming_up_;
+  std::set<ComponentId> barred_;  // asked for, and their owner has no such unit
 
   Mutex mutex_;
   ConditionVariable something_came_;

@@ -22,6 +22,7 @@ bool may_be_of(ComponentId component, const Input& input, const Knowledge& knowl
     case Kind::kRate:
     case Kind::kAge:
     case Kind::kPhi:
+    case Kind::kLoss:
       return knowledge.graph.publishes(component, knowledge.rules[input.topic]);
     case Kind::kAlive:
     case Kind::kLifecycle:
@@ -545,6 +546,27 @@ void Analyzer::excuse(RuleId id, ComponentId unheard, Time now) {
                                                                   knowledge_.why_unheard(unheard)});
 }
 
+// The component that the attempt could not start, since something that its start needs is missing.
+std::optional<ComponentId> Analyzer::barred_behind(const Attempt& attempt) const {
+  if (attempt.obstacle.empty()) return std::nullopt;
+  for (const Adaptation& adaptation : knowledge_.rules[attempt.strategy].adaptations) {
+    const bool starts =
+        adaptation.type == AdaptationType::kRedeploy || adaptation.type == AdaptationType::kStart;
+    if (starts && !knowledge_.components[adaptation.component].start_missing.empty())
+      return adaptation.component;
+  }
+  return std::nullopt;
+}
+
+// A start that cannot happen is no attempt: the strategy is begun again once it can.
+void Analyzer::excuse_barred(RuleId id, ComponentId barred, Time now) {
+  Attempt& attempt = *write_.states.state(id).attempt;
+  attempt.stage = Attempt::Stage::kUndoing;
+  write_.events.tell(now, StrategyAbandoned{attempt.strategy,
+                                            knowledge_.rules[barred].name + " cannot be started: " +
+                                                knowledge_.components[barred].start_missing});
+}
+
 void Analyzer::forgive_unheard(Time now) {
   outcomes_.host_fell_silent();
   const auto forgive = [&](RuleId id) {
@@ -571,6 +593,8 @@ void Analyzer::fail(RuleId id, Time now) {
   Attempt& attempt = *state.attempt;
   if (const auto unheard = attempt.has_no_failure ? std::nullopt : unheard_behind(attempt))
     return excuse(id, *unheard, now);
+  if (const auto barred = attempt.has_no_failure ? std::nullopt : barred_behind(attempt))
+    return excuse_barred(id, *barred, now);
   if (!attempt.has_no_failure) {
     write_.states.set_tried(attempt.strategy, true);
     ++state.search.attempts;

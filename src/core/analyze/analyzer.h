@@ -169,6 +169,8 @@ class Analyzer {
   void succeed(RuleId id, Time now);
   void fail(RuleId id, Time now);
   std::optional<ComponentId> unheard_behind(const Attempt& attempt) const;
+  std::optional<ComponentId> barred_behind(const Attempt& attempt) const;
+  void excuse_barred(RuleId id, ComponentId barred, Time now);
   void excuse(RuleId id, ComponentId unheard, Time now);
   void resolve(RuleId id, FailureResolved how, Time now);
   void forget_tried(RuleId id, Search& search) const;

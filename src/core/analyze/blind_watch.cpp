@@ -13,7 +13,8 @@ namespace {
 using Kind = Input::Kind;
 
 bool is_of_topic(const Input& input) {
-  return input.kind == Kind::kRate || input.kind == Kind::kAge || input.kind == Kind::kPhi;
+  return input.kind == Kind::kRate || input.kind == Kind::kAge || input.kind == Kind::kPhi ||
+         input.kind == Kind::kLoss;
 }
 
 bool is_of_component(const Input& input) {
@@ -230,6 +231,7 @@ std::optional<Unseen> BlindWatch::why_without_value(InputId id, Time now) const 
   };
   switch (input.kind) {
     case Kind::kRate:
+    case Kind::kLoss:
       if (knowledge_.signals.rhythm(input.topic).last) return Unseen::kNotCovered;
       return unless_seen(sightings.has(input.topic));
     case Kind::kAge:

@@ -84,11 +84,32 @@ std::size_t open_questions(const Knowledge& knowledge) {
   return open;
 }
 
+// The publisher of messages that are lost is asked, whether it is upstream of the failure or its cause.
+void ask_publisher(const Lost& lost, RuleId failure, const Knowledge& knowledge,
+                   Questions& questions) {
+  const ComponentState& state = knowledge.components[lost.publisher];
+  // It is not asked again within kAskedAgain, so an answer counts for that long.
+  if (later(state.answered, kAskedAgain) >= knowledge.states[failure].failing_since) {
+    questions.lost = lost;
+  } else if (is_open(state.questioned, knowledge.now)) {
+    questions.awaited = lost.publisher;
+  } else if (may_be_asked_again(state.questioned, knowledge.now) &&
+             open_questions(knowledge) < kMostQuestions) {
+    questions.asks.push_back(lost.publisher);
+    questions.awaited = lost.publisher;
+  }
+}
+
 }  // namespace
 
 Questions questions_about(RuleId failure, std::span<const std::optional<TroubleSeen>> troubles,
                           const Knowledge& knowledge) {
   Questions questions;
+  const auto lost = lost_behind(failure, knowledge);
+  if (lost && !troubles[lost->publisher.index] && can_be_asked(lost->publisher, knowledge)) {
+    ask_publisher(*lost, failure, knowledge, questions);
+    if (questions.lost || questions.awaited) return questions;
+  }
   if (symptom_of(failure, knowledge) != Symptom::kOutage) return questions;
   const Time onset = onset_of(failure, knowledge).latest;
   std::vector<ComponentId> silent;

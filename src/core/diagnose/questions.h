@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "diagnose/lost.h"
 #include "diagnose/trouble.h"
 
 namespace culprit::diagnose {
@@ -27,6 +28,9 @@ inline constexpr std::size_t kMostQuestions = 16;
 struct Questions {
   std::vector<ComponentId> asks;       // to be asked now, nearest first
   std::optional<ComponentId> awaited;  // whose answer is to be waited for; of those asked, too
+  // Lost messages explain the failure, and their publisher has answered since it began: it works, and
+  // nothing is to be taken down for the failure.
+  std::optional<Lost> lost;
 };
 
 // Before something is taken down for the failure. `troubles`: by component. For a failure that is no

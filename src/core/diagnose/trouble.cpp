@@ -1,6 +1,7 @@
 #include "diagnose/trouble.h"
 
 #include "diagnose/known_down.h"
+#include "diagnose/lost.h"
 #include "diagnose/questions.h"
 
 namespace culprit::diagnose {
@@ -67,7 +68,9 @@ std::vector<std::optional<TroubleSeen>> all_troubles(const Knowledge& knowledge)
   for (std::size_t t = 0; t < knowledge.rules.topics.size(); ++t) {
     const TopicId topic(t);
     const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(topic);
-    if (!is_silent(topic, knowledge.now, knowledge) || !is_steady(rhythm)) continue;
+    if (!is_silent(topic, knowledge.now, knowledge) || !is_steady(rhythm) ||
+        may_be_lost(topic, knowledge.now, knowledge))
+      continue;
     const auto component = knowledge.graph.only_publisher(knowledge.rules[topic]);
     if (component && !all[component->index] && !knowledge.is_unheard(*component))
       all[component->index] =

@@ -84,10 +84,20 @@ Duration patience(const Goal& goal) {
       goal);
 }
 
-// Who does it, in this order: the rule file says so; somebody was seen to; a rule says where it must be,
-// which is for culprit to reach; culprit did it before. Where nothing is known, a driver gets as long as the
-// start took to show itself, and until the impact is over if that is later: two who take one node
-// through its lifecycle make one another fail.
+// How long a node that was just started may leave what it is asked without an answer: twice as long as the
+// last start took, kLeastLoading at least. A simulated robot (no `finding`) answers at once or never.
+Duration loading_of(const ComingUp& before, const Knowledge& knowledge) {
+  constexpr Duration kLeastLoading = 10s;
+  constexpr Duration kMostLoading = 60s;
+  if (knowledge.finding <= Duration::zero()) return {};
+  return std::clamp<Duration>(2 * (before.joining + before.rising), kLeastLoading, kMostLoading);
+}
+
+// Who does it, in this order: the rule file says so; somebody was seen to; culprit did it before. Where
+// nothing is known, culprit watches first. A driver gets as long as the start took to show itself, until the
+// impact is over if that is later, and twice the time that nodes take to find each other at least: two who
+// take one node through its lifecycle make one another fail. In a simulated robot, where nothing has to be
+// found, a rule that says where the node must be is reason enough to act at once.
 LifecycleGoal bringing_up(const Adaptation& adaptation, Lifecycle target,
                           const Knowledge& knowledge) {
   constexpr Duration kLongestGrace = 60s;
@@ -96,6 +106,7 @@ LifecycleGoal bringing_up(const Adaptation& adaptation, Lifecycle target,
   const Duration impact = duration_of(adaptation.impact, knowledge.rules);
   LifecycleGoal goal{target};
   goal.patience = longest_transition(before);
+  goal.loading = loading_of(before, knowledge);
   if (before.rising <= Duration::zero()) goal.patience = std::max(goal.patience, impact);
   switch (knowledge.rules[adaptation.component].lifecycle) {
     case LifecycleDriver::kManaged:
@@ -110,9 +121,12 @@ LifecycleGoal bringing_up(const Adaptation& adaptation, Lifecycle target,
   }
   if (before.driver == Driver::kOther) {
     goal.grace = std::min<Duration>(2 * before.rising + impact, kLongestGrace);
-  } else if (before.driver == Driver::kUnknown && !demanded(adaptation.component, knowledge)) {
-    goal.grace = std::min(std::max(before.joining, impact - before.joining), kLongestGrace);
+  } else if (before.driver == Driver::kUnknown &&
+             (knowledge.finding > Duration::zero() || !demanded(adaptation.component, knowledge))) {
+    goal.grace = std::min<Duration>(
+        std::max({before.joining, impact - before.joining, 2 * knowledge.finding}), kLongestGrace);
   }
+  goal.may_have_driver = knowledge.finding > Duration::zero() && before.driver != Driver::kCulprit;
   return goal;
 }
 

@@ -30,6 +30,12 @@ struct LifecycleGoal {
   Duration grace{};
   bool is_left_to_others = false;              // it is never told to
   Duration patience = longest_transition({});  // beyond the grace, for each transition
+  // Of a node that was just started: for so long it is asked again if it does not answer, or is not there
+  // to be asked. It may still be loading.
+  Duration loading{};
+  // It was not seen that culprit is who brings it up. Such a node comes up unconfigured; if it is found
+  // further on, somebody else is at it.
+  bool may_have_driver = false;
 };
 struct ModeGoal {
   std::string mode;

@@ -30,6 +30,11 @@ class IntensityBudget {
     if (spent_.size() > static_cast<std::size_t>(limit_.most)) spent_.pop_front();
   }
 
+  // What was spent last was spent for nothing.
+  void give_back() {
+    if (!spent_.empty()) spent_.pop_back();
+  }
+
   const Intensity& limit() const { return limit_; }
 
  private:

@@ -218,6 +218,20 @@ void Limits::spend(StrategyId id, Time now, Time failed) {
   }
 }
 
+// It could not start a component, since something is missing: nothing was restarted, and once that is
+// there nothing delays the start.
+void Limits::give_back(StrategyId id) {
+  for (const Adaptation& adaptation : knowledge_.rules[id].adaptations) {
+    const bool is_barred =
+        launches(adaptation) && !knowledge_.components[adaptation.component].start_missing.empty();
+    if (!is_barred) continue;
+    PerComponent& state = components_[adaptation.component.index];
+    state.begun_anew.give_back();
+    state.restarts = std::max(0, state.restarts - 1);
+    state.restarted = kLongAgo;
+  }
+}
+
 void Limits::note(const Event& event) {
   const auto is_well = [&](RuleId rule) {
     for (const ComponentId component : knowledge_.rules[rule].components)
@@ -231,6 +245,8 @@ void Limits::note(const Event& event) {
     const Adaptation& adaptation = knowledge_.rules[done->strategy].adaptations[done->adaptation];
     PerComponent& state = components_[adaptation.component.index];
     if (launches(adaptation)) state.launched = state.came = event.at;
+  } else if (const auto* abandoned = std::get_if<StrategyAbandoned>(&event.what)) {
+    give_back(abandoned->strategy);
   } else if (const auto* gone = std::get_if<ComponentLost>(&event.what)) {
     components_[gone->component.index].is_lost = true;
   } else if (const auto* back = std::get_if<ComponentFound>(&event.what)) {

@@ -82,6 +82,7 @@ class Limits {
   std::optional<Limit> quiet(ComponentId component, Time now) const;
   // `failed`: when the failure of `rule` was detected.
   void spend(StrategyId strategy, Time now, Time failed);
+  void give_back(StrategyId strategy);
   bool was_healthy(ComponentId component, RuleId rule, Time failed) const;
 
   const Knowledge& knowledge_;

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "base/duration_words.h"
 #include "base/value_list.h"
 #include "execute/evidence.h"
 
@@ -76,6 +77,17 @@ Duration grace(const Goal& goal) {
   return lifecycle != nullptr ? lifecycle->grace : Duration::zero();
 }
 
+Duration loading(const Goal& goal) {
+  const auto* lifecycle = std::get_if<LifecycleGoal>(&goal);
+  return lifecycle != nullptr ? lifecycle->loading : Duration::zero();
+}
+
+// How many questions in a row may stay without an answer before a goal is given up for that. A network
+// loses single answers; a simulated robot loses none.
+int most_unanswered(const Knowledge& knowledge) {
+  return knowledge.finding > Duration::zero() ? 2 : 1;
+}
+
 std::string why(const Reply& reply) {
   if (!reply.text.empty()) return reply.text;
   switch (reply.outcome) {
@@ -98,7 +110,8 @@ Pursuit::Pursuit(Goal goal, ComponentId component, Time now)
       component_(component),
       begun_(now),
       deadline_(later(now, patience(goal_))),
-      held_until_(later(now, grace(goal_))) {}
+      held_until_(later(now, grace(goal_))),
+      loads_until_(later(now, loading(goal_))) {}
 
 Duration Pursuit::timeout(const Request& request) const {
   if (std::holds_alternative<StopProcess>(request)) return 12s;
@@ -207,14 +220,21 @@ std::optional<Pursuit::Request> Pursuit::decide(const Knowledge& knowledge, Time
     return pursue(*present, knowledge, now);
   if (const auto* service = std::get_if<ServiceGoal>(&goal_)) return pursue(*service, now);
   // The change was not sent, for there was nobody to send it to.
-  if (answer_ && answer_->outcome == Outcome::kUnreachable) return give_up(why(*answer_));
+  if (answer_ && answer_->outcome == Outcome::kUnreachable) {
+    if (now >= std::min(loads_until_, deadline_)) return give_up(why(*answer_));
+    sent_.pop_back();
+    answer_.reset();
+    return look_again(now);
+  }
   if (did_not_come(*seen_)) {
     // Before the change: nobody there to change, unless it is still coming up. After it: the answer
     // may just be late.
-    if (now >= deadline_ || (!has_changed_anything() && now >= held_until_))
-      return give_up(why(*seen_));
+    const bool may_come =
+        now < std::max(held_until_, loads_until_) || ++unanswered_ < most_unanswered(knowledge);
+    if (now >= deadline_ || (!has_changed_anything() && !may_come)) return give_up(why(*seen_));
     return look_again(now);
   }
+  unanswered_ = 0;
   if (seen_->outcome == Outcome::kRefused) {
     // A process that does not know the parameter has nothing that would have to be undone.
     const auto* parameter = std::get_if<ParameterGoal>(&goal_);
@@ -275,10 +295,13 @@ std::optional<Pursuit::Request> Pursuit::pursue(const LifecycleGoal& goal, Time 
                    to_string(Command{{}, {}, sent_.back(), {}}));
   // What was not asked for, or was refused and is so all the same, somebody else did: two who take
   // one node through its lifecycle make one another fail. It is left to him for a while.
-  if (has_moved && (present != asked_for_ || is_refused)) {
-    driver_seen_ = true;
+  // A node that is just started and is found beyond *unconfigured* was taken there by somebody.
+  const bool is_led = goal.may_have_driver && last_ == Lifecycle::kUnknown &&
+                      present == Lifecycle::kInactive && !has_changed_anything();
+  if (is_led) held_until_ = std::max(held_until_, later(now, goal.patience / 2));
+  if (has_moved && (present != asked_for_ || is_refused))
     held_until_ = later(now, goal.patience / 2);
-  }
+  driver_seen_ |= is_led || (has_moved && (present != asked_for_ || is_refused));
   last_ = present;
   if (goal.is_left_to_others || now < held_until_) return look_again(now);
   const Transition next = present == Lifecycle::kUnconfigured ? Transition::kConfigure
@@ -398,7 +421,7 @@ std::optional<Pursuit::Request> Pursuit::look_again(Time now) {
     took_too_long_ = has_changed_anything();
     const bool was_accepted = answer_ && answer_->outcome == Outcome::kDone;
     return give_up((was_accepted ? "it accepted and did nothing: not " : "not ") + describe(goal_) +
-                   " after " + to_string(now - (sent_.empty() ? begun_ : changed_)) +
+                   " after " + in_words(now - (sent_.empty() ? begun_ : changed_)) +
                    (is_left() ? "; who is to bring it up did not (LIFECYCLE)" : ""));
   }
   wake_ = std::min(later(now, kPause), deadline_);

@@ -114,8 +114,10 @@ class Pursuit {
   Lifecycle last_ = Lifecycle::kUnknown;       // LifecycleGoal: the last primary state seen
   Lifecycle asked_for_ = Lifecycle::kUnknown;  // where the last transition leads
   bool driver_seen_ = false;
-  Time again_at_ = kNever;      // PresentGoal: the next try
-  Time held_until_ = kLongAgo;  // nothing is asked for
+  Time again_at_ = kNever;       // PresentGoal: the next try
+  Time held_until_ = kLongAgo;   // nothing is asked for
+  Time loads_until_ = kLongAgo;  // it may be too busy to answer
+  int unanswered_ = 0;           // questions in a row
 };
 
 }  // namespace culprit::execute

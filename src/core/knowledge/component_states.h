@@ -66,6 +66,9 @@ struct ComponentState {
   std::optional<BegunAnew> begun_anew{};  // the last time
   bool took_place = false;  // its process took another's place, and its lifecycle was not read yet
 
+  // Why it cannot be started now (StartBarred); empty: nothing is known to be missing.
+  std::string start_missing;
+
   std::vector<ComponentId> ends_with;  // other components whose processes end with its (EndsWith)
 
   // Does it work as a process and as a node? Nothing until something is known of it.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "base/duration_words.h"
 #include "base/name_grammar.h"
 
 namespace culprit {
@@ -186,7 +187,7 @@ class Describer {
     return "the robot can be heard again; all ages begin anew";
   }
   std::string operator()(const SleepNoticed& e) const {
-    return "culprit stood still for " + to_string(e.time) + "; all ages begin anew";
+    return "culprit stood still for " + in_words(e.time) + "; all ages begin anew";
   }
   std::string operator()(const HostSilent& e) const {
     std::vector<std::string> names;
@@ -392,6 +393,8 @@ std::string describe(const Input& input, const RuleSet& rules) {
       return call("age", rules.label(input.topic));
     case kPhi:
       return call("phi", rules.label(input.topic));
+    case kLoss:
+      return call("loss", rules.label(input.topic));
     case kAlive:
       return call("alive", rules[input.component].name);
     case kLifecycle:

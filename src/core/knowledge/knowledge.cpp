@@ -12,6 +12,7 @@ bool was_read(const Input& input, const Sightings& sightings) {
     case Input::Kind::kRate:
     case Input::Kind::kAge:
     case Input::Kind::kPhi:
+    case Input::Kind::kLoss:
     case Input::Kind::kAlive:
     case Input::Kind::kCpu:
     case Input::Kind::kMemory:
@@ -85,6 +86,7 @@ std::string value_name(const Input& input, const RuleSet& rules) {
     case Input::Kind::kRate:
     case Input::Kind::kAge:
     case Input::Kind::kPhi:
+    case Input::Kind::kLoss:
     case Input::Kind::kAlive:
     case Input::Kind::kCpu:
     case Input::Kind::kMemory:

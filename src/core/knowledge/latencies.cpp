@@ -16,6 +16,7 @@ bool reads_value(const Input& input) {
     case Kind::kRate:
     case Kind::kAge:
     case Kind::kPhi:
+    case Kind::kLoss:
     case Kind::kAlive:
     case Kind::kLifecycle:
     case Kind::kParameter:

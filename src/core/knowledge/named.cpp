@@ -27,6 +27,7 @@ class Finder {
       case Input::Kind::kRate:
       case Input::Kind::kAge:
       case Input::Kind::kPhi:
+      case Input::Kind::kLoss:
         return add(input.topic, knowledge_.sightings.has(input.topic));
       case Input::Kind::kAlive:
       case Input::Kind::kLifecycle:

@@ -78,6 +78,10 @@ class SignalStore {
     Duration interval{};
     Duration gap{};
     Duration longest{};  // the longest pause that ended by itself
+    // Of what was sent lately, the share that was lost on the way here, 0 to 1; 0, too, while too little
+    // was sent to tell.
+    double loss = 0;
+    double loss_at_most = 0;  // what the link may lose in truth; 0 where nothing was lost
   };
   const Rhythm& rhythm(TopicId id) const { return rhythms_[id.index]; }
   void set_rhythm(TopicId id, Rhythm rhythm) { rhythms_[id.index] = rhythm; }

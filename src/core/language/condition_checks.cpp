@@ -76,6 +76,8 @@ std::string known_of(InputId id, const RuleSet& rules) {
       return ": a share of a core is not negative";
     case Input::Kind::kMemory:
       return ": a size is not negative";
+    case Input::Kind::kLoss:
+      return ": loss is a share from 0 to 1";
     case Input::Kind::kLevel:
       return ": a level is 0, 1, 2 or 3";
     case Input::Kind::kLifecycle:

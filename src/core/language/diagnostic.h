@@ -78,6 +78,7 @@ enum class Code : std::uint16_t {
   kSeveralNodes = 68,
   kNoSuchHost = 69,
   kBadRequest = 70,
+  kRunsOtherwise = 71,
   // Reuse
   kCannotInclude = 80,
   kUnknownTemplate = 81,

@@ -94,7 +94,7 @@ std::vector<Explanation> name_explanations() {
        "COMPONENT camera NODE /robot/camera\n" + rule_with("rate(/robot/image) < 1"),
        Strictness::kStrict},
       {Code::kUnknownFunction, "there is no function of this name",
-       "Expressions call rate, age, phi, alive, lifecycle, parameter, level, mean, min, max, "
+       "Expressions call rate, age, phi, loss, alive, lifecycle, parameter, level, mean, min, max, "
        "stddev, changed, isnan, frozen, cpu, memory, abs, pow and sqrt. Functions of your own do "
        "not exist; CONST names "
        "values.",
@@ -436,6 +436,13 @@ std::vector<Explanation> robot_explanations() {
                     "SETUP /opt/ros/humbel/setup.bash\n",
                     "COMPONENT camera NODE /robot/camera LAUNCH \"camera_driver\" "
                     "SETUP /opt/ros/humble/setup.bash\n"),
+      against_robot(
+          Code::kRunsOtherwise, "the component runs otherwise than its LAUNCH says",
+          "The robot's node runs with other arguments or parameters than its LAUNCH says, or its "
+          "program or a parameter file was changed or removed since it was started. A "
+          "redeploy would start something else than what is well now.",
+          "COMPONENT lidar NODE /robot/camera LAUNCH \"scan_driver --fps 15\"\n",
+          "COMPONENT lidar NODE /robot/camera LAUNCH \"/opt/lidar/driver --fps 30\"\n"),
       against_robot(Code::kNoSuchField, "the messages of this topic have no such field",
                     "Their type has none of this name, or it is not known what the type looks "
                     "like: no .msg file of it was found, and the publisher's node did not tell it. "
@@ -583,10 +590,12 @@ const LiveInventory& example_robot() {
         {"robot@rovr2",
          "robot@rovr2: ssh: Could not resolve hostname rovr2: Name or service not known; is "
          "HOST its name? ssh robot@rovr2 should connect"}};
-    robot.launch_troubles = {{"camera", LiveInventory::LaunchTrouble::Clause::kSetup,
-                              "/opt/ros/humbel/setup.bash",
-                              "SETUP: cannot find /opt/ros/humbel/setup.bash: No such file or "
-                              "directory"}};
+    robot.launch_troubles = {
+        {"camera", LiveInventory::LaunchTrouble::Clause::kSetup, "/opt/ros/humbel/setup.bash",
+         "SETUP: cannot find /opt/ros/humbel/setup.bash: No such file or "
+         "directory"},
+        {"lidar", LiveInventory::LaunchTrouble::Clause::kRunning, "scan_driver",
+         "lidar runs with '--fps 30', and its LAUNCH has '--fps 15'"}};
     return robot;
   }();
   return kRobot;

@@ -72,6 +72,7 @@ bool exists(Code code) {
     case Code::kSeveralNodes:
     case Code::kNoSuchHost:
     case Code::kBadRequest:
+    case Code::kRunsOtherwise:
     case Code::kCannotInclude:
     case Code::kUnknownTemplate:
     case Code::kTemplateArguments:

@@ -197,7 +197,7 @@ class ExpressionParser {
       return fail(
           Code::kUnknownFunction, e.name.span, "there is no function '" + e.name.text + "'",
           near.empty()
-              ? "known functions: rate age phi alive lifecycle parameter level mean min max stddev "
+              ? "known functions: rate age phi loss alive lifecycle parameter level mean min max stddev "
                 "changed isnan frozen cpu memory abs pow sqrt"
               : "did you mean '" + near + "'?",
           replacement(e.name.span, near));

@@ -50,6 +50,8 @@ Interval first_interval(const Input& input, const RuleSet& rules) {
     case Input::Kind::kCpu:
     case Input::Kind::kMemory:
       return {0, kInfinity};
+    case Input::Kind::kLoss:
+      return {0, 1};
     case Input::Kind::kLevel:
       return {0, 3};
     case Input::Kind::kLifecycle:

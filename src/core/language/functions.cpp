@@ -7,7 +7,7 @@ namespace {
 
 using enum Argument;
 
-constexpr std::array<FunctionInfo, 19> kFunctions = {{
+constexpr std::array<FunctionInfo, 20> kFunctions = {{
     {Function::kRate,
      "rate",
      "rate(topic) or rate(topic, window); topic FROM component: of one publisher",
@@ -16,6 +16,7 @@ constexpr std::array<FunctionInfo, 19> kFunctions = {{
      2},
     {Function::kAge, "age", "age(topic) or age(topic FROM component)", {kTopic, kTopic}, 1, 1},
     {Function::kPhi, "phi", "phi(topic) or phi(topic FROM component)", {kTopic, kTopic}, 1, 1},
+    {Function::kLoss, "loss", "loss(topic) or loss(topic FROM component)", {kTopic, kTopic}, 1, 1},
     {Function::kAlive, "alive", "alive(component)", {kComponent, kComponent}, 1, 1},
     {Function::kLifecycle, "lifecycle", "lifecycle(component)", {kComponent, kComponent}, 1, 1},
     {Function::kParameter,

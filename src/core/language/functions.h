@@ -12,6 +12,7 @@ enum class Function : std::uint8_t {
   kRate,
   kAge,
   kPhi,
+  kLoss,
   kAlive,
   kLifecycle,
   kParameter,

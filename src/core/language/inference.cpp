@@ -116,6 +116,7 @@ class Inference {
     switch (function->function) {
       case Function::kRate:
       case Function::kPhi:
+      case Function::kLoss:
         return Type::kDouble;
       case Function::kAge:
         return Type::kDuration;

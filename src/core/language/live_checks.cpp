@@ -132,7 +132,10 @@ class LiveChecks {
           : each->clause == Clause::kParameters
               ? std::pair(written.parameters, composed.parameters)
               : std::pair(Seldom<syntax::Name>(written.launch), program);
-      if (place && text == each->text) warn(Code::kCannotLaunch, place->span, each->why, "");
+      const bool runs_otherwise = each->clause == Clause::kRunning;
+      if (place && text == each->text)
+        warn(runs_otherwise ? Code::kRunsOtherwise : Code::kCannotLaunch, place->span, each->why,
+             "");
     }
   }
 

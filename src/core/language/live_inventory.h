@@ -82,7 +82,8 @@ struct LiveInventory {
   std::vector<RequestTrouble> request_troubles{};
   // What of the rules could not be started: launch commands, and classes of containers.
   struct LaunchTrouble {
-    enum class Clause : std::uint8_t { kLaunch, kSetup, kFolder, kPlugin, kParameters };
+    // kRunning: it could be started, and would then run otherwise than it does now.
+    enum class Clause : std::uint8_t { kLaunch, kSetup, kFolder, kPlugin, kParameters, kRunning };
     std::string component;
     Clause clause = Clause::kLaunch;
     std::string text;  // of the clause: the program, the file, the folder, the class

@@ -143,6 +143,7 @@ struct Input {
     kRate,       // topic, over window: Hz
     kAge,        // topic: time since the last sample
     kPhi,        // topic: suspicion
+    kLoss,       // topic: the share of its messages that was lost on the way to culprit, 0 to 1
     kAlive,      // component
     kLifecycle,  // component: "unconfigured", "inactive", "active", "finalized"
     kParameter,  // parameter

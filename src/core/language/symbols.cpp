@@ -733,6 +733,7 @@ void renumber(Input& input, const Symbols::Uses& uses) {
     case kRate:
     case kAge:
     case kPhi:
+    case kLoss:
       input.topic = uses.now(input.topic);
       return;
     case kAlive:

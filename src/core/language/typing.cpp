@@ -306,10 +306,13 @@ class Typer {
       case Function::kRate:
         return rate(e);
       case Function::kAge:
-      case Function::kPhi: {
+      case Function::kPhi:
+      case Function::kLoss: {
         const auto topic = topic_argument(e.children[0]);
         if (!topic) return std::nullopt;
-        wanted.kind = function == Function::kAge ? Input::Kind::kAge : Input::Kind::kPhi;
+        wanted.kind = function == Function::kAge   ? Input::Kind::kAge
+                      : function == Function::kPhi ? Input::Kind::kPhi
+                                                   : Input::Kind::kLoss;
         wanted.topic = *topic;
         return input(wanted, function == Function::kAge ? Type::kDuration : Type::kDouble);
       }

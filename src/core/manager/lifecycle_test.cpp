@@ -262,5 +262,54 @@ TEST(Lifecycles, AStartIsWaitedForWhileItsProcessRuns) {
   }
 }
 
+// ---- of a live robot, where nodes have to find each other (Knowledge::finding)
+
+TestRobot live_robot_of(const std::string& rules, Duration activates_itself_after = {}) {
+  Manager::Options options;
+  options.governor.limits.quiet_downstream = 3500ms;
+  TestRobot robot(rules, std::make_unique<BayesPlanner>(), options);
+  auto& added = robot.add("camera", {}, "/rgb");
+  added.state_at_start = Lifecycle::kUnconfigured;
+  added.activates_itself_after = activates_itself_after;
+  robot.discover();
+  robot.run_for(6s);
+  return robot;
+}
+
+TEST(LiveLifecycles, ANodeThatActivatesItselfIsWatchedFirstAndNeverCrashes) {
+  for (const std::string& rules : {camera_with(""), active_camera_with("")}) {
+    TestRobot robot = live_robot_of(rules, 4s);
+    for (int kills = 1; kills <= 3; ++kills) {
+      robot.kill("camera");
+      robot.run_for(60s);
+      EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+      EXPECT_EQ(robot.count_asked("camera: start"), static_cast<std::size_t>(kills))
+          << transcript(robot);
+    }
+    EXPECT_FALSE(robot.was_asked("camera: activate")) << transcript(robot);
+  }
+}
+
+TEST(LiveLifecycles, ANodeThatNobodyDrivesIsActivatedAfterTheWatchAndAtOnceTheNextTime) {
+  TestRobot robot = live_robot_of(active_camera_with(""));
+  robot.kill("camera");
+  robot.run_for(12s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  robot.run_for(60s);
+  robot.kill("camera");
+  robot.run_for(3s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+}
+
+TEST(LiveLifecycles, ANodeThatAnswersLateWhileItLoadsIsAskedAgain) {
+  TestRobot robot = live_robot_of(camera_with("LIFECYCLE managed"));
+  robot["camera"].answers_after_start = 6s;
+  robot.kill("camera");
+  robot.run_for(20s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("camera: start"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("failed"), 0u) << transcript(robot);
+}
+
 }  // namespace
 }  // namespace culprit::test

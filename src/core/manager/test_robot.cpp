@@ -179,8 +179,13 @@ void TestRobot::run_for(Duration time) {
       if (topic.next > now) continue;
       topic.next += topic.period;
       if (!works(topic.producer)) continue;
+      if (loses && loses(topic.name)) {
+        ++topic.lost;
+        continue;
+      }
+      const std::uint32_t sent = std::exchange(topic.lost, 0u) + 1;
       for (std::size_t t = 0; t < rules_->topics.size(); ++t) {
-        if (rules_->topics[t].name == topic.name) observe(SampleArrived{TopicId(t), 1});
+        if (rules_->topics[t].name == topic.name) observe(SampleArrived{TopicId(t), sent});
       }
     }
     while (!agenda_.empty() && agenda_.begin()->first <= now) {
@@ -273,7 +278,15 @@ void TestRobot::resolve_fault(Component& c, const Command& command, bool is_done
 }
 
 void TestRobot::start(Component& c, const Command& command) {
+  if (!c.start_missing.empty()) {
+    observe(StartBarred{command.component, c.start_missing});
+    return reply(command, Outcome::kUnreachable, {}, c.start_missing);
+  }
   c.start(++last_pid_);
+  if (c.answers_after_start > Duration::zero()) {
+    c.answers = false;
+    later(c.answers_after_start, [&c] { c.answers = true; });
+  }
   reply(command, Outcome::kDone, Value(std::int64_t{c.pid}));
   observe(StartedHere{command.component, c.pid, c.launcher});
   observe(ProcessSeen{command.component, ProcessState::kRunning, c.pid, ""});

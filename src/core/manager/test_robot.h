@@ -45,8 +45,10 @@ class TestRobot {
     bool loses_replies = false;       // does it, and the answer is lost
     Duration lateness{};              // with which it is reported that no answer came
     bool dies_at_start = false;
+    std::string start_missing{};  // why it cannot be started: "there is no program 'camera'"
     bool ends_only_if_killed = false;
     Duration start_time = 300ms;
+    Duration answers_after_start{};  // until then it is busy loading
     Lifecycle state_at_start = Lifecycle::kActive;
     // A timer of its own activates it so long after its start. It ends if somebody was there first.
     Duration activates_itself_after{};
@@ -96,6 +98,8 @@ class TestRobot {
   std::size_t count_asked(const std::string& part) const;
   bool was_asked(const std::string& part) const { return count_asked(part) > 0; }
 
+  // Whether the message that is sent now on this topic is lost on the way to the manager.
+  std::function<bool(const std::string& topic)> loses;
   // Called after each step of the manager.
   std::function<void()> after_step;
   // Called after each step and before its commands are served. If it gives false they never are:
@@ -117,6 +121,7 @@ class TestRobot {
     std::string producer;
     Duration period;
     Time next{};
+    std::uint32_t lost = 0;  // since the last one that came
   };
   template <class What>
   void observe(What what) {

@@ -61,6 +61,7 @@ Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time dis
       case Kind::kRate:
       case Kind::kAge:
       case Kind::kPhi:
+      case Kind::kLoss:
         topics_[input.topic.index].inputs.push_back(id);
         topics_[input.topic.index].needs_phi |= input.kind == Kind::kPhi;
         if (input.kind == Kind::kRate) derived_[i].count = monitor::SlidingCount(input.window);
@@ -120,6 +121,7 @@ void Monitor::restart(Time now) {
   deadlines_.set(knowledge_.rules.inputs.size() + 1, graced_);
   for (Topic& topic : topics_) {
     topic.phi.restart(now);
+    topic.loss.restart(now);
     topic.regained.reset();
   }
   begin_windows_anew(now);
@@ -131,7 +133,8 @@ void Monitor::restart(Time now) {
   }
   for (std::size_t i = 0; i < knowledge_.rules.inputs.size(); ++i) {
     const Kind kind = knowledge_.rules.inputs[i].kind;
-    if (kind == Kind::kRate || kind == Kind::kAge || kind == Kind::kPhi) update(InputId(i), now);
+    if (kind == Kind::kRate || kind == Kind::kAge || kind == Kind::kPhi || kind == Kind::kLoss)
+      update(InputId(i), now);
   }
 }
 
@@ -238,6 +241,9 @@ void Monitor::update(InputId id, Time now) {
     case Kind::kPhi:
       value = phi(id, now);
       break;
+    case Kind::kLoss:
+      value = loss(id, now);
+      break;
     case Kind::kChanged:
       return update_changed(id, now);
     case Kind::kFrozen:
@@ -265,7 +271,8 @@ void Monitor::update(InputId id, Time now) {
     write_.signals.set(id, value);
   } else {
     const bool has_overflowed = derived_[id.index].is_overflow_told;
-    const bool is_covering = input.kind == Kind::kRate && topics_[input.topic.index].first;
+    const bool is_covering = (input.kind == Kind::kRate || input.kind == Kind::kLoss) &&
+                             topics_[input.topic.index].first;
     write_.signals.forget(id, has_overflowed ? WhyUnknown::kOverflow
                               : is_covering  ? WhyUnknown::kNotCovered
                                              : WhyUnknown::kNoValue);

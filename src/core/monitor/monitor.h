@@ -19,6 +19,7 @@
 #include "knowledge/history.h"
 #include "knowledge/knowledge.h"
 #include "knowledge/known_robot.h"
+#include "monitor/loss_meter.h"
 #include "monitor/phi_accrual.h"
 #include "monitor/sliding_count.h"
 #include "monitor/value_window.h"
@@ -102,6 +103,7 @@ class Monitor {
     std::optional<Time> last;
     std::optional<Time> regained;  // the first sample since `awake_`
     monitor::PhiAccrual phi;
+    monitor::LossMeter loss;
     std::vector<InputId> inputs;
     bool needs_phi = false;
     bool is_known_silent = false;  // since who publishes it was known dead, nothing came
@@ -150,6 +152,7 @@ class Monitor {
   void on(Time at, const StatusHeard& seen);
   void on(Time at, const ParametersListed& seen);
   void on(Time at, const HostReached& seen);
+  void on(Time at, const StartBarred& seen);
   void on(Time at, const LivesOn& seen);
   void on(Time at, const HostHeard& seen);
   void on(Time at, const EndsWith& seen);
@@ -188,6 +191,7 @@ class Monitor {
   Slot age(InputId id, Time now) const;
   Slot rate(InputId id, Time now);
   Slot phi(InputId id, Time now) const;
+  Slot loss(InputId id, Time now);
 
   // Whether a component that publishes the topic joined the graph since then.
   bool has_begun_since(Time before, TopicId topic) const;

@@ -340,6 +340,18 @@ void Monitor::on(Time at, const HostReached& seen) {
   update_alive(seen.component, at, "its node left the graph");
 }
 
+void Monitor::on(Time at, const StartBarred& seen) {
+  ComponentState& state = write_.components[seen.component];
+  if (state.start_missing == seen.missing) return;
+  state.start_missing = seen.missing;
+  const std::string& name = knowledge_.rules[seen.component].name;
+  write_.events.tell(
+      at, Trouble{seen.missing.empty()
+                      ? name + " can be started again: nothing that its start needs is missing"
+                      : name + " cannot be started: " + seen.missing +
+                            "; culprit starts it when that is there"});
+}
+
 // What was known of another computer does not hold of this one.
 void Monitor::on(Time, const LivesOn& seen) {
   if (knowledge_.components[seen.component].host == seen.host) return;

@@ -26,7 +26,8 @@ namespace {
 using Kind = Input::Kind;
 
 bool is_rhythm(const Input& input) {
-  return input.kind == Kind::kRate || input.kind == Kind::kAge || input.kind == Kind::kPhi;
+  return input.kind == Kind::kRate || input.kind == Kind::kAge || input.kind == Kind::kPhi ||
+         input.kind == Kind::kLoss;
 }
 
 }  // namespace

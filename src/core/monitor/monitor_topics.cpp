@@ -32,14 +32,18 @@ void Monitor::on(Time at, const SampleArrived& seen) {
       rhythm.longest = interval;
   }
   rhythm.last = topic.last = at;
+  topic.loss.add(at, seen.published);
+  rhythm.loss = topic.loss.share(at).value_or(0);
+  rhythm.loss_at_most = topic.loss.at_most(at);
   write_.signals.set_rhythm(seen.topic, rhythm);
   if (topic.needs_phi) topic.phi.add(at, seen.published);
   for (const InputId id : topic.inputs) {
     const Input& input = knowledge_.rules[id];
     if (input.kind == Kind::kRate && !derived_[id.index].count.add(at, seen.published))
       note_overflow(id, at);
-    write_.signals.set_latency(
-        id, input.kind == Kind::kRate ? input.window : usual_latency(rhythm.interval));
+    write_.signals.set_latency(id, input.kind == Kind::kRate   ? input.window
+                                   : input.kind == Kind::kLoss ? 2 * monitor::LossMeter::kSpan
+                                                               : usual_latency(rhythm.interval));
     update(id, at);
     // What was known to be silent made triggers true without any change of what they read.
     if (topic.is_known_silent) write_.signals.touch(id);
@@ -120,10 +124,16 @@ Slot Monitor::phi(InputId id, Time now) const {
   return suspicion ? Slot::of(*suspicion) : Slot();
 }
 
+Slot Monitor::loss(InputId id, Time now) {
+  const auto share = topics_[knowledge_.rules[id].topic.index].loss.share(now);
+  return share ? Slot::of(*share) : Slot();
+}
+
 // The next time after `now` at which the input crosses a threshold if no message comes.
 Time Monitor::next_crossing(InputId id, Time now) const {
   const Input& input = knowledge_.rules[id];
   const Topic& topic = topics_[input.topic.index];
+  if (input.kind == Kind::kLoss) return topic.loss.changes();
   if (!topic.last && now < silent_from(input.topic)) return silent_from(input.topic);
   if (input.readers.empty()) return kNever;
   if (!input.only_compared && input.kind != Kind::kRate) return later(now, knowledge_.rules.cycle);

@@ -29,6 +29,14 @@ bool cannot_be_reached(const Adaptation& adaptation, const Knowledge& knowledge)
           knowledge.components[adaptation.component].is_out_of_reach);
 }
 
+// What its start needs and is not there; empty: nothing is known to be missing.
+std::string missing_for(const Adaptation& adaptation, const Knowledge& knowledge) {
+  const bool starts =
+      adaptation.type == AdaptationType::kRedeploy || adaptation.type == AdaptationType::kStart;
+  const std::string& missing = knowledge.components[adaptation.component].start_missing;
+  return starts && !missing.empty() ? "cannot be started: " + missing : "";
+}
+
 // Why `adaptation` is invalid; empty if it is not.
 std::string obstacle(const Adaptation& adaptation, const Knowledge& knowledge) {
   const ComponentState& state = knowledge.components[adaptation.component];
@@ -165,6 +173,8 @@ std::optional<Invalid> impossibility(const Strategy& strategy, const Knowledge& 
     if (is_changed_before) continue;
     if (cannot_be_reached(adaptation, knowledge))
       return Invalid{adaptation.component, knowledge.why_unheard(adaptation.component), true};
+    if (std::string missing = missing_for(adaptation, knowledge); !missing.empty())
+      return Invalid{adaptation.component, std::move(missing), true};
     const std::string reason = obstacle(adaptation, knowledge);
     const bool is_done_step = strategy.has_steps() && is_met(adaptation, knowledge);
     if (!reason.empty() && !is_done_step) {

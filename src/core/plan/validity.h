@@ -10,7 +10,8 @@
 //   - redeploy: it has a LAUNCH command;
 //   - start: it has a LAUNCH command and is not there;
 //   - stop: it is there.
-// Of a component on a computer that is not heard, or cannot be asked, nothing can be done.
+// Of a component on a computer that is not heard, or cannot be asked, nothing can be done. A redeploy or
+// a start waits while something that the start needs is missing (StartBarred).
 // For an exhausted rule only the start of what is known to be gone makes sense.
 // A strategy is valid if each of its adaptations is, given the ones before it, its WHEN condition
 // is true, no last resort whose failure is still there has set the same thing, and it was not seen to bring back a
@@ -28,7 +29,8 @@ namespace culprit::plan {
 struct Invalid {
   ComponentId component;  // what it is about; for a WHEN condition the strategy's first
   std::string reason;
-  // Nobody knows what became of it (Knowledge::is_unheard), or can do it now.
+  // Nobody knows what became of it (Knowledge::is_unheard), or can do it now: it is waited for, and
+  // uses up no attempt.
   bool is_unheard = false;
 };
 

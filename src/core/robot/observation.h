@@ -265,6 +265,13 @@ struct ListenerKnown {
   TopicId topic;
 };
 
+// The component cannot be started now, for something that its start needs is not there: a program, a file
+// of parameters, a container. Sent again, with nothing missing, once it is.
+struct StartBarred {
+  ComponentId component;
+  std::string missing;  // "there is no program '/opt/robot/driver'"; empty: it can be started
+};
+
 // One of these was observed. Copied and destroyed in observation.cpp: see EventWhat (knowledge/event.h) for why.
 class ObservationWhat
     : public std::variant<NodeAppeared, NodeVanished, EndpointAppeared, EndpointVanished,
@@ -272,7 +279,7 @@ class ObservationWhat
                           ProcessSeen, Probed, Reply, LinkTrouble, Order, NamesakesSeen,
                           HearingLost, HearingRegained, Overslept, StatusHeard, ParametersListed,
                           ProcessWorked, HostReached, EndsWith, LauncherSeen, PriorsTold, LivesOn,
-                          HostHeard, ListenerKnown, StartedHere, UsageSeen> {
+                          HostHeard, ListenerKnown, StartedHere, UsageSeen, StartBarred> {
  public:
   using Variant = variant;
   using variant::variant;

@@ -536,6 +536,16 @@ TEST(Examine, D041ASensorIsSilent) {
   EXPECT_THAT(examine(inactive), IsEmpty()) << "it is switched off";
 }
 
+TEST(Examine, D048MessagesAreLostOnTheWay) {
+  Picture picture = robot_with_flow(5s, std::vector<Duration>(79, 50ms));
+  picture.flows["/scan"].lost = 20;
+  EXPECT_EQ(only_finding(picture).code, "D048");
+  EXPECT_EQ(only_finding(picture).seen,
+            "20 of 100 messages were sent and did not come here (20 %)");
+  picture.flows["/scan"].lost = 1;
+  EXPECT_THAT(examine(picture), IsEmpty()) << "while they find each other";
+}
+
 // /scan with stamps that are so old when they are sent.
 Picture robot_with_stamps(Duration lag) {
   Picture picture = robot_with_flow(5s, std::vector<Duration>(40, 100ms));

@@ -307,6 +307,15 @@ std::vector<Explanation> of_data() {
        "/clock runs, some nodes have use_sim_time, and others that publish stamped messages have "
        "not.",
        "Set use_sim_time for all nodes, or for none."},
+      {"D048", "messages are lost on the way",
+       "Messages were sent and did not come. Best-effort readers miss them, too, and reliable ones "
+       "wait until they are repeated. The network or a host is at fault, not the node that "
+       "publishes.",
+       "From the sequence numbers of each publisher, heard best effort: of fifty messages at "
+       "least, a fiftieth and three at least are missing between those that came. Where nothing at "
+       "all comes, nothing is known of loss.",
+       "See the link between the computers (ping, the strength of the Wi-Fi), and whether the "
+       "receive buffers are too small for large messages (net.core.rmem_max)."},
       {"D050", "messages are measured in a frame that tf does not know",
        "Nobody can place them on the robot.",
        "A header names a frame, the robot publishes transforms, and none of them has it. Looked at "

@@ -99,6 +99,27 @@ void look_at_silence(const Picture& picture, const std::string& name, const Chan
                  name});
 }
 
+// ---- what does not arrive
+
+// A few may be lost while readers and writers find each other.
+void look_at_loss(const std::string& name, const Channel& topic, const Flow& flow, Findings& all) {
+  constexpr std::size_t kFewestSent = 50;
+  constexpr std::size_t kFewestLost = 3;
+  constexpr double kMuch = 0.02;
+  const std::size_t sent = flow.messages + flow.lost;
+  const double share = sent == 0 ? 0 : static_cast<double>(flow.lost) / static_cast<double>(sent);
+  if (sent < kFewestSent || flow.lost < kFewestLost || share < kMuch) return;
+  const std::vector<std::string> writers = names_of(topic.senders);
+  all.push_back({"D048", Gravity::kWarning, name + ": " + listed(writers),
+                 fmt::format("{} of {} messages were sent and did not come here ({:.0f} %)",
+                             flow.lost, sent, 100 * share),
+                 "best-effort readers miss them, too, and reliable ones wait for their repetition; "
+                 "the network or a host is at fault, not the node",
+                 "see the link between the computers (ping, Wi-Fi), and the receive buffers here "
+                 "(net.core.rmem_max)",
+                 writers, name});
+}
+
 // ---- what time they carry
 
 bool is_simulated(const Picture& picture, const std::string& node) {
@@ -244,6 +265,7 @@ void examine_flows(const Picture& picture, Findings& all) {
     if (topic == wiring.topics.end()) continue;
     look_at_deadline(name, topic->second, flow, all);
     look_at_silence(picture, name, topic->second, flow, all);
+    look_at_loss(name, topic->second, flow, all);
     look_at_stamps(picture, name, topic->second, flow, clock, all);
   }
   look_at_clock(picture, wiring, all);

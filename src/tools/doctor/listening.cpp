@@ -70,6 +70,8 @@ class Listening::Ear {
     const MutexLock lock(mutex_);
     opened_ = now;
     messages_ = 0;
+    lost_ = 0;
+    sequences_.clear();
     pauses_.clear();
     lags_.clear();
     simulated_lags_.clear();
@@ -83,6 +85,7 @@ class Listening::Ear {
     Flow flow;
     flow.listened = closed_.value_or(now) - opened_;
     flow.messages = messages_;
+    flow.lost = lost_;
     flow.first_to_last = messages_ == 0 ? Duration() : last_ - first_;
     flow.pauses = pauses_;
     flow.frames = frames_;
@@ -112,9 +115,19 @@ class Listening::Ear {
       pauses_.push_back(now - last_);
     }
     ++messages_;
+    note_sequence(sample.identity);
     data_ += sample.size;
     last_ = now;
     if (is_stamped_) read_header(sample);
+  }
+
+  void note_sequence(const ros2::SampleIdentity& identity) CULPRIT_REQUIRES(mutex_) {
+    constexpr std::int64_t kMostLost = 1000;  // more is a restart or a lie
+    if (sequences_.size() >= kMostWriters && !sequences_.contains(identity.writer)) return;
+    const auto [last, is_first] = sequences_.try_emplace(identity.writer, identity.sequence);
+    const std::int64_t gap = identity.sequence - last->second;
+    if (!is_first && gap > 1 && gap <= kMostLost) lost_ += static_cast<std::size_t>(gap - 1);
+    last->second = identity.sequence;
   }
 
   void read_header(const ros2::Sample& sample) CULPRIT_REQUIRES(mutex_) {
@@ -152,6 +165,9 @@ class Listening::Ear {
   Time opened_ CULPRIT_GUARDED_BY(mutex_);
   std::optional<Time> closed_;  // of the executor's thread
   std::size_t messages_ CULPRIT_GUARDED_BY(mutex_) = 0;
+  std::size_t lost_ CULPRIT_GUARDED_BY(mutex_) = 0;
+  std::map<ros2::Guid, std::int64_t> sequences_
+      CULPRIT_GUARDED_BY(mutex_);                    // of each writer the last
   std::size_t data_ CULPRIT_GUARDED_BY(mutex_) = 0;  // bytes
   Time first_ CULPRIT_GUARDED_BY(mutex_){};
   Time last_ CULPRIT_GUARDED_BY(mutex_){};

@@ -65,6 +65,8 @@ struct Coming {
 struct Flow {
   Duration listened{};
   std::size_t messages = 0;
+  // Sent between two that came, and lost on the way, as the sequence numbers of each writer show.
+  std::size_t lost = 0;
   Duration first_to_last{};
   std::vector<Duration> pauses{};  // between messages, the first of them; the last one is still on
   // What the headers of its messages say; nothing where the type has none, or all stamps are zero.

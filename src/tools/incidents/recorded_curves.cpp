@@ -238,6 +238,7 @@ class CurveReader {
           break;
         case Input::Kind::kRate:
         case Input::Kind::kPhi:
+        case Input::Kind::kLoss:
           follow_rhythm(rule, input.topic);
           break;
         case Input::Kind::kParameter:

@@ -1,6 +1,7 @@
 #include "init/draft.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <set>
 #include <tuple>
@@ -82,11 +83,39 @@ std::map<std::string, std::string> sections_in(const std::string& text) {
   return sections;
 }
 
+// "ros2 bag", "rqt_graph": people look with it, and it is no part of the robot. Nothing: it may be one.
+std::optional<std::string> tool_in(const Start& start) {
+  constexpr std::array kTools = {"rqt", "rviz", "plotjuggler", "foxglove-studio"};
+  constexpr std::array kOfRobots = {"run", "launch",
+                                    "component"};  // verbs of ros2 that start nodes
+  for (std::size_t i = 0; i < std::min<std::size_t>(2, start.command.size()); ++i) {
+    const std::string& word = start.command[i];
+    const std::string name = word.substr(word.rfind('/') + 1);
+    const bool has_verb = name == "ros2" && i + 1 < start.command.size();
+    if (has_verb && std::ranges::find(kOfRobots, start.command[i + 1]) == kOfRobots.end())
+      return "ros2 " + start.command[i + 1];
+    if (std::ranges::any_of(kTools, [&](const char* tool) { return name.starts_with(tool); }))
+      return name;
+  }
+  return std::nullopt;
+}
+
+// Nodes that the tools of ROS 2 make for a command: "/_ros2cli_4711".
+bool is_of_command_line(const std::string& node) { return own_name(node).starts_with("_ros2cli"); }
+
 class Draft {
  public:
   Draft(const Sighting& seen, Packs packs, const KnownNames& known)
       : seen_(seen), recipes_(usable_recipes(seen)) {
+    for (const std::string& name : seen_.left) {
+      if (!is_tool_node(name))
+        left_out_.push_back(name +
+                            ": it left while culprit watched. If it is part of the robot, "
+                            "draft again while it is there");
+    }
     for (const auto& [name, node] : seen_.robot.nodes) {
+      if (is_of_command_line(name))
+        left_out_.push_back(name + ": it is a command line tool, as ros2 topic echo");
       if (is_tool_node(name) || !is_valid_topic_name(name)) continue;
       if (const std::string main = main_of(name, node); main != name) {
         if (node.parameters) others_[main].push_back(name);
@@ -163,6 +192,11 @@ class Draft {
              "LAUNCH, UNIT or CONTAINER";
     if (recipes_.contains(name)) return std::nullopt;
     const auto start = seen_.starts.find(name);
+    const auto tool = start == seen_.starts.end() ? std::nullopt : tool_in(start->second);
+    if (tool) return "it is a tool (" + *tool + "), no part of the robot";
+    if (seen_.came_late.contains(name))
+      return "it came while culprit watched. If it is part of the robot, draft again, or use "
+             "--update";
     if (start == seen_.starts.end())
       return fmt::format("it could not be read how process {} was started", node.pid);
     const std::string container = container_of(node.pid);

@@ -56,6 +56,31 @@ const Component& component(const RuleSet& rules, const std::string& name) {
   return *std::ranges::find(rules.components, name, &Component::name);
 }
 
+TEST(Draft, LeavesOutToolsAndSaysSo) {
+  Sighting seen = robot();
+  seen.robot.nodes["/rosbag2_recorder"] = {.parameters = {}, .lifecycle = "", .pid = 13};
+  seen.starts["/rosbag2_recorder"].command = {"/usr/bin/python3", "/opt/ros/humble/bin/ros2", "bag",
+                                              "record", "-a"};
+  seen.robot.nodes["/_ros2cli_4711"] = {.parameters = {}, .lifecycle = "", .pid = 14};
+  const std::string text = draft(seen);
+  EXPECT_EQ(rules_of(seen).components.size(), 2u);
+  EXPECT_THAT(text,
+              HasSubstr("# /rosbag2_recorder: it is a tool (ros2 bag), no part of the robot"));
+  EXPECT_THAT(text, HasSubstr("# /_ros2cli_4711: it is a command line tool"));
+}
+
+TEST(Draft, LeavesOutWhatComesAndGoesAndSaysSo) {
+  Sighting seen = robot();
+  seen.robot.nodes["/monitor"] = {.parameters = {}, .lifecycle = "", .pid = 13};
+  seen.starts["/monitor"].command = {"/usr/bin/monitor"};
+  seen.came_late = {"/monitor"};
+  seen.left = {"/snapshot"};
+  const std::string text = draft(seen);
+  EXPECT_EQ(rules_of(seen).components.size(), 2u);
+  EXPECT_THAT(text, HasSubstr("# /monitor: it came while culprit watched"));
+  EXPECT_THAT(text, HasSubstr("# /snapshot: it left while culprit watched"));
+}
+
 TEST(Draft, StartsAsWhatWasSeenWasStarted) {
   const RuleSet rules = rules_of(robot());
   ASSERT_EQ(rules.components.size(), 2u);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
+#include <set>
 #include <thread>
 
 #include "base/environment.h"
@@ -74,13 +76,22 @@ LiveInterest all_of(const LiveInventory& robot) {
   return interest;
 }
 
+std::set<std::string> names_of(const LiveInventory& robot) {
+  std::set<std::string> names;
+  for (const auto& each : robot.nodes) names.insert(each.first);
+  return names;
+}
+
 }  // namespace
 
 Sighting look(ros2::Survey& survey, std::uint32_t domain, Duration time) {
   constexpr Duration kTurn = 500ms;
   const Time end = later(live_now(), time);
+  const Time half = end - time / 2;
   LiveInterest asked;
+  std::set<std::string> early;
   while (live_now() < end) {
+    if (early.empty() && live_now() >= half) early = names_of(survey.inventory());
     LiveInterest interest = all_of(survey.inventory());
     if (interest != asked) survey.ask_for(asked = std::move(interest));
     std::this_thread::sleep_for(std::min<Duration>(kTurn, end - live_now()));
@@ -90,9 +101,14 @@ Sighting look(ros2::Survey& survey, std::uint32_t domain, Duration time) {
                 .starts = {},
                 .fields = survey.fields(),
                 .statuses = survey.statuses(),
+                .came_late = {},
+                .left = {},
                 .looked = time,
                 .domain = domain};
   seen.starts = starts_of(seen.robot);
+  const std::set<std::string> late = names_of(seen.robot);
+  std::ranges::set_difference(late, early, std::inserter(seen.came_late, seen.came_late.end()));
+  std::ranges::set_difference(early, late, std::inserter(seen.left, seen.left.end()));
   return seen;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,8 @@ struct Sighting {
   // Of topics that command movements, by topic and field.
   std::map<std::string, std::map<std::string, ros2::ValueCourse>> fields;
   std::map<ros2::Survey::StatusKey, ros2::StatusCourse> statuses;
+  std::set<std::string> came_late;  // nodes that were not there yet after half of the look
+  std::set<std::string> left;       // nodes that were there then, and not at its end
   Duration looked{};
   std::uint32_t domain = 0;
   LaunchDump dump{};             // of what started it, if somebody gave one

@@ -91,6 +91,8 @@ std::optional<Observation> Translation::operator()(const Observation& observatio
     is_known = renumber(usage->component, components_);
   } else if (auto* reached = std::get_if<HostReached>(&out.what)) {
     is_known = renumber(reached->component, components_);
+  } else if (auto* barred = std::get_if<StartBarred>(&out.what)) {
+    is_known = renumber(barred->component, components_);
   } else if (auto* lives = std::get_if<LivesOn>(&out.what)) {
     is_known = renumber(lives->component, components_);
   } else if (auto* ends = std::get_if<EndsWith>(&out.what)) {

@@ -498,6 +498,10 @@ void PlanningStep::await_answers() {
     Questions questions =
         questions_about(causes_[weighed->failure].rule, found_.troubles(), knowledge_);
     asks_[weighed->failure] = std::move(questions.asks);
+    if (questions.lost) {
+      exclude(*weighed, {Condition::kDependency, questions.lost->publisher, {}});
+      weighed->candidate.remark = diagnose::in_words(*questions.lost, knowledge_);
+    }
     if (!questions.awaited) continue;
     exclude(*weighed, {Condition::kSuspect, *questions.awaited, {}});
     weighed->candidate.remark = "asked whether it answers";
