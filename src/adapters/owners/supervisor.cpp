@@ -223,7 +223,7 @@ void Supervisor::look_for_missing(Time now) {
     }
     if (each.trial || now < each.next) return false;
     each.next = later(now, kMissingPeriod);
-    if (auto launch = Launch::begin(program_of(each.component), Until::kItIsReady))
+    if (auto launch = Launch::begin(program_of(each.component, 0), Until::kItIsReady))
       each.trial = std::move(*launch);
     return false;
   });
