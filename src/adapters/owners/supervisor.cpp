@@ -634,7 +634,7 @@ void Supervisor::end_member(Member& member) {
   }
 }
 
-// What it started may leave its group, and its environment: then its parents tell. Not what is another component's, as where
+// Its children may leave its group, and clear their environment: then their parents tell. Not what is another component's, as where
 // it is a culprit of its own.
 void Supervisor::signal_tree(Member& member, int signal) const {
   if (member.variable.empty()) return;

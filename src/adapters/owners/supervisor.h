@@ -33,9 +33,9 @@
 // (StartBarred), and tried all but its last step every kMissingPeriod until it would succeed.
 //
 // A process ends with all that it started, also with what leads a session of its own, as in a service of systemd: that
-// holds the device which the successor needs. It is found by the mark that it inherited, and by its parents. What a process
-// left that ended by itself without a fault may be the node (a launch command that makes a daemon), and goes on until
-// the component is ended or started. What somebody else started is told instead.
+// holds the device which the successor needs. It is found by the mark that it inherited, and by its parents. If the process ended
+// by itself without a fault, its children may be the node (a launch command that makes a daemon), and go on until
+// the component is ended or started. Children of what somebody else started are reported instead.
 //
 // Whatever it started goes on running when the supervisor ends, unless stop_all() was called or its
 // lifetime is the starter's.
@@ -84,7 +84,7 @@ class Supervisor {
   static constexpr Duration kStopSettles = std::chrono::milliseconds(50);
   // How often it is looked whether what a start needs is there by now.
   static constexpr Duration kMissingPeriod = std::chrono::milliseconds(500);
-  // What a process had started in sessions of its own is killed, and waited for so long.
+  // The supervisor waits so long for the children that it kills.
   static constexpr Duration kLeftEnds = std::chrono::milliseconds(200);
   // How long the trial of a start may take.
   static constexpr Duration kTrial = std::chrono::seconds(5);

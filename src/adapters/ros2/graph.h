@@ -16,7 +16,7 @@
 // - Names come from the network. Nodes whose names break the grammar are left out and told as
 //   trouble once for each participant; endpoints that are not ROS 2's are left out silently.
 // - Tables are capped. Half of each is kept free for sources that are known: this machine, and those that hold a
-//   component. Of the other half one source gets at most half. So a stranger who makes up participants does not keep
+//   component. One source gets at most half of the other half. So a stranger who makes up participants does not keep
 //   the robot's from being seen. On this machine one that holds no node makes room for another.
 //
 // A pure data structure: fed by one thread, no I/O, no clock.
@@ -164,7 +164,7 @@ class Graph {
   const EndpointInfo* endpoint(const Guid& guid) const;
   // The endpoints that publish the topic, each with its node.
   std::vector<std::pair<Guid, std::string>> publishers_of(const std::string& topic) const;
-  // Whose endpoint that is: of no node, while none claims it.
+  // The owner of an endpoint: no node, while none claims it.
   struct Owner {
     std::string node;
     int pid = 0;          // on this machine, as far as it is proven
@@ -225,7 +225,7 @@ class Graph {
     Claims claims;
     std::unordered_map<Guid, Endpoint> endpoints;
   };
-  // What there is of one source.
+  // The entries of one source.
   struct Source {
     std::size_t participants = 0;
     std::size_t names = 0;      // that they claim
