@@ -197,6 +197,7 @@ void Monitor::remember(const KnownRobot& known) {
       if (knowledge_.rules.label(TopicId(t)) == name) see(TopicId(t), start_);
     }
   }
+  for (const auto& [status, node] : known.publishers) write_.sightings.note_publisher(status, node);
   expect(known);
 }
 

@@ -178,6 +178,9 @@ class Monitor {
   void on(Time, const Overslept&) {}        // likewise
   void on(Time, const PriorsTold&) {}       // likewise: adopt()
   void on(Time at, const ListenerKnown& seen);
+  void on(Time, const PublisherKnown& seen) {
+    write_.sightings.note_publisher(seen.status, seen.node);
+  }
   void on(Time, const HearingLost&) { is_deaf_ = true; }
 
   Duration silence_of(TopicId topic, Time now) const;
