@@ -22,8 +22,13 @@
 #include "cli/test_network.h"
 #include "exemplars/sunset/node_process.h"
 #include "robot/inbox.h"
+#include "ros2/lifecycle.h"
+#include "ros2/live_test.h"
 #include "ros2/options.h"
 #include "ros2/participant.h"
+#include "ros2/publisher.h"
+#include "ros2/service_server.h"
+#include "ros2/services.h"
 #include "ros2/test_forger.h"
 #include "rtps/receive_thread.h"
 #include "rtps/test_datagram.h"
@@ -374,6 +379,64 @@ TEST_F(Attack, ThatMakesItDeafStarvesItsWatchdogAndItBeginsAnewAndHeals) {
   EXPECT_TRUE(eventually([&] { return systemd.feedings() > 0; }));
   ASSERT_TRUE(eventually([&] { return count_of(run.output(), "camera is there") > 1; }))
       << run.output();
+  is_healed(run);
+}
+
+// Events, claims and answers of a stranger on the same domain. They end no healthy node, and keep no dead one from being
+// started again.
+TEST_F(Attack, WithClaimsAboutANodeNeitherEndsItNorBlocksItsRepair) {
+  const TestProgram camera(world, {"sunset-node", "camera"});
+  const TestProgram run(world,
+                        {"culprit", "run", world.write("claimed.rules", R"(
+ROBOT attacked
+COMPONENT camera NODE /managed_subsystem/camera LAUNCH "sunset-node camera"
+RULE CameraGone
+  POLICIES ERROR
+  TRIGGER alive(camera) == false
+    STRATEGY camera_redeploy 90 10
+      ADAPTATION camera redeploy 5
+RULE CameraOff
+  POLICIES ERROR
+  TRIGGER lifecycle(camera) == "inactive" || lifecycle(camera) == "finalized"
+    STRATEGY camera_again 90 10
+      ADAPTATION camera redeploy 5
+)"),
+                         "--settle", "1", "--state-dir", (world.folder() / "state").string()});
+  ASSERT_TRUE(run.prints("camera is there")) << run.output();
+  ASSERT_TRUE(eventually([&] { return cameras().size() == 1; }));
+  const std::vector<int> before = cameras();
+
+  const ros2::ParticipantOptions options = *ros2::options_from_environment();
+  ros2::LiveContext stranger(options);
+  ros2::NodeEntry liar(*stranger, {"/", "liar"});
+  const auto events =
+      ros2::RawPublisher::create(liar, "/managed_subsystem/camera/transition_event",
+                                 ros2::msg::TransitionEvent::kType, ros2::qos::kDefault);
+  ASSERT_TRUE(events);
+  std::atomic<int> asked = 0;
+  const auto lies = ros2::ServiceServer::create(
+      liar, {"/managed_subsystem/camera/get_state", std::string(ros2::srv::GetState::kType)},
+      ros2::qos::kServices, [&](ros2::ByteView) {
+        ++asked;
+        ros2::srv::GetState::Response response;
+        response.current_state.id = static_cast<std::uint8_t>(ros2::LifecycleState::kFinalized);
+        return ros2::encode(response);
+      });
+  ASSERT_TRUE(lies);
+  for (int i = 0; i < 100; ++i) {
+    ros2::msg::TransitionEvent event;
+    event.goal_state.id = static_cast<std::uint8_t>(i % 2 == 0 ? ros2::LifecycleState::kInactive
+                                                               : ros2::LifecycleState::kFinalized);
+    (*events)->publish(ros2::encode(event));
+    std::this_thread::sleep_for(20ms);
+  }
+  EXPECT_GT(asked, 0) << "whoever offers a service is asked, too";
+  EXPECT_EQ(cameras(), before) << run.output();
+  EXPECT_THAT(run.output(), Not(HasSubstr("CameraOff detected")));
+
+  ros2::Forger claims(options, ros2::free_port());
+  claims.says_that_it_holds({"/managed_subsystem", "camera", {}, {}});
+  EXPECT_TRUE(run.prints("claims the name /managed_subsystem/camera")) << run.output();
   is_healed(run);
 }
 

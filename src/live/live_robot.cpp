@@ -201,6 +201,7 @@ void LiveRobot::execute(const Command& command) {
 
 void LiveRobot::adopt_again(ComponentId component, int pid, Time known) {
   supervisor_->adopt_again(component, pid, known);
+  if (pid != 0 && !rules_[component].node.empty()) link_->note_proven_here(rules_[component].node);
   composed_->remember(component, pid);
 }
 
@@ -253,6 +254,7 @@ void LiveRobot::stop_process(const Command& command) {
   const auto ending = is_replaced ? owners::Ending::kToStartAgain : owners::Ending::kForGood;
   const StopProcess& stop = std::get<StopProcess>(command.what);
   const auto hangs = stop.hangs ? owners::Hangs::kYes : owners::Hangs::kNo;
+  link_->expect_departure(component, later(live_now(), command.timeout));
   if (composed_->is_responsible_for(component))
     return composed_->stop(command.id, component, stop.pid, ending, hangs);
   const auto home = containers_.home_of(component);

@@ -41,6 +41,7 @@ std::vector<std::string> claimed_nodes(const RuleSet& rules) {
 void add(KnownRobot& known, const KnownRobot& more) {
   known.parts.insert(known.parts.end(), more.parts.begin(), more.parts.end());
   known.topics.insert(known.topics.end(), more.topics.begin(), more.topics.end());
+  for (const auto& [status, node] : more.publishers) known.publishers[status] = node;
 }
 
 // The manager and its journal begin from the same record, so that a replay begins from it too.
@@ -391,6 +392,7 @@ void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
   known.is_whole = known.is_whole && !has_rivals && beginning.last_rules == source_.text();
   forget_other_processes(known, beginning.past, rules_);
   keep_down_what_ended_unseen(beginning);
+  robot_->link().remember_publishers(known.publishers);
   if (known.is_whole)
     robot_->link().prove_listening(later(robot_->now(), frame_.options.discovery));
   journal::Session session = session_of(frame_, std::string(source_.text()), rules_, domain_,

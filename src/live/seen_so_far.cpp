@@ -73,6 +73,8 @@ void SeenSoFar::note(const Observation& observation) {
     --ends_;
   } else if (const auto* status = std::get_if<StatusHeard>(&observation.what)) {
     statuses_.insert_or_assign(status->name, entry);
+  } else if (const auto* publisher = std::get_if<PublisherKnown>(&observation.what)) {
+    statuses_.insert_or_assign("publisher of " + publisher->status, entry);
   } else if (const auto* host = std::get_if<HostHeard>(&observation.what)) {
     hosts_.insert_or_assign(host->host, entry);
   } else if (std::holds_alternative<HearingLost>(observation.what)) {

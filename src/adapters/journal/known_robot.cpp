@@ -29,6 +29,7 @@ Json to_json(const KnownRobot& known) {
                {"heard", known.heard},
                {"read", known.read},
                {"whole", known.is_whole}};
+  if (!known.publishers.empty()) json["publishers"] = known.publishers;
   for (const KnownRobot::Part& part : known.parts) {
     Json component = {{"name", part.component}, {"node", part.node}};
     for (const auto& [kind, key] : kKinds) {
@@ -49,6 +50,12 @@ KnownRobot known_robot_from_json(const Json& json) {
   for_each_text(json, "heard", [&](std::string name) { known.heard.push_back(std::move(name)); });
   for_each_text(json, "read", [&](std::string name) { known.read.push_back(std::move(name)); });
   known.is_whole = flag_of(json, "whole");
+  const auto publishers = json.find("publishers");
+  if (publishers != json.end() && publishers->is_object()) {
+    for (const auto& [status, node] : publishers->items()) {
+      if (node.is_string()) known.publishers.emplace(status, node.get<std::string>());
+    }
+  }
   const auto components = json.find("components");
   if (components == json.end() || !components->is_array()) return known;
   for (const Json& each : *components) {

@@ -36,7 +36,8 @@ enum class Tag : std::uint8_t {
   kListenerKnown = 29,
   kStartedHere = 30,
   kUsageSeen = 31,
-  kStartBarred = 32
+  kStartBarred = 32,
+  kPublisherKnown = 33
 };
 
 enum class OrderTag : std::uint8_t {
@@ -253,6 +254,11 @@ class Encoder {
   void write(const ListenerKnown& o, Duration age) {
     head(Tag::kListenerKnown, age);
     out_.natural(o.topic.index);
+  }
+  void write(const PublisherKnown& o, Duration age) {
+    head(Tag::kPublisherKnown, age);
+    out_.text(o.status);
+    out_.text(o.node);
   }
   void write(const PriorsTold& o, Duration age) {
     head(Tag::kPriorsTold, age);
@@ -476,6 +482,10 @@ class Decoder {
       }
       case Tag::kListenerKnown:
         return ListenerKnown{id<TopicId>(rules_.topics.size())};
+      case Tag::kPublisherKnown: {
+        std::string status = in_.text();
+        return PublisherKnown{std::move(status), in_.text()};
+      }
       case Tag::kPriorsTold: {
         PriorsTold told;
         for (std::uint64_t left = in_.natural(); left > 0 && in_.is_good(); --left) {

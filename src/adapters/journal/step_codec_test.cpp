@@ -73,7 +73,7 @@ decltype(Order::what) any_order() {
 ObservationWhat anything() {
   const std::string text = *rc::gen::arbitrary<std::string>();
   const ComponentId component(*rc::gen::inRange<std::size_t>(0, 2));
-  switch (*rc::gen::inRange(0, 30)) {
+  switch (*rc::gen::inRange(0, 31)) {
     case 0:
       return NodeAppeared{text, *rc::gen::positive<int>()};
     case 1:
@@ -141,6 +141,8 @@ ObservationWhat anything() {
       return UsageSeen{component, *rc::gen::arbitrary<double>(), 120.5};
     case 28:
       return StartBarred{component, text};
+    case 29:
+      return PublisherKnown{text, "/driver"};
     default:
       return LinkTrouble{text};
   }

@@ -1,6 +1,7 @@
 #include "link/component_link.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/live_clock.h"
 #include "base/ros_names.h"
@@ -20,6 +21,10 @@ using namespace std::chrono_literals;
 // How long a node that was just seen may take until its services answer.
 constexpr Duration kJoining = 5s;
 constexpr Duration kProbe = 500ms;
+// A node that says that it changes its state may answer nothing until it has.
+constexpr Duration kTransitionAsked = 100ms;
+// Between two questions about what events say: a flood of them asks the node 20 times a second.
+constexpr auto kAskedAgain = 50ms;
 
 Lifecycle to_lifecycle(std::uint8_t id) {
   switch (static_cast<LifecycleState>(id)) {
@@ -60,7 +65,8 @@ msg::Transition to_message(Transition transition) {
 }  // namespace
 
 ComponentLink::ComponentLink(NodeEntry& self, ComponentId component, std::string node,
-                             const RuleSet& rules, Inbox& inbox, TypeFinder& types)
+                             const RuleSet& rules, Inbox& inbox, TypeFinder& types,
+                             Starvation& starvation)
     : self_(self),
       component_(component),
       node_(std::move(node)),
@@ -68,7 +74,29 @@ ComponentLink::ComponentLink(NodeEntry& self, ComponentId component, std::string
       needs_(needs_of(component, rules)),
       inbox_(inbox),
       types_(types),
+      starvation_(starvation),
       tasks_(self.context().executor()) {}
+
+void ComponentLink::lives_in(int pid, const GuidPrefix& participant) {
+  pid_ = pid;
+  {
+    const MutexLock lock(claimed_mutex_);
+    claimed_.holder = participant;
+  }
+  const MutexLock lock(mutex_);
+  holder_ = participant;
+  for (const auto* client :
+       {&lifecycle_, &lifecycle_reader_, &parameters_, &parameter_reader_, &parameter_names_})
+    if (*client) (*client)->ask_only(participant);
+  for (const auto& [name, client] : routines_)
+    if (client) client->ask_only(participant);
+}
+
+void ComponentLink::modes_come_from(const GuidPrefix& participant) {
+  const MutexLock lock(mutex_);
+  mode_holder_ = participant;
+  if (modes_) modes_->ask_only(participant);
+}
 
 void ComponentLink::service_seen(const GraphEndpoint& seen) {
   const std::string& service = seen.name;
@@ -122,6 +150,8 @@ ServiceClient* ComponentLink::keep(std::unique_ptr<ServiceClient>& client,
     return nullptr;
   }
   client = std::move(*made);
+  const auto& holder = &client == &modes_ ? mode_holder_ : holder_;
+  if (holder) client->ask_only(*holder);
   return client.get();
 }
 
@@ -201,26 +231,71 @@ void ComponentLink::tell(Lifecycle state, Told told) {
   if (told == Told::kAlways || state != before) inbox_.put(LifecycleRead{component_, state});
 }
 
-void ComponentLink::tell(const msg::TransitionEvent& event) {
-  const Lifecycle state = to_lifecycle(event.goal_state.id);
-  told_ = state;
-  const bool is_shut_down =
-      state == Lifecycle::kFinalized &&
-      static_cast<LifecycleState>(event.start_state.id) == LifecycleState::kShuttingDown;
-  inbox_.put(LifecycleRead{component_, state, is_shut_down});
-}
-
 void ComponentLink::watch_transitions() {
   const MutexLock lock(mutex_);
   if (transitions_) return;
   constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 10};
-  auto subscription =
-      RawSubscription::create(self_, node_ + "/transition_event", msg::TransitionEvent::kType, kQos,
-                              PayloadUse::kWhole, [this](const Sample& sample) {
-                                const auto event = decode<msg::TransitionEvent>(sample.payload);
-                                if (event) tell(*event);
-                              });
+  auto subscription = RawSubscription::create(
+      self_, node_ + "/transition_event", msg::TransitionEvent::kType, kQos, PayloadUse::kWhole,
+      [this](const Sample& sample) { on_transition(sample); });
   if (subscription) transitions_ = std::move(*subscription);
+}
+
+// Anybody may send such an event. It is a reason to ask the node for its state, and says nothing by itself.
+void ComponentLink::on_transition(const Sample& sample) {
+  const auto event = decode<msg::TransitionEvent>(sample.payload);
+  if (!event) return;
+  const Lifecycle state = to_lifecycle(event->goal_state.id);
+  const bool is_shut_down =
+      state == Lifecycle::kFinalized &&
+      static_cast<LifecycleState>(event->start_state.id) == LifecycleState::kShuttingDown;
+  {
+    const MutexLock lock(claimed_mutex_);
+    if (claimed_.holder && sample.identity.writer.prefix() != *claimed_.holder) return;
+    claimed_.last = Claim{state, is_shut_down};
+    if (std::exchange(claimed_.is_asked, true)) return;
+  }
+  tasks_.post([this] { ask_for_transition(); });
+}
+
+void ComponentLink::ask_for_transition() {
+  ServiceClient* client = lifecycle_reader();
+  std::optional<Claim> claim;
+  {
+    const MutexLock lock(claimed_mutex_);
+    claim = std::exchange(claimed_.last, std::nullopt);
+    claimed_.is_asked = claim && client != nullptr;
+    if (!claimed_.is_asked) return;
+  }
+  client->call(encode(srv::GetState::Request{}), Repeat::kUntilAnswered, kTransitionAsked,
+               [this, claim = *claim](const CallResult& result) {
+                 on_state(result, claim);
+                 tasks_.post_at(Executor::Clock::now() + kAskedAgain,
+                                [this] { ask_for_transition(); });
+               });
+}
+
+// A node with one thread answers nothing during a transition: then its silence confirms that one is under way. Any other
+// state is told only by the node itself.
+void ComponentLink::on_state(const CallResult& result, const Claim& claim) {
+  const auto response = result.outcome == CallOutcome::kAnswered
+                            ? decode<srv::GetState::Response>(result.reply)
+                            : std::nullopt;
+  if (response) {
+    inbox_.put(Probed{component_, true});
+    const Lifecycle state = to_lifecycle(response->current_state.id);
+    told_ = state;
+    const bool is_shut_down = state == Lifecycle::kFinalized && was_shut_down(claim);
+    inbox_.put(LifecycleRead{component_, state, is_shut_down});
+  } else if (claim.state == Lifecycle::kTransition) {
+    tell(Lifecycle::kTransition, Told::kAlways);
+  }
+}
+
+// The event that says so may have come after the question, and before its answer.
+bool ComponentLink::was_shut_down(const Claim& claim) {
+  const MutexLock lock(claimed_mutex_);
+  return claim.is_shut_down || (claimed_.last && claimed_.last->is_shut_down);
 }
 
 void ComponentLink::read_parameters() {
@@ -275,6 +350,7 @@ void ComponentLink::check_parameters() {
       auto made = ServiceClient::create(self_, name, qos::kParameterServices);
       if (!made) return;  // a secured domain need not allow it
       parameter_names_ = std::move(*made);
+      if (holder_) parameter_names_->ask_only(*holder_);
     }
     client = parameter_names_.get();
   }
@@ -300,6 +376,14 @@ void ComponentLink::unanswered(Time due, const std::function<Time()>& heard) {
     inbox_.put(Probed{component_, false});
 }
 
+// Since it did not answer before.
+bool ComponentLink::is_at_work(int pid) {
+  constexpr Duration kLongest = 3s;
+  const auto now = look_at_processor_time(pid);
+  const auto before = std::exchange(looked_, now);
+  return now && before && now->at <= later(before->at, kLongest) && was_at_work(*before, *now);
+}
+
 void ComponentLink::forget_unanswered() {
   const MutexLock lock(unanswered_mutex_);
   unanswered_.clear();
@@ -312,9 +396,12 @@ void ComponentLink::probe(int pid, std::function<Time()> heard) {
     if (result.outcome == CallOutcome::kAnswered) {
       forget_unanswered();
       inbox_.put(Probed{component_, true});
-    } else if (pid == 0 || !is_traced(pid)) {
-      unanswered(due, heard);
+      return;
     }
+    const Time now = live_now();
+    starvation_.note(due, now);
+    const bool is_busy = pid != 0 && (is_traced(pid) || is_at_work(pid));
+    if (!is_busy && !starvation_.is_recent(now)) unanswered(due, heard);
   };
   read_anything(kProbe, Haste::kSoon, tell_of);
 }
@@ -515,12 +602,23 @@ void ComponentLink::run(const Command& command, const ReadMode&) {
                     });
 }
 
-// As in probe(): one that a debugger holds proves nothing.
+// As in probe(): one that a debugger holds proves nothing, nor one that is at work, nor one that a starved culprit asked.
 void ComponentLink::run(const Command& command, const Probe&) {
-  const auto answer = [this, command](const CallResult& result) {
+  const Time due = later(live_now(), command.timeout);
+  const int asked = pid_;
+  const auto before = asked == 0 ? std::nullopt : look_at_processor_time(asked);
+  const auto answer = [this, command, due, before](const CallResult& result) {
     const int pid = pid_;
-    if (result.outcome == CallOutcome::kTimedOut && pid != 0 && is_traced(pid))
-      return reply(command, {Outcome::kUnreachable, {}, "a debugger holds its process"});
+    if (result.outcome == CallOutcome::kTimedOut) {
+      starvation_.note(due, live_now());
+      const auto now = before ? look_at_processor_time(pid) : std::nullopt;
+      if (pid != 0 && is_traced(pid))
+        return reply(command, {Outcome::kUnreachable, {}, "a debugger holds its process"});
+      if (now && was_at_work(*before, *now))
+        return reply(command, {Outcome::kUnreachable, {}, "its process is at work"});
+      if (starvation_.is_recent(live_now()))
+        return reply(command, {Outcome::kUnreachable, {}, "culprit itself had no processor"});
+    }
     const auto none = why_unanswered(result, command, "service");
     reply(command, none ? *none : Answer{});
   };

@@ -19,6 +19,8 @@
 #include "base/mutex.h"
 #include "language/rule_set.h"
 #include "link/component_needs.h"
+#include "link/processor_time.h"
+#include "link/starvation.h"
 #include "link/type_finder.h"
 #include "robot/command.h"
 #include "robot/inbox.h"
@@ -39,10 +41,17 @@ class ComponentLink {
   // `self` is our own node, `node` the component's full name. All references must outlive the link.
   // `types` is asked on the executor's thread, and not after the link is gone.
   ComponentLink(NodeEntry& self, ComponentId component, std::string node, const RuleSet& rules,
-                Inbox& inbox, TypeFinder& types);
+                Inbox& inbox, TypeFinder& types, Starvation& starvation);
 
-  // The process of the node, on this machine; 0: it is not known.
-  void lives_in(int pid) { pid_ = pid; }
+  // The process of the node, on this machine; 0: it is not known. And the participant that holds the node: from now on
+  // only its answers count, but for those of modes, which a mode manager gives for others.
+  void lives_in(int pid, const GuidPrefix& participant);
+
+  // Its modes are told by this participant: its own, or that of a mode manager.
+  void modes_come_from(const GuidPrefix& participant);
+
+  // Reads the parameters again: somebody says that they changed.
+  void check_values() { read_parameters(); }
 
   // The node was seen to offer a service: readies the client, reads the present state, and finds
   // out what a routine takes while the node is well enough to be asked. On the executor's thread.
@@ -52,7 +61,7 @@ class ComponentLink {
   // check_lifecycle(), or of no parameter. `pid` is its process; 0: it is not known. That a traced
   // one does not answer is not told; nor is it of one on another computer until something else of that
   // computer was heard after the answer was due: `heard` says when last, and is called from any thread.
-  // Null: it is on this one.
+  // Null: it is on this one. Nor is it told while culprit was starved a moment ago, or while the process is at work.
   void probe(int pid, std::function<Time()> heard = {});
   // Asks once, by the same read, whether the node is there, and gives the participant that answered, if any does.
   // `then` may be called before this returns.
@@ -112,8 +121,17 @@ class ComponentLink {
   enum class Told : std::uint8_t { kAlways, kIfNew };
   void read_lifecycle(Duration patience, Told told, Haste haste);
   void tell(Lifecycle state, Told told);
-  void tell(const msg::TransitionEvent& event);
+  // What a transition event says.
+  struct Claim {
+    Lifecycle state = Lifecycle::kUnknown;
+    bool is_shut_down = false;  // somebody ordered its end
+  };
   void watch_transitions();
+  void on_transition(const Sample& sample);
+  void ask_for_transition();
+  void on_state(const CallResult& result, const Claim& claim);
+  bool was_shut_down(const Claim& claim);
+  bool is_at_work(int pid);
   void unanswered(Time due, const std::function<Time()>& heard);
   void read_parameters();
   void note_that_it_answers();
@@ -140,12 +158,15 @@ class ComponentLink {
   const ComponentNeeds needs_;
   Inbox& inbox_;
   TypeFinder& types_;
+  Starvation& starvation_;
   // Not under the mutex: a receive thread that waited for it would stop whoever makes a client.
   std::atomic<int> pid_ = 0;
   std::atomic<Lifecycle> told_ = Lifecycle::kUnknown;
   std::atomic<bool> misses_parameter_ = false;  // found since it was asked for its names
 
   Mutex mutex_;  // never held while calling
+  std::optional<GuidPrefix> mode_holder_ CULPRIT_GUARDED_BY(mutex_);
+  std::optional<GuidPrefix> holder_ CULPRIT_GUARDED_BY(mutex_);  // whose answers count
   // The clients are made with it, by make(), and stay.
   std::unique_ptr<ServiceClient> lifecycle_;
   std::unique_ptr<ServiceClient> lifecycle_reader_;  // where the rules only look
@@ -155,7 +176,8 @@ class ComponentLink {
   std::unique_ptr<ServiceClient> modes_;
   std::map<std::string, std::unique_ptr<ServiceClient>> routines_ CULPRIT_GUARDED_BY(mutex_);
   std::map<std::string, TypeFinder::Offer> services_
-      CULPRIT_GUARDED_BY(mutex_);  // that the node offers, by name
+      CULPRIT_GUARDED_BY(mutex_);        // that the node offers, by name
+  std::optional<ProcessorLook> looked_;  // when it did not answer last; of the executor's thread
   Mutex unanswered_mutex_;
   // When the answers were due that nobody was told of.
   std::deque<Time> unanswered_ CULPRIT_GUARDED_BY(unanswered_mutex_);
@@ -163,6 +185,15 @@ class ComponentLink {
   std::map<std::string, std::uint8_t> lists_
       CULPRIT_GUARDED_BY(lists_mutex_);  // parameters that were read to be lists -> type
   std::unique_ptr<RawSubscription> transitions_;
+
+  // The claims of transition events (kTransition: one is under way), and whether the node is being asked about them.
+  struct Claimed {
+    std::optional<GuidPrefix> holder;  // whose events count
+    std::optional<Claim> last;         // since the node was asked
+    bool is_asked = false;
+  };
+  Mutex claimed_mutex_;  // receive threads take it
+  Claimed claimed_ CULPRIT_GUARDED_BY(claimed_mutex_);
   TaskGroup tasks_;  // goes first
 };
 

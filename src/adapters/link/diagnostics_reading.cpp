@@ -10,43 +10,46 @@ DiagnosticsReading::DiagnosticsReading(const RuleSet& rules) {
     if (const auto* source = std::get_if<DiagnosticKey>(&signal.source)) {
       const bool is_any = source->status == "*";
       signals_.emplace(is_any ? source->key : source->status + "\n" + source->key,
-                       Wanted<SignalId>{SignalId(s)});
+                       Wanted<SignalId>{SignalId(s), is_any ? source->key : source->status});
     } else if (std::holds_alternative<LookedUp>(signal.source)) {
-      signals_.emplace(signal.name, Wanted<SignalId>{SignalId(s)});
+      signals_.emplace(signal.name, Wanted<SignalId>{SignalId(s), signal.name});
     }
   }
   for (std::size_t d = 0; d < rules.diagnostics.size(); ++d)
-    levels_.emplace(rules.diagnostics[d].name, Wanted<DiagnosticId>{DiagnosticId(d)});
+    levels_.emplace(rules.diagnostics[d].name,
+                    Wanted<DiagnosticId>{DiagnosticId(d), rules.diagnostics[d].name});
   missing_ = signals_.size() + levels_.size();
 }
 
-void DiagnosticsReading::read(const msg::DiagnosticArray& message) {
-  for (const msg::DiagnosticStatus& status : message.status) read(status);
+void DiagnosticsReading::read(const msg::DiagnosticArray& message, const MaySay& may_say) {
+  for (const msg::DiagnosticStatus& status : message.status) read(status, may_say);
   for (std::size_t s = 0; s < message.status.size() && missing_ > 0; ++s)
     tell_name(message.status[s]);
 }
 
-void DiagnosticsReading::read(const msg::DiagnosticStatus& status) {
-  read_named(status.name, status);
-  if (status.hardware_id != status.name) read_named(status.hardware_id, status);
-  for (const msg::KeyValue& pair : status.values) read(pair.key, pair.value);
+void DiagnosticsReading::read(const msg::DiagnosticStatus& status, const MaySay& may_say) {
+  read_named(status.name, status, may_say);
+  if (status.hardware_id != status.name) read_named(status.hardware_id, status, may_say);
+  for (const msg::KeyValue& pair : status.values) read(pair.key, pair.value, may_say);
 }
 
-void DiagnosticsReading::read_named(const std::string& name, const msg::DiagnosticStatus& status) {
+void DiagnosticsReading::read_named(const std::string& name, const msg::DiagnosticStatus& status,
+                                    const MaySay& may_say) {
   const auto level = levels_.find(name);
-  if (level != levels_.end()) {
+  if (level != levels_.end() && (!may_say || may_say(level->second.status))) {
     note_found(level->second);
     on_level(level->second.id, status.level);
   }
   for (const msg::KeyValue& pair : status.values) {
-    read(name + "\n" + pair.key, pair.value);
-    read(name + "_" + pair.key, pair.value);
+    read(name + "\n" + pair.key, pair.value, may_say);
+    read(name + "_" + pair.key, pair.value, may_say);
   }
 }
 
-void DiagnosticsReading::read(const std::string& name, const std::string& text) {
+void DiagnosticsReading::read(const std::string& name, const std::string& text,
+                              const MaySay& may_say) {
   const auto found = signals_.find(name);
-  if (found == signals_.end()) return;
+  if (found == signals_.end() || (may_say && !may_say(found->second.status))) return;
   note_found(found->second);
   on_signal(found->second.id, text);
 }

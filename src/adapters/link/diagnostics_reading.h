@@ -34,19 +34,23 @@ class DiagnosticsReading {
 
   std::function<void(StatusHeard)> on_status;  // each status once
 
+  // Whether whoever published the message may say what `status` is, as the rules name it (signal_publishers.h).
+  using MaySay = std::function<bool(const std::string& status)>;
   // Calls the three above for what the rules want of `message`.
-  void read(const msg::DiagnosticArray& message);
+  void read(const msg::DiagnosticArray& message, const MaySay& may_say = {});
 
  private:
   template <class Id>
   struct Wanted {
     Id id;
+    std::string status;
     bool was_found = false;
   };
 
-  void read(const msg::DiagnosticStatus& status);
-  void read_named(const std::string& name, const msg::DiagnosticStatus& status);
-  void read(const std::string& name, const std::string& text);
+  void read(const msg::DiagnosticStatus& status, const MaySay& may_say);
+  void read_named(const std::string& name, const msg::DiagnosticStatus& status,
+                  const MaySay& may_say);
+  void read(const std::string& name, const std::string& text, const MaySay& may_say);
   void tell_name(const msg::DiagnosticStatus& status);
   template <class Id>
   void note_found(Wanted<Id>& wanted);

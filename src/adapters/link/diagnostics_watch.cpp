@@ -1,5 +1,9 @@
 #include "link/diagnostics_watch.h"
 
+#include <utility>
+
+#include "base/live_clock.h"
+
 namespace culprit::ros2 {
 
 Expected<std::unique_ptr<DiagnosticsWatch>> DiagnosticsWatch::create(NodeEntry& self,
@@ -17,17 +21,75 @@ Expected<std::unique_ptr<DiagnosticsWatch>> DiagnosticsWatch::create(NodeEntry& 
 }
 
 DiagnosticsWatch::DiagnosticsWatch(NodeEntry& self, const RuleSet& rules, Inbox& inbox)
-    : self_(self), inbox_(inbox), reading_(rules) {
-  reading_.on_level = [this](DiagnosticId id, std::uint8_t level) { on_level(id, level); };
-  reading_.on_signal = [this](SignalId id, const std::string& text) { on_signal(id, text); };
+    : self_(self), inbox_(inbox), reading_(rules), tasks_(self.context().executor()) {
+  reading_.on_level = [this](DiagnosticId id, std::uint8_t level)
+                          CULPRIT_REQUIRES(mutex_) { on_level(id, level); };
+  reading_.on_signal = [this](SignalId id, const std::string& text)
+                           CULPRIT_REQUIRES(mutex_) { on_signal(id, text); };
   reading_.on_status = [this](StatusHeard heard) { inbox_.put(std::move(heard), Urgency::kSoon); };
+}
+
+void DiagnosticsWatch::remember(const std::string& status, const std::string& node) {
+  const MutexLock lock(mutex_);
+  publishers_.remember(status, node);
+}
+
+void DiagnosticsWatch::node_joined(const std::string& node) {
+  const MutexLock lock(mutex_);
+  nodes_.insert(node);
+  writers_.clear();
+}
+
+void DiagnosticsWatch::node_left(const std::string& node) {
+  const MutexLock lock(mutex_);
+  nodes_.erase(node);
+  writers_.clear();
+}
+
+std::map<std::string, std::string> DiagnosticsWatch::conflicts() const {
+  const MutexLock lock(mutex_);
+  return publishers_.conflicts();
 }
 
 void DiagnosticsWatch::on_sample(const Sample& sample) {
   // What culprit itself publishes is no news.
-  if (sample.identity.writer.prefix() == self_.context().participant().guid().prefix()) return;
+  const Guid writer = sample.identity.writer;
+  if (writer.prefix() == self_.context().participant().guid().prefix()) return;
   const auto message = decode<msg::DiagnosticArray>(sample.payload);
-  if (message) reading_.read(*message);
+  if (!message) return;
+  const MutexLock lock(mutex_);
+  const auto known = writers_.find(writer);
+  if (known != writers_.end()) return read(*message, known->second);
+  if (waiting_ >= kMostWaiting) return;
+  ++waiting_;
+  tasks_.post([this, writer, message = *message] { look_up(writer, message); });
+}
+
+// A writer that no node claims yet is looked up again with its next message.
+void DiagnosticsWatch::look_up(const Guid& writer, const msg::DiagnosticArray& message) {
+  constexpr std::size_t kMostWriters = 10'000;  // the network decides how many there are
+  const Graph::Owner owner = self_.context().graph().owner_of(writer);
+  const SignalPublishers::Publisher by{owner.node, owner.pid != 0,
+                                       owner.node.empty() || owner.counts};
+  const MutexLock lock(mutex_);
+  --waiting_;
+  if (!by.node.empty() && writers_.size() < kMostWriters) writers_.insert_or_assign(writer, by);
+  read(message, by);
+}
+
+void DiagnosticsWatch::read(const msg::DiagnosticArray& message,
+                            const SignalPublishers::Publisher& by) {
+  reading_.read(message, [&](const std::string& status)
+                             CULPRIT_REQUIRES(mutex_) { return may_say(status, by); });
+}
+
+bool DiagnosticsWatch::may_say(const std::string& status, const SignalPublishers::Publisher& by) {
+  SignalPublishers::Answer answer = publishers_.judge(
+      status, by, live_now(),
+      [this](const std::string& node) CULPRIT_REQUIRES(mutex_) { return nodes_.contains(node); });
+  if (answer.is_learned) inbox_.put(PublisherKnown{status, by.node});
+  if (!answer.conflict.empty()) inbox_.put(LinkTrouble{std::move(answer.conflict)});
+  return answer.is_used;
 }
 
 void DiagnosticsWatch::on_level(DiagnosticId diagnostic, std::uint8_t level) {

@@ -1,12 +1,19 @@
 // Reads the rules' signals out of /diagnostics. What comes there may be 100 ms late (participant.h): many nodes say there again
 // and again what has not changed.
+//
+// A status counts only from its publisher (signal_publishers.h). The watch looks up the node of a writer once, on the
+// executor's thread, where the writer's first message waits for that; and anew when nodes came or went.
 #pragma once
 
+#include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <unordered_map>
 
+#include "base/mutex.h"
 #include "link/diagnostics_reading.h"
+#include "link/signal_publishers.h"
 #include "robot/inbox.h"
 #include "ros2/subscription.h"
 
@@ -18,18 +25,41 @@ class DiagnosticsWatch {
   static Expected<std::unique_ptr<DiagnosticsWatch>> create(NodeEntry& self, const RuleSet& rules,
                                                             Inbox& inbox);
 
+  // An earlier run learned who publishes that status. From any thread.
+  void remember(const std::string& status, const std::string& node);
+
+  // On the executor's thread.
+  void node_joined(const std::string& node);
+  void node_left(const std::string& node);
+  // Statuses that several nodes publish, in words. From any thread.
+  std::map<std::string, std::string> conflicts() const;
+
  private:
+  static constexpr int kMostWaiting = 1000;  // messages of writers that are looked up
+
   DiagnosticsWatch(NodeEntry& self, const RuleSet& rules, Inbox& inbox);
   void on_sample(const Sample& sample);
-  void on_level(DiagnosticId diagnostic, std::uint8_t level);
-  void on_signal(SignalId signal, const std::string& text);
+  void look_up(const Guid& writer, const msg::DiagnosticArray& message);
+  void read(const msg::DiagnosticArray& message, const SignalPublishers::Publisher& by)
+      CULPRIT_REQUIRES(mutex_);
+  bool may_say(const std::string& status, const SignalPublishers::Publisher& by)
+      CULPRIT_REQUIRES(mutex_);
+  void on_level(DiagnosticId diagnostic, std::uint8_t level) CULPRIT_REQUIRES(mutex_);
+  void on_signal(SignalId signal, const std::string& text) CULPRIT_REQUIRES(mutex_);
 
   NodeEntry& self_;
   Inbox& inbox_;
-  DiagnosticsReading reading_;
+  mutable Mutex mutex_;  // receive threads take it: nothing of the middleware is called with it
+  DiagnosticsReading reading_ CULPRIT_GUARDED_BY(mutex_);
+  SignalPublishers publishers_ CULPRIT_GUARDED_BY(mutex_);
+  std::set<std::string> nodes_ CULPRIT_GUARDED_BY(mutex_);  // of the graph
+  std::unordered_map<Guid, SignalPublishers::Publisher> writers_
+      CULPRIT_GUARDED_BY(mutex_);  // that were looked up
+  int waiting_ CULPRIT_GUARDED_BY(mutex_) = 0;
   // What was read last, by signal and by diagnostic.
-  std::unordered_map<std::uint32_t, std::string> last_;
-  std::unordered_map<std::uint32_t, std::uint8_t> last_level_;
+  std::unordered_map<std::uint32_t, std::string> last_ CULPRIT_GUARDED_BY(mutex_);
+  std::unordered_map<std::uint32_t, std::uint8_t> last_level_ CULPRIT_GUARDED_BY(mutex_);
+  TaskGroup tasks_;  // outlives the one that posts to it
   std::unique_ptr<RawSubscription> subscription_;
 };
 

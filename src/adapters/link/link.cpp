@@ -25,6 +25,9 @@ namespace {
 constexpr Duration kProbePeriod = std::chrono::milliseconds(400);
 constexpr Duration kAskPeriod = std::chrono::milliseconds(100);
 constexpr Duration kPublishPeriod = std::chrono::seconds(1);
+// A node that was said to leave, and answered.
+constexpr auto kLeavingAskedAgain = std::chrono::seconds(2);
+constexpr Duration kAskedForParameters = std::chrono::seconds(1);
 constexpr Duration kReminder = std::chrono::minutes(1);
 // So long after the robot changed, what that took of the memory is given back.
 constexpr auto kGivesBack = std::chrono::seconds(10);
@@ -148,6 +151,21 @@ Expected<void> Link::start() {
   graph.is_ended_by_others = [this](const std::string& node) {
     const auto component = binding_.bind(node);
     return component && rules_[*component].has_owner();
+  };
+  graph.is_component = [this](const std::string& node) { return binding_.find(node).has_value(); };
+  graph.is_kept_here = [this](const std::string& node) {
+    const auto component = binding_.bind(node);
+    if (!component) return false;
+    const Component& declared = rules_[*component];
+    return (!declared.launch.empty() || declared.composed) && !declared.has_owner();
+  };
+  graph.is_asked_about = [this](const std::string& node) {
+    const auto component = binding_.bind(node);
+    // One whose process is not proven is doubted when it left (doubt_leaving()).
+    if (!component || unproven_.contains(node)) return false;
+    const MutexLock lock(mutex_);
+    const auto expected = departures_.find(*component);
+    return expected == departures_.end() || expected->second < live_now();
   };
   auto context = Context::create(executor_, options_.participant, std::move(graph));
   if (!context) return Error{context.error()};
@@ -299,9 +317,18 @@ Expected<void> Link::watch_parameter_events() {
   if (rules_.parameters.empty()) return {};
   // Best effort and deep: many nodes announce at once when a robot starts.
   constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 100};
-  auto subscription = node_->create_subscription<msg::ParameterEvent>(
-      "/parameter_events", kQos,
-      [this](const msg::ParameterEvent& event) { on_parameter_event(event); });
+  auto subscription = RawSubscription::create(
+      node_->entry(), "/parameter_events", msg::ParameterEvent::kType, kQos, PayloadUse::kWhole,
+      [this](const Sample& sample) {
+        constexpr int kMost = 1000;
+        auto event = decode<msg::ParameterEvent>(sample.payload);
+        if (!event || parameter_events_waiting_ >= kMost) return;
+        ++parameter_events_waiting_;
+        tasks_.post([this, event = std::move(*event), writer = sample.identity.writer] {
+          --parameter_events_waiting_;
+          on_parameter_event(event, writer);
+        });
+      });
   if (!subscription) return Error{subscription.error()};
   parameter_events_ = std::move(*subscription);
   return {};
@@ -338,6 +365,8 @@ void Link::on_change(const GraphChange& change) {
   } else if (const auto* namesakes = std::get_if<NodeNamesakes>(&change)) {
     on_namesakes(*namesakes);  // before anybody acts on it
     inbox_.put(NamesakesSeen{namesakes->node, namesakes->others});
+  } else if (const auto* doubted = std::get_if<NodeSaidToLeave>(&change)) {
+    on_said_to_leave(doubted->node);
   } else if (const auto* trouble = std::get_if<GraphTrouble>(&change)) {
     inbox_.put(LinkTrouble{trouble->text});
   }
@@ -470,6 +499,8 @@ void Link::on_joined(const GraphNode& node) {
   }
   inbox_.put(NodeAppeared{node.name, node.pid});
   pids_[node.name] = node.pid;
+  holders_[node.name] = node.participant;
+  diagnostics_watch_->node_joined(node.name);
   if (node.name == node_->name().full()) namesake_.joined(node, live_now());
   for (auto& [manager, systems] : systems_) std::erase(systems, node.name);
   leaving_.erase(node.name);
@@ -481,7 +512,7 @@ void Link::on_joined(const GraphNode& node) {
     tasks_.post([this, name = node.name] { note_participant(name); });
   }
   if (is_other_node(*component, node.name)) return other_node_joined(*component, node);
-  make_link(*component, node.name)->lives_in(node.pid);
+  make_link(*component, node.name)->lives_in(node.pid, node.participant);
   lives_on(*component, host);
   if (node.pid == 0 || needs_of(*component, rules_).is_to_answer) {
     probed_[node.name] = {*component, node.pid};
@@ -510,6 +541,7 @@ void Link::other_node_joined(ComponentId component, const GraphNode& node) {
       node_->entry(), {node.name + "/get_parameters", std::string(srv::GetParameters::kType)},
       qos::kParameterServices);
   if (!client) return;  // a secured domain need not allow it
+  (*client)->ask_only(node.participant);
   other_nodes_[node.name] = {component,
                              static_cast<std::uint8_t>(std::min<std::ptrdiff_t>(place + 1, 127)),
                              node.pid, std::move(*client)};
@@ -524,6 +556,9 @@ void Link::on_left(const std::string& node, bool was_lost) {
   for (auto& [topic, nodes] : publishers_) nodes.erase(node);
   probed_.erase(node);
   pids_.erase(node);
+  holders_.erase(node);
+  diagnostics_watch_->node_left(node);
+  std::erase_if(mode_managers_, [&](const auto& each) { return each.second == node; });
   if (node == node_->name().full()) namesake_.left();
   const auto unproven = unproven_.extract(node);
   if (unproven) return doubt_leaving(node, {unproven.mapped(), was_lost});
@@ -579,6 +614,60 @@ void Link::vanished(const std::string& node, bool was_lost) {
   inbox_.put(NodeVanished{node});
 }
 
+// It says so itself, or somebody else does in its name: the node is asked.
+void Link::on_said_to_leave(const std::string& node) {
+  if (asked_whether_left_.insert(node).second)
+    tasks_.post([this, node] { ask_whether_left(node); });
+}
+
+void Link::ask_whether_left(const std::string& node) {
+  constexpr int kQuestions = 2;
+  if (context_->graph().is_said_to_leave(node)) return ask_whether_left(node, kQuestions);
+  asked_whether_left_.erase(node);
+}
+
+void Link::ask_whether_left(const std::string& node, int questions) {
+  const auto then = [this, node, questions](bool answers) {
+    tasks_.post([this, node, questions, answers] { on_whether_left(node, questions, answers); });
+  };
+  const auto component = binding_.bind(node);
+  ComponentLink* link = component ? link_of(*component) : nullptr;
+  if (!component || link == nullptr) return then(false);
+  if (!is_other_node(*component, node))
+    return link->ask([then](std::optional<GuidPrefix> answered) { then(answered.has_value()); });
+  constexpr Duration kPatience = std::chrono::milliseconds(500);
+  const auto other = other_nodes_.find(node);
+  if (other == other_nodes_.end()) return then(false);
+  other->second.client->call(
+      encode(srv::GetParameters::Request{}), Repeat::kUntilAnswered, kPatience,
+      [then](const CallResult& result) { then(result.outcome == CallOutcome::kAnswered); });
+}
+
+// One that answers may be leaving all the same, so it is asked again while it is said.
+void Link::on_whether_left(const std::string& node, int questions, bool answers) {
+  constexpr std::size_t kMost = 100;
+  if (!answers && questions > 1) return ask_whether_left(node, questions - 1);
+  if (!answers) {
+    asked_whether_left_.erase(node);
+    return context_->believe_left(node);
+  }
+  tasks_.post_at(Executor::Clock::now() + kLeavingAskedAgain,
+                 [this, node] { ask_whether_left(node); });
+  if (told_of_false_leaving_.size() >= kMost || !told_of_false_leaving_.insert(node).second) return;
+  inbox_.put(LinkTrouble{"it was said in the name of " + node +
+                         " that it left the graph, but it answers: it is taken to be there. Does "
+                         "somebody on this network speak in its name?"});
+}
+
+void Link::remember_publishers(const std::map<std::string, std::string>& publishers) {
+  for (const auto& [status, node] : publishers) diagnostics_watch_->remember(status, node);
+}
+
+void Link::expect_departure(ComponentId component, Time until) {
+  const MutexLock lock(mutex_);
+  departures_[component] = until;
+}
+
 // A system of system_modes is no node: its mode manager offers its services, and it is there as
 // long as the manager is. It offers the same for nodes that have modes, which are there by
 // themselves.
@@ -586,17 +675,36 @@ void Link::on_system(const std::string& manager, const GraphEndpoint& service) {
   const std::string system = service.name.substr(0, service.name.rfind('/'));
   const auto component = binding_.bind(system);
   if (system == manager || !component || rules_[*component].node != system) return;
+  if (!may_tell_modes(manager, system)) return;
   if (!pids_.contains(system)) {
     systems_[manager].push_back(system);
     inbox_.put(NodeAppeared{system, pids_[manager]});
   }
-  make_link(*component, system)->service_seen(service);
+  ComponentLink* link = make_link(*component, system);
+  link->modes_come_from(holders_[manager]);
+  link->service_seen(service);
+}
+
+// The first one that offers them, for anybody may; and one that is proven to be here takes the place of one that is not.
+bool Link::may_tell_modes(const std::string& manager, const std::string& system) {
+  const auto [known, is_new] = mode_managers_.try_emplace(system, manager);
+  if (is_new || known->second == manager) return true;
+  const bool is_better = pids_[manager] != 0 && pids_[known->second] == 0;
+  constexpr std::size_t kMost = 100;
+  if (told_of_.size() < kMost && told_of_.emplace(system, manager).second)
+    inbox_.put(LinkTrouble{"the modes of " + system + " are offered by " + known->second +
+                           " and by " + manager + ": only those of " +
+                           (is_better ? manager : known->second) + " count"});
+  if (is_better) known->second = manager;
+  return is_better;
 }
 
 void Link::on_endpoint(const std::string& node, const GraphEndpoint& endpoint) {
   if (endpoint.kind == EndpointKind::kServer) {
     const auto component = binding_.bind(node);
     const bool is_main = component && !is_other_node(*component, node);
+    if (is_main && endpoint.name == node + "/change_mode")
+      make_link(*component, node)->modes_come_from(holders_[node]);
     if (is_main) make_link(*component, node)->service_seen(endpoint);
     // A secured domain need not allow that question.
     const bool is_to_be_asked = is_main && !options_.use_sim_time &&
@@ -639,9 +747,13 @@ void Link::find_type(const std::string& node, const GraphEndpoint& endpoint, Top
       });
 }
 
-void Link::on_parameter_event(const msg::ParameterEvent& event) {
+// The event of anybody else, and of a node that is not known to have this writer yet, is a reason to ask.
+void Link::on_parameter_event(const msg::ParameterEvent& event, const Guid& writer) {
   const auto component = binding_.bind(event.node);
   if (!component || is_other_node(*component, event.node)) return;
+  const Graph::Owner owner = context_->graph().owner_of(writer);
+  if (owner.node != event.node || !owner.counts)
+    return ask_for_parameters(*component, event.node, owner.node);
   for (const auto* changes : {&event.new_parameters, &event.changed_parameters}) {
     for (const msg::Parameter& changed : *changes) {
       for (std::size_t p = 0; p < rules_.parameters.size(); ++p) {
@@ -654,8 +766,25 @@ void Link::on_parameter_event(const msg::ParameterEvent& event) {
   }
 }
 
+void Link::ask_for_parameters(ComponentId component, const std::string& node,
+                              const std::string& by) {
+  constexpr std::size_t kMost = 100;
+  const Time now = live_now();
+  Time& asked = parameters_asked_.try_emplace(component, kLongAgo).first->second;
+  if (now < later(asked, kAskedForParameters)) return;
+  asked = now;
+  if (ComponentLink* link = link_of(component)) link->check_values();
+  if (by.empty() || told_of_.size() >= kMost || !told_of_.emplace(node, by).second) return;
+  inbox_.put(LinkTrouble{printable(by) + " published that parameters of " + node +
+                         " changed: what that node answers counts"});
+}
+
 void Link::probe() {
+  const Time now = live_now();
+  starvation_.note(later(probed_last_.value_or(now), kProbePeriod), now);
+  probed_last_ = now;
   context_->forget_ended_namesakes();
+  context_->look_at_unproven();
   std::set<ComponentId> are_probed;
   for (const auto& [node, each] : probed_) {
     are_probed.insert(each.component);
@@ -733,6 +862,8 @@ void Link::ask_silent_ones() {
         node_->entry(), {node + "/get_parameters", std::string(srv::GetParameters::kType)},
         qos::kParameterServices);
     if (!client) continue;  // a secured domain need not allow it
+    if (const auto holder = holders_.find(node); holder != holders_.end())
+      (*client)->ask_only(holder->second);
     (*client)->call(encode(srv::GetParameters::Request{}), Repeat::kUntilAnswered,
                     asks_until_ - now, [this, topic = watch->topic()](const CallResult& result) {
                       if (result.outcome == CallOutcome::kAnswered)
@@ -780,8 +911,8 @@ ComponentLink* Link::make_link(ComponentId component, const std::string& node) {
   const MutexLock lock(mutex_);
   auto& link = links_[component.index];
   if (!link)
-    link =
-        std::make_unique<ComponentLink>(node_->entry(), component, node, rules_, inbox_, *types_);
+    link = std::make_unique<ComponentLink>(node_->entry(), component, node, rules_, inbox_, *types_,
+                                           starvation_);
   return link.get();
 }
 
@@ -818,6 +949,11 @@ void Link::publish_again() {
       constexpr std::uint8_t kWarn = 1;
       message.status.push_back({kWarn, "culprit: " + node, contest.text, kCulpritsHardwareId, {}});
     }
+  }
+  for (const auto& [status, text] : diagnostics_watch_->conflicts()) {
+    constexpr std::uint8_t kWarn = 1;
+    message.status.push_back(
+        {kWarn, "culprit: " + printable(status), text, kCulpritsHardwareId, {}});
   }
   if (!message.status.empty()) diagnostics_->publish(message);
 }

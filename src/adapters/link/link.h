@@ -29,6 +29,7 @@
 #include "link/neighbour_hosts.h"
 #include "link/process_usage.h"
 #include "link/simulated_clock.h"
+#include "link/starvation.h"
 #include "link/topic_watch.h"
 #include "link/type_finder.h"
 #include "robot/command.h"
@@ -91,6 +92,14 @@ class Link {
   // From any thread.
   std::optional<std::string> cut_off(ComponentId component);
 
+  // The component's node was ordered to leave: until then nobody is asked whether that is so. From any thread.
+  void expect_departure(ComponentId component, Time until);
+  // An earlier run had proven that a process of this machine has this node. From any thread.
+  void note_proven_here(const std::string& node) { context_->note_proven_here(node); }
+
+  // The publishers of diagnostics that an earlier run learned, by status. From any thread.
+  void remember_publishers(const std::map<std::string, std::string>& publishers);
+
   // Our own node, for clients of what is no component. It goes with the link.
   NodeEntry& entry() { return node_->entry(); }
 
@@ -134,11 +143,17 @@ class Link {
   void other_node_joined(ComponentId component, const GraphNode& node);
   void probe_other_nodes();
   void tell_usage();
+  void on_said_to_leave(const std::string& node);
+  void ask_whether_left(const std::string& node);
+  void ask_whether_left(const std::string& node, int questions);
+  void on_whether_left(const std::string& node, int questions, bool answers);
   void on_system(const std::string& manager, const GraphEndpoint& service);
   void on_endpoint(const std::string& node, const GraphEndpoint& endpoint);
   void tell_writers(const std::string& topic);
   void find_type(const std::string& node, const GraphEndpoint& endpoint, TopicWatch& watch);
-  void on_parameter_event(const msg::ParameterEvent& event);
+  void on_parameter_event(const msg::ParameterEvent& event, const Guid& writer);
+  void ask_for_parameters(ComponentId component, const std::string& node, const std::string& by);
+  bool may_tell_modes(const std::string& manager, const std::string& system);
   void probe();
   void ask_silent_ones();
   void publish_again();
@@ -178,7 +193,12 @@ class Link {
   bool told_of_no_clock_ = false;
   ClockStep system_clock_;
   std::unique_ptr<DiagnosticsWatch> diagnostics_watch_;
-  std::unique_ptr<Subscription> parameter_events_;
+  std::unique_ptr<RawSubscription> parameter_events_;
+  std::atomic<int> parameter_events_waiting_ = 0;
+  std::map<ComponentId, Time> parameters_asked_;           // because of somebody else's event
+  std::set<std::pair<std::string, std::string>> told_of_;  // nodes, and who speaks for them
+  std::map<std::string, GuidPrefix> holders_;              // participants of nodes that are there
+  std::map<std::string, std::string> mode_managers_;       // by system: the node whose modes count
   struct ToProbe {
     ComponentId component;
     int pid = 0;  // 0: not known
@@ -194,6 +214,8 @@ class Link {
   };
   std::map<std::string, OtherNode> other_nodes_;  // by node
   Namesake namesake_;
+  Starvation starvation_;
+  std::optional<Time> probed_last_;
   std::map<std::string, int> pids_;  // of nodes that are there; 0 where it is not known
   // Nodes of components whose process is not known, and the participant that has each.
   struct Unproven {
@@ -222,8 +244,10 @@ class Link {
   std::uint64_t refused_ = 0;  // datagrams that were told of
   std::unique_ptr<LeaseLink> lease_;
   std::unique_ptr<NeighbourHosts> hosts_;
-  Time looked_at_hosts_ = kLongAgo;  // on the executor's thread
-  bool gives_memory_back_ = false;   // soon
+  Time looked_at_hosts_ = kLongAgo;              // on the executor's thread
+  bool gives_memory_back_ = false;               // soon
+  std::set<std::string> asked_whether_left_;     // nodes that were said to leave
+  std::set<std::string> told_of_false_leaving_;  // those of them that answered once
 
   mutable Mutex mutex_;
   // A component's node that others have the name of.
@@ -236,7 +260,8 @@ class Link {
   std::map<std::string, std::string> nodes_elsewhere_ CULPRIT_GUARDED_BY(mutex_);  // by node
   std::map<ComponentId, std::string> elsewhere_
       CULPRIT_GUARDED_BY(mutex_);  // the other computer where it ran last, if it said no good-bye
-  std::set<std::string> silent_hosts_ CULPRIT_GUARDED_BY(mutex_);  // that were told of
+  std::map<ComponentId, Time> departures_ CULPRIT_GUARDED_BY(mutex_);  // expected until then
+  std::set<std::string> silent_hosts_ CULPRIT_GUARDED_BY(mutex_);      // that were told of
   std::vector<Health> health_ CULPRIT_GUARDED_BY(mutex_);
   std::vector<std::unique_ptr<ComponentLink>> links_
       CULPRIT_GUARDED_BY(mutex_);  // by component; one that is made stays

@@ -177,6 +177,198 @@ TEST(Link, AsksLocalNodesTooWhetherTheyAnswer) {
   hung.join();
 }
 
+// An event is a reason to ask. Anybody may send one, in the name of whomever he likes.
+TEST(Link, BelievesNoTransitionEventButTheNodesOwnAnswer) {
+  const TestDomain domain;
+  Robot robot(domain);
+  LiveContext stranger(domain.options());
+  NodeEntry liar(*stranger, {"/", "liar"});
+  Linked linked(domain);
+  const auto reads = [&](Lifecycle expected, Duration patience = kPatience) {
+    return linked
+        .wait<LifecycleRead>([&](const LifecycleRead& r) { return r.state == expected; }, patience)
+        .has_value();
+  };
+  ASSERT_TRUE(reads(Lifecycle::kUnconfigured));
+  const auto forged =
+      RawPublisher::create(liar, "/robot/transition_event", msg::TransitionEvent::kType, {});
+  // As its own would be, if somebody speaks in the name of its participant.
+  const auto own = RawPublisher::create(robot.managed->node().entry(), "/robot/transition_event",
+                                        msg::TransitionEvent::kType, {});
+  ASSERT_TRUE(forged && own);
+  for (const LifecycleState state : {LifecycleState::kActive, LifecycleState::kErrorProcessing}) {
+    msg::TransitionEvent event;
+    event.goal_state.id = static_cast<std::uint8_t>(state);
+    const Bytes bytes = encode(event);
+    for (int i = 0; i < 20; ++i) {
+      (*forged)->publish(bytes);
+      (*own)->publish(bytes);
+      std::this_thread::sleep_for(20ms);
+    }
+  }
+  EXPECT_FALSE(reads(Lifecycle::kActive, 300ms));
+  EXPECT_FALSE(linked.has_seen<LifecycleRead>(
+      [](const LifecycleRead& r) { return r.state == Lifecycle::kTransition; }));
+  EXPECT_EQ(linked.ask(ChangeLifecycle{Transition::kConfigure}).outcome, Outcome::kDone);
+  EXPECT_TRUE(reads(Lifecycle::kInactive)) << "which an event told of, and the node confirmed";
+}
+
+constexpr const char* kAliveRules =
+    "COMPONENT robot NODE /robot LAUNCH \"robot\"\nRULE R\nPOLICIES ERROR\nTRIGGER !alive(robot)\n"
+    "STRATEGY s 50 10\nADAPTATION robot redeploy 5\n";
+
+auto tells(const std::string& part) {
+  return [part](const LinkTrouble& told) { return told.text.find(part) != std::string::npos; };
+}
+
+// As whoever speaks in the name of its participant can.
+TEST(Link, AsksANodeThatIsSaidToLeave) {
+  const TestDomain domain;
+  Robot robot(domain);
+  Linked linked(domain, {}, kAliveRules);
+  ASSERT_TRUE(linked.sees("/robot"));
+  ASSERT_TRUE(linked.wait<Probed>([](const Probed& p) { return p.answered; }));
+  const auto forged =
+      robot.context->participant().create_writer({.topic = std::string(kDiscoveryInfoTopic),
+                                                  .type = std::string(kDiscoveryInfoType),
+                                                  .qos = qos::kDiscoveryInfoWriter,
+                                                  .user_data = {},
+                                                  .on_match = {}});
+  ASSERT_TRUE(forged);
+  (*forged)->write(
+      encode_discovery_info({robot.context->participant().guid(), {}}, GidSize::kHumbleAndOlder));
+  const auto leaves = [](const NodeVanished& n) { return n.node == "/robot"; };
+  EXPECT_TRUE(linked.wait<LinkTrouble>(tells("but it answers: it is taken to be there")));
+  EXPECT_FALSE(linked.wait<NodeVanished>(leaves, 500ms));
+  std::promise<void> goes_on;
+  std::thread hung([&] { robot.context.run([&] { goes_on.get_future().wait(); }); });
+  EXPECT_TRUE(linked.wait<NodeVanished>(leaves)) << "it is asked again, and answers no more";
+  goes_on.set_value();
+  hung.join();
+}
+
+TEST(Link, ANameThatWasProvenHereBelongsToNoStranger) {
+  const TestDomain domain;
+  std::optional<Robot> robot(std::in_place, domain);
+  Linked linked(domain, {}, kAliveRules);
+  ASSERT_TRUE(linked.wait<NodeAppeared>([](const NodeAppeared& n) { return n.pid == getpid(); }));
+  Forger stranger(domain.options(), free_port());
+  stranger.says_that_it_holds({"/", "robot", {}, {}});
+  EXPECT_TRUE(linked.wait<LinkTrouble>(tells("claims the name /robot")));
+  robot.reset();
+  EXPECT_TRUE(linked.wait<NodeVanished>([](const NodeVanished& n) { return n.node == "/robot"; }));
+  EXPECT_FALSE(
+      linked.wait<NodeAppeared>([](const NodeAppeared& n) { return n.pid != getpid(); }, 1s))
+      << "the stranger would keep it from being started again";
+  EXPECT_FALSE(linked.has_seen<NamesakesSeen>([](const NamesakesSeen& n) { return n.others > 0; }));
+}
+
+TEST(Link, ReadsAStatusOnlyOfItsPublisher) {
+  const TestDomain domain;
+  Robot robot(domain);
+  LiveContext other(domain.options());
+  NodeEntry liar(*other, {"/", "liar"});
+  auto own = robot.publisher<msg::DiagnosticArray>("/diagnostics");
+  auto forged = Publisher<msg::DiagnosticArray>(std::move(
+      *RawPublisher::create(liar, "/diagnostics", msg::DiagnosticArray::kType, qos::kDefault)));
+  const auto temperature = [](const std::string& text) {
+    msg::DiagnosticArray array;
+    array.status = {{1, "motor", "", "m1", {{"temperature", text}}}};
+    return array;
+  };
+  Linked linked(domain);
+  ASSERT_TRUE(linked.sees("/robot"));
+  Timer speaks(robot.context->executor(), 20ms, [&] { own.publish(temperature("40")); });
+  EXPECT_EQ(linked.reads("temperature"), Value(std::string("40")));
+  EXPECT_TRUE(linked.wait<PublisherKnown>(
+      [](const PublisherKnown& p) { return p.status == "motor" && p.node == "/robot"; }));
+  Timer lies(other->executor(), 20ms, [&] { forged.publish(temperature("90")); });
+  EXPECT_TRUE(linked.wait<LinkTrouble>(
+      tells("status motor is published by /robot, and by /liar, too: only the former is used")));
+  EXPECT_FALSE(linked.wait<SignalRead>(
+      [](const SignalRead& r) { return r.value == Value(std::string("90")); }, 500ms));
+}
+
+TEST(Link, BelievesNoParameterEventOfOthers) {
+  const TestDomain domain;
+  Robot robot(domain);
+  LiveContext other(domain.options());
+  NodeEntry liar(*other, {"/", "liar"});
+  const auto forged =
+      RawPublisher::create(liar, "/parameter_events", msg::ParameterEvent::kType, qos::kDefault);
+  ASSERT_TRUE(forged);
+  Linked linked(domain);
+  const auto is = [](double value) {
+    return [value](const ParameterRead& r) { return r.value == Value(value); };
+  };
+  ASSERT_TRUE(linked.wait<ParameterRead>(is(1.5)));
+  msg::ParameterEvent event;
+  event.node = "/robot";
+  event.changed_parameters = {{"gain", to_parameter_value(Value(9.0))}};
+  Timer lies(other->executor(), 20ms, [&, bytes = encode(event)] { (*forged)->publish(bytes); });
+  EXPECT_TRUE(linked.wait<LinkTrouble>(tells("/liar published that parameters of /robot changed")));
+  EXPECT_FALSE(linked.wait<ParameterRead>(is(9.0), 500ms));
+  EXPECT_EQ(linked.ask(SetParameter{"gain", Value(3.0)}).outcome, Outcome::kDone);
+  EXPECT_TRUE(linked.wait<ParameterRead>(is(3.0)));
+}
+
+// The announcement of a participant that nobody has (RTPS 2.3 §8.5.4.2, §9.6.2.2).
+Bytes announcement_of(std::uint16_t number) {
+  Guid guid;
+  guid.bytes = {1, 15, 0x5a, 0x5a};
+  guid.bytes[10] = static_cast<std::uint8_t>(number >> 8);
+  guid.bytes[11] = static_cast<std::uint8_t>(number);
+  guid.bytes[14] = 1;
+  guid.bytes[15] = 0xc1;
+  Guid announcer = guid;
+  announcer.bytes[13] = 1;
+  announcer.bytes[14] = 0;
+  announcer.bytes[15] = 0xc2;
+  TestParameters said;
+  said.add(0x15, Bytes{2, 3}).add(0x16, Bytes{1, 15});
+  said.add(0x50, Bytes(guid.bytes.begin(), guid.bytes.end()));
+  Bytes locator{1, 0, 0, 0, 0x39, 0x30, 0, 0};
+  locator.resize(20);
+  locator.insert(locator.end(), {127, 0, 0, 1});
+  said.add(0x32, locator).add(0x31, locator);
+  said.add(0x58, Bytes{0x3f, 0, 0, 0}).add(0x02, Bytes{100, 0, 0, 0, 0, 0, 0, 0});
+  return TestDatagram(guid.prefix()).announcement(announcer, 1, said.end()).bytes();
+}
+
+TEST(Link, DiscoversANewProcessBesideAThousandParticipantsOfAStranger) {
+  const TestDomain domain;
+  Linked linked(domain, {}, kAliveRules);
+  EventLog<std::uint16_t> ports;  // anybody in the domain knows who listens where
+  const auto spy = Participant::create(domain.options(), [&](const DiscoveryEvent& event) {
+    const auto* info = std::get_if<ParticipantInfo>(&event);
+    if (info != nullptr && !info->metatraffic.empty()) ports.add(info->metatraffic.front().port);
+  });
+  ASSERT_TRUE(spy);
+  ASSERT_TRUE(ports.wait_for_count(1));
+  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const auto announce = [&](std::uint16_t number) {
+    const Bytes datagram = announcement_of(number);
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    to.sin_port = htons(ports.all().front());
+    sendto(socket, datagram.data(), datagram.size(), 0, reinterpret_cast<sockaddr*>(&to),
+           sizeof to);
+  };
+  bool is_full = false;
+  for (int round = 0; round < 50 && !is_full; ++round) {  // a busy machine loses some
+    for (std::uint16_t i = 0; i < 1100; ++i) {
+      announce(i);
+      if (i % 50 == 0) std::this_thread::sleep_for(5ms);
+    }
+    is_full = linked.wait<LinkTrouble>(tells("too many participants"), 200ms).has_value();
+  }
+  ASSERT_TRUE(is_full);
+  Robot robot(domain);
+  EXPECT_TRUE(linked.sees("/robot"));
+  close(socket);
+}
+
 // Before something is taken down that depends on it. No rule is about it, so nothing asks it periodically.
 TEST(Link, AsksWhetherANodeAnswersWhenItIsToldTo) {
   const TestDomain domain;
@@ -194,7 +386,8 @@ TEST(Link, AsksWhetherANodeAnswersWhenItIsToldTo) {
     });
   });
   hangs.get_future().wait();
-  EXPECT_EQ(ask().outcome, Outcome::kTimedOut) << "its callback hangs";
+  // Also on a machine that is too busy to tell.
+  EXPECT_NE(ask().outcome, Outcome::kDone) << "its callback hangs";
   goes_on.set_value();
   hung.join();
 }

@@ -103,12 +103,12 @@ void TopicWatch::publisher_seen(const std::string& type, const Qos& offered,
 }
 
 Expected<void> TopicWatch::listen(const std::string& type, Keys keys) {
-  auto listener = TopicListener::open(
-      self_, rules_[topic_].name, type, keys,
-      fields_.empty() ? PayloadUse::kHeader : PayloadUse::kWhole,
-      {.on_arrival = [this](const Sample& sample) { on_arrival(sample); },
-       .on_message = [this](const Sample& sample) { on_message(sample); },
-       .on_unheard = [this] { on_unheard(); }});
+  auto listener =
+      TopicListener::open(self_, rules_[topic_].name, type, keys,
+                          fields_.empty() ? PayloadUse::kHeader : PayloadUse::kWhole,
+                          {.on_arrival = [this](const Sample& sample) { on_arrival(sample); },
+                           .on_message = [this](const Sample& sample) { on_message(sample); },
+                           .on_unheard = [this] { on_unheard(); }});
   if (!listener) return Error{listener.error()};
   type_ = type;
   listener_ = std::move(*listener);

@@ -1,6 +1,7 @@
 #include "owners/mark.h"
 
 #include <cstdint>
+#include <cstdlib>
 #include <sstream>
 #include <unistd.h>
 
@@ -78,6 +79,26 @@ std::vector<int> launched_as(const std::string& component) {
     return has_ended || pid == getpid() || !is_what_was_launched(pid);
   });
   return pids;
+}
+
+std::vector<int> left_by(const std::string& component, const std::string& process) {
+  const std::string counts_in = kNamespaceVariable + pid_namespace_of(getpid());
+  std::vector<int> pids = processes_with(mark(component));
+  std::erase_if(pids, [&](int pid) {
+    if (pid == getpid() || state_letter(pid).value_or('X') == 'Z' || is_what_was_launched(pid) ||
+        !has_variable(pid, counts_in))
+      return true;
+    if (!process.empty()) return !has_variable(pid, process);
+    const int launched =
+        std::atoi(value_of_variable(pid, std::string(kPidVariable) + "=").c_str());
+    return launched <= 0 || is_what_was_launched(launched);
+  });
+  return pids;
+}
+
+bool is_anothers(int pid, const std::string& process) {
+  const std::string number = value_of_variable(pid, std::string(kPidVariable) + "=");
+  return !number.empty() && kPidVariable + ("=" + number) != process;
 }
 
 }  // namespace culprit::owners

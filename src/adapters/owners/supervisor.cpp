@@ -162,6 +162,7 @@ Expected<void> Supervisor::begin_start(CommandId command, ComponentId component)
     meet(command, component);
     return {};
   }
+  kill_left(component, "");
   const int launcher = place_of(component);
   note_launch(options_.log_folder, rules_[component].name, launcher);
   Program program = program_of(component, launcher);
@@ -175,6 +176,7 @@ Expected<void> Supervisor::begin_start(CommandId command, ComponentId component)
                                                 ProcessState::kRunning, std::move(*launch), command,
                                                 std::move(*lock)});
   member.launcher = launcher;
+  member.variable = variable_of(member.process.pid());
   return {};
 }
 
@@ -276,6 +278,7 @@ void Supervisor::watch(ComponentId component, int pid, Relation relation) {
                            began ? std::max(Duration::zero(), live_now() - *began) : Duration()});
   }
   inbox_.put(ProcessSeen{component, ProcessState::kRunning, pid, ""});
+  if (was_started(member)) member.variable = variable_of(pid);
   const auto launcher = launchers_.find(component);
   if (launcher != launchers_.end() && launcher->second.held)
     inbox_.put(LauncherSeen{component, launcher->second.pid, false});
@@ -613,6 +616,11 @@ void Supervisor::end_member(Member& member) {
   const ProcessEnd end = member.process.reap();
   const bool is_ours =
       std::ranges::any_of(shutdowns_, [&](const Shutdown& s) { return is_meant(s, member); });
+  if (is_ours || end.cause == Cause::kFault) {
+    for (const FileDescriptor& each : member.tree)
+      syscall(SYS_pidfd_send_signal, each.get(), SIGKILL, nullptr, 0);
+    if (!member.variable.empty()) kill_left(member.component, member.variable);
+  }
   inbox_.put(ProcessSeen{member.component, ProcessState::kGone, member.process.pid(), end.remark,
                          is_ours ? Cause::kWish : end.cause});
   ended_[member.component] = {member.process.pid(), member.number};
@@ -623,6 +631,44 @@ void Supervisor::end_member(Member& member) {
     look_at_children(launcher->second);
     launcher->second.ran_others = std::ranges::any_of(
         launcher->second.children, [&](int child) { return child != member.process.pid(); });
+  }
+}
+
+// Its children may leave its group, and clear their environment: then their parents tell. Not what is another component's, as where
+// it is a culprit of its own.
+void Supervisor::signal_tree(Member& member, int signal) const {
+  if (member.variable.empty()) return;
+  const std::vector<int> group = members_of_group(member.process.pid());
+  for (const Relative& each : descendants_of(member.process.pid())) {
+    FileDescriptor held(static_cast<int>(syscall(SYS_pidfd_open, each.pid, 0)));
+    if (!held || is_anothers(each.pid, member.variable)) continue;
+    if (std::ranges::find(group, each.pid) == group.end())
+      syscall(SYS_pidfd_send_signal, held.get(), signal, nullptr, 0);
+    member.tree.push_back(std::move(held));
+  }
+}
+
+// It may start others while it is killed. It is waited for, but not for long: the successor needs what it holds.
+void Supervisor::kill_left(ComponentId component, const std::string& process) const {
+  constexpr int kRounds = 5;
+  if (options_.robot.empty()) return;
+  const std::string mark = marked_as(component);
+  const Time end = later(live_now(), kLeftEnds);
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<FileDescriptor> killed;
+    for (const int pid : left_by(mark, process)) {
+      FileDescriptor held(static_cast<int>(syscall(SYS_pidfd_open, pid, 0)));
+      // Its number may be another process's by now.
+      if (!held || !carries_mark(pid, mark) || is_what_was_launched(pid)) continue;
+      syscall(SYS_pidfd_send_signal, held.get(), SIGKILL, nullptr, 0);
+      killed.push_back(std::move(held));
+    }
+    if (killed.empty()) return;
+    for (const FileDescriptor& each : killed) {
+      pollfd ended{each.get(), POLLIN, 0};
+      const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - live_now()).count();
+      poll(&ended, 1, static_cast<int>(std::max<std::int64_t>(left, 0)));
+    }
   }
 }
 
@@ -786,8 +832,11 @@ void Supervisor::escalate(Shutdown& shutdown, Time now) {
                                    : shutdown.hangs == Hangs::kYes ? kHung
                                                                    : kPolite);
   }
-  for (const Member& member : members_) {
-    if (is_meant(shutdown, member)) member.process.signal(shutdown.signal);
+  for (Member& member : members_) {
+    if (!is_meant(shutdown, member)) continue;
+    member.tree.clear();
+    signal_tree(member, shutdown.signal);
+    member.process.signal(shutdown.signal);
   }
 }
 

@@ -32,6 +32,11 @@
 // A start that fails because a file is not there, its program or its parameters, is reported with the path
 // (StartBarred), and tried all but its last step every kMissingPeriod until it would succeed.
 //
+// A process ends with all that it started, also with what leads a session of its own, as in a service of systemd: that
+// holds the device which the successor needs. It is found by the mark that it inherited, and by its parents. If the process ended
+// by itself without a fault, its children may be the node (a launch command that makes a daemon), and go on until
+// the component is ended or started. Children of what somebody else started are reported instead.
+//
 // Whatever it started goes on running when the supervisor ends, unless stop_all() was called or its
 // lifetime is the starter's.
 #pragma once
@@ -79,6 +84,8 @@ class Supervisor {
   static constexpr Duration kStopSettles = std::chrono::milliseconds(50);
   // How often it is looked whether what a start needs is there by now.
   static constexpr Duration kMissingPeriod = std::chrono::milliseconds(500);
+  // The supervisor waits so long for the children that it kills.
+  static constexpr Duration kLeftEnds = std::chrono::milliseconds(200);
   // How long the trial of a start may take.
   static constexpr Duration kTrial = std::chrono::seconds(5);
 
@@ -157,6 +164,8 @@ class Supervisor {
     Time left_at{};
     std::optional<Time> stands_since{};  // while it is not told yet that it was stopped
     int launcher = 0;  // that it stands in for, while its program does not run yet
+    std::string variable{};  // what it and all that it started have in their environment
+    std::vector<FileDescriptor> tree{};  // what it had started when its end was ordered
   };
   // A start that is tried before an end.
   struct Trial {
@@ -240,6 +249,8 @@ class Supervisor {
                       std::set<std::uint64_t> meant) CULPRIT_REQUIRES(mutex_);
   std::set<std::uint64_t> started_members_of(ComponentId component) const CULPRIT_REQUIRES(mutex_);
   void end_member(Member& member) CULPRIT_REQUIRES(mutex_);
+  void signal_tree(Member& member, int signal) const;
+  void kill_left(ComponentId component, const std::string& process) const;
   Cause cause_of_stop(const Member& member) const CULPRIT_REQUIRES(mutex_);
   static bool is_settled(Member& member, ProcessState state, Time now);
   void tell_ended_launchers() CULPRIT_REQUIRES(mutex_);

@@ -153,6 +153,15 @@ class Supervised {
 
 bool exists(int pid) { return kill(pid, 0) == 0; }
 
+bool becomes(int pid, const std::string& program) {
+  for (int tries = 0; tries < 3000; ++tries) {
+    const auto identity = identity_of(pid);
+    if (identity && identity->program.ends_with(program)) return true;
+    std::this_thread::sleep_for(10ms);
+  }
+  return false;
+}
+
 // Somebody else's launcher, which starts a process again whenever it ends.
 class Respawning {
  public:
@@ -849,19 +858,96 @@ TEST(Supervisor, TakesOverWhatAnotherOneOfTheSameRobotStarted) {
   EXPECT_NE(second.start(), pid);
 }
 
-// As the tools of ROS 2 leave their daemon behind: in a session of its own, with all that it
-// inherited.
-TEST(Supervisor, IsNotMistakenAboutWhatAProcessLeftBehind) {
-  const std::string robot = "test/daemon/" + std::to_string(getpid());
+// It leads a session of its own, and holds the device that the successor needs.
+TEST(Supervisor, EndsWhatTheProcessHadStartedInASessionOfItsOwn) {
+  const std::string robot = "test/tree/" + std::to_string(getpid());
   Supervised c("sh -c 'setsid sleep 1000 & echo daemon $!; wait'", robot);
+  const auto daemon_of = [&](std::size_t which) {
+    std::string log;
+    std::size_t at = 0;
+    for (int tries = 0; tries < 1000; ++tries) {
+      log = c.log_when("daemon ");
+      at = std::string::npos;
+      for (std::size_t i = 0, from = 0; i <= which; ++i, from = at + 1)
+        at = log.find("daemon ", from);
+      if (at != std::string::npos) break;
+      std::this_thread::sleep_for(10ms);
+    }
+    return at == std::string::npos ? 0 : std::stoi(log.substr(at + 7));
+  };
+  const auto ends = [](int pid) {
+    for (int tries = 0; tries < 1000 && is_alive(pid); ++tries) std::this_thread::sleep_for(10ms);
+    return !is_alive(pid);
+  };
   const int first = c.start();
-  const std::string log = c.log_when("daemon ");
-  const int daemon = std::stoi(log.substr(log.find("daemon ") + 7));
+  const int daemon = daemon_of(0);
+  ASSERT_TRUE(becomes(daemon, "sleep"));
   c.stop();
   EXPECT_FALSE(exists(first));
-  ASSERT_TRUE(exists(daemon)) << "it leads a group of its own";
+  EXPECT_TRUE(ends(daemon));
+
+  const int second = c.start();
+  const int another = daemon_of(1);
+  ASSERT_TRUE(becomes(another, "sleep"));
+  kill(second, SIGKILL);  // by itself, as a node crashes
+  c.state(ProcessState::kGone);
+  EXPECT_TRUE(ends(another));
+}
+
+TEST(Supervisor, ADeviceThatSuchAChildHeldIsFreeForTheSuccessor) {
+  const std::string robot = "test/device/" + std::to_string(getpid());
+  const test::TestFolder folder;
+  Supervised c("sh -c 'exec 9>" + (folder / "device").string() +
+                   "; flock -n 9 || { echo busy; exit 7; }; setsid sleep 1000 & echo mine; wait'",
+               robot);
+  c.start();
+  c.log_when("mine");
+  EXPECT_EQ(c.stop_to_start_again().outcome, Outcome::kDone);
+  c.start();
+  EXPECT_EQ(c.log_when("mine\nmine").find("busy"), std::string::npos);
+}
+
+// As above, and it forgets whose it is.
+TEST(Supervisor, EndsWhatHasClearedItsEnvironment) {
+  const std::string robot = "test/cleared/" + std::to_string(getpid());
+  Supervised c("sh -c 'setsid env -i sleep 1000 & echo daemon $!; wait'", robot);
+  c.start();
+  const std::string log = c.log_when("daemon ");
+  const int daemon = std::stoi(log.substr(log.find("daemon ") + 7));
+  ASSERT_TRUE(becomes(daemon, "sleep"));
+  c.stop();
+  for (int tries = 0; tries < 1000 && is_alive(daemon); ++tries) std::this_thread::sleep_for(10ms);
+  EXPECT_FALSE(is_alive(daemon));
+}
+
+// A launch command may make a daemon and end: then that is the node.
+TEST(Supervisor, WhatAProcessLeftThatEndedByItselfGoesOnUntilTheComponentIsStarted) {
+  const std::string robot = "test/daemon/" + std::to_string(getpid());
+  Supervised c("sh -c 'setsid sleep 1000 & echo daemon $!; sleep 0.2'", robot);
+  c.start();
+  const std::string log = c.log_when("daemon ");
+  const int daemon = std::stoi(log.substr(log.find("daemon ") + 7));
+  c.state(ProcessState::kGone);
+  EXPECT_TRUE(is_alive(daemon));
   EXPECT_NE(c.start(), daemon) << "the component runs no more, so it can be started";
-  kill(daemon, SIGKILL);
+  for (int tries = 0; tries < 1000 && is_alive(daemon); ++tries) std::this_thread::sleep_for(10ms);
+  EXPECT_FALSE(is_alive(daemon)) << "beside its successor";
+}
+
+// A component may be a culprit of its own, with components.
+TEST(Supervisor, LeavesTheComponentsOfAnotherCulpritAlone) {
+  const std::string robot = "test/inner/" + std::to_string(getpid());
+  const test::TestFolder folder;
+  const std::string script = (folder / "inner.sh").string();
+  std::ofstream(script) << "export CULPRIT_COMPONENT=inner/x CULPRIT_PROCESS=$$\nexec sleep 1000\n";
+  Supervised c("sh -c 'setsid sh " + script + " & echo inner $!; wait'", robot);
+  c.start();
+  const std::string log = c.log_when("inner ");
+  const int inner = std::stoi(log.substr(log.find("inner ") + 6));
+  ASSERT_TRUE(becomes(inner, "sleep"));
+  c.stop();
+  EXPECT_TRUE(is_alive(inner));
+  end(inner);
 }
 
 TEST(Supervisor, AdoptsAProcessAgainOnlyIfItIsTheSameOne) {
@@ -934,15 +1020,6 @@ int start_by_others(const std::string& command) {
   close(told[1]);
   waitpid(between, nullptr, 0);
   return pid;
-}
-
-bool becomes(int pid, const std::string& program) {
-  for (int tries = 0; tries < 3000; ++tries) {
-    const auto identity = identity_of(pid);
-    if (identity && identity->program.ends_with(program)) return true;
-    std::this_thread::sleep_for(10ms);
-  }
-  return false;
 }
 
 TEST(Supervisor, EndsAndStartsAgainWhatCanBeStartedAgain) {

@@ -8,6 +8,7 @@
 #include "ros2/process_finder.h"
 #include "ros2/type_description.h"
 #include "rtps/origins.h"
+#include "rtps/own_addresses.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -35,12 +36,25 @@ Graph::Options Context::with_context(Graph::Options options) {
     if (left != nullptr && left->kind == EndpointKind::kServer) on_server_left(left->name);
     if (listener) listener(change);
   };
+  options.source_of = [this](const ParticipantInfo& info) { return source_of(info); };
   if (options.find_process) {
     options.find_process = [this, find = std::move(options.find_process)](ParticipantInfo info) {
       return this->find_process(find, std::move(info));
     };
   }
   return options;
+}
+
+// Behind a discovery server all come from one address.
+std::string Context::source_of(const ParticipantInfo& info) const {
+  if (has_server_) return "";
+  const std::vector<UdpAddress> from = participant_->origin_of(info.guid.prefix()).addresses;
+  if (from.empty()) return "unknown";
+  const auto& ip = from.front().ip;
+  if (ip[0] == 127 || own_addresses().contains(ip)) return "";
+  std::string text;
+  for (const std::uint8_t part : ip) text += (text.empty() ? "" : ".") + std::to_string(part);
+  return text;
 }
 
 // To look through the sockets and processes of a machine takes a millisecond or more. A socket changes
@@ -73,6 +87,7 @@ FoundProcess Context::find_process(const Graph::FindProcess& find, ParticipantIn
 
 Expected<void> Context::open(const ParticipantOptions& options) {
   gid_size_ = options.gid_size;
+  has_server_ = !options.servers.empty();
   auto participant =
       Participant::create(options, [this](DiscoveryEvent event) { hear(std::move(event)); });
   if (!participant) return Error{participant.error()};
@@ -158,6 +173,18 @@ void Context::forget_process(int pid) {
 
 void Context::forget_ended_namesakes() {
   tasks_.post([this] { graph_.forget_ended_namesakes(); });
+}
+
+void Context::believe_left(const std::string& node) {
+  tasks_.post([this, node] { graph_.believe_left(node); });
+}
+
+void Context::note_proven_here(const std::string& node) {
+  tasks_.post([this, node] { graph_.note_proven_here(node); });
+}
+
+void Context::look_at_unproven() {
+  tasks_.post([this] { graph_.look_at_unproven(); });
 }
 
 void Context::watch_servers(const void* owner, std::string service, std::function<void()> on_left) {

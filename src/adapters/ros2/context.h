@@ -55,6 +55,10 @@ class Context {
   void forget_process(int pid);
   // The same for each process that has ended and claims a name that others claim too.
   void forget_ended_namesakes();
+  // As those of the graph. From any thread.
+  void believe_left(const std::string& node);
+  void note_proven_here(const std::string& node);
+  void look_at_unproven();
 
   // Calls `on_left` on the executor's thread, before the graph's listener hears of it, whenever a
   // server of `service` leaves the graph, until it is told to stop. `on_left` must not call back
@@ -72,6 +76,7 @@ class Context {
 
   Context(Executor& executor, Graph::Options graph);
   Graph::Options with_context(Graph::Options options);
+  std::string source_of(const ParticipantInfo& info) const;
   FoundProcess find_process(const Graph::FindProcess& find, ParticipantInfo info);
   Expected<void> open(const ParticipantOptions& options);
   Expected<void> listen_to_infos();
@@ -101,6 +106,7 @@ class Context {
   Graph graph_;
   std::optional<GidSize> gid_size_;
   bool is_deciding_ = false;
+  bool has_server_ = false;
   std::set<GuidPrefix> lost_;  // participants whose leases ran out
   bool is_listening_anew_ = false;
   DiscoveryCallback discovery_listener_;  // may be empty

@@ -71,8 +71,51 @@ void Graph::apply(const DiscoveryInfo& info, std::optional<GidSize> form) {
   looked_for_ = nullptr;
   const Claims before = std::exchange(peer.claims, {});
   for (const auto& [name, guids] : before) claim_count_ -= guids.size();
+  sources_[peer.source].names -= before.size();
   Claims after = read_claims(info, peer);
+  keep_doubted(prefix, peer, before, after);
+  sources_[peer.source].names += after.size();
+  replace_claims(prefix, peer, before, std::move(after));
+}
 
+// A single message ends nothing that somebody acts on.
+void Graph::keep_doubted(const GuidPrefix& prefix, Peer& peer, const Claims& before,
+                         Claims& after) {
+  if (!options_.is_asked_about) return;
+  std::erase_if(peer.doubted, [&](const std::string& name) { return after.contains(name); });
+  for (const auto& [name, guids] : before) {
+    const auto node = nodes_.find(name);
+    const bool counts = node != nodes_.end() && node->second.told == prefix;
+    if (after.contains(name) || !counts || !options_.is_asked_about(name)) continue;
+    after.emplace(name, guids);
+    claim_count_ += guids.size();
+    if (peer.doubted.insert(name).second) tell(NodeSaidToLeave{name});
+  }
+}
+
+void Graph::believe_left(const std::string& name) {
+  const auto node = nodes_.find(name);
+  if (node == nodes_.end() || !node->second.told) return;
+  const GuidPrefix prefix = *node->second.told;
+  Peer& peer = peers_.at(prefix);
+  if (peer.doubted.erase(name) == 0) return;  // it came back, or it is another one
+  looked_for_ = nullptr;
+  const Claims before = peer.claims;
+  Claims after = before;
+  claim_count_ -= after.at(name).size();
+  after.erase(name);
+  --sources_[peer.source].names;
+  replace_claims(prefix, peer, before, std::move(after));
+}
+
+bool Graph::is_said_to_leave(const std::string& name) const {
+  const auto node = nodes_.find(name);
+  return node != nodes_.end() && node->second.told &&
+         peers_.at(*node->second.told).doubted.contains(name);
+}
+
+void Graph::replace_claims(const GuidPrefix& prefix, Peer& peer, const Claims& before,
+                           Claims after) {
   const auto is_claimed = [](const Claims& claims, const std::string& name, const Guid& guid) {
     const auto node = claims.find(name);
     return node != claims.end() && node->second.contains(guid);
@@ -113,7 +156,9 @@ Graph::Claims Graph::read_claims(const DiscoveryInfo& info, Peer& peer) {
     if (claims.contains(*name) && !std::exchange(peer.told_of_duplicate, true)) {
       tell(GraphTrouble{"one process holds two nodes with the name " + *name});
     }
-    if (!nodes_.contains(*name) && nodes_.size() + ++new_nodes > options_.limits.nodes) {
+    const bool is_more = !nodes_.contains(*name) && !is_component(*name);
+    if (is_more && (nodes_.size() + ++new_nodes > options_.limits.nodes ||
+                    !has_room(peer.source, &Source::names, options_.limits.nodes, claims.size()))) {
       warn_of_limit("nodes");
       break;
     }
@@ -139,8 +184,16 @@ void Graph::add(const ParticipantInfo& info) {
     known->second.info = info;
     return;
   }
-  if (peers_.size() >= options_.limits.participants) return warn_of_limit("participants");
-  peers_[prefix].info = info;
+  const std::string source = options_.source_of ? options_.source_of(info) : "";
+  const bool is_full = peers_.size() >= options_.limits.participants;
+  if (!has_room(source, &Source::participants, options_.limits.participants) &&
+      !(is_full && source.empty() && make_room()))
+    return warn_of_limit("participants");
+  Peer& peer = peers_[prefix];
+  peer.info = info;
+  peer.source = source;
+  peer.number = ++last_number_;
+  ++sources_[source].participants;
 }
 
 void Graph::add(const EndpointInfo& info) {
@@ -150,10 +203,11 @@ void Graph::add(const EndpointInfo& info) {
     if (known->info.topic == info.topic && known->info.type == info.type)
       return;  // only its QoS or user data
     hide(info.guid);
-  } else if (endpoint_count_ >= options_.limits.endpoints) {
+  } else if (!has_room(peer->second.source, &Source::endpoints, options_.limits.endpoints)) {
     return warn_of_limit("endpoints");
   } else {
     ++endpoint_count_;
+    ++sources_[peer->second.source].endpoints;
   }
   peer->second.endpoints.insert_or_assign(info.guid, Endpoint{info, ros_meaning(info)});
   show(info.guid);
@@ -164,8 +218,15 @@ void Graph::remove_participant(const GuidPrefix& prefix) {
   const auto found = peers_.find(prefix);
   if (found == peers_.end()) return;
   // As if it had said that it holds nothing, and then left.
-  apply(DiscoveryInfo{found->second.info.guid, {}});
-  endpoint_count_ -= found->second.endpoints.size();
+  Peer& peer = found->second;
+  const Claims before = std::exchange(peer.claims, {});
+  for (const auto& [name, guids] : before) claim_count_ -= guids.size();
+  replace_claims(prefix, peer, before, {});
+  endpoint_count_ -= peer.endpoints.size();
+  const auto source = sources_.find(peer.source);
+  source->second.names -= before.size();
+  source->second.endpoints -= peer.endpoints.size();
+  if (--source->second.participants == 0) sources_.erase(source);
   peers_.erase(found);
 }
 
@@ -199,13 +260,18 @@ void Graph::forget_ended_namesakes() {
 void Graph::remove_endpoint(const Guid& guid) {
   if (find(guid) == nullptr) return;
   hide(guid);
-  peers_.at(guid.prefix()).endpoints.erase(guid);
+  Peer& peer = peers_.at(guid.prefix());
+  peer.endpoints.erase(guid);
   --endpoint_count_;
+  --sources_[peer.source].endpoints;
 }
 
 void Graph::claim(const GuidPrefix& prefix, const std::string& name) {
   Node& node = nodes_[name];
+  Peer& peer = peers_.at(prefix);
   node.claimants.push_back(prefix);
+  if (options_.is_kept_here && proven_here_.contains(name)) look_for_process(peer);
+  if (!may_hold(name, peer)) return tell_of_stranger(name, peer);
   if (node.told) {
     warn_of_duplicate(name, node);
     // First, so that its leaving is no loss; and again below, when more is known of who came.
@@ -229,6 +295,36 @@ void Graph::disclaim(const GuidPrefix& prefix, const std::string& name) {
   }
   if (!node.told) tell_joined(name, node);
   count_namesakes(name, node);
+}
+
+bool Graph::may_hold(const std::string& name, const Peer& peer) const {
+  return !proven_here_.contains(name) || peer.pid != 0 || peer.is_trusted || peer.info.is_secured;
+}
+
+void Graph::note_proven_here(const std::string& name) {
+  if (options_.is_kept_here && options_.is_kept_here(name)) proven_here_.insert(name);
+}
+
+void Graph::look_at_unproven() {
+  constexpr int kMost = 8;  // each may take a millisecond or more
+  int looked_at = 0;
+  std::vector<std::pair<std::string, GuidPrefix>> proven;
+  for (const std::string& name : proven_here_) {
+    const auto node = nodes_.find(name);
+    if (node == nodes_.end()) continue;
+    for (auto claimant = node->second.claimants.rbegin(); claimant != node->second.claimants.rend();
+         ++claimant) {
+      Peer& peer = peers_.at(*claimant);
+      if (may_hold(name, peer) || peer.missing.empty() || ++looked_at > kMost) continue;
+      looked_for_ = nullptr;
+      look_for_process(peer);
+      if (may_hold(name, peer)) proven.emplace_back(name, *claimant);
+    }
+  }
+  for (const auto& [name, prefix] : proven) {
+    std::erase(nodes_.at(name).claimants, prefix);
+    claim(prefix, name);
+  }
 }
 
 void Graph::show(const Guid& guid) {
@@ -261,9 +357,16 @@ Graph::Node* Graph::holder_of(const Guid& guid) {
 }
 
 void Graph::tell_joined(const std::string& name, Node& node) {
-  node.told = node.claimants.back();
+  const auto last =
+      std::find_if(node.claimants.rbegin(), node.claimants.rend(),
+                   [&](const GuidPrefix& claimant) { return may_hold(name, peers_.at(claimant)); });
+  if (last == node.claimants.rend()) return;
+  node.told = *last;
   Peer& peer = peers_.at(*node.told);
-  look_for_process(name, peer);
+  look_for_process(peer);
+  tell_of_missing(name, peer);
+  if (peer.pid != 0) note_proven_here(name);
+  count_component(node, is_component(name));
   tell(NodeJoined{describe(name, peer)});
   // Those that were known before: an older node of the name comes to count again.
   const auto claimed = peer.claims.find(name);
@@ -277,6 +380,7 @@ void Graph::tell_joined(const std::string& name, Node& node) {
 void Graph::tell_left(const std::string& name, Node& node) {
   for (const auto& [key, edge] : node.edges) tell(EndpointLeft{name, key.first, key.second});
   node.edges.clear();
+  count_component(node, false);
   node.told.reset();
   tell(NodeLeft{name, is_losing_});
 }
@@ -301,16 +405,16 @@ bool Graph::has_ended(const Peer& peer) const {
 
 // For a node that it comes to hold, of several at once for the first. Of an ended process nothing can be proven
 // any more: what was known of it stays known.
-void Graph::look_for_process(const std::string& name, Peer& peer) {
+void Graph::look_for_process(Peer& peer) {
   const bool is_next = std::exchange(looked_for_, &peer) == &peer;
   if (!is_next && options_.find_process && (peer.pid == 0 || !has_ended(peer))) {
     FoundProcess found = options_.find_process(peer.info);
     peer.pid = found.pid;
     peer.pid_is_known = true;
     peer.missing = std::move(found.missing);
+    peer.is_trusted = found.is_trusted;
     if (peer.missing.empty()) peer.told_missing.clear();
   }
-  tell_of_missing(name, peer);
 }
 
 // Once for all nodes of a process, by the first one that lacks it.
@@ -322,14 +426,22 @@ void Graph::tell_of_missing(const std::string& name, Peer& peer) {
   peer.told_missing = peer.missing;
 }
 
+void Graph::tell_of_stranger(const std::string& name, Peer& peer) {
+  if (std::exchange(peer.told_of_stranger, true)) return;
+  tell(GraphTrouble{where(describe(name, peer)) + " claims the name " + name +
+                    ", which a process of this computer is proven to have, or had: it does not "
+                    "count. If the node was moved "
+                    "there, declare its HOST"});
+}
+
 GraphNode Graph::describe(const std::string& name, const Peer& peer) const {
-  return {name, peer.info.vendor, peer.info.host, peer.pid};
+  return {name, peer.info.vendor, peer.info.host, peer.pid, peer.info.guid.prefix()};
 }
 
 // Hidden nodes are what people look with, and several may look at once.
 void Graph::warn_of_duplicate(const std::string& name, const Node& node) {
   if (own_name(name).starts_with('_')) return;
-  Peer& older = peers_.at(node.claimants[node.claimants.size() - 2]);
+  Peer& older = peers_.at(*node.told);
   Peer& newer = peers_.at(node.claimants.back());
   pid_of(older);
   if (has_ended(older)) return;  // a restart
@@ -344,12 +456,58 @@ void Graph::count_namesakes(const std::string& name, Node& node) {
   for (const GuidPrefix& claimant : node.claimants) {
     Peer& peer = peers_.at(claimant);
     if (claimant != node.told) pid_of(peer);
+    if (!may_hold(name, peer)) continue;
     const bool is_gone = claimant != node.told && has_ended(peer);
     if (!is_gone) all.push_back(describe(name, peer));
   }
-  const int others = static_cast<int>(all.size()) - 1;
+  const int others = std::max(static_cast<int>(all.size()) - 1, 0);
   if (std::exchange(node.namesakes, others) != others)
     tell(NodeNamesakes{name, others, std::move(all)});
+}
+
+bool Graph::is_component(const std::string& name) const {
+  return options_.is_component && options_.is_component(name);
+}
+
+// @pre node.told
+void Graph::count_component(Node& node, bool is_one) {
+  if (std::exchange(node.is_counted, is_one) == is_one) return;
+  std::size_t& count = sources_[peers_.at(*node.told).source].components;
+  count = is_one ? count + 1 : count - 1;
+}
+
+// Whether `source` may have one more, beside `more`.
+bool Graph::has_room(const std::string& source, std::size_t Source::*what, std::size_t limit,
+                     std::size_t more) const {
+  std::size_t all = more;
+  std::size_t of_strangers = more;
+  std::size_t of_this = more;
+  bool is_stranger = !source.empty();
+  for (const auto& [name, each] : sources_) {
+    all += each.*what;
+    const bool is_known = name.empty() || each.components > 0;
+    if (!is_known) of_strangers += each.*what;
+    if (name != source) continue;
+    of_this += each.*what;
+    is_stranger = !is_known;
+  }
+  if (all >= limit) return false;
+  return !is_stranger || (of_strangers < std::max<std::size_t>(limit / 2, 1) &&
+                          of_this < std::max<std::size_t>(limit / 4, 1));
+}
+
+// A participant of this machine that is there for longest without any node goes. One of ROS 2 says what its nodes are at
+// once.
+bool Graph::make_room() {
+  const Peer* oldest = nullptr;
+  for (const auto& [prefix, peer] : peers_) {
+    if (!peer.source.empty() || !peer.claims.empty()) continue;
+    if (oldest == nullptr || peer.number < oldest->number) oldest = &peer;
+  }
+  if (oldest == nullptr) return false;
+  warn_of_limit("participants");
+  remove_participant(oldest->info.guid.prefix());
+  return true;
 }
 
 void Graph::warn_of_limit(const char* what) {
@@ -362,6 +520,18 @@ void Graph::warn_of_limit(const char* what) {
 const ParticipantInfo* Graph::participant(const GuidPrefix& prefix) const {
   const auto found = peers_.find(prefix);
   return found == peers_.end() ? nullptr : &found->second.info;
+}
+
+Graph::Owner Graph::owner_of(const Guid& endpoint) const {
+  Owner owner;
+  const auto peer = peers_.find(endpoint.prefix());
+  if (peer != peers_.end()) owner.pid = peer->second.pid;
+  const auto claimed = owners_.find(endpoint);
+  if (claimed == owners_.end()) return owner;
+  owner.node = claimed->second;
+  const auto node = nodes_.find(owner.node);
+  owner.counts = node != nodes_.end() && node->second.told == endpoint.prefix();
+  return owner;
 }
 
 int Graph::process_of(const GuidPrefix& prefix) const {
@@ -388,8 +558,9 @@ const EndpointInfo* Graph::endpoint(const Guid& guid) const {
 std::vector<Graph::NodeView> Graph::bare_nodes() const {
   std::vector<NodeView> views;
   views.reserve(nodes_.size());
-  for (const auto& [name, node] : nodes_)
-    views.push_back({describe(name, peers_.at(*node.told)), {}, *node.told});
+  for (const auto& [name, node] : nodes_) {
+    if (node.told) views.push_back({describe(name, peers_.at(*node.told)), {}, *node.told});
+  }
   return views;
 }
 

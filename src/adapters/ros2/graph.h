@@ -9,9 +9,15 @@
 // - Two nodes of one name: the one that came last is the node, for a restarted process comes while
 //   its killed predecessor's lease still runs (20 s). The change is told as a vanishing and an
 //   appearing, and as trouble unless the predecessor's process is known to be gone.
+// - Once a process of this machine was proven to hold a name that belongs here (is_kept_here), participants without such
+//   a proof hold it no more: neither as the node nor as its namesake, for anybody may claim a name. It is told once.
+// - A participant that says that it holds a node no more is not believed at once if that node is_asked_about: the
+//   listener is told (NodeSaidToLeave) and finds out. A participant that leaves takes its nodes with it.
 // - Names come from the network. Nodes whose names break the grammar are left out and told as
-//   trouble once for each participant; endpoints that are not ROS 2's are left out silently. Tables
-//   are capped.
+//   trouble once for each participant; endpoints that are not ROS 2's are left out silently.
+// - Tables are capped. Half of each is kept free for sources that are known: this machine, and those that hold a
+//   component. One source gets at most half of the other half. So a stranger who makes up participants does not keep
+//   the robot's from being seen. On this machine one that holds no node makes room for another.
 //
 // A pure data structure: fed by one thread, no I/O, no clock.
 #pragma once
@@ -52,8 +58,9 @@ struct GraphEndpoint {
 struct GraphNode {
   std::string name;  // full: "/namespace/name"
   Vendor vendor = Vendor::kOther;
-  std::string host;  // empty where the participant does not say
-  int pid = 0;       // on this machine; 0 where it is not known
+  std::string host;          // empty where the participant does not say
+  int pid = 0;               // on this machine; 0 where it is not known
+  GuidPrefix participant{};  // that holds it
 };
 
 // The process of a participant, as far as it is proven.
@@ -63,6 +70,7 @@ struct FoundProcess {
   std::string missing;
   // It was on this machine, and sockets that it had are nobody's any more.
   bool has_ended = false;
+  bool is_trusted = false;  // not proven, but root or our own user made each of its sockets here
 };
 
 struct NodeJoined {
@@ -87,11 +95,15 @@ struct NodeNamesakes {
   int others = 0;
   std::vector<GraphNode> all;  // of them and the one that counts, the newest last
 };
+// The node is still there for the graph: somebody said in the name of its participant that it is not.
+struct NodeSaidToLeave {
+  std::string node;
+};
 struct GraphTrouble {
   std::string text;
 };
-using GraphChange =
-    std::variant<NodeJoined, NodeLeft, EndpointJoined, EndpointLeft, NodeNamesakes, GraphTrouble>;
+using GraphChange = std::variant<NodeJoined, NodeLeft, EndpointJoined, EndpointLeft, NodeNamesakes,
+                                 NodeSaidToLeave, GraphTrouble>;
 
 class Graph {
  public:
@@ -106,6 +118,13 @@ class Graph {
   using IsRunning = std::function<bool(int pid)>;
   // Whether somebody else ends what this node runs in: then nothing is missing without a proof.
   using IsEndedByOthers = std::function<bool(const std::string& node)>;
+  // Whether only a process of this machine may hold a node of this name, once one was proven to.
+  using IsKeptHere = std::function<bool(const std::string& node)>;
+  // Whether it is known from elsewhere that there is a node of this name: it always has room.
+  using IsComponent = std::function<bool(const std::string& node)>;
+  // Where the datagrams of a participant come from; empty: this machine.
+  using SourceOf = std::function<std::string(const ParticipantInfo&)>;
+  using IsAskedAbout = std::function<bool(const std::string& node)>;
   using Listener = std::function<void(const GraphChange&)>;  // must not call back into the graph
 
   struct Options {
@@ -113,6 +132,10 @@ class Graph {
     FindProcess find_process;            // may be empty
     IsRunning is_running;                // may be empty
     IsEndedByOthers is_ended_by_others;  // may be empty
+    IsKeptHere is_kept_here{};           // may be empty
+    IsAskedAbout is_asked_about{};       // may be empty
+    IsComponent is_component{};          // may be empty
+    SourceOf source_of{};                // empty: all are of this machine
     Limits limits;
   };
 
@@ -127,11 +150,27 @@ class Graph {
   // operating system can tell: by their processes, or by their sockets where those are not proven.
   void forget_ended_namesakes();
 
+  // It was found out that what was told as NodeSaidToLeave is so.
+  void believe_left(const std::string& node);
+  // Whether that was told, and it is neither believed nor taken back.
+  bool is_said_to_leave(const std::string& node) const;
+  // A process of this machine was proven to hold this name before.
+  void note_proven_here(const std::string& node);
+  // Looks again at who claims a name without a proof: a process may be proven later than its node is heard of.
+  void look_at_unproven();
+
   // Null when they are not known (any more).
   const ParticipantInfo* participant(const GuidPrefix& prefix) const;
   const EndpointInfo* endpoint(const Guid& guid) const;
   // The endpoints that publish the topic, each with its node.
   std::vector<std::pair<Guid, std::string>> publishers_of(const std::string& topic) const;
+  // The owner of an endpoint: no node, while none claims it.
+  struct Owner {
+    std::string node;
+    int pid = 0;          // on this machine, as far as it is proven
+    bool counts = false;  // of those that claim the node's name it is the one that counts
+  };
+  Owner owner_of(const Guid& endpoint) const;
   // Its process on this machine; 0: it is elsewhere, or not proven, or not known.
   int process_of(const GuidPrefix& prefix) const;
 
@@ -175,11 +214,23 @@ class Graph {
     bool pid_is_known = false;
     std::string missing;       // for a proof of its process
     std::string told_missing;  // what was told of last
+    bool is_trusted = false;
+    std::set<std::string> doubted;  // nodes that it is said to hold no more
+    bool told_of_stranger = false;
+    std::string source;
+    std::uint64_t number = 0;  // in the order in which they came
     bool told_of_invalid_name = false;
     bool told_of_duplicate = false;
     std::optional<GidSize> form;
     Claims claims;
     std::unordered_map<Guid, Endpoint> endpoints;
+  };
+  // The entries of one source.
+  struct Source {
+    std::size_t participants = 0;
+    std::size_t names = 0;      // that they claim
+    std::size_t endpoints = 0;  // discovered
+    std::size_t components = 0;
   };
   using EdgeKey = std::pair<EndpointKind, std::string>;
   struct Edge {
@@ -187,10 +238,11 @@ class Graph {
     int count = 0;  // of the endpoints that make it
   };
   struct Node {
-    std::vector<GuidPrefix> claimants;  // who says it holds this node; the last one counts
+    std::vector<GuidPrefix> claimants;  // who says it holds this node; the last one that may counts
     std::optional<GuidPrefix> told;     // whose node the listener knows
     std::map<EdgeKey, Edge> edges;      // that the listener knows
     int namesakes = 0;                  // that the listener knows
+    bool is_counted = false;            // Source::components, of `told`
   };
 
   void add(const ParticipantInfo& info);
@@ -199,6 +251,8 @@ class Graph {
   void remove_endpoint(const Guid& guid);
 
   Claims read_claims(const DiscoveryInfo& info, Peer& peer);
+  void keep_doubted(const GuidPrefix& prefix, Peer& peer, const Claims& before, Claims& after);
+  void replace_claims(const GuidPrefix& prefix, Peer& peer, const Claims& before, Claims after);
   void claim(const GuidPrefix& prefix, const std::string& name);
   void disclaim(const GuidPrefix& prefix, const std::string& name);
   // The edge that an endpoint makes, if it is discovered, and claimed by a node that counts.
@@ -211,23 +265,33 @@ class Graph {
   const Endpoint* find(const Guid& guid) const;
   int pid_of(Peer& peer);
   bool has_ended(const Peer& peer) const;
-  void look_for_process(const std::string& name, Peer& peer);
+  void look_for_process(Peer& peer);
+  bool may_hold(const std::string& name, const Peer& peer) const;
+  void tell_of_stranger(const std::string& name, Peer& peer);
   void tell_of_missing(const std::string& name, Peer& peer);
   GraphNode describe(const std::string& name, const Peer& peer) const;
   void warn_of_duplicate(const std::string& name, const Node& node);
   void count_namesakes(const std::string& name, Node& node);
   void warn_of_limit(const char* what);
+  bool is_component(const std::string& name) const;
+  bool has_room(const std::string& source, std::size_t Source::*what, std::size_t limit,
+                std::size_t more = 0) const;
+  bool make_room();
+  void count_component(Node& node, bool is_one);
   void tell(const GraphChange& change) const;
 
   Options options_;
   std::unordered_map<GuidPrefix, Peer> peers_;
+  std::map<std::string, Source> sources_;
+  std::uint64_t last_number_ = 0;                 // of a participant
   std::size_t endpoint_count_ = 0;                // discovered, of all peers
   std::size_t claim_count_ = 0;                   // claimed, of all peers
   std::unordered_map<Guid, std::string> owners_;  // endpoint -> the node that claims it
   std::map<std::string, Node> nodes_;
-  std::set<const char*> exceeded_;    // limits that trouble was told of
-  bool is_losing_ = false;            // who leaves now said no good-bye
-  const Peer* looked_for_ = nullptr;  // whose process was looked for last, in one change
+  std::set<std::string> proven_here_;  // names that are kept here, and were proven to be held here
+  std::set<const char*> exceeded_;     // limits that trouble was told of
+  bool is_losing_ = false;             // who leaves now said no good-bye
+  const Peer* looked_for_ = nullptr;   // whose process was looked for last, in one change
 };
 
 }  // namespace culprit::ros2

@@ -1,6 +1,7 @@
 #include "ros2/graph.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include <gmock/gmock.h>
@@ -68,6 +69,14 @@ class Watched {
     graph_.forget_process(pid);
     return *this;
   }
+  Watched& is_found_to_have_left(const std::string& node) {
+    graph_.believe_left(node);
+    return *this;
+  }
+  Watched& looks_at_unproven() {
+    graph_.look_at_unproven();
+    return *this;
+  }
   Watched& looks_for_ended_namesakes() {
     graph_.forget_ended_namesakes();
     return *this;
@@ -120,6 +129,7 @@ class Watched {
       return "-" + c->node + " " + kind(c->kind) + c->name;
     if (const auto* c = std::get_if<NodeNamesakes>(&change))
       return "=" + c->node + " has " + std::to_string(c->others) + " namesakes";
+    if (const auto* c = std::get_if<NodeSaidToLeave>(&change)) return "?-" + c->node;
     return "!" + std::get<GraphTrouble>(change).text;
   }
 
@@ -404,6 +414,153 @@ TEST(Graph, AnEndedProcessIsGoneAtOnce) {
   EXPECT_THAT(watched.told(), IsEmpty());
 }
 
+// One message says that the camera is no more. Whoever acts on that finds out first.
+TEST(Graph, ANodeThatIsAskedAboutStaysUntilItIsFoundToHaveLeft) {
+  Graph::Options options;
+  options.is_asked_about = [](const std::string& node) { return node == "/camera"; };
+  Watched watched(options);
+  const NodeEntities camera = node("/", "camera", {writer(1, 1)});
+  watched.joins(1)
+      .says(1, {camera, node("/", "other")})
+      .has(publishes(writer(1, 1), "/rgb"))
+      .told();
+  watched.says(1, {});
+  EXPECT_THAT(watched.told(), ElementsAre("?-/camera", "-/other"));
+  watched.says(1, {});
+  EXPECT_THAT(watched.told(), IsEmpty()) << "once";
+  EXPECT_TRUE(watched.graph().is_said_to_leave("/camera"));
+  EXPECT_EQ(watched.graph().nodes().at(0).endpoints.size(), 1u);
+
+  watched.says(1, {camera});
+  EXPECT_FALSE(watched.graph().is_said_to_leave("/camera"));
+  watched.is_found_to_have_left("/camera");
+  EXPECT_THAT(watched.told(), IsEmpty()) << "it said meanwhile that it is there";
+
+  watched.says(1, {}).is_found_to_have_left("/camera");
+  EXPECT_THAT(watched.told(), ElementsAre("?-/camera", "-/camera publishes /rgb", "-/camera"));
+  watched.says(1, {camera});
+  EXPECT_THAT(watched.told(), ElementsAre("+/camera", "+/camera publishes /rgb"));
+  watched.leaves(1);
+  EXPECT_THAT(watched.told(), ElementsAre("-/camera publishes /rgb", "-/camera"))
+      << "the participant takes its nodes with it";
+}
+
+// Anybody may claim a name. Of a process of this machine there is proof.
+TEST(Graph, AClaimOfAStrangerIsNeitherTheNodeNorItsNamesake) {
+  std::map<int, FoundProcess> found = {
+      {10, {10, ""}}, {20, {0, "nobody here has it"}}, {30, {30, ""}}};
+  std::set<int> running = {10, 30};
+  Graph::Options options;
+  options.find_process = [&](const ParticipantInfo& info) { return found[info.pid]; };
+  options.is_running = [&](int pid) { return running.contains(pid); };
+  options.is_kept_here = [](const std::string& node) { return node == "/camera"; };
+  Watched watched(options);
+  watched.joins(1, 10).says(1, {node("/", "camera")}).told();
+  watched.joins(2, 20).says(2, {node("/", "camera")});
+  EXPECT_THAT(watched.told(), ElementsAre(HasSubstr("claims the name /camera")));
+  running.erase(10);
+  watched.leaves(1);
+  EXPECT_THAT(watched.told(), ElementsAre("-/camera")) << "the stranger does not take its place";
+  EXPECT_THAT(watched.graph().nodes(), IsEmpty());
+  EXPECT_THAT(watched.graph().bare_nodes(), IsEmpty());
+  watched.joins(3, 30).says(3, {node("/", "camera")});
+  EXPECT_THAT(watched.told(), ElementsAre("+/camera in 30")) << "its successor, without a namesake";
+  watched.leaves(2).leaves(3);
+  EXPECT_THAT(watched.told(), ElementsAre("-/camera"));
+}
+
+TEST(Graph, WhoIsProvenLaterThanHeClaimsANameHoldsItThen) {
+  std::map<int, FoundProcess> found = {{10, {10, ""}}, {20, {0, "its datagrams are to come"}}};
+  Graph::Options options;
+  options.find_process = [&](const ParticipantInfo& info) { return found[info.pid]; };
+  options.is_running = [](int) { return true; };
+  options.is_kept_here = [](const std::string&) { return true; };
+  Watched watched(options);
+  watched.joins(1, 10).says(1, {node("/", "camera")}).leaves(1);
+  watched.joins(2, 20).says(2, {node("/", "camera")}).told();
+  found[20] = {20, ""};
+  watched.looks_at_unproven();
+  EXPECT_THAT(watched.told(), ElementsAre("+/camera in 20"));
+  watched.looks_at_unproven();
+  EXPECT_THAT(watched.told(), IsEmpty());
+}
+
+// As in a container whose files culprit may not see.
+TEST(Graph, RootsProcessesNeedNoProofToHoldAName) {
+  std::map<int, FoundProcess> found = {{10, {10, ""}}, {20, {0, "of another user", false, true}}};
+  Graph::Options options;
+  options.find_process = [&](const ParticipantInfo& info) { return found[info.pid]; };
+  options.is_running = [](int) { return true; };
+  options.is_kept_here = [](const std::string&) { return true; };
+  Watched watched(options);
+  watched.joins(1, 10).says(1, {node("/", "camera")}).leaves(1).told();
+  watched.joins(2, 20).says(2, {node("/", "camera")});
+  EXPECT_THAT(watched.told(), Contains("+/camera"));
+}
+
+// The stranger has participants 100 and up.
+Graph::Options with_strangers(Graph::Limits limits) {
+  Graph::Options options;
+  options.limits = limits;
+  options.source_of = [](const ParticipantInfo& info) {
+    const std::uint8_t number = info.guid.bytes[0];
+    return number >= 100 ? "10.0.0.9" : number >= 50 ? "10.0.0.5" : "";
+  };
+  options.is_component = [](const std::string& node) { return node == "/camera"; };
+  return options;
+}
+
+TEST(Graph, AStrangersParticipantsLeaveRoomForTheRobots) {
+  Watched watched(with_strangers({.participants = 40, .nodes = 40, .endpoints = 40}));
+  for (std::uint8_t i = 100; i < 200; ++i)
+    watched.joins(i)
+        .says(i, {node("/", "n" + std::to_string(i), {writer(i, 1)})})
+        .has(publishes(writer(i, 1), "/t"));
+  EXPECT_EQ(watched.graph().participants().size(), 10u);
+  watched.told();
+  watched.joins(50).says(50, {node("/", "camera")});
+  EXPECT_THAT(watched.told(), ElementsAre("+/camera"));
+  for (std::uint8_t i = 51; i < 65; ++i) watched.joins(i);
+  EXPECT_EQ(watched.graph().participants().size(), 25u) << "a computer with a component is known";
+  for (std::uint8_t i = 1; i <= 15; ++i)
+    watched.joins(i).says(i, {node("/", "own" + std::to_string(i))});
+  EXPECT_EQ(watched.graph().participants().size(), 40u);
+  EXPECT_EQ(watched.graph().nodes().size(), 26u);
+}
+
+TEST(Graph, AStrangersNodesAndEndpointsLeaveRoomForTheRobots) {
+  Watched watched(with_strangers({.participants = 40, .nodes = 8, .endpoints = 8}));
+  std::vector<NodeEntities> many;
+  std::vector<Guid> endpoints;
+  for (std::uint8_t i = 1; i <= 20; ++i) {
+    endpoints.push_back(writer(100, i));
+    many.push_back(node("/", "n" + std::to_string(i), {endpoints.back()}));
+  }
+  watched.joins(100).says(100, many);
+  for (const Guid& guid : endpoints) watched.has(publishes(guid, "/t"));
+  EXPECT_EQ(watched.graph().nodes().size(), 2u);
+  watched.told();
+  watched.joins(1)
+      .says(1, {node("/", "a", {writer(1, 1)}), node("/", "camera", {writer(1, 2)})})
+      .has(publishes(writer(1, 1), "/x"))
+      .has(publishes(writer(1, 2), "/y"));
+  EXPECT_THAT(watched.told(),
+              ElementsAre("+/a", "+/camera", "+/a publishes /x", "+/camera publishes /y"));
+}
+
+// Another user of this computer may make up as many.
+TEST(Graph, OnThisMachineOneWithoutNodesMakesRoom) {
+  Watched watched(with_strangers({.participants = 4, .nodes = 40, .endpoints = 40}));
+  watched.joins(1).says(1, {node("/", "a")});
+  for (std::uint8_t i = 2; i < 20; ++i) watched.joins(i);
+  watched.told();
+  watched.joins(30).says(30, {node("/", "camera")});
+  EXPECT_THAT(watched.told(), ElementsAre("+/camera"));
+  for (std::uint8_t i = 31; i < 40; ++i) watched.joins(i);
+  EXPECT_EQ(watched.graph().nodes().size(), 2u);
+  EXPECT_EQ(watched.graph().participants().size(), 4u);
+}
+
 TEST(Graph, OneProcessWithTwoNodesOfOneNameIsTroubleOnce) {
   Watched watched;
   watched.joins(1)
@@ -420,17 +577,17 @@ TEST(Graph, KeepsTrackOfALimitedNumber) {
   EXPECT_THAT(
       watched.told(),
       ElementsAre("!there are too many participants to keep track of; further ones are left out"));
-  watched.says(1, {node("/", "a"), node("/", "b"), node("/", "c"), node("/", "d")});
+  watched.says(3, {node("/", "a"), node("/", "b"), node("/", "c"), node("/", "d")});
   EXPECT_THAT(watched.told(),
               ElementsAre("!there are too many nodes to keep track of; further ones are left out",
                           "+/a", "+/b"));
-  watched.says(1, {node("/", "a", {writer(1, 1), writer(1, 2), writer(1, 3)})});
-  for (const std::uint8_t entity : {1, 2, 3, 4}) watched.has(publishes(writer(1, entity), "/t"));
+  watched.says(3, {node("/", "a", {writer(3, 1), writer(3, 2), writer(3, 3)})});
+  for (const std::uint8_t entity : {1, 2, 3, 4}) watched.has(publishes(writer(3, entity), "/t"));
   EXPECT_THAT(
       watched.told(),
       ElementsAre("!there are too many endpoints to keep track of; further ones are left out",
                   "-/b", "+/a publishes /t"));
-  watched.leaves(1)
+  watched.leaves(3)
       .joins(5)
       .says(5, {node("/", "e", {writer(5, 1)})})
       .has(publishes(writer(5, 1), "/t"));

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <string>
 #include <system_error>
+#include <unistd.h>
 
 #include "rtps/own_addresses.h"
 #include "rtps/process_sockets.h"
@@ -156,10 +157,19 @@ FoundProcess ProcessFinder::prove(const ParticipantInfo& participant,
   const int pid = oldest(
       participant.pid, [&](const fs::path& process) { return Holdings(process).has_all(needed); });
   if (pid != 0) return {pid, ""};
+  const auto is_trusted = [user = geteuid()](const UdpSocket& socket) {
+    return socket.user == 0 || socket.user == user;
+  };
+  const bool are_trusted = std::ranges::all_of(needed, [&](const Candidates& each) {
+    return each.is_exclusive ? std::ranges::all_of(each.sockets, is_trusted)
+                             : std::ranges::any_of(each.sockets, is_trusted);
+  });
   std::string all;
   for (const UdpAddress& each : addresses) all += (all.empty() ? "" : ", ") + to_text(each);
-  return {0, "no process whose files can be seen holds all of its sockets (" + all +
-                 ") alone; of another user's, culprit may see them only with CAP_SYS_PTRACE"};
+  return {0,
+          "no process whose files can be seen holds all of its sockets (" + all +
+              ") alone; of another user's, culprit may see them only with CAP_SYS_PTRACE",
+          false, are_trusted};
 }
 
 int ProcessFinder::speaker(const ParticipantInfo& participant) const {

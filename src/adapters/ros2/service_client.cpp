@@ -137,6 +137,18 @@ void ServiceClient::call(Bytes request, Repeat repeat, Duration timeout, Callbac
     call.hurry = std::make_unique<Participant::Hurry>(node_.context().participant());
 }
 
+void ServiceClient::ask_only(const GuidPrefix& participant) {
+  {
+    const MutexLock lock(mutex_);
+    if (only_ == participant) return;
+    only_ = participant;
+    if (proven_ && proven_->participant != participant) lose_proof();
+    std::erase_if(servers_, [&](const Server& each) { return each.participant != participant; });
+  }
+  if (probe_) probe_->ask_only(participant);
+  tasks_.post([this] { update_servers(); });
+}
+
 bool ServiceClient::is_ready() const {
   const MutexLock lock(mutex_);
   return server_for(Repeat::kNever) != nullptr;
@@ -193,6 +205,7 @@ void ServiceClient::on_reply(const Sample& sample) {
               : sample.related.writer == reader_id_ || sample.related.writer == writer_id_;
     const auto request = requests_.find(id);
     if (!is_ours || request == requests_.end()) return;
+    if (only_ && sample.identity.writer.prefix() != *only_) return;
     call = take(request->second);
   }
   call->callback({.outcome = CallOutcome::kAnswered,
@@ -235,6 +248,9 @@ void ServiceClient::update_servers() {
   }
   {
     const MutexLock lock(mutex_);
+    std::erase_if(by_age, [this](const auto& each) CULPRIT_REQUIRES(mutex_) {
+      return only_ && each.second.participant != *only_;
+    });
     const auto is_known = [](const std::vector<Server>& servers, const GuidPrefix& participant) {
       return std::ranges::find(servers, participant, &Server::participant) != servers.end();
     };

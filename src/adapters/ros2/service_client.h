@@ -92,6 +92,10 @@ class ServiceClient {
   // The client of the probe, for reads of one's own. Null without one.
   ServiceClient* probe() { return probe_.get(); }
 
+  // From now on only servers of this participant count, also for the probe: anybody may offer a service of the same name,
+  // and receives what is asked of it. An answer of others is none, and a call goes on waiting.
+  void ask_only(const GuidPrefix& participant);
+
  private:
   struct Server {
     GuidPrefix participant;
@@ -148,6 +152,7 @@ class ServiceClient {
   mutable Mutex mutex_;
   std::vector<Server> servers_
       CULPRIT_GUARDED_BY(mutex_);  // both endpoints matched; the newest last
+  std::optional<GuidPrefix> only_ CULPRIT_GUARDED_BY(mutex_);  // whose servers count; nothing: all
   std::optional<Server> proven_ CULPRIT_GUARDED_BY(mutex_);  // with a probe: the one that knows us
   std::uint64_t proof_round_ CULPRIT_GUARDED_BY(mutex_) =
       0;  // counts the times that a proof was lost

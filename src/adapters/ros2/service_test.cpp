@@ -89,6 +89,26 @@ TEST(Service, AnswersACall) {
   EXPECT_EQ(answers->all()[0].reply, request("hello"));
 }
 
+// Anybody may offer a service of that name. What he says is no answer, and keeps nobody from the true one.
+TEST(Service, TakesAnswersOnlyOfTheParticipantThatIsMeant) {
+  const TestDomain domain;
+  Side stranger(domain, "stranger"), robot(domain, "robot"), manager(domain, "manager");
+  const GuidPrefix meant = robot.context->participant().guid().prefix();
+  Echo forged(stranger.node);
+  const auto client = client_of(manager);
+  client->ask_only(meant);
+  const auto alone = call(*client, "hello", Repeat::kUntilAnswered, 500ms);
+  ASSERT_TRUE(alone->wait_for_count(1));
+  EXPECT_EQ(alone->all()[0].outcome, CallOutcome::kUnreachable);
+  const auto early = call(*client, "hello", Repeat::kUntilAnswered);
+  Echo echo(robot.node);
+  ASSERT_TRUE(early->wait_for_count(1));
+  EXPECT_EQ(early->all()[0].outcome, CallOutcome::kAnswered);
+  const auto later = call(*client, "again", Repeat::kNever);
+  ASSERT_TRUE(later->wait_for_count(1));
+  EXPECT_EQ(later->all()[0].outcome, CallOutcome::kAnswered);
+}
+
 TEST(Service, ACallWaitsForItsServer) {
   const TestDomain domain;
   Side robot(domain, "robot"), manager(domain, "manager");

@@ -74,7 +74,7 @@ Onset onset_of_hang(const ComponentState& state) {
 bool is_silent(TopicId topic, Time now, const Knowledge& knowledge) {
   const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(topic);
   return rhythm.last && rhythm.gap > Duration::zero() &&
-         now > later(*rhythm.last, kSilentGaps * rhythm.gap);
+         now > later(rhythm.silent_since(), kSilentGaps * rhythm.gap);
 }
 
 Onset onset_now(RuleId rule, Time now, const Knowledge& knowledge) {

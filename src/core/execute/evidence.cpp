@@ -62,7 +62,8 @@ std::optional<Time> silent_since(ComponentId component, const Rule& rule,
     const bool is_its =
         knowledge.graph.publishes(component, topic) && knowledge.graph.publisher_count(topic) == 1;
     const bool is_known = rhythm.last && rhythm.interval > Duration::zero();
-    if (is_its && is_known && later(*rhythm.last, rhythm.interval + rhythm.interval / 2) < now)
+    if (is_its && is_known &&
+        later(rhythm.silent_since(), rhythm.interval + rhythm.interval / 2) < now)
       since = std::max(since.value_or(kLongAgo), *rhythm.last);
   }
   return since;

@@ -75,6 +75,7 @@ void Executor::restart(Time now) {
     if (run.pursuit) run.pursuit->restart(now);
   }
   forget_questions();
+  unsure_until_ = later(now, kUnsure);
 }
 
 void Executor::ask(ComponentId component, StrategyId strategy, Duration timeout, Time now,
@@ -112,6 +113,7 @@ void Executor::note_answer(const Question& question, Outcome outcome) {
   Questioned& questioned = state.questioned;
   questioned.is_open = false;
   if (outcome == Outcome::kDone) return;  // the monitor notes it
+  if (outcome == Outcome::kTimedOut && knowledge_.now < unsure_until_) return;
   questioned.is_pointless = outcome != Outcome::kTimedOut || !state.answers_probes;
   if (!questioned.unanswered && !questioned.is_pointless) questioned.unanswered = questioned.at;
 }

@@ -20,6 +20,8 @@ namespace culprit {
 
 class Executor {
  public:
+  static constexpr Duration kUnsure = std::chrono::seconds(10);
+
   // What it writes; all else it only reads.
   struct Writes {
     Attempts attempts;
@@ -43,7 +45,7 @@ class Executor {
   void resume(Interrupted interrupted, Time now, Time from);
 
   // Answers until `now` could not be heard: every goal under way has its whole time again, and
-  // looks before it acts.
+  // looks before it acts. For kUnsure no question counts as unanswered.
   void restart(Time now);
 
   // Asks the component whether it answers, before the strategy is begun. It has `timeout` to do so.
@@ -132,6 +134,7 @@ class Executor {
   };
   std::vector<Owed> owed_;
   std::vector<Question> questions_;  // that were not answered yet
+  Time unsure_until_ = kLongAgo;
   std::uint64_t last_command_ = 0;
 };
 

@@ -184,10 +184,11 @@ class Describer {
     return "nothing is judged until the robot can be heard again: " + e.reason;
   }
   std::string operator()(const JudgementResumed&) const {
-    return "the robot can be heard again; all ages begin anew";
+    return "the robot can be heard again; what was silent has a moment to be heard";
   }
   std::string operator()(const SleepNoticed& e) const {
-    return "culprit stood still for " + in_words(e.time) + "; all ages begin anew";
+    return "culprit stood still for " + in_words(e.time) +
+           "; what was silent has a moment to be heard";
   }
   std::string operator()(const HostSilent& e) const {
     std::vector<std::string> names;
@@ -260,8 +261,12 @@ class Describer {
     return "the silence of " + name_of(o.what) + " is lifted";
   }
   std::string operator()(const RunStrategy& o) const { return "run " + with_rule(o.strategy); }
-  std::string operator()(const Revive&) const { return "start the components again that stay down"; }
-  std::string operator()(const EndStarted&) const { return "end the processes that culprit started"; }
+  std::string operator()(const Revive&) const {
+    return "start the components again that stay down";
+  }
+  std::string operator()(const EndStarted&) const {
+    return "end the processes that culprit started";
+  }
   std::string operator()(const Forget& o) const {
     return "forget what was learned of " + (o.rule ? name_of(*o.rule) : "all strategies");
   }

@@ -115,6 +115,7 @@ KnownRobot Knowledge::known_robot() const {
   for (std::size_t t = 0; t < rules.topics.size(); ++t) {
     if (sightings.has(TopicId(t))) known.topics.push_back(rules.label(TopicId(t)));
   }
+  known.publishers = sightings.publishers();
   note_heard(*this, known);
   return known;
 }

@@ -2,6 +2,7 @@
 // that what died in between is known to have died, and who depends on it.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,8 @@ struct KnownRobot {
   };
   std::vector<Part> parts;
   std::vector<std::string> topics;  // that were seen (sightings.h)
+  std::map<std::string, std::string>
+      publishers{};  // by diagnostic status: the node whose word counts
 
   // The rest is for a run that comes soon, with the same rules: once all that was seen is there again,
   // it need not wait any longer for more (monitor_start.cpp).

@@ -9,7 +9,9 @@
 // And what was heard of it, for the run that comes next (known_robot.h).
 #pragma once
 
+#include <map>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -38,6 +40,14 @@ class Sightings {
   // Gives whether it was seen for the first time.
   bool note(ComponentId id, Time at) { return note(components_[id.index], at); }
   bool note(TopicId id, Time at) { return note(topics_[id.index], at); }
+
+  // Whose word about a diagnostic status counts, by status (PublisherKnown).
+  const std::map<std::string, std::string>& publishers() const { return publishers_; }
+  void note_publisher(const std::string& status, const std::string& node) {
+    constexpr std::size_t kMost = 1000;  // earlier rules may have named others
+    if (publishers_.size() >= kMost && !publishers_.contains(status)) return;
+    if (std::exchange(publishers_[status], node) != node) ++count_;
+  }
 
   // Another number whenever something was seen for the first time.
   std::size_t count() const { return count_; }
@@ -84,6 +94,7 @@ class Sightings {
 
   std::vector<std::optional<Time>> components_;
   std::vector<std::optional<Time>> topics_;
+  std::map<std::string, std::string> publishers_;
   std::size_t count_ = 0;
   std::vector<bool> heard_;
   std::vector<bool> signals_;

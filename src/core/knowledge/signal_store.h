@@ -5,6 +5,7 @@
 // and looks at no others.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <string>
@@ -82,6 +83,12 @@ class SignalStore {
     // was sent to tell.
     double loss = 0;
     double loss_at_most = 0;  // what the link may lose in truth; 0 where nothing was lost
+    // Since `last` there was a time in which it could not be heard: since when it would be silent, had it been heard all
+    // the time until now. May be a little ahead.
+    Time resumed = kLongAgo;
+
+    // Since when its silence counts. @pre last
+    Time silent_since() const { return std::max(*last, resumed); }
   };
   const Rhythm& rhythm(TopicId id) const { return rhythms_[id.index]; }
   void set_rhythm(TopicId id, Rhythm rhythm) { rhythms_[id.index] = rhythm; }

@@ -72,6 +72,88 @@ TEST(Hearing, WhatIsSilentAfterASleepIsFoundSilent) {
   EXPECT_EQ(robot.count_asked("lidar"), 0u) << transcript(robot);
 }
 
+// Its usual gap and 2 s, whatever the rule's own time.
+TEST(Hearing, ATopicHasTimeToBeHeardAgainAfterASleep) {
+  TestRobot robot = test::robot();
+  freeze(robot, 20s);
+  robot["camera"].fault = "deaf";
+  robot["lidar"].fault = "deaf";
+  robot.run_for(1900ms);
+  robot["camera"].fault = robot["lidar"].fault = "";
+  robot.run_for(10s);
+  EXPECT_EQ(robot.count("detected"), 0u) << transcript(robot);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+}
+
+TEST(Hearing, NothingThatIsDeadIsFoundToWorkByASleep) {
+  TestRobot robot = test::robot();
+  robot["camera"].fault = "for ever";
+  robot["lidar"].fault = "for ever";
+  robot.run_for(5s);
+  ASSERT_EQ(robot.count("CameraSilent detected"), 1u) << transcript(robot);
+  ASSERT_EQ(robot.count("LidarSlow detected"), 1u) << transcript(robot);
+  for (int i = 0; i < 5; ++i) {
+    freeze(robot, 20s);
+    robot.run_for(3s);
+  }
+  EXPECT_EQ(robot.count("resolved"), 0u) << transcript(robot);
+  for (const std::string rule : {"CameraSilent", "LidarSlow"}) {
+    EXPECT_EQ(robot.count(rule + " went away"), 0u) << transcript(robot);
+    EXPECT_EQ(robot.count(rule + " detected"), 1u) << transcript(robot);
+  }
+}
+
+// On a machine that has no time for culprit others have none to answer either.
+TEST(Hearing, NobodyIsFoundToHangUntilTenSecondsAfterASleep) {
+  TestRobot robot(R"(
+COMPONENT lidar NODE /lidar LAUNCH "lidar"
+RULE LidarDead
+  POLICIES ERROR
+  TRIGGER !alive(lidar)
+    STRATEGY redeploy 90 10
+      ADAPTATION lidar redeploy 10
+)");
+  robot.add("lidar");
+  robot.discover();
+  robot.run_for(10s);
+  const ComponentId lidar(0);
+  robot.tell(Probed{lidar, true});
+  freeze(robot, 1s);
+  const auto goes_unanswered_for = [&](Duration time) {
+    for (; time > 0ms; time -= 400ms) {
+      robot.run_for(400ms);
+      robot.tell(Probed{lidar, false});
+    }
+  };
+  goes_unanswered_for(9s);
+  EXPECT_EQ(robot.count("LidarDead detected"), 0u) << transcript(robot);
+  goes_unanswered_for(1600ms);
+  EXPECT_EQ(robot.count("LidarDead detected"), 1u) << transcript(robot);
+}
+
+// Likewise while its lifecycle changes.
+TEST(Hearing, NobodyIsFoundToHangWhoseLifecycleHasJustChanged) {
+  TestRobot robot(R"(
+COMPONENT lidar NODE /lidar LAUNCH "lidar"
+RULE LidarDead
+  POLICIES ERROR
+  TRIGGER !alive(lidar) && lifecycle(lidar) != "finalized"
+    STRATEGY redeploy 90 10
+      ADAPTATION lidar redeploy 10
+)");
+  robot.add("lidar");
+  robot.discover();
+  robot.run_for(10s);
+  const ComponentId lidar(0);
+  robot.tell(Probed{lidar, true});
+  robot.tell(LifecycleRead{lidar, Lifecycle::kInactive});
+  for (int i = 0; i < 9; ++i) robot.tell(Probed{lidar, false});
+  EXPECT_EQ(robot.count("LidarDead detected"), 0u) << transcript(robot);
+  robot.run_for(2100ms);
+  robot.tell(Probed{lidar, false});
+  EXPECT_EQ(robot.count("LidarDead detected"), 1u) << transcript(robot);
+}
+
 // Two seconds of every three culprit does not run, while the robot does.
 TEST(Hearing, AStarvedManagerDecidesNothing) {
   TestRobot robot = test::robot();

@@ -122,15 +122,16 @@ void Manager::take_in(Time now, std::span<const Observation> observations) {
     now_ = std::max(now_, std::min(observation.at, now));
     if (const auto* slept = std::get_if<Overslept>(&observation.what); slept && hears_) {
       knowledge_.events.tell(now_, SleepNoticed{slept->by});
-      restart(now_);
+      restart(now_ - slept->by, now_);
     } else if (const auto* lost = std::get_if<HearingLost>(&observation.what); lost && hears_) {
       hears_ = false;
+      deaf_since_ = now_;
       executor_.forget_questions();
       knowledge_.events.tell(now_, JudgementSuspended{lost->reason});
     } else if (std::holds_alternative<HearingRegained>(observation.what) && !hears_) {
       hears_ = true;
       knowledge_.events.tell(now_, JudgementResumed{});
-      restart(now_);
+      restart(deaf_since_, now_);
     }
     monitor_.advance(now_);
     monitor_.observe(observation, now_);
@@ -157,9 +158,9 @@ void Manager::answered(const Reply& reply, Time now) {
   executor_.answered(reply, now);
 }
 
-// Nobody listened until `now`, so that no gap, no delay and no late answer proves anything.
-void Manager::restart(Time now) {
-  monitor_.restart(now);
+// Nobody listened from `since` until `now`, so that no gap, no delay and no late answer proves anything.
+void Manager::restart(Time since, Time now) {
+  monitor_.restart(since, now);
   analyzer_.restart(now);
   executor_.restart(now);
 }

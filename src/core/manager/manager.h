@@ -88,7 +88,7 @@ class Manager : public ManagingSystem {
  private:
   void take_in(Time now, std::span<const Observation> observations);
   void answered(const Reply& reply, Time now);
-  void restart(Time now);
+  void restart(Time since, Time now);
   void react(std::vector<Command>& commands);
   void obey(const Order& order, Time now);
   void adopt(const PriorsTold& told, Time now);
@@ -120,6 +120,7 @@ class Manager : public ManagingSystem {
   Time discovered_;  // until then nothing is called absent
   Time now_;
   bool hears_ = true;
+  Time deaf_since_ = kLongAgo;
   bool news_ = false;        // something a plan depends on changed since the last plan
   Time next_plan_ = kNever;  // while failures are held back
   struct Said {

@@ -113,14 +113,14 @@ void Monitor::observe(const Observation& observation, Time at) {
   settle_departures(at);
 }
 
-void Monitor::restart(Time now) {
+void Monitor::restart(Time since, Time now) {
+  for (std::size_t t = 0; t < topics_.size(); ++t) resume(TopicId(t), since, now);
   is_deaf_ = false;
   expect_no_more();
   awake_ = now;
   graced_ = later(now, kGrace);
   deadlines_.set(knowledge_.rules.inputs.size() + 1, graced_);
   for (Topic& topic : topics_) {
-    topic.phi.restart(now);
     topic.loss.restart(now);
     topic.regained.reset();
   }
@@ -197,6 +197,7 @@ void Monitor::remember(const KnownRobot& known) {
       if (knowledge_.rules.label(TopicId(t)) == name) see(TopicId(t), start_);
     }
   }
+  for (const auto& [status, node] : known.publishers) write_.sightings.note_publisher(status, node);
   expect(known);
 }
 

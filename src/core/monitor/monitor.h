@@ -39,6 +39,10 @@ class Monitor {
   static constexpr std::size_t kLeastReadings = 4;
   // A node that began anew may take so long to make the publishers and subscribers it had.
   static constexpr Duration kEndsAwaited = std::chrono::seconds(10);
+  static constexpr Duration kSpeaksAgain = std::chrono::seconds(2);
+  static constexpr Duration kUnsure = std::chrono::seconds(10);
+  // A node whose lifecycle changed has so long before it is found to hang.
+  static constexpr Duration kSettles = std::chrono::seconds(2);
   // Participants announce themselves every 3 s.
   static constexpr Duration kGrace = std::chrono::seconds(5);
   // How often it is looked whether all is there that an earlier run saw.
@@ -82,10 +86,11 @@ class Monitor {
   // Takes in an observation as of `at`, which never goes back.
   void observe(const Observation& observation, Time at);
 
-  // What was not heard until `now` could not have been heard, as when nobody listened: every
-  // gap begins anew. For kGrace, a node that leaves the graph is not taken for dead unless the
-  // operating system says so: it may only have to be discovered anew.
-  void restart(Time now);
+  // What was not heard from `since` until `now` could not have been heard, as when nobody listened. A topic that comes again
+  // has its usual gap and kSpeaksAgain for that; until then its silence is as long as it was at `since`, and then it goes
+  // on, so that nothing is found to work by that. For kGrace, a node that leaves the graph is not taken for dead
+  // unless the operating system says so: it may only have to be discovered anew. For kUnsure, none is found to hang.
+  void restart(Time since, Time now);
 
   // Lets time pass: updates every value whose deadline has come.
   void advance(Time now);
@@ -106,8 +111,15 @@ class Monitor {
     monitor::LossMeter loss;
     std::vector<InputId> inputs;
     bool needs_phi = false;
-    bool is_known_silent = false;  // since who publishes it was known dead, nothing came
-    std::optional<Time> listened;  // since when who publishes it knows that it is listened to
+    // There was a gap in hearing since the last sample: until then its silence is as long as it was.
+    struct Resumes {
+      Time at;
+      Duration silence{};
+    };
+    std::optional<Resumes> resumes;
+    Time heard_again_by = kLongAgo;  // until then it had time for that
+    bool is_known_silent = false;    // since who publishes it was known dead, nothing came
+    std::optional<Time> listened;    // since when who publishes it knows that it is listened to
     // It is certain that nothing came since then, though `discovered` is still ahead; and who would
     // have spoken.
     std::optional<Time> silent_since;
@@ -166,7 +178,13 @@ class Monitor {
   void on(Time, const Overslept&) {}        // likewise
   void on(Time, const PriorsTold&) {}       // likewise: adopt()
   void on(Time at, const ListenerKnown& seen);
+  void on(Time, const PublisherKnown& seen) {
+    write_.sightings.note_publisher(seen.status, seen.node);
+  }
   void on(Time, const HearingLost&) { is_deaf_ = true; }
+
+  Duration silence_of(TopicId topic, Time now) const;
+  void resume(TopicId topic, Time since, Time now);
 
   void read_signal(SignalId signal, const Value& value, Time at);
   void note_arrival(InputId id, Time at);
@@ -243,7 +261,7 @@ class Monitor {
 
   const Knowledge& knowledge_;
   Writes write_;
-  // Since when a gap counts that began at `since`.
+  // Since when a window of values counts that began at `since`.
   Time heard_since(Time since) const { return std::max(since, awake_); }
 
   // What an earlier run saw, until all of it is there or there was time for more.

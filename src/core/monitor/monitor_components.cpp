@@ -437,6 +437,10 @@ bool Monitor::hangs_in_transition(ComponentId component, Time now) const {
 bool Monitor::does_not_answer(ComponentId component, Time now) const {
   const ComponentState& state = knowledge_.components[component];
   if (state.missed_probes < kMissedProbes) return false;
+  if (now < later(awake_, kUnsure) && !knowledge_.is_unheard(component)) return false;
+  if (state.lifecycle != Lifecycle::kUnknown && now < later(state.lifecycle_since, kSettles) &&
+      !hangs_in_transition(component, now))
+    return false;
   if (state.changes_until != kNever && !hangs_in_transition(component, now)) return false;
   if (state.known_pid() == 0)
     return !is_heard_of(component, knowledge_) || is_silent(component, now);
@@ -456,16 +460,16 @@ bool Monitor::is_silent(ComponentId component, Time now) const {
         knowledge_.graph.publisher_count(topic) != 1)
       continue;
     const Duration pause = std::max(kLeast, rhythm.longest + rhythm.longest / 2);
-    if (now - heard_since(std::max(*rhythm.last, knowledge_.components[component].node_seen)) <
-        pause)
-      return false;
+    const Duration there = now - knowledge_.components[component].node_seen;
+    if (std::min(silence_of(TopicId(t), now), there) < pause) return false;
   }
   return true;
 }
 
 void Monitor::update_alive(ComponentId component, Time at, const std::string& remark) {
   ComponentState& state = write_.components[component];
-  const bool answers = !does_not_answer(component, at) && !has_hung_part(component);
+  const bool is_part_hung = has_hung_part(component) && at >= later(awake_, kUnsure);
+  const bool answers = !does_not_answer(component, at) && !is_part_hung;
   const bool is_alive = state.in_graph && state.process == ProcessState::kRunning && answers;
   if (!knowledge_.sightings.has(component)) return;           // it may be a name that nobody has
   if (!is_alive && !state.alive && at < discovered_) return;  // it may still be discovered

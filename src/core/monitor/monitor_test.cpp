@@ -263,7 +263,7 @@ TEST(Monitor, NobodyKnowsWhatChangedInAGap) {
   EXPECT_FALSE(changed().known);
   watched.observe(3500ms, SignalRead{SignalId(0), Value(2.0)});
   EXPECT_TRUE(changed().known && !changed().b);
-  watched.monitor.restart(Time(3600ms));
+  watched.monitor.restart(Time(3550ms), Time(3600ms));
   EXPECT_FALSE(changed().known) << "nobody listened";
   watched.monitor.advance(Time(3800ms));
   EXPECT_TRUE(changed().known && !changed().b);
@@ -290,7 +290,7 @@ TEST(Monitor, AWindowCountsOnceItIsCoveredAndAgainAfterAGap) {
   EXPECT_EQ(why(), WhyUnknown::kNotCovered) << "the first sample after a gap is not enough";
   read(6600ms, 7s);
   EXPECT_TRUE(is_known());
-  watched.monitor.restart(Time(7s));
+  watched.monitor.restart(Time(7s), Time(7s));
   EXPECT_EQ(why(), WhyUnknown::kNotCovered) << "nobody listened";
   read(7100ms, 9s);
   EXPECT_FALSE(is_known());
@@ -310,7 +310,7 @@ TEST(Monitor, ARateCountsOnceItsWindowIsCoveredAndAgainAfterAGap) {
   EXPECT_EQ(watched.knowledge.signals.why_unknown(InputId(0)), WhyUnknown::kNotCovered);
   speak(22s, 25s);
   EXPECT_EQ(rate().d, 10);
-  watched.monitor.restart(Time(30s));
+  watched.monitor.restart(Time(25s), Time(30s));
   EXPECT_FALSE(rate().known);
   speak(31s, 32900ms);
   EXPECT_FALSE(rate().known) << "it was heard again after 1 s";
@@ -319,9 +319,38 @@ TEST(Monitor, ARateCountsOnceItsWindowIsCoveredAndAgainAfterAGap) {
   watched.monitor.advance(Time(36s));
   EXPECT_EQ(rate().d, 0);
   EXPECT_TRUE(rate().known) << "silence is covered, too";
-  watched.monitor.restart(Time(40s));
+  watched.monitor.restart(Time(38s), Time(40s));
   watched.monitor.advance(Time(42s));
+  EXPECT_FALSE(rate().known) << "it has its usual gap and 2 s to be heard again";
+  watched.monitor.advance(Time(43s));
   EXPECT_TRUE(rate().known) << "nothing came for a whole window";
+}
+
+// What was silent stays silent, what spoke is not silent yet, and then time goes on.
+TEST(Monitor, ASilenceStandsStillUntilTheTopicHadTimeToBeHeardAgain) {
+  Watched watched(rule("age(/t) > 1s && phi(/t) > 8"));
+  const auto age = [&] { return Duration(watched.knowledge.signals[InputId(0)].i); };
+  const auto phi = [&] { return watched.knowledge.signals[InputId(1)].d; };
+  for (Duration at = 20s; at <= 21s; at += 100ms) watched.observe(at, SampleArrived{TopicId(0), 1});
+  watched.monitor.restart(Time(21100ms), Time(40s));
+  for (const Duration at : {40s, 41s, 42s}) {
+    watched.monitor.advance(Time(at));
+    EXPECT_LE(age(), 100ms);
+    EXPECT_LT(phi(), 1);
+  }
+  watched.monitor.advance(Time(42900ms));
+  EXPECT_LE(age(), 1s);
+  watched.monitor.advance(Time(43100ms));
+  EXPECT_GT(age(), 900ms) << "2 s and its gap of 100 ms later";
+  watched.monitor.advance(Time(50s));
+  EXPECT_GT(age(), 1s);
+  EXPECT_GT(phi(), 8);
+  watched.monitor.restart(Time(50s), Time(70s));
+  EXPECT_GT(age(), 1s) << "it did not speak";
+  EXPECT_GT(phi(), 8);
+  watched.observe(71s, SampleArrived{TopicId(0), 1});
+  EXPECT_EQ(age(), 0s);
+  EXPECT_LT(phi(), 1);
 }
 
 std::vector<std::string> told_unknown(const Watched& watched) {

@@ -24,6 +24,8 @@ void Monitor::on(Time at, const SampleArrived& seen) {
   if (!topic.first) topic.first = at;
   if (!topic.regained) topic.regained = at;
   SignalStore::Rhythm rhythm = knowledge_.signals.rhythm(seen.topic);
+  topic.resumes.reset();
+  rhythm.resumed = kLongAgo;
   if (rhythm.last && *rhythm.last >= awake_) {
     const Duration interval = (at - *rhythm.last) / std::max(1u, seen.published);
     rhythm.interval = smoothed(rhythm.interval, interval);
@@ -90,25 +92,47 @@ Time Monitor::zero_from(const Input& input) const {
 }
 
 // From when on its window is covered: culprit listened all the time, and the topic had spoken, or is
-// known to be silent. A topic that speaks again within the first window after a gap in hearing is as
-// one that is heard for the first time.
+// known to be silent. A topic that speaks again in time after a gap in hearing is as one that is heard
+// for the first time.
 Time Monitor::rate_known_from(InputId id) const {
   const Input& input = knowledge_.rules[id];
   const Topic& topic = topics_[input.topic.index];
-  if (!topic.first) return std::max(zero_from(input), later(awake_, input.window));
+  if (!topic.first) {
+    const Time from = std::max(zero_from(input), later(awake_, input.window));
+    return topic.resumes ? std::max(from, topic.resumes->at) : from;
+  }
   Time since = heard_since(*topic.first);
-  if (since == awake_ && topic.regained && *topic.regained < later(awake_, input.window))
-    since = *topic.regained;
+  const Time by = std::max(later(awake_, input.window), topic.heard_again_by);
+  if (since == awake_ && topic.regained && *topic.regained < by) since = *topic.regained;
   if (const auto& overflowed = derived_[id.index].overflowed) since = std::max(since, *overflowed);
-  return later(since, input.window);
+  const Time from = later(since, input.window);
+  return topic.resumes ? std::max(from, topic.resumes->at) : from;
+}
+
+// How long nothing came that would have been heard. @pre it spoke, or was seen
+Duration Monitor::silence_of(TopicId id, Time now) const {
+  const Topic& topic = topics_[id.index];
+  if (topic.resumes)
+    return topic.resumes->silence + std::max(now - topic.resumes->at, Duration::zero());
+  return now - (topic.last ? *topic.last : listened_since(id));
+}
+
+void Monitor::resume(TopicId id, Time since, Time now) {
+  Topic& topic = topics_[id.index];
+  if (!topic.last && !topic.silent_since && !knowledge_.sightings.first(id)) return;
+  SignalStore::Rhythm rhythm = knowledge_.signals.rhythm(id);
+  const Duration silence = std::max(silence_of(id, since), Duration::zero());
+  topic.heard_again_by = later(now, rhythm.gap + kSpeaksAgain);
+  topic.resumes = Topic::Resumes{topic.heard_again_by, silence};
+  topic.phi.restart(topic.resumes->at, silence);
+  rhythm.resumed = topic.resumes->at - silence;
+  write_.signals.set_rhythm(id, rhythm);
 }
 
 Slot Monitor::age(InputId id, Time now) const {
   const TopicId topic = knowledge_.rules[id].topic;
-  const auto& last = topics_[topic.index].last;
-  if (last) return Slot::of(now - heard_since(*last));
-  if (now < silent_from(topic)) return {};
-  return Slot::of(now - heard_since(listened_since(topic)));
+  if (!topics_[topic.index].last && now < silent_from(topic)) return {};
+  return Slot::of(silence_of(topic, now));
 }
 
 Slot Monitor::rate(InputId id, Time now) {
@@ -148,8 +172,10 @@ Time Monitor::next_crossing(InputId id, Time now) const {
 }
 
 Time Monitor::next_age(const Input& input, Time now) const {
-  const auto& last = topics_[input.topic.index].last;
-  const Time since = heard_since(last ? *last : listened_since(input.topic));
+  const Topic& topic = topics_[input.topic.index];
+  const Time since = topic.resumes ? topic.resumes->at - topic.resumes->silence
+                     : topic.last  ? *topic.last
+                                   : listened_since(input.topic);
   for (const double threshold : input.thresholds) {
     // One nanosecond on: `age > threshold` must hold then.
     const Time crossing = later(since, from_seconds(threshold) + Duration(1));

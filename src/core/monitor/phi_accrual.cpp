@@ -32,6 +32,7 @@ void PhiAccrual::add(Time at, std::uint32_t count) {
   const std::optional<Time> before = last_;
   const std::optional<double> suspected = phi(at);
   last_ = at;
+  excused_ = kLongAgo;
   if (std::exchange(is_restarted_, false) || !before || count == 0) return;
   outages_ = suspected && *suspected > kOutage ? outages_ + 1 : 0;
   if (outages_ > 0 && outages_ < kNewRhythm) return;
@@ -53,15 +54,16 @@ double PhiAccrual::deviation() const {
   return std::max({std::sqrt(variance_), kLeastDeviation * mean_, 1e-9});
 }
 
-void PhiAccrual::restart(Time now) {
+void PhiAccrual::restart(Time until, Duration silence) {
   if (!last_) return;
-  last_ = now;
+  last_ = until - silence;
+  excused_ = until;
   is_restarted_ = true;
 }
 
 std::optional<double> PhiAccrual::phi(Time now) const {
   if (!last_ || intervals_.size() < kLeastIntervals) return std::nullopt;
-  return suspicion((seconds(now - *last_) - mean_) / deviation());
+  return suspicion((seconds(std::max(now, excused_) - *last_) - mean_) / deviation());
 }
 
 Time PhiAccrual::exceeds(double deviations) const {

@@ -32,8 +32,8 @@ class PhiAccrual {
   // `count` messages came at `at`, evenly spread since the last ones. Times never go back.
   void add(Time at, std::uint32_t count);
 
-  // Nobody listened until `now`: the gap begins anew, and its length tells nothing.
-  void restart(Time now);
+  // Nobody could listen for a while: until `until` the gap counts as `silence`, and then goes on. Its length tells nothing.
+  void restart(Time until, Duration silence);
 
   // Nothing while the rhythm is unknown.
   std::optional<double> phi(Time now) const;
@@ -51,7 +51,8 @@ class PhiAccrual {
   double mean_ = 0;
   double variance_ = 0;
   std::optional<Time> last_;
-  int outages_ = 0;  // in a row
+  Time excused_ = kLongAgo;  // until then the gap does not grow
+  int outages_ = 0;          // in a row
   bool is_restarted_ = false;
 };
 

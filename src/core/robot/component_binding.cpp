@@ -18,9 +18,13 @@ ComponentBinding::ComponentBinding(const RuleSet& rules) {
   namesakes_.resize(nodes_.size());
 }
 
-std::optional<ComponentId> ComponentBinding::bind(const std::string& node) {
+std::optional<ComponentId> ComponentBinding::find(const std::string& node) const {
   const auto known = components_.find(node);
-  if (known != components_.end()) return known->second;
+  return known == components_.end() ? std::nullopt : std::optional(known->second);
+}
+
+std::optional<ComponentId> ComponentBinding::bind(const std::string& node) {
+  if (const auto known = find(node)) return known;
   const auto fitting = without_node_.find(node.substr(node.rfind('/') + 1));
   if (fitting == without_node_.end()) return std::nullopt;
   const ComponentId component = fitting->second;

@@ -21,6 +21,9 @@ class ComponentBinding {
   // Binds a component that has no node yet, if `node` fits it.
   std::optional<ComponentId> bind(const std::string& node);
 
+  // The component that is known to be this node. Binds none.
+  std::optional<ComponentId> find(const std::string& node) const;
+
   // The full name of the component's node; empty while it has none.
   const std::string& node_of(ComponentId component) const { return nodes_[component.index]; }
 

@@ -272,14 +272,20 @@ struct StartBarred {
   std::string missing;  // "there is no program '/opt/robot/driver'"; empty: it can be started
 };
 
+// From now on this node is the publisher of a diagnostic status that the rules name: nobody else's word counts.
+struct PublisherKnown {
+  std::string status;
+  std::string node;
+};
+
 // One of these was observed. Copied and destroyed in observation.cpp: see EventWhat (knowledge/event.h) for why.
 class ObservationWhat
-    : public std::variant<NodeAppeared, NodeVanished, EndpointAppeared, EndpointVanished,
-                          SampleArrived, SignalRead, DiagnosticRead, ParameterRead, LifecycleRead,
-                          ProcessSeen, Probed, Reply, LinkTrouble, Order, NamesakesSeen,
-                          HearingLost, HearingRegained, Overslept, StatusHeard, ParametersListed,
-                          ProcessWorked, HostReached, EndsWith, LauncherSeen, PriorsTold, LivesOn,
-                          HostHeard, ListenerKnown, StartedHere, UsageSeen, StartBarred> {
+    : public std::variant<
+          NodeAppeared, NodeVanished, EndpointAppeared, EndpointVanished, SampleArrived, SignalRead,
+          DiagnosticRead, ParameterRead, LifecycleRead, ProcessSeen, Probed, Reply, LinkTrouble,
+          Order, NamesakesSeen, HearingLost, HearingRegained, Overslept, StatusHeard,
+          ParametersListed, ProcessWorked, HostReached, EndsWith, LauncherSeen, PriorsTold, LivesOn,
+          HostHeard, ListenerKnown, StartedHere, UsageSeen, StartBarred, PublisherKnown> {
  public:
   using Variant = variant;
   using variant::variant;

@@ -102,7 +102,7 @@ void Invariants::check(const Manager& manager, Time now, std::span<const Command
   if (steps_at_last_ > kMostStepsAtOnce) fail(now, "the manager steps without end");
 }
 
-// All ages begin anew after the robot could not be heard.
+// After the robot could not be heard, rates and windows are unknown anew.
 void Invariants::check_sight(const Manager& manager, Time now) {
   constexpr Duration kBlindAfter = std::chrono::minutes(1);
   const Knowledge& knowledge = manager.knowledge();

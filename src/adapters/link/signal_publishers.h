@@ -1,0 +1,74 @@
+// The publisher of each diagnostic status that the rules read: one node.
+//
+// Anybody on the network can publish a status of any name. So a status counts only from the node that was the first to
+// publish it, as it was learned in this run or by an earlier one (KnownRobot::publishers). Another publisher of the same
+// status is not used, and reported once.
+//
+//   - The node is known by its name: its successor after a restart is the same publisher.
+//   - Once it was proven to be a process of this machine, only a proven process is it; and what is proven takes the place
+//     of what is not.
+//   - A proven process takes the place of a node that has been gone for kForgets, whatever its name: a driver may have
+//     another name each time.
+//   - Many nodes publish statuses of others (drivers, aggregators), so the subject of a status says nothing.
+//
+// Pure: time and what is known of a publisher come with each question.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "base/time.h"
+
+namespace culprit::ros2 {
+
+class SignalPublishers {
+ public:
+  static constexpr Duration kForgets = std::chrono::seconds(30);
+  // Time in which only a proven process is learned: it may come a moment later than others, and a node may claim a writer
+  // later than its first message.
+  static constexpr Duration kClaimed = std::chrono::seconds(3);
+
+  struct Publisher {
+    std::string node{};      // full name; empty: no node claims the writer
+    bool is_proven = false;  // to be a process of this machine
+    bool counts = true;      // it is the one that holds the name, if others claim it, too
+  };
+  // Whether a node of this name is in the graph.
+  using IsThere = std::function<bool(const std::string& node)>;
+
+  // An earlier run learned that. Before the first question.
+  void remember(const std::string& status, const std::string& node);
+
+  struct Answer {
+    bool is_used = false;
+    bool is_learned = false;  // from now on it is the publisher
+    std::string conflict{};   // for people; empty: there is none, or it was told
+  };
+  // May `by` say what `status` is?
+  Answer judge(const std::string& status, const Publisher& by, Time now, const IsThere& is_there);
+
+  // The conflicts that were told of, by status.
+  const std::map<std::string, std::string>& conflicts() const { return conflicts_; }
+
+ private:
+  static constexpr std::size_t kMostConflicts = 1000;
+
+  struct Bound {
+    std::string node;
+    bool is_proven = false;
+    std::optional<Time> missed;  // since when there is no node of that name
+  };
+  Answer learn(const std::string& status, const Publisher& by);
+  Answer refuse(const std::string& status, const Publisher& by, const std::string& bound);
+
+  std::map<std::string, Bound> bound_;  // by status
+  std::map<std::string, Time> first_;   // by status without a publisher: when it was first heard
+  std::set<std::pair<std::string, std::string>> told_;  // status, node
+  std::map<std::string, std::string> conflicts_;
+};
+
+}  // namespace culprit::ros2

@@ -1,0 +1,110 @@
+#include "link/signal_publishers.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace culprit::ros2 {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+using Publisher = SignalPublishers::Publisher;
+
+const Publisher kDriver{"/driver", true};
+const Publisher kRemote{"/driver", false};
+const Publisher kStranger{"/stranger", false};
+
+struct Statuses {
+  SignalPublishers::Answer says(const Publisher& by, Duration at = 0s) {
+    return publishers.judge("motor", by, Time(at),
+                            [&](const std::string& node) { return there.contains(node); });
+  }
+  bool uses(const Publisher& by, Duration at = 0s) { return says(by, at).is_used; }
+  std::set<std::string> there = {"/driver", "/stranger"};
+  SignalPublishers publishers;
+};
+
+TEST(SignalPublishers, AreTheFirstThatSayIt) {
+  Statuses statuses;
+  const auto first = statuses.says(kDriver);
+  EXPECT_TRUE(first.is_used && first.is_learned);
+  EXPECT_FALSE(statuses.says(kDriver).is_learned) << "once";
+  const auto second = statuses.says(kStranger);
+  EXPECT_FALSE(second.is_used);
+  EXPECT_THAT(second.conflict, HasSubstr("motor is published by /driver, and by /stranger, too"));
+  EXPECT_THAT(statuses.says(kStranger).conflict, "") << "once";
+  EXPECT_EQ(statuses.publishers.conflicts().size(), 1u);
+  EXPECT_TRUE(statuses.uses(kDriver));
+}
+
+TEST(SignalPublishers, MayPublishStatusesOfSeveralAndOfOthers) {
+  Statuses statuses;
+  const auto is_there = [](const std::string&) { return true; };
+  for (const std::string status : {"motor", "camera", "battery"})
+    EXPECT_TRUE(statuses.publishers.judge(status, kDriver, Time(), is_there).is_used);
+  EXPECT_FALSE(statuses.publishers.judge("camera", {"/camera", true}, Time(), is_there).is_used);
+}
+
+// After a redeploy it is another process, and the same node.
+TEST(SignalPublishers, AreSucceededByTheNextProcessOfTheNode) {
+  Statuses statuses;
+  statuses.says(kDriver);
+  statuses.there.erase("/driver");
+  EXPECT_FALSE(statuses.uses(kStranger, 10s)) << "while it is being started again";
+  statuses.there.insert("/driver");
+  EXPECT_TRUE(statuses.uses(kDriver, 11s));
+  EXPECT_FALSE(statuses.uses(kStranger, 300s));
+}
+
+TEST(SignalPublishers, ThatWereProvenAreNoStrangersOfTheirName) {
+  Statuses statuses;
+  EXPECT_FALSE(statuses.uses(kRemote)) << "somebody may be proven in a moment";
+  EXPECT_TRUE(statuses.uses(kRemote, 3s)) << "on another computer nobody is";
+  EXPECT_TRUE(statuses.uses(kDriver, 4s));
+  const auto forged = statuses.says(kRemote);
+  EXPECT_FALSE(forged.is_used);
+  EXPECT_THAT(forged.conflict, HasSubstr("another participant that claims this name"));
+  EXPECT_FALSE(statuses.uses({"/driver", true, false})) << "not the one that holds the name";
+}
+
+TEST(SignalPublishers, GiveWayToOneThatIsProven) {
+  Statuses statuses;
+  statuses.says(kStranger);
+  EXPECT_TRUE(statuses.uses(kStranger, 3s)) << "it came first";
+  const auto driver = statuses.says(kDriver);
+  EXPECT_TRUE(driver.is_used && driver.is_learned);
+  EXPECT_THAT(driver.conflict, HasSubstr("only the former is used"));
+  EXPECT_FALSE(statuses.uses(kStranger));
+}
+
+// As drivers with a number in their name.
+TEST(SignalPublishers, AreReplacedByOneOfAnotherNameOnceTheyAreGoneForLong) {
+  Statuses statuses;
+  statuses.says(kDriver);
+  statuses.there.erase("/driver");
+  const Publisher next{"/driver_7", true};
+  EXPECT_FALSE(statuses.uses(next, 1s));
+  EXPECT_FALSE(statuses.uses(next, 30s));
+  EXPECT_FALSE(statuses.uses(kStranger, 40s)) << "a stranger never";
+  EXPECT_TRUE(statuses.uses(next, 41s));
+  EXPECT_FALSE(statuses.uses(kStranger, 42s));
+}
+
+TEST(SignalPublishers, OfAnEarlierRunAreKnown) {
+  Statuses statuses;
+  statuses.publishers.remember("motor", "/driver");
+  EXPECT_FALSE(statuses.uses(kStranger, 1s)) << "though it comes first this time";
+  EXPECT_TRUE(statuses.uses(kDriver, 2s));
+}
+
+TEST(SignalPublishers, AreWaitedForUntilANodeClaimsThem) {
+  Statuses statuses;
+  EXPECT_FALSE(statuses.uses({"", true}, 1s)) << "it may be the stranger";
+  EXPECT_TRUE(statuses.uses(kDriver, 2s));
+  Statuses without_node;
+  EXPECT_FALSE(without_node.uses({"", true}, 1s));
+  EXPECT_TRUE(without_node.uses({"", true}, 4s)) << "not of ROS 2";
+}
+
+}  // namespace
+}  // namespace culprit::ros2
