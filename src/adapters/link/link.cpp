@@ -507,10 +507,7 @@ void Link::on_joined(const GraphNode& node) {
   unproven_.erase(node.name);
   const auto component = binding_.bind(node.name);
   if (!component) return;
-  if (node.pid == 0) {
-    unproven_[node.name].vendor = node.vendor;
-    tasks_.post([this, name = node.name] { note_participant(name); });
-  }
+  if (node.pid == 0) unproven_[node.name] = {node.vendor, node.participant};
   if (is_other_node(*component, node.name)) return other_node_joined(*component, node);
   make_link(*component, node.name)->lives_in(node.pid, node.participant);
   lives_on(*component, host);
@@ -518,15 +515,6 @@ void Link::on_joined(const GraphNode& node) {
     probed_[node.name] = {*component, node.pid};
   } else {
     probed_.erase(node.name);
-  }
-}
-
-// When the graph is done with the change.
-void Link::note_participant(const std::string& node) {
-  const auto unproven = unproven_.find(node);
-  if (unproven == unproven_.end()) return;
-  for (const Graph::NodeView& each : context_->graph().bare_nodes()) {
-    if (each.node.name == node) unproven->second.participant = each.participant;
   }
 }
 

@@ -133,7 +133,6 @@ class Link {
   void on_joined(const GraphNode& node);
   void on_left(const std::string& node, bool was_lost);
   struct Leaving;
-  void note_participant(const std::string& node);
   void doubt_leaving(const std::string& node, Leaving leaving);
   void ask_leaving(const std::string& node, std::uint64_t doubt);
   void believe_leaving(const std::string& node, std::optional<GuidPrefix> answered,
