@@ -1,4 +1,4 @@
-// What is believed of each strategy: how often it helps, before and after what was seen.
+// The belief in each strategy: how often it helps, prior and posterior.
 import { useEffect, useRef, useState } from 'preact/hooks'
 import uPlot from 'uplot'
 import 'uplot/dist/uPlot.min.css'
@@ -73,7 +73,7 @@ function Density({ entry }: { entry: Entry }) {
   )
 }
 
-// What one can be sure of, as a bar; what is believed, as a line; what the rules say, as a ring.
+// The credible interval as a bar, the mean as a line, the prior of the rules as a ring.
 function Interval({ low, high, now, prior }: { low: number; high: number; now: number; prior: number }) {
   const x = (p: number) => `${2 + 96 * p}%`
   return (
@@ -94,7 +94,7 @@ const kOutcomes: Record<string, string> = {
 }
 const kMostOutcomes = 50
 
-// What came of it each time, newest first.
+// The outcome of each attempt, newest first.
 function Outcomes({ entry }: { entry: Entry }) {
   const mine = (e: ManagerEvent) => e.rule === entry.rule && e.strategy === entry.strategy.name && !!kOutcomes[e.type]
   const list = events.value.filter(mine).slice(-kMostOutcomes).reverse()
@@ -115,7 +115,7 @@ function Outcomes({ entry }: { entry: Entry }) {
 
 const kFile = 'beliefs.json'
 
-// What was learned, as a file that `culprit beliefs import` takes on another robot.
+// The beliefs as a file that `culprit beliefs import` takes on another robot.
 const exportAll = () =>
   act('Exporting what was learned', async () => {
     const learned = await call<unknown>('GET', '/api/beliefs')

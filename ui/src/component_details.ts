@@ -1,5 +1,4 @@
-// Of the component that is looked at: what its process uses, its parameters and what it logged last. Asked for as long as
-// somebody looks.
+// The selected component: the load of its process, its parameters and its latest log lines. Polled while it is selected.
 import { signal } from '@preact/signals'
 import { call } from './api'
 import { can } from './store'

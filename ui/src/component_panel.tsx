@@ -66,7 +66,7 @@ function Topics({ title, links }: { title: string; links: Link[] }) {
 const kMegabyte = 1_000_000
 const megabytes = (bytes: number) => `${(bytes / kMegabyte).toFixed(bytes < 10 * kMegabyte ? 1 : 0)} MB`
 
-// What its process uses, and used in the last quarter of an hour.
+// The load of its process, now and in the last quarter of an hour.
 function Usage() {
   const { process, usage } = details.value!
   if (!process) return null

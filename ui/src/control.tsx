@@ -1,5 +1,5 @@
-// What people can tell the manager: wait, go on, leave this alone, do that. Each is one call
-// (POST /api/orders); what becomes of it is an event.
+// Orders of people to the manager: pause, resume, silence, run a strategy. Each is one call (POST /api/orders); its
+// result is an event.
 import { useState } from 'preact/hooks'
 import { hasToken } from './api'
 import { lasting, when } from './clock'

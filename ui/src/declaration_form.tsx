@@ -1,4 +1,4 @@
-// What the rules are about, in the form: components and who starts them, signals, constants, dependencies, interlocks.
+// The declarations in the form: components with their starters, signals, constants, dependencies, interlocks.
 import { canAdd, type FieldKind, inWay, kDeclarations, makesSense, type Member, namesOf, placeFor, wayOf } from './declarations'
 import { Check, Choice, Field, More, type Props, Remove } from './form_fields'
 import { inTemplates, replaced, type Statement, withMember } from './rule_document'

@@ -1,5 +1,4 @@
-// What rules are about, as the form offers it: which members a declaration has, what each is, and what a new one begins
-// with.
+// The declarations that the form offers: the members of each, their kinds, and the values of a new one.
 import { freeName, inTemplates, plainStatements, type RuleDocument, type Statement } from './rule_document'
 
 // How a member is entered and shown: one name or several as "/a /b", a pair as "docker slam", a range as "0..1", a hold as "3/5", arguments as "lidar, /scan",
@@ -105,7 +104,7 @@ export const kDeclarations: Record<string, Declaration> = {
   INTERLOCK: { title: 'Interlock', members: { expression: { wide: true } }, fresh: () => ({ expression: 'false' }) },
 }
 
-// Of which there is at most one, in front of all else.
+// At most one of each, in front of all else.
 const kOnlyOnce = ['ROBOT', 'CYCLE']
 export const canAdd = (document: RuleDocument, keyword: string) =>
   !kOnlyOnce.includes(keyword) || !document.statements.some((s) => s.statement === keyword)

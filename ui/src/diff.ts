@@ -1,5 +1,4 @@
-// What a save changes, line by line: the longest common subsequence of what lies between the common
-// beginning and the common end.
+// The changes of a save, line by line: the longest common subsequence between the common prefix and the common suffix.
 
 export interface DiffLine {
   sign: ' ' | '+' | '-'

@@ -1,4 +1,4 @@
-// What is wrong with the robot, without a rule: looked at on request, for as long as one asks (docs/doctor.md).
+// The doctor's findings, without a rule: it looks on request, for the chosen time (docs/doctor.md).
 import { computed, signal } from '@preact/signals'
 import { useEffect } from 'preact/hooks'
 import { call, hasToken } from './api'

@@ -1,4 +1,4 @@
-// What was written and not saved, kept in this browser: a reload, a crash or a server that is gone loses nothing.
+// Unsaved text, kept in this browser: it survives a reload, a crash and a stopped server.
 
 export interface Draft {
   text: string

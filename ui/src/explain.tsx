@@ -17,7 +17,7 @@ export const kWords: Record<Criticality, string> = {
   NON_CRITICAL: 'non-critical',
 }
 
-// Of a run that is over nothing is known but what happened.
+// A finished run has only its events.
 const knownIn = (view: View): Known => (view === live ? known : (c) => ({ isGone: view.situation.value.gone.has(c) }))
 const incidentsIn = (view: View) =>
   view === live ? incidents.value : incidentsOf(view.situation.value.failures, () => [], knownIn(view))
@@ -66,7 +66,7 @@ export function Suspects({ decision, rule }: { decision: ManagerEvent; rule: str
   )
 }
 
-// What makes no sense was not weighed.
+// An excluded candidate has no cost.
 export const costOf = ({ cost, excluded }: { cost: number; excluded: unknown }) =>
   excluded && cost === 0 ? '–' : cost.toFixed(2)
 
@@ -95,7 +95,7 @@ export function Candidates({ list, chosen }: { list: Candidate[]; chosen?: strin
   )
 }
 
-// What happens next, and when: of the present only, for the past knows what happened.
+// The next step and its time: for the present only, since the past has its events.
 function Next({ failure, incident }: { failure: Failure; incident: Incident }) {
   if (!isLive.value) return null
   const place = robot.value?.rules.findIndex((r) => r.name === failure.rule) ?? -1

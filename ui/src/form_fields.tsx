@@ -32,7 +32,7 @@ function parameterOf(text: string): string | Parameter {
   return usual.length > 0 ? { name, usual: usual.join('=') } : name
 }
 
-// What was entered as the member's value; undefined takes the member away.
+// The entered value of the member; undefined removes the member.
 function valueOf(entered: string, kind: FieldKind, isOptional: boolean): unknown {
   if (entered === '' && (kind === 'arguments' || kind === 'parameters')) return []
   if (entered === '') return isOptional ? undefined : new Error('something has to stand here')
@@ -142,7 +142,7 @@ export function Check({ document, change, place, member, label, without }: Props
   )
 }
 
-// What may be added to a statement, one choice at a time.
+// The possible additions to a statement, one choice at a time.
 export function More({ words, of, add }: { words: string; of: string[]; add: (chosen: string) => void }) {
   if (of.length === 0) return null
   return (
@@ -165,7 +165,7 @@ export function More({ words, of, add }: { words: string; of: string[]; add: (ch
   )
 }
 
-// What is removed can be brought back, by the notice or by Undo.
+// The notice and Undo bring a removed statement back.
 export function Remove({ what, onClick }: { what: string; onClick: () => Promise<string | null> }) {
   const remove = async () => {
     const why = await onClick()

@@ -1,4 +1,4 @@
-// Whether what the page shows is new. A page that goes on showing what it heard last would lie.
+// Tells whether the shown data is fresh. A page that keeps showing old data would mislead.
 import { computed, signal } from '@preact/signals'
 
 const kPatience = 2500 // ms without a sign: a server that lives gives one every second

@@ -167,7 +167,7 @@ export class Drawing {
     const { nodes, edges } = shown.value
     const names = nodes.map((n) => n.node)
     const links = [...edges.values()].map((e): [string, string] => [e.from, e.to])
-    // Whoever asks for more or for less sees what is there stay where it is.
+    // If the user asks for more or fewer nodes, those that are there keep their places.
     const wanted = `${showsAll.value} ${search.value}`
     if (wanted !== this.wanted) this.holdPlaces()
     this.wanted = wanted
@@ -230,7 +230,7 @@ export class Drawing {
     const { nodes, edges } = shown.value
     const links = [...edges.values()].map((e): [string, string] => [e.from, e.to])
     const managed = new Set(nodes.filter((n) => n.component).map((n) => n.node))
-    // What no rule is about finds its place beside the others.
+    // A node without a rule is placed beside the others.
     const isShown = (node: string) => managed.size === 0 || this.groups !== 'none' || managed.has(node)
     const own = links.filter(([from, to]) => isShown(from) && isShown(to))
     this.held = this.laidOut(nodes.map((n) => n.node).filter(isShown), own, new Map())

@@ -1,4 +1,4 @@
-// What the graph shows: which nodes and edges, what they are called, and the way that a failure took.
+// The content of the graph: its nodes and edges, their labels, and the path of a failure.
 import { computed, signal } from '@preact/signals'
 import { lasting } from './clock'
 import { conditionOf } from './incidents'

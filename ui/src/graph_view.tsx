@@ -12,7 +12,7 @@ import { isDark } from './theme'
 // A large graph takes a while to paint; nobody sees more than so many changes.
 const kPeriod = 66 // ms
 
-// What a drawing depends on.
+// The inputs of a drawing.
 const readAll = () =>
   [shown, cascade, effective, health, culprits, situation, robot, state, selected, isLive].map((each) => each.value)
 

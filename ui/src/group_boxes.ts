@@ -1,6 +1,6 @@
-// The groups of a large graph, drawn: from near a box around the nodes of each, from far away the box alone, with how many of
-// its nodes are ill and how the data flows from group to group. Boxes are plain elements of a known size: whoever asks
-// Cytoscape for nodes within nodes pays for that with each change.
+// Draws the groups of a large graph: near, a box around the nodes of each. From far away, the box alone with its number
+// of failed nodes, and the data flow between groups. Boxes are plain elements of a known size, since Cytoscape's compound
+// nodes cost time with each change.
 import type cytoscape from 'cytoscape'
 import { cascade, kMarks, type Shown } from './graph_model'
 import { groupOf } from './grouping'
@@ -33,12 +33,12 @@ export class GroupBoxes {
     private readonly tell: (id: string, data: Record<string, unknown>) => void
   ) {}
 
-  // Whether nobody sees single nodes.
+  // True if single nodes are hidden.
   get hidesNodes(): boolean {
     return this.isFar && this.groups.length > 0
   }
 
-  // What is not among these is gone.
+  // A group that is not among these is gone.
   ids(): string[] {
     return [...this.groups.map((g) => g.id), ...this.flows.keys()]
   }

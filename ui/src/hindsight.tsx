@@ -1,5 +1,4 @@
-// What the rules would have done in the last while, had they run as they stand in the editor: a replay of the journal,
-// before they are saved.
+// The decisions that the rules in the editor would have made recently: a replay of the journal, before they are saved.
 import { computed, signal } from '@preact/signals'
 import { call, hasToken } from './api'
 import { lasting, when } from './clock'

@@ -1,5 +1,4 @@
-// What happened, and a moment of it that is looked at: of the robot that runs, or of a run that is
-// over.
+// The events of the live robot or of a finished run, and the selected moment.
 import { computed, signal, type ReadonlySignal, type Signal } from '@preact/signals'
 import type { Criticality, Health, ManagerEvent } from './types'
 

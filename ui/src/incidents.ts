@@ -13,7 +13,7 @@ export interface Incident {
   health: Health // of the worst of its failures
 }
 
-// What is known of a component at the moment that is looked at.
+// The state of a component at the selected moment.
 export type Known = (component: string) => { isGone: boolean; state?: ComponentState }
 
 // The failure that `failure` waits for: another one is held to be its cause.

@@ -1,5 +1,5 @@
-// What went wrong so far: a list and a timeline of days, and each with its own timeline, its decisions and what was not
-// chosen; to look at, to link to, and to send to somebody.
+// Past incidents: a list and a timeline of days. Each has its own timeline, its decisions and the rejected candidates; to
+// read, to link to, and to send.
 import { computed, signal, useSignal } from '@preact/signals'
 import { useEffect, useRef } from 'preact/hooks'
 import { fileAt } from './api'

@@ -1,5 +1,4 @@
-// What the live robot has, for the form to offer: nodes, topics, services, and parameters of the nodes
-// that the rules name.
+// The names of the live robot for the form to offer: nodes, topics, services, and parameters of the nodes in the rules.
 import { signal } from '@preact/signals'
 import { call, hasToken } from './api'
 import type { RuleDocument } from './rule_document'

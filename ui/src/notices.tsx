@@ -1,4 +1,4 @@
-// What the last control came to. What went well leaves by itself; what did not stays until it was read.
+// The result of the last order. A success disappears by itself; a failure stays until it is dismissed.
 import { signal } from '@preact/signals'
 
 export interface Notice {

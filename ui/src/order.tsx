@@ -9,7 +9,7 @@ const author = signal(localStorage.getItem(kAuthorKey) ?? '')
 // For the record.
 export const authorName = () => author.value || 'somebody at the page'
 
-// What stands (a pause, say) is answered with whether the next culprit will know of it.
+// The answer to a standing order (a pause, say) tells whether it outlives a restart of culprit.
 export async function order(what: string, body: Record<string, unknown>): Promise<boolean> {
   let text = 'done'
   const isDone = await act(what, async () => {

@@ -1,5 +1,4 @@
-// What changes many times a second, followed at the pace that people can see: a page that draws each of its parts with every
-// change draws nothing in time.
+// Follows a fast signal at a pace that people can see: a page that redraws every part with every change falls behind.
 import { effect, type ReadonlySignal, signal, untracked } from '@preact/signals'
 import { useEffect, useMemo } from 'preact/hooks'
 

@@ -1,5 +1,4 @@
-// What went wrong so far: the incidents of the journal, as the server tells them (docs/web.md), and what happened in the
-// one that is looked at.
+// Past incidents from the journal, as the server lists them (docs/web.md), and the events of the selected one.
 import { batch, computed, effect, signal, untracked } from '@preact/signals'
 import { call } from './api'
 import { nowByTheClock } from './freshness'

@@ -1,5 +1,5 @@
-// What rules take from elsewhere: files that are included, templates, and their uses; and the packs of templates that come
-// with culprit (rules/packs), which the app brings along.
+// Reuse in rules: included files, templates and their uses, and the packs of templates of culprit (rules/packs), which
+// are bundled with the app.
 import { placeFor } from './declarations'
 import { freeName, inTemplates, plainStatements, replaced, type RuleDocument, type Statement } from './rule_document'
 
@@ -39,10 +39,10 @@ const ownTemplates = (document: RuleDocument): TemplateFacts[] =>
       parameters: (s.parameters as (string | Parameter)[]).map((p) => (typeof p === 'string' ? { name: p } : p)),
     }))
 
-// Of the file itself, and of the packs.
+// The templates of the file itself, and of the packs.
 export const templatesFor = (document: RuleDocument) => [...ownTemplates(document), ...kPackTemplates]
 
-// What a parameter of this name usually is, for a form to offer names.
+// The usual kind of a parameter of this name, for a form to offer names.
 export const listFor = ({ name, usual = '' }: Parameter): string | undefined => {
   if (/^(name|server|component|node)$/.test(name)) return 'components'
   if (usual.startsWith('/') || /topic|scan|pose|states/.test(name)) return 'topics'

@@ -1,4 +1,4 @@
-// What the rules take from elsewhere, in the form: files that are included, templates and their uses.
+// Reuse in the form: included files, templates and their uses.
 import { DeclarationForm } from './declaration_form'
 import { canAdd, kDeclarations, placeFor } from './declarations'
 import { Field, More, type Props, Remove } from './form_fields'
@@ -36,7 +36,7 @@ function UseForm(props: Props & { place: number }) {
   )
 }
 
-// What a template has in it: statements of each kind, with its parameters in them as {name}.
+// The content of a template: statements of each kind, with its parameters as {name}.
 function TemplateForm(props: Props & { place: number }) {
   const { document, change, place } = props
   const end = endOfTemplate(document, place)
@@ -77,7 +77,7 @@ function TemplateForm(props: Props & { place: number }) {
   )
 }
 
-// Of its own templates first, or of a file that it includes.
+// Uses its own templates first, else those of an included file.
 function newUse(document: RuleDocument): RuleDocument {
   const included = placesOf(document, 'INCLUDE').map((place) => document.statements[place].file)
   const all = templatesFor(document)

@@ -38,7 +38,7 @@ function ruleAt(text: string, line: number): string | undefined {
   return undefined
 }
 
-// What the check finds (docs/diagnostics.md, R052 and R056), and what the form shows.
+// The relations that the check finds (docs/diagnostics.md, R052 and R056), and those that the form shows.
 export function relations(document: RuleDocument, text: string, found: Found[]): Relation[] {
   const list: Relation[] = []
   for (const { code, message, line } of found) {

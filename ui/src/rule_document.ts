@@ -13,7 +13,7 @@ export interface RuleDocument {
   end?: string[]
 }
 
-// What belongs to a statement stands behind it, up to the next of its own rank or of a higher one.
+// The parts of a statement follow it, up to the next statement of its own or a higher rank.
 const kRanks: Record<string, number> = { POLICIES: 1, TRIGGER: 1, STRATEGY: 1, ADAPTATION: 2 }
 export const rankOf = (s: Statement) => kRanks[s.statement] ?? 0
 
@@ -24,8 +24,8 @@ export function endOf(document: RuleDocument, begin: number): number {
   return end
 }
 
-// Whether each statement stands in a template, with its TEMPLATE and END lines: such statements have parameters in
-// them, and are no rules until the template is used.
+// Tells for each statement whether it stands in a template, with its TEMPLATE and END lines: such statements have
+// parameters, and are no rules until the template is used.
 export function inTemplates(document: RuleDocument): boolean[] {
   let isIn = false
   return document.statements.map((s) => {
@@ -90,7 +90,7 @@ const kDefaults: Record<string, string> = {
   parameter: 'parameter', value: 'true', topic: 'topic', mode: 'mode', service: 'service',
 }
 
-// Of another type than `before`, as far as it goes. An impact that nobody has changed follows the type.
+// Keeps the members of `before` that the new type has. An unchanged impact follows the type.
 export function newAdaptation(type: string, before: Statement): Statement {
   const statement: Statement = { statement: 'ADAPTATION', component: before.component, type }
   for (const member of kAdaptations[type]) {
@@ -113,7 +113,7 @@ export function newStrategy(name: string, component: string): Statement[] {
   ]
 }
 
-// That the component is dead is what every rule set asks first.
+// Every rule set first asks whether the component is alive.
 export function newRule(document: RuleDocument, component: string): Statement[] {
   const name = component.replace(/(^|_+)([a-z])/g, (_, __, letter: string) => letter.toUpperCase())
   return [

@@ -17,8 +17,8 @@ interface Waiting {
 }
 let waiting: Waiting[] = [] // in the order that they were made in
 
-// Whichever was changed last counts, form or text: answers to what was asked before it are dropped, or a slow one would
-// take back what was entered since.
+// The latest change counts, in form or text: answers to earlier requests are dropped, or a slow one would revert newer
+// input.
 let asked = 0
 export const isNewest = (number: number) => number === asked
 export const ask = () => ++asked

@@ -1,4 +1,4 @@
-// The rule builder: a form and a text editor of the same file. What one changes, the other shows.
+// The rule builder: a form and a text editor of the same file. Each shows the changes of the other.
 import { effect, signal } from '@preact/signals'
 import { useEffect, useRef, useState } from 'preact/hooks'
 import { call, hasToken, Refusal } from './api'
@@ -46,7 +46,7 @@ async function readForm(): Promise<void> {
   }
 }
 
-// What is not saved is kept, with what it was begun with.
+// Keeps the unsaved text, with the version that it is based on.
 function keep(): void {
   if (!file.value) return
   const { path, text: saved, version } = file.value
@@ -84,7 +84,7 @@ function Difference({ before, after }: { before: string; after: string }) {
   )
 }
 
-// Drafts of before a reload, and what somebody else has saved meanwhile. Nothing is taken away unasked.
+// Drafts from before a reload, and versions that somebody else saved meanwhile. The page never discards one unasked.
 function Restored({ write }: { write: (text: string) => void }) {
   const draft = restored.value
   const other = theirs.value
@@ -139,7 +139,7 @@ function Save({ onClose }: { onClose: () => void }) {
   useEffect(() => dialog.current!.showModal(), [])
   const errors = found.value.filter((f) => f.isError).length
   const [why, setWhy] = useState('')
-  // What goes wrong is told here: the notices are behind the dialog.
+  // Shows errors here: the notices are behind the dialog.
   const save = async () => {
     const sent = text.value
     setWhy('')

@@ -1,5 +1,4 @@
-// Triggers as a sentence: simple conditions, all or any of which have to hold. What is more than a simple condition is one
-// that is written as an expression.
+// Triggers as a sentence: simple conditions, all or any of which have to hold. Anything beyond that is an expression.
 
 export const kKinds = {
   silent: 'a topic is silent for longer than',
@@ -123,7 +122,7 @@ function split(text: string, sign: string): string[] {
 }
 const has = (text: string, sign: string) => split(text, sign).length > 1
 
-// What binds less tightly than the word between the conditions stands in brackets.
+// Brackets enclose an expression that binds less tightly than the word between the conditions.
 const bracketed = (text: string, between: Sentence['between']) => (has(text, '?') || (between === '&&' && has(text, '||')) ? `(${text})` : text)
 
 export function written({ between, clauses }: Sentence): string {

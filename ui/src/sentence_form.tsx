@@ -26,7 +26,7 @@ function firstName(kind: Kind, document: RuleDocument): string {
   return all[0] ?? kStandIns[about]
 }
 
-// What it is now, if the robot that runs has it.
+// Its current value, if the live robot has it.
 function nowOf({ kind, name, second }: Clause): string {
   if (kAbout[kind] === 'topics') {
     const topic = stateOfTopic(name.split(' ')[0])

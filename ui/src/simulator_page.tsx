@@ -89,7 +89,7 @@ function stateText(): string {
   return lines.join('\n') + '\n'
 }
 
-// Who hears an idle component does not wait for it. Who hears a dead one does.
+// A subscriber of an idle component does not wait for it. A subscriber of a crashed one does.
 function producerWorks(name: string): boolean {
   const place = robot.value!.components.findIndex((c) => c.name === name)
   return usualCondition(place) !== 'inactive'

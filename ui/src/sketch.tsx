@@ -1,5 +1,4 @@
-// What a condition looks at, over the last minutes, with its threshold drawn on it: to be dragged, or moved by the arrow
-// keys.
+// The input of a condition over the last minutes, with its threshold, which can be dragged or moved by the arrow keys.
 import { useRef, useState } from 'preact/hooks'
 import { lasting } from './clock'
 import type { Clause } from './sentence'
@@ -11,7 +10,7 @@ const kSteps = 100 // from one end to the other, of an arrow key
 const kHigh = 96
 const kWide = 320
 
-// What it stands for, in seconds where it is a time; nothing of what is no plain number, as a constant.
+// The number that it stands for, in seconds if it is a time; null if it is no plain number, such as a constant.
 export function amountOf(text: string): number | null {
   const match = /^(-?[\d.]+(?:e[+-]?\d+)?)(ns|us|ms|s|min|h)?$/i.exec(text)
   const number = match ? Number(match[1]) * (match[2] ? kUnits[match[2]] : 1) : NaN
@@ -33,7 +32,7 @@ function trendLookedAt({ kind, name }: Clause): Trend {
 const kSketched = ['silent', 'slow', 'odd', 'value', 'mean', 'least', 'most']
 export const isSketched = ({ kind }: Clause) => kSketched.includes(kind)
 
-// Whether the condition holds of a value.
+// True if the condition holds for the value.
 function holds(clause: Clause, value: number, threshold: number): boolean {
   if (clause.kind === 'silent' || clause.kind === 'odd') return value > threshold
   if (clause.kind === 'slow') return value < threshold

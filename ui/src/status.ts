@@ -37,7 +37,7 @@ const kHealthWords: Record<string, string> = {
   EXHAUSTED: 'Gave up',
 }
 
-// What keeps culprit from acting as it usually does.
+// The modes that keep culprit from acting as usual.
 export const modes = computed((): Mode[] => {
   const now = control.value
   if (!now) return [{ name: 'none', word: '', explanation: '' }]
@@ -56,7 +56,7 @@ export const modes = computed((): Mode[] => {
 
 export const sinceOf = (incident: Incident) => incident.sinceClock ?? clockAt(incident.since)
 
-// What is being done about it, or why nothing is.
+// The current repair, or the reason why there is none.
 export function doingOf(incident: Incident): string {
   const { root } = incident
   if (root.phase === 'exhausted') return 'nothing helped: a person must look'

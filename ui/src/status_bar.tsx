@@ -19,7 +19,7 @@ async function brake(isPaused: boolean): Promise<void> {
 
 const canBrake = () => can('post', '/api/orders') && hasToken && !!control.value
 
-// Whoever is in a hurry presses twice: the key only pauses, going on is for the button.
+// A user in a hurry presses twice: the key only pauses, the button resumes.
 addEventListener('keydown', (e) => {
   const isBrake = e.code === 'Pause' || (e.altKey && !e.ctrlKey && !e.metaKey && e.code === 'KeyP')
   if (!isBrake || !canBrake()) return

@@ -1,5 +1,4 @@
-// What the page knows of the robot that runs: the documents of the stream as signals, and a view of
-// what happened.
+// The page's data of the live robot: the documents of the stream as signals, and a view of the events.
 import { batch, computed, signal } from '@preact/signals'
 import { call, follow } from './api'
 import { begun, connected, hearsSign, hearsState, nowByTheClock } from './freshness'
@@ -27,7 +26,7 @@ export async function start(): Promise<void> {
   calls.value = new Set(about.calls)
   begun()
   if (!can('get', '/api/stream')) return void watchServer()
-  // What comes in bursts is drawn once for all of one frame. Of all but events only the newest counts.
+  // A burst is drawn once per frame. For everything but events only the newest document counts.
   const newest: Partial<Record<string, unknown>> = {}
   let waiting: ManagerEvent[] = []
   let count = 0
@@ -139,7 +138,7 @@ export function clockAt(t: number): number {
   return before.clock + t - before.t
 }
 
-// What is known of a component at the moment that is looked at.
+// The state of a component at the selected moment.
 export const known: Known = (component) => ({
   isGone: situation.value.gone.has(component),
   state: isLive.value ? stateOfComponent(component) : undefined,

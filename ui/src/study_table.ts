@@ -1,5 +1,4 @@
-// What a campaign found, as a table: whatever `culprit study --json` writes, rows of labels and of
-// numbers with their spread.
+// The results of a campaign as a table, from `culprit study --json`: rows of labels, and of numbers with their spread.
 
 type Cell = string | number | boolean | null
 export interface StudyTable {
@@ -33,7 +32,7 @@ export interface StudyResult {
   rows: Record<string, unknown>[]
 }
 
-// What a row is of: whoever managed, and what was special about it.
+// The name of a row: its manager and its variant.
 export function rowName(row: Record<string, unknown>): string {
   if (row.manager) return String(row.manager)
   const parts = [String(row.planner)]

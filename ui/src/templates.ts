@@ -15,7 +15,7 @@ export const kTemplates: Template[] = Object.values(kCookbook).map((text) => ({
   text,
 }))
 
-// What a template is about, and what one's own robot may call otherwise.
+// The names in a template, which may differ on the user's robot.
 export interface Names {
   nodes: string[]
   topics: string[]
@@ -47,8 +47,8 @@ function withNames(statement: Statement, names: Map<string, string>): Statement 
 
 const kNamed = ['COMPONENT', 'CONST', 'SIGNAL', 'RULE']
 
-// The document with the template in it: `own` says what its nodes and topics are called here. What the document has of the
-// same name keeps it; a component of the same node is that one.
+// The document with the template in it: `own` maps the template's nodes and topics to names here. Existing statements
+// keep their names; a component of the same node is reused.
 export function filledIn(document: RuleDocument, template: RuleDocument, own: Map<string, string>): RuleDocument {
   const names = new Map(own)
   const left = new Set<Statement>()

@@ -42,10 +42,10 @@ const kMarks: Record<string, string> = {
   fault: '⚡',
   note: '•',
 }
-// What was only advised was not done.
+// A dry run only advises.
 const signOf = (event: ManagerEvent) => (event.dry_run ? '▽' : kMarks[event.type])
 
-// What is about no rule, above the rules: only of runs that are over is it known.
+// Lanes without a rule, above the rules: only finished runs have them.
 const kOwnLanes: Record<string, string> = { fault: 'faults', note: 'the robot' }
 
 function lanesOf(events: ManagerEvent[]): Lane[] {
@@ -96,7 +96,7 @@ const kNames: [string, string][] = [
 function Bars({ lane, row, begin, end }: { lane: Lane; row: number; begin: number; end: number }) {
   const share = (t: number) => (100 * (Math.max(begin, Math.min(end, t)) - begin)) / (end - begin)
   const shown = lane.bars.filter((b) => (b.to ?? end) >= begin && b.from <= end)
-  // Of a thousand in a day one sees no more than there are pixels.
+  // A thousand in a day do not fit into the pixels.
   const apart = shown.filter((b, i) => i === 0 || share(b.to ?? end) - share(shown[i - 1].from) > kLeastShare)
   return (
     <>
@@ -145,7 +145,7 @@ function show(view: View, from: number, to: number): void {
   view.windowLength.value = to - from
   view.windowEnd.value = to >= newest - 1e-9 ? null : to
 }
-// What stands at `centre` stays there.
+// The point at `centre` keeps its place.
 function zoomAround(view: View, factor: number, centre: number): void {
   const { begin, end } = windowOf(view)
   const to = Math.min(Math.max(view.newest.value, 1), centre + (end - centre) * factor)
@@ -154,7 +154,7 @@ function zoomAround(view: View, factor: number, centre: number): void {
 
 function Zoom({ view }: { view: View }) {
   const { begin, end } = windowOf(view)
-  // What one looks at is brought to the middle.
+  // Brings the selected moment to the middle.
   const zoom = (factor: number) => {
     const length = (end - begin) * factor
     const centre = view.moment.value ?? (factor < 1 ? end - length / 2 : end)
@@ -356,7 +356,7 @@ function EventLine({ event, view }: { event: ManagerEvent; view: View }) {
 
 export function EventLog({ view }: { view: View }) {
   const events = usePaced(() => view.events.value, kLogPeriod)
-  // What was told does not change: only lines that are new are made.
+  // Past events do not change: only new lines are created.
   const lines = useMemo(() => new WeakMap<ManagerEvent, VNode>(), [view])
   const lineOf = (event: ManagerEvent) => {
     const line = lines.get(event) ?? <EventLine key={event.number} {...{ event, view }} />

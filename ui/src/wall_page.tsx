@@ -1,4 +1,4 @@
-// For a screen on a wall: big, dark, nothing to press. What is to be known from the other end of the room.
+// For a screen on a wall: big, dark, without buttons, readable from the other end of the room.
 import { useEffect } from 'preact/hooks'
 import { byTheClock } from './clock'
 import { freshness, nowByTheClock } from './freshness'
