@@ -19,7 +19,6 @@
 
 #include "base/environment.h"
 #include "base/live_clock.h"
-#include "cli/test_network.h"
 #include "exemplars/sunset/node_process.h"
 #include "robot/inbox.h"
 #include "ros2/lifecycle.h"
@@ -32,6 +31,7 @@
 #include "ros2/test_forger.h"
 #include "rtps/receive_thread.h"
 #include "rtps/test_datagram.h"
+#include "rtps/test_network.h"
 #include "terminal/test_program.h"
 
 namespace culprit::cli {

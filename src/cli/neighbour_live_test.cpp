@@ -14,7 +14,6 @@
 #include <gtest/gtest.h>
 
 #include "base/live_clock.h"
-#include "cli/test_network.h"
 #include "exemplars/sunset/node_process.h"
 #include "journal/reader.h"
 #include "journal/standing_orders.h"
@@ -22,6 +21,7 @@
 #include "link/survey.h"
 #include "robot/inbox.h"
 #include "ros2/options.h"
+#include "rtps/test_network.h"
 #include "terminal/test_program.h"
 
 namespace culprit::cli {

@@ -8,8 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/test_network.h"
 #include "demo/test_live_sunset.h"
+#include "rtps/test_network.h"
 #include "terminal/test_program.h"
 
 namespace culprit::cli {

@@ -8,11 +8,11 @@
 
 #include "base/environment.h"
 #include "base/live_clock.h"
-#include "cli/test_network.h"
 #include "owners/proc.h"
 #include "owners/test_engine.h"
 #include "owners/test_ssh.h"
 #include "ros2/options.h"
+#include "rtps/test_network.h"
 #include "terminal/test_program.h"
 
 namespace culprit::cli {

@@ -73,14 +73,9 @@ FoundProcess Context::find_process(const Graph::FindProcess& find, ParticipantIn
     participant_->prove(info.guid.prefix(), found.pid);
     proofs_.insert_or_assign(info.guid.prefix(), Proof{std::move(info), found, later(now, kLasts)});
   } else if (!participant_->origins().is_proven(info.guid.prefix())) {
-    // Others speak in its name, too. From now on only its process counts, which is asked again what nodes it has.
+    // Others speak in its name, too. From now on only its process counts, and it is discovered again.
     const int speaker = ProcessFinder().speaker(info);
-    if (speaker == 0) return found;
-    participant_->prove(info.guid.prefix(), speaker);
-    tasks_.post([this, guid = info.guid] {
-      graph_.apply(DiscoveryInfo{guid, {}});
-      (void)listen_to_infos();  // if there is no new reader, the old one stays
-    });
+    if (speaker != 0) participant_->prove(info.guid.prefix(), speaker);
   }
   return found;
 }

@@ -1,9 +1,12 @@
 #include "rtps/announcement.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstring>
 #include <string>
+
+#include "rtps/submessage.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -243,6 +246,28 @@ std::vector<Guid> announced_keys(ByteView parameters, Endianness order, ByteView
   for_each_parameter({parameters, order}, read);
   if (const auto list = announced_list(payload)) for_each_parameter(*list, read);
   return keys;
+}
+
+Bytes farewell_of(const GuidPrefix& participant, std::int64_t sequence) {
+  constexpr std::array<std::uint8_t, 4> kParticipant = {0, 0, 1, 0xc1};
+  Bytes bytes = {'R', 'T', 'P', 'S', 2, 3, 1, 15};
+  const auto append = [&](const auto& more) {
+    bytes.insert(bytes.end(), more.begin(), more.end());
+  };
+  append(participant.bytes);
+  // A sample with inline parameters, little endian, to all readers, of the writer that announces participants.
+  append(
+      Bytes{rtps::kData, 1 | rtps::kHasParameters, 0, 0, 0, 0, 16, 0, 0, 0, 0, 0, 0, 1, 0, 0xc2});
+  for (const int half : {32, 0}) {
+    for (const int byte : {0, 8, 16, 24})
+      bytes.push_back(static_cast<std::uint8_t>(sequence >> (half + byte)));
+  }
+  append(Bytes{kPidKeyHash, 0, 16, 0});
+  append(participant.bytes);
+  append(kParticipant);
+  append(Bytes{kPidStatusInfo, 0, 4, 0, 0, 0, 0, 3, kPidSentinel, 0, 0, 0});
+  bytes[22] = static_cast<std::uint8_t>(bytes.size() - rtps::kHeader - rtps::kSubmessageHeader);
+  return bytes;
 }
 
 }  // namespace culprit::ros2

@@ -29,4 +29,7 @@ std::optional<Guid> read_end(ByteView parameters, Endianness order, ByteView pay
 // `parameters` and `payload` as above. What is damaged is passed over.
 std::vector<Guid> announced_keys(ByteView parameters, Endianness order, ByteView payload);
 
+// The datagram by which the participant says that it has left, as Fast DDS writes it, with the number `sequence`.
+Bytes farewell_of(const GuidPrefix& participant, std::int64_t sequence);
+
 }  // namespace culprit::ros2

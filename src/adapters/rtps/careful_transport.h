@@ -40,6 +40,7 @@
 
 #include "base/live_clock.h"
 #include "base/mutex.h"
+#include "rtps/announcement.h"
 #include "rtps/claims.h"
 #include "rtps/datagram_filter.h"
 #include "rtps/datagram_sources.h"
@@ -290,6 +291,7 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
             Haste haste) const {
     const UdpAddress& from = datagram.from;
     if (!counts(datagram)) return;
+    if (is_for_discovery(local)) discover_again(receiver, local);
     reception_.sources->heard(datagram.bytes, from, live_now());
     const ByteView passed =
         reception_.filter->pass(datagram.bytes, DatagramFilter::Clock::now(), datagram.received);
@@ -304,6 +306,20 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
     // where it depends on what is read whether anything of our own comes. Both have time.
     if (haste == Haste::kNow)
       reception_.sources->came_through(passed, static_cast<std::uint16_t>(local.port), live_now());
+  }
+
+  bool is_for_discovery(const Locator& local) const {
+    return (IpLocator::getPhysicalPort(local) - 7400 - 250 * domain_) % 2 == 0;  // RTPS 2.3 §9.6.1
+  }
+
+  // For the middleware the participant has left, and comes back with its next announcement: nothing that others said in
+  // its name stays.
+  void discover_again(Receiver& receiver, const Locator& local) const {
+    constexpr std::int64_t kLater = std::int64_t{1} << 30;  // than all that it has written
+    const auto doubtful = reception_.origins->take_doubtful();
+    if (!doubtful) return;
+    const Bytes bytes = farewell_of(*doubtful, kLater);
+    receiver.OnDataReceived(bytes.data(), static_cast<std::uint32_t>(bytes.size()), local, local);
   }
 
   bool counts(const ReceiveThread::Datagram& datagram) const {

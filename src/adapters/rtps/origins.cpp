@@ -1,6 +1,7 @@
 #include "rtps/origins.h"
 
 #include <algorithm>
+#include <unistd.h>
 #include <utility>
 
 #include "base/live_clock.h"
@@ -54,6 +55,13 @@ bool Origins::prove(const GuidPrefix& participant, int pid,
     if (is_its) own_ips_.insert(each.ip);
     are_all_its = are_all_its && is_its;
   }
+  if (pid == getpid()) {
+    for (const Socket& each : proven.sockets) witnesses_.insert(each.link);
+  }
+  if (!are_all_its) {
+    proven.is_forgotten_once = true;
+    doubtful_.push_back(participant);
+  }
   proven_.insert_or_assign(participant, std::move(proven));
   elsewhere_.erase(participant);
   return are_all_its;
@@ -64,9 +72,19 @@ bool Origins::is_proven(const GuidPrefix& participant) const {
   return proven_.contains(participant);
 }
 
+std::optional<GuidPrefix> Origins::take_doubtful() {
+  const MutexLock lock(mutex_);
+  if (doubtful_.empty()) return std::nullopt;
+  const GuidPrefix first = doubtful_.back();
+  doubtful_.pop_back();
+  return first;
+}
+
 void Origins::forget(const GuidPrefix& participant) {
   const MutexLock lock(mutex_);
-  proven_.erase(participant);
+  const auto found = proven_.find(participant);
+  if (found != proven_.end() && !std::exchange(found->second.is_forgotten_once, false))
+    proven_.erase(found);
   elsewhere_.erase(participant);
 }
 
@@ -196,7 +214,7 @@ Origins::Whose Origins::find(Proven& proven, const UdpAddress& from) {
 }
 
 bool Origins::look(Proven& proven, const std::vector<UdpSocket>& table, Time now) {
-  if (table.empty()) return false;  // there is at least the one that receives
+  if (!is_of_this_network(table)) return false;
   const std::filesystem::path process = proc_ / std::to_string(proven.pid);
   if (running_since(process) != proven.began) return end(proven, table, now);
   const std::set<std::string> links = descriptors_of(process);
@@ -214,6 +232,14 @@ bool Origins::look(Proven& proven, const std::vector<UdpSocket>& table, Time now
   return true;
 }
 
+// There is at least the socket that receives.
+bool Origins::is_of_this_network(const std::vector<UdpSocket>& table) const {
+  if (witnesses_.empty()) return !table.empty();
+  return std::ranges::any_of(table, [&](const UdpSocket& each) CULPRIT_REQUIRES(mutex_) {
+    return witnesses_.contains(each.link);
+  });
+}
+
 // False: a process that it had started holds its sockets, and may go on speaking.
 bool Origins::end(Proven& proven, const std::vector<UdpSocket>& table, Time now) {
   const bool lives_on = std::ranges::any_of(table, [&](const UdpSocket& each) {
@@ -228,8 +254,8 @@ bool Origins::end(Proven& proven, const std::vector<UdpSocket>& table, Time now)
 
 void Origins::check(Time now) {
   const std::vector<UdpSocket> table = udp_sockets(proc_);
-  if (table.empty()) return;
   const MutexLock lock(mutex_);
+  if (!is_of_this_network(table)) return;
   for (auto each = proven_.begin(); each != proven_.end();) {
     Proven& proven = each->second;
     const bool is_over = proven.ended && now >= later(*proven.ended, kAfterEnd);

@@ -84,9 +84,11 @@ class Origins {
                    std::function<Time()> clock = {});
 
   // The participant is of this process of this machine, and spoke from these addresses so far. Gives whether all of
-  // them are of that process.
+  // them are of that process. If not, what was said in its name before may be false: it is to be discovered again.
   bool prove(const GuidPrefix& participant, int pid, std::span<const UdpAddress> spoke_from);
   bool is_proven(const GuidPrefix& participant) const;
+  // One that is to be discovered again, once. It is forgotten meanwhile, but not where it speaks from.
+  std::optional<GuidPrefix> take_doubtful();
   void forget(const GuidPrefix& participant);
 
   // Participants are bound to addresses, by what is acknowledged to `self`. Not in a secured domain, where the
@@ -130,6 +132,7 @@ class Origins {
     bool spoke_alone = false;  // from a socket that it does not share
     Time looked = kLongAgo;
     std::optional<Time> ended;
+    bool is_forgotten_once = false;         // to be discovered again
     std::map<UdpAddress, Foreign> foreign;  // addresses that are not its
   };
   // One whose process is not known.
@@ -149,8 +152,9 @@ class Origins {
   Whose whose(Proven& proven, const UdpAddress& from, Time now) CULPRIT_REQUIRES(mutex_);
   bool is_of_this_machine(const Ip& ip, Time now) CULPRIT_REQUIRES(mutex_);
   static Whose find(Proven& proven, const UdpAddress& from);
-  // False: the tables cannot be read.
+  // False: the tables cannot be read, or are those of another network.
   bool look(Proven& proven, const std::vector<UdpSocket>& table, Time now) CULPRIT_REQUIRES(mutex_);
+  bool is_of_this_network(const std::vector<UdpSocket>& table) const CULPRIT_REQUIRES(mutex_);
   static bool end(Proven& proven, const std::vector<UdpSocket>& table, Time now);
   void note(const GuidPrefix& participant, const Proven& proven, const UdpAddress& from)
       CULPRIT_REQUIRES(mutex_);
@@ -164,6 +168,8 @@ class Origins {
   std::unordered_map<GuidPrefix, Proven> proven_ CULPRIT_GUARDED_BY(mutex_);
   std::unordered_map<GuidPrefix, Elsewhere> elsewhere_ CULPRIT_GUARDED_BY(mutex_);
   std::optional<GuidPrefix> self_ CULPRIT_GUARDED_BY(mutex_);
+  std::vector<GuidPrefix> doubtful_ CULPRIT_GUARDED_BY(mutex_);
+  std::set<std::string> witnesses_ CULPRIT_GUARDED_BY(mutex_);  // sockets of this process
   std::set<Ip> own_ips_ CULPRIT_GUARDED_BY(mutex_);
   Time asked_for_own_ CULPRIT_GUARDED_BY(mutex_) = kLongAgo;
   Time next_look_ CULPRIT_GUARDED_BY(mutex_) = kLongAgo;

@@ -253,6 +253,17 @@ TEST_F(OriginsOfAMachine, NobodySpeaksForAProcessThatHasEnded) {
   EXPECT_TRUE(counts({kOwn, 50'000}, later(kStart, 2s + Origins::kAfterEnd)));
 }
 
+TEST_F(OriginsOfAMachine, WhoWasSpokenForByOthersIsDiscoveredAgainOnce) {
+  const std::array spoke_from = {UdpAddress{kOwn, 40'000}, UdpAddress{kOther, 5}};
+  EXPECT_FALSE(origins.prove(camera(), kPid, spoke_from));
+  EXPECT_EQ(origins.take_doubtful(), camera());
+  EXPECT_EQ(origins.take_doubtful(), std::nullopt);
+  origins.forget(camera());
+  EXPECT_FALSE(counts({kOther, 5})) << "where it speaks from stays known";
+  origins.forget(camera());
+  EXPECT_TRUE(counts({kOther, 5}));
+}
+
 TEST_F(OriginsOfAMachine, ANumberOfAProcessThatIsGivenAgainIsAnotherProcess) {
   prove();
   machine.end(kPid);
@@ -348,6 +359,22 @@ TEST_F(OriginsElsewhere, MatterNoMoreOnceItsProcessIsProven) {
   origins.prove(lidar(), kPid, {});
   EXPECT_TRUE(counts({kOwn, 40'000}, later(kStart, 7s), lidar()));
   EXPECT_FALSE(speaks(kThere, 7s));
+}
+
+// As of a thread in another network namespace.
+TEST(Origins, ATableWithoutOurOwnSocketsSaysNothing) {
+  FakeMachine machine;
+  const int own = getpid();
+  machine.run(own, 1);
+  const int socket = machine.open(own, kAny, 7411);
+  machine.open(kPid, kAny, 40'000);
+  Origins origins(machine.path(), [] { return std::set<Ip>{kLoopback, kOwn}; });
+  origins.prove(lidar(), own, {});
+  origins.prove(camera(), kPid, {});
+  const Bytes datagram = TestDatagram(camera()).bytes();
+  EXPECT_FALSE(origins.counts(datagram, {kOwn, 50'000}, kStart));
+  machine.close(own, socket);
+  EXPECT_TRUE(origins.counts(datagram, {kOwn, 50'001}, later(kStart, 1s)));
 }
 
 TEST(Origins, AreThoseOfTheKernel) {

@@ -70,8 +70,11 @@ void add_sockets(const std::filesystem::path& table, bool are_ipv6,
 
 std::vector<UdpSocket> udp_sockets(const std::filesystem::path& proc) {
   std::vector<UdpSocket> sockets;
-  add_sockets(proc / "net/udp", false, sockets);
-  add_sockets(proc / "net/udp6", true, sockets);
+  std::error_code error;
+  const std::filesystem::path own = proc / "thread-self/net";
+  const std::filesystem::path tables = std::filesystem::exists(own, error) ? own : proc / "net";
+  add_sockets(tables / "udp", false, sockets);
+  add_sockets(tables / "udp6", true, sockets);
   return sockets;
 }
 

@@ -1,5 +1,5 @@
-// The UDP sockets of this machine, as the kernel's tables tell them: /proc/net/udp and udp6 (proc(5)).
-// They are those of the caller's network namespace; of all of its processes, whoever they run as.
+// The UDP sockets of this machine, as the kernel's tables tell them: /proc/thread-self/net/udp and udp6 (proc(5)).
+// They are those of the calling thread's network namespace; of all of its processes, whoever they run as.
 #pragma once
 
 #include <cstdint>

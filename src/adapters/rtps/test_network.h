@@ -18,7 +18,7 @@
 #include "base/mutex.h"
 #include "base/time.h"
 
-namespace culprit::cli {
+namespace culprit {
 
 struct NetworkTrouble {
   double lost = 0;     // share of the frames
@@ -81,4 +81,4 @@ class TestNetwork {
   std::thread cable_;
 };
 
-}  // namespace culprit::cli
+}  // namespace culprit

@@ -1,4 +1,4 @@
-#include "cli/test_network.h"
+#include "rtps/test_network.h"
 
 #include <algorithm>
 #include <arpa/inet.h>
@@ -14,9 +14,9 @@
 
 #include <net/if.h>
 
-#include "robot/inbox.h"
+#include "base/live_clock.h"
 
-namespace culprit::cli {
+namespace culprit {
 namespace {
 
 using namespace std::chrono_literals;
@@ -179,4 +179,4 @@ TestNetwork::Visit::~Visit() {
   ::close(home_);
 }
 
-}  // namespace culprit::cli
+}  // namespace culprit
