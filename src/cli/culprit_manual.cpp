@@ -57,7 +57,7 @@ void group_commands(CLI::App& app) {
       {"On a robot", {"run", "doctor", "init", "graph", "plan", "modes"}},
       {"A culprit that runs",
        {"status", "top", "pause", "resume", "silence", "approve", "refuse", "run-strategy",
-        "record", "alerts"}},
+        "revive", "end-started", "record", "alerts"}},
       {"Rules", {"check", "explain", "fmt", "test", "import", "export", "policy", "web", "lsp"}},
       {"What was", {"log", "incident", "audit", "beliefs", "replay"}},
 #ifdef CULPRIT_FLEET

@@ -103,7 +103,8 @@ TEST(ExitStatus, IsOneWhereNoCulpritAnswers) {
                                              {"silence", "camera"},
                                              {"approve", "R.s"},
                                              {"refuse", "R.s"},
-                                             {"run-strategy", "R.s"}}) {
+                                             {"run-strategy", "R.s"},
+                                             {"revive"}}) {
     std::vector<std::string> with_domain = words;
     with_domain.insert(with_domain.end(), {"--domain", nobody});
     const EndOfCommand end = end_of(with_domain);
@@ -117,9 +118,9 @@ TEST(JsonOption, IsSpeltTheSameEverywhere) {
   CLI::App app("culprit");
   int exit_code = 0;
   add_all(app, "test", exit_code);
-  for (const char* name :
-       {"run", "check", "doctor", "explain", "test", "plan", "graph", "status", "pause", "resume",
-        "silence", "approve", "refuse", "run-strategy", "alerts", "export", "log", "replay"})
+  for (const char* name : {"run", "check", "doctor", "explain", "test", "plan", "graph", "status",
+                           "pause", "resume", "silence", "approve", "refuse", "run-strategy",
+                           "revive", "alerts", "export", "log", "replay"})
     EXPECT_NE(app.get_subcommand(name)->get_option_no_throw("--json"), nullptr) << name;
   EXPECT_NE(app.get_subcommand("beliefs")->get_subcommand("show")->get_option_no_throw("--json"),
             nullptr);

@@ -407,7 +407,9 @@ TEST(Supervisor, WhatItStartsWhileTheLauncherRunsStandsInForTheLaunch) {
 // With no culprit there any more.
 TEST(StartedProcesses, AreEndedAsALaunchEndsThem) {
   const test::TestFolder folder;
-  Supervised c("sh -c \"trap '' INT; sleep 1000 & while :; do wait; done\"", "0/left_behind");
+  const std::string script = folder.path() / "stubborn";
+  std::ofstream(script) << "trap '' INT; sleep 1000 & while :; do wait; done\n";
+  Supervised c("sh " + script, "0/left_behind");
   const int pid = c.start();
   const auto found = started_processes("0/left_behind");
   ASSERT_EQ(found.size(), 1u);

@@ -3,8 +3,8 @@
 //
 // Such a process does not come back by itself, whatever else is repaired, and nothing of it is left
 // that a replacement could disturb. So its component has a cause of its own, and its replacement
-// waits for no other failure. What ended with its container has none: the container's replacement brings
-// it back.
+// waits for no other failure. A component that ended with its container has none: the
+// container's replacement brings it back.
 #pragma once
 
 #include "knowledge/knowledge.h"

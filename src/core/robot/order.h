@@ -55,10 +55,10 @@ struct Forget {
   std::optional<RuleId> rule{};
 };
 
-// What stays down may be started again: a person had ended it, or may have (StaysDown).
+// Components that stay down, because a person ended them or may have (StaysDown), may be started again.
 struct Revive {};
 
-// What culprit started is ended, and stays down.
+// The processes that culprit started are ended, and their components stay down.
 struct EndStarted {};
 
 struct Order {
