@@ -54,15 +54,15 @@ class Talker {
 TEST(LossyNetwork, IsWhatIsHeldResponsibleAndNoHealthyNode) {
   auto network = TestNetwork::create();
   if (!network) GTEST_SKIP() << network.error();
-  setenv("ROS_LOCALHOST_ONLY", "0", 1);
   const TestWorld world;
+  setenv("ROS_LOCALHOST_ONLY", "0", 1);
   const std::string rules =
       world.write("talker.rules",
                   "ROBOT lossy\n"
                   "COMPONENT talker NODE /talker LIFECYCLE managed\n"
                   "RULE Silent\n  POLICIES ERROR\n  TRIGGER age(/chatter) > 160ms\n"
                   "    STRATEGY talker_restart 90 10\n      ADAPTATION talker restart 5\n"
-                  "RULE Lossy\n  POLICIES WARNING\n  TRIGGER loss(/chatter) > 0.1\n");
+                  "RULE Lossy\n  POLICIES WARNING REPORT\n  TRIGGER loss(/chatter) > 0.1\n");
   std::unique_ptr<Talker> talker;
   {
     const TestNetwork::Visit visit(**network, TestNetwork::kRobot);
@@ -79,6 +79,8 @@ TEST(LossyNetwork, IsWhatIsHeldResponsibleAndNoHealthyNode) {
     std::this_thread::sleep_for(20s);  // that nothing happens takes time
   }
   ASSERT_TRUE(culprit.prints("Lossy detected")) << culprit.output();
+  EXPECT_TRUE(culprit.prints("of what it sends on /chatter is lost on the way to culprit"))
+      << culprit.output();
   EXPECT_THAT(culprit.output(), Not(HasSubstr("held responsible for Silent"))) << culprit.output();
   culprit.signal(SIGINT);
   EXPECT_EQ(culprit.wait(), 0);
