@@ -125,6 +125,7 @@ Link::~Link() {
   tasks_.close();
   asking_.reset();
   asked_.clear();
+  other_nodes_.clear();
   probing_.reset();
   publishing_.reset();
   lease_.reset();
@@ -523,16 +524,21 @@ bool Link::is_other_node(ComponentId component, const std::string& node) const {
 }
 
 void Link::other_node_joined(ComponentId component, const GraphNode& node) {
-  const auto& others = binding_.other_nodes(component);
-  const auto place = std::ranges::find(others, node.name) - others.begin();
+  OtherNode& other = other_nodes_[node.name];
+  other.pid = node.pid;
+  other.is_there = true;
+  if (other.client) return;
+  const auto& all = binding_.other_nodes(component);
+  const auto place = std::ranges::find(all, node.name) - all.begin();
+  other.component = component;
+  other.place = static_cast<std::uint8_t>(std::min<std::ptrdiff_t>(place + 1, 127));
   auto client = ServiceClient::create(
       node_->entry(), {node.name + "/get_parameters", std::string(srv::GetParameters::kType)},
       qos::kParameterServices);
-  if (!client) return;  // a secured domain need not allow it
-  (*client)->ask_only(node.participant);
-  other_nodes_[node.name] = {component,
-                             static_cast<std::uint8_t>(std::min<std::ptrdiff_t>(place + 1, 127)),
-                             node.pid, std::move(*client)};
+  if (client) {  // a secured domain need not allow it
+    (*client)->ask_only(node.participant);
+    other.client = std::move(*client);
+  }
 }
 
 void Link::on_left(const std::string& node, bool was_lost) {
@@ -540,7 +546,8 @@ void Link::on_left(const std::string& node, bool was_lost) {
     const MutexLock lock(mutex_);
     nodes_elsewhere_.erase(node);
   }
-  other_nodes_.erase(node);
+  if (const auto other = other_nodes_.find(node); other != other_nodes_.end())
+    other->second.is_there = false;
   for (auto& [topic, nodes] : publishers_) nodes.erase(node);
   probed_.erase(node);
   pids_.erase(node);
@@ -814,6 +821,7 @@ void Link::probe_other_nodes() {
   constexpr Duration kPatience = std::chrono::milliseconds(500);
   for (const auto& each : other_nodes_) {
     const OtherNode& other = each.second;
+    if (!other.client || !other.is_there) continue;
     other.client->call(encode(srv::GetParameters::Request{}), Repeat::kUntilAnswered, kPatience,
                        [this, component = other.component, place = other.place,
                         pid = other.pid](const CallResult& result) {

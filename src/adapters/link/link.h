@@ -209,6 +209,7 @@ class Link {
     ComponentId component;
     std::uint8_t place = 1;  // Probed::node
     int pid = 0;
+    bool is_there = false;
     std::unique_ptr<ServiceClient> client;
   };
   std::map<std::string, OtherNode> other_nodes_;  // by node

@@ -56,7 +56,7 @@ class DependencyGraph {
   // Another number whenever a node or an end came or went.
   std::uint64_t changes() const { return changes_; }
 
-  // Of a component with several nodes: all of them are.
+  // A component with several nodes is present while all of them are.
   bool is_present(ComponentId component) const;
   // Any of its nodes is.
   bool has_any_node(ComponentId component) const;

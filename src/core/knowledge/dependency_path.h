@@ -1,4 +1,4 @@
-// What ties two nodes: the shortest way from one to another along the edges of the graph.
+// The path that ties two nodes: the shortest one along the edges of the graph.
 #pragma once
 
 #include <span>

@@ -289,7 +289,7 @@ class Parser {
     return true;
   }
 
-  // Of the same process.
+  // The other nodes of the same process.
   bool other_nodes(Scanner& s, syntax::Component& component) {
     while (!s.at_end() && source_.text()[s.position()] == '/') {
       auto node = read_.ros_name(s, "the full name of another node of the process");

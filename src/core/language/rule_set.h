@@ -197,7 +197,7 @@ struct Strategy {
   bool is_last_resort = false;
   Duration within{};  // of a last resort: what the rule's other strategies have from the detection
   std::vector<Adaptation> adaptations;
-  // paper: i_exec,s, the maximum over the adaptations. Of steps: the sum over them of their maxima.
+  // paper: i_exec,s, the maximum over the adaptations. With steps, the sum of their maxima.
   Cycles impact;
   std::vector<ComponentId> components;  // that it adapts, each once, ascending
 

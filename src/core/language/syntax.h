@@ -50,7 +50,7 @@ struct Expression {
   enum class Kind : std::uint8_t {
     kLiteral,  // *literal
     kName,   // name: a constant, a signal; as an argument also a topic, a component, a parameter, a
-             // diagnostic. Of a topic, children[0] is the one that publishes it, if there is a FROM
+             // diagnostic. A topic with a FROM has its publisher as children[0]
     kUnary,  // op children[0]
     kBinary,       // children[0] op children[1]
     kConditional,  // children[0] ? children[1] : children[2]

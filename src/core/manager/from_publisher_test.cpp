@@ -7,7 +7,7 @@
 namespace culprit::test {
 namespace {
 
-constexpr const char* kRules =
+constexpr const char* kTwoScans =
     "COMPONENT front NODE /front LAUNCH \"front\"\nCOMPONENT rear NODE /rear LAUNCH \"rear\"\n"
     "RULE FrontSilent\n  POLICIES ERROR\n  TRIGGER age(/scan FROM front) > 500ms\n"
     "    STRATEGY front_redeploy 90 10\n      ADAPTATION front redeploy 10\n"
@@ -17,7 +17,7 @@ constexpr const char* kRules =
 // /scan FROM front is topic 0, /scan FROM rear topic 1.
 class Scans {
  public:
-  Scans() : robot(kRules) {
+  Scans() : robot(kTwoScans) {
     robot.add("front");
     robot.add("rear");
     robot.discover();
@@ -54,7 +54,7 @@ TEST(FromPublisher, WhoIsKnownDeadIsSilentAtOnce) {
 }
 
 TEST(FromPublisher, IsNamedInTheTextOfTheInput) {
-  const RuleSet rules = *check(Source("test.rules", kRules)).rules;
+  const RuleSet rules = *check(Source("test.rules", kTwoScans)).rules;
   EXPECT_EQ(describe(rules.inputs[0], rules), "age(/scan FROM front)");
   EXPECT_EQ(describe(rules.inputs[1], rules), "rate(/scan FROM rear, 2s)");
 }

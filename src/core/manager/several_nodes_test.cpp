@@ -7,14 +7,14 @@
 namespace culprit::test {
 namespace {
 
-constexpr const char* kRules =
+constexpr const char* kWithCostmap =
     "COMPONENT controller NODE /controller /costmap LAUNCH \"controller\"\n"
     "RULE Dead\n  POLICIES ERROR\n  TRIGGER !alive(controller)\n"
     "    STRATEGY redeploy 90 10\n      ADAPTATION controller redeploy 10\n";
 
 // The costmap comes a moment after the controller, at the start and after each redeploy.
 struct Controller {
-  explicit Controller() : robot(kRules) {
+  explicit Controller() : robot(kWithCostmap) {
     auto& added = robot.add("controller");
     added.has_lifecycle = false;
     pid = added.pid;

@@ -30,7 +30,7 @@ constexpr const char* kStopped =
     "      THEN ADAPTATION driver redeploy 10\n"
     "      THEN ADAPTATION planner start 10\n";
 
-TestRobot robot_with(const std::string& rules) {
+TestRobot arm_robot(const std::string& rules) {
   TestRobot robot(rules);
   robot.add("planner");
   robot.add("driver", {}, "/joints");
@@ -47,7 +47,7 @@ std::size_t place_of(const TestRobot& robot, const std::string& request) {
 }
 
 TEST(Steps, EachBeginsWhenTheOneBeforeIsProven) {
-  TestRobot robot = robot_with(arm_with(kAround));
+  TestRobot robot = arm_robot(arm_with(kAround));
   robot["driver"].fault = "redeploy";
   robot["driver"].start_time = 2s;
   bool was_there_first = true;
@@ -69,7 +69,7 @@ TEST(Steps, EachBeginsWhenTheOneBeforeIsProven) {
 }
 
 TEST(Steps, UndoingDoesNotActivateWhatCommandsADeadDriver) {
-  TestRobot robot = robot_with(arm_with(kAround, "ATTEMPTS 1"));
+  TestRobot robot = arm_robot(arm_with(kAround, "ATTEMPTS 1"));
   robot["driver"].dies_at_start = true;
   robot.kill("driver");
   robot.run_for(40s);
@@ -83,9 +83,9 @@ TEST(Steps, UndoingDoesNotActivateWhatCommandsADeadDriver) {
 // Two lines without THEN say as much: the driver is redeployed behind a planner that is inactive.
 TEST(Steps, NorDoesUndoingAStrategyWithoutSteps) {
   TestRobot robot =
-      robot_with(arm_with("      ADAPTATION planner deactivate 2\n"
-                          "      ADAPTATION driver redeploy 10\n",
-                          "ATTEMPTS 1"));
+      arm_robot(arm_with("      ADAPTATION planner deactivate 2\n"
+                         "      ADAPTATION driver redeploy 10\n",
+                         "ATTEMPTS 1"));
   robot["driver"].dies_at_start = true;
   robot.kill("driver");
   robot.run_for(40s);
@@ -94,11 +94,11 @@ TEST(Steps, NorDoesUndoingAStrategyWithoutSteps) {
 
 TEST(Steps, UndoingGoesBackwardsWhereAllIsUp) {
   TestRobot robot =
-      robot_with(arm_with("      ADAPTATION planner deactivate 2\n"
-                          "      THEN ADAPTATION driver redeploy 10\n"
-                          "      THEN ADAPTATION light set_parameter red true 2\n"
-                          "      THEN ADAPTATION planner activate 2\n",
-                          "ATTEMPTS 1"));
+      arm_robot(arm_with("      ADAPTATION planner deactivate 2\n"
+                         "      THEN ADAPTATION driver redeploy 10\n"
+                         "      THEN ADAPTATION light set_parameter red true 2\n"
+                         "      THEN ADAPTATION planner activate 2\n",
+                         "ATTEMPTS 1"));
   robot["light"].refuses = true;
   robot["driver"].fault = "nothing helps";
   robot.run_for(40s);
@@ -108,10 +108,10 @@ TEST(Steps, UndoingGoesBackwardsWhereAllIsUp) {
 
 TEST(Steps, WhatIsStoppedForARepairIsStartedAgainInUndoing) {
   TestRobot robot =
-      robot_with(arm_with("      ADAPTATION planner stop 2\n"
-                          "      THEN ADAPTATION light set_parameter red true 2\n"
-                          "      THEN ADAPTATION planner start 10\n",
-                          "ATTEMPTS 1"));
+      arm_robot(arm_with("      ADAPTATION planner stop 2\n"
+                         "      THEN ADAPTATION light set_parameter red true 2\n"
+                         "      THEN ADAPTATION planner start 10\n",
+                         "ATTEMPTS 1"));
   robot["light"].refuses = true;
   robot["driver"].fault = "nothing helps";
   robot.run_for(40s);
@@ -120,7 +120,7 @@ TEST(Steps, WhatIsStoppedForARepairIsStartedAgainInUndoing) {
 }
 
 TEST(Steps, WhatIsStoppedStaysStoppedWhileTheDriverIsDown) {
-  TestRobot robot = robot_with(arm_with(kStopped, "ATTEMPTS 1"));
+  TestRobot robot = arm_robot(arm_with(kStopped, "ATTEMPTS 1"));
   robot["driver"].dies_at_start = true;
   robot.kill("driver");
   robot.run_for(40s);
@@ -131,7 +131,7 @@ TEST(Steps, WhatIsStoppedStaysStoppedWhileTheDriverIsDown) {
 // The first try has left the planner inactive, or stopped: that step is done already.
 TEST(Steps, TheNextTryGoesOnFromWhatTheFirstOneLeft) {
   for (const char* steps : {kAround, kStopped}) {
-    TestRobot robot = robot_with(arm_with(steps));
+    TestRobot robot = arm_robot(arm_with(steps));
     robot["driver"].dies_at_start = true;
     robot.kill("driver");
     robot.run_for(10s);
@@ -144,9 +144,9 @@ TEST(Steps, TheNextTryGoesOnFromWhatTheFirstOneLeft) {
 }
 
 TEST(Steps, TheImpactIsTheSumOfTheirs) {
-  const RuleSet rules = robot_with(arm_with("      ADAPTATION planner deactivate 2\n"
-                                            "      ADAPTATION light restart 5\n"
-                                            "      THEN ADAPTATION driver redeploy 10\n"))
+  const RuleSet rules = arm_robot(arm_with("      ADAPTATION planner deactivate 2\n"
+                                           "      ADAPTATION light restart 5\n"
+                                           "      THEN ADAPTATION driver redeploy 10\n"))
                             .rules();
   EXPECT_EQ(rules.strategies[0].impact.count, 15);
 }

@@ -288,7 +288,7 @@ class Monitor {
   std::vector<Signal> signals_;
   std::vector<Derived> derived_;
   std::vector<std::vector<InputId>> component_inputs_;
-  // Of the component's other nodes, in their order: questions that were not answered.
+  // Unanswered questions to the component's other nodes, in their order.
   struct PartMisses {
     int count = 0;
     bool is_reliable = true;  // it has answered from the first question on

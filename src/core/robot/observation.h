@@ -146,8 +146,8 @@ struct ProcessWorked {
   int pid = 0;
 };
 
-// What the component's process uses: the processor since this was told last, in cores, and memory in
-// RAM. Told again and again, of components whose usage the rules read.
+// The usage of the component's process: the processor since the observation before, in cores, and
+// memory in RAM. Observed each second, for components whose usage the rules read.
 struct UsageSeen {
   ComponentId component;
   double cores = 0;

@@ -178,8 +178,11 @@ class Draft {
   // The node of the process that loads components; empty: none.
   std::string container_of(int pid) const {
     for (const auto& [name, its] : seen_.robot.nodes) {
-      if (its.pid == pid && seen_.robot.services.contains(name + "/_container/load_node"))
-        return name;
+      const bool loads = seen_.robot.services.contains(name + "/_container/load_node") ||
+                         std::ranges::any_of(seen_.dump.recipes, [&](const auto& each) {
+                           return each.second.container == name;
+                         });
+      if (its.pid == pid && loads) return name;
     }
     return "";
   }
@@ -296,8 +299,8 @@ class Draft {
   // With the others of its process.
   std::string all_nodes(const std::string& node) const {
     const auto others = others_.find(node);
-    return others == others_.end() ? node
-                                   : fmt::format("{} {}", node, fmt::join(others->second, " "));
+    const bool is_alone = others == others_.end() || others->second.empty();
+    return is_alone ? node : fmt::format("{} {}", node, fmt::join(others->second, " "));
   }
 
   std::string owner_of(const std::string& node) const {

@@ -311,6 +311,7 @@ Sighting with_container(bool has_dump) {
     seen.robot.nodes[node] = {.parameters = {}, .lifecycle = "", .pid = 77};
     seen.starts[node].command = {"/opt/component_container"};
   }
+  seen.robot.services["/box/_container/load_node"] = "composition_interfaces/srv/LoadNode";
   if (!has_dump) return seen;
   seen.has_dump = true;
   seen.dump.recipes["/camera"] = {"/box", "cameras", "cameras::Driver", {{"rate", "10"}}, {}};
