@@ -527,7 +527,7 @@ void Link::other_node_joined(ComponentId component, const GraphNode& node) {
   OtherNode& other = other_nodes_[node.name];
   other.pid = node.pid;
   other.is_there = true;
-  if (other.client) return;
+  if (other.client) return other.client->ask_only(node.participant);
   const auto& all = binding_.other_nodes(component);
   const auto place = std::ranges::find(all, node.name) - all.begin();
   other.component = component;
