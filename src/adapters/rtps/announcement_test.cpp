@@ -139,5 +139,16 @@ TEST(Announcement, AnEndSaysWhichByItsKeyOrItsPayload) {
   EXPECT_FALSE(read_end({}, Endianness::kLittle, payload));
 }
 
+TEST(Announcement, AFarewellIsThatOfFastDds) {
+  Guid participant;
+  for (std::size_t i = 0; i < 12; ++i) participant.bytes[i] = static_cast<std::uint8_t>(i + 1);
+  participant.bytes[14] = 1, participant.bytes[15] = 0xc1;
+  Guid announcer = participant;
+  announcer.bytes[13] = 1, announcer.bytes[14] = 0, announcer.bytes[15] = 0xc2;
+  constexpr std::int64_t kSequence = (std::int64_t{5} << 32) + 0x0102'0304;
+  EXPECT_EQ(farewell_of(participant.prefix(), kSequence),
+            TestDatagram(participant.prefix()).farewell(announcer, kSequence, participant).bytes());
+}
+
 }  // namespace
 }  // namespace culprit::ros2
