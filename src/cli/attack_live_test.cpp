@@ -419,14 +419,14 @@ RULE CameraOff
       ros2::qos::kServices, [&](ros2::ByteView) {
         ++asked;
         ros2::srv::GetState::Response response;
-        response.current_state.id = static_cast<std::uint8_t>(ros2::LifecycleState::kFinalized);
+        response.current_state.id = static_cast<std::uint8_t>(LifecycleState::kFinalized);
         return ros2::encode(response);
       });
   ASSERT_TRUE(lies);
   for (int i = 0; i < 100; ++i) {
     ros2::msg::TransitionEvent event;
-    event.goal_state.id = static_cast<std::uint8_t>(i % 2 == 0 ? ros2::LifecycleState::kInactive
-                                                               : ros2::LifecycleState::kFinalized);
+    event.goal_state.id = static_cast<std::uint8_t>(i % 2 == 0 ? LifecycleState::kInactive
+                                                               : LifecycleState::kFinalized);
     (*events)->publish(ros2::encode(event));
     std::this_thread::sleep_for(20ms);
   }

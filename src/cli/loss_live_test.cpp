@@ -7,12 +7,12 @@
 #include <gtest/gtest.h>
 
 #include "base/live_clock.h"
-#include "cli/test_network.h"
 #include "ros2/lifecycle.h"
 #include "ros2/lifecycle_node.h"
 #include "ros2/live_test.h"
 #include "ros2/publisher.h"
 #include "ros2/timer.h"
+#include "rtps/test_network.h"
 #include "terminal/test_program.h"
 
 namespace culprit::cli {
