@@ -276,7 +276,7 @@ void ComponentLink::ask_for_transition() {
 }
 
 // A node with one thread answers nothing during a transition: then its silence confirms that one is under way. Any other
-// state is told only by the node itself.
+// state is told only by the node itself, but that it was shut down.
 void ComponentLink::on_state(const CallResult& result, const Claim& claim) {
   const auto response = result.outcome == CallOutcome::kAnswered
                             ? decode<srv::GetState::Response>(result.reply)
@@ -289,6 +289,10 @@ void ComponentLink::on_state(const CallResult& result, const Claim& claim) {
     inbox_.put(LifecycleRead{component_, state, is_shut_down});
   } else if (claim.state == Lifecycle::kTransition) {
     tell(Lifecycle::kTransition, Told::kAlways);
+  } else if (claim.is_shut_down && pid_ != 0) {
+    // It may end at once. Only its process can speak in its name (rtps/origins.h), and nothing is ended by that.
+    told_ = claim.state;
+    inbox_.put(LifecycleRead{component_, claim.state, true});
   }
 }
 

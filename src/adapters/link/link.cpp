@@ -626,13 +626,15 @@ void Link::ask_whether_left(const std::string& node, int questions) {
     tasks_.post([this, node, questions, answers] { on_whether_left(node, questions, answers); });
   };
   const auto component = binding_.bind(node);
-  ComponentLink* link = component ? link_of(*component) : nullptr;
-  if (!component || link == nullptr) return then(false);
-  if (!is_other_node(*component, node))
+  if (!component) return then(false);
+  if (!is_other_node(*component, node)) {
+    ComponentLink* link = link_of(*component);
+    if (link == nullptr) return then(false);
     return link->ask([then](std::optional<GuidPrefix> answered) { then(answered.has_value()); });
+  }
   constexpr Duration kPatience = std::chrono::milliseconds(500);
   const auto other = other_nodes_.find(node);
-  if (other == other_nodes_.end()) return then(false);
+  if (other == other_nodes_.end() || !other->second.client) return then(false);
   other->second.client->call(
       encode(srv::GetParameters::Request{}), Repeat::kUntilAnswered, kPatience,
       [then](const CallResult& result) { then(result.outcome == CallOutcome::kAnswered); });

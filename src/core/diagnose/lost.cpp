@@ -22,7 +22,7 @@ std::optional<ComponentId> publisher_of(TopicId topic, const Knowledge& knowledg
 bool may_be_lost(TopicId topic, Time now, const Knowledge& knowledge) {
   const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(topic);
   if (rhythm.loss_at_most <= 0 || !rhythm.last || rhythm.interval <= Duration::zero()) return false;
-  const double missed = seconds(now - *rhythm.last) / seconds(rhythm.interval);
+  const double missed = seconds(now - rhythm.silent_since()) / seconds(rhythm.interval);
   return missed >= 1 && std::pow(rhythm.loss_at_most, missed) >= kPlausible;
 }
 
