@@ -266,6 +266,47 @@ TEST_F(EndsHealed, WhatAKilledCulpritHadStartedEndsWithItsLaunchAllTheSame) {
   }
 }
 
+// culprit is one of the launch, and ends with it.
+TEST_F(EndsHealed, ACulpritOfTheSameLaunchEndsWhatStandsInForOthersOfIt) {
+  for (const bool ends_whole_launch : {true, false}) {
+    std::string rules;
+    std::string launch;
+    for (const char* name : {"a", "b"}) {
+      rules += rule(name, std::string("alive(") + name + ") == false");
+      launch += node(name) + " & all=\"$all $!\"; ";
+    }
+    launch += (own_folder() / "culprit").string() + " run " + world.write("ends.rules", rules) +
+              " --state-dir " + (world.folder() / "state").string() +
+              " --quiet 0 --settle 0.5 & culprit=$!; ";
+    TestProgram launcher(
+        world, {"sh", "-c",
+                launch + "trap 'for p in $all $culprit; do kill $p; done; wait; exit' TERM; "
+                         "trap 'kill $culprit' HUP; while :; do sleep 0.1; done"});
+    for (const char* name : {"a", "b"})
+      ASSERT_TRUE(launcher.prints(std::string(name) + " is there (process ")) << launcher.output();
+    std::this_thread::sleep_for(1s);
+    const int other = pid_in(launcher.output(), "b");
+    kill(pid_in(launcher.output(), "a"), SIGKILL);
+    ASSERT_TRUE(launcher.prints("a_silent resolved by a_redeploy")) << launcher.output();
+    const int stand_in = pid_in(launcher.output(), "a");
+    std::this_thread::sleep_for(2s);
+    // A culprit that is ended alone leaves the robot as it is.
+    launcher.signal(ends_whole_launch ? SIGTERM : SIGHUP);
+    if (ends_whole_launch) {
+      EXPECT_TRUE(goes(other));
+      EXPECT_TRUE(goes(stand_in)) << launcher.output();
+    } else {
+      EXPECT_TRUE(launcher.prints("culprit end-started ends them")) << launcher.output();
+      EXPECT_FALSE(is_gone(stand_in));
+      said_by({"end-started"});
+      EXPECT_TRUE(goes(stand_in));
+      launcher.signal(SIGTERM);
+      EXPECT_TRUE(goes(other));
+    }
+    std::filesystem::remove_all(world.folder() / "state");
+  }
+}
+
 TEST_F(EndsHealed, WhatRunsOnIsNamedAtTheEndAndEndedOnRequest) {
   const Healed all = healed(kEndsAll);
   all.culprit->signal(SIGTERM);

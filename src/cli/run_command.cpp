@@ -121,11 +121,18 @@ ros_api::OrderServices::Give orders_over_dds(const RunOptions& options,
 
 // After Ctrl-C. A disk can stall, and the middleware can hang with its locks held.
 constexpr Duration kEndsWithin = std::chrono::milliseconds(2800);
+// Of that: until the other processes of a launch that had started culprit, too.
+constexpr Duration kLaunchEndsWithin = std::chrono::milliseconds(1500);
 
 // The processes that culprit started outlive it.
-void name_what_runs_on(const std::string& robot, std::FILE* remarks) {
+void name_what_runs_on(const std::string& robot, const std::vector<int>& others,
+                       std::FILE* remarks) {
+  const auto ended = owners::end_with_own_launch(robot, others, kLaunchEndsWithin);
+  for (const owners::StartedProcess& each : ended)
+    say(remarks, "culprit: its own launch ends, and with it {}\n",
+        escape_controls(to_string(each, live_now())));
   const auto started = owners::started_processes(robot);
-  if (started.empty()) return;
+  if (started.empty() || !ended.empty()) return;
   say(remarks, "culprit: these processes that it started run on; culprit end-started ends them:\n");
   for (const owners::StartedProcess& each : started)
     say(remarks, "  {}\n", escape_controls(to_string(each, live_now())));
@@ -193,7 +200,11 @@ int run(const RunOptions& options) {
       options.no_journal ? std::filesystem::path() : options.journal_path(rules->rules);
   const std::size_t count = rules->rules.rules.size();
   if (const auto joined = live.join(std::move(*rules)); !joined) return fail(joined.error());
-  signals.on_stop([&] { live.leave(); });
+  std::vector<int> others;  // of the launch that started culprit, when it is told to end
+  signals.on_stop([&] {
+    others = owners::others_of_own_launch();
+    live.leave();
+  });
   say(remarks,
       "culprit: watching {} with {} rules{}; Ctrl-C ends it and leaves the robot "
       "as it is\n",
@@ -230,7 +241,7 @@ int run(const RunOptions& options) {
   signals.on_user_signal({});
   if (!ended) return fail(ended.error());
   say(remarks, "culprit: stopped; the robot goes on as it is\n");
-  name_what_runs_on(robot_key, remarks);
+  name_what_runs_on(robot_key, others, remarks);
   return kOk;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <csignal>
 #include <poll.h>
+#include <thread>
+#include <unistd.h>
 
 #include "base/live_clock.h"
 #include "base/units.h"
@@ -81,6 +83,36 @@ std::vector<StartedProcess> end_processes(const std::vector<StartedProcess>& pro
     if (is_running(each)) left.push_back(each.what);
   }
   return left;
+}
+
+std::vector<int> others_of_own_launch() {
+  const Origin own = origin_of(getpid());
+  if (own.what != Origin::What::kKnown) return {};
+  std::vector<int> others = children_of(own.pid);
+  // `ros2 run` may be between the launcher and this process.
+  std::erase_if(others, [](int child) {
+    return child == getpid() || child == getppid() || state_letter(child).value_or('Z') == 'Z';
+  });
+  return others;
+}
+
+std::vector<StartedProcess> end_with_own_launch(const std::string& robot,
+                                                const std::vector<int>& others, Duration patience) {
+  constexpr Duration kLook = std::chrono::milliseconds(50);
+  const Origin own = origin_of(getpid());
+  if (own.what != Origin::What::kKnown || others.empty()) return {};
+  std::vector<StartedProcess> started = started_processes(robot);
+  std::erase_if(started, [&](const StartedProcess& p) { return p.launcher != own.pid; });
+  if (started.empty()) return {};
+  const auto runs = [](int child) { return state_letter(child).value_or('Z') != 'Z'; };
+  for (const Time until = later(live_now(), patience); std::ranges::any_of(others, runs);) {
+    if (live_now() >= until) return {};
+    std::this_thread::sleep_for(kLook);
+  }
+  for (const StartedProcess& each : started) {
+    if (auto process = WatchedProcess::watch(each.pid, Relation::kMarked)) process->signal(SIGINT);
+  }
+  return started;
 }
 
 }  // namespace culprit::owners

@@ -28,4 +28,12 @@ std::string to_string(const StartedProcess& process, Time now);
 // was found (PIDs are reused) is left alone.
 std::vector<StartedProcess> end_processes(const std::vector<StartedProcess>& processes);
 
+// The other processes that run and that the launcher of this process started. Empty: there are none, or no launcher is known.
+std::vector<int> others_of_own_launch();
+
+// For a culprit that ends: if all of `others`, which ran when it was told to, end within `patience`, its own launch is
+// being ended. Then asks the processes that stand in for others of that launch to end (SIGINT), and gives them.
+std::vector<StartedProcess> end_with_own_launch(const std::string& robot,
+                                                const std::vector<int>& others, Duration patience);
+
 }  // namespace culprit::owners
