@@ -124,7 +124,7 @@ class OneContainer : public ContainerServices {
     return {id, Outcome::kTimedOut, {}, "no reply"};
   }
 
-  // What is said to be missing next.
+  // The next report of a missing class or file; empty: it is there again.
   std::optional<std::string> missing() {
     for (const Time end = later(live_now(), 60s); live_now() < end;) {
       std::vector<Observation> seen;
