@@ -181,8 +181,17 @@ void ComposedNodes::run(Container& container) {
     const auto has_errand = [&]() CULPRIT_REQUIRES(mutex_) {
       return is_ending_ || !container.errands.empty();
     };
-    something_came_.wait(
-        lock, [&]() CULPRIT_REQUIRES(mutex_) { return has_errand() || container.has_news; });
+    const auto has_something = [&]() CULPRIT_REQUIRES(mutex_) {
+      return has_errand() || container.has_news;
+    };
+    if (container.barred.empty()) {
+      something_came_.wait(lock, has_something);
+    } else if (!something_came_.wait_for(lock, Supervisor::kMissingPeriod, has_something)) {
+      lock.unlock();
+      look_for_missing(container);
+      lock.lock();
+      continue;
+    }
     if (container.errands.empty() && something_came_.wait_for(lock, kQuiet, has_errand) == false) {
       container.has_news = false;
       lock.unlock();
@@ -202,6 +211,21 @@ void ComposedNodes::run(Container& container) {
     }
     lock.lock();
   }
+}
+
+void ComposedNodes::note_missing(Container& container, ComponentId part, const std::string& what) {
+  container.barred.insert(part);
+  inbox_.put(StartBarred{part, what});
+}
+
+// Without its container nothing is known to be missing.
+void ComposedNodes::look_for_missing(Container& container) {
+  const Process process = process_of(container.node);
+  std::erase_if(container.barred, [&](ComponentId part) {
+    if (process.pid != 0 && !services_.could_load(rules_[part], process.pid)) return false;
+    inbox_.put(StartBarred{part, ""});
+    return true;
+  });
 }
 
 // What it has is known before it hangs.
@@ -274,9 +298,11 @@ ComposedNodes::Answer ComposedNodes::stop_part(Container& container, const Erran
   if (const auto contest = services_.contest(container.node)) return {Outcome::kRefused, *contest};
   const bool is_to_replace = errand.ending == Ending::kToStartAgain;
   if (is_to_replace) {
-    if (const auto could = services_.could_load(part, process.pid); !could)
+    if (const auto could = services_.could_load(part, process.pid); !could) {
+      note_missing(container, errand.component, could.error());
       return {Outcome::kRefused,
               part.name + " is not unloaded, for it could not be loaded again: " + could.error()};
+    }
   }
   bool is_stuck = false;
   Answer answer = unload(container, errand, process.pid, is_stuck);
@@ -475,8 +501,10 @@ ComposedNodes::Answer ComposedNodes::load(Container& container, ComponentId part
             component.name + " is there already, though " + container.node + " does not list it"};
   if (is_pending)
     return {Outcome::kRefused, container.node + " is still loading " + component.name};
-  if (const auto could = services_.could_load(component, pid); !could)
+  if (const auto could = services_.could_load(component, pid); !could) {
+    note_missing(container, part, could.error());
     return {Outcome::kRefused, could.error()};
+  }
   const ContainerAnswer made = services_.load(component, pid, patience);
   if (made.outcome == Outcome::kTimedOut) container.unanswered[part] = pid;
   if (made.outcome != Outcome::kDone || made.nodes.empty()) return {made.outcome, made.text};

@@ -14,6 +14,9 @@
 // A stop names the process that it is meant for. Once that has ended it is done, and nothing is unloaded from
 // a container that took its place.
 //
+// A load that cannot happen, for its class or its file of parameters is not there, is reported with what is
+// missing (StartBarred). It is looked for every Supervisor::kMissingPeriod until it is there.
+//
 // Proof before harm. A container is asked only if its process is known, by the proofs by which any
 // process is, and its answers count only if they come from that process. While two nodes have its
 // name none is asked.
@@ -99,6 +102,7 @@ class ComposedNodes {
     bool has_news = false;  // somebody came to it since it was asked what it has
     // Of its thread.
     std::map<ComponentId, int> unanswered{};        // loads, and the process that was asked
+    std::set<ComponentId> barred{};                 // parts whose class or parameters are missing
     std::optional<std::set<std::string>> listed{};  // what it said last that it has
     int listed_by = 0;                              // the process that said so
     Time coming_up = kLongAgo;                      // until when, since it was started here
@@ -118,6 +122,8 @@ class ComposedNodes {
 
   void run(Container& container);
   void look(Container& container);
+  void note_missing(Container& container, ComponentId part, const std::string& what);
+  void look_for_missing(Container& container);
   void put(Errand errand);
   void reply(CommandId command, const Answer& answer);
 

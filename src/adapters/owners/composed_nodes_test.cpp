@@ -124,6 +124,18 @@ class OneContainer : public ContainerServices {
     return {id, Outcome::kTimedOut, {}, "no reply"};
   }
 
+  // The next report of a missing class or file; empty: it is there again.
+  std::optional<std::string> missing() {
+    for (const Time end = later(live_now(), 60s); live_now() < end;) {
+      std::vector<Observation> seen;
+      inbox.take(end, seen);
+      for (const Observation& each : seen) {
+        if (const auto* barred = std::get_if<StartBarred>(&each.what)) return barred->missing;
+      }
+    }
+    return std::nullopt;
+  }
+
   ContainerAnswer list(const std::string&, int, Duration) override {
     const std::lock_guard lock(mutex);
     if (listing.outcome != Outcome::kDone) return listing;
@@ -204,7 +216,7 @@ class OneContainer : public ContainerServices {
   std::string told_last;
   std::optional<std::string> contested;
   bool keeps_nodes = false;
-  bool is_loadable = true;
+  std::atomic<bool> is_loadable = true;
   bool is_proven = true;
   std::atomic<int> pid = 0;
   std::uint64_t last = 0;
@@ -326,6 +338,17 @@ TEST(ComposedNodes, NoneIsEndedThatCouldNotComeBack) {
   robot.is_loadable = false;
   EXPECT_THAT(robot.stop(kDetector).text, HasSubstr("no such class"));
   EXPECT_THAT(robot.what_was_done(), ElementsAre("begin", "unload /detector"));
+}
+
+TEST(ComposedNodes, ALoadThatCannotHappenSaysWhatIsMissingAndWhenItIsThere) {
+  OneContainer robot;
+  robot.begin({});
+  robot.is_loadable = false;
+  robot.composed->start(CommandId{++robot.commands}, kDetector, 5s);
+  EXPECT_EQ(robot.missing(), "no such class");
+  robot.is_loadable = true;
+  EXPECT_EQ(robot.missing(), "");
+  EXPECT_EQ(robot.start(kDetector).outcome, Outcome::kDone);
 }
 
 TEST(ComposedNodes, AContainerThatIsNotProvenIsNotAsked) {

@@ -1,10 +1,14 @@
 #include "owners/launch_difference.h"
 
+#include <csignal>
 #include <fstream>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/live_clock.h"
 #include "base/test_folder.h"
 
 namespace culprit::owners {
@@ -94,6 +98,28 @@ TEST_F(LaunchDifference, ComparesTheParametersOfTwoFiles) {
               ElementsAre("was started with rate: 20, and its LAUNCH gives it 10"));
   EXPECT_THAT(differences(command, running(Words{"driver", "--params-file", file("same", "10")})),
               IsEmpty());
+}
+
+TEST_F(LaunchDifference, IsFoundOfAProgramThatWasReplacedWhileItRan) {
+  const std::filesystem::path program = folder.path() / "driver";
+  std::filesystem::copy_file("/bin/sleep", program);
+  const pid_t pid = fork();
+  if (pid == 0) {
+    execl(program.c_str(), "driver", "1000", nullptr);
+    _exit(127);
+  }
+  for (const Time end = live_now() + std::chrono::seconds(10); live_now() < end;) {
+    const auto runs = running_process(pid);
+    if (runs && runs->program == program) break;
+  }
+  std::filesystem::remove(program);
+  std::filesystem::copy_file("/bin/sleep", program);
+  const auto process = running_process(pid);
+  kill(pid, SIGKILL);
+  waitpid(pid, nullptr, 0);
+  ASSERT_TRUE(process);
+  EXPECT_THAT(differences({program.native(), "1000"}, *process),
+              ElementsAre(HasSubstr("was replaced since it was started")));
 }
 
 TEST_F(LaunchDifference, IsFoundOfAProcessThatRuns) {

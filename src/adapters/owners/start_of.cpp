@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <string_view>
 
 namespace culprit::owners {
 namespace {
@@ -28,8 +29,10 @@ std::optional<Started> started_as(int pid) {
   const fs::path process = "/proc/" + std::to_string(pid);
   Started started{texts_of(process / "cmdline"), texts_of(process / "environ"), {}};
   std::error_code error;
-  const fs::path program = fs::read_symlink(process / "exe", error);
+  std::string program = fs::read_symlink(process / "exe", error).native();
   if (error || started.command.empty()) return std::nullopt;
+  constexpr std::string_view kDeleted = " (deleted)";
+  if (program.ends_with(kDeleted)) program.resize(program.size() - kDeleted.size());
   started.folder = fs::read_symlink(process / "cwd", error);
   // What it is called by may matter to it; but a name alone depends on PATH, and a path on a folder.
   if (!started.command.front().starts_with('/')) started.command.front() = program;

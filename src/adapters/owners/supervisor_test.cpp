@@ -234,7 +234,7 @@ TEST_F(Barred, NothingIsEndedThatCouldNotBeStartedAgain) {
   Supervised c(program());
   const int pid = c.start();
   std::filesystem::remove(program());
-  c.supervisor->stop({3}, ComponentId(0), Ending::kToStartAgain);
+  c.supervisor->stop({3}, ComponentId(0), 0, Ending::kToStartAgain);
   EXPECT_EQ(c.missing(), "there is no program '" + program() + "', or it is not executable");
   EXPECT_EQ(c.reply_to({3}).outcome, Outcome::kRefused);
   EXPECT_EQ(kill(pid, 0), 0) << "it goes on";
