@@ -69,6 +69,8 @@ std::vector<ComponentId> read_by(const Rule& rule, const RuleSet& rules) {
         if (const auto& publisher = rules[input.topic].publisher) all.push_back(*publisher);
         break;
       case Input::Kind::kLevel:
+      case Input::Kind::kGoals:
+      case Input::Kind::kGoalAge:
         break;
     }
   }

@@ -18,6 +18,7 @@ struct NumberOf {
   Number operator()(const LauncherSeen& o) const { return o.component.index; }
   Number operator()(const StartedHere& o) const { return o.component.index; }
   Number operator()(const ProcessWorked& o) const { return o.component.index; }
+  Number operator()(const GoalsSeen& o) const { return o.topic.index; }
   Number operator()(const UsageSeen& o) const { return o.component.index; }
   Number operator()(const HostReached& o) const { return o.component.index; }
   Number operator()(const StartBarred& o) const { return o.component.index; }

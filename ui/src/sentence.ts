@@ -15,6 +15,8 @@ export const kKinds = {
   changed: 'a signal has changed',
   parameter: 'a parameter of a component',
   level: 'the level of a diagnostic',
+  goals: 'how many goals of an action ended within',
+  goalAge: 'how long a goal of an action takes',
   cpu: 'the cores that a component uses',
   memory: 'the memory that a component uses, in MiB',
   text: 'an expression',
@@ -41,8 +43,8 @@ export const kComparisons: Record<string, string> = {
   '==': 'is',
   '!=': 'is not',
 }
-export const kCompared: Kind[] = ['state', 'value', 'mean', 'least', 'most', 'spread', 'parameter', 'level', 'cpu', 'memory']
-export const kWindows: Kind[] = ['mean', 'least', 'most', 'spread', 'frozen']
+export const kCompared: Kind[] = ['state', 'value', 'mean', 'least', 'most', 'spread', 'parameter', 'level', 'goals', 'goalAge', 'cpu', 'memory']
+export const kWindows: Kind[] = ['mean', 'least', 'most', 'spread', 'frozen', 'goals']
 const kFunctions: Partial<Record<Kind, string>> = { mean: 'mean', least: 'min', most: 'max', spread: 'stddev' }
 
 const overWindow = ({ kind, name, how, value, second }: Clause) => `${kFunctions[kind]}(${name}, ${second}) ${how} ${value}`
@@ -58,6 +60,8 @@ const kWritten: Record<Kind, (c: Clause) => string> = {
   most: overWindow,
   spread: overWindow,
   frozen: ({ name, second }) => `frozen(${name}, ${second})`,
+  goals: ({ name, how, value, second }) => `goals(${name}, ${second.replace(' in ', ', ')}) ${how} ${value}`,
+  goalAge: ({ name, how, value }) => `goal_age(${name}) ${how} ${value}`,
   cpu: ({ name, how, value }) => `cpu(${name}) ${how} ${value}`,
   memory: ({ name, how, value }) => `memory(${name}) ${how} ${value}`,
   changed: ({ name }) => `changed(${name})`,
@@ -84,6 +88,8 @@ const kForms = (
     ['most', `max\\(${kWord}, (?<second>[\\d.]+[a-z]+)\\) ${kHow} ${kValue}`],
     ['spread', `stddev\\(${kWord}, ${kSecond}\\) ${kHow} ${kValue}`],
     ['frozen', `frozen\\(${kWord}, ${kSecond}\\)`],
+    ['goals', `goals\\(${kName}, (?<second>\\w+, [\\d.]+[a-z]+)\\) ${kHow} ${kValue}`],
+    ['goalAge', `goal_age\\(${kName}\\) ${kHow} ${kValue}`],
     ['cpu', `cpu\\(${kWord}\\) ${kHow} ${kValue}`],
     ['memory', `memory\\(${kWord}\\) ${kHow} ${kValue}`],
     ['changed', `changed\\(${kWord}\\)`],
@@ -98,7 +104,7 @@ const kEmpty = { name: '', how: '', value: '', second: '' }
 function clauseOf(text: string): Clause {
   for (const [kind, form] of kForms) {
     const groups = form.exec(text)?.groups
-    if (groups) return { kind, name: groups.name, how: groups.how ?? '', value: groups.value ?? '', second: groups.second ?? '' }
+    if (groups) return { kind, name: groups.name, how: groups.how ?? '', value: groups.value ?? '', second: kind === 'goals' ? groups.second.replace(', ', ' in ') : (groups.second ?? '') }
   }
   return { ...kEmpty, kind: 'text', value: text }
 }
@@ -148,6 +154,8 @@ const kUsual: Partial<Record<Kind, Partial<Clause>>> = {
   most: { how: '>', value: '0', second: '2s' },
   spread: { how: '>', value: '1', second: '2s' },
   frozen: { second: '2s' },
+  goals: { how: '>=', value: '2', second: 'aborted in 60s' },
+  goalAge: { how: '>', value: '5min' },
   cpu: { how: '>', value: '0.9' },
   memory: { how: '>', value: '1000' },
   parameter: { how: '==', value: '0', second: 'my_parameter' },

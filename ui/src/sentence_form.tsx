@@ -10,19 +10,19 @@ import { isSketched, Sketch } from './sketch'
 import { graph, robot, state, stateOfComponent, stateOfTopic } from './store'
 
 const kStates = ['unconfigured', 'inactive', 'active', 'finalized']
-type About = 'topics' | 'components' | 'signals' | 'diagnostics' | ''
+type About = 'topics' | 'components' | 'signals' | 'diagnostics' | 'actions' | ''
 const kAbout: Record<Kind, About> = {
   silent: 'topics', slow: 'topics', odd: 'topics', dead: 'components', state: 'components', parameter: 'components', level: 'diagnostics',
-  value: 'signals', mean: 'signals', least: 'signals', most: 'signals', spread: 'signals', frozen: 'signals', changed: 'signals', cpu: 'components', memory: 'components', text: '',
+  value: 'signals', mean: 'signals', least: 'signals', most: 'signals', spread: 'signals', frozen: 'signals', changed: 'signals', goals: 'actions', goalAge: 'actions', cpu: 'components', memory: 'components', text: '',
 }
-const kStandIns: Record<About, string> = { topics: '/topic', components: 'my_node', signals: 'my_signal', diagnostics: 'my_status', '': '' }
+const kStandIns: Record<About, string> = { topics: '/topic', components: 'my_node', signals: 'my_signal', diagnostics: 'my_status', actions: '/my_action', '': '' }
 
 // The first that there is of what a clause of this kind is about.
 function firstName(kind: Kind, document: RuleDocument): string {
   const components = [...namesOf(document, 'COMPONENT'), ...graph.value.nodes.map((n) => n.component ?? ownName(n.node))]
   const topics = [...(robot.value?.topics ?? []), ...names.value.topics]
   const about = kAbout[kind]
-  const all = { topics, components, signals: namesOf(document, 'SIGNAL'), diagnostics: [], '': [] }[about]
+  const all = { topics, components, signals: namesOf(document, 'SIGNAL'), diagnostics: [], actions: [], '': [] }[about]
   return all[0] ?? kStandIns[about]
 }
 
@@ -98,7 +98,7 @@ function ClauseForm({ document, clause, word, take, remove }: ClauseProps) {
           <option value={each}>{words}</option>
         ))}
       </select>
-      {kWindows.includes(kind) && <Typed label="over how long" class="amount" value={second} take={(entered) => take({ ...clause, second: entered })} />}
+      {kWindows.includes(kind) && <Typed label={kind === 'goals' ? 'how they ended, in how long' : 'over how long'} class="amount" value={second} take={(entered) => take({ ...clause, second: entered })} />}
       {about !== '' && <Typed label="its name" value={name} list={about} take={(entered) => take({ ...clause, name: entered })} />}
       {kind === 'parameter' && (
         <Typed label="which parameter" value={second} list={`parameters of ${name}`} take={(entered) => take({ ...clause, second: entered })} />

@@ -42,7 +42,7 @@ ADAPTATION slam restart 5
 
 RULE Changed
 POLICIES OK REPORT
-TRIGGER changed(heat) && heat > 80 && frozen(heat, 2s) && cpu(arm) > 1.5 && memory(arm) >= 800
+TRIGGER changed(heat) && heat > 80 && frozen(heat, 2s) && cpu(arm) > 1.5 && memory(arm) >= 800 && goals(/go, aborted, 60s) >= 2 && goal_age(/go) > 5min
 
 RULE Level
 POLICIES DEGRADED
@@ -202,6 +202,8 @@ export async function writesEveryRow() {
     await clause(rule, 2, 'frozen', { 'over how long': '2s', [name]: 'heat' })
     await clause(rule, 3, 'cpu', { [name]: 'arm', 'how it compares': '>', [much]: '1.5' })
     await clause(rule, 4, 'memory', { [name]: 'arm', 'how it compares': '>=', [much]: '800' })
+    await clause(rule, 5, 'goals', { 'how they ended, in how long': 'aborted in 60s', [name]: '/go', 'how it compares': '>=', [much]: '2' })
+    await clause(rule, 6, 'goalAge', { [name]: '/go', 'how it compares': '>', [much]: '5min' })
     rule = await newRule('Level', 'DEGRADED')
     await clause(rule, 0, 'level', { [name]: 'motor', 'how it compares': '>=', [much]: '2' })
     await clause(rule, 1, 'parameter', { [name]: 'eye', 'which parameter': 'exposure', 'how it compares': '==', [much]: '7' })

@@ -37,7 +37,8 @@ enum class Tag : std::uint8_t {
   kStartedHere = 30,
   kUsageSeen = 31,
   kStartBarred = 32,
-  kPublisherKnown = 33
+  kPublisherKnown = 33,
+  kGoalsSeen = 34
 };
 
 enum class OrderTag : std::uint8_t {
@@ -175,6 +176,15 @@ class Encoder {
     out_.natural(o.component.index);
     out_.real(o.cores);
     out_.real(o.mib);
+  }
+  void write(const GoalsSeen& o, Duration age) {
+    head(Tag::kGoalsSeen, age);
+    out_.natural(o.topic.index);
+    out_.natural(o.goals.size());
+    for (const GoalsSeen::Goal& goal : o.goals) {
+      out_.natural(goal.id);
+      word(goal.status);
+    }
   }
   void write(const HostReached& o, Duration age) {
     head(Tag::kHostReached, age);
@@ -434,6 +444,14 @@ class Decoder {
         UsageSeen seen{id<ComponentId>(rules_.components.size())};
         seen.cores = in_.real();
         seen.mib = in_.real();
+        return seen;
+      }
+      case Tag::kGoalsSeen: {
+        GoalsSeen seen{id<TopicId>(rules_.topics.size()), {}};
+        for (std::uint64_t left = in_.natural(); left > 0 && in_.is_good(); --left) {
+          const std::uint64_t goal = in_.natural();
+          seen.goals.push_back({goal, GoalStatus(in_.byte() % 7)});
+        }
         return seen;
       }
       case Tag::kHostReached: {

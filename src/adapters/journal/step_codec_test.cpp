@@ -73,7 +73,7 @@ decltype(Order::what) any_order() {
 ObservationWhat anything() {
   const std::string text = *rc::gen::arbitrary<std::string>();
   const ComponentId component(*rc::gen::inRange<std::size_t>(0, 2));
-  switch (*rc::gen::inRange(0, 31)) {
+  switch (*rc::gen::inRange(0, 32)) {
     case 0:
       return NodeAppeared{text, *rc::gen::positive<int>()};
     case 1:
@@ -143,6 +143,8 @@ ObservationWhat anything() {
       return StartBarred{component, text};
     case 29:
       return PublisherKnown{text, "/driver"};
+    case 30:
+      return GoalsSeen{TopicId(0), {{*rc::gen::arbitrary<std::uint64_t>(), GoalStatus::kAborted}}};
     default:
       return LinkTrouble{text};
   }

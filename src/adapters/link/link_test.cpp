@@ -625,6 +625,23 @@ TEST(Link, TellsWhichOfTwoNodesPublished) {
   EXPECT_TRUE(linked.wait<SampleArrived>(is_of(1)));
 }
 
+TEST(Link, ReadsTheGoalsOfAnAction) {
+  const TestDomain domain;
+  Robot robot(domain);
+  auto status = robot.publisher<msg::GoalStatusArray>("/go/_action/status");
+  Linked linked(domain, {},
+                "COMPONENT robot NODE /robot\nRULE R\nPOLICIES ERROR REPORT\n"
+                "TRIGGER !alive(robot) || goals(/go, aborted, 60s) > 1 || goal_age(/go) > 1h\n");
+  msg::GoalStatusArray array;
+  array.status_list.resize(1);
+  array.status_list[0].status = 6;
+  Timer timer(robot.context->executor(), 20ms, [&] { status.publish(array); });
+  const auto seen = linked.wait<GoalsSeen>([](const GoalsSeen&) { return true; });
+  ASSERT_TRUE(seen);
+  ASSERT_EQ(seen->goals.size(), 1u);
+  EXPECT_EQ(seen->goals[0].status, GoalStatus::kAborted);
+}
+
 TEST(Link, AsksEachNodeOfAProcessAndMeasuresIt) {
   const TestDomain domain;
   Robot robot(domain);

@@ -8,18 +8,18 @@ namespace {
 
 using namespace std::chrono_literals;
 using testing::HasSubstr;
-using Publisher = SignalPublishers::Publisher;
+using StatusPublisher = SignalPublishers::Publisher;
 
-const Publisher kDriver{"/driver", true};
-const Publisher kRemote{"/driver", false};
-const Publisher kStranger{"/stranger", false};
+const StatusPublisher kDriver{"/driver", true};
+const StatusPublisher kRemote{"/driver", false};
+const StatusPublisher kStranger{"/stranger", false};
 
 struct Statuses {
-  SignalPublishers::Answer says(const Publisher& by, Duration at = 0s) {
+  SignalPublishers::Answer says(const StatusPublisher& by, Duration at = 0s) {
     return publishers.judge("motor", by, Time(at),
                             [&](const std::string& node) { return there.contains(node); });
   }
-  bool uses(const Publisher& by, Duration at = 0s) { return says(by, at).is_used; }
+  bool uses(const StatusPublisher& by, Duration at = 0s) { return says(by, at).is_used; }
   std::set<std::string> there = {"/driver", "/stranger"};
   SignalPublishers publishers;
 };
@@ -82,7 +82,7 @@ TEST(SignalPublishers, AreReplacedByOneOfAnotherNameOnceTheyAreGoneForLong) {
   Statuses statuses;
   statuses.says(kDriver);
   statuses.there.erase("/driver");
-  const Publisher next{"/driver_7", true};
+  const StatusPublisher next{"/driver_7", true};
   EXPECT_FALSE(statuses.uses(next, 1s));
   EXPECT_FALSE(statuses.uses(next, 30s));
   EXPECT_FALSE(statuses.uses(kStranger, 40s)) << "a stranger never";

@@ -4,6 +4,8 @@
 #include <chrono>
 
 #include "base/live_clock.h"
+#include "link/goals.h"
+#include "ros2/messages.h"
 #include "rtps/receive_thread.h"
 
 namespace culprit::ros2 {
@@ -38,6 +40,10 @@ TopicWatch::TopicWatch(NodeEntry& self, TopicId topic, const RuleSet& rules, Inb
       whole_ = TopicId(t);
   }
   counts_ = whole_ || !of_publishers_.empty();
+  reads_goals_ = std::any_of(rules.inputs.begin(), rules.inputs.end(), [&](const Input& input) {
+    using enum Input::Kind;
+    return (input.kind == kGoals || input.kind == kGoalAge) && input.topic == topic;
+  });
 }
 
 void TopicWatch::knows_writers(Writers writers) {
@@ -92,7 +98,9 @@ void TopicWatch::publisher_seen(const std::string& type, const Qos& offered,
                      (listener_->keys() == Keys::kSome ? "with" : "without") +
                      " them, which came first, are watched");
   if (!listener_) {
-    if (!compile_fields(type, library) && !counts_) return;
+    if (reads_goals_ && type != msg::GoalStatusArray::kType)
+      return tell_once(name + " is published as " + type + ", which is no status of an action");
+    if (!compile_fields(type, library) && !counts_ && !reads_goals_) return;
     if (const auto listening = listen(type, offered.keys); !listening) {
       fields_.clear();
       return tell_once("cannot watch " + name + ": " + listening.error());
@@ -103,12 +111,12 @@ void TopicWatch::publisher_seen(const std::string& type, const Qos& offered,
 }
 
 Expected<void> TopicWatch::listen(const std::string& type, Keys keys) {
-  auto listener =
-      TopicListener::open(self_, rules_[topic_].name, type, keys,
-                          fields_.empty() ? PayloadUse::kHeader : PayloadUse::kWhole,
-                          {.on_arrival = [this](const Sample& sample) { on_arrival(sample); },
-                           .on_message = [this](const Sample& sample) { on_message(sample); },
-                           .on_unheard = [this] { on_unheard(); }});
+  auto listener = TopicListener::open(
+      self_, rules_[topic_].name, type, keys,
+      fields_.empty() && !reads_goals_ ? PayloadUse::kHeader : PayloadUse::kWhole,
+      {.on_arrival = [this](const Sample& sample) { on_arrival(sample); },
+       .on_message = [this](const Sample& sample) { on_message(sample); },
+       .on_unheard = [this] { on_unheard(); }});
   if (!listener) return Error{listener.error()};
   type_ = type;
   listener_ = std::move(*listener);
@@ -142,6 +150,9 @@ void TopicWatch::tell_once(std::string trouble) {
 }
 
 void TopicWatch::on_message(const Sample& sample) {
+  if (reads_goals_) {
+    if (auto goals = goals_in(topic_, sample.payload)) inbox_.put(std::move(*goals));
+  }
   for (Field& field : fields_) {
     Value value;
     if (field.reader.read(sample.payload, value) != FieldStatus::kRead) continue;

@@ -76,6 +76,7 @@ class TopicWatch {
   std::optional<TopicId> whole_;            // whatever who publishes it
   std::vector<OfPublisher> of_publishers_;  // FROM
   bool counts_ = false;                     // the rules read the rhythm of any of them
+  bool reads_goals_ = false;                // it is the status of an action
   std::function<void()> ask_for_writers_;
   std::string type_;
   std::set<std::string> told_;  // troubles: each publisher has the same ones

@@ -6,6 +6,7 @@
 // at run time.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <string>
@@ -99,6 +100,29 @@ struct DiagnosticArray {
   std::vector<DiagnosticStatus> status;
   static void visit(auto& self, auto& each) { each(self.header, self.status); }
   bool operator==(const DiagnosticArray&) const = default;
+};
+
+struct GoalInfo {
+  static constexpr std::string_view kType = "action_msgs/msg/GoalInfo";
+  std::array<std::uint8_t, 16> goal_id{};  // unique_identifier_msgs/msg/UUID
+  Time stamp;
+  static void visit(auto& self, auto& each) { each(self.goal_id, self.stamp); }
+  bool operator==(const GoalInfo&) const = default;
+};
+
+struct GoalStatus {
+  static constexpr std::string_view kType = "action_msgs/msg/GoalStatus";
+  GoalInfo goal_info;
+  std::int8_t status = 0;
+  static void visit(auto& self, auto& each) { each(self.goal_info, self.status); }
+  bool operator==(const GoalStatus&) const = default;
+};
+
+struct GoalStatusArray {
+  static constexpr std::string_view kType = "action_msgs/msg/GoalStatusArray";
+  std::vector<GoalStatus> status_list;
+  static void visit(auto& self, auto& each) { each(self.status_list); }
+  bool operator==(const GoalStatusArray&) const = default;
 };
 
 struct Image {

@@ -23,6 +23,8 @@ bool may_be_of(ComponentId component, const Input& input, const Knowledge& knowl
     case Kind::kAge:
     case Kind::kPhi:
     case Kind::kLoss:
+    case Kind::kGoals:
+    case Kind::kGoalAge:
       return knowledge.graph.publishes(component, knowledge.rules[input.topic]);
     case Kind::kAlive:
     case Kind::kLifecycle:

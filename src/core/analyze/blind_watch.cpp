@@ -14,7 +14,7 @@ using Kind = Input::Kind;
 
 bool is_of_topic(const Input& input) {
   return input.kind == Kind::kRate || input.kind == Kind::kAge || input.kind == Kind::kPhi ||
-         input.kind == Kind::kLoss;
+         input.kind == Kind::kLoss || input.kind == Kind::kGoals || input.kind == Kind::kGoalAge;
 }
 
 bool is_of_component(const Input& input) {
@@ -234,8 +234,11 @@ std::optional<Unseen> BlindWatch::why_without_value(InputId id, Time now) const 
     case Kind::kLoss:
       if (knowledge_.signals.rhythm(input.topic).last) return Unseen::kNotCovered;
       return unless_seen(sightings.has(input.topic));
+    case Kind::kGoals:
+      return sightings.has(input.topic) ? Unseen::kNotCovered : Unseen::kNeverSeen;
     case Kind::kAge:
     case Kind::kPhi:
+    case Kind::kGoalAge:
       return unless_seen(sightings.has(input.topic));
     case Kind::kAlive:
     case Kind::kLifecycle:

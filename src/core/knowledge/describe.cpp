@@ -382,6 +382,15 @@ std::string_view to_string(OutcomeCounted::As as) {
   return "";
 }
 
+namespace {
+
+// The action whose status topic it is.
+std::string action_of(const Topic& topic) {
+  return topic.name.substr(0, topic.name.size() - kStatusOfAction.size());
+}
+
+}  // namespace
+
 std::string describe(const Input& input, const RuleSet& rules) {
   const auto call = [&](std::string_view function, const std::string& subject) {
     const bool has_window = input.window > Duration::zero();
@@ -422,6 +431,11 @@ std::string describe(const Input& input, const RuleSet& rules) {
       return call("changed", rules[input.signal].name);
     case kFrozen:
       return call("frozen", rules[input.signal].name);
+    case kGoals:
+      return call("goals",
+                  action_of(rules[input.topic]) + ", " + std::string(to_string(input.outcome)));
+    case kGoalAge:
+      return call("goal_age", action_of(rules[input.topic]));
     case kCpu:
       return call("cpu", rules[input.component].name);
     case kMemory:

@@ -16,6 +16,8 @@ bool was_read(const Input& input, const Sightings& sightings) {
     case Input::Kind::kAlive:
     case Input::Kind::kCpu:
     case Input::Kind::kMemory:
+    case Input::Kind::kGoals:
+    case Input::Kind::kGoalAge:
       return false;
     case Input::Kind::kLifecycle:
       return sightings.was_lifecycle_read(input.component);
@@ -90,6 +92,8 @@ std::string value_name(const Input& input, const RuleSet& rules) {
     case Input::Kind::kAlive:
     case Input::Kind::kCpu:
     case Input::Kind::kMemory:
+    case Input::Kind::kGoals:
+    case Input::Kind::kGoalAge:
       return "";
     case Input::Kind::kLifecycle:
       return "lifecycle " + rules[input.component].name;

@@ -22,6 +22,8 @@ bool reads_value(const Input& input) {
     case Kind::kParameter:
     case Kind::kCpu:
     case Kind::kMemory:
+    case Kind::kGoals:
+    case Kind::kGoalAge:
       return false;
     case Kind::kSignal:
     case Kind::kLevel:

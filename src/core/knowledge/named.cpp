@@ -28,6 +28,8 @@ class Finder {
       case Input::Kind::kAge:
       case Input::Kind::kPhi:
       case Input::Kind::kLoss:
+      case Input::Kind::kGoals:
+      case Input::Kind::kGoalAge:
         return add(input.topic, knowledge_.sightings.has(input.topic));
       case Input::Kind::kAlive:
       case Input::Kind::kLifecycle:

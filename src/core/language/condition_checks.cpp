@@ -72,6 +72,10 @@ std::string known_of(InputId id, const RuleSet& rules) {
       return ": an age is not negative";
     case Input::Kind::kPhi:
       return ": phi is not negative";
+    case Input::Kind::kGoals:
+      return ": a number of goals is not negative";
+    case Input::Kind::kGoalAge:
+      return ": the age of a goal is not negative";
     case Input::Kind::kCpu:
       return ": a share of a core is not negative";
     case Input::Kind::kMemory:

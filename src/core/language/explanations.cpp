@@ -95,7 +95,8 @@ std::vector<Explanation> name_explanations() {
        Strictness::kStrict},
       {Code::kUnknownFunction, "there is no function of this name",
        "Expressions call rate, age, phi, loss, alive, lifecycle, parameter, level, mean, min, max, "
-       "stddev, changed, isnan, frozen, cpu, memory, abs, pow and sqrt. Functions of your own do "
+       "stddev, changed, isnan, frozen, cpu, memory, goals, goal_age, abs, pow and sqrt. Functions "
+       "of your own do "
        "not exist; CONST names "
        "values.",
        rule_with("frequency(/robot/image) < 1"), rule_with("rate(/robot/image) < 1")},

@@ -194,13 +194,12 @@ class ExpressionParser {
     const FunctionInfo* function = find_function(e.name.text);
     if (function == nullptr) {
       const std::string near = closest(e.name.text, function_names());
-      return fail(
-          Code::kUnknownFunction, e.name.span, "there is no function '" + e.name.text + "'",
-          near.empty()
-              ? "known functions: rate age phi loss alive lifecycle parameter level mean min max stddev "
-                "changed isnan frozen cpu memory abs pow sqrt"
-              : "did you mean '" + near + "'?",
-          replacement(e.name.span, near));
+      return fail(Code::kUnknownFunction, e.name.span, "there is no function '" + e.name.text + "'",
+                  near.empty() ? "known functions: rate age phi loss alive lifecycle parameter "
+                                 "level mean min max stddev "
+                                 "changed isnan frozen cpu memory goals goal_age abs pow sqrt"
+                               : "did you mean '" + near + "'?",
+                  replacement(e.name.span, near));
     }
     if (depth >= kMaxNesting) return too_deep();
     e.kind = Kind::kCall;

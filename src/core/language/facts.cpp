@@ -49,6 +49,8 @@ Interval first_interval(const Input& input, const RuleSet& rules) {
     case Input::Kind::kPhi:
     case Input::Kind::kCpu:
     case Input::Kind::kMemory:
+    case Input::Kind::kGoals:
+    case Input::Kind::kGoalAge:
       return {0, kInfinity};
     case Input::Kind::kLoss:
       return {0, 1};

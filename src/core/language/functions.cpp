@@ -7,7 +7,7 @@ namespace {
 
 using enum Argument;
 
-constexpr std::array<FunctionInfo, 20> kFunctions = {{
+constexpr std::array<FunctionInfo, 22> kFunctions = {{
     {Function::kRate,
      "rate",
      "rate(topic) or rate(topic, window); topic FROM component: of one publisher",
@@ -35,6 +35,13 @@ constexpr std::array<FunctionInfo, 20> kFunctions = {{
     {Function::kFrozen, "frozen", "frozen(signal, window)", {kExpression, kExpression}, 2, 2},
     {Function::kCpu, "cpu", "cpu(component)", {kComponent, kComponent}, 1, 1},
     {Function::kMemory, "memory", "memory(component)", {kComponent, kComponent}, 1, 1},
+    {Function::kGoals,
+     "goals",
+     "goals(action, aborted, window); or accepted, succeeded, canceled",
+     {kAction, kOutcome, kExpression},
+     3,
+     3},
+    {Function::kGoalAge, "goal_age", "goal_age(action)", {kAction}, 1, 1},
     {Function::kAbs, "abs", "abs(number)", {kExpression, kExpression}, 1, 1},
     {Function::kPow, "pow", "pow(base, exponent)", {kExpression, kExpression}, 2, 2},
     {Function::kSqrt, "sqrt", "sqrt(number)", {kExpression, kExpression}, 1, 1},

@@ -26,6 +26,8 @@ enum class Function : std::uint8_t {
   kFrozen,
   kCpu,
   kMemory,
+  kGoals,
+  kGoalAge,
   kAbs,
   kPow,
   kSqrt
@@ -33,13 +35,21 @@ enum class Function : std::uint8_t {
 
 // What stands at an argument's place. Names of topics, components, parameters and diagnostics are
 // written bare; they are no expressions.
-enum class Argument : std::uint8_t { kTopic, kComponent, kParameter, kDiagnostic, kExpression };
+enum class Argument : std::uint8_t {
+  kTopic,
+  kComponent,
+  kParameter,
+  kDiagnostic,
+  kAction,
+  kOutcome,
+  kExpression
+};
 
 struct FunctionInfo {
   Function function;
   std::string_view name;
   std::string_view usage;  // for messages
-  std::array<Argument, 2> arguments;
+  std::array<Argument, 3> arguments;
   std::size_t min_arguments;
   std::size_t max_arguments;
 };

@@ -120,6 +120,11 @@ class Inference {
         return Type::kDouble;
       case Function::kAge:
         return Type::kDuration;
+      case Function::kGoals:
+        infer(e.children[2], Type::kDuration);
+        return Type::kInt;
+      case Function::kGoalAge:
+        return Type::kDuration;
       case Function::kCpu:
       case Function::kMemory:
         return Type::kDouble;

@@ -98,6 +98,8 @@ class LiveChecks {
         return status(o);
       case OccurrenceKind::kService:
         return routine(o);
+      case OccurrenceKind::kAction:
+        return action(o);
       default:
         return;
     }
@@ -182,6 +184,19 @@ class LiveChecks {
                       "'" + c->name + "' could be '" + fitting[0] + "' or '" + fitting[1] + "'",
                       "say which with NODE " + fitting[0] + " or NODE " + fitting[1],
                       {}});
+  }
+
+  void action(const Occurrence& o) {
+    const auto status = robot_.topics.find(o.name + std::string(kStatusOfAction));
+    if (status != robot_.topics.end() && status->second.is_published()) return;
+    if (!is_first(OccurrenceKind::kAction, o.name)) return;
+    Names offered;
+    for (const auto& [topic, known] : robot_.topics) {
+      if (topic.ends_with(kStatusOfAction))
+        offered.push_back(std::string_view(topic).substr(0, topic.size() - kStatusOfAction.size()));
+    }
+    warn(Code::kNoSuchTopic, o.span, "no node offers the action '" + o.name + "'",
+         "start its server, or correct the name", closest_full_name(o.name, offered));
   }
 
   // Nodes of one component are one process.

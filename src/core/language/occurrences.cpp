@@ -136,6 +136,10 @@ class Collector {
         return add(OccurrenceKind::kComponent, e.name);
       case Argument::kParameter:
         return add(OccurrenceKind::kParameter, e.name, false, call.children[0].name.text);
+      case Argument::kAction:
+        return add(OccurrenceKind::kAction, e.name);
+      case Argument::kOutcome:
+        return;
       case Argument::kDiagnostic:
         return add(OccurrenceKind::kDiagnostic, e.name);
       case Argument::kExpression:

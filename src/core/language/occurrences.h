@@ -21,6 +21,7 @@ struct Occurrence {
     kFunction,
     kDiagnostic,  // a status
     kService,     // its scope as a topic's
+    kAction,
     kTemplate,
     kHole,  // "{parameter}" or its declaration; its scope is the template
     kFile   // that is included

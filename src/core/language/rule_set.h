@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/goal_status.h"
 #include "base/ids.h"
 #include "base/seldom.h"
 #include "base/units.h"
@@ -156,7 +157,9 @@ struct Input {
     kIsNan,    // signal: its value is not a number
     kFrozen,   // signal: its value stayed as it is for the window, though samples came
     kCpu,      // component: cores that its process uses
-    kMemory    // component: MiB of memory that its process holds
+    kMemory,   // component: MiB of memory that its process holds
+    kGoals,    // topic of an action's status, outcome, over window: goals that ended so
+    kGoalAge   // topic of an action's status: since when its oldest goal runs
   };
   Kind kind = Kind::kSignal;
   Type type = Type::kDouble;
@@ -166,6 +169,7 @@ struct Input {
   ParameterId parameter;
   DiagnosticId diagnostic;
   Duration window{};
+  GoalStatus outcome = GoalStatus::kUnknown;  // kGoals
 
   // The constants that this input is compared with anywhere, ascending (durations in seconds).
   // Where the rules use it in no other way (`only_compared`), nothing can change while it moves

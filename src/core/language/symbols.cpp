@@ -90,13 +90,14 @@ std::size_t input_hash(const Input& input) {
   for (const std::uint32_t id : {input.topic.index, input.signal.index, input.component.index,
                                  input.parameter.index, input.diagnostic.index})
     hash = mixed(hash, id);
-  return mixed(hash, static_cast<std::size_t>(input.window.count()));
+  return mixed(mixed(hash, static_cast<std::size_t>(input.window.count())),
+               static_cast<std::size_t>(input.outcome));
 }
 
 bool is_same_input(const Input& a, const Input& b) {
   return a.kind == b.kind && a.topic == b.topic && a.signal == b.signal &&
          a.component == b.component && a.parameter == b.parameter && a.diagnostic == b.diagnostic &&
-         a.window == b.window;
+         a.window == b.window && a.outcome == b.outcome;
 }
 
 }  // namespace
@@ -734,6 +735,8 @@ void renumber(Input& input, const Symbols::Uses& uses) {
     case kAge:
     case kPhi:
     case kLoss:
+    case kGoals:
+    case kGoalAge:
       input.topic = uses.now(input.topic);
       return;
     case kAlive:

@@ -354,6 +354,15 @@ class Typer {
         wanted.window = *length;
         return input(wanted, Type::kBool);
       }
+      case Function::kGoals:
+        return goals(e);
+      case Function::kGoalAge: {
+        const auto topic = action_argument(e.children[0]);
+        if (!topic) return std::nullopt;
+        wanted.kind = Input::Kind::kGoalAge;
+        wanted.topic = *topic;
+        return input(wanted, Type::kDuration);
+      }
       case Function::kCpu:
       case Function::kMemory:
         wanted.kind = function == Function::kCpu ? Input::Kind::kCpu : Input::Kind::kMemory;
@@ -382,6 +391,36 @@ class Typer {
         return real_function(e, Op::kSquareRoot);
     }
     return std::nullopt;
+  }
+
+  std::optional<Typed> goals(const Expression& e) {
+    const auto topic = action_argument(e.children[0]);
+    if (!topic) return std::nullopt;
+    const syntax::Name& word = e.children[1].name;
+    const auto outcome = counted_outcome(word.text);
+    if (!outcome) {
+      const std::string near = closest(word.text, counted_outcomes());
+      return fail(Code::kArguments, word.span, "no goal ends as '" + word.text + "'",
+                  near.empty() ? "write aborted, canceled, succeeded or accepted"
+                               : "did you mean '" + near + "'?",
+                  replacement(word.span, near));
+    }
+    const auto length = window_argument(e.children[2]);
+    if (!length) return std::nullopt;
+    Input wanted;
+    wanted.kind = Input::Kind::kGoals;
+    wanted.topic = *topic;
+    wanted.outcome = *outcome;
+    wanted.window = *length;
+    return input(wanted, Type::kInt);
+  }
+
+  std::optional<TopicId> action_argument(const Expression& e) {
+    const std::string& name = e.name.text;
+    if (name.starts_with('/') && is_component_reference(name))
+      return symbols_.topic(name + std::string(kStatusOfAction));
+    return fail(Code::kBadRosName, e.span, "'" + name + "' is no full name of an action",
+                "write it with its namespace, as in /navigate_to_pose");
   }
 
   std::optional<Typed> rate(const Expression& e) {

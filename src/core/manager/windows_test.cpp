@@ -162,5 +162,23 @@ TEST(Windows, TheUsageOfAProcessIsThatOfThePresentOne) {
   EXPECT_THAT(played.detected, ElementsAre(std::pair("Busy", 2s)));
 }
 
+TEST(Windows, GoalsCountByHowTheyEndOnceTheWindowIsCovered) {
+  Played played(
+      "RULE Aborted\nPOLICIES WARNING REPORT\nTRIGGER goals(/go, aborted, 10s) >= 2\n"
+      "RULE Slow\nPOLICIES WARNING REPORT\nTRIGGER goal_age(/go) > 5s\n");
+  using enum GoalStatus;
+  played.observe(0s, NodeAppeared{"/server", 7},
+                 EndpointAppeared{"/server", EndpointKind::kPublisher, "/go/_action/status"});
+  // Those that were over before culprit listened do not count.
+  played.observe(1s, GoalsSeen{TopicId(0), {{1, kAborted}, {2, kAborted}}});
+  played.observe(12s, GoalsSeen{TopicId(0), {{1, kAborted}, {2, kAborted}, {3, kExecuting}}});
+  played.observe(13s, GoalsSeen{TopicId(0), {{3, kAborted}, {4, kAccepted}}});
+  played.observe(20s, GoalsSeen{TopicId(0), {{3, kAborted}, {4, kAborted}}});
+  played.observe(21s, GoalsSeen{TopicId(0), {{5, kSucceeded}}});
+  played.wait_until(40s);
+  EXPECT_THAT(played.detected,
+              ElementsAre(std::pair("Slow", 18s + 1ns), std::pair("Aborted", 20s)));
+}
+
 }  // namespace
 }  // namespace culprit::test

@@ -33,6 +33,7 @@ monitor::ValueWindow::Of statistic(Kind kind) {
 }
 
 double as_number(const Slot& slot, Type type) {
+  if (type == Type::kInt) return static_cast<double>(slot.i);
   return type == Type::kDuration ? seconds(Duration(slot.i)) : slot.d;
 }
 
@@ -62,9 +63,12 @@ Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time dis
       case Kind::kAge:
       case Kind::kPhi:
       case Kind::kLoss:
+      case Kind::kGoals:
+      case Kind::kGoalAge:
         topics_[input.topic.index].inputs.push_back(id);
         topics_[input.topic.index].needs_phi |= input.kind == Kind::kPhi;
-        if (input.kind == Kind::kRate) derived_[i].count = monitor::SlidingCount(input.window);
+        if (input.kind == Kind::kRate || input.kind == Kind::kGoals)
+          derived_[i].count = monitor::SlidingCount(input.window);
         for (const double threshold : input.thresholds) {
           if (input.kind == Kind::kPhi)
             derived_[i].deviations.push_back(monitor::PhiAccrual::deviations(threshold));
@@ -245,6 +249,12 @@ void Monitor::update(InputId id, Time now) {
     case Kind::kLoss:
       value = loss(id, now);
       break;
+    case Kind::kGoals:
+      value = goals(id, now);
+      break;
+    case Kind::kGoalAge:
+      value = goal_age(input.topic, now);
+      break;
     case Kind::kChanged:
       return update_changed(id, now);
     case Kind::kFrozen:
@@ -272,8 +282,9 @@ void Monitor::update(InputId id, Time now) {
     write_.signals.set(id, value);
   } else {
     const bool has_overflowed = derived_[id.index].is_overflow_told;
-    const bool is_covering = (input.kind == Kind::kRate || input.kind == Kind::kLoss) &&
-                             topics_[input.topic.index].first;
+    const bool is_covering =
+        (input.kind == Kind::kRate || input.kind == Kind::kLoss || input.kind == Kind::kGoals) &&
+        topics_[input.topic.index].first;
     write_.signals.forget(id, has_overflowed ? WhyUnknown::kOverflow
                               : is_covering  ? WhyUnknown::kNotCovered
                                              : WhyUnknown::kNoValue);

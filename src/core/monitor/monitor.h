@@ -103,7 +103,16 @@ class Monitor {
   void refresh(const Program& program, Time now);
 
  private:
+  struct Goal {
+    Time began;
+    GoalStatus status = GoalStatus::kUnknown;
+  };
+  struct Goals {
+    std::unordered_map<std::uint64_t, Goal> all;  // that the server remembers
+    bool is_heard = false;                        // it told of them
+  };
   struct Topic {
+    Goals goals;  // of the status of an action
     std::optional<Time> first;
     std::optional<Time> last;
     std::optional<Time> regained;  // the first sample since `awake_`
@@ -161,6 +170,7 @@ class Monitor {
   void on(Time at, const Probed& seen);
   void on(Time at, const ProcessWorked& seen);
   void on(Time at, const UsageSeen& seen);
+  void on(Time at, const GoalsSeen& seen);
   void on(Time at, const StatusHeard& seen);
   void on(Time at, const ParametersListed& seen);
   void on(Time at, const HostReached& seen);
@@ -210,6 +220,13 @@ class Monitor {
   Slot rate(InputId id, Time now);
   Slot phi(InputId id, Time now) const;
   Slot loss(InputId id, Time now);
+  Slot goals(InputId id, Time now);
+  Slot goal_age(TopicId topic, Time now) const;
+  std::optional<Time> goals_known_since(TopicId topic) const;
+  std::optional<Time> oldest_goal(TopicId topic) const;
+  Time next_of_goals(InputId id, Time now) const;
+  void count_goal(TopicId topic, GoalStatus outcome, Time at);
+  void forget_goals(TopicId topic, Time now);
 
   // Whether a component that publishes the topic joined the graph since then.
   bool has_begun_since(Time before, TopicId topic) const;

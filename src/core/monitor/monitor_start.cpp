@@ -27,7 +27,7 @@ using Kind = Input::Kind;
 
 bool is_rhythm(const Input& input) {
   return input.kind == Kind::kRate || input.kind == Kind::kAge || input.kind == Kind::kPhi ||
-         input.kind == Kind::kLoss;
+         input.kind == Kind::kLoss || input.kind == Kind::kGoals || input.kind == Kind::kGoalAge;
 }
 
 }  // namespace
@@ -143,7 +143,10 @@ std::optional<ComponentId> Monitor::certainly_silent(TopicId topic) const {
 void Monitor::forget_what_was_heard_of(ComponentId component, Time now) {
   for (const KnownRobot::End& end : knowledge_.graph.ends_of(component)) {
     if (end.kind != EndpointKind::kPublisher) continue;
-    for (const TopicId topic : topics_of(component, end.name)) write_.sightings.unhear(topic);
+    for (const TopicId topic : topics_of(component, end.name)) {
+      write_.sightings.unhear(topic);
+      forget_goals(topic, now);
+    }
   }
   for (Topic& topic : topics_) {
     if (!topic.silent_since || topic.silent_one != component) continue;

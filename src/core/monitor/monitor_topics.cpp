@@ -70,7 +70,11 @@ bool Monitor::has_begun_since(Time before, TopicId topic) const {
 
 void Monitor::see(TopicId topic, Time at) {
   if (!write_.sightings.note(topic, at)) return;
-  for (const InputId id : topics_[topic.index].inputs) deadlines_.set(id.index, silent_from(topic));
+  for (const InputId id : topics_[topic.index].inputs) {
+    const Kind kind = knowledge_.rules[id].kind;
+    const bool is_of_goals = kind == Kind::kGoals || kind == Kind::kGoalAge;
+    deadlines_.set(id.index, is_of_goals ? at : silent_from(topic));
+  }
 }
 
 Time Monitor::silent_from(TopicId topic) const {
@@ -143,6 +147,95 @@ Slot Monitor::rate(InputId id, Time now) {
   return Slot::of(derived.count.rate());
 }
 
+// Each message has all goals that the server remembers. A goal that was over before the first message
+// does not count.
+void Monitor::on(Time at, const GoalsSeen& seen) {
+  Goals& goals = topics_[seen.topic.index].goals;
+  see(seen.topic, at);
+  std::unordered_map<std::uint64_t, Goal> known;
+  for (const GoalsSeen::Goal& each : seen.goals) {
+    const auto before = goals.all.find(each.id);
+    const bool is_new = before == goals.all.end();
+    const Goal goal = is_new ? Goal{at, GoalStatus::kUnknown} : before->second;
+    known.insert_or_assign(each.id, Goal{goal.began, each.status});
+    if (is_new && goals.is_heard) count_goal(seen.topic, GoalStatus::kAccepted, at);
+    const bool ends = is_over(each.status) && !is_over(goal.status);
+    if (ends && (!is_new || goals.is_heard)) count_goal(seen.topic, each.status, at);
+  }
+  goals.is_heard = true;
+  goals.all = std::move(known);
+  for (const InputId id : topics_[seen.topic.index].inputs) update(id, at);
+}
+
+void Monitor::count_goal(TopicId topic, GoalStatus outcome, Time at) {
+  for (const InputId id : topics_[topic.index].inputs) {
+    const Input& input = knowledge_.rules[id];
+    if (input.kind == Kind::kGoals && input.outcome == outcome &&
+        !derived_[id.index].count.add(at, 1))
+      note_overflow(id, at);
+  }
+}
+
+// Its server is gone, and its goals with it. The next one tells of its own.
+void Monitor::forget_goals(TopicId topic, Time now) {
+  Goals& goals = topics_[topic.index].goals;
+  if (goals.all.empty()) return;
+  goals.all.clear();
+  for (const InputId id : topics_[topic.index].inputs) update(id, now);
+}
+
+// How long it has been listened to the status of the action; nothing: its server was never seen.
+std::optional<Time> Monitor::goals_known_since(TopicId topic) const {
+  const auto first = knowledge_.sightings.first(topic);
+  return first ? std::optional(heard_since(std::max(*first, start_))) : std::nullopt;
+}
+
+Slot Monitor::goals(InputId id, Time now) {
+  const Input& input = knowledge_.rules[id];
+  Derived& derived = derived_[id.index];
+  const auto since = goals_known_since(input.topic);
+  const Time counted = std::max(since.value_or(kLongAgo), derived.overflowed.value_or(kLongAgo));
+  if (!since || now < later(counted, input.window)) return {};
+  derived.is_overflow_told = false;
+  derived.count.advance(now);
+  return Slot::of(static_cast<std::int64_t>(derived.count.count()));
+}
+
+Slot Monitor::goal_age(TopicId topic, Time now) const {
+  if (!goals_known_since(topic)) return {};
+  const auto oldest = oldest_goal(topic);
+  return Slot::of(oldest ? now - heard_since(*oldest) : Duration::zero());
+}
+
+// When the oldest goal that is not over began; nothing: none runs.
+std::optional<Time> Monitor::oldest_goal(TopicId topic) const {
+  std::optional<Time> oldest;
+  for (const auto& [id, goal] : topics_[topic.index].goals.all) {
+    if (!is_over(goal.status) && (!oldest || goal.began < *oldest)) oldest = goal.began;
+  }
+  return oldest;
+}
+
+Time Monitor::next_of_goals(InputId id, Time now) const {
+  const Input& input = knowledge_.rules[id];
+  const auto since = goals_known_since(input.topic);
+  if (!since) return kNever;
+  if (input.kind == Kind::kGoals) {
+    const Time counted = std::max(*since, derived_[id.index].overflowed.value_or(kLongAgo));
+    const monitor::SlidingCount& count = derived_[id.index].count;
+    return now < later(counted, input.window) ? later(counted, input.window)
+                                              : count.falls_below(count.count());
+  }
+  const auto oldest = oldest_goal(input.topic);
+  if (!oldest || input.readers.empty()) return kNever;
+  if (!input.only_compared) return later(now, knowledge_.rules.cycle);
+  for (const double threshold : input.thresholds) {
+    const Time crossing = later(heard_since(*oldest), from_seconds(threshold) + Duration(1));
+    if (crossing > now) return crossing;
+  }
+  return kNever;
+}
+
 Slot Monitor::phi(InputId id, Time now) const {
   const auto suspicion = topics_[knowledge_.rules[id].topic.index].phi.phi(now);
   return suspicion ? Slot::of(*suspicion) : Slot();
@@ -156,6 +249,7 @@ Slot Monitor::loss(InputId id, Time now) {
 // The next time after `now` at which the input crosses a threshold if no message comes.
 Time Monitor::next_crossing(InputId id, Time now) const {
   const Input& input = knowledge_.rules[id];
+  if (input.kind == Kind::kGoals || input.kind == Kind::kGoalAge) return next_of_goals(id, now);
   const Topic& topic = topics_[input.topic.index];
   if (input.kind == Kind::kLoss) return topic.loss.changes();
   if (!topic.last && now < silent_from(input.topic)) return silent_from(input.topic);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/endpoint_kind.h"
+#include "base/goal_status.h"
 #include "base/ids.h"
 #include "base/time.h"
 #include "base/value.h"
@@ -154,6 +155,16 @@ struct UsageSeen {
   double mib = 0;
 };
 
+// How far the goals of an action are: all that its server remembers. `topic` is that of their status.
+struct GoalsSeen {
+  struct Goal {
+    std::uint64_t id = 0;  // of the UUID
+    GoalStatus status = GoalStatus::kUnknown;
+  };
+  TopicId topic;
+  std::vector<Goal> goals;
+};
+
 // The computer that runs a component (HOST) cannot be asked, or can be again. Of a component that is
 // not heard of meanwhile nobody knows whether it works.
 struct HostReached {
@@ -280,12 +291,13 @@ struct PublisherKnown {
 
 // One of these was observed. Copied and destroyed in observation.cpp: see EventWhat (knowledge/event.h) for why.
 class ObservationWhat
-    : public std::variant<
-          NodeAppeared, NodeVanished, EndpointAppeared, EndpointVanished, SampleArrived, SignalRead,
-          DiagnosticRead, ParameterRead, LifecycleRead, ProcessSeen, Probed, Reply, LinkTrouble,
-          Order, NamesakesSeen, HearingLost, HearingRegained, Overslept, StatusHeard,
-          ParametersListed, ProcessWorked, HostReached, EndsWith, LauncherSeen, PriorsTold, LivesOn,
-          HostHeard, ListenerKnown, StartedHere, UsageSeen, StartBarred, PublisherKnown> {
+    : public std::variant<NodeAppeared, NodeVanished, EndpointAppeared, EndpointVanished,
+                          SampleArrived, SignalRead, DiagnosticRead, ParameterRead, LifecycleRead,
+                          ProcessSeen, Probed, Reply, LinkTrouble, Order, NamesakesSeen,
+                          HearingLost, HearingRegained, Overslept, StatusHeard, ParametersListed,
+                          ProcessWorked, HostReached, EndsWith, LauncherSeen, PriorsTold, LivesOn,
+                          HostHeard, ListenerKnown, StartedHere, UsageSeen, StartBarred,
+                          PublisherKnown, GoalsSeen> {
  public:
   using Variant = variant;
   using variant::variant;

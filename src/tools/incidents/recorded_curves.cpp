@@ -253,6 +253,8 @@ class CurveReader {
         case Input::Kind::kLifecycle:
         case Input::Kind::kCpu:
         case Input::Kind::kMemory:
+        case Input::Kind::kGoals:
+        case Input::Kind::kGoalAge:
           break;  // no numbers; the marks tell
       }
     }

@@ -178,6 +178,14 @@ class Completion {
         return components();
       case Argument::kParameter:
         return parameters(call.first);
+      case Argument::kAction:
+        return {};
+      case Argument::kOutcome: {
+        std::vector<Proposal> outcomes;
+        for (const std::string_view word : counted_outcomes())
+          outcomes.push_back({Kind::kKeyword, std::string(word), "outcome of a goal"});
+        return outcomes;
+      }
       case Argument::kDiagnostic:
         return names(&live_statuses);
       case Argument::kExpression:

@@ -116,6 +116,8 @@ std::string meaning(const Document& document, const Occurrence& thing) {
       return "Diagnostic status `" + thing.name + "`";
     case OccurrenceKind::kService:
       return "Service `" + thing.name + "`";
+    case OccurrenceKind::kAction:
+      return "Action `" + thing.name + "`";
     case OccurrenceKind::kParameter:
       return "Parameter `" + thing.name + "` of `" + thing.scope + "`";
   }

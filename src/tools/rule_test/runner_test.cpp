@@ -290,6 +290,15 @@ TEST(Runner, OneOfTwoPublishersIsSilent) {
   EXPECT_TRUE(played.result.is_ok()) << played.text();
 }
 
+TEST(Runner, GoalsThatAreAborted) {
+  const Played played = play(
+      "GOAL /go 20s..22s aborted\nGOAL /go 25s..30s aborted\nGOAL /go 31s\nRUN 1min\n"
+      "EXPECT Aborted DETECTED AFTER 30s\nEXPECT Slow DETECTED AFTER 41s\n",
+      "RULE Aborted\n  POLICIES WARNING REPORT\n  TRIGGER goals(/go, aborted, 15s) >= 2\n"
+      "RULE Slow\n  POLICIES WARNING REPORT\n  TRIGGER goal_age(/go) > 10s\n");
+  EXPECT_TRUE(played.result.is_ok()) << played.text();
+}
+
 // ---- the same again
 
 TEST(Runner, PlaysTheSameTestTheSameWay) {

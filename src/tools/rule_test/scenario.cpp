@@ -17,6 +17,7 @@ void Scenario::append(const Scenario& other) {
   append_all(origins, other.origins);
   append_all(states, other.states);
   append_all(incidents, other.incidents);
+  append_all(goals, other.goals);
   append_all(answers, other.answers);
   append_all(cures, other.cures);
 }

@@ -54,6 +54,14 @@ struct InitialState {
   Lifecycle lifecycle = Lifecycle::kActive;
 };
 
+// A goal that the server of an action pursues.
+struct GoalCourse {
+  TopicId topic;  // of its status
+  Duration from{};
+  std::optional<Duration> until;  // nothing: it goes on
+  GoalStatus outcome = GoalStatus::kUnknown;
+};
+
 struct Incident {
   enum class Kind : std::uint8_t {
     kKilled,   // its process ends
@@ -92,6 +100,7 @@ struct Scenario {
   std::vector<Origin> origins;
   std::vector<InitialState> states;
   std::vector<Incident> incidents;
+  std::vector<GoalCourse> goals;
   std::vector<Answer> answers;
   std::vector<Cure> cures;
 

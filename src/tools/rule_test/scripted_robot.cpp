@@ -55,6 +55,10 @@ ScriptedRobot::ScriptedRobot(const RuleSet& rules, const Scenario& scenario)
   build_components(scenario);
   build_voices(scenario);
   set_default_parameters();
+  for (const GoalCourse& goal : scenario.goals) {
+    plan(Time{goal.from}, [this, topic = goal.topic] { tell_goals(topic); });
+    if (goal.until) plan(Time{*goal.until}, [this, topic = goal.topic] { tell_goals(topic); });
+  }
   for (const Incident& i : scenario.incidents) plan(Time{i.at}, [this, &i] { incident(i); });
 }
 
@@ -290,6 +294,18 @@ void ScriptedRobot::probe(ComponentId id, int pid) {
     tell(Probed{id, false});
     probe(id, pid);
   });
+}
+
+// All goals of the action that have begun.
+void ScriptedRobot::tell_goals(TopicId topic) {
+  GoalsSeen seen{topic, {}};
+  for (std::size_t i = 0; i < scenario_.goals.size(); ++i) {
+    const GoalCourse& goal = scenario_.goals[i];
+    if (goal.topic != topic || now_ < Time{goal.from}) continue;
+    const bool has_ended = goal.until && Time{*goal.until} <= now_;
+    seen.goals.push_back({i, has_ended ? goal.outcome : GoalStatus::kExecuting});
+  }
+  tell(std::move(seen));
 }
 
 // A topic without a FROM is that of all its publishers.

@@ -69,6 +69,7 @@ class ScriptedRobot : public Robot {
   void appear(ComponentId id);
   void incident(const Incident& incident);
   void probe(ComponentId id, int pid);
+  void tell_goals(TopicId topic);
   void heal(const std::vector<Subject>& subjects);
   void follow_parameter(ParameterId id, const Value& value);
   void refresh_voices();

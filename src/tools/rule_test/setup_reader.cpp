@@ -39,8 +39,8 @@ std::optional<Incident::Kind> incident_of(std::string_view word) {
 }  // namespace
 
 const std::vector<std::string_view>& SetupReader::keywords() {
-  static const std::vector<std::string_view> kKeywords = {"COMPONENT", "TOPIC",     "SIGNAL",
-                                                          "LEVEL",     "PARAMETER", "AT"};
+  static const std::vector<std::string_view> kKeywords = {"COMPONENT", "TOPIC", "SIGNAL", "LEVEL",
+                                                          "PARAMETER", "AT",    "GOAL"};
   return kKeywords;
 }
 
@@ -52,6 +52,7 @@ bool SetupReader::read(std::string_view keyword, Scanner& s, Scenario& scenario)
   if (keyword == "SIGNAL") return signal(s);
   if (keyword == "LEVEL") return level(s);
   if (keyword == "PARAMETER") return parameter(s);
+  if (keyword == "GOAL") return goal(s);
   return at(s);
 }
 
@@ -182,6 +183,29 @@ bool SetupReader::course(Scanner& s, Subject subject) {
   auto course = read_course(s, read_, rules_, subject);
   if (!course) return false;
   scenario_->courses.push_back(std::move(*course));
+  return true;
+}
+
+// GOAL /action 2s, or GOAL /action 2s..5s aborted.
+bool SetupReader::goal(Scanner& s) {
+  auto action = read_.ros_name(s, "an action");
+  if (!action) return false;
+  action->text += kStatusOfAction;
+  const auto topic = names_.topic(*action);
+  const auto from = topic ? read_.duration(s, "when it begins") : std::nullopt;
+  if (!from) return false;
+  GoalCourse goal{*topic, *from, {}, GoalStatus::kUnknown};
+  if (!s.at_end()) {
+    if (!read_.expect_symbol(s, "..")) return false;
+    goal.until = read_.duration(s, "when it ends");
+    if (!goal.until) return false;
+    const Token word = s.next();
+    const auto outcome = counted_outcome(word.text);
+    if (!outcome || !is_over(*outcome))
+      return read_.unexpected_clause(word, {"succeeded", "canceled", "aborted"});
+    goal.outcome = *outcome;
+  }
+  scenario_->goals.push_back(goal);
   return true;
 }
 

@@ -199,6 +199,7 @@ std::vector<Replacement> DeclaredNames::below(const std::string& space, const sy
         break;
       case kTopic:
       case kService:
+      case kAction:
         full_name({o.name, o.span});
         break;
       default:
