@@ -63,11 +63,9 @@ double Diagnosis::kappa(std::size_t j, std::size_t i) const {
   return knowledge_.couplings.of(causes_[j].rule, causes_[i].rule).mean(expected);
 }
 
-double Diagnosis::explained(std::size_t i, std::optional<std::size_t> without) const {
+double Diagnosis::explained(std::size_t i) const {
   double unexplained = 1;
-  for_each(causes_.causes(i), [&](std::size_t j) {
-    if (j != without) unexplained *= 1 - passes(j, i);
-  });
+  for_each(causes_.causes(i), [&](std::size_t j) { unexplained *= 1 - passes(j, i); });
   return 1 - unexplained;
 }
 

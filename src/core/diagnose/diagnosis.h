@@ -55,8 +55,8 @@ class Diagnosis {
   double against_others(std::size_t i) const { return against_others_[i]; }
   // kappa(j -> i)
   double kappa(std::size_t j, std::size_t i) const;
-  // X_i, from all causes or all but one.
-  double explained(std::size_t i, std::optional<std::size_t> without = std::nullopt) const;
+  // X_i
+  double explained(std::size_t i) const;
   // Is j alone enough for i to have no cause of its own, more likely than not?
   bool is_explained_by(std::size_t i, std::size_t j) const;
   // The node of i's loop that has a dead process, if it is alone enough for i. The operating system

@@ -63,7 +63,7 @@ class Collector {
 
   std::vector<Evidence> other(std::size_t j, std::size_t i) {
     const CauseNode& node = causes_[j];
-    const double weight = log_of(diagnosis_.explained(i)) - log_of(diagnosis_.explained(i, j));
+    const double weight = std::log(Coupling::kUsual) + kSurely;
     switch (node.kind) {
       case CauseNode::Kind::kFailure:
         add(EvidenceSource::kAlarm, name(node.rule) + " fires", node.onset.latest, weight);

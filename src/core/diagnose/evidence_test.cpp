@@ -51,14 +51,6 @@ TEST_F(EvidenceFor, AnAlarmUpstreamSpeaksForIt) {
                                            StartsWith("causes do not always pass on (model, +")));
 }
 
-// Of two alarms each speaks for itself only as far as the other leaves something to explain.
-TEST_F(EvidenceFor, OfTwoExplanationsEachWeighsLess) {
-  scene_.fail("A").fail("C");
-  const double alone = of("A", "C").front().log_odds;
-  scene_.fail("B");
-  EXPECT_LT(of("A", "C").front().log_odds, alone);
-}
-
 TEST_F(EvidenceFor, AProcessThatIsGoneIsProof) {
   scene_.fail("A").fail("B");
   scene_.process("b", ProcessState::kGone);

@@ -247,7 +247,7 @@ int study_rca(const RcaOptions& options) {
     return written ? kOk : fail(written.error(), kFailed);
   }
   if (options.explained) {
-    for (std::size_t p = 0; p < campaign->planners.size(); ++p) {
+    for (std::uint32_t p = 0; p < campaign->planners.size(); ++p) {
       const auto run = study::rca::single_run(*campaign, {p, *options.explained});
       fmt::print("{}\n{}\n", campaign->planners[p], study::rca::tell(*run));
     }
