@@ -240,7 +240,7 @@ RULE GhostGone
 )"),
                       "--launch", "--settle", "0", "--state-dir", state()});
   EXPECT_TRUE(run.prints("no-such-program")) << run.output();
-  EXPECT_TRUE(run.prints("exhausted")) << run.output();
+  EXPECT_TRUE(run.prints("GhostGone waits: ghost cannot be started")) << run.output();
   run.signal(SIGINT);
   EXPECT_EQ(run.wait(), 0);
 }

@@ -117,6 +117,8 @@ class OwnFolders {
                mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
                mount("none", "/tmp", "tmpfs", 0, "mode=1777") == 0 &&
                mount("none", "/run", "tmpfs", 0, "mode=0755") == 0;
+    // The folder for temporary files of all tests is not there any more.
+    if (are_own_) unsetenv("TMPDIR");
   }
   ~OwnFolders() {
     if (!are_own_) return;

@@ -22,6 +22,7 @@ Expected<std::unique_ptr<DiagnosticsWatch>> DiagnosticsWatch::create(NodeEntry& 
 
 DiagnosticsWatch::DiagnosticsWatch(NodeEntry& self, const RuleSet& rules, Inbox& inbox)
     : self_(self), inbox_(inbox), reading_(rules), tasks_(self.context().executor()) {
+  for (const Component& each : rules.components) components_.insert(each.node);
   reading_.on_level = [this](DiagnosticId id, std::uint8_t level)
                           CULPRIT_REQUIRES(mutex_) { on_level(id, level); };
   reading_.on_signal = [this](SignalId id, const std::string& text)
@@ -70,7 +71,8 @@ void DiagnosticsWatch::look_up(const Guid& writer, const msg::DiagnosticArray& m
   constexpr std::size_t kMostWriters = 10'000;  // the network decides how many there are
   const Graph::Owner owner = self_.context().graph().owner_of(writer);
   const SignalPublishers::Publisher by{owner.node, owner.pid != 0,
-                                       owner.node.empty() || owner.counts};
+                                       owner.node.empty() || owner.counts,
+                                       components_.contains(owner.node)};
   const MutexLock lock(mutex_);
   --waiting_;
   if (!by.node.empty() && writers_.size() < kMostWriters) writers_.insert_or_assign(writer, by);

@@ -37,6 +37,8 @@ SignalPublishers::Answer SignalPublishers::judge(const std::string& status, cons
     bound.missed = now;
   }
   const bool is_gone = bound.missed && now >= later(*bound.missed, kForgets);
+  const bool is_besides = by.is_component && by.is_proven && by.counts;
+  if (is_besides && bound.is_proven && !is_gone) return {.is_used = true};
   if (!by.is_proven || !by.counts || (bound.is_proven && !is_gone) || (!is_gone && by.node.empty()))
     return refuse(status, by, bound.node);
   const std::string before = bound.node;

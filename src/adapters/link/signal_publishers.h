@@ -9,6 +9,7 @@
 //     of what is not.
 //   - A proven process takes the place of a node that has been gone for kForgets, whatever its name: a driver may have
 //     another name each time.
+//   - A component of the rule file that is proven counts besides: in SUAVE the vehicle and a controller publish one status.
 //   - Many nodes publish statuses of others (drivers, aggregators), so the subject of a status says nothing.
 //
 // Pure: time and what is known of a publisher come with each question.
@@ -36,6 +37,7 @@ class SignalPublishers {
     std::string node{};      // full name; empty: no node claims the writer
     bool is_proven = false;  // to be a process of this machine
     bool counts = true;      // it is the one that holds the name, if others claim it, too
+    bool is_component = false;  // of the rule file
   };
   // Whether a node of this name is in the graph.
   using IsThere = std::function<bool(const std::string& node)>;

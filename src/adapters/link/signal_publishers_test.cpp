@@ -45,6 +45,18 @@ TEST(SignalPublishers, MayPublishStatusesOfSeveralAndOfOthers) {
   EXPECT_FALSE(statuses.publishers.judge("camera", {"/camera", true}, Time(), is_there).is_used);
 }
 
+// The vehicle says that a thruster failed, and the controller that it works again.
+TEST(SignalPublishers, MayBeBesidesAComponentThatIsProven) {
+  Statuses statuses;
+  statuses.says(kDriver);
+  const auto besides = statuses.says({"/controller", true, true, true});
+  EXPECT_TRUE(besides.is_used);
+  EXPECT_EQ(besides.conflict, "");
+  EXPECT_TRUE(statuses.uses(kDriver));
+  EXPECT_FALSE(statuses.uses({"/controller", false, true, true})) << "somebody in its name";
+  EXPECT_FALSE(statuses.uses({"/controller", true, false, true})) << "another one of its name";
+}
+
 // After a redeploy it is another process, and the same node.
 TEST(SignalPublishers, AreSucceededByTheNextProcessOfTheNode) {
   Statuses statuses;

@@ -30,6 +30,19 @@ bool is_ill(const RuleState& state) {
          (seen.history.empty() && seen.trigger.known && seen.trigger.b);
 }
 
+// Was each topic of a quiet rule heard since culprit could hear again? Until then it says nothing.
+bool has_heard(RuleId rule, const Knowledge& knowledge) {
+  const auto& inputs = knowledge.rules[rule].inputs;
+  return std::all_of(inputs.begin(), inputs.end(), [&](InputId id) {
+    const Input& input = knowledge.rules[id];
+    const bool is_heard = input.kind == Input::Kind::kAge || input.kind == Input::Kind::kPhi ||
+                          input.kind == Input::Kind::kRate;
+    if (!is_heard) return true;
+    const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(input.topic);
+    return !rhythm.last || rhythm.resumed <= *rhythm.last;
+  });
+}
+
 std::vector<Signs> signs_of(const Knowledge& knowledge, std::span<const RuleId> imminent,
                             std::span<const std::optional<TroubleSeen>> troubles) {
   std::vector<Signs> signs(knowledge.rules.components.size());
@@ -41,7 +54,8 @@ std::vector<Signs> signs_of(const Knowledge& knowledge, std::span<const RuleId> 
   for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
     const RuleState& state = knowledge.states[RuleId(r)];
     const bool is_seen_ill = is_ill(state);
-    if (is_seen_ill || state.detection.trigger.known) add(RuleId(r), is_seen_ill);
+    const bool sees = state.detection.trigger.known && has_heard(RuleId(r), knowledge);
+    if (is_seen_ill || sees) add(RuleId(r), is_seen_ill);
   }
   for (const RuleId rule : imminent) add(rule, true);
   for (std::size_t c = 0; c < signs.size(); ++c) {

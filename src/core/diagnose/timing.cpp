@@ -21,7 +21,7 @@ std::optional<Onset> outage_of(const Input& input, Time now, const Knowledge& kn
   if (watches_a_topic(input)) {
     const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(input.topic);
     if (is_silent(input.topic, now, knowledge))
-      return Onset{*rhythm.last, later(*rhythm.last, rhythm.gap)};
+      return Onset{*rhythm.last, later(rhythm.silent_since(), rhythm.gap)};
     if (input.kind == Kind::kRate) return Onset{now - input.window, now};
     if (rhythm.last) return Onset{*rhythm.last, now};
     return std::nullopt;

@@ -6,7 +6,7 @@
 //   E_r          after an onset, r (or what it reads) shows it within E_r
 //
 //   trigger reads            e_r                              l_r                    E_r
-//   age, phi, rate, silent   last sample                      last sample + gap      2 gaps
+//   age, phi, rate, silent   last sample                      silent since + gap     2 gaps
 //   rate, not silent         detection - window               detection              2 gaps
 //   alive                    when that changed                the same               none: asked
 //   alive, it hangs          last answer                      first one missed       none: asked
@@ -15,7 +15,9 @@
 //
 // where t is the time from which the trigger has been true (HOLD n/k: the detection; k cycles more for
 // e_r and E_r, n - 1 cycles less for l_r), `gap` the usual pause of the topic, `reading` the period of
-// the signal, and the lateness is that of knowledge/latencies.h. If a trigger reads several, what is silent or down decides before values.
+// the signal; `silent since` is the last sample, or the time when culprit heard again after a gap; and the
+// lateness is that of knowledge/latencies.h. If a trigger reads several, what is silent or down decides
+// before values.
 //
 // Rule u can be the cause of failure i only if it began before it: e_u <= l_i. While
 //

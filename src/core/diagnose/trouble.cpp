@@ -74,7 +74,7 @@ std::vector<std::optional<TroubleSeen>> all_troubles(const Knowledge& knowledge)
     const auto component = knowledge.graph.only_publisher(knowledge.rules[topic]);
     if (component && !all[component->index] && !knowledge.is_unheard(*component))
       all[component->index] =
-          TroubleSeen{Trouble::kSilent, {*rhythm.last, later(*rhythm.last, rhythm.gap)}};
+          TroubleSeen{Trouble::kSilent, {*rhythm.last, later(rhythm.silent_since(), rhythm.gap)}};
   }
   return all;
 }

@@ -282,7 +282,7 @@ void Executor::finish_goal(Run& run, Time now) {
     if (is_last) note_lifecycle(pursuit, now);
     if (const auto* parameter = std::get_if<execute::ParameterGoal>(&pursuit.goal()))
       forget_owed(pursuit.component(), parameter->name);
-    if (launches(adaptation)) note_coming_up(pursuit, now);
+    if (launches(adaptation) || is_first_rise(pursuit)) note_coming_up(pursuit, now);
     if (!pursuit.remark().empty()) run.remark = pursuit.remark();
     note_mode(pursuit, now);
     ++run.goal;
@@ -467,6 +467,15 @@ void Executor::note_lifecycle(const Pursuit& pursuit, Time now) {
   const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&pursuit.goal());
   if (lifecycle != nullptr)
     write_.components.intend_lifecycle(pursuit.component(), lifecycle->target, now, write_.events);
+}
+
+// It stayed unconfigured until a rule had culprit bring it up: nobody else does.
+bool Executor::is_first_rise(const Pursuit& pursuit) const {
+  const auto& before = pursuit.before();
+  const auto* state = before ? std::get_if<Lifecycle>(&before->value) : nullptr;
+  const auto driver = knowledge_.components[pursuit.component()].coming_up.driver;
+  return state != nullptr && *state == Lifecycle::kUnconfigured &&
+         driver == ComingUp::Driver::kUnknown;
 }
 
 // How long it took, and who brought it up.

@@ -95,6 +95,7 @@ class Executor {
   Purpose purpose_of(const Run& run) const;
   bool next_goal(Run& run, Time now);
   bool start_again(Run& run, Time now);
+  bool is_first_rise(const execute::Pursuit& pursuit) const;
   void note_begun_anew(const Run& run, Time now);
   void note_undo(Run& run);
   bool next_undo(Run& run, Time now);
