@@ -130,8 +130,7 @@ TEST_F(Composed, NoContainerIsReplacedThatHasWhatNobodyCouldLoadAgain) {
   const auto culprit = run(rules("") + kWeak);
   EXPECT_TRUE(culprit.prints("/planner lives there, too, and nobody could load it again"))
       << culprit.output();
-  EXPECT_TRUE(culprit.prints("DetectorWeak waits: detector cannot be started"))
-      << culprit.output();
+  EXPECT_TRUE(culprit.prints("DetectorWeak waits: detector cannot be started")) << culprit.output();
   EXPECT_FALSE(container.wait(100ms)) << "the container was ended";
 }
 
@@ -142,8 +141,7 @@ TEST_F(Composed, NothingIsUnloadedThatCouldNotBeLoadedAgain) {
       culprit.prints("the package peer has no component peer::Nodde; did you mean "
                      "peer::Node?"))
       << culprit.output();
-  EXPECT_TRUE(culprit.prints("DetectorWeak waits: detector cannot be started"))
-      << culprit.output();
+  EXPECT_TRUE(culprit.prints("DetectorWeak waits: detector cannot be started")) << culprit.output();
   EXPECT_THAT(container.output(), Not(HasSubstr("unloaded")));
   TestProgram check(world, {"culprit", "check", "--robot",
                             world.write("typo.rules", rules("", "peer::Nodde") + kWeak)});

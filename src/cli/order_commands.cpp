@@ -202,8 +202,8 @@ void add_orders(CLI::App& app, int& exit_code) {
   add_order(app, exit_code, "resume", "Let a culprit that is paused go on", plain("resume"),
             make());
   add_order(app, exit_code, "revive",
-            "Let a running culprit start the components again that a person ended",
-            plain("revive"), make());
+            "Let a running culprit start the components again that a person ended", plain("revive"),
+            make());
   add_end_started(app, exit_code);
 
   options = make();

@@ -52,8 +52,7 @@ BagReading::BagReading(const RuleSet& rules, const BagContents& contents,
 BagReading::Plan BagReading::plan_for(const BagTopic& topic) {
   Plan plan;
   for (std::size_t t = 0; t < rules_.topics.size(); ++t) {
-    if (rules_.topics[t].name == topic.name && !rules_.topics[t].publisher)
-      plan.topic = TopicId(t);
+    if (rules_.topics[t].name == topic.name && !rules_.topics[t].publisher) plan.topic = TopicId(t);
   }
   plan_fields(topic, plan);
   if (topic.encoding != "cdr") return plan;

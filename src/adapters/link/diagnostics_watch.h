@@ -52,7 +52,7 @@ class DiagnosticsWatch {
   mutable Mutex mutex_;  // receive threads take it: nothing of the middleware is called with it
   DiagnosticsReading reading_ CULPRIT_GUARDED_BY(mutex_);
   SignalPublishers publishers_ CULPRIT_GUARDED_BY(mutex_);
-  std::set<std::string> components_;  // nodes of the rule file; constant
+  std::set<std::string> components_;                        // nodes of the rule file; constant
   std::set<std::string> nodes_ CULPRIT_GUARDED_BY(mutex_);  // of the graph
   std::unordered_map<Guid, SignalPublishers::Publisher> writers_
       CULPRIT_GUARDED_BY(mutex_);  // that were looked up

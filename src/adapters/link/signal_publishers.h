@@ -34,9 +34,9 @@ class SignalPublishers {
   static constexpr Duration kClaimed = std::chrono::seconds(3);
 
   struct Publisher {
-    std::string node{};      // full name; empty: no node claims the writer
-    bool is_proven = false;  // to be a process of this machine
-    bool counts = true;      // it is the one that holds the name, if others claim it, too
+    std::string node{};         // full name; empty: no node claims the writer
+    bool is_proven = false;     // to be a process of this machine
+    bool counts = true;         // it is the one that holds the name, if others claim it, too
     bool is_component = false;  // of the rule file
   };
   // Whether a node of this name is in the graph.

@@ -89,8 +89,7 @@ std::vector<int> left_by(const std::string& component, const std::string& proces
         !has_variable(pid, counts_in))
       return true;
     if (!process.empty()) return !has_variable(pid, process);
-    const int launched =
-        std::atoi(value_of_variable(pid, std::string(kPidVariable) + "=").c_str());
+    const int launched = std::atoi(value_of_variable(pid, std::string(kPidVariable) + "=").c_str());
     return launched <= 0 || is_what_was_launched(launched);
   });
   return pids;

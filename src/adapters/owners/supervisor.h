@@ -163,7 +163,7 @@ class Supervisor {
     std::vector<Relative> left{};  // what somebody else's had started when its end was ordered
     Time left_at{};
     std::optional<Time> stands_since{};  // while it is not told yet that it was stopped
-    int launcher = 0;  // that it stands in for, while its program does not run yet
+    int launcher = 0;        // that it stands in for, while its program does not run yet
     std::string variable{};  // what it and all that it started have in their environment
     std::vector<FileDescriptor> tree{};  // what it had started when its end was ordered
   };

@@ -69,8 +69,9 @@ bool is_unclosed(const Token& token) { return token.flaw == Token::Flaw::kUnclos
 }  // namespace
 
 bool is_component_reference(std::string_view name) {
-  return name.starts_with('/') ? is_ros_name(name) : is_ros_name("/" + std::string(name)) &&
-                                                        name.find('/') == std::string_view::npos;
+  return name.starts_with('/')
+             ? is_ros_name(name)
+             : is_ros_name("/" + std::string(name)) && name.find('/') == std::string_view::npos;
 }
 
 std::span<const std::string_view> reserved_words() { return kReservedWords; }

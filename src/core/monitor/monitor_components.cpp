@@ -48,8 +48,8 @@ bool is_up(Lifecycle state) {
 
 void Monitor::on(Time at, const NodeAppeared& seen) {
   const auto known = knowledge_.graph.component_of(seen.node);
-  const bool had_part = known && knowledge_.graph.has_several_nodes(*known) &&
-                        knowledge_.graph.has_any_node(*known);
+  const bool had_part =
+      known && knowledge_.graph.has_several_nodes(*known) && knowledge_.graph.has_any_node(*known);
   write_.graph.node_appeared(seen.node);
   const auto component = knowledge_.graph.component_of(seen.node);
   if (!component) return;
