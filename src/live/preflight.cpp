@@ -41,10 +41,11 @@ std::string report(const Source& source, const RuleSet& rules, const LiveInvento
                    std::uint32_t domain) {
   const auto found = findings(rules, robot);
   std::vector<Diagnostic> missing = missing_on(robot, source);
-  const auto others = std::ranges::stable_partition(
-      missing, [](const Diagnostic& each) { return each.code != Code::kRunsOtherwise; });
-  const std::vector<Diagnostic> runs_otherwise(others.begin(), others.end());
-  missing.erase(others.begin(), others.end());
+  const auto others = std::stable_partition(
+      missing.begin(), missing.end(),
+      [](const Diagnostic& each) { return each.code != Code::kRunsOtherwise; });
+  const std::vector<Diagnostic> runs_otherwise(others, missing.end());
+  missing.erase(others, missing.end());
   std::string text =
       found.empty()
           ? fmt::format("culprit: domain {} has nothing that {} names\n", domain, source.name())

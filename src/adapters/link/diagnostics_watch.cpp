@@ -10,7 +10,7 @@ Expected<std::unique_ptr<DiagnosticsWatch>> DiagnosticsWatch::create(NodeEntry& 
                                                                      const RuleSet& rules,
                                                                      Inbox& inbox) {
   std::unique_ptr<DiagnosticsWatch> watch(new DiagnosticsWatch(self, rules, inbox));
-  if (!watch->reading_.is_wanted()) return watch;
+  if (!watch->is_wanted()) return watch;
   constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 1};
   auto subscription = RawSubscription::create(
       self, "/diagnostics", msg::DiagnosticArray::kType, kQos, PayloadUse::kWholeLater,
@@ -28,6 +28,11 @@ DiagnosticsWatch::DiagnosticsWatch(NodeEntry& self, const RuleSet& rules, Inbox&
   reading_.on_signal = [this](SignalId id, const std::string& text)
                            CULPRIT_REQUIRES(mutex_) { on_signal(id, text); };
   reading_.on_status = [this](StatusHeard heard) { inbox_.put(std::move(heard), Urgency::kSoon); };
+}
+
+bool DiagnosticsWatch::is_wanted() const {
+  const MutexLock lock(mutex_);
+  return reading_.is_wanted();
 }
 
 void DiagnosticsWatch::remember(const std::string& status, const std::string& node) {

@@ -38,6 +38,7 @@ class DiagnosticsWatch {
   static constexpr int kMostWaiting = 1000;  // messages of writers that are looked up
 
   DiagnosticsWatch(NodeEntry& self, const RuleSet& rules, Inbox& inbox);
+  bool is_wanted() const;
   void on_sample(const Sample& sample);
   void look_up(const Guid& writer, const msg::DiagnosticArray& message);
   void read(const msg::DiagnosticArray& message, const SignalPublishers::Publisher& by)

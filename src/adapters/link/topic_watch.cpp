@@ -53,14 +53,14 @@ void TopicWatch::knows_writers(Writers writers) {
 
 // Empty while the writer is not known, or if its node is no component.
 std::optional<ComponentId> TopicWatch::publisher_of(const Guid& writer) {
-  constexpr Duration kAskedAgain = std::chrono::seconds(1);
+  constexpr Duration kLookedUpAgain = std::chrono::seconds(1);
   {
     const MutexLock lock(mutex_);
     const auto known = writers_.find(writer);
     if (known != writers_.end()) return known->second;
   }
   const Time now = live_now();
-  if (later(asked_, kAskedAgain) <= now && ask_for_writers_) {
+  if (later(asked_, kLookedUpAgain) <= now && ask_for_writers_) {
     asked_ = now;
     ask_for_writers_();
   }

@@ -7,10 +7,8 @@
 #include "ros2/services.h"
 #include "rtps/cdr.h"
 
-namespace culprit::ros2 {
+namespace culprit::ros2::msg {
 namespace {
-
-using namespace msg;
 
 // Bytes worked out by hand from the .msg files and the rules of XCDR1; none of them comes from our
 // writer.
@@ -180,4 +178,4 @@ RC_GTEST_PROP(Messages, DiagnosticsSurviveTheWire,
 }
 
 }  // namespace
-}  // namespace culprit::ros2
+}  // namespace culprit::ros2::msg

@@ -23,7 +23,7 @@ using testing::IsEmpty;
 
 constexpr Time kStart{std::chrono::hours(1)};
 constexpr Ip kOwn = {192, 0, 2, 7};  // 192.0.2.0/24 and 203.0.113.0/24 are for documentation only
-constexpr Ip kOther = {203, 0, 113, 1};
+constexpr Ip kElsewhere = {203, 0, 113, 1};
 constexpr Ip kAny = {};
 constexpr int kPid = 4242;
 constexpr int kStranger = 99;
@@ -130,16 +130,16 @@ TEST_F(OriginsOfAMachine, AreTheSocketsOfTheProcess) {
   EXPECT_TRUE(counts({kOwn, 40'000}));
   EXPECT_TRUE(counts({kLoopback, 40'000}));
   EXPECT_FALSE(counts({kOwn, 40'001})) << "of another port";
-  EXPECT_FALSE(counts({kOther, 40'000})) << "of another machine, from the same port";
+  EXPECT_FALSE(counts({kElsewhere, 40'000})) << "of another machine, from the same port";
   EXPECT_EQ(origins.dropped(), 2u);
 }
 
 TEST_F(OriginsOfAMachine, BeforeAProofEverythingCounts) {
-  EXPECT_TRUE(counts({kOther, 1}));
+  EXPECT_TRUE(counts({kElsewhere, 1}));
   prove();
-  EXPECT_TRUE(counts({kOther, 1}, kStart, lidar())) << "whose process is not proven";
+  EXPECT_TRUE(counts({kElsewhere, 1}, kStart, lidar())) << "whose process is not proven";
   origins.forget(camera());
-  EXPECT_TRUE(counts({kOther, 1}));
+  EXPECT_TRUE(counts({kElsewhere, 1}));
   EXPECT_EQ(origins.dropped(), 0u);
 }
 
@@ -149,7 +149,7 @@ TEST_F(OriginsOfAMachine, WhoSpeaksInAnothersNameWithinADatagramIsNoExcuse) {
   const GuidPrefix name = camera();
   source.insert(source.end(), name.bytes.begin(), name.bytes.end());
   const TestDatagram datagram = TestDatagram(lidar()).submessage(0x0c, 0, source);
-  EXPECT_FALSE(origins.counts(datagram.bytes(), {kOther, 40'000}, kStart));
+  EXPECT_FALSE(origins.counts(datagram.bytes(), {kElsewhere, 40'000}, kStart));
 }
 
 TEST_F(OriginsOfAMachine, AnotherProcessOfTheMachineDoesNotCount) {
@@ -218,7 +218,7 @@ TEST_F(OriginsOfAMachine, WhereTheTablesCannotBeReadEverythingOfThisMachineCount
   prove();
   machine.hide_tables();
   EXPECT_TRUE(counts({kOwn, 50'000}, later(kStart, 1s)));
-  EXPECT_FALSE(counts({kOther, 50'000}, later(kStart, 1s)));
+  EXPECT_FALSE(counts({kElsewhere, 50'000}, later(kStart, 1s)));
   origins.check(later(kStart, 2s));
   EXPECT_TRUE(counts({kOwn, 40'000}, later(kStart, 2s)));
 }
@@ -254,14 +254,14 @@ TEST_F(OriginsOfAMachine, NobodySpeaksForAProcessThatHasEnded) {
 }
 
 TEST_F(OriginsOfAMachine, WhoWasSpokenForByOthersIsDiscoveredAgainOnce) {
-  const std::array spoke_from = {UdpAddress{kOwn, 40'000}, UdpAddress{kOther, 5}};
+  const std::array spoke_from = {UdpAddress{kOwn, 40'000}, UdpAddress{kElsewhere, 5}};
   EXPECT_FALSE(origins.prove(camera(), kPid, spoke_from));
   EXPECT_EQ(origins.take_doubtful(), camera());
   EXPECT_EQ(origins.take_doubtful(), std::nullopt);
   origins.forget(camera());
-  EXPECT_FALSE(counts({kOther, 5})) << "where it speaks from stays known";
+  EXPECT_FALSE(counts({kElsewhere, 5})) << "where it speaks from stays known";
   origins.forget(camera());
-  EXPECT_TRUE(counts({kOther, 5}));
+  EXPECT_TRUE(counts({kElsewhere, 5}));
 }
 
 TEST_F(OriginsOfAMachine, ANumberOfAProcessThatIsGivenAgainIsAnotherProcess) {
@@ -389,7 +389,7 @@ TEST(Origins, AreThoseOfTheKernel) {
   const Time now = live_now();
   EXPECT_TRUE(origins.counts(datagram, address, now));
   EXPECT_FALSE(origins.counts(datagram, stranger.address(), later(now, 1s)));
-  EXPECT_FALSE(origins.counts(datagram, {kOther, address.port}, now));
+  EXPECT_FALSE(origins.counts(datagram, {kElsewhere, address.port}, now));
   origins.check(later(now, 2s));
   EXPECT_TRUE(origins.counts(datagram, address, later(now, 2s)));
 }

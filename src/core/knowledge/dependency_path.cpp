@@ -9,10 +9,10 @@ namespace culprit {
 std::vector<DependencyGraph::Edge> dependency_path(std::span<const DependencyGraph::Edge> edges,
                                                    const std::string& consumer,
                                                    const std::string& producer) {
-  using Edge = DependencyGraph::Edge;
-  std::multimap<std::string, const Edge*> of_consumer;
-  for (const Edge& edge : edges) of_consumer.emplace(edge.consumer, &edge);
-  std::map<std::string, const Edge*> reached_by;  // the edge that led there
+  using Link = DependencyGraph::Edge;
+  std::multimap<std::string, const Link*> of_consumer;
+  for (const Link& edge : edges) of_consumer.emplace(edge.consumer, &edge);
+  std::map<std::string, const Link*> reached_by;  // the edge that led there
   std::deque<std::string> frontier{consumer};
   while (!frontier.empty() && !reached_by.contains(producer)) {
     const std::string here = std::move(frontier.front());
@@ -24,7 +24,7 @@ std::vector<DependencyGraph::Edge> dependency_path(std::span<const DependencyGra
         frontier.push_back(next);
     }
   }
-  std::vector<Edge> path;
+  std::vector<Link> path;
   for (auto step = reached_by.find(producer); step != reached_by.end();
        step = reached_by.find(step->second->consumer))
     path.push_back(*step->second);

@@ -177,12 +177,13 @@ class Draft {
 
   // The node of the process that loads components; empty: none.
   std::string container_of(int pid) const {
-    for (const auto& [name, its] : seen_.robot.nodes) {
+    for (const auto& node : seen_.robot.nodes) {
+      const std::string& name = node.first;
       const bool loads = seen_.robot.services.contains(name + "/_container/load_node") ||
                          std::ranges::any_of(seen_.dump.recipes, [&](const auto& each) {
                            return each.second.container == name;
                          });
-      if (its.pid == pid && loads) return name;
+      if (node.second.pid == pid && loads) return name;
     }
     return "";
   }
