@@ -38,9 +38,9 @@ std::optional<ProcessUsage> usage_of(int pid) {
 std::optional<double> UsageMeter::look(int pid, const ProcessUsage& usage, Time now) {
   constexpr Duration kLongest = std::chrono::hours(24);
   const Duration used = usage.processor - processor_;
-  const Duration since = now - at_;
-  const bool is_first = pid != pid_ || at_ == kLongAgo || since <= Duration::zero() ||
-                        since > kLongest || used < Duration::zero();
+  const Duration since = at_ == kLongAgo ? Duration::zero() : now - at_;
+  const bool is_first =
+      pid != pid_ || since <= Duration::zero() || since > kLongest || used < Duration::zero();
   pid_ = pid;
   processor_ = usage.processor;
   at_ = now;

@@ -7,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+#include "base/environment.h"
 #include "base/live_clock.h"
 #include "base/mutex.h"
 #include "ros2/fast_dds.h"
@@ -376,7 +377,8 @@ class Participant::Impl {
       if (!address) return Error{address.error()};
       server.host = std::move(*address);
     }
-    *reception_.relays = !options.servers.empty();
+    // Fast DDS reads the variable itself where the options name no server.
+    *reception_.relays = !options.servers.empty() || !environment("ROS_DISCOVERY_SERVER").empty();
     static std::once_flag is_set_up;
     std::call_once(is_set_up, fast_dds::speak_through_sockets);
     participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(

@@ -365,7 +365,7 @@ RULE Off
 )",
                           30s);
   EXPECT_THAT(lines, testing::Contains(testing::HasSubstr(
-                         "it accepted and did nothing: not mode fast after 10s")));
+                         "it accepted and did nothing: not mode fast after 10.0 s")));
 }
 
 }  // namespace
