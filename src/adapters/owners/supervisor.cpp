@@ -334,9 +334,11 @@ void Supervisor::hold_launcher(ComponentId component, int launcher) {
   look_at_children(held);
 }
 
-// A launcher may end before it is noticed that what it started has.
+// A launcher may end before it is noticed that what it started has, and while its children are read.
 void Supervisor::look_at_children(Launcher& launcher) {
-  if (launcher.held && goes_on(launcher)) launcher.children = children_of(launcher.pid);
+  if (!launcher.held || !goes_on(launcher)) return;
+  std::vector<int> children = children_of(launcher.pid);
+  if (goes_on(launcher)) launcher.children = std::move(children);
 }
 
 // The launcher of the component, if it runs; 0: there is none.

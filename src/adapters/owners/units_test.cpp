@@ -243,13 +243,13 @@ TEST_F(UnitsOnAStandInForSystemd, ThatEndInAnOrderlyWayAreToldAsAnOrder) {
     const int pid = by_culprit ? now_running() : running();
     std::this_thread::sleep_for(2 * Units::kIdlePeriod);  // it was seen to run
     if (by_culprit) {
-      EXPECT_EQ(stop(pid, Ending::kForGood).outcome, Outcome::kDone);
+      units->stop(CommandId{++count}, ComponentId(0), pid, Ending::kForGood, Hangs::kNo);
     } else {
       systemd.say("inactive", 0);
     }
     const auto seen = wait_for<ProcessSeen>(
         [](const ProcessSeen& each) { return each.state == ProcessState::kGone; });
-    ASSERT_TRUE(seen);
+    ASSERT_TRUE(seen) << by_culprit;
     EXPECT_EQ(seen->cause, by_culprit ? Cause::kUnknown : Cause::kOrder);
     systemd.say("", 0);
   }
