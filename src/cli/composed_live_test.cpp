@@ -130,7 +130,7 @@ TEST_F(Composed, NoContainerIsReplacedThatHasWhatNobodyCouldLoadAgain) {
   const auto culprit = run(rules("") + kWeak);
   EXPECT_TRUE(culprit.prints("/planner lives there, too, and nobody could load it again"))
       << culprit.output();
-  EXPECT_TRUE(culprit.prints("DetectorWeak waits: detector cannot be started")) << culprit.output();
+  EXPECT_TRUE(culprit.prints("DetectorWeak is exhausted")) << culprit.output();
   EXPECT_FALSE(container.wait(100ms)) << "the container was ended";
 }
 
