@@ -13,6 +13,7 @@ std::filesystem::path note_of(const std::filesystem::path& folder, const std::st
 }  // namespace
 
 void note_launch(const std::filesystem::path& folder, const std::string& component, int launcher) {
+  if (folder.empty()) return;  // a supervisor without logs keeps nothing
   std::error_code error;
   const std::filesystem::path note = note_of(folder, component);
   const std::string text = launcher == 0 ? "" : to_text(launcher);
@@ -31,6 +32,7 @@ void note_launch(const std::filesystem::path& folder, const std::string& compone
 }
 
 PlaceHeld noted_launch(const std::filesystem::path& folder, const std::string& component) {
+  if (folder.empty()) return {};
   std::ifstream in(note_of(folder, component));
   std::string text;
   std::getline(in, text);
