@@ -128,8 +128,8 @@ int reset(const BeliefsOptions& options) {
 }  // namespace
 
 void add_beliefs(CLI::App& app, int& exit_code) {
-  CLI::App* beliefs =
-      app.add_subcommand("beliefs", "What culprit has learned of the strategies on this robot");
+  CLI::App* beliefs = app.add_subcommand(
+      "beliefs", "Success rates and latencies that culprit has learned on this robot");
   beliefs->require_subcommand(1);
   const auto add = [&](const char* name, const char* help, int (*run)(const BeliefsOptions&)) {
     auto options = std::make_shared<BeliefsOptions>();

@@ -13,10 +13,9 @@ const Manual& culprit_manual() {
       .purpose = "keep ROS 2 robots working",
       .description = {"culprit watches a live robot, finds the component that is responsible when "
                       "many things fail at once, and "
-                      "applies the fewest, cheapest adaptations that bring the robot back. What "
-                      "may fail, how that is noticed and "
-                      "what may help is written in a file of rules. What culprit found, decided "
-                      "and did is kept in a journal, and it "
+                      "applies the fewest, cheapest adaptations that bring the robot back. A "
+                      "rule file says what may fail, how to notice it and what may help. culprit "
+                      "keeps its findings, decisions and actions in a journal, and it "
                       "learns from every attempt.",
                       "Options that take a time take a unit: 500ms, 8s, 1.5min, 2h; a number alone "
                       "is of seconds. With --json, "

@@ -83,11 +83,11 @@ int report(const Kind& kind, const FleetCommand& options) {
 }
 
 constexpr Kind kKinds[] = {
-    {"status", "Who is ill now, who is not heard of, and how the models are",
+    {"status", "Robots that fail now or are not heard, and the state of the models",
      fleet::status_queries},
     {"incidents", "The latest incidents, the worst rules and components, and times to repair",
      fleet::incident_queries},
-    {"beliefs", "What the robots found out of each strategy", fleet::belief_queries},
+    {"beliefs", "The outcomes of each strategy on all robots", fleet::belief_queries},
     {"compare", "Robots that are not like the others, and versions beside each other",
      fleet::version_queries, true}};
 
@@ -120,7 +120,7 @@ void add_report(CLI::App& fleet, const Kind& kind, int& exit_code) {
 
 void add_fleet(CLI::App& app, int& exit_code) {
   CLI::App* command =
-      app.add_subcommand("fleet", "What the robots of a fleet share in a PostgreSQL database");
+      app.add_subcommand("fleet", "Data that the robots of a fleet share in a PostgreSQL database");
   command->require_subcommand(1);
   auto options = std::make_shared<FleetCommand>();
   CLI::App* set_up = command->add_subcommand(

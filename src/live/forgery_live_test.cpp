@@ -44,14 +44,14 @@ bool comes_true(Done done) {
   return true;
 }
 
-// What anybody in the domain learns by listening: who is there, with what, and where.
+// Listens as anybody in the domain can: participants, their endpoints and addresses.
 class Eavesdropper {
  public:
   explicit Eavesdropper(const ros2::ParticipantOptions& options)
       : participant_(std::move(*ros2::Participant::create(
             options, [this](const ros2::DiscoveryEvent& event) { note(event); }))) {}
 
-  // Of the process that says it has this number: all that takes its node away from those who believe it.
+  // The lies that remove the node of the process with this number.
   std::vector<ros2::Bytes> farewells_of(int pid) {
     EXPECT_TRUE(comes_true([&] { return has(pid, 12); }));
     const std::lock_guard lock(mutex_);

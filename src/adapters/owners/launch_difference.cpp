@@ -41,7 +41,7 @@ Parts parts_of(const std::vector<std::string>& command) {
   return parts;
 }
 
-// What is left where both begin and end alike.
+// The part between a common beginning and a common end.
 std::string differing(const std::vector<std::string>& all, std::size_t begin, std::size_t end) {
   std::string text;
   for (std::size_t i = begin; i < all.size() - end; ++i) text += (text.empty() ? "" : " ") + all[i];
@@ -71,7 +71,7 @@ std::string in_folder(const std::string& file, const std::string& folder) {
 
 using Values = std::map<std::string, std::string>;
 
-// Of all files, later ones over earlier ones; what cannot be read is left out.
+// The values of all readable files; later files override earlier ones.
 Values values_in(const std::vector<std::string>& files, const std::string& folder,
                  const std::string& node) {
   Values values;

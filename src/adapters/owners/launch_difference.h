@@ -1,7 +1,7 @@
-// In what a running process differs from what a LAUNCH would start in its place.
+// How a running process differs from the one that its LAUNCH would start.
 //
-// Compared are the program, the arguments in order, and the parameters that both read from files. What `ros2
-// run` and `python3` stand for is looked through: `ros2 run cam driver` is the program `driver`.
+// The comparison covers the program, the arguments in order, and the parameters that both read from files.
+// It resolves `ros2 run` and `python3`: `ros2 run cam driver` is the program `driver`.
 #pragma once
 
 #include <cstdint>

@@ -1,10 +1,10 @@
-// What a launch command needs beside its program, as far as the command itself shows it.
+// The files that a launch command needs besides its program, as far as the command shows them.
 //
 //   ... --params-file FILE          the file of parameters
 //   ros2 run PACKAGE EXECUTABLE     that program, in lib/PACKAGE below one of AMENT_PREFIX_PATH
 //   python3 /path/to/script ...     the script
 //
-// Nothing is guessed: if a form is not among these, nothing is said to be missing.
+// Other forms are not analysed, so no file of theirs is reported as missing.
 #pragma once
 
 #include <string>

@@ -27,7 +27,7 @@ std::uint16_t number_at(ByteView bytes, std::size_t at, bool is_little) {
                                               : bytes[at] << 8 | bytes[at + 1]);
 }
 
-// Of a list with its end; of all the bytes where it has none.
+// The size of a list with its end marker, or of all bytes if it has none.
 std::size_t size_of_list(ByteView bytes, bool is_little) {
   constexpr std::uint16_t kEnd = 1;
   for (std::size_t at = 0; at + 4 <= bytes.size();) {
@@ -61,7 +61,7 @@ void add_keys(ByteView sample, const GuidPrefix& sender, std::vector<GuidPrefix>
   }
 }
 
-// Calls `found` with each submessage, its header included. What is damaged ends it.
+// Calls `found` with each submessage, its header included. Stops at the first damaged one.
 template <class Found>
 void for_each_submessage(ByteView datagram, Found found) {
   if (!is_rtps(datagram)) return;

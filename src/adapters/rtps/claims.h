@@ -1,4 +1,4 @@
-// Of which other participants a datagram tells something, in its sender's own name.
+// The other participants that a datagram speaks of, in its sender's own name.
 //
 // Each participant announces itself and its own endpoints, and says when they end (RTPS 2.3 §8.5). Fast DDS believes
 // anybody who says that of anybody: it looks at the key, not at the writer. A discovery server alone has a reason to
@@ -13,8 +13,8 @@
 
 namespace culprit::ros2 {
 
-// Whose keys are in the discovery data of the datagram that is not the sender's, each once. What is encrypted, and the
-// later fragments of what comes in several, cannot be seen.
+// The participants, each once, whose keys are in the datagram's discovery data and that are not its sender. It cannot
+// see into encrypted data, nor into fragments after the first.
 std::vector<GuidPrefix> others_announced(std::span<const std::uint8_t> datagram);
 
 // Whether somebody acknowledges what `self` has written: an answer to its heartbeats (RTPS 2.3 §8.3.7.1), which

@@ -50,7 +50,7 @@ bool Origins::prove(const GuidPrefix& participant, int pid,
   proven.looked = kLongAgo;  // it may just be opening sockets
   bool are_all_its = true;
   for (const UdpAddress& each : spoke_from) {
-    // Whoever found the process found it at addresses of this machine.
+    // The search for the process covers only addresses of this machine.
     const bool is_its = find(proven, each) == Whose::kIts;
     if (is_its) own_ips_.insert(each.ip);
     are_all_its = are_all_its && is_its;

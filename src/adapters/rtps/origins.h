@@ -1,24 +1,23 @@
 // Which datagrams count: those that come from where the participant in whose name they speak is known to be.
 //
-// RTPS has no proof of who sent a datagram. The kernel has one, for senders on this machine: its table of sockets
-// says which process has the address that the datagram came from. So once the process of a participant is known
-// (prove()), a datagram that speaks in its name (header or INFO_SRC, RTPS 2.3 §8.3.7) and comes from elsewhere is
-// dropped, before it has any effect.
+// RTPS does not prove the sender of a datagram. The kernel does, for senders on this machine: its table of sockets
+// shows which process owns the source address. Once the process of a participant is known (prove()), a datagram in
+// the participant's name (header or INFO_SRC, RTPS 2.3 §8.3.7) counts only from a socket of that process. Others are
+// dropped before they have any effect.
 //
-// A participant whose process is not known, on another computer or in a container, is bound to the IP addresses that
-// it spoke from and announced (those of this machine are one), once it has answered us and nobody spoke in its name from elsewhere for kAlone. It
-// may move: another address counts when nothing comes from the old ones any more, for twice as long as it ever
-// paused (kQuiet at least). It may also stay unbound, if several speak in its name from the beginning. Then
-// everything counts.
+// The process may be unknown: it runs on another computer or in a container. Its participant is bound to the IP
+// addresses that it spoke from and announced; all addresses of this machine count as one. It is bound once it has
+// answered us and only these addresses spoke in its name for kAlone. It may move: another address counts after the
+// old ones were silent for twice the longest pause so far (kQuiet at least). If several addresses speak in its name
+// from the beginning, it stays unbound, and everything counts.
 //
-// What this stops: a program on another machine, and one on this machine that has sockets of its own, whatever it
-// writes into its datagrams. The kernel drops what comes by the network and pretends to come from an address of
-// this machine.
+// This stops programs on other machines, and programs on this machine that only have sockets of their own. The
+// kernel itself drops datagrams from the network whose source is an address of this machine.
 //
-// What it does not stop:
-//   - before a process is proven or a participant bound, everything counts. A process cannot be proven if it is of
-//     another user (without CAP_SYS_PTRACE), or of another PID or network namespace (a container). Its participant
-//     is bound to addresses only, which other programs of that computer or container have, too
+// This does not stop:
+//   - anything before a process is proven or a participant bound. A process cannot be proven if it belongs to
+//     another user (without CAP_SYS_PTRACE), or to another PID or network namespace (a container). Its participant
+//     is bound to addresses only, and other programs of that computer or container share them
 //   - another machine can write the address of a third one into its datagrams, as nothing on the way forbids it
 //   - root and CAP_NET_RAW can write any source into a datagram on the loopback interface
 //   - the same user can take a socket out of the process (pidfd_getfd), or run code in it (ptrace)
@@ -28,8 +27,8 @@
 //
 // A process may open sockets later, and others get its old ports. So an unknown address is looked up at once, and
 // the known ones are checked again and again (check()). One look takes a fraction of a millisecond. More than a
-// twentieth of the time is never spent on looks. What cannot be looked up counts: a robot that is not heard is
-// worse than a forged datagram that somebody asks about before acting on it.
+// twentieth of the time is never spent on looks. A datagram whose source cannot be looked up counts: a robot that is
+// not heard is worse than a forged datagram, which culprit asks about before it acts.
 #pragma once
 
 #include <cstdint>
@@ -72,7 +71,7 @@ class Origins {
   static constexpr std::size_t kMostAddresses = 64;  // kept of one participant that are not its own
   static constexpr std::size_t kMostSources = 64;    // told of
 
-  // Of a participant whose process is not known.
+  // For a participant whose process is unknown (above).
   static constexpr Duration kAlone = std::chrono::seconds(5);
   static constexpr Duration kQuiet = std::chrono::seconds(4);
   static constexpr Duration kLongestQuiet = std::chrono::seconds(20);

@@ -10,7 +10,7 @@
 
 namespace culprit::ros2 {
 
-// What its open files link to: "socket:[12345]". Empty: there is no such process, or its files may not be seen.
+// The targets of its open files: "socket:[12345]". Empty: there is no such process, or its files may not be seen.
 std::set<std::string> descriptors_of(const std::filesystem::path& process);
 
 // When it began, in ticks since the machine was started. Nothing: there is no such process, or it has

@@ -1,6 +1,6 @@
-// For tests: waits for what other threads do.
+// For tests: waits for events of other threads.
 //
-// Nothing here measures time. A wait ends with the event that it waits for, however slow the
+// A wait ends with the event that it waits for, however slow the
 // machine is; the time-out is only for tests that fail.
 #pragma once
 
@@ -14,7 +14,7 @@ namespace culprit::ros2 {
 
 inline constexpr std::chrono::seconds kPatience(20);
 
-// What happened, in order; written by any thread, awaited by the test.
+// The events in order; any thread writes them, and the test waits for them.
 template <class Event>
 class EventLog {
  public:

@@ -18,8 +18,8 @@
 
 namespace culprit::ros2 {
 
-// What a stranger can say in the name of a participant to be rid of it: that its endpoints have ended, that it holds no
-// node, and that it has left. `info_writer` writes its ros_discovery_info; `no_nodes` is that as a payload. Reliable
+// A stranger's lies that remove a participant: its endpoints have ended, it holds no node, and it has left.
+// `info_writer` writes its ros_discovery_info; `no_nodes` is that as a payload. Reliable
 // readers take a number only if it is the next one, so some after it are tried, too.
 inline std::vector<Bytes> farewells(const Guid& participant, const std::vector<Guid>& endpoints,
                                     const Guid& info_writer, const Bytes& no_nodes) {

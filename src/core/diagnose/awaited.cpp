@@ -46,12 +46,13 @@ Awaited::Awaited(const Knowledge& knowledge, std::span<const RuleId> failures)
   const bool is_any_new = std::any_of(failures.begin(), failures.end(), [&](RuleId rule) {
     return knowledge.now < later(knowledge.states[rule].failing_since, 2 * kLongestEvidence);
   });
-  if (!is_any_new) return;
+  find_past();
+  if (!is_any_new && past_.empty()) return;
   Time latest = kLongAgo;
   for (const RuleId failure : failures)
     latest = std::max(latest, onset_of(failure, knowledge).latest);
   collect(latest);
-  collect_past();
+  place_past();
   carry();
   for (const RuleId failure : failures) look_at(failure);
 }
@@ -81,7 +82,7 @@ void Awaited::collect(Time latest_onset) {
   }
 }
 
-void Awaited::collect_past() {
+void Awaited::find_past() {
   for (std::size_t r = 0; r < knowledge_.rules.rules.size(); ++r) {
     const RuleId rule(r);
     if (cleared_lately(rule, knowledge_))
@@ -97,6 +98,9 @@ void Awaited::collect_past() {
       past_.push_back({knowledge_.rules[anew->by].rule, ComponentId(c), anew->since, anew->done,
                        Symptom::kOutage});
   }
+}
+
+void Awaited::place_past() {
   own_past_ = BitRows(places_.size(), past_.size());
   upstream_past_ = BitRows(places_.size(), past_.size());
   const auto mark = [&](ComponentId c, std::size_t p) {

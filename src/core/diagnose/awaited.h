@@ -72,7 +72,8 @@ class Awaited {
   };
 
   void collect(Time latest_onset);
-  void collect_past();
+  void find_past();
+  void place_past();
   void carry();
   void look_at(RuleId failure);
   Awaiting awaiting(RuleId failure) const;

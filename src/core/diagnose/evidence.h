@@ -1,4 +1,4 @@
-// What speaks for a suspect, for people and for the journal.
+// The evidence for and against a suspect, for people and for the journal.
 //
 // The probabilities come from a few pieces of evidence, each with a weight: by how much it moves the
 // natural logarithm of the odds that the suspect is the cause of the failure. Weights above 0 speak for
@@ -25,8 +25,8 @@ namespace culprit::diagnose {
 
 inline constexpr double kSurely = 6.9;  // 1,000 to 1
 
-// Of suspect `j` for failure `i`, nodes of found.causes(); the heaviest first. @pre j is i or one of
-// its causes
+// For suspect `j` of failure `i`, both nodes of found.causes(); the heaviest first. @pre j is i or one
+// of its causes
 std::vector<Evidence> evidence_for(std::size_t j, std::size_t i, const Examination& found,
                                    const Knowledge& knowledge);
 

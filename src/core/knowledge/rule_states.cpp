@@ -15,6 +15,9 @@ RuleStates::RuleStates(const RuleSet& rules)
     states_[r].search.tried.assign(rules.rules[r].strategies.size(), false);
     const int window = rules.rules[r].policies.hold_window;
     if (window > 1) states_[r].detection.history.assign(static_cast<std::size_t>(window), false);
+    const bool has_last = std::ranges::any_of(
+        rules.rules[r].strategies, [&](StrategyId id) { return rules[id].is_last_resort; });
+    if (has_last) with_last_resort_.emplace_back(r);
   }
   active_.reserve(rules.rules.size());
   exhausted_.reserve(rules.rules.size());
@@ -25,6 +28,7 @@ RuleStates::RuleStates(const RuleSet& rules, const RuleStates& other)
       states_(other.states_),
       active_(other.active_),
       exhausted_(other.exhausted_),
+      with_last_resort_(other.with_last_resort_),
       bars_(other.bars_),
       failing_(other.failing_),
       touching_(other.touching_),

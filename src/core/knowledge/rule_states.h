@@ -186,10 +186,10 @@ class RuleStates {
   // Calls `visit(strategy)` for each last resort that took effect for a failure that is still there.
   template <class Visit>
   void for_each_standing(Visit visit) const {
-    for (const auto* rules : {&active_, &exhausted_}) {
-      for (const RuleId id : *rules) {
-        for (const RuleState::Standing& each : states_[id.index].standing) visit(each.strategy);
-      }
+    for (const RuleId id : with_last_resort_) {
+      const RuleState& state = states_[id.index];
+      if (!is_active(state.phase) && state.phase != RulePhase::kExhausted) continue;
+      for (const RuleState::Standing& each : state.standing) visit(each.strategy);
     }
   }
 
@@ -205,6 +205,7 @@ class RuleStates {
   std::vector<RuleState> states_;
   std::vector<RuleId> active_;
   std::vector<RuleId> exhausted_;
+  std::vector<RuleId> with_last_resort_;  // most robots have few
   std::vector<std::optional<Bar>> bars_;  // by strategy
   std::vector<std::array<int, 3>>
       failing_;  // by component, by criticality: how many active rules touch it

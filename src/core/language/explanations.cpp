@@ -37,7 +37,7 @@ std::vector<Explanation> syntax_explanations() {
        "CYCLE 200\n", "CYCLE 200ms\n"},
       {Code::kBadToken, "this is no word, number or text of the language",
        "A text without its closing quote, a number with letters behind it, or a character that the "
-       "language does not use. Nothing after it on the line can be read with certainty.",
+       "language does not use. culprit does not read the rest of the line.",
        "COMPONENT camera LAUNCH \"camera_driver --fps 30\n",
        "COMPONENT camera LAUNCH \"camera_driver --fps 30\"\n"},
       {Code::kExtraText, "the line goes on after its statement has ended",
@@ -149,7 +149,7 @@ std::vector<Explanation> value_explanations() {
        rule_with("rate() < 1"), rule_with("rate(/robot/image) < 1")},
       {Code::kNotConstant, "a constant is made of something that changes",
        "A constant is computed once, when the file is read: of numbers, texts, durations and of "
-       "constants that were defined before it. What changes at run time is a signal.",
+       "constants that were defined before it. Use a signal for a value that changes at run time.",
        "CONST limit = battery / 2\n", "CONST full = 12.6\nCONST limit = full / 2\n"},
       {Code::kNoValue, "a constant has no value",
        "The expression divides by zero, overflows, or takes the root of a negative number. At run "
@@ -268,9 +268,8 @@ std::vector<Explanation> rule_explanations() {
        "ON_CHANGE among its policies.",
        rule_with("age(/robot/image) < 500ms"), rule_with("age(/robot/image) > 500ms")},
       {Code::kNoShell, "a LAUNCH command is written for a shell",
-       "A launch command is an argument vector: no shell reads it. What shells do has clauses of "
-       "its "
-       "own: SETUP is sourced first, ENV sets variables, CWD is the folder. Where it has to be a "
+       "A launch command is an argument vector: no shell reads it. Clauses do what a shell would "
+       "do: SETUP is sourced first, ENV sets variables, CWD is the folder. Where it has to be a "
        "shell, say so: LAUNCH \"bash -c 'one | another'\".",
        "COMPONENT camera NODE /robot/camera LAUNCH \"source /opt/ros/humble/setup.bash && ros2 run "
        "cameras driver\"\n",
@@ -342,8 +341,8 @@ std::vector<Explanation> meaning_explanations() {
        "never resolve it; in an && it has no say.",
        battery + rule_with("battery < 20"), battery + rule_with("battery < 0.2")},
       {Code::kNeverTrueInRange, "a condition is never true",
-       "For no value that its inputs can have, by their RANGE or by what they are, does this "
-       "condition hold, or its parts exclude one another. A trigger made of it would never detect "
+       "The condition does not hold for any value that its inputs can have, by their RANGE or "
+       "their kind, or its parts exclude one another. A trigger made of it would never detect "
        "the failure.",
        rule_with("entropy > 0.8 && entropy < 0.2"), rule_with("entropy > 0.8 || entropy < 0.2")},
       {Code::kCovered, "a rule is covered by another one",
@@ -352,8 +351,8 @@ std::vector<Explanation> meaning_explanations() {
        "way. Where it was meant as an escalation it has to be more critical.",
        escalation("ERROR", "WARNING"), escalation("WARNING", "ERROR")},
       {Code::kWhenNeverTrue, "a strategy's WHEN is never true",
-       "For no value that its inputs can have does the condition hold, so the strategy is never "
-       "chosen. Often a state or a limit is misspelt.",
+       "The condition does not hold for any value that its inputs can have, so the strategy is "
+       "never chosen. Often a state or a limit is misspelt.",
        rule_with("rate(/robot/image) < 1", "ERROR",
                  "STRATEGY restart 50 10 WHEN lifecycle(camera) == \"Active\""),
        rule_with("rate(/robot/image) < 1", "ERROR",
@@ -407,12 +406,13 @@ std::vector<Explanation> robot_explanations() {
           "refused, unless the node allows undeclared parameters.",
           camera + rule_with("parameter(camera, exposre) > 1"),
           camera + rule_with("parameter(camera, exposure) > 1")),
-      against_robot(Code::kNoSuchDiagnostic, "no such diagnostic was heard",
-                    "Nothing on /diagnostics carried this status or key while culprit listened, so "
-                    "the signal would stay unknown and its rule quiet. What is published seldom "
-                    "needs a longer --wait.",
-                    "SIGNAL entropy DIAGNOSTIC camera KEY entropi\n",
-                    "SIGNAL entropy DIAGNOSTIC camera KEY entropy\n"),
+      against_robot(
+          Code::kNoSuchDiagnostic, "no such diagnostic was heard",
+          "Nothing on /diagnostics carried this status or key while culprit listened, so "
+          "the signal would stay unknown and its rule quiet. Status messages that come seldom "
+          "need a longer --wait.",
+          "SIGNAL entropy DIAGNOSTIC camera KEY entropi\n",
+          "SIGNAL entropy DIAGNOSTIC camera KEY entropy\n"),
       against_robot(Code::kNoSuchService, "nobody offers the service that this needs",
                     "A call needs its service, a lifecycle adaptation the node's change_state, a "
                     "mode its change_mode, a parameter its set_parameters. Without it the "
@@ -422,11 +422,10 @@ std::vector<Explanation> robot_explanations() {
                     rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY calibrate 50 10",
                               "ADAPTATION camera call ~/recalibrate 5")),
       against_robot(Code::kNoSuchUnit, "culprit could not start and end this unit",
-                    "Whoever runs the component has to be asked, and systemd or the engine of "
-                    "its container cannot be reached, has no such one, or does not let culprit's "
-                    "user manage it (docs/security.md). Nothing would be ended when the rule "
-                    "fires, and nothing "
-                    "started.",
+                    "culprit has to ask the owner of the component. systemd or the container "
+                    "engine cannot be reached, does not know it, or does not let culprit's "
+                    "user manage it (docs/security.md). The rule could neither end nor start "
+                    "anything.",
                     "COMPONENT camera NODE /robot/camera UNIT camra.service\n",
                     "COMPONENT camera NODE /robot/camera UNIT camera.service\n"),
       against_robot(Code::kCannotLaunch, "culprit could not start this LAUNCH",
@@ -456,14 +455,15 @@ std::vector<Explanation> robot_explanations() {
                     "nothing to either until NODE says which is meant.",
                     "COMPONENT wheel LAUNCH \"wheel_driver\"\n",
                     "COMPONENT wheel NODE /left/wheel LAUNCH \"wheel_driver\"\n"),
-      against_robot(Code::kNoSuchHost, "culprit cannot ask this computer over ssh",
-                    "Who runs the component is on another computer (HOST), and is asked over ssh, "
-                    "which asks nobody for a password: there is no such computer, it does not "
-                    "answer, its key is not known, or it does not take the key of culprit's user "
-                    "(docs/security.md). Nothing would be ended when the rule fires, and nothing "
-                    "started.",
-                    "COMPONENT camera NODE /robot/camera UNIT camera.service HOST robot@rovr2\n",
-                    "COMPONENT camera NODE /robot/camera UNIT camera.service HOST robot@rover2\n"),
+      against_robot(
+          Code::kNoSuchHost, "culprit cannot ask this computer over ssh",
+          "The owner of the component is on another computer (HOST). culprit asks it over "
+          "ssh without a password: there is no such computer, it does not "
+          "answer, its key is not known, or it does not take the key of culprit's user "
+          "(docs/security.md). The rule could neither end nor start "
+          "anything.",
+          "COMPONENT camera NODE /robot/camera UNIT camera.service HOST robot@rovr2\n",
+          "COMPONENT camera NODE /robot/camera UNIT camera.service HOST robot@rover2\n"),
       against_robot(Code::kBadRequest, "the service would not understand this call",
                     "What a call asks has to fit the type of the service that the robot offers: "
                     "every field that is written has to be one of the request's, and of its type. "
@@ -621,7 +621,8 @@ std::string page(const Explanation& e) {
 std::string diagnostics_as_markdown() {
   std::string out =
       "# Diagnostics\n\n"
-      "What `culprit check` says, by code. A code never changes its meaning. `culprit explain "
+      "The diagnostics of `culprit check`, by code. A code never changes its meaning. `culprit "
+      "explain "
       "R012`\n"
       "shows one of these pages, and `culprit explain --markdown` writes them all.\n\n"
       "| code | meaning |\n| --- | --- |\n";

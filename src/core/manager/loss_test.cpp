@@ -34,7 +34,7 @@ struct Loss : testing::Test {
     robot.tell(EndpointAppeared{"/camera", EndpointKind::kPublisher, "/image"});
     robot.tell(EndpointAppeared{"/fusion", EndpointKind::kPublisher, "/fused"});
     robot.run_for(6s);
-    // Of a network that goes bad, culprit knows by its first lost messages: not in the middle of a pause.
+    // culprit learns from the first lost messages that the network goes bad.
     robot.loses = [this](const std::string&) { return std::bernoulli_distribution(0.1)(random_); };
     robot.run_for(5s);
     robot.loses = [this, share](const std::string&) {

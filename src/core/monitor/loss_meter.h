@@ -1,6 +1,6 @@
 // The share of a topic's messages that was lost on the way here, over the last seconds.
 //
-// Of each message it is known how many its publisher sent since the one before (RTPS sequence numbers), so
+// RTPS sequence numbers show how many messages the publisher sent since the previous one:
 //
 //     loss = 1 - received / sent
 //
@@ -26,7 +26,7 @@ class LossMeter {
     present_.sent += sent > 0 ? sent : 1;
     ++present_.received;
   }
-  // Nothing that was lost until `now` counts.
+  // Forgets all losses before `now`.
   void restart(Time now) {
     present_ = before_ = {};
     begun_ = now;
@@ -39,7 +39,7 @@ class LossMeter {
     return 1 - static_cast<double>(received) / static_cast<double>(sent);
   }
   // How large the loss may be that shows this share of few messages; 0 where none was lost, or too few
-  // were sent. Of 50 messages with one lost: 7.5 %.
+  // were sent. Example: 50 messages, one lost: 7.5 %.
   double at_most(Time now) {
     constexpr double kPrior = 3;
     const auto known = share(now);

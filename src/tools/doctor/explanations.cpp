@@ -113,16 +113,17 @@ std::vector<Explanation> of_nodes() {
        "alive: services wait for it, and liveliness says nothing.",
        "Of this machine: its process has ended, and it is still in the graph. Of other machines: "
        "its "
-       "lease ran out while the doctor looked. Who was gone before is not in the graph of a "
-       "newcomer; "
-       "who said good-bye is not reported.",
+       "lease ran out while the doctor looked. The doctor reports neither nodes that were gone "
+       "before it came "
+       "nor nodes that said good-bye.",
        "Start it again; its log (~/.ros/log), journalctl or dmesg (out of memory) say why it "
        "ended."},
       {"D012", "a node does not answer",
        "It is in the graph and its process runs, but the thread that should run its callbacks does "
        "something else: it waits in a driver, for a lock, or works for too long.",
        "Each node that serves parameters is asked for `use_sim_time`, and has half of the look to "
-       "answer. Whoever was not reached is not reported, nor is a process that is stopped as a "
+       "answer. The doctor reports no node that it did not reach, and no process that is stopped "
+       "as a "
        "whole: "
        "a newcomer does not see it.",
        "See where its threads are (`gdb -p PID`, `py-spy dump --pid PID`), and start it again."},
@@ -137,9 +138,9 @@ std::vector<Explanation> of_nodes() {
        "look, or ten minutes with --watch; an error from the second time on.",
        "Its log says why it ended. End who starts it again, and start it by hand."},
       {"D014", "a process is left over from an earlier launch",
-       "Its launcher was killed and could not end it. Nobody starts it again if it ends, the next "
-       "launch makes a second one beside it, and since nobody reads what it prints, printing may "
-       "end it.",
+       "Its launcher was killed and could not end it. If it ends, it stays down. The next launch "
+       "makes a second one beside it. Its output has "
+       "no reader any more, so printing may end it.",
        "The process has been handed to the first process of the machine, and its standard output "
        "is a "
        "pipe that nobody has open to read. A process that was started with nohup or by systemd is "
@@ -191,8 +192,9 @@ std::vector<Explanation> of_diagnostics() {
        "reported.",
        "Look at its values: `ros2 topic echo /diagnostics`, rqt_robot_monitor."},
       {"D021", "a diagnostic status is not reported any more",
-       "It came regularly and has stopped: who reports it hangs or has ended. What it said last is "
-       "still on people's screens.",
+       "It came regularly and has stopped: who reports it hangs or has ended. People's screens "
+       "still "
+       "show its last report.",
        "A status that was heard three times or more, over two seconds or more, and not any more "
        "for five of its pauses and "
        "five "
@@ -214,7 +216,7 @@ std::vector<Explanation> of_reach() {
        "ROS_DOMAIN_ID.",
        "Two processes of this machine have one launcher (`ros2 launch`) and wait on different "
        "domains. "
-       "Who is on both is a bridge and not reported.",
+       "The doctor does not report a bridge, which is on both.",
        "Give both the same ROS_DOMAIN_ID."},
       {"D032", "a node can be reached from its own computer only",
        "It was started with ROS_LOCALHOST_ONLY=1, or ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST, and "
@@ -323,13 +325,14 @@ std::vector<Explanation> of_data() {
        "three seconds at least; standard types only.",
        "Publish its transform, or name the frame that is meant."},
       {"D051", "a transform is stale",
-       "It came regularly and has stopped, or comes with old stamps. Whoever asks for it waits or "
-       "gets "
+       "It came regularly and has stopped, or comes with old stamps. Nodes that ask for it wait or "
+       "get "
        "an error.",
        "Not any more for ten of its pauses and three seconds; or its newest stamp was a second old "
        "when "
-       "it was sent (not in simulated time). What stopped before the doctor came shows as a gap "
-       "(D054) or "
+       "it was sent (not in simulated time). A transform that stopped before the doctor came shows "
+       "as a "
+       "gap (D054) or "
        "against a baseline (D108).",
        "See the log of who publishes it."},
       {"D052", "a frame has two parents",
@@ -385,7 +388,7 @@ std::vector<Explanation> of_baselines() {
       {"D107", "a process has much more memory than it had",
        "It leaks, or does more. If that goes on, Linux ends a process of its choice.",
        "Against a baseline: more than twice as much, and 100 MB more.", remedy},
-      {"D108", "a transform is missing", "Whoever asks for it waits or gets an error.",
+      {"D108", "a transform is missing", "Nodes that ask for it wait or get an error.",
        "Against a baseline.", remedy},
       {"D109", "a diagnostic status is missing",
        "Who reports it has ended, or does not look any more.", "Against a baseline.", remedy},
@@ -442,7 +445,8 @@ std::string page(const Explanation& e) {
 std::string findings_as_markdown() {
   std::string out =
       "# Findings\n\n"
-      "What `culprit doctor` says ([doctor.md](doctor.md)), by code. A code never changes its "
+      "The findings of `culprit doctor` ([doctor.md](doctor.md)), by code. A code never changes "
+      "its "
       "meaning. "
       "`culprit explain D001`\nshows one of these pages, and `culprit explain --markdown doctor` "
       "writes "

@@ -336,8 +336,8 @@ void PlanningStep::exclude(WeighedCandidate& weighed, double chance) const {
 }
 
 // Does it give way to a failure that repeatedly began together with it, so that one can see whose
-// repair clears the other? Not to an effect, which waits itself. The one that was tried less goes first; of equals the one by name, and the
-// other the next time.
+// repair clears the other? Not to an effect, which waits itself. The one that was tried less goes
+// first; of equals the one by name, and the other the next time.
 bool PlanningStep::exclude_coincidence(WeighedCandidate& weighed) const {
   const RuleId rule = causes_[weighed.failure].rule;
   const auto tries = [&](RuleId id) {
