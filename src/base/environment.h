@@ -19,7 +19,7 @@ std::filesystem::path own_folder();
 // running program, or in PATH. Errors: it is in neither.
 Expected<std::filesystem::path> find_laboratory();
 
-// What this machine is called.
+// The name of this machine (its host name).
 std::string host_name();
 
 // A variable of the environment; empty if it is not set.

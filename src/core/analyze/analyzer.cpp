@@ -15,7 +15,8 @@ namespace {
 bool is_true(const Slot& slot) { return slot.known && slot.b; }
 bool is_false(const Slot& slot) { return slot.known && !slot.b; }
 
-// Whose value it is; of signals and diagnostics nobody knows.
+// May the input's value come from the component? The sources of signals and diagnostics are
+// unknown.
 bool may_be_of(ComponentId component, const Input& input, const Knowledge& knowledge) {
   using Kind = Input::Kind;
   switch (input.kind) {
@@ -247,7 +248,7 @@ Slot Analyzer::value_of_trigger(RuleId id, Time now) {
   return Slot::of(true);
 }
 
-// What an earlier process left off at went away while nobody looked on.
+// An earlier process left this failure unresolved, and it cleared before this process looked.
 void Analyzer::forget_left_off(RuleId id, Time now) {
   LeftOff& left_off = *write_.states.state(id).left_off;
   left_off.gone = now;
@@ -408,8 +409,8 @@ void Analyzer::judge(RuleId id, Time now) {
     fail(id, now);
 }
 
-// What was started has to find what it reads, and to be found by those who read it where the rule is
-// about them.
+// A started component has to discover its publishers; its subscribers have to discover it, too,
+// where the rule reads from them.
 Time Analyzer::shows_from(const Attempt& attempt) const {
   const Strategy& strategy = knowledge_.rules[attempt.strategy];
   const auto is_read = [&](ComponentId component) {
@@ -484,7 +485,7 @@ void Analyzer::succeed(RuleId id, Time now) {
   // As a failure would not count either.
   state.attempt->is_ambiguous |= unheard_behind(*state.attempt).has_value();
   const Attempt attempt = *std::exchange(state.attempt, std::nullopt);
-  // Whoever has its components meanwhile is as likely.
+  // The strategy that reserves its components meanwhile is as likely the cause.
   const bool is_suspended = attempt.stage == Attempt::Stage::kSuspended;
   const bool caused = !is_suspended && !went_away_before(attempt);
   if (caused) couplings_.resolved(attempt, !attempt.is_ambiguous, now);
@@ -536,8 +537,8 @@ std::optional<ComponentId> Analyzer::unheard_behind(const Attempt& attempt) cons
                                           : knowledge_.unheard_behind(strategy.rule);
 }
 
-// It ends without a verdict. What went round the computer that is not heard, and did not help, is not
-// tried once more meanwhile.
+// It ends without a verdict. A strategy that avoided the unreachable computer, and did not help, is
+// not retried meanwhile.
 void Analyzer::excuse(RuleId id, ComponentId unheard, Time now) {
   Attempt& attempt = *write_.states.state(id).attempt;
   const auto& adapted = knowledge_.rules[attempt.strategy].components;
@@ -574,7 +575,7 @@ void Analyzer::forgive_unheard(Time now) {
   const auto forgive = [&](RuleId id) {
     RuleState& state = write_.states.state(id);
     Search& search = state.search;
-    // What an earlier process had tried was tried before.
+    // Attempts of an earlier process began before the computer became unreachable.
     if (state.left_off || !knowledge_.unheard_behind(id)) return;
     search.attempts = search.attempts_before;
     search.round = 0;
@@ -731,7 +732,7 @@ void Analyzer::judge_last_resort(RuleId id, Time now) {
 void Analyzer::watch_last_resorts(RuleId id, Time now) {
   RuleState& state = write_.states.state(id);
   if (state.phase == RulePhase::kQuiet) return;
-  // What it set in a process is lost with that.
+  // A new process has lost the settings of the old one.
   std::erase_if(state.standing, [&](const RuleState::Standing& each) {
     const bool is_lost =
         std::ranges::any_of(knowledge_.rules[each.strategy].adaptations, [&](const Adaptation& a) {
@@ -765,7 +766,7 @@ void Analyzer::exhaust(RuleId id, Time now) {
   stay_exhausted(id, now);
 }
 
-// What is known to be gone is started again after a while (goes_on()).
+// A process that is known to have exited is started again after a while (goes_on()).
 void Analyzer::stay_exhausted(RuleId id, Time now) {
   Search& search = write_.states.state(id).search;
   const int beyond = search.attempts - knowledge_.rules[id].policies.attempts;

@@ -1,10 +1,10 @@
 // Knowledge -> failures, and verdicts on the strategies under way (paper, "Analyzing").
 //
-// Only rules whose trigger can have changed, or whose own time has come, are looked at. What a rule
-// goes through:
+// Only rules whose trigger can have changed, or whose own time has come, are looked at. The states
+// of a rule:
 //
 //   detected   its trigger held for its policy's time (FOR, HOLD n/k) and its COOLDOWN is over.
-//              Silence that is certain to come, because who would speak is known dead, counts
+//              Silence of a topic whose publisher is known dead is certain to come, so it counts
 //              at once (known_silence.h)
 //   resolved   its trigger was false for its policy's time; unknown is neither true nor false
 //   blind      its trigger has been unknown for a while: neither quiet nor failing (blind_watch.h)
@@ -14,9 +14,9 @@
 //
 // A strategy under way succeeds when its failure is resolved, once its adaptations took effect. It
 // fails at its deadline: its impact in cycles after they took effect, plus the latency of what the
-// trigger reads. The latency of a signal is two of its periods, so that a fresh reading comes
-// first; five seconds while its period is not known. Of what began anew nothing is expected before its
-// middleware can have found what it reads, and who reads it (kInputs at most).
+// trigger reads. The latency of a signal is two of its periods, so that a fresh reading comes first;
+// five seconds while its period is not known. After a start or restart, the deadline allows for
+// discovery of the publishers that the component reads, and of its subscribers (kInputs at most).
 //
 // A round of strategies is followed by a back-off that doubles each time. After ATTEMPTS strategies
 // (or as many rounds without any valid strategy) the rule is exhausted. A process that is known to be gone
@@ -91,11 +91,11 @@ class Analyzer {
   // itself until `discovered`.
   Analyzer(const Knowledge& knowledge, Writes writes, Time start, Time discovered);
 
-  // What earlier processes tried. Before the first advance().
+  // The attempts of earlier processes. Before the first advance().
   void remember(const History& past);
 
-  // Nobody watched until `now`: whatever has to last begins anew (FOR, HOLD, a strategy's waiting
-  // time), and the strategies under way prove nothing, however they end.
+  // culprit did not watch until `now`. Every time that must pass without a break begins anew (FOR,
+  // HOLD, a strategy's waiting time). The strategies under way prove nothing, however they end.
   void restart(Time now);
 
   // Looks at every rule that the monitor touched and at those whose time has come.
@@ -112,8 +112,8 @@ class Analyzer {
   std::vector<RuleId> plannable(Time now) const;
   // Whether anything may have to be done, for steps where nothing is wrong.
   bool anything_to_do(Time now) const;
-  // Is the rule exhausted, and a strategy of it would only start processes that are known to be gone?
-  // That goes on, with back-off.
+  // Is the rule exhausted, and would a strategy of it only start processes that are known to have
+  // exited? Such starts go on, with back-off.
   bool goes_on(RuleId id) const;
   // When the first of these is due; kNever if none is.
   Time next_start() const;
@@ -135,11 +135,11 @@ class Analyzer {
   // The last resort under way is left where it is. @pre there is one
   void abandon_last_resort(RuleId id, Time now);
 
-  // Nothing more may be done about the failure by itself: a person must look.
+  // culprit may not do more about the failure by itself: a person must look.
   void give_up(RuleId id, Time now);
 
-  // A computer is not heard any more: what it explains and was tried in vain shortly before, while nobody
-  // knew, was tried for nothing. That is forgotten, and what is not proven yet is not learned.
+  // A computer became unreachable. Attempts at failures that it explains, made in vain shortly before
+  // that was known, are forgotten; an outcome that is not proven yet is not learned.
   void forgive_unheard(Time now);
 
   // No untried strategy of the rule is valid: its round is over.

@@ -1,4 +1,4 @@
-// What is nearest to becoming a failure, while it is none.
+// Rules that are nearest to firing, while they are quiet.
 //
 // Only comparisons of one value with a constant are looked at: how near anything else is cannot be
 // told in a number.

@@ -18,7 +18,7 @@ enum class Urgency : std::uint8_t { kNow, kSoon };
 // All members may be called from any thread.
 class Inbox {
  public:
-  // What is not urgent is handed over no more often.
+  // Observations that are not urgent are handed over no more often than this.
   static constexpr Duration kSoon = std::chrono::milliseconds(20);
 
   // Observations beyond this many that nobody took are dropped, oldest first: a flood must not eat

@@ -1,4 +1,4 @@
-// What a robot tells: the only way in for facts about the managed system.
+// Observations of the robot: the only way in for facts about the managed system.
 //
 // Adapters (ros2, process, simulation, recorded bags) produce observations, the monitor consumes
 // them; people's orders come the same way. Things that the rule set names come with their number in
@@ -31,8 +31,8 @@ struct NodeVanished {
   std::string node;
 };
 
-// How many other nodes there are with the name of this one, that may be alive. Whoever speaks to
-// that name does not know whom it reaches.
+// How many other nodes have the name of this one and may be alive. A request to that name may reach
+// any of them.
 struct NamesakesSeen {
   std::string node;
   int others = 0;
@@ -113,7 +113,7 @@ enum class Cause : std::uint8_t {
   kOrder   // its owner ended it in an orderly way, as systemctl stop and docker stop do
 };
 
-// What the operating system says about the process behind a component.
+// The state of a component's process, as the operating system reports it.
 struct ProcessSeen {
   ComponentId component;
   ProcessState state = ProcessState::kGone;
@@ -122,7 +122,8 @@ struct ProcessSeen {
   Cause cause = Cause::kUnknown;  // of kStopped and kGone
 };
 
-// Who started the component's process, where that was not culprit: a launch file, a shell.
+// The program that started the component's process, if that was not culprit: a launch file, a
+// shell.
 struct LauncherSeen {
   ComponentId component;
   int pid = 0;
@@ -165,8 +166,8 @@ struct GoalsSeen {
   std::vector<Goal> goals;
 };
 
-// The computer that runs a component (HOST) cannot be asked, or can be again. Of a component that is
-// not heard of meanwhile nobody knows whether it works.
+// The computer that runs a component (HOST) cannot be asked, or can be again. While nothing is
+// received from a component there, it is unknown whether it works.
 struct HostReached {
   ComponentId component;
   bool is_reached = false;
@@ -179,8 +180,9 @@ struct LivesOn {
   std::string host;
 };
 
-// Nothing at all is heard of another computer any more, of no process there: it is down, or cut off.
-// Or it is heard again. Told only while we hear ourselves (HearingLost).
+// Another computer became unreachable: no process there is received any more, because it is down or
+// cut off. Or it is reachable again. Reported only while culprit receives its own messages
+// (HearingLost).
 struct HostHeard {
   std::string host;
   bool is_heard = false;
@@ -244,22 +246,22 @@ struct LinkTrouble {
   std::string text;
 };
 
-// What we say to ourselves, on the way that the robot's messages take, does not come back, or the
-// time of a simulated robot stands still: nothing that is missing from now on is missing on the
-// robot. Until HearingRegained.
+// culprit does not receive its own messages, which take the same way as the robot's, or the time of
+// a simulated robot stands still. From now on a missing message does not show a fault of the robot.
+// Until HearingRegained.
 struct HearingLost {
   std::string reason;
 };
 struct HearingRegained {};
 
-// Whoever drives the manager came round this much later than the manager asked for: culprit, or the
-// whole computer, stood still.
+// The manager's host loop called it this much later than it had asked for: culprit, or the whole
+// computer, stood still.
 struct Overslept {
   Duration by{};
 };
 
-// What the robots of a fleet learned of strategies: what is believed of each begins from there. Where
-// they learned nothing it is what the rule file says. Pseudo-counts, above zero.
+// Priors that a fleet learned of strategies: each belief begins from there. A strategy without
+// outcomes has the rule file's prior. Pseudo-counts, above zero.
 struct PriorsTold {
   struct Prior {
     StrategyId strategy;
