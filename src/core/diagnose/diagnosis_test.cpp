@@ -135,7 +135,7 @@ TEST(Diagnosis, SharesTheExplainedPart) {
   EXPECT_EQ(r.share(2, 0), 0);
 }
 
-// Nobody needs a rule about a supplier: a consumer of one in trouble is an effect.
+// A supplier needs no rule: a consumer of one in trouble is an effect.
 TEST(Diagnosis, ASupplierCountsWithoutARule) {
   Scene scene("COMPONENT a NODE /a\n" + failure_of("b", "B"));
   scene.link("a", "b").fail("B");

@@ -8,7 +8,7 @@ namespace {
 
 using Vertex = DependencyGraph::Vertex;
 
-// What is known of a component.
+// The quiet rules and the failures of a component, by symptom.
 struct Signs {
   std::array<bool, 2> is_watched{};  // by a quiet rule of each kind
   std::array<bool, 2> has_ill{};     // a rule of that kind is not quiet, or imminent

@@ -1,4 +1,4 @@
-// Who is upstream of whom among a few components of a large graph.
+// Which of a few components of a large graph are upstream of which others.
 //
 // One pass over the condensed graph, producers first, carries 64 components at once to all their
 // consumers: with e edges and n components that is e * n / 64 steps, whatever the paths are.

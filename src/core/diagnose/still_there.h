@@ -1,5 +1,5 @@
-// What is left of a failure's cause after some strategies were tried in vain (plan/bayes/
-// strategy_chances.h defines v and q).
+// The probability that a failure's cause remains after some strategies were tried in vain
+// (plan/bayes/strategy_chances.h defines v and q).
 #pragma once
 
 #include "knowledge/knowledge.h"

@@ -31,7 +31,7 @@
 
 namespace culprit::diagnose {
 
-// What a rule sees of a failure.
+// The kind of symptom that a rule detects.
 enum class Symptom : std::uint8_t {
   kOutage,  // its trigger reads topics' ages, rates, or what is alive
   kValue    // it reads the value of a signal, a parameter or a diagnostic
@@ -46,7 +46,7 @@ inline constexpr Duration kLongestEvidence = std::chrono::seconds(10);
 // Is the topic silent at `now` for longer than it usually is? Not while its rhythm is unknown.
 bool is_silent(TopicId topic, Time now, const Knowledge& knowledge);
 
-// Of a component that hangs, or did not answer what it was asked: it may have begun right after its
+// For a component that hangs, or did not answer a probe: its failure may have begun right after its
 // last answer.
 Onset onset_of_hang(const ComponentState& state);
 // The onset of what the rule sees, if its failure is detected at `now`.

@@ -9,7 +9,7 @@ namespace {
 
 constexpr Duration kOverdue = std::chrono::milliseconds(450);  // it is asked every 400 ms
 
-// What is silent, if the rule is about nothing but who is there and who is heard.
+// The topics that the rule reads, if it reads only ages, rates and what is alive; empty otherwise.
 std::optional<std::vector<TopicId>> silent_topics(const Rule& rule, const RuleSet& rules) {
   std::vector<TopicId> topics;
   for (const InputId id : rule.inputs) {
@@ -100,7 +100,7 @@ bool owes_answer(const ComponentState& state, Time now) {
 
 std::optional<AnswerToCome> answer_to_come(const Strategy& strategy, const Knowledge& knowledge,
                                            Time now) {
-  // That it hangs is told by two questions, or three, that were not answered within 500 ms (Monitor).
+  // Two or three unanswered probes, 500 ms each, show that it hangs (Monitor).
   constexpr Duration kVerdict = std::chrono::milliseconds(1900);
   // Less than it takes to be asked again.
   constexpr Duration kWakes = std::chrono::milliseconds(250);
@@ -113,7 +113,8 @@ std::optional<AnswerToCome> answer_to_come(const Strategy& strategy, const Knowl
     const auto silent =
         silent_since(adaptation.component, knowledge.rules[strategy.rule], knowledge, now);
     Duration patience{};
-    // What has just answered may have been busy: its thread, which works again, publishes next.
+    // A component that has just answered may have been busy: its thread works again, and publishes
+    // next.
     if (silent) patience = kWakes;
     if (owes_answer(state, now) || (silent && state.answered <= *silent)) patience = kVerdict;
     const Time until = later(state.answered, patience);

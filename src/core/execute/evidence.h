@@ -25,9 +25,9 @@ std::optional<std::string> contradiction(const Strategy& strategy, const Knowled
 // It is asked whether it is there, answered before, and its answer is overdue.
 bool owes_answer(const ComponentState& state, Time now);
 
-// Whether a component that the strategy ends, or takes through its lifecycle, hangs will be known soon: its
-// answer is overdue, or it did not answer since what the rule is about fell silent. What hangs is not asked politely, and for nothing else; what was ended politely
-// can hardly be told from it any more. Nothing: it answers, or is never asked. A last resort does not wait.
+// It will be known soon whether a component that the strategy ends, or takes through its lifecycle, hangs: its answer is overdue, or it did not answer since the
+// rule's topics fell silent. A component that hangs gets no SIGTERM first, and no other request. After a SIGTERM it can hardly be told whether it hung. Empty: it
+// answers, or is never asked. A last resort does not wait.
 struct AnswerToCome {
   std::string reason;
   Time until;

@@ -106,7 +106,7 @@ bool Executor::is_of_present_process(const Question& question) const {
   return knowledge_.components[question.component].questioned.is_open;
 }
 
-// Who cannot be asked, and who never answered, may be well all the same.
+// A component that could not be asked, or that never answered, may work all the same.
 void Executor::note_answer(const Question& question, Outcome outcome) {
   if (!is_of_present_process(question)) return;
   ComponentState& state = write_.components[question.component];
@@ -227,7 +227,7 @@ bool Executor::next_goal(Run& run, Time now) {
   return false;
 }
 
-// What others see of it meanwhile is shown later than it is over.
+// Consumers may show the gap of a restart after it is over.
 void Executor::note_begun_anew(const Run& run, Time now) {
   const Adaptation& adaptation = knowledge_.rules[run.strategy].adaptations[run.adaptation];
   if (adaptation.type != AdaptationType::kRestart && adaptation.type != AdaptationType::kRedeploy)
@@ -395,8 +395,8 @@ bool Executor::is_held_by_last_resort(const execute::Undo& undo) const {
   return is_held;
 }
 
-// Nobody is there who could be asked. What starts next in its place may be as the last one was left:
-// many nodes keep their parameters.
+// No process is there to be asked. The next process may start with the values of the last one: many
+// nodes keep their parameters.
 void Executor::undo_at_next_start(StrategyId strategy, const execute::Undo& undo, Time now) {
   if (const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&undo.goal)) {
     write_.components.intend_lifecycle(undo.component, lifecycle->target, now, write_.events);
@@ -406,7 +406,7 @@ void Executor::undo_at_next_start(StrategyId strategy, const execute::Undo& undo
   }
 }
 
-// What has to be undone in a process that `adaptation` starts becomes the last of its goals.
+// Values to be undone in a process that `adaptation` starts become its last goals.
 void Executor::take_owed(const Adaptation& adaptation, std::vector<execute::Goal>& goals) {
   if (adaptation.type != AdaptationType::kRedeploy && adaptation.type != AdaptationType::kStart)
     return;
@@ -417,8 +417,8 @@ void Executor::take_owed(const Adaptation& adaptation, std::vector<execute::Goal
   });
 }
 
-// What somebody else started is as that one wants it, and a person may have changed it since. What
-// waits is told to people, and not set at some redeploy much later.
+// A process that somebody else started has the values that they want, and a person may have changed
+// them since. So culprit reports the pending undo, and does not set it at some redeploy much later.
 void Executor::forget_what_others_started(Time now) {
   std::erase_if(owed_, [&](const Owed& owed) {
     const ComponentId component = owed.undo.component;
@@ -445,7 +445,7 @@ void Executor::finish_undo(Run& run, Time now) {
   // A mode that is back by itself was set back, and that is remembered.
   if (std::holds_alternative<execute::ModeGoal>(pursuit.goal()) && pursuit.has_changed_anything())
     write_.rivals.forget(pursuit.component());
-  // What came back by itself was not undone.
+  // A value that came back by itself was not undone.
   if (!reached || pursuit.has_changed_anything()) {
     const std::string what =
         knowledge_.rules[pursuit.component()].name + ": " + describe(pursuit.goal());
@@ -494,7 +494,7 @@ void Executor::note_coming_up(const Pursuit& pursuit, Time now) {
   write_.components.note_coming_up(pursuit.component(), how, now, write_.events);
 }
 
-// What takes too long once is given more time when it is started the next time.
+// A component that once took too long gets more time at its next start.
 void Executor::note_too_long(const Pursuit& pursuit, Time now) {
   const ComponentState& state = knowledge_.components[pursuit.component()];
   ComingUp how = state.coming_up;

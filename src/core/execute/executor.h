@@ -79,7 +79,7 @@ class Executor {
     std::vector<execute::Undo> undo;
     Time started = kNever;  // the first process that it started
     int starts = 0;         // that its process ended after it had been there
-    // Of a resumed one, until the robot was given time to show itself.
+    // For a resumed run, until the robot had the time to show itself.
     std::optional<Interrupted> interrupted;
     Time from = kLongAgo;
   };

@@ -25,8 +25,9 @@ Value negated(const Value& value) {
   return -std::get<double>(value);
 }
 
-// Where rules say that the component's lifecycle must be: a trigger that is true now if it were
-// inactive and not if it were active, or the other way round. Nothing if none says so.
+// The lifecycle state that rules demand of the component: a trigger that is true now would be true
+// if it were inactive and not if it were active, or the other way round. Empty if no rule demands
+// one.
 std::optional<Lifecycle> demanded(ComponentId component, const Knowledge& knowledge) {
   const RuleSet& rules = knowledge.rules;
   const auto fires = [&](const Rule& rule, std::string_view state) {
@@ -58,14 +59,14 @@ PresentGoal present(const Adaptation& adaptation, const Knowledge& knowledge) {
   const Duration impact = duration_of(adaptation.impact, knowledge.rules);
   goal.patience = std::max<Duration>(
       {goal.patience, impact, std::min<Duration>(4 * joining, PresentGoal::kMost)});
-  // Who loads it answers when it has been made.
+  // The container that loads it answers when it has been made.
   if (knowledge.rules[adaptation.component].composed)
     goal.answer = std::max(goal.answer, goal.patience);
   goal.longest = joining > Duration::zero() ? goal.patience : std::max(goal.longest, goal.patience);
   return goal;
 }
 
-// What is no number is no value that could be set and read back.
+// NaN cannot be set and read back.
 bool is_nan(const Value& value) {
   const auto* number = std::get_if<double>(&value);
   return number != nullptr && std::isnan(*number);
@@ -93,11 +94,11 @@ Duration loading_of(const ComingUp& before, const Knowledge& knowledge) {
   return std::clamp<Duration>(2 * (before.joining + before.rising), kLeastLoading, kMostLoading);
 }
 
-// Who does it, in this order: the rule file says so; somebody was seen to; culprit did it before. Where
-// nothing is known, culprit watches first. A driver gets as long as the start took to show itself, until the
-// impact is over if that is later, and twice the time that nodes take to find each other at least: two who
-// take one node through its lifecycle make one another fail. In a simulated robot, where nothing has to be
-// found, a rule that says where the node must be is reason enough to act at once.
+// Decides who brings it up. In this order: the rule file says so; somebody was seen to do it; culprit did it
+// before. Where nothing is known, culprit watches first: two drivers of one node's lifecycle make each other
+// fail. Another driver gets as long as the start took to show itself; at least until the impact is over, and
+// at least twice the time of discovery. In a simulated robot no discovery is needed, so a rule that demands
+// the state is reason enough to act at once.
 LifecycleGoal bringing_up(const Adaptation& adaptation, Lifecycle target,
                           const Knowledge& knowledge) {
   constexpr Duration kLongestGrace = 60s;
@@ -227,7 +228,7 @@ std::optional<Look> look_for(const Goal& goal) {
 }
 
 std::optional<Goal> undoing(const Goal& goal, AdaptationType type, const Reply& before) {
-  // What is set in a new process was undone before, and only now reaches it.
+  // The value in a new process was undone before, and only now reaches it.
   if (type == AdaptationType::kRedeploy || type == AdaptationType::kStart) return std::nullopt;
   if (const auto* parameter = std::get_if<ParameterGoal>(&goal)) {
     const auto* value = std::get_if<Value>(&before.value);

@@ -1,8 +1,8 @@
-// What adaptations are made of: states of a component that are to be reached.
+// The goals of adaptations: states of a component that are to be reached.
 //
 // A goal is pursued in three steps: look (is it reached already?), change (one request, never
-// repeated), look again until it is reached or the patience is over. What counts is what is read
-// back, not what the request was answered: a late or lost reply is settled by looking.
+// repeated), look again until it is reached or the patience is over. Only the value that is read
+// back counts, not the answer to the request: a late or lost reply is settled by looking.
 #pragma once
 
 #include <optional>
@@ -30,17 +30,17 @@ struct LifecycleGoal {
   Duration grace{};
   bool is_left_to_others = false;              // it is never told to
   Duration patience = longest_transition({});  // beyond the grace, for each transition
-  // Of a node that was just started: for so long it is asked again if it does not answer, or is not there
-  // to be asked. It may still be loading.
+  // For a node that was just started: it may still be loading. For this long it is asked again if it does
+  // not answer, or is not there to be asked.
   Duration loading{};
-  // It was not seen that culprit is who brings it up. Such a node comes up unconfigured; if it is found
-  // further on, somebody else is at it.
+  // culprit was not yet seen to bring it up. Such a node comes up unconfigured; if it is found further
+  // on, another program drives it.
   bool may_have_driver = false;
 };
 struct ModeGoal {
   std::string mode;
 };
-// Nothing to look at: the routine says itself whether it succeeded.
+// No state to look at: the routine's answer says whether it succeeded.
 struct ServiceGoal {
   std::string service;
   std::string request{};

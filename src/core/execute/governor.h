@@ -37,8 +37,8 @@ class Governor {
     // A launch that ends so soon after a crash that it may have ended because of that is started again.
     bool revives_in_doubt = false;
 
-    // Nothing is limited unless it is asked for: a study measures the planner. This is what a
-    // robot is run with; why these numbers, says docs/governor.md.
+    // By default nothing is limited, because a study measures the planner. These are the limits for
+    // a robot; docs/governor.md gives the reasons for the numbers.
     static Options recommended();
   };
   struct ActiveSilence {
@@ -58,14 +58,15 @@ class Governor {
   // `knowledge` must outlive the governor.
   Governor(const Knowledge& knowledge, Writes writes, Options options, Time start);
 
-  // What earlier processes spent, and what people told them. Before the first advance().
+  // The budgets that earlier processes spent, and the orders that people gave them. Before the
+  // first advance().
   void remember(const History& past);
 
   // ---- orders
 
   // Why the order cannot be followed; nothing if it can.
   std::optional<std::string> objection(const Order& order, Autonomy autonomy) const;
-  // What the order changes here. @pre there is no objection to it
+  // Applies the order. @pre there is no objection to it
   void obey(const Order& order, Time now);
 
   bool is_paused() const { return is_paused_; }
@@ -98,7 +99,7 @@ class Governor {
   // ---- time
 
   void advance(Time now);
-  // What happened in the step that is over.
+  // The events of the step that is over.
   void note(std::span<const Event> events);
   Time next_deadline() const;
 
@@ -123,7 +124,7 @@ class Governor {
   std::optional<Held> container_to_come(const Strategy& strategy) const;
   bool stays_anything_down() const;
   std::optional<Held> lack_of_evidence(const Strategy& strategy, Time now) const;
-  // What no person can order either.
+  // Holds against a person's order, too.
   std::optional<Held> interlock() const;
   void tell(StrategyId strategy, const Held& held, Time now);
   Question* question_of(StrategyId strategy);

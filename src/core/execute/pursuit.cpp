@@ -293,9 +293,10 @@ std::optional<Pursuit::Request> Pursuit::pursue(const LifecycleGoal& goal, Time 
   if (has_moved && has_changed_anything() && present == Lifecycle::kUnconfigured)
     return give_up("it fell back to unconfigured when asked to " +
                    to_string(Command{{}, {}, sent_.back(), {}}));
-  // What was not asked for, or was refused and is so all the same, somebody else did: two who take
-  // one node through its lifecycle make one another fail. It is left to him for a while.
-  // A node that is just started and is found beyond *unconfigured* was taken there by somebody.
+  // A transition that culprit did not request, or that was refused, and that happened all the same,
+  // has another driver. Two drivers of one node's lifecycle make each other fail, so culprit leaves
+  // it to the other one for a while. A node that is just started and is found beyond *unconfigured*
+  // was taken there by another driver.
   const bool is_led = goal.may_have_driver && last_ == Lifecycle::kUnknown &&
                       present == Lifecycle::kInactive && !has_changed_anything();
   if (is_led) held_until_ = std::max(held_until_, later(now, goal.patience / 2));
