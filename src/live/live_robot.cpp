@@ -229,13 +229,12 @@ void LiveRobot::withdraw_doubles(const std::function<bool(ComponentId)>& may) {
 void LiveRobot::start(CommandId command, ComponentId component, Duration patience) {
   const auto cut_off = rules_[component].has_owner() ? std::nullopt : link_->cut_off(component);
   if (cut_off)
-    return inbox_.put(
-        Reply{command,
-              Outcome::kUnreachable,
-              {},
-              rules_[component].name + " ran on " + *cut_off +
-                  ", of which nothing is heard now: it may still run there. Nothing is "
-                  "started in its place"});
+    return inbox_.put(Reply{command,
+                            Outcome::kUnreachable,
+                            {},
+                            rules_[component].name + " ran on " + *cut_off +
+                                ", which is unreachable now: it may still run there. culprit "
+                                "starts nothing in its place"});
   if (composed_->is_responsible_for(component))
     return composed_->start(command, component, patience);
   start_process(command, component);

@@ -48,14 +48,13 @@ std::string_view condition_of(const std::vector<ComponentId>& components,
   return all;
 }
 
-// "camera is dead", "fusion hangs", "camera and fusion are held responsible", "nothing is heard of
-// rover2, where camera and lidar ran".
+// "camera is dead", "fusion hangs", "camera and fusion are held responsible", "rover2, where
+// camera and lidar ran, is unreachable".
 std::string headline_of(const Incident& incident, bool is_suspected, const Knowledge& knowledge) {
   const std::string who = names_of_components(incident.components, knowledge.rules);
   const bool are_many = incident.components.size() > 1;
   const std::string are = are_many ? " are " : " is ";
-  if (!incident.host.empty())
-    return "nothing is heard of " + incident.host + ", where " + who + " ran";
+  if (!incident.host.empty()) return incident.host + ", where " + who + " ran, is unreachable";
   if (incident.condition == "hung") return who + (are_many ? " hang" : " hangs");
   if (!incident.condition.empty()) return who + are + incident.condition;
   if (incident.is_certain) return who + are + "held responsible";
@@ -218,7 +217,8 @@ std::string Situation::doing_about(const Incident& incident, const Manager& mana
   const RuleSet& rules = manager.knowledge().rules;
   const Failure& root = of(incident.root);
   const RulePhase phase = manager.knowledge().states[incident.root].phase;
-  if (!incident.host.empty()) return "nothing is started in their place until it is heard again";
+  if (!incident.host.empty())
+    return "culprit starts nothing in their place until it is reachable again";
   if (phase == RulePhase::kExhausted) return "nothing helped";
   if (manager.governor().is_paused()) return "nothing is done: culprit is paused";
   if (incident.awaits_approval && root.blamed)

@@ -87,7 +87,7 @@ TEST(Situation, IsOneIncidentForAPersonWhereAComputerIsNotHeard) {
   watched.robot->run_for(60s);
   const auto incidents = watched.incidents();
   ASSERT_EQ(incidents.size(), 1u) << transcript(*watched.robot);
-  EXPECT_EQ(incidents[0].headline, "nothing is heard of rover2, where camera ran");
+  EXPECT_EQ(incidents[0].headline, "rover2, where camera ran, is unreachable");
   EXPECT_EQ(incidents[0].host, "rover2");
   EXPECT_EQ(incidents[0].components, std::vector{ComponentId(0)});
   EXPECT_EQ(incidents[0].consequences.size(), 1u);

@@ -146,7 +146,7 @@ export function ComponentPanel({ name }: { name: string }) {
     ['node', node ?? 'not seen'],
     ['process', state.value ? (now?.process ?? 'not seen yet') : 'unknown'],
     ['started by', facts?.owner ?? (facts && 'somebody whom the rules do not name')],
-    ['computer', (now?.host ?? facts?.host) && `${now?.host ?? facts?.host}${now?.unheard ? ', of which nothing is heard' : ''}`],
+    ['computer', (now?.host ?? facts?.host) && `${now?.host ?? facts?.host}${now?.unheard ? ', which is unreachable' : ''}`],
     ['lifecycle', now?.lifecycle],
     ['being adapted by', now?.adapting],
     ['remark', now?.remark],

@@ -100,7 +100,7 @@ export function headlineOf(incident: Incident, known: Known): string {
   const { components } = incident
   const subject = listed(components) || incident.root.rule
   const are = components.length > 1 ? 'are' : 'is'
-  if (incident.host) return `nothing is heard of ${incident.host}, where ${subject} ran`
+  if (incident.host) return `${incident.host}, where ${subject} ran, is unreachable`
   const ways = new Set(components.map((c) => wayOf(known(c))))
   const [way] = ways
   if (ways.size === 1 && way === 'hung') return `${subject} ${components.length > 1 ? 'hang' : 'hangs'}`

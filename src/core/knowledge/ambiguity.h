@@ -20,8 +20,7 @@ class Sources {
   std::vector<bool> is_source_;  // by component
 };
 
-// The other way round: which failures adapting some components can make go away. Of many rules it is
-// asked with one search.
+// The inverse: the failures that adapting some components can clear. One search serves many rules.
 class Effects {
  public:
   Effects(const Knowledge& knowledge, const std::vector<ComponentId>& adapted);

@@ -13,7 +13,7 @@ void Attempts::begin(StrategyId strategy, Time now) {
   slot->strategy = strategy;
   slot->chosen = now;
   slot->has_no_failure = states_[rule].phase == RulePhase::kQuiet;
-  // That a start beyond all attempts does not help is no news.
+  // A start beyond all attempts is expected to fail, so its outcome teaches nothing.
   slot->is_ambiguous = states_[rule].search.is_exhausted;
   if (!states_.rules()[strategy].is_last_resort) states_.enter(rule, RulePhase::kAttempting);
 }

@@ -27,7 +27,7 @@ class Attempts {
   void change_begins(StrategyId strategy, Time now);
   // The last adaptation has taken effect.
   void took_effect(StrategyId strategy, Time now);
-  // What it had started ended, and is started again.
+  // A process that it had started exited, and is started again.
   void adapts_again(StrategyId strategy);
   // An adaptation could not be carried out.
   void obstruct(StrategyId strategy, std::string obstacle);
@@ -35,7 +35,7 @@ class Attempts {
   void make_ambiguous(StrategyId strategy);
   // An earlier process found that it failed: it is being undone.
   void undo(StrategyId strategy);
-  // Nothing of it is left to do.
+  // Its undo is complete.
   void undone(StrategyId strategy);
 
  private:

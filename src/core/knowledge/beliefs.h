@@ -10,8 +10,8 @@
 // (pooled_prior.h).
 //
 // A pseudo-count that would start at 0 starts at 0.5 instead, so that a designer's 100 % can still
-// be unlearned (the paper notes that its own update never converges there). All others are what the
-// designer said. None is forgotten to less than 0.05, or than what it started with.
+// be unlearned. (The paper notes that its own update never converges there.) All others start at
+// the designer's numbers. Forgetting never takes one below 0.05, or below its start if that is less.
 #pragma once
 
 #include <vector>
@@ -45,10 +45,9 @@ class Beliefs {
   void set_forgetting(double forgetting) { forgetting_ = forgetting; }
   void set(StrategyId id, Belief belief) { beliefs_[id.index] = belief; }
 
-  // What `id` was believed before anything was counted: the designer's belief, unless said
-  // otherwise.
+  // The belief in `id` before any outcome: the designer's, unless another prior was set.
   const Belief& prior(StrategyId id) const { return priors_[id.index]; }
-  // For what was learned in an earlier run.
+  // For a belief from an earlier run.
   void set(StrategyId id, Belief belief, Belief prior);
   // Begins from another prior; what was counted stays. With forgetting, what outcomes have moved
   // stays as it is: nobody knows how much of the old prior is left in it. Whether anything changed.

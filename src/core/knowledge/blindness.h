@@ -19,7 +19,7 @@
 
 namespace culprit {
 
-// What keeps a trigger from having a value.
+// The reason why a trigger has no value.
 enum class Unseen : std::uint8_t {
   kNeverSeen,   // the robot never had the component, topic, diagnostic, parameter or value
   kStale,       // no new value comes, and the last one is too old to count

@@ -1,4 +1,4 @@
-// What is known of each component itself: its process, its lifecycle, its parameters.
+// The state of each component itself: its process, its lifecycle, its parameters.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@ namespace culprit {
 // "unconfigured", "inactive", "active", "finalized", "unknown", "in transition".
 std::string_view to_string(Lifecycle state);
 
-// What came of asking a component whether it answers (Probe), since its process began.
+// The result of the probes whether a component answers (Probe), since its process began.
 struct Questioned {
   Time at = kLongAgo;                // when it was asked last
   bool is_open = false;              // an answer to that can still come
@@ -71,7 +71,7 @@ struct ComponentState {
 
   std::vector<ComponentId> ends_with;  // other components whose processes end with its (EndsWith)
 
-  // Does it work as a process and as a node? Nothing until something is known of it.
+  // Does it work as a process and as a node? Empty until something is known of it.
   std::optional<bool> alive;
   Time alive_since = kLongAgo;  // when that changed last
   bool is_missed = false;       // it was never seen, and had its time to show itself
@@ -108,8 +108,8 @@ class ComponentStates {
 
   void set_host_silent(ComponentId component, std::optional<Time> since);
   void set_out_of_reach(ComponentId component, bool is_out_of_reach);
-  // Of a component that is not alive, whether that tells of its computer and not of itself
-  // (Knowledge::is_unheard).
+  // Does any component count as not alive because of its computer, not because of itself
+  // (Knowledge::is_unheard)?
   bool is_any_unreached() const { return unreached_ > 0; }
 
   // The last value that was read of a parameter; nothing while none was, or since its process began

@@ -43,13 +43,13 @@ class Condensation {
 
   std::size_t size() const { return sccs_.first_producer.size() - 1; }
   Scc scc_of(Vertex vertex) const { return sccs_.of[vertex]; }
-  // What an SCC depends on directly: lower numbers, possibly more than once.
+  // The direct dependencies of an SCC: lower numbers, possibly more than once.
   std::span<const Scc> producers(Scc scc) const {
     const auto& first = sccs_.first_producer;
     return std::span(sccs_.producers).subspan(first[scc], first[scc + 1] - first[scc]);
   }
 
-  // What the search finds.
+  // The result of the search.
   struct Sccs {
     std::vector<Scc> of;                        // by vertex
     std::vector<std::uint32_t> first_producer;  // by SCC, and the end

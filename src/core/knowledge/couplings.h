@@ -8,7 +8,7 @@
 //   kappa0   what is expected before anything was seen: kUsual if i depends on j, kRare otherwise
 //   n0       how many outcomes that expectation weighs: kWeight
 //
-// What is kept are the counts: whether i depends on j is asked of the graph at the time.
+// Only the counts are stored: whether i depends on j is asked of the graph at the time.
 #pragma once
 
 #include <span>

@@ -4,7 +4,7 @@
 // them get the same signal, and end one after the other, each in its own time. A component that culprit
 // starts while its launcher runs stands in for the launch: it belongs to the launch, and ends with it.
 //
-//   one component leaves politely      the others may be about to: it is kept back for kAlone
+//   one component exits cleanly        the others may be about to: it is held back for kAlone
 //   several do                         they leave together, until none has for kTogether
 //   the launcher ends with them        the launch has ended. Its components stay down until a person
 //                                      starts one again, or orders so (Revive)
@@ -65,14 +65,14 @@ class Departures {
 
   // ---- what people order
 
-  // Nothing stays down for what happened until now; of one component, or of all.
+  // Clears the mark "stays down" for all events until now; for one component, or for all.
   void revive(std::optional<ComponentId> component = {});
   // Every component whose process culprit started stays down.
   void end_started();
 
   // ---- what follows
 
-  // What is decided now of launches that have ended.
+  // The launches that were found to have ended.
   struct Settled {
     std::vector<StaysDown> down;  // the components that stay down from now on
     std::vector<int>
@@ -80,7 +80,7 @@ class Departures {
   };
   Settled settle(Time now);
   Time next_settling() const { return settles_at_; }
-  // What an earlier run told.
+  // A StaysDown event of an earlier run.
   void remember(const StaysDown& told);
 
   enum class What : std::uint8_t {

@@ -1,4 +1,4 @@
-// Who depends on whom: the live graph of the managed system (paper, "Knowledge base").
+// Which nodes depend on which: the live graph of the managed system (paper, "Knowledge base").
 //
 // A node depends on another if it subscribes to a topic that the other publishes, is a client of a
 // service that the other serves, or is declared to depend on it. Nodes are joined through their
@@ -48,10 +48,10 @@ class DependencyGraph {
   bool endpoint_appeared(const std::string& node, EndpointKind kind, const std::string& name);
   bool endpoint_vanished(const std::string& node, EndpointKind kind, const std::string& name);
 
-  // What an earlier run saw of the component, which is not in the graph until it appears: it counts
-  // as if its node had been there and gone.
+  // The ends that an earlier run saw of the component, which is not in the graph until it appears:
+  // they count as if its node had been there and left.
   void remember(ComponentId component, const std::vector<KnownRobot::End>& ends);
-  // What counts of it now.
+  // The component's ends that count now.
   std::vector<KnownRobot::End> ends_of(ComponentId component) const;
   // Another number whenever a node or an end came or went.
   std::uint64_t changes() const { return changes_; }
@@ -104,8 +104,8 @@ class DependencyGraph {
   const std::vector<ComponentId>& upstream(ComponentId component) const;
   // The components that depend on it, likewise.
   const std::vector<ComponentId>& downstream(ComponentId component) const;
-  // Of several at once, in one search: what any of them depends on, or depends on any of them; not
-  // they themselves.
+  // For several components at once, in one search: those that any of them depends on, or that
+  // depend on any of them, without themselves.
   const std::vector<ComponentId>& upstream(std::span<const ComponentId> components) const;
   const std::vector<ComponentId>& downstream(std::span<const ComponentId> components) const;
   // The first of upstream(), or downstream(), that is it, without a look at those behind it. `is_it`
@@ -117,11 +117,11 @@ class DependencyGraph {
   // All that counts now, with circles drawn together. Found anew when it is asked for after a change
   // (docs/performance.md says what that costs); the reference is valid until the next change.
   const Condensation& condensation() const;
-  // Nothing while the component was not seen and is not declared to depend on another.
+  // Empty while the component was not seen and is not declared to depend on another.
   std::optional<Condensation::Scc> scc_of(ComponentId component) const;
 
   using Vertex = std::uint32_t;
-  // Nodes as numbers below size(). Nothing as for scc_of().
+  // Nodes as numbers below size(). Empty as for scc_of().
   std::size_t size() const { return nodes_.size(); }
   std::optional<Vertex> vertex_of(ComponentId component) const {
     const auto node = nodes_of_components_[component.index];

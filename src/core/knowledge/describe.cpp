@@ -61,8 +61,8 @@ class Describer {
   }
   std::string operator()(const FailureHeldBack& e) const {
     if (e.candidates.empty()) return "";
-    // What it really waits for: a strategy that was tried or makes no sense would not be next in
-    // any case.
+    // The reason why it waits: a strategy that was tried or makes no sense would not be next in any
+    // case.
     const auto is_out = [](const Candidate& c) {
       return c.excluded == Condition::kTried || c.excluded == Condition::kInvalid;
     };
@@ -128,7 +128,7 @@ class Describer {
     const bool is_component = std::holds_alternative<ComponentId>(e.what);
     return std::visit([this](auto id) { return unseen(id); }, e.what) +
            (e.near.empty() ? "." : "; did you mean '" + e.near + "'?") +
-           (is_component ? " Nothing is done about it" : " What rules read of it is unknown");
+           (is_component ? " culprit does nothing about it" : " Rules read it as unknown");
   }
   std::string operator()(const RuleBlind& e) const {
     return rules_[e.rule].name + " is blind: " + describe(e.blind);
@@ -193,12 +193,10 @@ class Describer {
   std::string operator()(const HostSilent& e) const {
     std::vector<std::string> names;
     for (const ComponentId c : e.components) names.push_back(rules_[c].name);
-    return "nothing is heard of " + e.host + ", where " + listed(names) +
-           " ran: it is down, or cut off. Nothing is started in their place until it is heard "
-           "again" +
-           (e.is_last
-                ? ". Nothing is heard of any other computer: it may be this one that is cut off"
-                : "");
+    return e.host + ", where " + listed(names) +
+           " ran, is unreachable: it is down, or cut off. culprit starts nothing in their "
+           "place until it is reachable again" +
+           (e.is_last ? ". No other computer is reachable either: this one may be cut off" : "");
   }
   std::string operator()(const StaysDown& e) const {
     std::vector<std::string> names;
@@ -228,7 +226,7 @@ class Describer {
     }
     return who;
   }
-  std::string operator()(const HostBack& e) const { return e.host + " is heard again"; }
+  std::string operator()(const HostBack& e) const { return e.host + " is reachable again"; }
   std::string operator()(const ValueUnknown& e) const {
     const Input& input = rules_[e.input];
     if (e.why == WhyUnknown::kOverflow) {
@@ -307,7 +305,7 @@ class Describer {
     const std::string source = key == nullptr || key->status == "*"
                                    ? "it"
                                    : "the key '" + key->key + "' of status '" + key->status + "'";
-    return "signal " + signal.name + " was never seen: nothing tells " + source;
+    return "signal " + signal.name + " was never seen: no message carries " + source;
   }
   std::string unseen(ParameterId id) const {
     const Parameter& parameter = rules_[id];
@@ -315,7 +313,8 @@ class Describer {
            " was never seen: no value was read";
   }
   std::string unseen(DiagnosticId id) const {
-    return "diagnostic " + rules_.diagnostics[id.index].name + " was never seen: nobody tells it";
+    return "diagnostic " + rules_.diagnostics[id.index].name +
+           " was never seen: no node publishes it";
   }
 
   // " (62 %; 38 %: fusion, by FusionDead)"; empty if nobody else is suspected.
@@ -514,7 +513,7 @@ std::string_view to_string(Criticality criticality) {
 
 namespace {
 
-// Who is asked to end and to start it, where culprit does neither.
+// The owner that ends and starts it, where culprit does neither.
 std::string by_whom(const Component& component) {
   using Engine = EngineContainer::Engine;
   const std::string where = component.host().empty() ? ")" : " on " + component.host() + ")";

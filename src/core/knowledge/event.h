@@ -1,4 +1,5 @@
-// What the manager did and why, for people, for the journal, for explanations.
+// The manager's decisions and actions with their reasons, for people, for the journal, for
+// explanations.
 #pragma once
 
 #include <optional>
@@ -24,7 +25,7 @@ enum class Condition : std::uint8_t {
   kAffected,    // 4: a component of it is affected by a strategy chosen just now
   kDependency,  // 5: a component of it depends on a component that may be the cause
   kOneEach,     // another strategy was chosen for the same failure
-  // Of the bayes planner only:
+  // Only from the bayes planner:
   kDownstream,  // a component of it depends on one that is being adapted
   kSuspect,     // a component of it depends on one that may still prove to be the cause
   kSettling,    // the failure is expected to go away with one that was just resolved
@@ -62,7 +63,7 @@ enum class EvidenceSource : std::uint8_t {
 // "kernel", "measured", "alarm", "graph", "learned", "model".
 std::string_view to_string(EvidenceSource source);
 
-// What speaks for a suspect, or against it (diagnose/evidence.h).
+// A piece of evidence for a suspect, or against it (diagnose/evidence.h).
 struct Evidence {
   EvidenceSource source = EvidenceSource::kModel;
   std::string text;             // "camera exited"
@@ -74,7 +75,7 @@ struct Evidence {
 // "camera exited 1.20 s ago (kernel, +2.9)"
 std::string describe(const Evidence& evidence);
 
-// Who may be responsible for a failure.
+// A component that may be responsible for a failure.
 struct Suspect {
   ComponentId component;
   RuleId failure;                    // that points at it: the failure itself, or one upstream
@@ -85,8 +86,8 @@ struct Suspect {
 // A failure was detected.
 struct FailureDetected {
   RuleId rule;
-  // What the trigger reads does not show it yet: this component, which alone publishes that, is
-  // known dead. `how` it ended: "killed by signal 9".
+  // The trigger's inputs do not show it yet: this component, the only publisher of them, is known
+  // dead. `how` it exited: "killed by signal 9".
   std::optional<ComponentId> known_dead{};
   std::string how{};
 };
@@ -103,7 +104,7 @@ struct FailureResolved {
   Duration reaction{};  // since it was detected
 };
 
-// What the rule reads cannot be seen any more, so nobody knows whether the failure is still there.
+// The rule's inputs are not received any more, so it is unknown whether the failure is still there.
 struct FailureLost {
   RuleId rule;
 };
@@ -164,12 +165,12 @@ struct LastResortReached {
   RuleId rule;
 };
 
-// A last resort took effect. What it changed stays as long as the failure is there.
+// A last resort took effect. Its changes stay as long as the failure is there.
 struct LastResortDone {
   StrategyId strategy;
 };
 
-// Nothing is left to try. A person must look.
+// All strategies were tried. A person must look.
 struct RuleExhausted {
   RuleId rule;
 };
@@ -232,7 +233,7 @@ struct ValueUnknown {
   WhyUnknown why = WhyUnknown::kNotANumber;  // or kOverflow
 };
 
-// What became of a person's order.
+// The answer to a person's order.
 struct OrderAccepted {
   Order order;
   std::vector<StrategyId>
@@ -333,30 +334,30 @@ struct StormBegan {
 };
 struct StormEnded {};
 
-// Nothing is judged from now on, since nobody knows what would have been heard.
+// culprit judges nothing from now on, since it cannot know which messages it misses.
 struct JudgementSuspended {
   std::string reason;
 };
 // All ages, and all times that something has to last, begin anew.
 struct JudgementResumed {};
-// Likewise, after culprit stood still for so long.
+// The same, after culprit stood still for so long.
 struct SleepNoticed {
   Duration time{};
 };
 
-// Nothing is heard of another computer where components ran: it is down, or cut off. One cause, however
-// many rules fail because of it.
+// Another computer where components ran became unreachable: it is down, or cut off. It is one cause,
+// however many rules fail because of it.
 struct HostSilent {
   std::string host;
   std::vector<ComponentId> components;  // that ran there
-  bool is_last = false;  // nothing is heard of any other computer, of which there are several
+  bool is_last = false;  // no other computer is reachable either, and there are several
 };
 struct HostBack {
   std::string host;
 };
 
-// What is believed of strategies begins from what the robots of a fleet learned, or again from what
-// the rules say, where nobody learned anything (empty `source`).
+// Beliefs now begin from priors that the robots of a fleet learned. If `source` is empty, no fleet
+// has any, and they begin from the rule file's priors again.
 struct PriorsAdopted {
   std::vector<PriorsTold::Prior> priors;
   std::string source;

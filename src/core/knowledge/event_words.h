@@ -1,4 +1,4 @@
-// What each event is called wherever it is told: in the journal, at the terminal, on the page, to
+// The name of each event wherever it is reported: in the journal, at the terminal, on the page, on
 // /rosout.
 //
 //     words_of(event).label                    // "decided"
@@ -20,7 +20,7 @@ namespace culprit {
 
 enum class EventSeverity : std::uint8_t { kInfo, kWarning, kError };
 
-// What people are to see it as at first glance; a colour, say.
+// The colour, for example, in which people see it at first glance.
 enum class Tone : std::uint8_t {
   kAside,    // nothing happens, or nobody is told
   kAlarm,    // something is broken, or stays broken
@@ -58,7 +58,7 @@ const EventWords& words_of() {
   return words_of(kKindOf<What>);
 }
 
-// Nothing if no event is called so.
+// Empty if no event has this name.
 std::optional<EventKind> kind_named(std::string_view name);
 
 // Its severity in the table, and an error if it is about a REQUIRED component that is not there.

@@ -1,5 +1,5 @@
-// What earlier processes of culprit did on this robot, as far as it still counts: what they told,
-// oldest first.
+// The events of earlier processes of culprit on this robot, as far as they still count, oldest
+// first.
 //
 //   StrategyChosen, StrategyResumed, OrderAccepted of RunStrategy    what was spent of the budgets
 //   FailureDetected, FailureResolved, FailureLost, AdaptationDone    health, launches, cooldowns
@@ -11,7 +11,7 @@
 //   CameUp                                                           how long it is waited for
 //   StaysDown, OrderAccepted of Revive                               what a person ended
 //
-// Events of other kinds say nothing here.
+// Events of other kinds are ignored here.
 #pragma once
 
 #include <vector>

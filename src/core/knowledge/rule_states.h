@@ -44,8 +44,8 @@ struct Search {
   std::vector<bool> tried;    // in this round, by place in Rule::strategies
   bool is_exhausted = false;  // nothing is left, until it is proven gone
 
-  // The last resorts, which are no part of the rounds. Of each, `tried` says that it took effect, or
-  // could not be carried out ATTEMPTS times.
+  // The last resorts, which are no part of the rounds. `tried` means for each of them that it took
+  // effect, or could not be carried out ATTEMPTS times.
   bool is_at_last_resort = false;  // the first of them is due, since nothing else helps in time
   Time last_resort_at = kLongAgo;  // the next of them is not begun before
   int last_resort_obstacles = 0;   // how often in a row it could not be carried out
@@ -58,7 +58,7 @@ struct LeftOff {
   std::optional<Time> gone;  // it went away then, which is not proven yet
 };
 
-// What the rule's trigger says, and how far its policies are satisfied.
+// The value of the rule's trigger, and how far its policies are satisfied.
 struct Detection {
   Slot trigger;                   // as last evaluated
   Time trigger_since = kLongAgo;  // since when it has that value
@@ -94,8 +94,8 @@ struct RuleState {
   Search search;
   std::optional<Attempt> attempt;
   std::optional<Attempt> last_resort;  // of a last resort, beside that one
-  // The last resorts that took effect for the failure, and when. What they changed stays as long as
-  // it is there.
+  // The last resorts that took effect for the failure, and when. Their changes stay as long as it
+  // is there.
   struct Standing {
     StrategyId strategy;
     Time since{};

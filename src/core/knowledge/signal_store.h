@@ -79,12 +79,12 @@ class SignalStore {
     Duration interval{};
     Duration gap{};
     Duration longest{};  // the longest pause that ended by itself
-    // Of what was sent lately, the share that was lost on the way here, 0 to 1; 0, too, while too little
-    // was sent to tell.
+    // The share of the recently published messages that was lost on the way here, 0 to 1; also 0 while
+    // too few were published to measure it.
     double loss = 0;
     double loss_at_most = 0;  // what the link may lose in truth; 0 where nothing was lost
-    // Since `last` there was a time in which it could not be heard: since when it would be silent, had it been heard all
-    // the time until now. May be a little ahead.
+    // Since `last` there was a time in which it could not be received: since when it would be silent, had culprit
+    // received all the time until now. May be a little ahead.
     Time resumed = kLongAgo;
 
     // Since when its silence counts. @pre last

@@ -139,7 +139,7 @@ std::vector<Explanation> value_explanations() {
        "the two kinds of numbers. A duration has a unit, a text has quotes, a trigger is true or "
        "false.",
        rule_with("age(/robot/image) > 0.5"), rule_with("age(/robot/image) > 500ms")},
-      {Code::kUnknownType, "nothing tells what kind of value this is",
+      {Code::kUnknownType, "cannot infer the type of this value",
        "Signals and parameters get their kind from their use: compared with 0.5 it is a number, "
        "with \"docked\" a text, alone it is true or false. Where two unknown ones meet, neither "
        "tells about the other. Often a text merely lacks its quotes.",

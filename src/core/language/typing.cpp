@@ -124,7 +124,7 @@ class Typer {
                   "did you mean '" + near + "'?", Edit{e.span, near});
     }
     if (names_broken_constant(whole_)) return std::nullopt;  // which would have told
-    return fail(Code::kUnknownType, e.span, "nothing tells what kind of value this is",
+    return fail(Code::kUnknownType, e.span, "cannot infer the type of this value",
                 "compare it with a constant; a text needs quotes: \"" + e.name.text + "\"");
   }
 

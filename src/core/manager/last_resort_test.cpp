@@ -204,7 +204,7 @@ TEST_P(LastResort, DoesNotWaitForTheCauseOfItsFailure) {
   }
 }
 
-// On a computer of which nothing is heard.
+// On an unreachable computer.
 TEST_P(LastResort, DoesNotWaitForAHost) {
   TestRobot robot(
       "COMPONENT loc NODE /loc LAUNCH \"loc\"\nCOMPONENT base NODE /base\n" + loc_lost(),

@@ -96,13 +96,15 @@ TEST(NeverSeen, ATypingMistakeInADiagnosticOrAParameterIsTold) {
   robot.tell(ParametersListed{ComponentId(0), {"exposure", "gain", "names"}});
   robot.run_for(60s);
   for (const char* line :
-       {"signal hot was never seen: nothing tells the key 'temperature' of status 'moter'; did you "
+       {"signal hot was never seen: no message carries the key 'temperature' of status 'moter'; "
+        "did you "
         "mean 'motor'?",
-        "signal slow was never seen: nothing tells the key 'sped' of status 'motor'; did you mean "
+        "signal slow was never seen: no message carries the key 'sped' of status 'motor'; did you "
+        "mean "
         "'speed'?",
-        "signal dark was never seen: nothing tells it; did you mean 'exposure'?",
-        "signal curent was never seen: nothing tells it; did you mean 'current'?",
-        "diagnostic lense was never seen: nobody tells it; did you mean 'lens'?",
+        "signal dark was never seen: no message carries it; did you mean 'exposure'?",
+        "signal curent was never seen: no message carries it; did you mean 'current'?",
+        "diagnostic lense was never seen: no node publishes it; did you mean 'lens'?",
         "parameter gian of camera was never seen: no value was read; did you mean 'gain'?",
         "parameter names of camera was never seen: no value was read. What"})
     EXPECT_EQ(robot.count(line), 1u) << line << transcript(robot);
