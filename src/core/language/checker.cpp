@@ -167,7 +167,7 @@ class Checker {
     containers();
   }
 
-  // What lives in a container goes down with it, and comes after it.
+  // A component in a container exits with it, and starts after it: it depends on the container.
   void containers() {
     for (std::size_t part = 0; part < rules_.components.size(); ++part) {
       const auto& composed = rules_.components[part].composed;
@@ -218,7 +218,7 @@ class Checker {
 
   // ---- What is remembered
 
-  // What an impact of so many cycles lasts is part of what rules mean.
+  // The cycle is part of a rule's meaning, because it sets how long an impact lasts.
   void forget_other_cycle() {
     if (memory_ == nullptr || std::exchange(memory_->cycle, rules_.cycle) == rules_.cycle) return;
     for (auto& [text, rule] : memory_->known) rule.meaning.reset();
@@ -234,7 +234,7 @@ class Checker {
     const std::string_view text = text_of(written);
     const auto known = memory_->known.find(text);
     if (known == memory_->known.end()) return add_and_remember(written, text);
-    // Of two that are the same one is remembered.
+    // If two rules have the same text, one is remembered.
     if (known->second.check == memory_->check) return add_rule(written);
     if (recall(written, known->second)) return;
     memory_->known.erase(known);
@@ -341,7 +341,7 @@ class Checker {
     }
   }
 
-  // What a rule means is worth a thought once all of them can be read: a warning that follows from
+  // The meaning of rules is checked only once all of them can be read: a warning that follows from
   // an error would be one too many.
   void check_meaning() {
     const bool failed = std::any_of(diagnostics_.begin(), diagnostics_.end(),
@@ -494,7 +494,7 @@ class Checker {
     return {whole.count + step.count};
   }
 
-  // Nothing where a hundred times as much is no whole percent either.
+  // Empty if a hundred times the fraction is no whole percentage either.
   static std::optional<Edit> in_percent_fix(const syntax::Number& fraction) {
     if (fraction.value < 0.01) return std::nullopt;
     char text[32];
@@ -593,13 +593,13 @@ class Checker {
   std::vector<RememberedRule*> remembered_;  // by RuleId; null: it is not
 };
 
-// What is wrong in a template is wrong in each USE of it.
+// A mistake in a template repeats in each USE of it; one report is enough.
 void say_once(std::vector<Diagnostic>& diagnostics, const Source& source) {
   std::set<std::tuple<std::uint32_t, std::uint32_t, Code, std::string>> said;
   std::erase_if(diagnostics, [&](const Diagnostic& d) {
     const Origin origin = source.origin(d.span);
     const Place& place = origin.place;
-    // What others may include declares more than each of them needs.
+    // An included file may declare more than each including file needs.
     if (d.code == Code::kUnused && (place.file != 0 || !origin.steps.empty())) return true;
     return !said.emplace(place.file, place.span.begin, d.code, d.cause).second;
   });

@@ -22,7 +22,7 @@ std::string golden_text(const std::filesystem::path& path) {
   return std::string(std::istreambuf_iterator<char>(in), {});
 }
 
-// What golden files include.
+// Loads the files that golden files include.
 Expected<Source> load_golden(const std::string& file, const std::string&) {
   const auto path = std::filesystem::path("src/core/language/golden") / file;
   if (!std::filesystem::exists(path)) return Error{"there is no '" + file + "'"};

@@ -58,7 +58,7 @@ bool has_declared_range(InputId id, const RuleSet& rules) {
   }
 }
 
-// What is known of the input, for a message; empty if the message can say nothing more.
+// The known facts about the input, for a message; empty if the message can say nothing more.
 std::string known_of(InputId id, const RuleSet& rules) {
   if (has_declared_range(id, rules)) {
     const Signal& signal = rules[rules[id].signal];
@@ -106,7 +106,7 @@ void find_constant_parts(const Typed& condition, const RuleSet& rules,
   const std::size_t before = findings.size();
   const bool is_conjunction = condition.op == Op::kAnd;
   if (is_connective(condition)) {
-    // What can be true together can be true one by one.
+    // If the whole conjunction can be true, so can each part.
     const auto of_part = is_conjunction && known == false ? known : std::nullopt;
     for (const Typed& child : condition.children)
       find_constant_parts(child, rules, findings, of_part);

@@ -54,7 +54,7 @@ bool covers(const RuleConditions& strong, const RuleConditions& weak, const Rule
          !is_possible(weak.trigger, true, strong.trigger, false, rules);
 }
 
-// What an adaptation leaves behind: a state of one thing that another adaptation can change.
+// The effect of an adaptation: a state of one thing that another adaptation can change.
 struct Effect {
   std::string thing;
   std::string state;
@@ -223,7 +223,7 @@ void check_covered_rules(const std::vector<RuleConditions>& conditions, const Ru
     for (const RuleConditions* weak : group) {
       const auto strong = std::find_if(group.begin(), group.end(), [&](const auto* candidate) {
         if (candidate == weak || !covers(*candidate, *weak, rules)) return false;
-        // Of two that cover each other the second one is one too many.
+        // If two cover each other, only the second one is reported.
         return candidate->rule < weak->rule || !covers(*weak, *candidate, rules);
       });
       if (strong == group.end()) continue;

@@ -6,7 +6,7 @@
 namespace culprit {
 namespace {
 
-// What surrounds the line that an example is about.
+// The rule around the line that an example is about.
 std::string rule_with(std::string_view trigger, std::string_view policies = "ERROR",
                       std::string_view strategy = "STRATEGY restart 50 10",
                       std::string_view adaptation = "ADAPTATION camera restart 5") {
@@ -41,8 +41,9 @@ std::vector<Explanation> syntax_explanations() {
        "COMPONENT camera LAUNCH \"camera_driver --fps 30\n",
        "COMPONENT camera LAUNCH \"camera_driver --fps 30\"\n"},
       {Code::kExtraText, "the line goes on after its statement has ended",
-       "What follows would be ignored, and it may have been meant to do something: && for 'and', "
-       "== to compare, or a comment that lacks its #.",
+       "culprit would ignore the rest of the line, which may have been meant to do something: && "
+       "for "
+       "'and', == to compare, or a comment that lacks its #.",
        rule_with("entropy > 0.5 and exposure < 3"), rule_with("entropy > 0.5 && exposure < 3")},
       {Code::kOutOfPlace, "this line is not inside what it belongs to",
        "POLICIES, TRIGGER and STRATEGY belong to the RULE line before them, one POLICIES and one "
@@ -254,7 +255,7 @@ std::vector<Explanation> rule_explanations() {
                                                                     "ADAPTATION camera stop 5"),
        "COMPONENT camera NODE /robot/camera REQUIRED\n" + rule_with("rate(/robot/image) < 1")},
       {Code::kTwoOwners, "it is not clear who starts and ends a component",
-       "Who starts a component is asked to end it, too: culprit itself (LAUNCH), systemd (UNIT), "
+       "The owner that starts a component also ends it: culprit itself (LAUNCH), systemd (UNIT), "
        "a container engine (CONTAINER), a component container (IN) or a launcher that respawns it "
        "(RESPAWNED). Two of them would start it twice; and a unit that runs two components cannot "
        "be restarted for one of them.",
@@ -407,8 +408,8 @@ std::vector<Explanation> robot_explanations() {
           camera + rule_with("parameter(camera, exposre) > 1"),
           camera + rule_with("parameter(camera, exposure) > 1")),
       against_robot(
-          Code::kNoSuchDiagnostic, "no such diagnostic was heard",
-          "Nothing on /diagnostics carried this status or key while culprit listened, so "
+          Code::kNoSuchDiagnostic, "no such diagnostic was received",
+          "No message on /diagnostics carried this status or key while culprit listened, so "
           "the signal would stay unknown and its rule quiet. Status messages that come seldom "
           "need a longer --wait.",
           "SIGNAL entropy DIAGNOSTIC camera KEY entropi\n",
@@ -464,15 +465,16 @@ std::vector<Explanation> robot_explanations() {
           "anything.",
           "COMPONENT camera NODE /robot/camera UNIT camera.service HOST robot@rovr2\n",
           "COMPONENT camera NODE /robot/camera UNIT camera.service HOST robot@rover2\n"),
-      against_robot(Code::kBadRequest, "the service would not understand this call",
-                    "What a call asks has to fit the type of the service that the robot offers: "
-                    "every field that is written has to be one of the request's, and of its type. "
-                    "A field that is left out is 0, false or empty. Found by asking the robot for "
-                    "the type; one of which no .srv file is found cannot be called either.",
-                    rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY light 50 10",
-                              "ADAPTATION camera call ~/light \"on: true\" 5"),
-                    rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY light 50 10",
-                              "ADAPTATION camera call ~/light \"data: true\" 5")),
+      against_robot(
+          Code::kBadRequest, "the service would not understand this call",
+          "The fields of a call have to fit the type of the service that the robot offers: "
+          "every field that is written has to be one of the request's, and of its type. "
+          "A field that is left out is 0, false or empty. Found by asking the robot for "
+          "the type; one of which no .srv file is found cannot be called either.",
+          rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY light 50 10",
+                    "ADAPTATION camera call ~/light \"on: true\" 5"),
+          rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY light 50 10",
+                    "ADAPTATION camera call ~/light \"data: true\" 5")),
   };
 }
 

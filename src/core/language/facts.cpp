@@ -101,7 +101,7 @@ void enter(InputId input, Set values, std::vector<std::pair<InputId, Set>>& know
   known.emplace_back(input, std::move(values));
 }
 
-// What holds if either is so.
+// Keeps the facts that hold if either set of facts holds.
 template <class Set>
 void keep_joint(std::vector<std::pair<InputId, Set>>& known,
                 const std::vector<std::pair<InputId, Set>>& other) {
@@ -295,7 +295,7 @@ bool is_never(bool truth, const Typed& condition, const RuleSet& rules) {
   if (!is_small_enough(condition)) return false;
   Facts facts(rules);
   if (!facts.assume(condition, truth)) return true;
-  // What the second part of a condition says may rule out a case of the first: look twice.
+  // The second part of a condition may rule out a case of the first: look twice.
   const bool has_parts = std::any_of(condition.children.begin(), condition.children.end(),
                                      [](const Typed& c) { return c.type == Type::kBool; });
   return has_parts && !facts.assume(condition, truth);

@@ -9,7 +9,7 @@
 // stand back behind every rule that somebody wrote: NON_CRITICAL.
 //
 // They are written in the rule language, so that everything that reads rules (the journal, replays,
-// explanations, the web) has them as they were. What they are called says what they are: rules and
+// explanations, the web) has them as they were. Their names mark them: rules and
 // strategies begin with "improvised_".
 #pragma once
 

@@ -98,7 +98,7 @@ void check_shell(const syntax::Component& written, const Component& component,
 
 void check_unused(const syntax::File& file, const RuleSet& rules,
                   std::vector<Diagnostic>& diagnostics) {
-  // What is misspelt may be about it.
+  // A misspelt name may refer to the unused component.
   const bool is_misspelt = std::ranges::any_of(
       diagnostics, [](const Diagnostic& d) { return d.code == Code::kUnknownName; });
   if (rules.rules.empty() || is_misspelt) return;

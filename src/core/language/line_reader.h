@@ -52,7 +52,7 @@ class LineReader {
 
   bool expect_word(Scanner& s, std::string_view word);
   bool expect_symbol(Scanner& s, std::string_view symbol);
-  // Nothing but a comment is left.
+  // Does the line end here, except for a comment?
   bool line_ends(Scanner& s);
 
   // Complaints. All give false, for `return fail(...)`.

@@ -255,7 +255,7 @@ class LiveChecks {
          "start its server, or correct the name", closest_full_name(name, routines));
   }
 
-  // What every node of its kind offers.
+  // Services that every node of its kind offers.
   void services(const syntax::Adaptation& a) {
     using enum AdaptationType;
     switch (a.type) {
@@ -451,7 +451,7 @@ class LiveChecks {
 
 bool comes_before(const Diagnostic& a, const Diagnostic& b) { return a.span.begin < b.span.begin; }
 
-// What is missing where nothing is wrong already.
+// Finds names that are missing on the robot, at places that have no diagnostic yet.
 std::vector<Diagnostic> find_missing(const syntax::File& file, const RuleSet& rules,
                                      const LiveInventory& robot,
                                      const std::vector<Diagnostic>& said) {

@@ -23,7 +23,7 @@ void check_live(const syntax::File& file, const RuleSet& rules, const LiveInvent
 // Only what check_live() would add: what the robot has not.
 std::vector<Diagnostic> missing_on(const LiveInventory& robot, const Source& source);
 
-// Of the launch commands of `rules`, which are those of `file`, the ones that have these troubles.
+// The launch commands of `rules`, whose tree is `file`, that have these troubles.
 std::vector<Diagnostic> cannot_launch(const syntax::File& file, const RuleSet& rules,
                                       const std::vector<LiveInventory::LaunchTrouble>& troubles);
 

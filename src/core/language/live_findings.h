@@ -10,9 +10,9 @@
 
 namespace culprit {
 
-// One line for each component, topic and signal that is there, in the order of the rules:
-// "camera is /robot/camera, active ✓", "/scan 10 Hz from /lidar ✓", "entropy = 0.03 ✓". What is
-// there and has nothing to tell yet has no tick: "/scan from /lidar, silent".
+// One line for each component, topic and signal that is there, in the order of the rules: "camera
+// is /robot/camera, active ✓", "/scan 10 Hz from /lidar ✓", "entropy = 0.03 ✓". A topic that is
+// there without a message yet has no tick: "/scan from /lidar, silent".
 std::vector<std::string> findings(const RuleSet& rules, const LiveInventory& robot);
 
 // Whether there is nothing left to wait for: each of them is there, and told its rate or value.

@@ -47,7 +47,7 @@ Origin origin_of(Span span, const std::vector<Piece>& pieces, const std::vector<
   Origin out;
   out.place = {begin.written.file, {begin_in(begin, span.begin), 0}};
   out.steps = up_from(begin.step, steps);
-  // What reaches over several files is where it begins.
+  // A span over several files gets the place where it begins.
   const bool is_one = end.written.file == begin.written.file && end.step == begin.step;
   const Piece& closing = is_one ? end : begin;
   out.place.span.end = std::max(out.place.span.begin, end_in(closing, is_one ? span.end : size));

@@ -15,7 +15,7 @@ using syntax::Name;
 
 class Parser {
  public:
-  // What is read is put behind what `file` has already.
+  // Appends the parsed lines to `file`.
   Parser(const Source& source, syntax::File& file, std::vector<Diagnostic>& diagnostics,
          std::vector<Lexeme>* lexemes)
       : source_(source), read_(source, diagnostics), lexemes_(lexemes), file_(file) {}

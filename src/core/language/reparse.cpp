@@ -195,8 +195,7 @@ std::uint32_t place_of(const Declaration& d) {
   return place_of(d.name);
 }
 
-// Parts are in the order of the text. What stands at `place` and behind it goes from `from` to the
-// end of `to`.
+// Parts are in the order of the text. Moves the parts from `place` on to the end of `to`.
 template <class T>
 void cut(std::vector<T>& from, std::uint32_t place, std::vector<T>& to) {
   const auto tail = std::partition_point(from.begin(), from.end(),
@@ -307,9 +306,9 @@ Parsed reparse(Parsed before, Source source) {
   cut(before.file, begin, rest.file);
   cut(before.said, begin, rest.said);
 
-  // A line is known if the tree can be cut there, and that line and all behind it are what they
-  // were; the line end in front of it, too. What it says of a second ROBOT or CYCLE does not change
-  // as long as there was a first one before, or still is none.
+  // A line is known if the tree can be cut there, and the line and all after it are unchanged; the
+  // line end before it, too. A report about a second ROBOT or CYCLE stays the same as long as there
+  // was a first one before, or there is still none.
   const bool has_robot = before.file.robot.has_value();
   const bool has_cycle = before.file.cycle.has_value();
   const auto was_set_before = [](const auto& part, std::uint32_t place) {

@@ -64,8 +64,8 @@ const char* contradiction(const Adaptation& first, const Adaptation& second) {
 }
 
 // The starts and stops of one component in a strategy. They are carried out in their order, so they
-// may take turns (paper: a node is not added twice "without removing it"): start, stop, start. What
-// is the opposite in the end of what it was in the beginning was not meant.
+// may take turns (paper: a node is not added twice "without removing it"): start, stop, start. A
+// strategy whose last one is the opposite of its first was not meant.
 class Presence {
  public:
   // Why `next` cannot follow; null if it can.
@@ -89,8 +89,8 @@ class Presence {
   const Adaptation* last_ = nullptr;
 };
 
-// What a strategy has done to one component so far: of adaptations that contradict the same ones,
-// the first.
+// The adaptations of one component in a strategy so far. Of several that contradict the same others
+// it keeps the first.
 class Done {
  public:
   // Why the earliest of those that contradict `next` does so; null if none does.
@@ -165,7 +165,8 @@ bool takes_back(const std::vector<Adaptation>& all, std::size_t place) {
   return false;
 }
 
-// Of all components, one behind the other: a list for each would be thousands of small blocks.
+// The producers of all components, in one array: a list for each would be thousands of small
+// blocks.
 class Producers {
  public:
   explicit Producers(const RuleSet& rules)

@@ -64,7 +64,8 @@ struct Component {
   // Starts that end within so long of the first are tries of one start. 0: each is one.
   Duration ready{};
 
-  // What its launch command needs beside culprit's own environment and folder. All paths are whole.
+  // Needs of its launch command beyond culprit's own environment and folder. All paths are
+  // absolute.
   std::string setup{};                     // a file of shell that is sourced first; may be empty
   std::vector<std::string> environment{};  // "NAME=value"
   std::string folder{};                    // where it runs; empty: where culprit does
@@ -230,7 +231,7 @@ struct Rule {
   syntax::Name declaration;             // where it stands
 };
 
-// Nothing is begun while the condition is not true.
+// No strategy begins while the condition is not true.
 struct Interlock {
   Program condition;
   std::string text;  // as written

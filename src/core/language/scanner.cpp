@@ -35,7 +35,7 @@ Lexeme::Kind lexeme_kind(Token::Kind kind) {
   return kind == Token::Kind::kSymbol ? Lexeme::Kind::kSymbol : Lexeme::Kind::kLiteral;
 }
 
-// Of the symbol that `text`, one or two characters, begins with; 0 if with none.
+// The length of the symbol that `text`, one or two characters, begins with; 0 if with none.
 std::uint32_t symbol_length(std::string_view text) {
   const char first = text[0];
   const char second = text.size() == 2 ? text[1] : '\0';

@@ -34,14 +34,14 @@ class Symbols {
   // Enters what the file declares. Duplicates are reported; the first one counts.
   void declare(const syntax::File& file);
 
-  // What a bare name in an expression means.
+  // The meaning of a bare name in an expression.
   struct Constant {
     syntax::Literal value;
     bool broken = false;  // it was reported; what uses it stays silent
   };
 
-  // What a rule asked for and was told. As long as it would be told the same, a check says the same
-  // of the rule. The ids may be others by then: `was` is the one before.
+  // The look-ups of a rule, with their answers. As long as the answers are the same, so are the
+  // diagnostics of the rule. The ids may be others by then: `was` is the one before.
   struct Uses {
     struct OfConstant {
       std::string name;
@@ -101,7 +101,7 @@ class Symbols {
     bool has_report = false;
 
     std::size_t size() const;
-    // What stands for the same thing now. @pre it is one of those.
+    // The id that stands for the same thing now. @pre it is one of those.
     ComponentId now(ComponentId id) const;
     TopicId now(TopicId id) const;
     SignalId now(SignalId id) const;
@@ -173,14 +173,14 @@ class Symbols {
   Strictness strictness_;
   std::vector<Diagnostic>& diagnostics_;
   std::unordered_map<std::string, Constant> constants_;
-  // Of the tables of rules_.
+  // Indexes into the tables of rules_.
   PlaceIndex components_, signals_, topics_, level_names_;  // by name
   PlaceIndex components_by_node_;                           // of those that are declared, the first
   PlaceIndex components_by_launch_;                         // likewise
   PlaceIndex parameters_;                                   // by component and name
   PlaceIndex inputs_;                                       // by all but type and use
   std::unordered_map<std::string, ComponentId> by_owner_;   // a unit or a container
-  // What undeclared names may have been meant to be; views into the tree and the keys above.
+  // Candidates for misspelt names; views into the tree and the keys above.
   std::vector<std::string_view> declared_components_;
   std::vector<std::string_view> declared_values_;  // constants and signals
   bool are_values_sorted_ = false;                 // they are once somebody asks

@@ -75,7 +75,7 @@ struct Constant {
   Expression value;
 };
 
-// Who takes a managed node through its lifecycle when it starts.
+// The driver that takes a managed node through its lifecycle when it starts.
 enum class LifecycleDriver : std::uint8_t {
   kUndeclared,
   kSelf,     // the node itself: culprit waits, and never drives a start
@@ -260,7 +260,7 @@ struct File {
   std::vector<Signal> signals;
   std::vector<Rule> rules;
   std::vector<BrokenDeclaration> broken_declarations;
-  // What expand() (reuse/expansion.h) puts other text in place of.
+  // Statements that expand() (reuse/expansion.h) replaces with other text.
   std::vector<Include> includes;
   std::vector<Template> templates;
   std::vector<Use> uses;
@@ -269,7 +269,7 @@ struct File {
 };
 
 // Statements with parameters: in `body`, "{name}" stands for, or within, names, numbers, durations
-// and texts. What the numbers and durations of such parts are is not known there.
+// and texts. The values of numbers and durations with parameters are not known there.
 struct Template {
   Name name;
   std::vector<TemplateParameter> parameters;

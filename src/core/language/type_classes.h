@@ -21,7 +21,7 @@ class TypeClasses {
 
   std::optional<Type> type_of(Variable v) const { return nodes_[root(v)].type; }
 
-  // What is known stays; the first use counts. Numbers are all doubles, and none are durations.
+  // A known type stays; the first use counts. Numbers are all doubles, and none are durations.
   void learn(Variable v, Type type);
   // Two that are known to differ stay apart.
   void unify(Variable a, Variable b);

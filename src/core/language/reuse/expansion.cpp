@@ -32,7 +32,7 @@ struct Unit {
   syntax::File tree;
 };
 
-// What USE and INCLUDE stand in: a unit, or one of the files.
+// The text around a USE or an INCLUDE: a unit, or one of the files.
 struct Surroundings {
   const ComposedText& text;
   const Source& source;

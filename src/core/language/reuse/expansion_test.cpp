@@ -258,7 +258,7 @@ TEST(Expansion, EndsWhateverTemplatesDo) {
   EXPECT_LE(deep.mistakes.size(), 200u);
 }
 
-// What is put together has no statements of reuse left, and every byte of it comes from somewhere.
+// The expanded text has no statements of reuse left, and every byte of it has an origin.
 RC_GTEST_PROP(Expansion, OfWhateverIsWritten, ()) {
   const std::string text = random_rule_text().text;
   const Expansion rules =

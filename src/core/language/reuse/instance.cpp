@@ -8,7 +8,7 @@
 namespace culprit {
 namespace {
 
-// Of ROS, for all robots of a domain.
+// Topics of ROS, for all robots of a domain.
 constexpr std::array<std::string_view, 4> kOfNoRobot = {"/clock", "/diagnostics",
                                                         "/parameter_events", "/rosout"};
 
