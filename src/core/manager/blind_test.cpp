@@ -226,7 +226,7 @@ TEST(Blind, AWindowThatIsNotCoveredYetIsNoReason) {
   EXPECT_EQ(robot.count("is blind"), 0u) << transcript(robot);
 }
 
-// What could not be heard is not missing.
+// A message that could not be received is not missing.
 TEST(Blind, DeafnessMakesNoRuleBlind) {
   TestRobot robot(rules_with("SIGNAL battery DIAGNOSTIC power KEY charge", "battery < 0.2"));
   show_driver(robot);

@@ -1,4 +1,4 @@
-// What may be done now (docs/governor.md): limits, storms, interlocks.
+// The governor (docs/governor.md): limits, storms, interlocks.
 #include <gtest/gtest.h>
 
 #include "execute/evidence.h"
@@ -268,7 +268,7 @@ Governor::Options with_evidence() {
   return options;
 }
 
-// A camera, and a fusion that needs it. What is done about the fusion's silence is done to the
+// A camera, and a fusion that needs it. The strategy against the fusion's silence adapts the
 // camera.
 TestRobot camera_and_fusion(const std::string& trigger, const Governor::Options& governor) {
   Manager::Options options;
@@ -329,7 +329,7 @@ RULE Silent
   EXPECT_EQ(robot.count_asked("camera: start process"), 1u) << transcript(robot);
 }
 
-// What hangs is not asked politely, which would take seconds.
+// A hung component gets no SIGTERM first, which would take seconds.
 TEST(Evidence, IsAwaitedWhereAnAnswerIsOverdue) {
   for (const bool hangs : {true, false}) {
     TestRobot robot = one_camera(with_evidence());

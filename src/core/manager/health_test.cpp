@@ -115,7 +115,7 @@ TEST(ProvenHealth, ASecondFaultUpstreamBlamesNobody) {
   EXPECT_EQ(belief(robot, "restart"), (Belief{6, 5})) << transcript(robot);
 }
 
-// What is credited must not depend on how it came out.
+// The credit must not depend on the outcome.
 TEST(ProvenHealth, ASecondFaultUpstreamIsAskedForWhateverCameOut) {
   TestRobot robot = robot_that_is_well(20s);
   robot["fusion"].fault = "a person";
@@ -177,7 +177,7 @@ TEST(ProvenHealth, WhatWaitedForItsProofStillDoesAfterACrash) {
   EXPECT_EQ(belief(robot, "restart"), (Belief{6, 5})) << "counted once";
 }
 
-// Nobody knows whether it lasted.
+// It is unknown whether the repair lasted.
 TEST(ProvenHealth, WhatWasNotHeardWhileItWaitedForItsProofCountsAsNothing) {
   TestRobot robot = robot_that_is_well(20s);
   robot["camera"].fault = "restart";

@@ -131,7 +131,7 @@ RULE LidarDead
   EXPECT_EQ(robot.count("LidarDead detected"), 1u) << transcript(robot);
 }
 
-// Likewise while its lifecycle changes.
+// The same while its lifecycle changes.
 TEST(Hearing, NobodyIsFoundToHangWhoseLifecycleHasJustChanged) {
   TestRobot robot(R"(
 COMPONENT lidar NODE /lidar LAUNCH "lidar"

@@ -74,7 +74,7 @@ struct TwoComputers {
     ADD_FAILURE() << name;
     return RulePhase::kQuiet;
   }
-  // Nothing was learned of the strategies of these rules.
+  // No belief in the strategies of these rules has changed.
   void expect_nothing_learned(const std::vector<std::string>& of) {
     const RuleSet& rules = robot.rules();
     for (std::size_t s = 0; s < before.size(); ++s) {
@@ -256,7 +256,8 @@ TEST(Hosts, AllAtOnceMayBeThisOneThatIsCutOff) {
   EXPECT_EQ(two.robot.count("rover3, where lidar ran, is unreachable"), 1u);
 }
 
-// Whoever may not act on what it hears does not tell of silence either, and nobody judges.
+// A deaf culprit, which must not act on the messages that it still receives, reports no silent
+// computer either and judges nothing.
 TEST(Hosts, AreNotJudgedByOneThatIsDeaf) {
   TwoComputers two;
   two.begin();

@@ -1,4 +1,4 @@
-// What holds on every robot, whatever breaks: on random ones, in virtual time, with the bayes
+// Invariants on every robot, whatever breaks: on random ones, in virtual time, with the bayes
 // planner.
 #include <algorithm>
 #include <set>

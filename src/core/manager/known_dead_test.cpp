@@ -1,4 +1,5 @@
-// What is known is not waited for; and what is somebody's wish is not fought.
+// A failure of a process that is known to have exited is planned at once; a person's shutdown is
+// respected.
 #include <set>
 
 #include <gtest/gtest.h>
@@ -31,7 +32,7 @@ TestRobot robot_with(const std::string& rules, const Manager::Options& options =
   return robot;
 }
 
-// Of `rule`, after the end of a component at `ended`.
+// The time from the end of a component at `ended` to the detection of `rule`.
 std::optional<Duration> detected_after(const TestRobot& robot, const std::string& rule,
                                        Time ended) {
   for (const Event& event : robot.events) {
@@ -144,7 +145,7 @@ TEST(KnownDead, OnlyWhereTheDeadOneAloneExplainsIt) {
   EXPECT_TRUE(is_seen_at_once("phi(/image) > 8"));
   EXPECT_TRUE(is_seen_at_once("rate(/image, 2s) / rate(/fused, 2s) < 0.5"));
   EXPECT_TRUE(is_seen_at_once("age(/image) > 5s && age(/fused) < 1s"));
-  // What it does not publish, though it is silent soon.
+  // A topic that it does not publish, though that is silent soon.
   EXPECT_FALSE(is_seen_at_once("age(/fused) > 5s"));
   EXPECT_FALSE(is_seen_at_once("age(/image) > 5s && age(/fused) > 5s"));
   // Silence that does not last is none that is known.
@@ -314,7 +315,7 @@ TEST(ALaunch, OfFiveThatSomebodyEndsIsNotStartedAgain) {
   EXPECT_TRUE(robot.works("b")) << transcript(robot);
 }
 
-// What does not end when it is asked is killed by its launcher.
+// A process that ignores SIGTERM is killed by its launcher.
 TEST(ALaunch, ThatSomebodyEndsMayHaveToKill) {
   TestRobot robot = launch_of_five();
   for (const std::string name : {"a", "b", "c", "d"}) robot.leave(name);
@@ -411,7 +412,8 @@ TEST(ALaunch, OfOthersThatEndsSoonAfterACrashStaysDown) {
   EXPECT_EQ(robot.count("a stays down: the launch of process 50"), 1u) << transcript(robot);
 }
 
-// What culprit started in place of one of a launch ends with the launch, whenever that is.
+// A process that culprit started in place of a member of a launch ends with the launch, whenever
+// that is.
 TEST(ALaunch, TakesWhatStandsInForOneOfItAlong) {
   for (const Duration after : {Duration(500ms), Duration(3s), Duration(8s), Duration(30s)}) {
     TestRobot robot = launch_of_five();
@@ -502,7 +504,7 @@ TEST(ALaunch, IsNotTakenForAnEarlierOneWithItsNumber) {
   EXPECT_TRUE(robot.works("a")) << transcript(robot);
 }
 
-// What an earlier culprit told counts, until a person orders otherwise.
+// Events of an earlier culprit count, until a person orders otherwise.
 TEST(ALaunch, ThatWasEndedStaysDownForTheNextCulprit) {
   TestRobot robot = launch_of_five();
   for (const std::string& name : kFive) robot.leave(name);
@@ -527,7 +529,7 @@ TEST(ALaunch, ThatWasEndedStaysDownForTheNextCulprit) {
   EXPECT_TRUE(robot.works("c")) << transcript(robot);
 }
 
-// What a culprit that was killed had started stands in for a launch that has ended since.
+// A process that a killed culprit had started stands in for a launch that has ended since.
 TEST(ALaunch, ThatEndedWhileNoCulpritRanTakesItsStandInAlong) {
   for (const bool are_others_there : {false, true}) {
     TestRobot robot = launch_of_five();

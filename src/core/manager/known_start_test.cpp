@@ -19,7 +19,7 @@ constexpr const char* kTwoCameras =
     "STRATEGY right_restart 90 10\nADAPTATION right restart 2\n";
 
 // Two cameras, of which the left one falls silent while its process runs on; culprit is killed then,
-// and another one begins. What that one sees is up to the test.
+// and another one begins. The test decides which messages that one receives.
 struct KnownStart : testing::Test {
   KnownStart() {
     for (const char* name : {"left", "right"}) robot.add(name);
@@ -246,7 +246,7 @@ TEST_F(KnownStart, WhoSleepsAtTheBeginningExpectsNothing) {
   EXPECT_EQ(detected(), 0u) << transcript(robot);
 }
 
-// Whoever is started anew by a person in the moment of the verdict has its time.
+// A component that a person starts anew in the moment of the verdict gets its grace period.
 TEST_F(KnownStart, WhoIsStartedAnewAfterwardsHasItsTime) {
   begin(known());
   show_both();

@@ -1,5 +1,5 @@
-// Who takes a node through its lifecycle when a process of it begins, and how long it is waited
-// for.
+// The driver that takes a node through its lifecycle when its process begins, and the time that it
+// gets for that.
 #include <gtest/gtest.h>
 
 #include "manager/manager.h"
@@ -50,7 +50,7 @@ TEST(Lifecycles, AManagedNodeIsNotWaitedFor) {
   EXPECT_TRUE(robot.works("camera")) << transcript(robot);
 }
 
-// Nothing is known of it: it is activated after the impact, and its own timer then fails.
+// Its driver is unknown: culprit activates it after the impact, and its own timer then fails.
 TEST(Lifecycles, ANodeThatActivatesItselfCrashesOnceAtMost) {
   TestRobot robot = robot_of(camera_with(""), 4s);
   robot.kill("camera");
@@ -72,7 +72,7 @@ std::string active_camera_with(const std::string& clause) {
          "    STRATEGY activate 90 10\n      ADAPTATION camera activate 5\n";
 }
 
-// Nobody was seen to drive it, for culprit came later.
+// Its driver was not seen, for culprit came later.
 TEST(Lifecycles, ANodeThatActivatesItselfWithinTheImpactNeverCrashes) {
   TestRobot robot = robot_of(camera_with(""), 1500ms);
   for (int kills = 1; kills <= 3; ++kills) {

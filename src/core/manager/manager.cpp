@@ -22,7 +22,7 @@ bool same_reasons(const std::vector<Candidate>& a, const std::vector<Candidate>&
                     });
 }
 
-// Of all that was left to try, the governor withholds everything until a person has looked.
+// Does the governor withhold all strategies that were left to try until a person has looked?
 bool is_given_up(const Decision& decision, const Knowledge& knowledge) {
   bool is_any = false;
   for (const Candidate& candidate : decision.candidates) {
@@ -151,14 +151,15 @@ void Manager::take_in(Time now, std::span<const Observation> observations) {
   news_ |= !knowledge_.events.empty();
 }
 
-// What is asked in order to plan tells of the component as any other question does.
+// An answer to the planner's question is evidence about the component as any other answer is.
 void Manager::answered(const Reply& reply, Time now) {
   if (const auto component = executor_.proven_by(reply))
     monitor_.observe({now, Probed{*component, true}}, now);
   executor_.answered(reply, now);
 }
 
-// Nobody listened from `since` until `now`, so that no gap, no delay and no late answer proves anything.
+// culprit did not listen from `since` until `now`, so that no gap, no delay and no late answer proves
+// anything.
 void Manager::restart(Time since, Time now) {
   monitor_.restart(since, now);
   analyzer_.restart(now);
@@ -228,7 +229,7 @@ void Manager::forget(std::optional<RuleId> rule) {
   }
 }
 
-// What is no belief is left out: it comes from a network.
+// Invalid counts are left out: they come from a network.
 void Manager::adopt(const PriorsTold& told, Time now) {
   PriorsAdopted adopted{{}, told.source};
   constexpr double kMost = 1e9;
@@ -279,8 +280,8 @@ void Manager::abandon_what_stays_down(Time now) {
   }
 }
 
-// Whoever only waits for a verdict gives way to a more critical failure, and learns nothing. It is
-// judged afterwards, unless what it did is taken back.
+// An attempt that only waits for its verdict gives way to a more critical failure, and teaches
+// nothing. It is judged afterwards, unless its change is undone.
 void Manager::make_way_for(StrategyId strategy, Time now) {
   const RuleId rule = knowledge_.rules[strategy].rule;
   for (const ComponentId component : knowledge_.rules[strategy].components) {
@@ -303,14 +304,15 @@ void Manager::plan(Time now, std::vector<Command>& commands) {
   for (const Decision& decision : allowed_plan(failures, now)) {
     ask(decision, now, commands);
     if (decision.chosen) {
-      // What was allowed when the plan was made may have been the last of its kind.
+      // A strategy of this plan may have spent the last budget of its kind.
       const bool has_to_wait = governor_.holds_back(*decision.chosen, now) ||
                                governor_.withholds(*decision.chosen, now) ||
                                is_beside_last_resort(*decision.chosen);
       if (!has_to_wait) carry_out(decision, now);
     } else if (decision.is_spent && !plan::awaits_repair(decision, knowledge_)) {
       hold_back(decision, now);
-      // What was tried in vain while a computer explains the failure is tried again when that is heard.
+      // While an unreachable computer explains the failure, attempts in vain are repeated once it is
+      // reachable again.
       if (knowledge_.unheard_behind(decision.rule))
         analyzer_.turn_to_last_resort(decision.rule, now);
       else
@@ -399,7 +401,7 @@ void Manager::begin_last_resort(StrategyId strategy, Time now) {
   }
 }
 
-// Whoever would change the same thing is left where it is; else both go on side by side.
+// Abandons the strategies that would change the same thing; all others go on beside it.
 void Manager::go_before_others(StrategyId strategy, Time now) {
   const Strategy& last_resort = knowledge_.rules[strategy];
   const std::vector<RuleId> active = knowledge_.states.active();
@@ -446,7 +448,7 @@ bool Manager::is_help_possible(RuleId rule, Time limit, Time now) const {
   });
 }
 
-// What has to be true for the strategy to be begun.
+// Reads the conditions of the strategy anew: its WHEN and the interlocks.
 void Manager::refresh_conditions(StrategyId strategy, Time now) {
   if (strategy.index < knowledge_.rules.strategies.size())
     monitor_.refresh(knowledge_.rules[strategy].when, now);

@@ -38,7 +38,7 @@ class Manager : public ManagingSystem {
     Time start{};  // when watching begins
     Duration discovery =
         kDiscovery;  // for so long nothing is called absent because it was not seen
-    // What was learned n outcomes ago weighs forgetting^n; 1: nothing is forgotten.
+    // Discount factor per outcome (1 = never forget).
     double forgetting = 1;
     Governor::Options governor{};
   };
@@ -76,10 +76,11 @@ class Manager : public ManagingSystem {
   void set_latency(RuleId rule, const Latencies::Learned& learned) {
     knowledge_.latencies.set(rule, learned);
   }
-  // What earlier processes did counts: budgets, back-offs, silences and what was tried last on.
+  // Restores the state that earlier processes left: budgets, back-offs, silences, and the last
+  // attempts.
   // Before the first step, and before resume().
   void remember(const History& past);
-  // What earlier runs saw of this robot counts as seen.
+  // Components and topics that earlier runs saw on this robot count as seen.
   void remember(const KnownRobot& known) { monitor_.remember(known); }
   // A strategy that an earlier process left in the middle is finished, once the robot had the time
   // of discovery to show itself. Before the first step; one for each rule at most.

@@ -53,7 +53,7 @@ std::unique_ptr<const Planner> without_dependencies() {
   return std::make_unique<PaperPlanner>(PaperSwitches{.dependencies = false});
 }
 
-// What has to hold whoever plans.
+// Behaviour that holds with every planner.
 class ManagerWith : public testing::TestWithParam<PlannerFactory> {
  protected:
   TestRobot pipeline(Autonomy autonomy = Autonomy::kAct) const {
@@ -99,7 +99,7 @@ TEST_P(ManagerWith, NumbersItsCommandsUpwards) {
   EXPECT_TRUE(std::is_sorted(numbers.begin(), numbers.end(), std::less_equal<>()));
 }
 
-// Nothing comes from this robot any more that would wake the manager.
+// No message from this robot wakes the manager any more.
 TEST(Manager, WakesByItselfToTryAnewAfterAPause) {
   TestRobot robot(
       "COMPONENT camera NODE /camera\n"
@@ -476,8 +476,8 @@ RULE Unsure
       ADAPTATION fusion change_communication input /filtered 2
 )";
 
-// Whatever was to be undone in it while it was gone: many nodes keep their parameters when they are
-// started again, and culprit brings them to where they are meant to be.
+// Even if a value was to be undone while its process was not there: many nodes keep their
+// parameters when they are started again, and culprit brings them to their intended values.
 TEST(Manager, UndoesWhatItSetInAProcessThatIsGoneOnceThatIsBack) {
   for (const char* victim : {"fusion", "filter"}) {
     for (Duration killed = 0s; killed < 3s; killed += 50ms) {

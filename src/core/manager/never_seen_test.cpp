@@ -61,7 +61,7 @@ TEST(NeverSeen, AUnitThatFailedIsStartedThoughItsNodeWasNeverThere) {
   EXPECT_EQ(robot.count("camera is there"), 1u) << transcript(robot);
 }
 
-// What it could not even begin has no process. Somebody may run its node by hand, though.
+// A unit that could not even begin has no process. A person may run its node by hand, though.
 TEST(NeverSeen, AUnitThatNeverHadAProcessIsStartedUnlessItsNodeIsThere) {
   for (const bool is_there : {false, true}) {
     TestRobot robot(
@@ -80,7 +80,7 @@ TEST(NeverSeen, AUnitThatNeverHadAProcessIsStartedUnlessItsNodeIsThere) {
   }
 }
 
-// What a status, a key or a parameter is really called is known only if the robot was heard.
+// The right name of a status, a key or a parameter is known only if the robot was heard.
 TEST(NeverSeen, ATypingMistakeInADiagnosticOrAParameterIsTold) {
   TestRobot robot(
       "COMPONENT camera NODE /front/camera LAUNCH \"camera\"\n"

@@ -1,4 +1,4 @@
-// What people tell the manager, and what becomes of it.
+// Orders of people to the manager, and their results.
 #include <gtest/gtest.h>
 
 #include "manager/runtime.h"
@@ -260,7 +260,7 @@ TEST(Orders, AStrategyRunByHandActsWithoutItsFailureAndTeachesNothing) {
   EXPECT_EQ(r.count("Dark detected"), 1u) << transcript(r);
 }
 
-// What failed is known to have failed before anything else is decided: c1, whose silence it
+// A strategy that failed is known to have failed before the next decision: c1, whose silence it
 // explains, is not replaced meanwhile.
 TEST(Orders, AStrategyRunByHandThatFailsLeavesItsFailureBehindAtOnce) {
   const auto rule = [](const std::string& node) {

@@ -129,7 +129,7 @@ TEST(Questions, ALostAnswerIsNotAwaitedForLong) {
   EXPECT_TRUE(robot.was_asked("nav: stop process")) << transcript(robot);
 }
 
-// Nobody could hear an answer meanwhile.
+// culprit could not receive an answer meanwhile.
 TEST(Questions, ProveNothingWhileTheRobotCannotBeHeard) {
   Navigation navigation;
   navigation.answers_at_first();

@@ -21,8 +21,9 @@ namespace culprit {
 
 class Runtime {
  public:
-  // Whoever comes round so much later than it was asked to stood still, or was kept from the
-  // processor: the manager is told (Overslept). Less is within what rules can be written for.
+  // If the host loop comes this much later than it was asked to, the process was suspended or did
+  // not get the processor, and the manager is told so (Overslept). Less is within the times that
+  // rules can be written for.
   static constexpr Duration kLate = std::chrono::milliseconds(250);
 
   // Both must outlive the runtime.
@@ -51,8 +52,8 @@ class Runtime {
   // Called after every step in which something happened, on the thread of run(). It must not block.
   std::function<void(std::span<const Event>)> on_events;
 
-  // Runs until `stop` is set, or the robot's clock has come to `end`. Whoever sets `stop` also has
-  // to interrupt the robot's waiting.
+  // Runs until `stop` is set, or the robot's clock has come to `end`. The thread that sets `stop`
+  // also has to interrupt the robot's waiting.
   void run(const std::atomic<bool>& stop, Time end = kNever);
 
   // One step, with what was observed otherwise.

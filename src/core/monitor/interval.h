@@ -8,7 +8,7 @@
 
 namespace culprit::monitor {
 
-// What comes seldom tells little about how fast it would show a change.
+// A topic with a longer interval shows little about how fast it would show a change.
 constexpr Duration kLongestLatency = std::chrono::seconds(5);
 
 // A new interval counts for an eighth, as in TCP's round-trip estimate.

@@ -16,10 +16,10 @@ bool has_crashed(const std::string& remark) {
          (remark.starts_with("exit code ") && remark != "exit code 0");
 }
 
-// Of what somebody else takes through its lifecycle, and how long that takes was never seen.
+// For a component with another driver, whose transition time was never seen.
 constexpr Duration kUnknownTransition = std::chrono::minutes(1);
 
-// Of a node whose process runs, and of which nothing else is heard: a busy one misses some.
+// For a node that shows no sign of life but its running process: a busy one misses some.
 constexpr int kMissedAlone = 5;
 
 // It alone publishes a topic that rules watch, with a rhythm that is known.
@@ -79,7 +79,7 @@ void Monitor::on(Time at, const NodeAppeared& seen) {
     write_.events.tell(at, ComponentFound{*component, seen.pid});
 }
 
-// Who reads what it published goes on depending on it until then.
+// Its consumers count as depending on it until then.
 void Monitor::await_ends(ComponentId component, Time at) {
   write_.components[component].awaits_ends_until = later(at, kEndsAwaited);
   deadlines_.set(knowledge_.rules.inputs.size() + 2 + component.index, later(at, kEndsAwaited));
@@ -121,7 +121,8 @@ void Monitor::on(Time at, const NodeVanished& seen) {
   if (knowledge_.states.reservation(*component) == nullptr) note_end_of_start(*component, at);
   note_farewell(*component, at);
   forget_process(*component, at);
-  // Of several the graph tells next which it is from now on, perhaps in another step.
+  // If there are several, the graph reports next which one it is from now on, perhaps in another
+  // step.
   if (knowledge_.components[*component].namesakes > 0) return;
   update_alive(*component, at, "its node left the graph");
 }
@@ -226,7 +227,7 @@ void Monitor::note_rise(ComponentId component, Lifecycle now, Time at) {
 // time the next time: as long as it lived.
 void Monitor::note_end_of_start(ComponentId component, Time at) {
   const ComponentState& state = knowledge_.components[component];
-  // What came up before culprit watched (`run --launch`, an earlier culprit) is seen only afterwards.
+  // A start before culprit watched (`run --launch`, an earlier culprit) is seen only afterwards.
   const Time began = std::min(state.node_seen, state.culprit_raised);
   if (!state.in_graph || began == kLongAgo || at > later(began, kStart)) return;
   ComingUp how = state.coming_up;
@@ -243,11 +244,11 @@ void Monitor::note_end_of_start(ComponentId component, Time at) {
 
 void Monitor::on(Time at, const ProcessSeen& seen) {
   ComponentState& state = write_.components[seen.component];
-  // What systemd says of its unit is proof, also if its node was never seen.
+  // systemd's report on its unit is proof, also if its node was never seen.
   if (knowledge_.rules[seen.component].has_owner()) write_.sightings.note(seen.component, at);
-  // A word about a process that the node no longer runs in says nothing about the node.
+  // A report about a process that the node no longer runs in is no evidence about the node.
   const int present = state.node_pid != 0 ? state.node_pid : state.pid;
-  // Of what an owner could not even begin there is no process.
+  // A component that its owner could not even start has no process.
   const bool is_other =
       seen.pid != present && (seen.pid != 0 || knowledge_.rules[seen.component].has_owner());
   if (is_other && state.in_graph && seen.state != ProcessState::kRunning) return;
@@ -353,7 +354,7 @@ void Monitor::on(Time at, const StartBarred& seen) {
                             "; culprit starts it when that is there"});
 }
 
-// What was known of another computer does not hold of this one.
+// Reachability of another computer does not hold for this one.
 void Monitor::on(Time, const LivesOn& seen) {
   if (knowledge_.components[seen.component].host == seen.host) return;
   write_.components[seen.component].host = seen.host;
@@ -432,9 +433,9 @@ bool Monitor::hangs_in_transition(ComponentId component, Time now) const {
   return knowledge_.components[component].changes_until <= now;
 }
 
-// A node may have one thread, which answers nothing while it changes its lifecycle.
-// While what it publishes comes, or pauses as it did when it was well, it is at work. Of a node whose
-// process is known to run, only one that answered before can cease to.
+// A node may have one thread, which answers nothing while it changes its lifecycle. While its topics
+// are received, or pause as they did when it was well, it is at work. If its process is known to run,
+// it can only be found to hang if it answered before.
 bool Monitor::does_not_answer(ComponentId component, Time now) const {
   const ComponentState& state = knowledge_.components[component];
   if (state.missed_probes < kMissedProbes) return false;

@@ -47,13 +47,14 @@ void Monitor::on(Time at, const SampleArrived& seen) {
                                    : input.kind == Kind::kLoss ? 2 * monitor::LossMeter::kSpan
                                                                : usual_latency(rhythm.interval));
     update(id, at);
-    // What was known to be silent made triggers true without any change of what they read.
+    // A topic that was known to be silent made triggers true without any change of their inputs.
     if (topic.is_known_silent) write_.signals.touch(id);
   }
   if (!knowledge_.components.is_any_known_dead()) topic.is_known_silent = false;
 }
 
-// Whoever publishes it, or something that it depends on: either keeps it from speaking for a while.
+// Did its publisher, or something that this depends on, begin anew? Either keeps the topic silent
+// for a while.
 bool Monitor::has_begun_since(Time before, TopicId topic) const {
   const auto is_new = [&](ComponentId component) {
     return knowledge_.components[component].node_seen >= before;
@@ -83,7 +84,7 @@ Time Monitor::silent_from(TopicId topic) const {
   return first ? later(std::max(*first, start_), discovered_ - start_) : kNever;
 }
 
-// Of a topic that was seen and has not spoken.
+// For a topic that was seen and from which no message has come.
 Time Monitor::listened_since(TopicId topic) const {
   return topics_[topic.index].silent_since.value_or(
       std::max(*knowledge_.sightings.first(topic), start_));

@@ -20,7 +20,7 @@ struct ExplainedDecision {
       flips;  // by candidate; empty: chosen, none found, or none sought
 };
 
-// What `planner` decides about `failures`, in the order of the decisions.
+// The decisions of `planner` about `failures`, in the order in which it made them.
 std::vector<ExplainedDecision> decide(const Planner& planner, std::vector<RuleId> failures,
                                       const Knowledge& knowledge);
 

@@ -146,7 +146,7 @@ std::optional<Change> FlipFinder::resolved(const Outcome& now, StrategyId loser)
   return change;
 }
 
-// What could make a difference; whether it does is to be tried.
+// Changes that could make a difference; whether they do is to be tried.
 std::vector<Change> FlipFinder::circumstances(const Outcome& now, StrategyId loser) const {
   if (now.excluded == Condition::kTried) return {TriedChange{loser, false}};
   if (now.excluded == Condition::kInvalid) {

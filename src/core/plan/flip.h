@@ -18,7 +18,7 @@ class FlipFinder {
   // `failures` as for Planner::plan(). `planner` must outlive the finder.
   FlipFinder(const Planner& planner, std::vector<RuleId> failures, const Knowledge& knowledge);
 
-  // What is decided without any change.
+  // The decisions without any change.
   const std::vector<Decision>& decisions() const { return decisions_; }
 
   // The changes with which `loser` is chosen. First those of numbers, the smallest first: a change

@@ -27,7 +27,7 @@
 
 namespace culprit {
 
-// What is to be done about one failure.
+// The decision about one failure.
 struct Decision {
   RuleId rule;
   std::optional<StrategyId> chosen;  // nothing: the failure has to wait, or nothing is left
@@ -35,7 +35,7 @@ struct Decision {
   std::vector<Candidate>
       candidates;                   // every strategy of the rule, best first, with what excluded it
   std::vector<Suspect> suspects{};  // likeliest first; of a planner that weighs them
-  // Whose answer to the question whether they answer is to be known first.
+  // The components whose answers to probes are to be known first.
   std::vector<ComponentId> asks{};
 };
 

@@ -29,7 +29,7 @@ bool cannot_be_reached(const Adaptation& adaptation, const Knowledge& knowledge)
           knowledge.components[adaptation.component].is_out_of_reach);
 }
 
-// What its start needs and is not there; empty: nothing is known to be missing.
+// The thing that its start needs and that is not there; empty: none is known to be missing.
 std::string missing_for(const Adaptation& adaptation, const Knowledge& knowledge) {
   const bool starts =
       adaptation.type == AdaptationType::kRedeploy || adaptation.type == AdaptationType::kStart;
@@ -168,8 +168,8 @@ std::optional<Invalid> impossibility(const Strategy& strategy, const Knowledge& 
     for (std::size_t before = 0; before < i; ++before) {
       is_changed_before |= strategy.adaptations[before].component == adaptation.component;
     }
-    // What an earlier adaptation of the same strategy brings about is not known yet: start, then
-    // set a parameter.
+    // The effect of an earlier adaptation of the same strategy is not known yet: start, then set a
+    // parameter.
     if (is_changed_before) continue;
     if (cannot_be_reached(adaptation, knowledge))
       return Invalid{adaptation.component, knowledge.why_unheard(adaptation.component), true};

@@ -18,12 +18,12 @@
 //   8. adapts a component on which a more critical failure depends that is being worked on and that
 //      it does not explain: the lower criticality never delays the higher. A failure that waits for
 //      a person is not being worked on (its cause is exhausted, or all that is left was refused).
-// 5 and 6 are waits of bounded length, and 3, 4, 7 and 8 wait for failures that come to an end
-// (resolved or exhausted) without waiting for this one, so every failure has its turn.
+// Every failure has its turn: 5 and 6 are waits of bounded length, and 3, 4, 7 and 8 wait for
+// failures that end (resolved or exhausted) without waiting for this one.
 //
-// A strategy that took effect and only waits for its verdict stands less in the way: one of a lower
-// level does not hold back those downstream of it that are more critical, and those that take
-// nothing down need not wait for a more critical one downstream.
+// A strategy that took effect and only waits for its verdict stands less in the way. At a lower
+// level, it does not hold back more critical strategies downstream. At a higher level, it does not
+// hold back strategies upstream that take nothing down.
 //
 // Equal worths go by the names of rule and strategy, so that a decision does not depend on the
 // order of declarations.

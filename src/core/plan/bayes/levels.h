@@ -24,7 +24,7 @@ class Levels {
   Levels(const Knowledge& knowledge, const diagnose::Causes& causes,
          const diagnose::Diagnosis& diagnosis);
 
-  // Of a rule that has no failure: its own.
+  // The level of a rule without a failure is its own.
   Criticality of(RuleId rule) const;
 
  private:

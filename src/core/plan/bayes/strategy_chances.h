@@ -27,7 +27,7 @@
 
 namespace culprit::plan {
 
-// Of a strategy that leaves a dead process as it is.
+// For a strategy that leaves a dead process as it is.
 inline constexpr double kUnlikely = 0.05;
 
 struct StrategyChance {
@@ -42,7 +42,7 @@ struct StrategyChance {
   bool is_unheard() const { return !is_tried && invalid && invalid->is_unheard; }
 };
 
-// Of all strategies of the rule, in their order.
+// The chances of all strategies of the rule, in their order.
 std::vector<StrategyChance> strategy_chances(RuleId rule, const Knowledge& knowledge);
 
 }  // namespace culprit::plan

@@ -42,7 +42,7 @@ namespace culprit::plan {
 // W
 double weight(Criticality level);
 
-// What trying a strategy takes.
+// The effort of one try of a strategy.
 struct Effort {
   Cycles impact;
   Duration latency{};  // of the failure's signals
