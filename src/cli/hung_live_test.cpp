@@ -152,7 +152,7 @@ TEST_F(AHungNode, IsNotOneThatIsSlowOnceButWithinItsPauses) {
 TEST_F(AHungNode, IsNotOneThatAnswersLate) {
   watch("alive(lidar) == false || age(/lidar/value) > 400ms");
   stall("0.7");
-  EXPECT_TRUE(run_->prints("it is seen whether lidar still answers")) << run_->output();
+  EXPECT_TRUE(run_->prints("culprit checks whether lidar still answers")) << run_->output();
   EXPECT_TRUE(run_->prints("Silent went away")) << run_->output();
   expect_left_alone();
 }

@@ -608,7 +608,7 @@ void Analyzer::fail(RuleId id, Time now) {
   const std::string reason = !attempt.obstacle.empty() ? attempt.obstacle
                              : state.detection.trigger.known
                                  ? "the failure is still there"
-                                 : "nobody can see whether the failure is still there";
+                                 : "it is unknown whether the failure is still there";
   attempt.stage = Attempt::Stage::kUndoing;
   write_.events.tell(now, StrategyFailed{attempt.strategy, reason});
 }

@@ -132,7 +132,7 @@ class Analyzer {
   std::optional<StrategyId> last_resort_due(RuleId id, Time now) const;
   // The one that comes next, due or not; nothing: each took effect, or there is none.
   std::optional<StrategyId> next_last_resort(RuleId id) const;
-  // The last resort under way is left where it is. @pre there is one
+  // The last resort under way is abandoned. @pre there is one
   void abandon_last_resort(RuleId id, Time now);
 
   // culprit may not do more about the failure by itself: a person must look.

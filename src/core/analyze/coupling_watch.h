@@ -45,7 +45,7 @@ class CouplingWatch {
 
   // `attempt` resolved its failure, which nothing else can have done (`is_proven`), or it may have.
   void resolved(const Attempt& attempt, bool is_proven, Time now);
-  // A failure went away without a strategy of its own.
+  // A failure cleared without a repair of its own.
   void cleared(RuleId rule, Time now);
   void ended(const Attempt& attempt, Time now);
   // Can a change that was made for another failure just before `attempt` have resolved its own?

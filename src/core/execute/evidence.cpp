@@ -120,7 +120,7 @@ std::optional<AnswerToCome> answer_to_come(const Strategy& strategy, const Knowl
     const Time until = later(state.answered, patience);
     if (now < until)
       return AnswerToCome{
-          "it is seen whether " + knowledge.rules[adaptation.component].name + " still answers",
+          "culprit checks whether " + knowledge.rules[adaptation.component].name + " still answers",
           until};
   }
   return std::nullopt;

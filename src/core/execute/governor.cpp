@@ -41,7 +41,7 @@ Governor::Held in_words(const Departures::Departure& departure, const std::strin
     case What::kIsEnding:
       if (departure.launcher == 0)
         return {Restraint::kLeaving,
-                component + " ended in an orderly way; its owner is asked whether it was told to",
+                component + " exited cleanly; culprit asks its owner whether that was ordered",
                 departure.until};
       return {Restraint::kLeaving,
               "the launch of " + launcher + " is being ended, " + component + " with it",

@@ -214,7 +214,7 @@ std::optional<Pursuit::Request> Pursuit::decide(const Knowledge& knowledge, Time
   const ComponentState& state = knowledge.components[component_];
   if (std::holds_alternative<ModeGoal>(goal_) && has_changed_anything() &&
       !state.alive.value_or(true))
-    return give_up("whoever changes its mode is gone");
+    return give_up("the node that changes its mode is not alive");
   if (const auto* gone = std::get_if<GoneGoal>(&goal_)) return pursue(*gone, knowledge, now);
   if (const auto* present = std::get_if<PresentGoal>(&goal_))
     return pursue(*present, knowledge, now);

@@ -83,7 +83,7 @@ Resumption resumption_of(const Interrupted& interrupted, const Knowledge& knowle
     resumption.obstacle = last.outcome
                               ? to_string(last.command) + " failed before culprit ended"
                               : "culprit ended while it asked to " + to_string(last.command) +
-                                    "; nobody knows whether that was done";
+                                    "; it is unknown whether that was done";
   }
   return resumption;
 }

@@ -33,10 +33,11 @@ class Describer {
   std::string operator()(const FailureResolved& e) const {
     const std::string after = " after " + two_decimals(seconds(e.reaction)) + " s";
     if (e.strategy) return rules_[e.rule].name + " resolved by " + rules_[*e.strategy].name + after;
-    return rules_[e.rule].name + " went away without a strategy of its own" + after;
+    return rules_[e.rule].name + " cleared without a repair of its own" + after;
   }
   std::string operator()(const FailureLost& e) const {
-    return rules_[e.rule].name + " can no longer be seen: what its trigger reads is unknown";
+    return rules_[e.rule].name +
+           " can no longer be evaluated: the inputs of its trigger are unknown";
   }
   std::string operator()(const StrategyChosen& e) const {
     const Strategy& strategy = rules_[e.strategy];
@@ -103,7 +104,7 @@ class Describer {
   std::string operator()(const RuleExhausted& e) const {
     const Rule& rule = rules_[e.rule];
     if (rule.strategies.empty())
-      return rule.name + ": nothing is done about it, a person must look";
+      return rule.name + ": culprit does nothing about it, a person must look";
     return rule.name + " is exhausted: nothing helped, a person must look";
   }
   std::string operator()(const LastResortReached& e) const {
@@ -162,7 +163,7 @@ class Describer {
     return with_rule(e.strategy) + " needs no approval any more";
   }
   std::string operator()(const StrategyAbandoned& e) const {
-    return with_rule(e.strategy) + " is left where it is: " + e.reason;
+    return with_rule(e.strategy) + " is abandoned: " + e.reason;
   }
   std::string operator()(const OrderCarriedOut& e) const {
     return with_rule(e.strategy) + " was carried out";
@@ -170,25 +171,24 @@ class Describer {
   std::string operator()(const OutcomePending&) const { return ""; }
   std::string operator()(const OutcomeCounted&) const { return ""; }
   std::string operator()(const FailureFlaps& e) const {
-    return rules_[e.rule].name + " comes and goes: detected " + std::to_string(e.times) +
-           " times, and counted as one failure until it stays away";
+    return rules_[e.rule].name + " is flapping: detected " + std::to_string(e.times) +
+           " times, and counted as one failure until it stays cleared";
   }
   std::string operator()(const SilenceEnded& e) const {
     return name_of(e.what) + " is no longer silenced";
   }
   std::string operator()(const StormBegan& e) const {
-    return "nothing more is done, a person must look: " + e.reason;
+    return "culprit does nothing more, a person must look: " + e.reason;
   }
   std::string operator()(const StormEnded&) const { return "action is allowed again"; }
   std::string operator()(const JudgementSuspended& e) const {
-    return "nothing is judged until the robot can be heard again: " + e.reason;
+    return "culprit judges nothing until the robot can be heard again: " + e.reason;
   }
   std::string operator()(const JudgementResumed&) const {
-    return "the robot can be heard again; what was silent has a moment to be heard";
+    return "the robot can be heard again; silent topics get a grace period";
   }
   std::string operator()(const SleepNoticed& e) const {
-    return "culprit stood still for " + in_words(e.time) +
-           "; what was silent has a moment to be heard";
+    return "culprit stood still for " + in_words(e.time) + "; silent topics get a grace period";
   }
   std::string operator()(const HostSilent& e) const {
     std::vector<std::string> names;
@@ -236,13 +236,14 @@ class Describer {
     }
     const bool is_signal = input.kind != Input::Kind::kParameter;
     return (is_signal ? rules_[input.signal].name : describe(input, rules_)) +
-           " is not a number (NaN): what rules read of it is unknown" +
+           " is not a number (NaN): rules read it as unknown" +
            (is_signal ? ", except isnan(" + rules_[input.signal].name + ")" : "");
   }
   std::string operator()(const PriorsAdopted& e) const {
-    return "what is believed of " + std::to_string(e.priors.size()) +
-           (e.priors.size() == 1 ? " strategy" : " strategies") + " begins from what " +
-           (e.source.empty() ? "the rules say" : e.source + " learned");
+    return (e.priors.size() == 1
+                ? "the belief in 1 strategy begins"
+                : "the beliefs in " + std::to_string(e.priors.size()) + " strategies begin") +
+           " from the priors of " + (e.source.empty() ? "the rule file" : e.source);
   }
 
   std::string operator()(const Pause&) const { return "pause"; }

@@ -35,7 +35,7 @@ std::vector<Explanation> syntax_explanations() {
        "what belongs to the place under the carets; docs/rule-language.md shows each statement "
        "whole.",
        "CYCLE 200\n", "CYCLE 200ms\n"},
-      {Code::kBadToken, "this is no word, number or text of the language",
+      {Code::kBadToken, "unrecognized token",
        "A text without its closing quote, a number with letters behind it, or a character that the "
        "language does not use. culprit does not read the rest of the line.",
        "COMPONENT camera LAUNCH \"camera_driver --fps 30\n",
@@ -123,11 +123,11 @@ std::vector<Explanation> name_explanations() {
        "and underscores between slashes. There is no namespace that a relative name could be "
        "relative to.",
        rule_with("rate(image) < 1"), rule_with("rate(/robot/image) < 1")},
-      {Code::kUnused, "nothing is about a component",
-       "It is declared, and no trigger, strategy, signal or dependency has it: whatever happens to "
-       "it, nothing is done and nobody is told. In a file that others include that is no mistake, "
-       "and "
-       "nothing is said.",
+      {Code::kUnused, "no rule uses this component",
+       "It is declared, but no trigger, strategy, signal or dependency uses it: if it fails, "
+       "culprit "
+       "does nothing and reports nothing. In a file that others include this is no mistake, and is "
+       "not reported.",
        "COMPONENT lidar NODE /lidar\n" + rule_with("rate(/robot/image) < 1"),
        "COMPONENT lidar NODE /lidar REQUIRED\n" + rule_with("rate(/robot/image) < 1")},
   };
@@ -142,8 +142,8 @@ std::vector<Explanation> value_explanations() {
        rule_with("age(/robot/image) > 0.5"), rule_with("age(/robot/image) > 500ms")},
       {Code::kUnknownType, "cannot infer the type of this value",
        "Signals and parameters get their kind from their use: compared with 0.5 it is a number, "
-       "with \"docked\" a text, alone it is true or false. Where two unknown ones meet, neither "
-       "tells about the other. Often a text merely lacks its quotes.",
+       "with \"docked\" a text, alone it is true or false. Two unknown ones give no "
+       "information on each other. Often a text merely lacks its quotes.",
        rule_with("mode == docked"), rule_with("mode == \"docked\"")},
       {Code::kArguments, "a function is called with the wrong arguments",
        "Each function takes what its usage line says; the message repeats it.",
@@ -397,9 +397,9 @@ std::vector<Explanation> robot_explanations() {
                     "started, it died, or its name or namespace is another one. Nothing can be "
                     "observed of the component and nothing asked of it.",
                     "COMPONENT camera NODE /camera\n", camera),
-      against_robot(Code::kNoSuchTopic, "nobody publishes this topic",
+      against_robot(Code::kNoSuchTopic, "no node publishes this topic",
                     "Its rate would be 0, its age and its fields unknown for ever; a node that is "
-                    "told to read it would hear nothing.",
+                    "switched to it would receive no message.",
                     rule_with("rate(/robot/imag) < 1"), rule_with("rate(/robot/image) < 1")),
       against_robot(
           Code::kNoSuchParameter, "the node has no such parameter",
@@ -414,7 +414,7 @@ std::vector<Explanation> robot_explanations() {
           "need a longer --wait.",
           "SIGNAL entropy DIAGNOSTIC camera KEY entropi\n",
           "SIGNAL entropy DIAGNOSTIC camera KEY entropy\n"),
-      against_robot(Code::kNoSuchService, "nobody offers the service that this needs",
+      against_robot(Code::kNoSuchService, "no node offers the service that this needs",
                     "A call needs its service, a lifecycle adaptation the node's change_state, a "
                     "mode its change_mode, a parameter its set_parameters. Without it the "
                     "adaptation is unreachable whenever it is tried.",

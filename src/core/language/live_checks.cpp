@@ -345,7 +345,7 @@ class LiveChecks {
       known.push_back(s.hardware_id);
     }
     if (!is_first(OccurrenceKind::kDiagnostic, o.name)) return;
-    warn(Code::kNoSuchDiagnostic, o.span, "no diagnostic status '" + o.name + "' was heard",
+    warn(Code::kNoSuchDiagnostic, o.span, "no diagnostic status '" + o.name + "' was received",
          kListenLonger, as_written(closest(o.name, known)));
   }
 
@@ -390,8 +390,9 @@ class LiveChecks {
         if (is_identifier(key)) known.push_back(key);
       }
     }
-    warn(Code::kNoSuchDiagnostic, o.span, "no diagnostic with the key '" + o.name + "' was heard",
-         kListenLonger, closest(o.name, known));
+    warn(Code::kNoSuchDiagnostic, o.span,
+         "no diagnostic with the key '" + o.name + "' was received", kListenLonger,
+         closest(o.name, known));
   }
 
   // ---- tools

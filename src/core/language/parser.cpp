@@ -309,9 +309,9 @@ class Parser {
     } else if (driver.text == "launcher") {
       component.lifecycle = kLauncher;
     } else {
-      return read_.fail_token(driver, "who takes it through its lifecycle",
+      return read_.fail_token(driver, "the driver of its lifecycle",
                               "write self (the node does), managed (culprit does) or launcher "
-                              "(whoever starts it does)");
+                              "(the program that starts it does)");
     }
     return true;
   }

@@ -280,7 +280,7 @@ std::string Symbols::declared_host(const syntax::Component& written) {
            "~/.ssh/config");
   if (!written.unit && !written.engine)
     report("component '" + written.name.text +
-               "' has a HOST, and nobody there who could be asked to start and to end it",
+               "' has a HOST, but no owner there that could start and end it",
            "declare its UNIT or its CONTAINER on that computer, or leave HOST out");
   return host;
 }

@@ -71,11 +71,11 @@ RULE Dark
   ASSERT_EQ(robot.count("set angle of lamp: done"), 1u) << transcript(robot);
   robot.signal("brightness", Value(0.2));
   robot.run_for(100ms);
-  ASSERT_EQ(robot.count("Blurred.focus is left where it is: camera is needed for Dark"), 1u)
+  ASSERT_EQ(robot.count("Blurred.focus is abandoned: camera is needed for Dark"), 1u)
       << transcript(robot);
   robot.signal("blur", Value(0.0));
   robot.run_for(1s);
-  EXPECT_EQ(robot.count("Blurred went away without a strategy of its own"), 1u)
+  EXPECT_EQ(robot.count("Blurred cleared without a repair of its own"), 1u)
       << "the light may have helped" << transcript(robot);
 }
 
@@ -87,7 +87,7 @@ TEST(Criticality, LetsNoErrorWaitForAVerdictOnALesserFailure) {
   robot.run_for(100ms);
   ASSERT_EQ(robot.count("set angle of camera: done"), 1u) << transcript(robot);
   robot.signal("brightness", Value(0.2));
-  EXPECT_EQ(robot.count("Blurred.focus is left where it is: camera is needed for Dark"), 1u)
+  EXPECT_EQ(robot.count("Blurred.focus is abandoned: camera is needed for Dark"), 1u)
       << transcript(robot);
   EXPECT_EQ(robot.count("camera is held responsible for Dark"), 1u) << transcript(robot);
   EXPECT_EQ(robot.manager().knowledge().beliefs[focus], before) << "nobody saw whether it helped";

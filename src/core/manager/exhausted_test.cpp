@@ -43,7 +43,7 @@ TEST_P(ExhaustedCause, LeavesItsEffectsToThePersonToo) {
   robot["c0"].fault.clear();
   robot.run_for(10s);
   EXPECT_TRUE(robot.works("c4"));
-  EXPECT_EQ(robot.count("went away without a strategy of its own"), 5u) << transcript(robot);
+  EXPECT_EQ(robot.count("cleared without a repair of its own"), 5u) << transcript(robot);
 }
 
 // An effect may have a fault of its own, which shows once the cause is repaired.

@@ -472,7 +472,7 @@ TEST(ALaunch, WhoseLauncherCrashesRunsOn) {
   }
 }
 
-// A strategy that has begun is left where it is.
+// A strategy that has begun is abandoned.
 TEST(ALaunch, ThatEndsWhileOneOfItIsBroughtBackIsNotStartedAgain) {
   TestRobot robot = launch_of_five();
   robot["a"].start_time = 4s;
@@ -481,7 +481,7 @@ TEST(ALaunch, ThatEndsWhileOneOfItIsBroughtBackIsNotStartedAgain) {
   for (const std::string name : {"b", "c", "d", "e"}) robot.leave(name);
   end_launcher(robot);
   robot.run_for(100ms);
-  EXPECT_EQ(robot.count("A.redeploy_a is left where it is: a stays down"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("A.redeploy_a is abandoned: a stays down"), 1u) << transcript(robot);
   robot.run_for(1min);
   EXPECT_EQ(robot.count_asked("start process"), 1u) << transcript(robot);
   EXPECT_EQ(robot.manager().knowledge().departures.to_end(robot.id("a")), robot["a"].pid);

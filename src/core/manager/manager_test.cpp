@@ -70,7 +70,7 @@ TEST_P(ManagerWith, RestartsTheRootCauseAndNothingElse) {
   EXPECT_TRUE(robot.works("segmentation"));
   EXPECT_EQ(robot.count("detected"), 3u) << transcript(robot);
   EXPECT_EQ(robot.count("CameraDead resolved by restart"), 1u) << transcript(robot);
-  EXPECT_EQ(robot.count("FusionDead went away without a strategy of its own"), 1u);
+  EXPECT_EQ(robot.count("FusionDead cleared without a repair of its own"), 1u);
   EXPECT_FALSE(robot.was_asked("fusion:"));
   EXPECT_FALSE(robot.was_asked("segmentation:"));
   EXPECT_EQ(robot.count_asked("camera: deactivate"), 1u);

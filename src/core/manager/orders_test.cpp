@@ -60,7 +60,7 @@ TEST(Orders, PauseStopsAtOnceWhatIsUnderWayAndResumeGoesOn) {
   const std::size_t asked = r.asked.size();
   r.run_for(20s);
   EXPECT_EQ(r.asked.size(), asked) << transcript(r);
-  EXPECT_EQ(r.count("CameraDead.restart is left where it is: paused by Ann"), 1u) << transcript(r);
+  EXPECT_EQ(r.count("CameraDead.restart is abandoned: paused by Ann"), 1u) << transcript(r);
   EXPECT_EQ(r.count("is held back: paused by a person"), 1u) << "said once" << transcript(r);
   r.order(order(Resume{}));
   r.run_for(10s);

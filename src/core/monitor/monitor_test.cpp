@@ -379,10 +379,9 @@ TEST(Monitor, WhatIsNotANumberIsUnknownAndTold) {
   EXPECT_TRUE(signals[InputId(1)].b);
   read(2200ms, std::string("nan"));
   EXPECT_TRUE(signals[InputId(1)].b) << "as a diagnostic has it";
-  EXPECT_THAT(
-      told_unknown(watched),
-      testing::ElementsAre("x is not a number (NaN): what rules read of it is unknown, except "
-                           "isnan(x)"));
+  EXPECT_THAT(told_unknown(watched),
+              testing::ElementsAre("x is not a number (NaN): rules read it as unknown, except "
+                                   "isnan(x)"));
   for (int i = 0; i < 10; ++i) read(2300ms + 100ms * i, 0.5);
   EXPECT_EQ(signals.why_unknown(InputId(2)), WhyUnknown::kNotCovered);
   read(3300ms, 0.5);
