@@ -799,7 +799,7 @@ void Analyzer::schedule(RuleId id, Time now) {
              : later(state.failing_since, knowledge_.rules[*last].within));
   if (state.attempt && state.attempt->stage == Attempt::Stage::kWaiting) {
     want(state.attempt->deadline);
-    // Until nobody waits any longer; a more critical failure may come before.
+    // Until the wait ends; a more critical failure may come before.
     if (!state.detection.trigger.known || shows_from(*state.attempt) > now)
       want(later(now, knowledge_.rules.cycle));
   }

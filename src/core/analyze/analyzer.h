@@ -61,8 +61,8 @@ class Analyzer {
   // Between two starts of what is known to be gone, once the rule is exhausted: doubled each time.
   static constexpr Duration kFirstPauseOfStarts = std::chrono::seconds(10);
   static constexpr Duration kLongestPauseOfStarts = std::chrono::minutes(5);
-  // A failing rule whose trigger is unknown for longer is no longer called failing: nobody can see
-  // whether it is.
+  // A failing rule whose trigger is unknown for longer is no longer called failing: whether it is
+  // cannot be known.
   static constexpr Duration kLostAfter = std::chrono::seconds(30);
   // A verdict on what was started waits for its inputs so long, and not for ever.
   static constexpr Duration kInputs = std::chrono::seconds(14);

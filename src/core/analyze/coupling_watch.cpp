@@ -34,7 +34,7 @@ Duration CouplingWatch::held(RuleId rule) const {
   return duration_of(Cycles{window > 1 ? window : 0}, knowledge_.rules);
 }
 
-// How long `effect` may take to go away after `cause`.
+// How long `effect` may take to clear after `cause`.
 Duration CouplingWatch::delay(RuleId cause, RuleId effect) const {
   const RuleState& of_cause = knowledge_.states[cause];
   const Time cause_came = of_cause.first_detected();
@@ -83,8 +83,8 @@ void CouplingWatch::settle(const std::vector<ComponentId>& repaired, RuleId caus
   }
 }
 
-// When what made a failure go away took effect: the last change upstream since it was detected, or
-// just now if there was none.
+// When the repair of a failure took effect: the last change upstream since it was detected, or just
+// now if there was none.
 Time CouplingWatch::last_change_for(RuleId cleared, Time now) const {
   const Sources sources(knowledge_, cleared);
   const Time detected = knowledge_.states[cleared].failing_since;
@@ -149,8 +149,8 @@ Time CouplingWatch::shown(const Change& change, RuleId rule) const {
   const Time came = knowledge_.states[rule].first_detected();
   if (came < change.begin || !may_hide(knowledge_, cause, rule))
     return later(change.end, delay(cause, rule));
-  // It came to light with the change, which let it through: how late says nothing of how long it
-  // takes to go. A fresh reading tells.
+  // The change revealed it. How late it appeared is no measure of how long it takes to clear. A
+  // fresh reading shows it.
   const Duration usual = held(rule) + duration_of(kUsualDelay, knowledge_.rules);
   return std::max(later(change.end, usual),
                   later(std::min(change.effective, change.end), knowledge_.signals.latency(rule)));

@@ -1,4 +1,5 @@
-// Which failures go away with which: learns the couplings, and says who is expected to settle.
+// Learns the couplings (which failures clear together), and decides which failures are expected to
+// settle.
 //
 // When a strategy has resolved failure j, every other present failure i gets as long as its signals
 // need to show a change, or until the first fresh reading. Planners act on such a reading as well.
@@ -58,7 +59,7 @@ class CouplingWatch {
   Time next_deadline() const;
 
  private:
-  // Is i coupled to j? Open until i goes away, or `due`.
+  // Is i coupled to j? Open until i clears, or `due`.
   struct Question {
     StrategyId strategy;  // that resolved j
     RuleId effect;        // i

@@ -68,7 +68,7 @@ class Causes {
   std::span<const Word> causes(std::size_t i) const { return causes_[i]; }
   // Is j a possible cause of i only because of what was learned?
   bool is_learned(std::size_t j, std::size_t i) const { return has(learned_[i], j); }
-  // How likely i is an effect of j although it was well for so long while j was there, relative to one
+  // How likely i is an effect of j although it stayed well for this long beside j, relative to one
   // that came in the usual time: 0..1.
   double timely(std::size_t j, std::size_t i) const;
 

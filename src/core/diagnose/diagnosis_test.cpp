@@ -35,7 +35,7 @@ TEST(Reach, CountsWhoDependsOnAComponent) {
   EXPECT_EQ(reach.dependents(reach.place_of(scene.component("c"))), 0u);
 }
 
-// However many read it: what is ill of them speaks for the way, not against it.
+// However many nodes read it: failures of its readers are evidence for the path, not against it.
 TEST(Paths, AManyReadTopicCarriesFailuresWhereAllOfItsReadersAreIll) {
   std::string rules = failure_of("producer", "P") + failure_of("aside", "X");
   for (char c = 'a'; c < 'k'; ++c) rules += failure_of({c}, "R" + std::string(1, c));

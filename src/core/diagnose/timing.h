@@ -62,8 +62,8 @@ Duration presumed_lateness(RuleId failure, const Knowledge& knowledge);
 // trigger is unknown, it is in its COOLDOWN, or its nodes must be asked.
 Duration evidence_within(RuleId quiet, Time onset, const Knowledge& knowledge);
 
-// How long after its cause is gone the failure may still be shown: the readings, the lateness and
-// the HOLD of its rule.
+// How long the failure may still be shown after its cause has cleared: the readings, the lateness
+// and the HOLD of its rule.
 Duration clears_within(RuleId failure, const Knowledge& knowledge);
 
 }  // namespace culprit::diagnose

@@ -34,7 +34,7 @@ bool is_at_work(const ComponentState& state) {
          state.alive == true;
 }
 
-// A topic that nobody else publishes, and that came when it was due.
+// A topic that only this component publishes, and that came when it was due.
 std::optional<TopicId> heard_topic(ComponentId component, const Knowledge& knowledge, Time now) {
   constexpr Duration kSlack = std::chrono::milliseconds(100);
   for (std::size_t t = 0; t < knowledge.rules.topics.size(); ++t) {
@@ -81,7 +81,7 @@ std::optional<std::string> contradiction(const Strategy& strategy, const Knowled
     if (adaptation.type != AdaptationType::kRedeploy ||
         !is_at_work(knowledge.components[component]))
       continue;
-    // Its own outage, or one of nobody knows whom, speaks against it.
+    // Its own outage, or one without any publisher, speaks against it.
     const bool is_suspect = std::any_of(silent->begin(), silent->end(), [&](TopicId topic) {
       return knowledge.graph.publishes(component, rules[topic]) ||
              knowledge.graph.publisher_count(rules[topic]) == 0;

@@ -270,7 +270,7 @@ bool Executor::start_again(Run& run, Time now) {
 void Executor::finish_goal(Run& run, Time now) {
   const Pursuit& pursuit = *run.pursuit;
   const Adaptation& adaptation = knowledge_.rules[run.strategy].adaptations[run.adaptation];
-  // A last resort is to last: whether the failure is gone is not what it is for.
+  // A last resort is to last, even after its failure has cleared.
   const bool is_to_last = knowledge_.rules[run.strategy].is_last_resort;
   if (!is_to_last && pursuit.has_changed_anything()) note_undo(run);
   if (pursuit.is_reached()) {
@@ -469,7 +469,7 @@ void Executor::note_lifecycle(const Pursuit& pursuit, Time now) {
     write_.components.intend_lifecycle(pursuit.component(), lifecycle->target, now, write_.events);
 }
 
-// It stayed unconfigured until a rule had culprit bring it up: nobody else does.
+// It stayed unconfigured until a rule had culprit bring it up: it has no other driver.
 bool Executor::is_first_rise(const Pursuit& pursuit) const {
   const auto& before = pursuit.before();
   const auto* state = before ? std::get_if<Lifecycle>(&before->value) : nullptr;
@@ -506,7 +506,7 @@ void Executor::note_too_long(const Pursuit& pursuit, Time now) {
   write_.components.note_coming_up(pursuit.component(), how, now, write_.events);
 }
 
-// A node may tell nothing of a transition before it is over.
+// A node may not report a transition before it is over.
 void Executor::note_transition(const Pursuit& pursuit, const Pursuit::Request& request, Time now) {
   if (!std::holds_alternative<ChangeLifecycle>(request)) return;
   ComponentState& state = write_.components[pursuit.component()];

@@ -52,8 +52,8 @@ struct GoneGoal {
 };
 // `instead_of`: set if the process may have been started already. Then one with another pid will
 // do; otherwise one that appears from now on is wanted.
-// `instead_of_seen`: likewise of a process on another computer, of which nothing is seen but when its
-// node joined the graph.
+// `instead_of_seen`: the same for a process on another computer, of which only the time is seen when
+// its node joined the graph.
 struct PresentGoal {
   static constexpr Duration kMost = std::chrono::minutes(5);
 
@@ -82,7 +82,7 @@ Duration patience(const Goal& goal);
 LifecycleGoal bringing_up(const Adaptation& adaptation, Lifecycle target,
                           const Knowledge& knowledge);
 
-// The goals of an adaptation, in order. An error if they cannot be told: the new value of a
+// The goals of an adaptation, in order. An error if they cannot be computed: the new value of a
 // parameter is unknown now.
 Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowledge& knowledge);
 

@@ -77,15 +77,16 @@ class Governor {
 
   // ---- plans
 
-  // Before each plan: what was withheld may be allowed by now.
+  // Before each plan: strategies that were withheld may be allowed by now.
   void begin_planning();
   // Whether the strategy may not be begun although others may. If so, it is marked
-  // (Knowledge::withheld), so that a new plan finds what else there is, and told.
+  // (Knowledge::withheld), so that a new plan finds the alternatives, and an event reports it.
   bool withholds(StrategyId strategy, Time now);
-  // Whether everything has to wait now, the strategy that was chosen too. If so, that is told.
+  // Whether everything has to wait now, the strategy that was chosen too. If so, an event reports
+  // it.
   bool holds_back(StrategyId strategy, Time now);
   // Whether the last resort has to wait: for a person who paused or muted, or because of `obstacle`,
-  // which keeps it from being carried out. No limit holds it. If so, that is told.
+  // which keeps it from being carried out. No limit holds it. If so, an event reports it.
   bool holds_last_resort_back(StrategyId strategy, std::optional<std::string> obstacle, Time now);
   // The last resorts that the order holds back: a pause all, a silence those that it is about.
   std::vector<StrategyId> last_resorts_behind(const Order& order) const;

@@ -114,7 +114,7 @@ std::optional<Limits::Limit> Limits::on(StrategyId id, Time now) const {
     const bool was_told = knowledge_.states[strategy.rule].search.is_exhausted;
     if (limit && was_told && launches(adaptation) &&
         knowledge_.is_known_gone(adaptation.component)) {
-      // A person was told, and its start harms nothing: it is only delayed.
+      // A person was notified, and its start harms nothing: it is only delayed.
       limit->restraint = Restraint::kBackoff;
       limit->until = std::min(limit->until, later(state.restarted, kStartsOfTheGone));
       if (limit->until <= now) limit.reset();

@@ -219,7 +219,7 @@ std::optional<Pursuit::Request> Pursuit::decide(const Knowledge& knowledge, Time
   if (const auto* present = std::get_if<PresentGoal>(&goal_))
     return pursue(*present, knowledge, now);
   if (const auto* service = std::get_if<ServiceGoal>(&goal_)) return pursue(*service, now);
-  // The change was not sent, for there was nobody to send it to.
+  // The change was not sent, because no node was there to receive it.
   if (answer_ && answer_->outcome == Outcome::kUnreachable) {
     if (now >= std::min(loads_until_, deadline_)) return give_up(why(*answer_));
     sent_.pop_back();
@@ -227,8 +227,8 @@ std::optional<Pursuit::Request> Pursuit::decide(const Knowledge& knowledge, Time
     return look_again(now);
   }
   if (did_not_come(*seen_)) {
-    // Before the change: nobody there to change, unless it is still coming up. After it: the answer
-    // may just be late.
+    // Before the change: no node is there to change, unless it is still coming up. After it: the
+    // answer may just be late.
     const bool may_come =
         now < std::max(held_until_, loads_until_) || ++unanswered_ < most_unanswered(knowledge);
     if (now >= deadline_ || (!has_changed_anything() && !may_come)) return give_up(why(*seen_));
@@ -276,7 +276,7 @@ std::optional<Pursuit::Request> Pursuit::pursue(const ParameterGoal& goal, Time 
   }
   if (is_there) return reach();
   if (answer_->outcome == Outcome::kRefused) return give_up(why(*answer_));
-  // Some parameters start a routine and reset themselves. Whether it helped, the symptom tells.
+  // Some parameters start a routine and reset themselves. The symptom shows whether it helped.
   if (answer_->outcome == Outcome::kDone)
     return reach("accepted, but it reads back " + to_string(*present));
   return look_again(now);

@@ -32,8 +32,8 @@ std::vector<Goal> goals_of_process(const Sent& sent, const Adaptation& adaptatio
   const auto* stop = last_of<StopProcess>(sent);
   const bool is_started = last_of<StartProcess>(sent) != nullptr;
   const int old_pid = stop != nullptr ? std::get<StopProcess>(stop->command.what).pid : 0;
-  // Whether another process took its place on another computer nobody sees from here: who runs it
-  // there was asked for both, and is not asked again.
+  // culprit cannot see from here whether another process took its place on another computer. Its
+  // owner there was asked to end and to start it, and is not asked again.
   const bool is_elsewhere = !knowledge.rules[adaptation.component].host().empty();
   const bool is_to_stop = adaptation.type == AdaptationType::kStop;
   std::vector<Goal> goals;

@@ -189,7 +189,7 @@ TEST(Blind, AFailureWhoseTriggerBecomesUnknownIsNotResolved) {
   EXPECT_EQ(robot.count("Low is blind: no new value of battery comes"), 1u) << transcript(robot);
   EXPECT_EQ(robot.count("resolved"), 0u) << transcript(robot);
   EXPECT_EQ(robot.count("went away"), 0u) << transcript(robot);
-  EXPECT_EQ(robot.count("Low can no longer be seen"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("Low can no longer be evaluated"), 1u) << transcript(robot);
   EXPECT_TRUE(blind(robot)) << "it reads as blind, not as quiet";
   robot.order({2, "Ann", "", LiftSilence{RuleId(0)}});
   robot.run_for(60s);

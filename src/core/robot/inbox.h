@@ -10,9 +10,9 @@
 
 namespace culprit {
 
-// Whether somebody should act on it at once. A sample of a topic that speaks anyway changes nothing
-// by itself: such observations are handed over together, when all are there that came with it, so that
-// thousands a second do not wake a thread each.
+// Whether an observation needs a reaction at once. A sample of a topic that is not silent changes
+// nothing by itself. Such observations are handed over together, once all that came together are
+// there, so that thousands a second do not wake a thread each.
 enum class Urgency : std::uint8_t { kNow, kSoon };
 
 // All members may be called from any thread.
@@ -21,8 +21,8 @@ class Inbox {
   // Observations that are not urgent are handed over no more often than this.
   static constexpr Duration kSoon = std::chrono::milliseconds(20);
 
-  // Observations beyond this many that nobody took are dropped, oldest first: a flood must not eat
-  // the memory. Replies are never dropped.
+  // Observations beyond this many that were not taken are dropped, oldest first: a flood must not
+  // eat the memory. Replies are never dropped.
   static constexpr std::size_t kMaxWaiting = 1 << 16;
 
   // Stamps what was observed with the present time.
@@ -32,7 +32,8 @@ class Inbox {
   }
   void put(Observation observation, Urgency urgency);
 
-  // All is there that came together: whoever waits gets what is not urgent, too. Call it again and again.
+  // All observations that came together are there: a waiting take() gets the ones that are not urgent,
+  // too. Call it again and again.
   void hand_over();
 
   // Waits until something urgent is there or was handed over, `until` has come, or interrupt() was called,

@@ -53,8 +53,8 @@ struct EndpointVanished {
 };
 
 // A message came on a watched topic. `published` is how many its publisher sent since the last one
-// that reached us, this one included: more than 1 where the way here lost some (RTPS sequence
-// numbers tell).
+// that reached us, this one included: more than 1 if some were lost on the way (by RTPS sequence
+// numbers).
 struct SampleArrived {
   TopicId topic;
   std::uint32_t published = 1;
@@ -102,12 +102,11 @@ enum class ProcessState : std::uint8_t {
   kGone      // exited, killed, or never started
 };
 
-// Whether it was somebody's wish that a process ended or was stopped, as far as the operating system
-// tells.
+// Whether a process ended or was stopped on purpose, as far as the operating system reports.
 enum class Cause : std::uint8_t {
   kUnknown,
-  kFault,  // a signal that nobody ends a process with politely, or another exit code than 0; it was
-           // stopped, and who started it was not
+  kFault,  // a signal that is no usual request to end, or another exit code than 0; it was stopped,
+           // and the program that started it was not
   kWish,   // exit code 0, SIGINT, SIGTERM or SIGHUP; culprit ended it; it was stopped with its
            // launcher
   kOrder   // its owner ended it in an orderly way, as systemctl stop and docker stop do
@@ -141,8 +140,8 @@ struct StartedHere {
   Duration runs_for{};  // until now
 };
 
-// A process whose node is still awaited did something since it was started, or since this was told
-// last: it used the processor, or its memory grew.
+// A process whose node is still awaited used the processor, or its memory grew, since it was
+// started or since this was last reported.
 struct ProcessWorked {
   ComponentId component;
   int pid = 0;
@@ -226,8 +225,8 @@ struct Reply {
   std::string text;
 };
 
-// A diagnostic status was heard for the first time, while one that the rules name was not: that one
-// may be meant. Each status once, of many the first ones.
+// A diagnostic status was received for the first time, while one that the rules name was not: that
+// one may be meant. Each status once, of many the first ones.
 struct StatusHeard {
   std::string name;
   std::string hardware_id;
@@ -269,23 +268,23 @@ struct PriorsTold {
     double beta = 1;
   };
   std::vector<Prior> priors;
-  std::string source;  // for people: who learned it; empty: nobody
+  std::string source;  // for people: the fleet that learned it; empty: none
 };
 
-// A node that was seen to publish the topic, alone, has proven that it knows that the topic is
-// listened to: what it publishes from now on is heard.
+// The only publisher of the topic has proven that it knows its subscriber: its messages are
+// received from now on.
 struct ListenerKnown {
   TopicId topic;
 };
 
-// The component cannot be started now, for something that its start needs is not there: a program, a file
-// of parameters, a container. Sent again, with nothing missing, once it is.
+// The component cannot be started now, because something that its start needs is not there: a program, a
+// file of parameters, a container. Sent again, with nothing missing, once it is.
 struct StartBarred {
   ComponentId component;
   std::string missing;  // "there is no program '/opt/robot/driver'"; empty: it can be started
 };
 
-// From now on this node is the publisher of a diagnostic status that the rules name: nobody else's word counts.
+// From now on this node is the only accepted publisher of a diagnostic status that the rules name.
 struct PublisherKnown {
   std::string status;
   std::string node;
