@@ -19,7 +19,7 @@ class Attempts {
 
   // @pre none of the rule is under way
   void begin(StrategyId strategy, Time now);
-  // One that an earlier process began; nobody saw what happened meanwhile. @pre as begin()'s
+  // One that an earlier process began; culprit did not watch meanwhile. @pre as begin()'s
   void resume(StrategyId strategy, Time now);
 
   // Each of these: @pre the strategy is under way.

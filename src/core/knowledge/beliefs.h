@@ -31,8 +31,8 @@ struct Belief {
 // The designer's belief: success probability and confidence c_p > 0.
 Belief initial_belief(Probability success, double confidence);
 
-// `belief` as if it had grown from another prior: what was counted stays. None comes to less than
-// forgetting would bring it to.
+// `belief` as if it had grown from another prior: the counted outcomes stay. Neither count falls
+// below the floor of forgetting.
 Belief regrown(const Belief& belief, const Belief& from, const Belief& onto);
 
 class Beliefs {
@@ -49,8 +49,9 @@ class Beliefs {
   const Belief& prior(StrategyId id) const { return priors_[id.index]; }
   // For a belief from an earlier run.
   void set(StrategyId id, Belief belief, Belief prior);
-  // Begins from another prior; what was counted stays. With forgetting, what outcomes have moved
-  // stays as it is: nobody knows how much of the old prior is left in it. Whether anything changed.
+  // Begins from another prior; the counted outcomes stay. With forgetting, a change by outcomes
+  // stays as it is, because the share of the old prior that is left in it is unknown. Gives whether
+  // anything changed.
   bool begin_from(StrategyId id, Belief prior);
   // Back to the prior.
   void forget(StrategyId id) { beliefs_[id.index] = priors_[id.index]; }

@@ -55,14 +55,14 @@ struct ComponentState {
   bool was_active = false;          // it was read as active once
   Time changes_until = kNever;     // when a transition under way hangs; kNever: none is known to be
   Duration transition_patience{};  // that culprit has with each, if more than it needed before
-  // Where its lifecycle should be: where it was last while no strategy was at it, or where one
-  // brought it on purpose. A process that takes the place of another is brought there; the state
-  // that it comes up in is nobody's intention.
+  // The lifecycle state where it should be: the last one while no strategy adapted it, or the one
+  // that a strategy brought it to. A process that takes the place of another is brought there,
+  // because the state that it comes up in was not chosen.
   Lifecycle intended_lifecycle = Lifecycle::kUnknown;
-  ComingUp coming_up;              // of the last process that was seen to come up, or as told
+  ComingUp coming_up;              // of the last process that was seen to come up, or as remembered
   bool is_rising = false;          // it was seen unconfigured, and is not active yet
   Time culprit_raised = kLongAgo;  // when culprit took it through its lifecycle last
-  Time worked = kLongAgo;          // when its process was said to work last (ProcessWorked)
+  Time worked = kLongAgo;          // when its process was last reported to work (ProcessWorked)
   std::optional<BegunAnew> begun_anew{};  // the last time
   bool took_place = false;  // its process took another's place, and its lifecycle was not read yet
 
@@ -78,8 +78,8 @@ struct ComponentState {
 
   // The other computer that its node ran on last (LivesOn); empty: it was this one, or is not known.
   std::string host;
-  // Since when nothing is heard of that computer (HostHeard), and for a while after it is heard again:
-  // its nodes have to be heard, too, and what they say. Set by ComponentStates::set_host_silent().
+  // Since when that computer is unreachable (HostHeard). Kept for a while after it is reachable again,
+  // until its nodes and their messages are received, too. Set by ComponentStates::set_host_silent().
   std::optional<Time> host_silent{};
   // The computer that runs it cannot be asked (HostReached). Set by ComponentStates::set_out_of_reach().
   bool is_out_of_reach = false;
@@ -98,9 +98,9 @@ class ComponentStates {
   ComponentState& operator[](ComponentId id) { return components_[id.index]; }
   const ComponentState& operator[](ComponentId id) const { return components_[id.index]; }
 
-  // Sets ComponentState::intended_lifecycle, and tells if it is another.
+  // Sets ComponentState::intended_lifecycle, and reports it if it changed.
   void intend_lifecycle(ComponentId component, Lifecycle state, Time at, EventLog& events);
-  // Sets ComponentState::coming_up, and tells if it is another.
+  // Sets ComponentState::coming_up, and reports it if it changed.
   void note_coming_up(ComponentId component, const ComingUp& how, Time at, EventLog& events);
 
   void set_known_dead(ComponentId component, std::optional<Time> since);

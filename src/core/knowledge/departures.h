@@ -41,11 +41,11 @@ class Departures {
   // A launch that ends in doubt is taken for one that broke: its components may be started again.
   void revive_in_doubt() { revives_ = true; }
 
-  // ---- what is seen
+  // ---- observations
 
   // A process of the component began.
   void arrived(ComponentId component, int pid, Time at);
-  // culprit started that process; told before it arrives.
+  // culprit started that process; reported before it arrives.
   void started_here(const StartedHere& seen, Time at);
   // Another process, `launcher`, which is no supervisor, started it.
   void launched(ComponentId component, int launcher);
@@ -56,14 +56,14 @@ class Departures {
   void fell(ComponentId component, Time at);
   // culprit ended it.
   void ended_here(ComponentId component, Time at);
-  // It is gone, and it is not known why.
+  // It is gone for an unknown reason.
   void lost(ComponentId component);
-  // A person told its owner to end it (systemctl stop, docker stop), or shut its node down.
+  // A person had its owner stop it (systemctl stop, docker stop), or shut its node down.
   void ended_by_order(ComponentId component, StaysDown::Why why);
   // Its node is not shut down any more.
   void is_up(ComponentId component);
 
-  // ---- what people order
+  // ---- orders
 
   // Clears the mark "stays down" for all events until now; for one component, or for all.
   void revive(std::optional<ComponentId> component = {});
@@ -117,8 +117,8 @@ class Departures {
   struct Verdict {
     enum class What : std::uint8_t {
       kOpen,    // until then, or until more is seen
-      kGoesOn,  // it is no launch any more, and what is left of it is as any other
-      kBroken,  // likewise, and it ended because one of its components had
+      kGoesOn,  // it is no launch any more, and its remaining members are as any others
+      kBroken,  // as above, and it ended because one of its components had
       kEnded
     } what = What::kOpen;
     Time until = kNever;

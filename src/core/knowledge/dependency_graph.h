@@ -5,14 +5,14 @@
 // channels (topics and services), so a channel with p producers and c consumers costs p + c, not p
 // * c.
 //
-// Some topics carry no data that anybody waits for: heartbeats (a topic called `bond`, as Nav2's servers
-// and managers have one), and any topic that all its nodes both publish and subscribe to. They make
-// no edges.
+// Some topics carry no data that a node waits for: heartbeats (a topic called `bond`, as Nav2's servers
+// and managers have one), and any topic that all its nodes both publish and subscribe to. They make no
+// edges.
 //
-// The graph remembers what it must not forget in a failure: a node that is gone still is what its
-// consumers wait for. So a vanished end of a channel goes on counting while its node is gone, and a
-// vanished producer also while nobody else produces on that channel. A change that a living node
-// made (a subscription moved elsewhere) counts at once.
+// The graph must not forget dependencies in a failure: a consumer still waits for a node that has
+// exited. So a vanished end of a channel goes on counting while its node is gone. A vanished
+// producer counts until another node produces on that channel. A change that a living node made (a
+// subscription moved elsewhere) counts at once.
 #pragma once
 
 #include <functional>
@@ -102,7 +102,7 @@ class DependencyGraph {
   // The components that `component` depends on, directly or through any nodes between; not itself.
   // The reference is valid until the next call.
   const std::vector<ComponentId>& upstream(ComponentId component) const;
-  // The components that depend on it, likewise.
+  // The components that depend on it, directly or through any nodes between; not itself.
   const std::vector<ComponentId>& downstream(ComponentId component) const;
   // For several components at once, in one search: those that any of them depends on, or that
   // depend on any of them, without themselves.
@@ -212,7 +212,7 @@ class DependencyGraph {
 
   mutable std::optional<Whole> whole_;  // nothing: something changed
 
-  // Scratch of reach(): who was visited in which search; first the nodes, then the channels.
+  // Scratch of reach(): the search that visited each last; first the nodes, then the channels.
   mutable std::vector<std::uint32_t> visited_;
   mutable std::uint32_t search_ = 0;
   mutable std::vector<NodeId> frontier_;

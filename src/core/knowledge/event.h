@@ -28,11 +28,11 @@ enum class Condition : std::uint8_t {
   // Only from the bayes planner:
   kDownstream,  // a component of it depends on one that is being adapted
   kSuspect,     // a component of it depends on one that may still prove to be the cause
-  kSettling,    // the failure is expected to go away with one that was just resolved
-  kInTheWay,    // it would be in the way of what is to be done about another failure
+  kSettling,    // the failure is expected to clear with one that was just resolved
+  kInTheWay,    // it would be in the way of the repair of another failure
   // Of both planners:
   kWithheld,  // the governor does not allow it now
-  // Its component, or one that may be the cause (bayes), is on a computer that is not heard.
+  // Its component, or one that may be the cause (bayes), is on an unreachable computer.
   kUnheard
 };
 
@@ -42,7 +42,7 @@ struct Candidate {
   std::optional<Condition> excluded;  // nothing: chosen
   ComponentId component;              // that the condition is about
   std::optional<RuleId> failure;      // kDependency: what `component` may be the cause of;
-                                      // likewise kSuspect, kSettling, kInTheWay: the other failure
+                                      // also kSuspect, kSettling, kInTheWay: the other failure
   std::string remark;                 // kInvalid, kWithheld, kUnheard, kDependency or kSuspect
                                       // without a failure: why
   // Of a planner that weighs them (bayes) and only if nothing excludes it beforehand.
@@ -54,7 +54,7 @@ struct Candidate {
 
 enum class EvidenceSource : std::uint8_t {
   kKernel,    // the operating system says so
-  kMeasured,  // culprit heard it, or did not
+  kMeasured,  // culprit received it, or did not
   kAlarm,     // a rule fires
   kGraph,     // the graph or the lifecycle of nodes
   kLearned,   // earlier failures
@@ -92,11 +92,11 @@ struct FailureDetected {
   std::string how{};
 };
 
-// A failure is gone.
+// A failure cleared.
 struct FailureResolved {
   enum class How : std::uint8_t {
     kByStrategy,      // the strategy under way resolved it
-    kWithoutStrategy  // it went away without one of its own: another repair, or by itself
+    kWithoutStrategy  // it cleared without one of its own: another repair, or by itself
   };
   RuleId rule;
   How how = How::kWithoutStrategy;
@@ -112,9 +112,9 @@ struct FailureLost {
 struct StrategyChosen {
   StrategyId strategy;
   std::vector<Candidate> candidates;  // all of the same failure, this one included, by cost
-  std::vector<RuleId> explains;  // failures downstream that are expected to go away with this one
-  bool dry_run = false;          // it is only said, not done
-  std::vector<Suspect> suspects{};        // likeliest first; of a planner that weighs them
+  std::vector<RuleId> explains;     // failures downstream that are expected to clear with this one
+  bool dry_run = false;             // it is only said, not done
+  std::vector<Suspect> suspects{};  // likeliest first; of a planner that weighs them
   std::vector<ComponentId> also_ended{};  // components whose processes end with it, besides its own
 };
 
@@ -192,7 +192,7 @@ struct NeverSeen {
   std::string near;  // a name of the robot that may be meant; empty: none is near
 };
 
-// The trigger of the rule has had no value for a while, so culprit cannot tell whether its failure is
+// The trigger of the rule has had no value for a while, so it is unknown whether its failure is
 // present (blindness.h). Reported once, until the rule can see again.
 struct RuleBlind {
   RuleId rule;
@@ -205,13 +205,14 @@ struct RuleSees {
 };
 
 // Another state of its lifecycle is the intended one now (ComponentState::intended_lifecycle). Not
-// said to people: it is for the process of culprit that comes next.
+// reported to people: it is for the next process of culprit.
 struct LifecycleIntended {
   ComponentId component;
   Lifecycle state = Lifecycle::kUnknown;
 };
 
-// A process of it came up otherwise than the last one (ComponentState::coming_up). Likewise.
+// A process of it came up otherwise than the last one (ComponentState::coming_up). Not reported
+// either.
 struct CameUp {
   ComponentId component;
   ComingUp how;
@@ -257,7 +258,7 @@ enum class Restraint : std::uint8_t {
   kComponentIntensity,  // too many strategies lately at this component
   kClassIntensity,      // too many strategies of this kind lately
   kBackoff,             // it was restarted a short while ago
-  kIdentity,            // nobody knows for sure which process it would hit
+  kIdentity,            // it is uncertain which process it would hit
   kEvidence,            // the process that it would end runs and publishes, or may hang
   kNeverSeen,           // it would start what was never seen
   kLeaving,             // what was started together is being ended together
@@ -267,12 +268,12 @@ enum class Restraint : std::uint8_t {
   kImpossible           // a last resort that cannot be carried out in the robot's present state
 };
 
-// A strategy was chosen and is not begun. Told again only when the reason is another one.
+// A strategy was chosen and is not begun. Reported again only when the reason is another one.
 struct ActionHeldBack {
   StrategyId strategy;
   Restraint restraint = Restraint::kPaused;
   std::string reason;
-  Time until = kNever;  // when the reason may be gone; kNever: nobody knows
+  Time until = kNever;  // when the reason may end; kNever: unknown
 };
 
 // The strategy waits for a person to approve or refuse it. The question lapses when the failure is
@@ -297,26 +298,25 @@ struct OrderCarriedOut {
   StrategyId strategy;
 };
 
-// The verdict on a strategy is in, and stands for proof until `due` (outcomes.h). Not said to
-// people.
+// The verdict on a strategy is in, and pending until `due` (outcomes.h). Not reported to people.
 struct OutcomePending {
   StrategyId strategy;
   bool has_helped = false;
   Time due;
 };
 
-// The outcome of a strategy is learned from, or from no longer (outcomes.h). Not said to people.
+// The outcome of a strategy is learned, or dropped (outcomes.h). Not reported to people.
 struct OutcomeCounted {
   enum class As : std::uint8_t {
     kSuccess,
     kFailure,
-    kNothing  // something else can have had the same effect, or nobody can see it
+    kNothing  // something else can have had the same effect, or it cannot be seen
   };
   StrategyId strategy;
   As as = As::kNothing;
 };
 
-// The failure comes and goes: it is one, until it stayed away for long enough to be proven gone.
+// The failure is flapping: it counts as one until it stayed away for long enough to be proven gone.
 struct FailureFlaps {
   RuleId rule;
   int times = 0;  // that it came

@@ -22,7 +22,7 @@ enum class EventSeverity : std::uint8_t { kInfo, kWarning, kError };
 
 // The colour, for example, in which people see it at first glance.
 enum class Tone : std::uint8_t {
-  kAside,    // nothing happens, or nobody is told
+  kAside,    // no action, or not reported
   kAlarm,    // something is broken, or stays broken
   kWarning,  // something did not go as it should
   kRelief,   // something is well again

@@ -1,5 +1,5 @@
-// A strategy that an earlier process of culprit began and did not live to end: what is known of it,
-// and all that is needed to finish it (execute/resumption.h).
+// A strategy that an earlier process of culprit began and did not finish: its known progress, and
+// the data that are needed to finish it (execute/resumption.h).
 #pragma once
 
 #include <optional>

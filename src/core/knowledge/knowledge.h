@@ -64,12 +64,12 @@ struct Knowledge {
   // counts of sightings.
   KnownRobot known_robot() const;
 
-  // The operating system says that its process is gone.
+  // The operating system reports that its process exited.
   bool is_known_gone(ComponentId component) const;
   // Does the strategy start such processes, and nothing else? That harms nothing.
   bool only_starts_the_gone(const Strategy& strategy) const;
 
-  // Since when culprit cannot tell whether the rule's failure is present; nothing: the rule can see.
+  // Since when it is unknown whether the rule's failure is present; empty: the rule can see.
   std::optional<Time> blind_since(RuleId rule) const {
     const auto& blind = blindness[rule];
     return blind ? std::optional(blind->since) : std::nullopt;
@@ -86,14 +86,16 @@ struct Knowledge {
   std::string host_of(ComponentId component) const;
   // Why the state of such a component is unknown: "is on rover2, which is unreachable".
   std::string why_unheard(ComponentId component) const;
-  // The unheard component that the rule is about, or that what it is about depends on; nothing: there is
-  // none, or the failure was there long before, or the operating system knows a death of its own.
+  // The component on an unreachable computer that the rule touches, or that a component of the rule
+  // depends on. Empty: there is none, or the failure was there long before, or the operating system
+  // reports a crash of its own.
   std::optional<ComponentId> unheard_behind(RuleId rule) const;
-  // Was the failure detected so long before that computer fell silent that this cannot be its cause?
+  // Was the failure detected so long before that computer became unreachable that this cannot be its
+  // cause?
   bool is_older_than_silence(RuleId rule, ComponentId unheard) const;
 
-  // When a message of what each of the components reads can have come at the latest, since it or what it
-  // depends on began anew: its middleware has to find them first, and they have to publish again.
+  // When the inputs of each of the components can have arrived at the latest, since it or its
+  // dependencies began anew: its middleware has to discover them first, and they have to publish again.
   // kNever: one of those is not there. kLongAgo: none of them reads anything.
   Time can_hear_from(std::span<const ComponentId> components) const;
 };

@@ -91,7 +91,7 @@ std::string nearest_status(const std::string& name, const HeardNames& heard) {
   return closest(name, known);
 }
 
-// A key of this status or, if nobody has heard of it, a status. "*": of any.
+// The nearest key of this status or, if the status was not received, the nearest status. "*": of any.
 std::string nearest_key(const std::string& status, const std::string& key,
                         const HeardNames& heard) {
   std::vector<std::string_view> keys;

@@ -45,12 +45,12 @@ double correlation(const RobotOutcomes& sums) {
   const double msw = (sums.helped - sums.spread) / within;
   const double n0 = (sums.tried - sums.square / sums.tried) / degrees;
   const double total = msb + (n0 - 1) * msw;
-  // All outcomes are the same: nothing tells robots apart.
+  // All outcomes are the same: the robots do not differ.
   const double seen = total > 1e-12 ? std::clamp((msb - msw) / total, 0.0, kMostCorrelation) : 0;
   return (kCorrelationWeight * kUsualCorrelation + degrees * seen) / (kCorrelationWeight + degrees);
 }
 
-// In outcomes of a robot that nobody has seen yet.
+// In outcomes of a robot that has none yet.
 double worth(const RobotOutcomes& sums, double rho) {
   const double size = std::max(1.0, sums.square / sums.tried);
   return sums.tried / (1 + (size - 1) * rho);

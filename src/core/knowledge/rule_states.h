@@ -27,11 +27,11 @@ enum class RulePhase : std::uint8_t {
   kExhausted    // the failure is there, and nothing is left to try
 };
 
-// A failure is expected to go away with another one that was just resolved.
+// A failure is expected to clear with another one that was just resolved.
 struct Settling {
   RuleId with;
-  Time since = kNever;  // from when on a fresh reading says whether it did
-  Time until = kNever;  // when what its trigger reads would have shown it
+  Time since = kNever;  // a fresh reading after this shows whether it did
+  Time until = kNever;  // when the inputs of its trigger would have shown it
 };
 
 // How far the search for a strategy that helps has come.
@@ -51,11 +51,11 @@ struct Search {
   int last_resort_obstacles = 0;   // how often in a row it could not be carried out
 };
 
-// Where an earlier process of culprit came to.
+// The progress that an earlier process of culprit left.
 struct LeftOff {
   Time since{};  // when the failure was detected
   Search search;
-  std::optional<Time> gone;  // it went away then, which is not proven yet
+  std::optional<Time> gone;  // it cleared then, which is not proven yet
 };
 
 // The value of the rule's trigger, and how far its policies are satisfied.
@@ -85,10 +85,10 @@ struct RuleState {
   Detection detection;
   Time failing_since = kNever;    // when the failure was detected
   std::optional<Onset> onset;     // when it began, as far as known when it was detected
-  Time first_onset = kNever;      // the latest onset of its first detection, if it comes and goes
+  Time first_onset = kNever;      // the latest onset of its first detection, if it is flapping
   Time worked_until = kLongAgo;   // when it was seen to be well last before that; kLongAgo: never
-  Time recurring_since = kNever;  // if it went away and is back: when it was detected first
-  Time gone_since = kLongAgo;     // when it went away last
+  Time recurring_since = kNever;  // if it cleared and is back: when it was detected first
+  Time gone_since = kLongAgo;     // when it cleared last
   Time quiet_until = kLongAgo;    // COOLDOWN
 
   Search search;
@@ -103,10 +103,10 @@ struct RuleState {
   std::vector<Standing> standing;
   // When the last attempt that failed took effect, if nothing else can have helped since.
   std::optional<Time> tried_alone;
-  bool is_advised = false;              // dry run: what would be done was said
-  bool is_last_resort_advised = false;  // likewise
+  bool is_advised = false;              // dry run: the decision was reported
+  bool is_last_resort_advised = false;  // the same for the last resort
   std::optional<Settling> settling;
-  std::optional<LeftOff> left_off;  // nobody has seen the failure gone since
+  std::optional<LeftOff> left_off;  // the failure was not seen to clear since
 
   // Since when the failure is there, with pauses or without.
   Time first_detected() const { return std::min(failing_since, recurring_since); }
@@ -129,11 +129,11 @@ class RuleStates {
   // Was it tried in this round?
   bool is_tried(StrategyId id) const;
   void set_tried(StrategyId id, bool tried);
-  // Dry run: what would be done about the failure was said; or is to be said anew.
+  // Dry run: the decision about the failure was reported; or is to be reported anew.
   void advise(RuleId id) { states_[id.index].is_advised = true; }
   void advise_last_resort(RuleId id) { states_[id.index].is_last_resort_advised = true; }
   void advise_anew();
-  // The failure is expected to go away with another one.
+  // The failure is expected to clear with another one.
   void expect_to_settle(RuleId id, Settling settling) { states_[id.index].settling = settling; }
   // The search for a strategy begins: anew, or where an earlier process left off.
   void begin_search(RuleId id, Time now);

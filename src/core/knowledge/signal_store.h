@@ -72,8 +72,8 @@ class SignalStore {
   bool is_unusual(InputId id) const { return is_unusual_[id.index]; }
   void set_unusual(InputId id, bool unusual) { is_unusual_[id.index] = unusual; }
 
-  // When a topic was heard last, how often it is on average, and how long it usually is silent in
-  // between: longer, if it comes in bursts. Zero: not known yet.
+  // The time of a topic's last sample, the average interval, and the usual pause in between:
+  // longer, if the topic comes in bursts. Zero: not known yet.
   struct Rhythm {
     std::optional<Time> last;
     Duration interval{};
@@ -82,7 +82,7 @@ class SignalStore {
     // The share of the recently published messages that was lost on the way here, 0 to 1; also 0 while
     // too few were published to measure it.
     double loss = 0;
-    double loss_at_most = 0;  // what the link may lose in truth; 0 where nothing was lost
+    double loss_at_most = 0;  // the upper bound of the link's true loss; 0 where nothing was lost
     // Since `last` there was a time in which it could not be received: since when it would be silent, had culprit
     // received all the time until now. May be a little ahead.
     Time resumed = kLongAgo;

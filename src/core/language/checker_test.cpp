@@ -198,7 +198,7 @@ RULE R
   EXPECT_EQ(type("later"), Type::kDouble);  // learned from a comparison that comes after
 }
 
-// However far away the rule is that tells of it.
+// However far away the rule is that gives the type.
 TEST(Checker, LearnsTypesAlongChainsOfComparisons) {
   constexpr int kRules = 1000;
   std::string text;

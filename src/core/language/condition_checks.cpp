@@ -165,7 +165,7 @@ bool tells_of_life(Input::Kind kind) {
          kind == Input::Kind::kAlive;
 }
 
-// Everything that tells of life falls silent for good.
+// Assumes that all signs of life stop for good.
 void fall_silent(const Typed& e, const RuleSet& rules, Facts& facts) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (const Typed& child : e.children) fall_silent(child, rules, facts);
@@ -192,8 +192,8 @@ bool reads_life(const Typed& e, const RuleSet& rules) {
                      [&](const Typed& c) { return reads_life(c, rules); });
 }
 
-// Whether some part of the trigger that silence alone decides speaks for it. `truth` is what the
-// part has to be for that.
+// Whether silence alone decides some part of the trigger, and so makes the trigger true. `truth` is
+// the value that the part needs for that.
 bool silence_speaks_for(const Typed& e, bool truth, const Facts& silent, const RuleSet& rules) {
   if (e.op == Op::kNot) return silence_speaks_for(e.children[0], !truth, silent, rules);
   if (is_connective(e)) {

@@ -14,8 +14,8 @@
 namespace culprit {
 namespace {
 
-// So many of one kind are compared with each other: more would only make checking slow, and nobody
-// reads so many warnings.
+// At most this many of one kind are compared with each other: more would only make checking slow,
+// and give too many warnings to read.
 constexpr std::size_t kMaxCompared = 64;
 
 // Whether the two can be so at the same time.

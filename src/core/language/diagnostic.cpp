@@ -22,7 +22,7 @@ std::string blanks_like(std::string_view text) {
   return out;
 }
 
-// Control characters would act on the terminal of whoever reads the message.
+// Control characters would act on the reader's terminal.
 std::string printable(std::string_view text) {
   std::string out(text);
   std::replace_if(

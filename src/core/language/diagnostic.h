@@ -103,10 +103,10 @@ struct Diagnostic {
   Code code;
   Severity severity = Severity::kError;
   Span span;
-  std::string cause;   // one line: what is wrong
-  std::string remedy;  // one line: what to do about it; may be empty where the cause says it
+  std::string cause;   // one line: the mistake
+  std::string remedy;  // one line: the action; may be empty where the cause implies it
   // The remedy for programs: after this edit the diagnostic is gone. Only where it is one exact
-  // edit, and where nothing else is as likely to be meant.
+  // edit, and where no other one is as likely to be meant.
   std::optional<Edit> fix = std::nullopt;
   bool operator==(const Diagnostic&) const = default;
 };

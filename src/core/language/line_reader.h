@@ -1,10 +1,9 @@
 // The pieces that statements are made of, read off one line.
 //
-// A reader that does not find its piece says what it expected, at the place where it looked, and
-// gives nothing; the statement is then given up, so each line is complained about at most once.
-// `what` names the piece for the message. In the lines of a template a parameter may stand for any
-// piece but the words of the language and the quotes of a text; what is given then is no more than
-// some value that is right.
+// A reader that does not find its piece reports what it expected, at the place where it looked, and
+// gives nothing; the statement is then given up, so each line has at most one diagnostic. `what`
+// names the piece for the message. In the lines of a template a parameter may stand for any piece
+// but the words of the language and the quotes of a text; the reader then gives any valid value.
 #pragma once
 
 #include <cstdint>

@@ -168,7 +168,7 @@ class LiveChecks {
     warn(Code::kNoSuchNode, name, cause, remedy, node, {name.end, name.end});
   }
 
-  // Without NODE: one of several that are no other component's, and nobody can say which.
+  // Without NODE: one of several nodes that are no other component's, and it is unknown which.
   void several_nodes(const syntax::Component& written) {
     const Component* c = component_of(written.name.text);
     if (c == nullptr || !c->node.empty()) return;

@@ -15,7 +15,7 @@ namespace culprit {
 // there without a message yet has no tick: "/scan from /lidar, silent".
 std::vector<std::string> findings(const RuleSet& rules, const LiveInventory& robot);
 
-// Whether there is nothing left to wait for: each of them is there, and told its rate or value.
+// Whether the wait is over: each of them is there, with its rate or value.
 bool is_all_found(const RuleSet& rules, const LiveInventory& robot);
 
 }  // namespace culprit

@@ -58,9 +58,11 @@ struct Component {
   std::string node;  // full name; empty: the node of the graph whose own name is `name`
   std::vector<std::string> launch;  // argument vector; empty: culprit cannot start it
   bool declared = true;             // by a COMPONENT line
-  bool is_required = false;  // a person is told if it is not there, also if no rule is about that
+  bool is_required =
+      false;  // a person is notified if it is not there, also if no rule is about that
   LifecycleDriver lifecycle = LifecycleDriver::kUndeclared;
-  bool is_respawned = false;  // whoever started it starts it again: culprit ends it and waits
+  bool is_respawned =
+      false;  // the program that started it starts it again: culprit ends it and waits
   // Starts that end within so long of the first are tries of one start. 0: each is one.
   Duration ready{};
 
@@ -84,14 +86,14 @@ struct Component {
 
   Seldom<EngineContainer> engine{};  // that runs it: its engine is asked likewise
 
-  // Whether somebody else runs it, whose word of its process is proof.
+  // Whether an owner runs it, whose report on its process is proof.
   bool has_owner() const { return unit || engine; }
-  // The computer where that one is asked, over ssh; empty: this one.
+  // The computer where the owner is asked, over ssh; empty: this one.
   std::string host() const { return unit ? unit->host : engine ? engine->host : ""; }
 
-  // Whether it can be told to start.
+  // Whether culprit can start it.
   bool can_start() const { return has_owner() || composed || !launch.empty(); }
-  // Whether somebody starts it again after its end.
+  // Whether it can be started again after its end, by culprit or another program.
   bool can_start_again() const { return is_respawned || can_start(); }
 };
 
@@ -200,7 +202,8 @@ struct Strategy {
   double confidence = 1;  // paper: c_p, in pseudo-counts
   Program when;           // empty: always
   bool is_last_resort = false;
-  Duration within{};  // of a last resort: what the rule's other strategies have from the detection
+  Duration
+      within{};  // of a last resort: the time that the rule's other strategies have from the detection
   std::vector<Adaptation> adaptations;
   // paper: i_exec,s, the maximum over the adaptations. With steps, the sum of their maxima.
   Cycles impact;

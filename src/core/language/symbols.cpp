@@ -255,7 +255,7 @@ void Symbols::declare_launch(const syntax::Component& written, Component& compon
   }
 }
 
-// Only who can be asked over ssh to start and to end it can be asked on another computer.
+// On another computer only an owner can start and end it that can be asked over ssh.
 std::string Symbols::declared_host(const syntax::Component& written) {
   if (!written.host) return "";
   const std::string& host = written.host->text;
@@ -285,7 +285,7 @@ std::string Symbols::declared_host(const syntax::Component& written) {
   return host;
 }
 
-// One container runs one component, and nobody else does.
+// One container runs one component, which has no other owner.
 void Symbols::declare_engine(const syntax::Component& written, Component& component) {
   if (!written.engine) return;
   const syntax::Name& name = *written.engine_container;
@@ -395,7 +395,7 @@ void Symbols::declare_composition(const syntax::Component& written, Component& c
   component.composed = std::move(composed);
 }
 
-// One unit runs one component, and nobody else does.
+// One unit runs one component, which has no other owner.
 SystemdUnit Symbols::declared_unit(const syntax::Component& written) {
   const syntax::Name& name = *written.unit;
   const auto report = [&](Code code, std::string cause, std::string remedy) {
@@ -455,7 +455,7 @@ void Symbols::declare_broken(const syntax::BrokenDeclaration& broken) {
     case Broken::kComponent:
       if (place_of(name, rules_.components, components_)) return;
       declared_components_.push_back(name);
-      // Whether it has a LAUNCH command is not known, so nobody may miss it.
+      // Whether it has a LAUNCH command is not known, so no check may report it as missing.
       add_component({name, "", {""}, true});
       return;
     case Broken::kSignal:

@@ -96,8 +96,8 @@ class Symbols {
     std::vector<OfDiagnostic> diagnostics;
     std::vector<OfParameter> parameters;
     std::vector<OfInput> inputs;
-    // Something was said of a name in passing, or taken back: what the next one is told may be
-    // something else.
+    // A diagnostic was reported or withdrawn during a look-up: the next look-up may give another
+    // answer.
     bool has_report = false;
 
     std::size_t size() const;

@@ -1,8 +1,7 @@
 // The syntax tree: a rule file as it is written, before any name or type is looked up.
 //
 // Every part knows its place in the text. A part that was missing or broken in the text is left out
-// or left empty; the parser has said so, and whoever reads the tree stays silent about it (one
-// mistake, one message).
+// or left empty. The parser has reported it, so later stages must not (one mistake, one message).
 #pragma once
 
 #include <cstdint>
@@ -80,7 +79,7 @@ enum class LifecycleDriver : std::uint8_t {
   kUndeclared,
   kSelf,     // the node itself: culprit waits, and never drives a start
   kManaged,  // culprit, at once
-  kLauncher  // who starts it, or a lifecycle manager of its own: as kSelf
+  kLauncher  // the program that starts it, or a lifecycle manager of its own: as kSelf
 };
 
 struct Component {
@@ -198,7 +197,7 @@ struct Policies {
   };
   std::optional<Attempts> attempts;
   bool on_change = false;
-  bool is_report = false;  // REPORT: nothing is done about it, a person is told
+  bool is_report = false;  // REPORT: culprit does nothing about it, a person is notified
   Span span;
 };
 

@@ -8,7 +8,7 @@
 namespace culprit::test {
 namespace {
 
-// Two failures of one component; what is done about the lesser is the adaptation `focus`.
+// Two failures of one component; the adaptation against the lesser one is `focus`.
 std::string rules(const std::string& focus) {
   return R"(
 COMPONENT camera NODE /camera LAUNCH "camera"
@@ -213,14 +213,14 @@ RULE Dead
     robot.run_for(200ms);
   }
   EXPECT_EQ(robot.count("fusion is held responsible for Bad"), 1u) << transcript(robot);
-  robot.signal("silence", Value(1.0));  // so nobody hears of the entropy any longer
+  robot.signal("silence", Value(1.0));  // so the entropy is not received any longer
   robot.run_for(3s);
   EXPECT_EQ(robot.count("recalibrate did not resolve Bad: nobody can see"), 1u)
       << transcript(robot);
   EXPECT_EQ(robot.count("fusion is held responsible for Dead"), 1u) << transcript(robot);
 }
 
-// A camera that nobody misses for a second, and what makes the robot blind at once.
+// A camera that no consumer misses for a second, and a rule by which the robot is blind at once.
 constexpr const char* kBlind = R"(
 COMPONENT camera       NODE /camera       LAUNCH "camera"
 COMPONENT segmentation NODE /segmentation LAUNCH "segmentation"

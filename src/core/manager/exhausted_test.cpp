@@ -162,7 +162,7 @@ TEST(Exhausted, LeavesTheCircleOfWhatIsDeadToThePersonToo) {
   EXPECT_FALSE(robot.was_asked("c2:")) << transcript(robot);
 }
 
-// The robot stops at once when nobody can help the camera any more.
+// The robot stops at once when no strategy is left for the camera.
 TEST_P(ExhaustedCause, MakesTheRobotStopSafely) {
   TestRobot robot(rule(0) +
                       "COMPONENT drive NODE /drive\nRULE Blind\nPOLICIES ERROR\nTRIGGER "

@@ -152,7 +152,7 @@ TEST(ProvenHealth, WhatWaitsForItsProofIsForgottenWithWhatWasLearned) {
   }
 }
 
-// The next process of culprit, which knows what the one before told, and nothing else.
+// The next process of culprit, which knows only the events of the one before.
 void crash_and_go_on(TestRobot& robot, Duration healthy) {
   Manager::Options options = healthy_after(healthy);
   options.start = robot.now;

@@ -1,5 +1,5 @@
-// Silence counts only while the robot would have been heard: after a sleep, and while it is deaf,
-// the manager judges nothing.
+// Silence counts only while the robot's messages would have been received: after a sleep, and while
+// it is deaf, the manager judges nothing.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ TestRobot robot() {
   return robot;
 }
 
-// All stands still for so long: the robot, and culprit with it.
+// Suspends the robot, and culprit with it, for this time.
 void freeze(TestRobot& robot, Duration time) {
   robot.freeze(time);
   robot.tell(Overslept{time});
@@ -165,7 +165,7 @@ TEST(Hearing, AStarvedManagerDecidesNothing) {
   EXPECT_EQ(robot.count("detected"), 0u) << transcript(robot);
 }
 
-// Leases run out while nobody announces itself, and that is noticed at waking.
+// Leases expire while no participant announces itself, and culprit notices that when it wakes.
 TEST(Hearing, ANodeWhoseLeaseRanOutInASleepIsNotDead) {
   TestRobot robot = test::robot();
   freeze(robot, 20s);

@@ -1,5 +1,5 @@
-// A computer that is not heard is one cause: nothing is done there, what fails because of it waits, and
-// nothing is learned from what nobody could know.
+// An unreachable computer is one cause: culprit does nothing there, failures because of it wait, and
+// culprit learns nothing from them.
 #include <algorithm>
 
 #include <gmock/gmock.h>
@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// Camera and lidar run on rover2; what reads them, and a lamp, on this computer.
+// Camera and lidar run on rover2; their consumers, and a lamp, on this computer.
 constexpr const char* kHostRules = R"(
 COMPONENT camera NODE /camera LAUNCH "camera"
 COMPONENT lidar  NODE /lidar  LAUNCH "lidar"
@@ -139,7 +139,7 @@ TEST(Hosts, ThatAreHeardAgainGoOnAsBefore) {
   }
 }
 
-// It had the time to be heard again.
+// It had the time to be received again.
 TEST(Hosts, WhatDidNotComeBackWithItsComputerIsTriedThen) {
   TwoComputers two;
   two.begin();
@@ -166,7 +166,7 @@ TEST(Hosts, WhatBreaksHereMeanwhileIsHealed) {
   EXPECT_TRUE(two.robot.was_asked("fusion: start")) << transcript(two.robot);
 }
 
-// One that is silent while another one of its computer is heard is itself ill.
+// A node that is silent while another one of its computer is received has a fault of its own.
 TEST(Hosts, AreNotBlamedForOneOfTheirNodes) {
   TwoComputers two;
   two.begin();
@@ -222,7 +222,7 @@ TEST(Hosts, OfWhichNothingIsKnownAreNotBlamed) {
   EXPECT_EQ(two.robot.count("is unreachable"), 0u) << transcript(two.robot);
 }
 
-// HOST names a computer that nobody has, and no node was ever seen there.
+// HOST names a computer that does not exist, and no node was ever seen there.
 TEST(Hosts, AMistypedOneExplainsNothing) {
   TestRobot robot(R"(
 COMPONENT lidar NODE /lidar UNIT lidar.service HOST rovr2

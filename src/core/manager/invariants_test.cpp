@@ -140,8 +140,8 @@ RC_GTEST_PROP(Invariants, NoStrategyWorksWhereAnotherDoesOrDownstreamOfIt, ()) {
   robot.run_for(60s);
 }
 
-// "At once" is the decision after its detection: what it does not wait for is a verdict on others,
-// what they may explain, or a more critical failure.
+// "At once" is the decision after its detection: it must not wait for a verdict on others, for
+// failures that these may explain, or for a more critical failure.
 RC_GTEST_PROP(Invariants, TheRepairOfWhatIsKnownToBeDeadBeginsAtOnceWhateverTheLevels, ()) {
   const auto all = random_components();
   TestRobot robot(rules_of(all));

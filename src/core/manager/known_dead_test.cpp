@@ -183,7 +183,7 @@ RULE CameraGone
       << transcript(alone);
 }
 
-// It began, and needs a while until it speaks: that is neither success nor failure.
+// It began, and needs a while until its first message: that is neither success nor failure.
 TEST(KnownDead, IsResolvedWhenItIsHeardAgain) {
   TestRobot robot = robot_with(kPatientRules);
   robot.kill("camera");
@@ -571,7 +571,7 @@ TEST(ALaunch, WhatCulpritStartedIsEndedOnAPersonsOrder) {
   EXPECT_EQ(robot.manager().knowledge().departures.stays_down(robot.id("b")), false);
 }
 
-// ---- what its owner was told to end, and what was shut down
+// ---- components that a person had their owner stop, or shut down
 
 TEST(AnOwner, ThatWasToldToEndItsProcessIsNotToldToStartItAgain) {
   std::string rules = kPatientRules;
@@ -635,7 +635,7 @@ const std::vector<std::string> kTriggers = {"age(/a) > 400ms",
                                             "age(/b) > 800ms",
                                             "age(/a) > 1s && age(/a) < 2s"};
 
-// When each rule was detected, of a robot that nobody repairs.
+// When each rule was detected, on a robot without repairs.
 std::vector<std::optional<Duration>> detections(const std::vector<std::string>& triggers,
                                                 const std::string& policy, Cause cause,
                                                 Duration killed_at) {

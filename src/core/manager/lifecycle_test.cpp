@@ -156,7 +156,7 @@ TEST(Lifecycles, WhatIsWronglyDeclaredManagedIsToldWithWhatToDeclare) {
   }
 }
 
-// As a node in Python does: how its process ends is seen after culprit has told it to.
+// As a node in Python does: how its process exits is seen after culprit has ended it.
 TEST(Lifecycles, ANodeThatLeavesTheGraphBeforeItsProcessEndsCrashesOnceAtMostToo) {
   TestRobot robot = robot_of(camera_with(""), 4s);
   robot["camera"].leaves_before_it_ends = true;

@@ -35,9 +35,8 @@ class Manager : public ManagingSystem {
 
   struct Options {
     Autonomy autonomy = Autonomy::kAct;
-    Time start{};  // when watching begins
-    Duration discovery =
-        kDiscovery;  // for so long nothing is called absent because it was not seen
+    Time start{};                     // when watching begins
+    Duration discovery = kDiscovery;  // grace period; nothing is reported absent before it ends
     // Discount factor per outcome (1 = never forget).
     double forgetting = 1;
     Governor::Options governor{};
@@ -54,7 +53,7 @@ class Manager : public ManagingSystem {
   const Knowledge& knowledge() const { return knowledge_; }
   const Governor& governor() const { return governor_; }
   Autonomy autonomy() const { return autonomy_; }
-  // Whether the robot would be heard if it spoke. If not, nothing is judged.
+  // Whether culprit would receive the robot's messages. If not, it judges nothing.
   bool hears() const { return hears_; }
   // When the robot has had its time to show itself (Options::discovery).
   Time discovered() const { return discovered_; }
@@ -128,7 +127,7 @@ class Manager : public ManagingSystem {
     Time failing_since = kNever;
     std::vector<Candidate> candidates;
   };
-  std::vector<Said> held_back_;  // by rule: what was said last about why it waits
+  std::vector<Said> held_back_;  // by rule: the reason that was reported last
 };
 
 }  // namespace culprit

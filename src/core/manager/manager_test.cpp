@@ -113,7 +113,7 @@ TEST(Manager, WakesByItselfToTryAnewAfterAPause) {
   EXPECT_GE(robot.count("camera is held responsible"), 2u) << transcript(robot);
 }
 
-// Its clock is not ours: what comes from the future is of now.
+// Its clock is not ours: a time in the future counts as now.
 TEST_P(ManagerWith, IsNotCarriedIntoTheFutureByAnObservation) {
   TestRobot robot = pipeline();
   const Observation early{robot.now + 1h, NodeAppeared{"/somebody", 0}};
@@ -223,7 +223,7 @@ TEST(Manager, LearnsNothingFromOutcomesWithTwoCauses) {
   EXPECT_EQ(robot.manager().knowledge().beliefs[StrategyId(4)], before) << transcript(robot);
 }
 
-// ---- What goes away with what.
+// ---- Couplings.
 
 Coupling coupling(TestRobot& robot, std::size_t cause, std::size_t effect) {
   return robot.manager().knowledge().couplings.of(RuleId(cause), RuleId(effect));
@@ -289,7 +289,7 @@ RULE Blurred
   EXPECT_EQ(coupling(robot, 0, 1), (Coupling{1, 0})) << transcript(robot);
 }
 
-// A reading comes every two seconds: the next one tells, and not the next cycle.
+// A reading comes every two seconds: the next one decides, and not the next cycle.
 TEST(Couplings, WaitForTheReadingsOfTheEffect) {
   TestRobot robot(R"(
 COMPONENT lamp   NODE /lamp

@@ -254,8 +254,8 @@ TEST(Storm, ProcessesThatAreKnownToBeDeadAreNone) {
     EXPECT_TRUE(five.robot.works(c)) << c << transcript(five.robot);
 }
 
-// c0 dies before it ever spoke, so its silence can be judged only once the robot had time to show
-// itself. It is known to be dead, and c1 is not replaced for it meanwhile.
+// c0 dies before its first message, so its silence can be judged only once the robot had time to
+// show itself. It is known to be dead, and c1 is not replaced for it meanwhile.
 TEST(NeverSeen, WhoDiesBeforeItsFirstWordIsNotTakenOutOnItsEffects) {
   TestRobot robot(
       "COMPONENT c0 NODE /c0 LAUNCH \"c0\"\nCOMPONENT c1 NODE /c1 LAUNCH \"c1\"\n"

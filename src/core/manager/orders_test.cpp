@@ -182,7 +182,8 @@ TEST(Orders, WhatAPersonRefusedHoldsUpNoLesserFailure) {
   Manager::Options options;
   options.governor.approval = Approval::kEach;
   std::string rules = kRules;
-  rules.replace(rules.find("light 90"), 8, "light 80");  // what is sure waits for nobody anyway
+  rules.replace(rules.find("light 90"), 8,
+                "light 80");  // a sure strategy waits for no other anyway
   TestRobot r(rules, std::make_unique<BayesPlanner>(), options);
   r.add("lamp").parameters["on"] = Value(std::int64_t{0});
   r.add("camera", {"lamp"}, "/rgb");

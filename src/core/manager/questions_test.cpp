@@ -7,7 +7,7 @@
 namespace culprit::test {
 namespace {
 
-// The map serves what navigation asks for; nothing tells that it works.
+// The map serves navigation's requests; no topic shows that it works.
 constexpr const char* kRulesOfNavigation = R"(
 CYCLE 100ms
 COMPONENT map NODE /map LAUNCH "map"

@@ -56,11 +56,11 @@ class Runtime {
   // also has to interrupt the robot's waiting.
   void run(const std::atomic<bool>& stop, Time end = kNever);
 
-  // One step, with what was observed otherwise.
+  // One step, with observations from another source.
   void step(std::vector<Observation>& observations);
 
   // Gives the managing system an order, with its next step, which comes at once. From any thread,
-  // as long as the runtime lives; what is submitted while run() does not run waits for it.
+  // as long as the runtime lives; orders that are submitted while run() does not run wait for it.
   void submit(Order order);
 
  private:

@@ -57,7 +57,7 @@ class Monitor {
   // And so long for what such a node says, from when it answers.
   static constexpr Duration kSpeaks = std::chrono::milliseconds(3500);
 
-  // A value that becomes NaN again is reported again if it was none for so long.
+  // A value that becomes NaN again is reported again if it was a number for at least this long.
   static constexpr Duration kTellAgain = std::chrono::seconds(60);
 
   // What it writes; all else it only reads.
@@ -110,7 +110,7 @@ class Monitor {
   };
   struct Goals {
     std::unordered_map<std::uint64_t, Goal> all;  // that the server remembers
-    bool is_heard = false;                        // it told of them
+    bool is_heard = false;                        // it reported them
   };
   struct Topic {
     Goals goals;  // of the status of an action
@@ -121,17 +121,18 @@ class Monitor {
     monitor::LossMeter loss;
     std::vector<InputId> inputs;
     bool needs_phi = false;
-    // There was a gap in hearing since the last sample: until then its silence is as long as it was.
+    // There was a gap in reception since the last sample: until then its silence is as long as it
+    // was.
     struct Resumes {
       Time at;
       Duration silence{};
     };
     std::optional<Resumes> resumes;
     Time heard_again_by = kLongAgo;  // until then it had time for that
-    bool is_known_silent = false;    // since who publishes it was known dead, nothing came
-    std::optional<Time> listened;    // since when who publishes it knows that it is listened to
-    // It is certain that nothing came since then, though `discovered` is still ahead; and who would
-    // have spoken.
+    bool is_known_silent = false;    // no sample came since its publisher was known dead
+    std::optional<Time> listened;    // since when its publisher knows its subscriber
+    // It is certain that no sample came since then, though `discovered` is still ahead; and the
+    // component that would have published one.
     std::optional<Time> silent_since;
     ComponentId silent_one;
   };
@@ -329,9 +330,9 @@ class Monitor {
   }
 
   // By InputId; then `discovered_`, then `graced_`; then ComponentState::awaits_ends_until by
-  // component; then, by component, until when its good-bye may still come;
-  // then, by component, until when it may have to be heard again after its computer was; then when
-  // to look at `expected_`.
+  // component; then, by component, until when its farewell may still come; then, by component,
+  // until when it may have to be discovered again after its computer was unreachable; then when to
+  // look at `expected_`.
   Deadlines deadlines_;
 };
 

@@ -73,8 +73,8 @@ void Monitor::on(Time at, const NodeAppeared& seen) {
   if (!state.in_graph) return;  // the others have as long to come as its ends
   const bool was_alive = state.alive == true;
   update_alive(*component, at, "");
-  // A mode manager offers services in the node's name, and may be seen before the node is: then it is the node's
-  // process that counts, and people are told so.
+  // A mode manager offers services in the node's name, and may be seen before the node is: then the node's
+  // process counts, and an event reports it.
   if (was_another && was_alive && state.alive == true)
     write_.events.tell(at, ComponentFound{*component, seen.pid});
 }
@@ -116,8 +116,8 @@ void Monitor::on(Time at, const NodeVanished& seen) {
   if (!component) return;
   if (knowledge_.graph.has_several_nodes(*component) && knowledge_.graph.has_any_node(*component))
     return note_part_vanished(*component, seen.node, at);
-  // A process in Python leaves the graph before it ends; how it ends is not known yet, and by then it
-  // may have been told to.
+  // A process in Python leaves the graph before it ends. Its exit is not known yet, and by then
+  // culprit may have ended it.
   if (knowledge_.states.reservation(*component) == nullptr) note_end_of_start(*component, at);
   note_farewell(*component, at);
   forget_process(*component, at);
@@ -210,7 +210,7 @@ void Monitor::update_lifecycle_inputs(ComponentId component, Time now) {
   }
 }
 
-// Somebody brought it up who is not culprit: itself, its launcher, a lifecycle manager.
+// A driver other than culprit brought it up: itself, its launcher, a lifecycle manager.
 void Monitor::note_rise(ComponentId component, Lifecycle now, Time at) {
   ComponentState& state = write_.components[component];
   if (now == Lifecycle::kUnconfigured) state.is_rising = true;
@@ -375,7 +375,7 @@ void Monitor::on(Time at, const HostHeard& seen) {
   }
 }
 
-// Only where something ran that was seen: of a name that nobody has there is nothing to say.
+// Only for a host where a component was seen to run: for an unknown name there is no report.
 void Monitor::note_silent(const std::string& host, Time at) {
   HostSilent silent{host, {}, true};
   bool are_several = false;
@@ -407,7 +407,7 @@ void Monitor::on(Time, const EndsWith& seen) {
 
 void Monitor::on(Time at, const LinkTrouble& seen) { write_.events.tell(at, Trouble{seen.text}); }
 
-// The node or its process is gone or is another now: what was known of it does not hold any more.
+// The node or its process exited or is another now: the knowledge about it is void.
 void Monitor::forget_process(ComponentId component, Time at) {
   ComponentState& state = write_.components[component];
   if (state.in_graph) expect_no_more();
@@ -473,7 +473,7 @@ void Monitor::update_alive(ComponentId component, Time at, const std::string& re
   const bool is_part_hung = has_hung_part(component) && at >= later(awake_, kUnsure);
   const bool answers = !does_not_answer(component, at) && !is_part_hung;
   const bool is_alive = state.in_graph && state.process == ProcessState::kRunning && answers;
-  if (!knowledge_.sightings.has(component)) return;           // it may be a name that nobody has
+  if (!knowledge_.sightings.has(component)) return;           // it may be a wrong name
   if (!is_alive && !state.alive && at < discovered_) return;  // it may still be discovered
   const bool may_be_unheard = is_deaf_ || at < graced_ || state.is_out_of_reach;
   if (!is_alive && may_be_unheard && state.process == ProcessState::kRunning) {

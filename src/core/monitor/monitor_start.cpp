@@ -5,7 +5,7 @@
 // knows what there is to discover (KnownRobot). All of it is there once
 //
 //   components   their nodes are in the graph, each alone, with the ends that they had
-//   topics       those that it saw, and those that are published now, were heard
+//   topics       those that it saw, and those that are published now, were received
 //   values       all that it read was read: signals, diagnostics, parameters, lifecycles
 //
 // or if it is certain that a silent topic would be received: the earlier run received it; one
@@ -138,7 +138,7 @@ std::optional<ComponentId> Monitor::certainly_silent(TopicId topic) const {
   return std::nullopt;
 }
 
-// Its process is gone, or is another now, which has all the time that it needs.
+// Its process exited, or is another now, which has all the time that it needs.
 void Monitor::forget_what_was_heard_of(ComponentId component, Time now) {
   for (const KnownRobot::End& end : knowledge_.graph.ends_of(component)) {
     if (end.kind != EndpointKind::kPublisher) continue;

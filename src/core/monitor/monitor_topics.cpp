@@ -96,9 +96,9 @@ Time Monitor::zero_from(const Input& input) const {
   return since ? later(heard_since(*since), input.window) : silent_from(input.topic);
 }
 
-// From when on its window is covered: culprit listened all the time, and the topic had spoken, or is
-// known to be silent. A topic that speaks again in time after a gap in hearing is as one that is heard
-// for the first time.
+// The time from which its window is covered: culprit listened all the time, and the topic had its
+// first sample, or is known to be silent. A topic that is received again in time after a gap in
+// reception counts as one that is received for the first time.
 Time Monitor::rate_known_from(InputId id) const {
   const Input& input = knowledge_.rules[id];
   const Topic& topic = topics_[input.topic.index];
@@ -114,7 +114,7 @@ Time Monitor::rate_known_from(InputId id) const {
   return topic.resumes ? std::max(from, topic.resumes->at) : from;
 }
 
-// How long nothing came that would have been heard. @pre it spoke, or was seen
+// How long no sample came although it would have been received. @pre it had a sample, or was seen
 Duration Monitor::silence_of(TopicId id, Time now) const {
   const Topic& topic = topics_[id.index];
   if (topic.resumes)
@@ -177,7 +177,7 @@ void Monitor::count_goal(TopicId topic, GoalStatus outcome, Time at) {
   }
 }
 
-// Its server is gone, and its goals with it. The next one tells of its own.
+// Its server exited, and its goals with it. The next one reports its own.
 void Monitor::forget_goals(TopicId topic, Time now) {
   Goals& goals = topics_[topic.index].goals;
   if (goals.all.empty()) return;

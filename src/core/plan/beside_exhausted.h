@@ -17,7 +17,7 @@ namespace culprit::plan {
 bool may_be_tried_beside_exhausted(StrategyId strategy, const Knowledge& knowledge);
 
 // Does the failure wait for a person, together with an exhausted one that explains it, or until a computer
-// is heard again that explains it?
+// that explains it is reachable again?
 bool waits_for_person(const Decision& decision, const Knowledge& knowledge);
 
 }  // namespace culprit::plan

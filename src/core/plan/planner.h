@@ -50,7 +50,7 @@ class Planner {
                                      const Knowledge& knowledge) const = 0;
 };
 
-// For whoever needs several of a kind.
+// For callers that need several planners of a kind.
 using PlannerFactory = std::function<std::unique_ptr<const Planner>()>;
 
 }  // namespace culprit

@@ -206,7 +206,7 @@ TEST(Expansion, MistakesPointWhereTheyAreWritten) {
   const Expansion rules = expanded("INCLUDE \"two.rules\"\nUSE two(left)\n", files);
   const auto diagnostics = check(rules, Strictness::kStrict).diagnostics;
   ASSERT_EQ(diagnostics.size(), 1u);
-  // The argument goes through both templates, and is written by whoever uses the outer one.
+  // The argument goes through both templates, and is written where the outer one is used.
   EXPECT_EQ(places(rules, diagnostics[0]),
             (std::vector<std::string>{"robot.rules:2:9 left", "driver.rules:7:20 {name}"}));
 }

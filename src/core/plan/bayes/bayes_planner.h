@@ -1,5 +1,5 @@
-// culprit's own planner: which component is responsible, what would fix it, what is that worth, and
-// which strategies go together (docs/planning.md, and the headers beside this one).
+// culprit's own planner: decides which component is responsible, which strategies may help, what
+// each is worth, and which go together (docs/planning.md, and the headers beside this one).
 //
 // Strategies that only replace processes that are known to be dead are chosen first, and wait for no
 // other failure (diagnose/known_down.h). Then, for each criticality level (inherited,

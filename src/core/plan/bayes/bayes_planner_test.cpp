@@ -328,7 +328,7 @@ TEST(BayesPlanner, RepairsNothingInACircleThatADeadMemberExplains) {
   EXPECT_NE(scene.plan(kFewRedeployments), "") << "nobody knows who was first: they take turns";
 }
 
-// It has a cause of its own, and so has what is dead: nobody disturbs the other.
+// It has a cause of its own, and so has the dead component: neither disturbs the other.
 TEST(BayesPlanner, LetsALesserRootUpstreamOfTheDeadActAtOnce) {
   for (const bool is_replaced : {false, true}) {
     Scene scene(failure_of("a", "Root", "NON_CRITICAL") + failure_of("b", "Dead", "WARNING"));

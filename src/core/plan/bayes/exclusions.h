@@ -82,7 +82,7 @@ class Exclusions {
   std::vector<Marks> judged_;    // by level: of those whose strategy waits for its verdict
   std::vector<Marks> imminent_;  // by level: of imminent rules that are more critical
   Marks added_;
-  Marks guarded_;  // of those added, what may not be disturbed from upstream
+  Marks guarded_;  // of those added, the ones that must not be disturbed from upstream
 };
 
 }  // namespace culprit::plan

@@ -363,7 +363,7 @@ bool PlanningStep::exclude_coincidence(WeighedCandidate& weighed) const {
 }
 
 // Does it wait because a cause upstream may still be detected, or because it may be the echo of one
-// that is gone?
+// that has cleared?
 bool PlanningStep::exclude_unproven(WeighedCandidate& weighed, double chance) const {
   const RuleId rule = causes_[weighed.failure].rule;
   const auto awaiting = found_.awaited().of(rule);
@@ -442,7 +442,8 @@ bool PlanningStep::exclude_effect(WeighedCandidate& weighed) const {
     if (!goes_round && !weighed.goes_round) exclude_for(weighed, *cause);
     return !goes_round;
   }
-  // A failure of what is on a computer that is not heard, or depends on it, waits until it is.
+  // A failure of a component that is on an unreachable computer, or depends on one, waits until it
+  // is reachable.
   if (const auto unheard = unheard_[weighed.failure]) {
     if (may_be_tried_beside_exhausted(strategy, knowledge_)) return false;
     exclude(weighed, {Condition::kUnheard, *unheard, {}});
