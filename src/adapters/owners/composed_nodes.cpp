@@ -228,7 +228,7 @@ void ComposedNodes::look_for_missing(Container& container) {
   });
 }
 
-// What it has is known before it hangs.
+// Lists the container's nodes before it can hang.
 void ComposedNodes::look(Container& container) {
   const Process process = process_of(container.node);
   if (process.is_there && process.pid != 0) list(container, process.pid, kAnswer);
@@ -282,7 +282,7 @@ ComposedNodes::Answer ComposedNodes::stop_part(Container& container, const Erran
   const Component& part = rules_[errand.component];
   const Process process = process_of(container.node);
   const Process own = process_of(part.node);
-  // What is there now is the successor of what was meant, or none is.
+  // The process that the order names has exited: now its successor runs, or none.
   if (errand.pid != 0 && own.pid != errand.pid && process.pid != errand.pid) return {};
   if (!process.is_there) {
     if (!own.is_there) return {};
@@ -467,7 +467,8 @@ void ComposedNodes::start_part(Container& container, const Errand& errand) {
   load_all(container, there.pid, errand);
 }
 
-// What the errand is for, and what a process of the container before this one had.
+// Loads the component that the errand is for, and the ones that the container's previous process
+// had.
 void ComposedNodes::load_all(Container& container, int pid, const Errand& errand) {
   for (const ComponentId part : container.parts) {
     const bool is_wanted = part == errand.component;
@@ -509,7 +510,7 @@ ComposedNodes::Answer ComposedNodes::load(Container& container, ComponentId part
   if (made.outcome == Outcome::kTimedOut) container.unanswered[part] = pid;
   if (made.outcome != Outcome::kDone || made.nodes.empty()) return {made.outcome, made.text};
   const LoadedNode& node = made.nodes.front();
-  // Whoever else loaded one meanwhile was first.
+  // If somebody else loaded the same node meanwhile, theirs stays.
   has = list(container, pid, kAnswer);
   auto ids = ids_of(component.node, has);
   const bool is_double = ids.size() > 1;

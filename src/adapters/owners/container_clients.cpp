@@ -74,7 +74,7 @@ std::variant<Bytes, ContainerAnswer> ContainerClients::call(const std::string& c
   (*to)->call(std::move(request), which == Which::kList ? Repeat::kUntilAnswered : Repeat::kNever,
               patience, [this, under_way](const CallResult& result) {
                 under_way->reply.assign(result.reply.begin(), result.reply.end());
-                // Whose answer it is, the graph knows, on its own thread.
+                // The graph knows which process the answer is from; it is asked on its own thread.
                 tasks_.post([this, under_way, outcome = result.outcome, server = result.server] {
                   const MutexLock lock(mutex_);
                   under_way->outcome = outcome;

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What /proc/<pid>/stat says after the command, which is in parentheses and may hold anything.
+// The rest of /proc/<pid>/stat after the command, which is in parentheses and may hold anything.
 std::string stat_after_command(int pid) {
   std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
   std::string line;
@@ -179,7 +179,7 @@ std::optional<std::string> hold_of_debugger(int pid) {
 }
 
 std::optional<int> status_of_zombie(int pid) {
-  // Of other users' processes it is 0 (proc(5)).
+  // For other users' processes it is 0 (proc(5)).
   struct stat owner {};
   const std::string folder = "/proc/" + std::to_string(pid);
   const bool may_be_told =

@@ -178,9 +178,9 @@ void Units::look_at_all() {
   if (!is_here()) note_reach(trouble);
 }
 
-// What failed is proven to be dead, also if its node was never seen, and if it never had a main
-// process; what is inactive only if it was active before: it may have been stopped on purpose before
-// anybody looked.
+// A failed unit is proven dead, also if its node was never discovered, and if it never had a main
+// process. An inactive one is proven dead only if it was active before: it may have been stopped on
+// purpose before culprit started.
 void Units::look_at(ComponentId component, const UnitState& state) {
   if (!state.is_loaded) return;
   if (barred_.erase(component) > 0) inbox_.put(StartBarred{component, ""});
@@ -201,7 +201,8 @@ void Units::look_at(ComponentId component, const UnitState& state) {
   if (!state.is_over()) ended_here_.erase(component);
 }
 
-// That it is lost is said at once; that it is back, when its nodes had the time to be heard again.
+// A lost connection is reported at once, and the return once the nodes had time to be discovered
+// again.
 void Units::note_reach(const std::optional<std::string>& trouble) {
   if (trouble) {
     // A connection that was lost says little of why.
@@ -228,7 +229,7 @@ void Units::note_main_process(ComponentId component, const UnitState& state) {
     known->second = {state.main_pid, live_now()};
 }
 
-// Of all in its session, which is the node's where `ros2 run` is the main process.
+// Counts all processes in its session, which is the node's if `ros2 run` is the main process.
 void Units::look_for_work() {
   const Time now = live_now();
   std::erase_if(coming_up_, [&](const ComingUp& each) {
@@ -257,7 +258,7 @@ bool Units::answer(const Errand& errand, Outcome outcome, std::string text, int 
   // It may end before anybody looks.
   if (pid != 0) before_.insert_or_assign(errand.component, Activity::kActive);
   if (!is_here()) {
-    // What it runs now is what was asked for.
+    // The main process that runs now is the one that the order asked for.
     elsewhere_.erase(errand.component);
     if (pid != 0) elsewhere_.emplace(errand.component, Elsewhere{pid});
     if (pid != 0) inbox_.put(ProcessSeen{errand.component, ProcessState::kRunning, 0, ""});
@@ -320,7 +321,7 @@ bool Units::watch_start(Errand& errand, const UnitState& state) {
                   owner_of(errand.component).name() +
                       " could not start it: " + in_words(state, name) + "; " +
                       owner_of(errand.component).where_to_look(name) + " says why");
-  // What it does before its main process may take long.
+  // The steps before the main process (ExecStartPre) may take long.
   return live_now() >= errand.until &&
          answer(errand, Outcome::kDone, owner_of(errand.component).name() + " is starting " + name);
 }
@@ -337,7 +338,7 @@ std::optional<std::string> Units::who_else_would_end(ComponentId component) {
   return std::nullopt;
 }
 
-// What is to end for good does, whoever looks at it.
+// An order to end for good is done also if a debugger holds the process.
 std::optional<std::string> Units::hold_of(const Errand& errand, const UnitState& state) const {
   if (errand.kind != Errand::Kind::kReplace || !is_here()) return std::nullopt;
   for (const int pid : {errand.pid, state.main_pid}) {
