@@ -7,7 +7,7 @@
 namespace culprit::journal {
 namespace {
 
-// What the rows say that was learned last, to compare with the table of it.
+// The newest beliefs in the rows, to compare with the table of beliefs.
 class Replayed {
  public:
   void follow(const Entry& entry) {
