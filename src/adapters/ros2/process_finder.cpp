@@ -48,7 +48,7 @@ Candidates sends_from(const UdpAddress& address, const std::vector<UdpSocket>& s
   return found;
 }
 
-// Who it runs as: the real and the effective user.
+// The users that it runs as: the real and the effective one.
 std::vector<unsigned> users_of(const fs::path& process) {
   std::ifstream file(process / "status");
   for (std::string line; std::getline(file, line);) {

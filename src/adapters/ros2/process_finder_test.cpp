@@ -143,7 +143,7 @@ TEST(ProcessFinder, KnowsNothingOfAClosedPort) {
               HasSubstr("no process of this machine has the socket"));
 }
 
-// Whose process is not proven: another user's, or one of which no datagram came.
+// Participants whose process is not proven: another user's, or one that sent no datagram.
 TEST(ProcessFinder, WhoseSocketsAreNobodysAnyMoreHasEnded) {
   auto gone = std::make_unique<Sockets>();
   const Sockets lives;
