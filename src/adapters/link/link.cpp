@@ -78,7 +78,7 @@ int parent_of(int pid) {
   return end + 4 < stat.size() ? std::atoi(stat.c_str() + end + 4) : 0;
 }
 
-// Who holds nodes of one name, who started each, and how to end what is one too many.
+// The processes that hold nodes of one name, their launchers, and how to end the extra one.
 std::string who_are(const std::vector<GraphNode>& nodes) {
   if (nodes.size() < 2) return "";
   std::string text;
@@ -98,7 +98,7 @@ std::string who_are(const std::vector<GraphNode>& nodes) {
       others += " " + std::to_string(node.pid);
     }
   }
-  text += ". Nothing is done to it until one is left: end the one too many";
+  text += ". culprit does not act on it until one is left: end the extra one";
   if (!others.empty()) text += " (kill" + others + (others.rfind(' ') > 0 ? ": one of them)" : ")");
   return text + ", and if a launch file starts it again, set respawn to False there";
 }
@@ -382,7 +382,7 @@ void Link::on_discovery(const DiscoveryEvent& event) {
   if (lease_) lease_->on_discovery(event);
 }
 
-// Who is deaf, or stood still, did not hear what they said meanwhile.
+// If culprit was deaf, or stood still, it missed messages meanwhile.
 void Link::listen_to_hosts() {
   const Time now = live_now();
   const bool stood_still = later(looked_at_hosts_, 2 * kPublishPeriod) < now;

@@ -417,7 +417,7 @@ TEST(Link, MissesNoProofOfWhatAnEngineOrSystemdEnds) {
   EXPECT_FALSE(linked.has_seen<LinkTrouble>(is_missed("/lidar")));
 }
 
-// Who answers a client that was made after the reader has been told of the reader, too.
+// A node that answers a client that was made after the reader has also discovered the reader.
 TEST(Link, KnowsThatWhoIsSilentKnowsItsListener) {
   const TestDomain domain;
   Robot robot(domain);
@@ -661,7 +661,8 @@ TEST(Link, AsksEachNodeOfAProcessAndMeasuresIt) {
       [](const LifecycleRead& r) { return r.component != ComponentId(0); }));
 }
 
-// Of many a second most lie in their socket for a moment. A silence begins when the last one came.
+// If many messages come each second, most lie in their socket for a moment. A topic timeout counts
+// from the arrival of the last one.
 TEST(Link, KnowsWhenMessagesCameThatItReadsLater) {
   const TestDomain domain;
   Robot robot(domain);

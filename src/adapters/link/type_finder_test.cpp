@@ -204,7 +204,7 @@ TEST(TypeFinder, AsksTheNodeAndKeepsWhatItSays) {
     Finding finding(domain, {{ours.path()}, kept.path() / "types"});
     EXPECT_EQ(finding.find({"/driver", kType, hash, 0}), "cells charge ");
   }
-  // Nobody is there to be asked.
+  // No node can be asked any more.
   Finding later(domain, {{ours.path()}, kept.path() / "types"});
   EXPECT_EQ(later.find({"/driver", kType, hash, 0}), "cells charge ");
 }
@@ -264,7 +264,7 @@ TEST(TypeFinder, AsksTheNodeWhatItsServiceLooksLike) {
     Finding finding(domain, {{ours.path()}, kept.path() / "types"});
     EXPECT_EQ(finding.find(offer), "slot ");
   }
-  // Nobody is there to be asked.
+  // No node can be asked any more.
   Finding later(domain, {{ours.path()}, kept.path() / "types"});
   EXPECT_EQ(later.find(offer), "slot ");
 }
