@@ -3,10 +3,10 @@
 //
 // Each culprit announces its claim by writers on the hidden topic /_culprit_lease. Their user data
 // hold the robot, the nodes, the start time, and the term; a culprit that takes over has a term one
-// higher than any before. The culprit with the highest term manages; among equal terms, the one that began
-// first, by its own clock; of two that began at once, the one with the lower id. All reach the same
-// result, so a robot has one manager also after a partitioned network has come together. If two
-// name different robots and the same node, the one that began first has that node.
+// higher than any before. The culprit with the highest term manages; among equal terms, the one
+// that began first, by its own clock; of two that began at once, the one with the lower id. All
+// reach the same result, so a robot has one manager also after a partitioned network has come
+// together. If two name different robots and the same node, the one that began first has that node.
 //
 // Each culprit writes a beat there every quarter of a second, as long as it receives its own
 // messages. A culprit that ends in order loses its lease at once. One whose beats stay away for
