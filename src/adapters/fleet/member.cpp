@@ -14,7 +14,7 @@
 
 namespace culprit::fleet {
 
-// Of the member and its thread, whichever lives longer.
+// Shared by the member and its thread, whichever lives longer.
 struct Member::State {
   explicit State(Options its_options)
       : options(std::move(its_options)), tail(options.journal), random(std::random_device()()) {}
