@@ -102,7 +102,7 @@ class RecoveryAction::Offer {
   }
 
   using Take = std::function<void(const Json& request, const Answer& answer)>;
-  // What is no request gets no answer: the services of actions have no word for it.
+  // Invalid requests get no answer: the services of actions have no field for an error.
   void serve(const std::string& part, const char* type_name, Take take) {
     const ServiceType& type = types_.service(type_name);
     const auto name = ros2::resolve_name(name_of(part), node_.name());

@@ -72,7 +72,7 @@ Expected<void> RosApi::describe_types(ros2::NodeEntry& node) {
   return {};
 }
 
-// What cannot be sent is a status more or less: the robot is healed without it.
+// If a message cannot be sent, the robot is healed without it.
 void RosApi::tell(Topic topic, const Json& message) {
   if (topic == Topic::kStatus) recovery_.told(message);
   const Told& told = told_[place_of(topic)];
