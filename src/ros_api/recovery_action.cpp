@@ -115,7 +115,7 @@ class RecoveryAction::Offer {
     if (server) {
       servers_.push_back(std::move(*server));
     } else {
-      troubles_.push_back("nobody can wait by " + *name + ": " + server.error());
+      troubles_.push_back("no goals are taken by " + *name + ": " + server.error());
     }
   }
 
@@ -124,7 +124,7 @@ class RecoveryAction::Offer {
     const MessageType& type = types_.message(type_name);
     auto publisher = ros2::RawPublisher::create(node_, name_of(part), type.name, qos, type.hash);
     if (publisher) return std::move(*publisher);
-    troubles_.push_back("who waits is told nothing by " + name_of(part) + ": " + publisher.error());
+    troubles_.push_back("culprit does not publish " + name_of(part) + ": " + publisher.error());
     return nullptr;
   }
 

@@ -304,13 +304,14 @@ TEST_F(Fleet, TroubleIsSaidOnceAndNothingIsLost) {
   std::int64_t happened = 1;
   const auto is_told = [&] { return sums().helped == happened; };
   const auto again = [&](int times) {
-    return robot.eventually([&] { return robot.times("told again") == times; });
+    return robot.eventually(
+        [&] { return robot.times("reach the fleet's database again") == times; });
   };
   EXPECT_TRUE(robot.says("cannot be kept for the fleet: "));
   fs::remove(outbox_beside(journal.path()));
   EXPECT_TRUE(robot.says("is kept for the fleet again"));
   EXPECT_EQ(robot.times("cannot be kept"), 1);
-  EXPECT_TRUE(robot.says("is not told what is learned: "));
+  EXPECT_TRUE(robot.says("no outcomes reach the fleet's database: "));
   journal.outcome("restart", true);
   std::this_thread::sleep_for(50ms);
   postgres->start();

@@ -555,8 +555,8 @@ void Recorder::tell_of_copy() {
   if (!options_.on_trouble) return;
   options_.on_trouble(copy_trouble_.empty()
                           ? "the second copy of what was learned is written again"
-                          : "what was learned stands in the journal alone, its second copy cannot "
-                            "be written: " +
+                          : "the second copy of what was learned cannot be written, so only the "
+                            "journal has it: " +
                                 copy_trouble_);
 }
 
@@ -580,9 +580,8 @@ void Recorder::tell_of_intents() {
   told_of_intents_ = trouble;
   if (!options_.on_trouble) return;
   options_.on_trouble(trouble.empty()
-                          ? "what is asked for stands beside the journal again before it goes out"
-                          : "what is asked for waits for the journal each time, which is slower: " +
-                                trouble);
+                          ? "requests are saved beside the journal again before they go out"
+                          : "each request waits for the journal now, which is slower: " + trouble);
 }
 
 // The journal has all.

@@ -74,7 +74,7 @@ class Trail {
     for (const Interrupted& each : open_) {
       const Strategy& strategy = rules_[each.strategy];
       given_up_.push_back(strategy.name + " for " + rules_[strategy.rule].name + ": " + why +
-                          ", so it is not gone on with");
+                          ", so it is not continued");
     }
     return {};
   }

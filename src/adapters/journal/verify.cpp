@@ -29,7 +29,7 @@ class Replayed {
       const auto row = beliefs_.find({each.rule, each.strategy});
       if (row == beliefs_.end() || row->second == each.belief) continue;
       findings.push_back("the belief in " + each.strategy + " of " + each.rule +
-                         " is not what its last row says");
+                         " differs from its last row");
     }
   }
 

@@ -238,7 +238,7 @@ TEST(Link, AsksANodeThatIsSaidToLeave) {
   (*forged)->write(
       encode_discovery_info({robot.context->participant().guid(), {}}, GidSize::kHumbleAndOlder));
   const auto leaves = [](const NodeVanished& n) { return n.node == "/robot"; };
-  EXPECT_TRUE(linked.wait<LinkTrouble>(tells("but it answers: it is taken to be there")));
+  EXPECT_TRUE(linked.wait<LinkTrouble>(tells("but it answers and counts as present")));
   EXPECT_FALSE(linked.wait<NodeVanished>(leaves, 500ms));
   std::promise<void> goes_on;
   std::thread hung([&] { robot.context.run([&] { goes_on.get_future().wait(); }); });

@@ -352,7 +352,7 @@ ComposedNodes::Answer ComposedNodes::unload(Container& container, const Errand& 
   if (!has_process(pid)) return {};
   if (has.outcome != Outcome::kDone) return stuck(has);
   if (!ids_of(part.node, has).empty() || !has_left)
-    return stuck({Outcome::kTimedOut, "it said that it did, and its node is still there"});
+    return stuck({Outcome::kTimedOut, "it reported success, but its node is still there"});
   if (errand.ending == Ending::kForGood) {
     const MutexLock lock(mutex_);
     lives_.erase(errand.component);
@@ -364,7 +364,7 @@ ComposedNodes::Answer ComposedNodes::unload(Container& container, const Errand& 
 std::string ComposedNodes::why_not_replace(const Container& container, int pid) const {
   if (!container.component)
     return "no COMPONENT has NODE " + container.node +
-           ", so it is not known who starts it; declare it with a LAUNCH or a UNIT";
+           ", so its owner is unknown; declare it with a LAUNCH or a UNIT";
   if (!rules_[*container.component].can_start_again())
     return rules_[*container.component].name + " has neither LAUNCH nor UNIT";
   std::set<std::string> others;
@@ -382,7 +382,7 @@ std::string ComposedNodes::why_not_replace(const Container& container, int pid) 
   }
   if (others.empty()) return "";
   return *others.begin() +
-         " lives there, too, and nobody could load it again; declare a COMPONENT with NODE " +
+         " lives there, too, and could not be loaded again; declare a COMPONENT with NODE " +
          *others.begin() + " IN " + container.node + " and its PLUGIN";
 }
 
@@ -421,7 +421,7 @@ ComposedNodes::Answer ComposedNodes::ensure(Container& container, Duration patie
         container.component ? rules_[*container.component].name : container.node;
     if (!container.component || !rules_[*container.component].can_start_again())
       return {Outcome::kRefused, "its container " + container.node +
-                                     " is not there, and the rules do not say who starts it; "
+                                     " is not there, and the rules name no owner for it; "
                                      "declare a COMPONENT with that NODE and a LAUNCH or a UNIT"};
     if (!is_coming(container)) {
       const Answer started = begin(container);
@@ -525,7 +525,7 @@ ComposedNodes::Answer ComposedNodes::load(Container& container, ComponentId part
   }
   if (has.outcome != Outcome::kDone) return {has.outcome, has.text};
   if (ids.empty())
-    return {Outcome::kRefused, container.node + " says that it loaded it, and does not list it"};
+    return {Outcome::kRefused, container.node + " reports that it loaded it, but does not list it"};
   return {Outcome::kDone, "", pid};
 }
 

@@ -91,10 +91,10 @@ std::variant<Bytes, ContainerAnswer> ContainerClients::call(const std::string& c
                            container + " did not answer within " + culprit::to_string(patience)};
   if (*under_way->outcome == CallOutcome::kUnreachable)
     return ContainerAnswer{Outcome::kUnreachable,
-                           container + " offers no services of a container that answer"};
+                           container + " offers no container services that answer"};
   if (under_way->process != pid)
     return ContainerAnswer{Outcome::kRefused,
-                           "somebody else answers for the container " + container +
+                           "another process answers for the container " + container +
                                ", and is not believed: it is not proven to be process " +
                                std::to_string(pid)};
   return std::move(under_way->reply);

@@ -230,7 +230,7 @@ Expected<UnitState> Engine::state_of(const std::string& container) {
   state.load_state = "loaded";
   state.main_pid = static_cast<int>(*pid);
   if (*status == "paused")
-    return Error{container + " is paused, and is left to whoever did that: " + program() +
+    return Error{container + " is paused, and culprit does not resume it: " + program() +
                  " unpause " + container};
   if (*status == "running") {
     if (state.main_pid == 0) return no_form(what);

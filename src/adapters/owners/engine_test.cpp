@@ -145,7 +145,7 @@ TEST_F(ContainersOnAStandInForDocker, ThatSomebodyPausedAreLeftToHim) {
 
 TEST_F(ContainersOnAStandInForDocker, ThatCannotStartSayWhereToLook) {
   engine.add("slam", {.is_broken = true});
-  EXPECT_THAT(start().text, HasSubstr("docker logs slam says why"));
+  EXPECT_THAT(start().text, HasSubstr("see docker logs slam"));
 }
 
 TEST_F(ContainersOnAStandInForDocker, AreNotEndedOnWordsThatMakeNoSense) {

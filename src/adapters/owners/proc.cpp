@@ -305,11 +305,10 @@ Expected<void> proc_is_of_our_processes() {
   // A kernel without PID namespaces tells none.
   if (is_our_number && numbers_of("self").size() <= 1) return {};
   return Error{
-      "/proc does not show culprit's own process: it is of another PID namespace, or there is "
-      "none, "
-      "and whoever goes by its numbers ends the wrong processes. Mount culprit's own (mount -t "
-      "proc "
-      "proc /proc); in a container take no /proc of the host's, but its namespace (--pid host)"};
+      "/proc does not show culprit's own process: it is of another PID namespace, or is not "
+      "mounted. By its PIDs culprit would end the wrong processes. Mount culprit's own "
+      "(mount -t proc proc /proc); in a container use not the host's /proc, but its PID namespace "
+      "(--pid host)"};
 }
 
 std::optional<Identity> identity_of(int pid) {

@@ -115,8 +115,8 @@ Expected<FileDescriptor> Supervisor::lock_start_of(ComponentId component) const 
       open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW, 0600));
   const std::string& name = rules_[component].name;
   if (!lock)
-    return Error{"cannot start " + name + ": the file that tells other culprits so, " +
-                 path.string() + ", cannot be made: " + std::strerror(errno)};
+    return Error{"cannot start " + name + ": its lock file, " + path.string() +
+                 ", cannot be made: " + std::strerror(errno)};
   if (flock(lock.get(), LOCK_EX | LOCK_NB) == 0) return Expected<FileDescriptor>(std::move(lock));
   return Error{errno == EWOULDBLOCK
                    ? name + " is being started already; look at what its program waits for"
@@ -310,11 +310,11 @@ std::optional<std::string> Supervisor::doubt(const Member& member) const {
   if (!identity && member.process.state() == ProcessState::kGone) return std::nullopt;
   const std::string process = "process " + std::to_string(pid);
   if (!identity || found == identities_.end())
-    return process + " is not ended: it cannot be seen what it runs";
+    return process + " is not ended: its program is unknown";
   if (*identity == found->second) return std::nullopt;
   return process + " is not ended: it runs " + to_string(*identity) + ", but " +
          rules_[member.component].name + " was " + to_string(found->second) +
-         "; if that is right, start culprit anew";
+         "; if that is right, restart culprit";
 }
 
 // A child of it may be the node.
@@ -403,7 +403,7 @@ std::optional<std::string> Supervisor::why_not_end(ComponentId component, Ending
   if (!is_left_to_launcher(component)) {
     if (!what.launch.empty() || ending == Ending::kForGood) return std::nullopt;
     return "the launcher of " + what.name +
-           " has ended, and nobody would start it again: it has no LAUNCH command";
+           " has exited, and nothing else would start it again: it has no LAUNCH command";
   }
   if (ending == Ending::kForGood)
     return what.name + " is RESPAWNED: its launcher would start it again";

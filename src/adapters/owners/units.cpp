@@ -37,14 +37,13 @@ std::string in_words(const UnitState& state, const std::string& unit) {
 Error not_loaded(const std::string& name, const UnitState& state, ServiceOwner& owner) {
   if (state.load_state != "not-found")
     return Error{owner.name() + " cannot use " + name + " (" + state.load_state +
-                 "); systemctl status says why"};
+                 "); see systemctl status"};
   std::string near;
   if (const auto all = owner.services()) {
     near = closest(name, std::vector<std::string_view>(all->begin(), all->end()));
   }
   return Error{owner.name() + " has no " + name +
-               (near.empty() ? "; " + owner.what_lists_all() + " says what it has"
-                             : "; did you mean " + near + "?")};
+               (near.empty() ? "; see " + owner.what_lists_all() : "; did you mean " + near + "?")};
 }
 
 Expected<void> could_manage_with(ServiceOwner& owner, const std::string& name) {
@@ -319,8 +318,8 @@ bool Units::watch_start(Errand& errand, const UnitState& state) {
   if (!state.has_job && state.is_over())
     return answer(errand, Outcome::kRefused,
                   owner_of(errand.component).name() +
-                      " could not start it: " + in_words(state, name) + "; " +
-                      owner_of(errand.component).where_to_look(name) + " says why");
+                      " could not start it: " + in_words(state, name) + "; see " +
+                      owner_of(errand.component).where_to_look(name));
   // The steps before the main process (ExecStartPre) may take long.
   return live_now() >= errand.until &&
          answer(errand, Outcome::kDone, owner_of(errand.component).name() + " is starting " + name);

@@ -139,7 +139,7 @@ FoundProcess ProcessFinder::prove(const ParticipantInfo& participant,
     // Every machine with containers has the address of a bridge, and it is the same one.
     if (!is_local(each.ip) && may_be_elsewhere) return {};
     if (!is_local(each.ip))
-      return {0, "it says that it is on this machine, but datagrams in its name come from " +
+      return {0, "it claims to be on this machine, but datagrams in its name come from " +
                      to_text(each)};
     addresses.push_back(each);
   }
@@ -167,8 +167,8 @@ FoundProcess ProcessFinder::prove(const ParticipantInfo& participant,
   std::string all;
   for (const UdpAddress& each : addresses) all += (all.empty() ? "" : ", ") + to_text(each);
   return {0,
-          "no process whose files can be seen holds all of its sockets (" + all +
-              ") alone; of another user's, culprit may see them only with CAP_SYS_PTRACE",
+          "no process with readable files holds all of its sockets (" + all +
+              ") alone; culprit may read another user's only with CAP_SYS_PTRACE",
           false, are_trusted};
 }
 
