@@ -128,7 +128,7 @@ TEST_F(Composed, NoContainerIsReplacedThatHasWhatNobodyCouldLoadAgain) {
   std::ofstream(keeps()) << "now";
   auto container = box({"/box", "/detector", "/tracker", "/planner"});
   const auto culprit = run(rules("") + kWeak);
-  EXPECT_TRUE(culprit.prints("/planner lives there, too, and nobody could load it again"))
+  EXPECT_TRUE(culprit.prints("/planner lives there, too, and could not be loaded again"))
       << culprit.output();
   EXPECT_TRUE(culprit.prints("DetectorWeak is exhausted")) << culprit.output();
   EXPECT_FALSE(container.wait(100ms)) << "the container was ended";
@@ -219,7 +219,7 @@ TEST_F(Composed, WhoOnlyOffersTheServicesOfAContainerIsNotBelieved) {
   ASSERT_TRUE(culprit.prints("DetectorWeak detected")) << culprit.output();
   std::filesystem::rename(world.write("seconds", "300"), stalls);  // only the forger answers
   ASSERT_TRUE(comes([&] { return !std::filesystem::exists(stalls); }));
-  EXPECT_TRUE(culprit.prints("somebody else answers for the container /box")) << culprit.output();
+  EXPECT_TRUE(culprit.prints("another process answers for the container /box")) << culprit.output();
   EXPECT_FALSE(container.wait(100ms)) << "the container was ended";
   EXPECT_EQ(asked, 0);
   executor.stop();

@@ -111,7 +111,7 @@ TEST_F(Neighbours, DoNotGoOnWithWhatWasUnderWayBeforeAnotherOneManaged) {
   ASSERT_EQ(second.wait(), -SIGKILL);
   ASSERT_TRUE(again.prints("this one manages the robot from now on")) << again.output();
   EXPECT_TRUE(again.prints("camera_redeploy for CameraGone: another culprit has managed the robot "
-                           "since, so it is not gone on with") ||
+                           "since, so it is not continued") ||
               again.prints("camera_redeploy for CameraGone: that was more than 1min ago", 1s))
       << again.output();
 }

@@ -155,7 +155,7 @@ TEST_F(SecuredRosApi, WatchesWithThePermissionsOfAnOlderCulpritAndSaysWhatTheyLa
   keys.add("/culprit", permissions_for(world, "/culprit/status"));
   auto culprit = run();
   ASSERT_TRUE(culprit->prints("culprit status")) << culprit->output();
-  EXPECT_THAT(culprit->output(), HasSubstr("nodes are told nothing by ~/status"));
+  EXPECT_THAT(culprit->output(), HasSubstr("culprit does not publish ~/status"));
   EXPECT_THAT(culprit->output(), HasSubstr("do the permissions of the enclave /culprit allow it?"));
   culprit->signal(SIGINT);
   EXPECT_EQ(culprit->wait(), 0);

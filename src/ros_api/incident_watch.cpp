@@ -28,7 +28,7 @@ std::string id_of(const std::string& rule, WallTime since) {
   return rule + "@" + std::to_string(ms / 1000) + "." + fraction.substr(1);
 }
 
-// What changes with the time alone is no news.
+// A field that changes with the time alone is no news.
 Json without_time(Json message) {
   message.erase("stamp");
   message.erase("next");
@@ -55,8 +55,9 @@ void IncidentWatch::note(std::span<const Event> events, const RuleSet& rules) {
   }
 }
 
-// The one that has the same cause, else one that has a failure in common and whose cause none of all
-// incidents has, else a new one. `taken`: by ids, those that other incidents are.
+// Finds the followed incident with the same root cause. Otherwise one that shares a failure, and
+// whose root cause no present incident has; otherwise a new one. `taken`: the ids that other
+// incidents have.
 IncidentWatch::Followed& IncidentWatch::followed(const live::Incident& incident,
                                                  const std::set<std::string>& rules,
                                                  const std::set<std::string>& roots,

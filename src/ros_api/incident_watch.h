@@ -1,9 +1,9 @@
-// Follows incidents (live/situation.h) from their beginning to their end, by the names of the rules that
-// fail. Where another manager begins, for the rules were reloaded, say, what it does not see yet is lost:
-// if it is there still, it is another one.
+// Follows incidents (live/situation.h) from their beginning to their end, by the names of the rules
+// that fail. If another manager begins, for example after the rules were reloaded, an incident that
+// it does not report yet counts as lost. If its failure has not cleared, it becomes a new incident.
 //
-// What a reader of /culprit/incidents is told: one message when an incident begins, one when something about
-// it changed, at most every kPeriod, and one when it is over.
+// Each incident gives these messages on /culprit/incidents: one when it begins, one when something
+// about it has changed, at most every kPeriod, and one when it is over.
 #pragma once
 
 #include <functional>
@@ -29,7 +29,7 @@ class IncidentWatch {
 
   explicit IncidentWatch(const CulpritTypes& types) : types_(types) {}
 
-  // What happened since it was called last: how failures ended.
+  // Takes the events since the last call: how failures ended.
   void note(std::span<const Event> events, const RuleSet& rules);
 
   // Messages for the topic. `all` are the incidents now, `wall` is the time on the wall of `now`.

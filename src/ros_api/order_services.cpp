@@ -99,7 +99,7 @@ std::vector<std::string> OrderServices::open(ros2::NodeEntry& node) {
   return troubles;
 }
 
-// Nobody waits for an answer that does not come, whatever was sent.
+// Every request gets an answer, whatever its bytes, so that no client waits in vain.
 void OrderServices::take(const ServiceType& type, ros2::WorkerThread& worker,
                          ros2::ByteView request, const ros2::ServiceServer::Answer& answer) {
   const auto say = [&type, answer](const Json& said) {

@@ -102,7 +102,7 @@ class RecoveryAction::Offer {
   }
 
   using Take = std::function<void(const Json& request, const Answer& answer)>;
-  // What is no request gets no answer: the services of actions have no word for it.
+  // Invalid requests get no answer: the services of actions have no field for an error.
   void serve(const std::string& part, const char* type_name, Take take) {
     const ServiceType& type = types_.service(type_name);
     const auto name = ros2::resolve_name(name_of(part), node_.name());
@@ -115,7 +115,7 @@ class RecoveryAction::Offer {
     if (server) {
       servers_.push_back(std::move(*server));
     } else {
-      troubles_.push_back("nobody can wait by " + *name + ": " + server.error());
+      troubles_.push_back("no goals are taken by " + *name + ": " + server.error());
     }
   }
 
@@ -124,7 +124,7 @@ class RecoveryAction::Offer {
     const MessageType& type = types_.message(type_name);
     auto publisher = ros2::RawPublisher::create(node_, name_of(part), type.name, qos, type.hash);
     if (publisher) return std::move(*publisher);
-    troubles_.push_back("who waits is told nothing by " + name_of(part) + ": " + publisher.error());
+    troubles_.push_back("culprit does not publish " + name_of(part) + ": " + publisher.error());
     return nullptr;
   }
 

@@ -48,7 +48,7 @@ std::string summary_of(const std::vector<Json>& incidents, const Manager& manage
   return manager.governor().is_paused() ? text + " [paused]" : text;
 }
 
-// What changes with the time alone is no news.
+// A field that changes with the time alone is no news.
 Json without_times(Json status) {
   status.erase("stamp");
   for (Json& incident : status["incidents"]) {
@@ -64,7 +64,7 @@ void Teller::begins(const Manager& manager, std::function<Remarks()> remarks, Ti
   manager_ = &manager;
   remarks_ = std::move(remarks);
   situation_.forget();
-  // Of the node that comes with it nothing was told yet.
+  // The new node has published nothing yet.
   told_ = nullptr;
   may_have_changed_ = true;
   is_new_manager_ = true;

@@ -1,4 +1,4 @@
-// What readers are told while a robot is healed, in virtual time.
+// Checks the messages to readers while a robot is healed, in virtual time.
 #include "ros_api/teller.h"
 
 #include <gmock/gmock.h>

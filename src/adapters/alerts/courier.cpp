@@ -23,7 +23,7 @@ constexpr Duration kAfterThat = 500ms;
 
 Outbox::Limits limits_for(const Destination& destination) {
   Outbox::Limits limits;
-  // What is not sent again Alertmanager takes for over after five minutes (resolve_timeout).
+  // Alertmanager resolves an alert that is not repeated within five minutes (resolve_timeout).
   if (destination.kind == Destination::Kind::kAlertmanager) limits.repeat = 1min;
   return limits;
 }

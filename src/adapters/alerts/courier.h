@@ -16,7 +16,7 @@ class Courier {
   // `tell` is told, from any thread, what could not be sent and when it can be again; nothing of it is
   // secret. A name server that hangs may delay it beyond the end of the courier.
   Courier(std::vector<Destination> destinations, std::function<void(const std::string&)> tell);
-  // What can be sent in a moment is sent before it ends; the rest is told.
+  // Sends the alerts that can be sent in a moment before it ends, and logs how many are lost.
   ~Courier();
 
   // Does not wait for anybody. From any thread.

@@ -81,7 +81,7 @@ void Outbox::sent(Time now) {
   if (!is_repeated) tokens_ -= std::min<std::size_t>(1, tokens_);
   if (!limits_.repeat) return;
   firing_.erase(alert.id);
-  // What waits about it is newer, and may say that it is over.
+  // A newer alert about it waits, which may say that it is over.
   if (alert.state == Alert::State::kResolved) return;
   firing_[alert.id] = {alert, later(now, *limits_.repeat)};
 }

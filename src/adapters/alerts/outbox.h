@@ -31,12 +31,12 @@ class Outbox {
   // It replaces what waits about the same fault.
   void put(Alert alert, Time now);
 
-  // What is to be sent now; nothing: nothing is. Until sent() or failed(), the same is given.
+  // The alert to be sent now; nothing: none. Until sent() or failed(), the same is given.
   std::optional<Alert> next(Time now);
   // When to look again; kNever: not before something is put.
   Time due() const;
 
-  // What next() gave last was sent. @pre it gave one
+  // The alert that next() returned last was sent. @pre it gave one
   void sent(Time now);
   // It was not. `is_final`: nor would it be at another try, and is given up. @pre likewise
   void failed(Time now, bool is_final);

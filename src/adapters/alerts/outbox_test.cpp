@@ -16,7 +16,7 @@ Alert alert(const std::string& id, Alert::State state = Alert::State::kFiring,
   return alert;
 }
 
-// What is sent, one after the other, by a destination that takes everything.
+// The alerts that are sent, one after the other, if the destination accepts everything.
 std::string sent_by(Outbox& outbox, Time now) {
   std::string ids;
   while (const auto next = outbox.next(now)) {

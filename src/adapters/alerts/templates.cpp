@@ -52,8 +52,9 @@ Json slack(const Alert& alert) {
   return {{"text", text}, {"unfurl_links", false}};
 }
 
-// What POST /api/v2/alerts takes (prometheus.io/docs/alerting/latest/alerts_api). Labels tell alerts apart:
-// they stay the same until it is over. So a fault that a person is needed for is a second alert beside the first.
+// The body of POST /api/v2/alerts (prometheus.io/docs/alerting/latest/alerts_api). Labels tell
+// alerts apart: they stay the same until it is over. So a fault that a person is needed for is a
+// second alert beside the first.
 Json alertmanager(const Alert& alert) {
   Json all = Json::array();
   for (const char* name : {"CulpritFault", "CulpritNeedsPerson"}) {

@@ -304,13 +304,14 @@ TEST_F(Fleet, TroubleIsSaidOnceAndNothingIsLost) {
   std::int64_t happened = 1;
   const auto is_told = [&] { return sums().helped == happened; };
   const auto again = [&](int times) {
-    return robot.eventually([&] { return robot.times("told again") == times; });
+    return robot.eventually(
+        [&] { return robot.times("reach the fleet's database again") == times; });
   };
   EXPECT_TRUE(robot.says("cannot be kept for the fleet: "));
   fs::remove(outbox_beside(journal.path()));
   EXPECT_TRUE(robot.says("is kept for the fleet again"));
   EXPECT_EQ(robot.times("cannot be kept"), 1);
-  EXPECT_TRUE(robot.says("is not told what is learned: "));
+  EXPECT_TRUE(robot.says("no outcomes reach the fleet's database: "));
   journal.outcome("restart", true);
   std::this_thread::sleep_for(50ms);
   postgres->start();
@@ -337,7 +338,7 @@ TEST_F(Fleet, TroubleIsSaidOnceAndNothingIsLost) {
                 "DELETE FROM culprit.schema_version WHERE version = 99", "newer culprit"},
            Case{"ALTER ROLE rover NOLOGIN", "ALTER ROLE rover LOGIN", "not permitted to log in"},
        }) {
-    // Of the owner's own sessions the first one would keep the owner from mending it.
+    // Without this, a read-only database would also keep its owner's session from mending it.
     postgres->run("ALTER ROLE postgres SET default_transaction_read_only = off");
     postgres->run(each.breaks);
     journal.begins();
@@ -613,7 +614,7 @@ TEST_F(Fleet, ADatabaseIsSetUpAsOftenAsOneLikes) {
   const auto again = set_up(owner, {});
   ASSERT_TRUE(again) << again.error();
   EXPECT_TRUE(again->empty()) << again->front();
-  // What is older than it is kept goes with its month.
+  // Rows older than the retention period are dropped with their month.
   postgres->run(
       "CREATE TABLE culprit.failure_2019_01 PARTITION OF culprit.failure FOR VALUES FROM "
       "('2019-01-01') TO ('2019-02-01')");

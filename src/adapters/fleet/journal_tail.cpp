@@ -21,7 +21,7 @@ Expected<bool> has_run(const journal::Reader& reader, std::int64_t row, const st
   return first.run()->id == run;
 }
 
-// What was improvised has none.
+// An improvised strategy has none.
 std::map<StrategyName, std::string> definitions_in(const std::string& rules_text) {
   const Checked checked = check(Source("rules", rules_text));
   return checked.rules ? definitions_of(*checked.rules) : std::map<StrategyName, std::string>();

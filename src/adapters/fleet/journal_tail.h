@@ -20,7 +20,7 @@ class JournalTail {
   // Errors: the journal cannot be read, or the outbox not be written.
   Expected<void> follow(Outbox& outbox, const std::atomic<bool>& stop);
 
-  // That goes on now; nothing: there is none yet.
+  // The run under way; nothing: none yet.
   const std::optional<Run>& run() const { return tally_.run(); }
 
  private:

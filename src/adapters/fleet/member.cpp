@@ -14,7 +14,7 @@
 
 namespace culprit::fleet {
 
-// Of the member and its thread, whichever lives longer.
+// Shared by the member and its thread, whichever lives longer.
 struct Member::State {
   explicit State(Options its_options)
       : options(std::move(its_options)), tail(options.journal), random(std::random_device()()) {}
@@ -190,8 +190,8 @@ void Member::State::work() {
   const Duration retry =
       std::min(options.pace.retry_most, options.pace.retry * (1 << std::min(failures, 10)) / 2);
   visit_at = later(live_now(), jittered(visited ? options.pace.visit : retry));
-  tell_of("the fleet's database is not told what is learned: ", said_of_database,
-          visited ? "" : visited.error(), "the fleet's database is told again what is learned");
+  tell_of("no outcomes reach the fleet's database: ", said_of_database,
+          visited ? "" : visited.error(), "outcomes reach the fleet's database again");
 }
 
 // News waits for more, unless somebody has to look.
@@ -263,7 +263,7 @@ void Member::State::tell_of_dropped() {
   if (!dropped || *dropped <= said_dropped) return;
   said_dropped = *dropped;
   trouble("too much waits for the fleet's database: " + std::to_string(*dropped) +
-          " of the oldest outcomes and failures were dropped and will never be told");
+          " of the oldest outcomes and failures were dropped and will never be sent");
 }
 
 // Each strategy once.

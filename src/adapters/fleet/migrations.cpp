@@ -271,8 +271,8 @@ GRANT INSERT (robot, run, row, incident, rule, criticality, component, began, en
   ON culprit.failure TO culprit_robot;
 )sql";
 
-// Whose a row is was found by listing all robots of the login, in each statement: 20 ms where 10,000 share one. Now
-// its own robot is looked up.
+// To find a row's owner, each statement listed all robots of the login: 20 ms if 10,000 share one.
+// Now its own robot is looked up.
 constexpr const char* kRightsByRow = R"sql(
 ALTER POLICY own ON culprit.run
   USING (EXISTS (SELECT FROM culprit.robot r WHERE r.robot = run.robot AND r.login = session_user))

@@ -88,7 +88,7 @@ TEST(Outbox, IsBoundedAndKnowsWhatItDropped) {
     failures.push_back(failure_at(row));
   ASSERT_TRUE(outbox.keep(kRun, {}, {}, failures));
   EXPECT_EQ(*outbox.dropped(), 0);
-  // What was sent goes first.
+  // Sent rows go first.
   ASSERT_TRUE(outbox.sent({{}, {}, {{kRun.id, failures[100]}}}));
   ASSERT_TRUE(outbox.keep(kRun, {}, {}, {failure_at(Outbox::kMostFailures + 1)}));
   EXPECT_EQ(*outbox.dropped(), Outbox::kMostFailures / 20);

@@ -13,7 +13,7 @@
 
 namespace culprit::fleet {
 
-// What is known of one strategy.
+// The outcomes of one strategy.
 struct StrategyKnowledge {
   std::map<std::string, RobotOutcomes> models;  // this robot's outcomes included, where it has any
   // This robot's share of those: fading as they do, and in all.

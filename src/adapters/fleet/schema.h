@@ -12,10 +12,10 @@
 
 namespace culprit::fleet {
 
-// Of databases that this culprit speaks with.
+// The version of the databases that this culprit can use.
 int schema_version();
 
-// What was done, one line each.
+// The changes that were made, one line each.
 using Done = std::vector<std::string>;
 
 struct Setup {

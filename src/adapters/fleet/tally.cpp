@@ -21,7 +21,7 @@ std::string digest_of_text(const std::string& text) {
   return journal::to_hex(hasher.of(text)).substr(0, 16);
 }
 
-// Whom a decision holds responsible for this failure.
+// The component that a decision holds responsible for this failure.
 std::string blamed_in(const Json& body) {
   const Json suspects = body.value("suspects", Json::array());
   if (suspects.is_array() && !suspects.empty() && suspects[0].is_object())

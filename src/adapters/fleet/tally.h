@@ -1,9 +1,9 @@
-// What the rows of a journal add up to for a fleet: how often each strategy helped, and the failures
-// of each run. Pure: the same rows give the same sums, so a process that was killed in between
-// begins anew with the first row of the run, and nothing is counted twice.
+// Adds up the rows of a journal for a fleet: how often each strategy helped, and the failures of
+// each run. Pure: the same rows give the same sums. So a process that was killed in between begins
+// anew with the first row of the run, and nothing is counted twice.
 //
-// A run is what follows one `session` row, and is called by the hash of that row: no two runs of all
-// robots have the same, and a copy of a journal goes on with rows, and runs, of its own.
+// A run is the rows after one `session` row, and its id is the hash of that row. No two runs of all
+// robots have the same id, and a copy of a journal goes on with rows, and runs, of its own.
 #pragma once
 
 #include <cstdint>
@@ -60,7 +60,7 @@ class Tally {
   // `hash`: of the row. Rows come in their order.
   void take(const journal::Entry& entry, std::string_view hash);
 
-  // Of the newest run; nothing: no row of a run was there yet.
+  // The newest run; nothing: no row of a run yet.
   const std::optional<Run>& run() const { return run_; }
   const std::string& rules_text() const { return rules_text_; }
   const std::map<StrategyName, Counts>& counts() const { return counts_; }

@@ -100,7 +100,7 @@ struct Followed : Folded {
   const std::atomic<bool> stop = false;
 };
 
-// Whoever follows may be killed at any instant, and begins anew with the run.
+// The process that follows may be killed at any instant, and begins anew with the run.
 TEST_F(Followed, NothingIsCountedTwiceHoweverOftenTheJournalIsReadAnew) {
   JournalTail kept(journal.path());
   for (int run = 0; run < 4; ++run) {

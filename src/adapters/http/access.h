@@ -1,11 +1,11 @@
-// Who may ask for what. Web pages of other sites reach a server on this machine through the user's
-// browser, so what counts is not only where a request comes from.
+// Decides which request is allowed. Web pages of other sites reach a server on this machine through
+// the user's browser, so the source address alone does not decide.
 //
 // - Host has to name this server: an address, "localhost", or a name that was allowed. A page that
 //   had its own name resolved to this machine (DNS rebinding) still sends its own name.
 // - Origin, where a browser sends it, has to be this server's.
-// - A token allows what its role does (look < operate < administer). What changes anything needs one; from beyond this
-//   machine, everything does.
+// - A token allows the calls of its role (look < operate < administer). A call that changes
+//   anything needs one; from beyond this machine, every call does.
 #pragma once
 
 #include <cstdint>

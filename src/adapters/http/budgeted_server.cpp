@@ -71,7 +71,7 @@ class Connection final : public httplib::Stream {
   ssize_t read(char* to, std::size_t size) override {
     if (at_ == end_ && !fill()) return is_over_ ? 0 : -1;
     size = std::min(size, end_ - at_);
-    // Of a header no more than to its end, for what follows counts as the body.
+    // While the header is read, no more than to its end, for the bytes after it count as the body.
     if (line_ends_ < kEndOfHeader.size()) size = 1;
     std::size_t& spent = line_ends_ < kEndOfHeader.size() ? header_ : body_;
     const std::size_t limit =

@@ -24,7 +24,7 @@ class EventStream {
   // `hub` must outlive the stream. `last_event_id` is what the reader sent, of any content.
   EventStream(Hub& hub, const std::string& last_event_id);
 
-  // What to send next; waits for it. Nothing when the stream is over.
+  // Waits for the next text to send. Nothing: the stream is over.
   std::optional<std::string> next();
 
  private:

@@ -33,10 +33,10 @@ class LocalClient {
   LocalClient with_patience(Duration patience) const { return {socket_, patience, user_}; }
   std::uint32_t user() const { return user_; }
 
-  // What it answered, refusals too. Errors: nobody listens, or no whole answer came in time.
+  // Its answer, refusals too. Errors: no server listens, or no whole answer came in time.
   Expected<Answer> ask(Method method, const std::string& path, const Json& body = nullptr,
                        std::size_t most_bytes = kUsualAnswer) const;
-  // Of a call that only looks. Errors: likewise, and what it refused with.
+  // The answer to a call that only looks. Errors: as above, and the text of a refusal.
   Expected<Json> get(const std::string& path, std::size_t most_bytes = kUsualAnswer) const;
 
   // The same call of several, at once: none waits for another one. Answers in the order of `clients`;

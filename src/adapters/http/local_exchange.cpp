@@ -99,7 +99,7 @@ class Exchange {
     ucred peer{};
     socklen_t length = sizeof peer;
     if (getsockopt(socket_, SOL_SOCKET, SO_PEERCRED, &peer, &length) != 0)
-      return fail("the kernel does not say who listens there");
+      return fail("the kernel does not show which user listens there");
     if (peer.uid != request_.user && peer.uid != 0)
       return fail("a process of another user (" + std::to_string(peer.uid) + ") listens there");
     process_ = peer.pid;

@@ -44,7 +44,7 @@ bool has_body(const httplib::Request& request) {
   return request.has_header("Content-Length") && request.get_header_value("Content-Length") != "0";
 }
 
-// What tells of the robot; the app itself and whether culprit lives are no secrets.
+// Data about the robot need a token; the app itself, and whether culprit runs, are no secrets.
 bool is_api(const httplib::Request& request) {
   return request.path.rfind("/api/", 0) == 0 || request.path == "/metrics";
 }
@@ -239,7 +239,7 @@ class Server::Http {
   const Options& options() const { return options_; }
 
  private:
-  // What a process that had this number has left behind is in the way.
+  // An earlier process with the same PID may have left a socket file in the way.
   bool bind_to_socket() {
     unlink(options_.socket.c_str());
     server_.set_address_family(AF_UNIX);
@@ -288,15 +288,15 @@ class Server::Http {
     return Role::kAdminister;
   }
 
-  // Addresses say little of who asks: everybody on this machine has the same one. What the owner
-  // of the token changes is counted by itself, so that nobody without the token can delay it.
+  // An address says little about the client: all users of this machine share one. Changes by the
+  // owner of the token have a limit of their own, so that nobody without the token can delay them.
   bool is_within_limits(const httplib::Request& q, bool has_token) {
     const auto now = RateLimit::Clock::now();
     if (has_token && changes(q)) return owner_limit_.allows("", now);
     return limit_.allows(q.remote_addr, now);
   }
 
-  // What this server offers: a page shows no more than that.
+  // The calls that this server offers: a page shows no more than that.
   Json about() const {
     Json calls = Json::array();
     if (hub_ != nullptr) calls.push_back("get /api/stream");
@@ -353,7 +353,7 @@ class Server::Http {
   }
 
   void stream(const httplib::Request& q, httplib::Response& r) {
-    // Whoever asks for something else needs a connection, too.
+    // Other requests need a connection, too.
     const std::size_t most = std::min(kMostStreams, (most_connections_ + 1) / 2);
     if (++streams_ > static_cast<int>(most)) {
       --streams_;

@@ -32,7 +32,7 @@ class Server {
   static constexpr std::size_t kMostConnections = 128;
   static constexpr std::size_t kMostStreams = 64;
   static constexpr std::size_t kMostBytes = 1 << 20;  // of a request's body
-  // Of one address, in the long run; and again as many changes with the token.
+  // The limit for one address, in the long run; and again as many changes with the token.
   static constexpr double kRequestsPerSecond = 50;
   static constexpr double kBurst = 200;
 
@@ -58,7 +58,7 @@ class Server {
   ~Server();
 
   int port() const;
-  // What to type into a browser, token included.
+  // The address to type into a browser, token included.
   std::string address() const;
 
  private:

@@ -320,7 +320,7 @@ TEST_F(WebServer, RefusesPagesOfOtherSites) {
   EXPECT_EQ(post(with("Origin", "null")), 403);
   EXPECT_EQ(post(with("Sec-Fetch-Site", "cross-site")), 403);
   EXPECT_EQ(client().Get("/api/echo", {{"Sec-Fetch-Site", "cross-site"}})->status, 403);
-  // What a form can send without asking.
+  // A content type that a form can send without a preflight request.
   EXPECT_EQ(post(with_token, "{}", "text/plain"), 415);
   EXPECT_EQ(client().Options("/api/echo")->status, 401);
 }
@@ -671,7 +671,7 @@ TEST_F(LocalServer, IsFollowedUntilItEnds) {
   EXPECT_THAT(kinds, testing::IsSupersetOf({"hello", "state"}));
 }
 
-// Whoever is stopped takes connections all the same: its kernel does.
+// A stopped process accepts connections all the same: its kernel does.
 TEST(LocalClients, DoNotWaitForEverForWhoDoesNotAnswer) {
   const test::TestFolder folder;
   const std::string path = folder / "s";

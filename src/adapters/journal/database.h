@@ -33,7 +33,7 @@ class Statement {
   // be bound and stepped anew.
   Expected<bool> step();
 
-  // Of the present row, from 0. Texts and blobs are valid until the next step.
+  // The columns of the present row, from 0. Texts and blobs are valid until the next step.
   std::int64_t integer(int column) const;
   double real(int column) const;
   std::string_view bytes(int column) const;
@@ -71,7 +71,7 @@ class Database {
   // the file is locked or may not be written.
   bool blames_file() const { return *blames_file_; }
 
-  // Likewise of a file that cannot be opened, or in which one of `looks` fails.
+  // As blames_file(), for a file that cannot be opened, or in which one of `looks` fails.
   static bool is_damaged(const std::filesystem::path& path, std::span<const char* const> looks);
   // Moves a file and what SQLite keeps beside it to the first free name, "<path>.damaged-<n>".
   static Expected<std::filesystem::path> set_aside(const std::filesystem::path& path);

@@ -2,8 +2,8 @@
 //
 //     hash_n = SHA-256( hash_(n-1) | n | at | size of kind | kind | body )
 //
-// Numbers are 8 bytes, most significant first; hash_0 is 32 zero bytes. Whoever changes, removes or
-// inserts a row has to change every hash after it.
+// Numbers are 8 bytes, most significant first; hash_0 is 32 zero bytes. A change to a row, a
+// removed row or an inserted one changes every hash after it.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace culprit::journal {
 
-// What a row is about. These words stand in files: they must not change.
+// The kinds of rows. These words stand in files: they must not change.
 namespace kind {
 inline constexpr std::string_view kSession = "session";    // culprit began to manage
 inline constexpr std::string_view kSteps = "steps";        // what the manager was stepped with

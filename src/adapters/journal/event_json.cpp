@@ -309,7 +309,7 @@ class EventReader {
     return what;
   }
 
-  // Whom it is about has the same name in every event.
+  // Every event names its subject by the same members.
   template <class T>
   std::optional<What> read() const {
     T event{};
@@ -329,7 +329,7 @@ class EventReader {
     return event;
   }
 
-  // What else the row tells; false if the event is nothing without what is missing.
+  // Reads the other members of the row; false if a member is missing that the event needs.
   template <class T>
   bool complete(T& event) const {
     if constexpr (requires { event.adaptation; }) {

@@ -1,5 +1,5 @@
-// What runs of culprit did on this robot, as the next one remembers it (knowledge/history.h): gathered
-// from rows, and carried on from session to session until it no longer counts.
+// The events of earlier runs on this robot, as the next run remembers them (knowledge/history.h):
+// gathered from rows, and carried on from session to session until they no longer count.
 #pragma once
 
 #include "journal/json.h"
@@ -7,8 +7,8 @@
 
 namespace culprit::journal {
 
-// Nothing counts for longer, but silences, what was tried on failures that are still there,
-// and of each component its last process and its intended lifecycle.
+// Events count no longer than this. Exceptions: mutes, attempts on failures that have not cleared,
+// and of each component its last process and its intended lifecycle state.
 inline constexpr Duration kPastCounts = std::chrono::hours(1);
 
 // Is it one that the next run is told of (knowledge/history.h)?

@@ -1,8 +1,9 @@
-// What a culprit that takes a robot over has to know of the one that managed it on another machine:
-// what was learned, and what was tried and spent. (What people have ordered: standing_orders.h.)
+// The knowledge that a culprit needs when it takes a robot over from one on another machine: what
+// that one has learned, tried and spent. (Orders of people: standing_orders.h.)
 //
-// As text, by names, with a version: {"version": 1, "learned": ..., "past": [...]}. What belongs to
-// the other machine is left out: its processes' numbers, and verdicts that nobody looked on for.
+// As text, by names, with a version: {"version": 1, "learned": ..., "past": [...]}. It leaves out
+// what belongs to the other machine: the PIDs of its processes, and verdicts whose time passed
+// while no culprit ran.
 #pragma once
 
 #include <string>
@@ -27,7 +28,8 @@ struct Inheritance {
 // Is it told to a successor?
 bool is_inherited(const Event& event);
 
-// What a manager leaves to a successor, gathered while it manages: each event becomes text once.
+// The events and beliefs that a manager leaves to a successor, gathered while it manages: each
+// event becomes text once.
 class Bequest {
  public:
   // `rules` must outlive it.
@@ -54,11 +56,11 @@ std::string to_text(const Inheritance& inheritance, const RuleSet& rules, std::s
 Expected<Inheritance> inheritance_from_text(const std::string& text, const RuleSet& rules,
                                             Duration shift, Time now);
 
-// What `theirs` was told to have learned replaces what was learned here; the rest stays.
+// Each part that `theirs` has replaces the same part of `ours`; the rest stays.
 void inherit(Learned& ours, const Learned& theirs);
 
-// In the order in which it happened, and once: what was told of here (this culprit had managed
-// before, and told it) is in both, at times that differ by what the way here takes.
+// Joins both in the order of time, each event once. An event that this culprit sent earlier, when
+// it managed, is in both; its times differ by the delay of the way back.
 History joined(const History& ours, const History& theirs, const RuleSet& rules);
 
 }  // namespace culprit::journal

@@ -28,7 +28,7 @@ Json body_of(const LearnedBelief& learned);
 Json body_of(const LearnedCoupling& learned);
 Json body_of(const LearnedLatency& learned);
 
-// What the copy says, and what the rows of `journal` that are newer say after it.
+// The copy's content, with the newer rows of `journal` applied.
 Expected<Learned> brought_up_to_date(const LearnedCopy& copy, const Database& journal);
 
 // Whether both say the same, in whatever order.

@@ -13,7 +13,7 @@ namespace {
 // A person was told that it holds.
 bool is_order(const Event& event) { return std::holds_alternative<OrderAccepted>(event.what); }
 
-// What `news` speaks of is now as `news` says.
+// Replaces each part of `learned` that `news` has.
 void replace(Learned& learned, const Learned& news) {
   for (const LearnedBelief& each : news.beliefs) {
     std::erase_if(learned.beliefs, [&](const LearnedBelief& old) {
@@ -206,7 +206,7 @@ void Recorder::hand_over(Urgency urgency) {
   }
   const bool is_due = now_of_queue_ - first_queued_ >= kPeriod || queued_observations_ >= kMany;
   urgency_ = std::max({urgency_, urgency, is_due ? Urgency::kSoon : Urgency::kNone});
-  // Whoever waits wakes it.
+  // The thread that waits for the rows wakes the writer.
   if (urgency_ == Urgency::kSoon || urgency_ == Urgency::kSynced) is_writer_needed_ = true;
 }
 
@@ -243,7 +243,7 @@ void Recorder::decide(Pending& step, std::span<const Command> commands,
     add_row(kind::kIntent, line_of(command, rules_));
   }
   if (decision.rows.empty()) return;
-  // What of it was known before is among them.
+  // Rows that were kept for this step earlier are among them.
   if (decision.number == 0) decision.number = ++decisions_;
   remember_rows(decision);
 }
@@ -322,8 +322,8 @@ std::optional<KnownRobot> Recorder::newly_known(Time now) {
   const bool is_old = robot_written_ != kLongAgo && later(robot_written_, kRobotAtLatest) <= now;
   const bool was_looked_at =
       robot_looked_at_ != kLongAgo && now < later(robot_looked_at_, kRobotPeriod);
-  // What is seen for the first time is written at once: who dies together with culprit would never
-  // have been there. That is seldom; ends of topics come and go all the time.
+  // A first sighting is written at once: if the node died together with culprit, the journal would
+  // otherwise lack it. First sightings are rare; topics' publishers come and go all the time.
   const bool is_first_sight = sightings != robot_sightings_;
   if ((changes == robot_changes_ && !is_old) || (was_looked_at && !is_first_sight))
     return std::nullopt;
@@ -459,7 +459,7 @@ void Recorder::add(std::string_view kind, std::int64_t at, const Json& body) {
   add({0, at, std::string(kind), to_line(body)});
 }
 
-// What a step led to stands behind the row that the step is in.
+// The results of a step follow the row that holds the step.
 void Recorder::add(Entry row) {
   close_steps();
   unsaved_bytes_ += row.body.size();
@@ -555,8 +555,8 @@ void Recorder::tell_of_copy() {
   if (!options_.on_trouble) return;
   options_.on_trouble(copy_trouble_.empty()
                           ? "the second copy of what was learned is written again"
-                          : "what was learned stands in the journal alone, its second copy cannot "
-                            "be written: " +
+                          : "the second copy of what was learned cannot be written, so only the "
+                            "journal has it: " +
                                 copy_trouble_);
 }
 
@@ -580,9 +580,8 @@ void Recorder::tell_of_intents() {
   told_of_intents_ = trouble;
   if (!options_.on_trouble) return;
   options_.on_trouble(trouble.empty()
-                          ? "what is asked for stands beside the journal again before it goes out"
-                          : "what is asked for waits for the journal each time, which is slower: " +
-                                trouble);
+                          ? "requests are saved beside the journal again before they go out"
+                          : "each request waits for the journal now, which is slower: " + trouble);
 }
 
 // The journal has all.

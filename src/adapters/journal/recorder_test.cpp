@@ -1,4 +1,5 @@
-// What is on the disk when, and what becomes of rows that cannot be written yet.
+// Checks which rows are on the disk at which time, and what happens to rows that cannot be written
+// yet.
 #include "journal/recorder.h"
 
 #include <csignal>
@@ -149,7 +150,8 @@ TEST_F(RecordingHere, ARequestThatIsReadBackIsBesideTheJournalBeforeItGoesOut) {
   EXPECT_THAT(beside(path), IsEmpty());
 }
 
-// Whoever is killed in between leaves the intent; the journal need not wait for its next time.
+// A culprit that is killed in between leaves the intent; the journal need not wait for its next
+// time.
 TEST_F(RecordingHere, TheJournalFollowsWhenTheRequestIsOut) {
   const auto recorder = begin();
   sees_a_failure(*recorder);

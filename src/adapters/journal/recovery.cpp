@@ -74,7 +74,7 @@ class Trail {
     for (const Interrupted& each : open_) {
       const Strategy& strategy = rules_[each.strategy];
       given_up_.push_back(strategy.name + " for " + rules_[strategy.rule].name + ": " + why +
-                          ", so it is not gone on with");
+                          ", so it is not continued");
     }
     return {};
   }
@@ -84,8 +84,8 @@ class Trail {
   static std::int64_t first_step(const Entry& steps) { return ByteReader(steps.body).integer(); }
 
   void event(const Json& body) {
-    // What ends a strategy does so even if the rules no longer have it. A failure is held back
-    // only while no strategy of its own is under way.
+    // An event that ends a strategy does so even if the rules no longer have that strategy. A
+    // failure is held back only while no strategy of its own is under way.
     constexpr std::array kEnds = {kKindOf<FailureResolved>, kKindOf<FailureLost>,
                                   kKindOf<FailureHeldBack>, kKindOf<RoundSpent>,
                                   kKindOf<RuleExhausted>,   kKindOf<StrategyAbandoned>,
@@ -196,7 +196,7 @@ Expected<KnownRobot> find_known_robot(const Reader& journal, const Whereabouts& 
   Hasher hasher;
   const auto row = rows->next(entry);
   if (!row) return Error{row.error()};
-  // What was seen must not be for others to say.
+  // A row that others changed must not tell culprit what was discovered.
   if (!rows->is_as_written(entry, hasher)) return KnownRobot{};
   KnownRobot known = known_robot_of(parse_json(entry.body), where);
   // The last run may have had other rules, and did not see the robot whole.
@@ -257,8 +257,8 @@ Expected<Recovery> recover(const Reader& journal, const Unwritten& unwritten, co
       recovery.was_other_boot ? shift_of_clock(**last, robot_then, now) : Duration::zero();
   recovery.past = still_counting(
       recovery.is_other_robot() ? of_people(trail.past(), shift) : trail.past(), now.robot, rules);
-  // Whoever stops culprit may stop the robot as well, and another culprit repairs it: what comes
-  // back then proves nothing.
+  // A person who stops culprit may stop the robot as well, and another culprit repairs it: a
+  // recovery after that proves nothing.
   if (recovery.was_stopped || trail.was_succeeded_by(manager_before)) {
     std::erase_if(recovery.past, [](const Event& event) {
       return std::holds_alternative<OutcomePending>(event.what);

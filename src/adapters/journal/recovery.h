@@ -1,10 +1,10 @@
-// What the last run of culprit left behind: told from its intents, and from what it said since. The
+// Finds what the last run of culprit left unfinished, from its intents and its later events. The
 // newest of both may stand beside the journal only (unwritten.h).
 //
-// A strategy was under way if it was chosen or resumed, at least one change for it was about to be
-// asked for, and neither its success nor the end of its undoing is on record. It is not gone on with
-// where others may have changed the robot since: another culprit managed it, or nobody did for
-// longer than kGoneOnWith. Only rows that are what was written count (Cursor::is_as_written()).
+// A strategy was under way if it was chosen or resumed and at least one change for it was about to
+// be requested. Its success or the end of its undoing would be on record. It is not continued if
+// others may have changed the robot since: another culprit managed it, or none did for longer
+// than kGoneOnWith. Only rows with their original hash count (Cursor::is_as_written()).
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// What a run takes from the one before, when rows are not what was written.
+// Checks what a run takes from the previous one when rows were changed.
 #include "journal/recovery.h"
 
 #include <gmock/gmock.h>

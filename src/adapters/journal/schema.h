@@ -5,7 +5,7 @@
 
 namespace culprit::journal {
 
-// Of files that this culprit writes.
+// The schema of the files that this culprit writes.
 int schema_version();
 
 // Makes the tables in a new file, or brings an older one up to date, in one transaction. Errors:

@@ -37,8 +37,8 @@ struct Session {
   // By a person's order in the run before, which goes on: said anew with the first step.
   bool is_paused = false;
   bool is_dry_run = false;
-  // What stands of people's orders is in a file of its own (standing_orders.h); older culprits have
-  // it in the rows only.
+  // People's standing orders are in a file of their own (standing_orders.h); older culprits have it
+  // in the rows only.
   bool orders_kept = false;
   // The context in which what is learned is shared with a fleet; nothing: it is not. Beliefs begin
   // from the fleet's priors then, which are told in the steps; those of `learned` hold until that.

@@ -63,7 +63,7 @@ StandingOrders after(StandingOrders orders, const NamedOrder& order, Time now) {
   ++orders.revision;
   std::erase_if(orders.silences, [&](const Quiet& quiet) { return quiet.until <= now; });
   if (std::holds_alternative<Resume>(order.what)) orders.pause.reset();
-  // Whoever said it first is who is asked about it.
+  // The first person who ordered it is the one to ask about it.
   if (std::holds_alternative<Pause>(order.what) && !orders.pause) orders.pause = order.said;
   if (const auto* dry_run = std::get_if<SetDryRun>(&order.what)) {
     if (!dry_run->is_on) orders.dry_run.reset();

@@ -1,8 +1,8 @@
-// What people have ordered that holds until they say otherwise: pause, dry run, silences. It stands
-// in a small file of its own beside the journal, so that no damage and no retention of the journal,
-// and no jump of the clock, can make culprit forget that it must not act.
+// People's orders that hold until they are revoked: pause, dry run, mutes. They are in a small file
+// of their own beside the journal. So neither damage, nor retention, nor a jump of the clock can
+// make culprit forget that it must not act.
 //
-// Whoever finds that file unreadable, or missing although a run had one, is paused.
+// A culprit that finds that file unreadable, or missing although a run had one, is paused.
 #pragma once
 
 #include <filesystem>
@@ -55,8 +55,8 @@ bool restrain_alike(const StandingOrders& a, const StandingOrders& b);
 // All restraints of both.
 StandingOrders both(StandingOrders a, const StandingOrders& b);
 
-// What restrains according to `theirs` and not according to `ours`, as orders; no silences of what
-// `rules` does not have.
+// The restrictions of `theirs` that `ours` has not, as orders; no mutes of what `rules` does not
+// have.
 std::vector<Order> restraints_beyond(const StandingOrders& ours, const StandingOrders& theirs,
                                      const RuleSet& rules, Time now);
 

@@ -73,8 +73,8 @@ enum class ValueTag : std::uint8_t {
   kLifecycle = 6
 };
 
-// Robots' clocks count from the start of the machine, or from 1970. What is beyond that by a
-// century is damage, with which nobody should calculate.
+// Robots' clocks count from the start of the machine, or from 1970. A time beyond that by a century
+// is damage, and must not enter calculations.
 bool is_plausible(Time time) {
   constexpr Duration kCentury = std::chrono::hours(24 * 365 * 100);
   return time.time_since_epoch() > -kCentury && time.time_since_epoch() < 2 * kCentury;

@@ -80,10 +80,10 @@ Expected<std::size_t> count_written(const SavedIntents& saved, const Reader& jou
 
 Unwritten unwritten_rows(const std::filesystem::path& intents, const Reader& journal) {
   Unwritten unwritten;
-  const std::string name = "'" + intents.string() + "', where what is asked for stands first, ";
+  const std::string name = "'" + intents.string() + "', the first record of requests, ";
   auto saved = read_intents(intents);
   if (!saved) {
-    unwritten.remark = saved.error() + "; what was asked for last may not be known";
+    unwritten.remark = saved.error() + "; the last requests may be unknown";
     return unwritten;
   }
   if (!saved->damage.empty())

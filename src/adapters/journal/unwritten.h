@@ -1,5 +1,5 @@
-// What the last run decided and asked for and did not live to write into its journal: the rows of
-// its intent file that the journal lacks.
+// The decisions and requests that the last run could not write into its journal any more: the rows
+// of its intent file that the journal lacks.
 #pragma once
 
 #include <filesystem>

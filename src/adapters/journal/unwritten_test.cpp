@@ -89,7 +89,7 @@ TEST_F(UnwrittenRows, ThatAreAlikeCountOneByOne) {
   EXPECT_EQ(commands(), std::vector<std::int64_t>{1});
 }
 
-// Who changes a row must not make culprit believe that it was never written.
+// A changed row must not make culprit believe that it was never written.
 TEST_F(UnwrittenRows, AreNotThoseBeforeOneThatTheJournalHas) {
   keep({row(1)});
   keep({row(2)});

@@ -65,7 +65,7 @@ bool is_damaged(const fs::path& path) {
   return has_latencies(*database) && Database::is_damaged(path, kNewerLooks);
 }
 
-// What was learned, of a file that is damaged; nothing: that is lost.
+// The beliefs in a damaged file; nothing: they are lost.
 std::optional<Learned> saved_from(const fs::path& path,
                                   const Expected<std::optional<LearnedCopy>>& copy) {
   const auto old = Database::open(path, Database::Mode::kRead);
@@ -157,8 +157,8 @@ Expected<void> Writer::compare(const Expected<std::optional<LearnedCopy>>& copy)
                   ? "the journal is gone; a new one is begun, with what was learned"
                   : "the end of the journal is lost, all after row " + std::to_string(newest_.id) +
                         " (row " + std::to_string(second.newest.id) +
-                        " was there): was its -wal file removed? What was learned is known from "
-                        "its second copy";
+                        " was there): was its -wal file removed? culprit now uses the second copy "
+                        "of what was learned";
     return restore(second.learned);
   }
   auto hash = database_.prepare("SELECT hash FROM entry WHERE id = ?1");

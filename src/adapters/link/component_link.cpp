@@ -369,7 +369,7 @@ void ComponentLink::check_parameters() {
                });
 }
 
-// Of a few in a row nobody learns more.
+// Unanswered probes beyond a few in a row add no information.
 void ComponentLink::unanswered(Time due, const std::function<Time()>& heard) {
   constexpr std::size_t kMost = 10;
   const Time last = heard ? heard() : kNever;
@@ -394,7 +394,8 @@ void ComponentLink::forget_unanswered() {
 }
 
 void ComponentLink::probe(int pid, std::function<Time()> heard) {
-  // What is read of another computer may have come ReceiveThread::kSoon earlier.
+  // Messages that prove that another computer is reachable may have arrived up to
+  // ReceiveThread::kSoon earlier.
   const Time due = later(live_now(), kProbe + ReceiveThread::kSoon);
   const auto tell_of = [this, pid, heard = std::move(heard), due](const CallResult& result) {
     if (result.outcome == CallOutcome::kAnswered) {
@@ -417,7 +418,7 @@ void ComponentLink::ask(std::function<void(std::optional<GuidPrefix> answered)> 
   if (!is_asked) then(std::nullopt);
 }
 
-// Of one with a lifecycle that is its state, which is told as by check_lifecycle().
+// If the node has a lifecycle, this reads its state, and reports it as check_lifecycle() does.
 bool ComponentLink::read_anything(Duration patience, Haste haste,
                                   std::function<void(const CallResult&)> then) {
   const bool is_managed = has_lifecycle();
@@ -501,7 +502,7 @@ void ComponentLink::run(const Command& command, const ReadLifecycle&) {
                      });
 }
 
-// What is a list goes as one: the rules have its text.
+// A list parameter is set as a list: the rules have its text.
 Expected<msg::ParameterValue> ComponentLink::to_set(const std::string& name, const Value& value) {
   std::uint8_t type = 0;
   {

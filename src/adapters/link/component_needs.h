@@ -1,5 +1,5 @@
-// What a rule file asks of one component's node beyond looking at it: only for that are clients
-// made that could change something.
+// The rule file's requests to one component's node, beyond looking at it: only for them does
+// culprit make clients that could change something.
 #pragma once
 
 #include <string>

@@ -49,7 +49,7 @@ Expected<std::vector<std::unique_ptr<Writer>>> LeaseLink::announce(
   return writers;
 }
 
-// Of the claims of one participant the one that goes first counts.
+// If a participant makes several claims, the one with the highest rank counts.
 Expected<void> LeaseLink::take_over(std::int64_t term) {
   LeaseClaim claim = options_.claim;
   claim.term = term;

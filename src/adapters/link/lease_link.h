@@ -22,7 +22,7 @@ class LeaseLink {
   struct Options {
     LeaseClaim claim;
     bool manages = false;  // now
-    // What people have ordered, for who takes over. Called on a thread of the link; must not wait.
+    // People's orders, for the successor. Called on a thread of the link; must not wait.
     std::function<std::string()> told_orders{};
   };
 
@@ -45,14 +45,14 @@ class LeaseLink {
   std::optional<std::string> elder_at(const std::string& node) const;
   // Where those run that claim the same and do not prove it.
   std::vector<std::string> strangers() const;
-  // What the last one that managed this robot, on another machine or here, said of orders; empty:
-  // it did not say. Nothing: there was none.
+  // The orders that the last manager of this robot, on another machine or here, announced; empty:
+  // it announced none. Nothing: there was no manager.
   std::optional<std::string> told_orders() const;
-  // What that one told of all else that who takes over has to know, and by what our clock is ahead of
-  // its. Nothing: it told nothing, or not all of it came.
+  // The other state that the last manager announced for its successor, and by how much our clock is
+  // ahead of its. Nothing: it announced none, or some parts were lost.
   std::optional<ManagerLease::ToldState> told_state() const;
   std::int64_t highest_term() const;
-  // Of this one, from now on.
+  // The state of this manager, from now on.
   void tell_state(std::string state);
   // Tells who takes over, now and not with the next beat: the last word of who steps back or ends.
   void say();

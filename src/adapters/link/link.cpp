@@ -78,7 +78,7 @@ int parent_of(int pid) {
   return end + 4 < stat.size() ? std::atoi(stat.c_str() + end + 4) : 0;
 }
 
-// Who holds nodes of one name, who started each, and how to end what is one too many.
+// The processes that hold nodes of one name, their launchers, and how to end the extra one.
 std::string who_are(const std::vector<GraphNode>& nodes) {
   if (nodes.size() < 2) return "";
   std::string text;
@@ -98,7 +98,7 @@ std::string who_are(const std::vector<GraphNode>& nodes) {
       others += " " + std::to_string(node.pid);
     }
   }
-  text += ". Nothing is done to it until one is left: end the one too many";
+  text += ". culprit does not act on it until one is left: end the extra one";
   if (!others.empty()) text += " (kill" + others + (others.rfind(' ') > 0 ? ": one of them)" : ")");
   return text + ", and if a launch file starts it again, set respawn to False there";
 }
@@ -266,12 +266,12 @@ void Link::look_at_clocks() {
       std::chrono::seconds(steady.tv_sec) + std::chrono::nanoseconds(steady.tv_nsec);
   if (const auto step = system_clock_.look(running, Duration(wall_now()))) {
     const bool is_back = *step < Duration::zero();
-    inbox_.put(LinkTrouble{
-        "the system clock of this computer was set " + std::string(is_back ? "back" : "ahead") +
-        " by " + in_words(std::chrono::abs(*step)) +
-        (is_back ? ": timers of rclpy, and all that wait until a time of day, stand "
-                   "still until it has caught up; a restart of their nodes helps"
-                 : ": timers that wait until a time of day fire at once")});
+    inbox_.put(LinkTrouble{"the system clock of this computer was set " +
+                           std::string(is_back ? "back" : "ahead") + " by " +
+                           in_words(std::chrono::abs(*step)) +
+                           (is_back ? ": timers of rclpy, and waits for a time of day, stand "
+                                      "still until it has caught up; a restart of their nodes helps"
+                                    : ": timers that wait until a time of day fire at once")});
   }
   if (simulated_node_.empty() || told_of_clock_) return;
   constexpr Duration kClockComes = std::chrono::seconds(10);
@@ -300,7 +300,8 @@ std::string Link::doubt() const {
   if (is_paused()) return clock()->doubt(live_now());
   const Time now = live_now();
   return lease_ && lease_->sure_until(now) <= now
-             ? "culprit was away so long that another one may manage this robot by now; it listens"
+             ? "culprit was away so long that another one may manage this robot now; it waits for "
+               "its messages"
              : hearing_->doubt(now);
 }
 
@@ -382,7 +383,7 @@ void Link::on_discovery(const DiscoveryEvent& event) {
   if (lease_) lease_->on_discovery(event);
 }
 
-// Who is deaf, or stood still, did not hear what they said meanwhile.
+// If culprit was deaf, or stood still, it missed messages meanwhile.
 void Link::listen_to_hosts() {
   const Time now = live_now();
   const bool stood_still = later(looked_at_hosts_, 2 * kPublishPeriod) < now;
@@ -594,8 +595,9 @@ void Link::believe_leaving(const std::string& node, std::optional<GuidPrefix> an
     return vanished(node, leaving.was_lost);
   }
   if (!std::exchange(leaving.is_told, true))
-    inbox_.put(LinkTrouble{node + " was said to have left, and answers: somebody may speak in its "
-                                  "name. It counts as being there"});
+    inbox_.put(LinkTrouble{node +
+                           " was announced to have left, but answers: another program may speak "
+                           "in its name. It counts as present"});
   doubt_leaving(node, leaving);
 }
 
@@ -651,9 +653,9 @@ void Link::on_whether_left(const std::string& node, int questions, bool answers)
   tasks_.post_at(Executor::Clock::now() + kLeavingAskedAgain,
                  [this, node] { ask_whether_left(node); });
   if (told_of_false_leaving_.size() >= kMost || !told_of_false_leaving_.insert(node).second) return;
-  inbox_.put(LinkTrouble{"it was said in the name of " + node +
-                         " that it left the graph, but it answers: it is taken to be there. Does "
-                         "somebody on this network speak in its name?"});
+  inbox_.put(LinkTrouble{"a message in the name of " + node +
+                         " announced that it left the graph, but it answers and counts as "
+                         "present. Does another program on this network speak in its name?"});
 }
 
 void Link::remember_publishers(const std::map<std::string, std::string>& publishers) {
@@ -877,7 +879,7 @@ void Link::tell_of_refused() {
   if (refused.count == 0 || refused.count < 10 * refused_) return;
   refused_ = refused.count;
   inbox_.put(LinkTrouble{std::to_string(refused.count) + " datagrams were kept out so far: " +
-                         refused.why + "; who on this network sends that?"});
+                         refused.why + "; which program on this network sends them?"});
 }
 
 void Link::tell_of_foreign_sources() {

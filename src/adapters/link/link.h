@@ -1,8 +1,9 @@
-// The adapter: a live ROS 2 robot, spoken to directly over DDS.
+// The adapter to a live ROS 2 robot, directly over DDS.
 //
-// It joins as the node /culprit, tells the manager what it observes (nodes and who depends on whom,
-// the rhythm of topics, values of fields, diagnostics and parameters, lifecycle states), carries
-// out what is asked of nodes, and publishes what culprit has to say on /diagnostics and /rosout.
+// It joins as the node /culprit. It reports its observations to the manager: nodes and their
+// dependencies, the rhythm of topics, values of fields, diagnostics and parameters, lifecycle
+// states. It carries out the manager's commands to nodes, and publishes culprit's messages on
+// /diagnostics and /rosout.
 //
 // It does no harm: its readers are best effort and keep one sample, it subscribes only to what the
 // rules read, and it uses no shared memory.
@@ -76,8 +77,8 @@ class Link {
   void publish(std::vector<Health> health);
   void log(Severity severity, std::string text);
 
-  // Of each component's node, and each container's, that others have the name of, by full name: who they are, who started
-  // each, and how to end what is one too many. From any thread.
+  // For each component's and container's node whose name others have too, by full name: the
+  // processes that hold it, their launchers, and how to end the extra one. From any thread.
   std::map<std::string, std::string> contested() const;
   // The processes of all nodes of one name, where there are several: by that name; 0: on another
   // machine, or not proven. From any thread.
@@ -87,9 +88,9 @@ class Link {
   // names. From any thread.
   std::map<std::string, std::string> nodes_elsewhere() const;
 
-  // The other computer where the component ran when it was seen last, if nothing is heard of it now:
-  // nobody knows whether it still runs there. What was found is told (HostHeard) before this returns.
-  // From any thread.
+  // The other computer where the component was last discovered, if that computer is unreachable
+  // now, so that its state there is unknown. The result is reported (HostHeard) before this
+  // returns. From any thread.
   std::optional<std::string> cut_off(ComponentId component);
 
   // The component's node was ordered to leave: until then nobody is asked whether that is so. From any thread.
@@ -103,7 +104,7 @@ class Link {
   // Our own node, for clients of what is no component. It goes with the link.
   NodeEntry& entry() { return node_->entry(); }
 
-  // Until when it is sure that what the robot says is heard (hearing.h), that no other culprit
+  // Until when it is certain that the robot's messages arrive (hearing.h), that no other culprit
   // manages it (lease_link.h), and that its time passes (simulated_clock.h). From any thread, as
   // all of the following.
   Time doubtful() const;
@@ -113,12 +114,13 @@ class Link {
   // Asks those that alone publish what the rules watch, and of which nothing comes, whether they know
   // that it is listened to (ListenerKnown), until then. Not where a discovery server stands between.
   void prove_listening(Time until);
-  // What is not sure, if that time has come.
+  // The doubt, once that time has come.
   std::string doubt() const;
-  // Nothing is wrong with culprit: it is only the robot's time that stands still.
+  // True if culprit itself works, and only the robot's time stands still.
   bool is_paused() const;
 
-  // Who manages the robot, of the culprits of the domain. Null: this one claims nothing.
+  // The lease that decides which of the domain's culprits manages the robot. Null: this culprit
+  // claims none.
   LeaseLink* lease() { return lease_.get(); }
   const LeaseLink* lease() const { return lease_.get(); }
 

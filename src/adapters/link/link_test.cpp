@@ -238,7 +238,7 @@ TEST(Link, AsksANodeThatIsSaidToLeave) {
   (*forged)->write(
       encode_discovery_info({robot.context->participant().guid(), {}}, GidSize::kHumbleAndOlder));
   const auto leaves = [](const NodeVanished& n) { return n.node == "/robot"; };
-  EXPECT_TRUE(linked.wait<LinkTrouble>(tells("but it answers: it is taken to be there")));
+  EXPECT_TRUE(linked.wait<LinkTrouble>(tells("but it answers and counts as present")));
   EXPECT_FALSE(linked.wait<NodeVanished>(leaves, 500ms));
   std::promise<void> goes_on;
   std::thread hung([&] { robot.context.run([&] { goes_on.get_future().wait(); }); });
@@ -417,7 +417,7 @@ TEST(Link, MissesNoProofOfWhatAnEngineOrSystemdEnds) {
   EXPECT_FALSE(linked.has_seen<LinkTrouble>(is_missed("/lidar")));
 }
 
-// Who answers a client that was made after the reader has been told of the reader, too.
+// A node that answers a client that was made after the reader has also discovered the reader.
 TEST(Link, KnowsThatWhoIsSilentKnowsItsListener) {
   const TestDomain domain;
   Robot robot(domain);
@@ -661,7 +661,8 @@ TEST(Link, AsksEachNodeOfAProcessAndMeasuresIt) {
       [](const LifecycleRead& r) { return r.component != ComponentId(0); }));
 }
 
-// Of many a second most lie in their socket for a moment. A silence begins when the last one came.
+// If many messages come each second, most lie in their socket for a moment. A topic timeout counts
+// from the arrival of the last one.
 TEST(Link, KnowsWhenMessagesCameThatItReadsLater) {
   const TestDomain domain;
   Robot robot(domain);

@@ -125,7 +125,7 @@ void ManagerLease::apply(const DiscoveryEvent& event, Time now) {
     other.is_proven =
         !own_.key.empty() && are_same(value("proof"), proof_of(kClaim, claim, prefix, own_.key));
     if (!other.is_proven) {
-      // Whoever borrows the name of a proven writer does not take its proof away.
+      // A stranger that uses the GUID of a proven writer does not cancel its proof.
       const auto known = others_.find(endpoint->guid);
       const bool is_borrowed = known != others_.end() && known->second.is_proven;
       if (is_borrowed || strangers().size() >= kMostStrangers) return;

@@ -12,12 +12,12 @@ namespace culprit::ros2 {
 
 class Namesake {
  public:
-  // Who is there for longer stays.
+  // A namesake that is still there after that is another node.
   static constexpr Duration kLeaves = std::chrono::seconds(2);
 
   void joined(const GraphNode& node, Time now);
   void left() { text_.reset(); }
-  // What a person has to know of it, once.
+  // The message for a person, once.
   std::optional<std::string> due(Time now);
 
  private:

@@ -89,7 +89,8 @@ TEST(NeighbourHosts, AreNotSilentToOneThatDidNotListen) {
   EXPECT_TRUE(domain.is_silent());
 }
 
-// Whoever says another one's name from this computer cannot make it seem to be there.
+// A participant on this computer that announces another one's name cannot make that one seem
+// reachable.
 TEST(NeighbourHosts, HaveNoWitnessOnThisComputer) {
   Domain domain;
   domain.now += 1h;

@@ -13,7 +13,7 @@
 namespace culprit::ros2 {
 namespace {
 
-// Whatever else a rule file calls a service could not be called either.
+// Any other text that a rule file gives as a service could not be called either.
 bool is_name_or_pattern(std::string name) {
   std::replace(name.begin(), name.end(), '*', '_');
   return is_valid_topic_name(name);

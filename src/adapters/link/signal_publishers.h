@@ -1,8 +1,8 @@
 // The publisher of each diagnostic status that the rules read: one node.
 //
-// Anybody on the network can publish a status of any name. So a status counts only from the node that was the first to
-// publish it, as it was learned in this run or by an earlier one (KnownRobot::publishers). Another publisher of the same
-// status is not used, and reported once.
+// Anybody on the network can publish a status of any name. So a status counts only from the node
+// that was the first to publish it, in this run or in an earlier one (KnownRobot::publishers).
+// Another publisher of the same status is not used, and reported once.
 //
 //   - The node is known by its name: its successor after a restart is the same publisher.
 //   - Once it was proven to be a process of this machine, only a proven process is it; and what is proven takes the place
@@ -12,7 +12,7 @@
 //   - A component of the rule file that is proven counts besides: in SUAVE the vehicle and a controller publish one status.
 //   - Many nodes publish statuses of others (drivers, aggregators), so the subject of a status says nothing.
 //
-// Pure: time and what is known of a publisher come with each question.
+// Pure: each question brings the time, and the known facts about a publisher.
 #pragma once
 
 #include <functional>

@@ -52,7 +52,7 @@ Time SimulatedClock::doubtful(Time now) const {
 
 std::string SimulatedClock::doubt(Time now) const {
   const MutexLock lock(mutex_);
-  if (!shown_) return "culprit runs with --use-sim-time, and nobody publishes /clock yet";
+  if (!shown_) return "culprit runs with --use-sim-time, and no node publishes /clock yet";
   return has_just_jumped(now) ? "the simulated time jumped" : "the simulated time stands still";
 }
 

@@ -19,7 +19,7 @@ namespace culprit::ros2 {
 class SimulatedClock {
  public:
   static constexpr const char* kTopic = "/clock";
-  // Who has a rhythm of its own has three of its usual pauses, and at least this.
+  // A publisher with a rhythm of its own has three of its usual intervals, and at least this.
   static constexpr Duration kPatience = std::chrono::milliseconds(100);
   // However slow it is usually.
   static constexpr Duration kPatienceAtMost = std::chrono::seconds(2);
@@ -36,7 +36,7 @@ class SimulatedClock {
   Time doubtful(Time now) const;
   // Whether anybody has published it.
   bool has_begun() const;
-  // What is not sure, if that time has come.
+  // The doubt, once that time has come.
   std::string doubt(Time now) const;
 
   // /clock shows `shown`, and `now` is the real time.

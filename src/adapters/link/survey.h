@@ -1,8 +1,8 @@
-// What a robot has at the moment, for checks and editors: its graph, its diagnostics, and of what
-// somebody asked for also parameters, lifecycle states, and the rates and fields of topics.
+// A snapshot of a robot, for checks and editors: its graph, its diagnostics, and on request also
+// parameters, lifecycle states, and the rates and fields of topics.
 //
-// It joins as a hidden node, as tools do. It does no harm: readers are best effort, and what nobody
-// asked for is not read.
+// It joins as a hidden node, as tools do. It does no harm: readers are best effort, and it reads
+// only what was asked for.
 #pragma once
 
 #include <deque>
@@ -40,7 +40,7 @@ class Survey {
   // Instead of what was asked for before.
   void ask_for(LiveInterest interest);
 
-  // What is known by now.
+  // The present snapshot.
   LiveInventory inventory() const;
   // Hears /rosout from now on.
   void listen_to_log();
@@ -55,7 +55,7 @@ class Survey {
   using StatusKey = std::pair<std::string, std::string>;
   std::map<StatusKey, StatusCourse> statuses() const;
 
-  // What has both messages of a service that is there; it may be that its node is asked for them.
+  // Returns a library with both messages of an existing service; its node may be asked for them.
   // Waits for that, TypeFinder::kPatience at most. Not on the executor's thread.
   Expected<MessageLibrary> find_service_type(const std::string& service);
 

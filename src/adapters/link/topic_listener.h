@@ -1,11 +1,11 @@
-// Listens to one topic without disturbing it: its rhythm, and what its messages say.
+// Listens to one topic without disturbing it: its rhythm, and the content of its messages.
 //
 // One best effort reader that keeps one sample, so that it can hold no writer back; where payloads
 // are not asked for they are not even copied: watching a camera costs what receiving it costs.
 //
 // A latched topic (transient local: a map, a robot's description) is published once, before we come.
-// Only a reliable reader is sent what was published before (DDS 1.4 §2.2.3.4), so a second one
-// listens too once a publisher is known to latch.
+// Only a reliable reader receives samples from before (DDS 1.4 §2.2.3.4). So a second reader is
+// added once a publisher is known to be transient local.
 #pragma once
 
 #include <functional>

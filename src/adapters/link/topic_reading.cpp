@@ -33,7 +33,7 @@ std::unique_ptr<TopicReading> TopicReading::open(NodeEntry& self, const std::str
   return reading;
 }
 
-// That a topic's latched messages cannot be read shows in that none was.
+// If a topic's latched messages cannot be read, the count of messages shows it.
 void TopicReading::publisher_offers(const Qos& offered) {
   (void)listener_->publisher_offers(offered);
 }

@@ -25,7 +25,7 @@ class TopicReading {
   static constexpr Duration kWindow = std::chrono::seconds(2);
 
   // `self` outlives the reading; `library` has the type, or says why it is not known. Fields that
-  // cannot be read are told of. Nothing if the topic cannot be read with this type.
+  // cannot be read are reported. Returns null if the topic cannot be read with this type.
   static std::unique_ptr<TopicReading> open(NodeEntry& self, const std::string& topic,
                                             const std::string& type, Keys keys,
                                             const std::set<std::string>& fields,
@@ -37,9 +37,9 @@ class TopicReading {
   // Enters rate and fields. From any thread.
   void tell(LiveInventory::Topic& topic) const;
 
-  // Of all messages since it was opened. From any thread.
+  // The rhythm of all messages since it was opened. From any thread.
   Rhythm rhythm() const;
-  // Likewise of its fields.
+  // The courses of its fields, as above.
   std::map<std::string, ValueCourse> courses() const;
 
  private:

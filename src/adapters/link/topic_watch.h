@@ -81,7 +81,7 @@ class TopicWatch {
   std::string type_;
   std::set<std::string> told_;  // troubles: each publisher has the same ones
 
-  // Of the receive thread, once the listener exists.
+  // Used by the receive thread only, once the listener exists.
   std::vector<Field> fields_;
   std::unordered_map<Guid, std::int64_t> last_sequence_;  // by writer
 

@@ -125,12 +125,12 @@ void TypeFinder::answered(const Offer& offer, const GetTypeDescription::Answer& 
     for (const Callback& found : waiting) found(library);
   };
   if (!answer.response || !answer.response->successful)
-    return tell(unknown(offer, ", and its node does not tell it"));
+    return tell(unknown(offer, ", and its node does not describe it"));
   const auto definitions = to_definitions(answer.response->type_description);
   MessageLibrary library;
   if (definitions) library.define(*definitions);
   if (!definitions || !is_what_it_says(library, offer))
-    return tell(unknown(offer, ", and what its node tells of it is not what is published"));
+    return tell(unknown(offer, ", and its node's description differs from the published type"));
   keep(options_.kept_types, offer, *definitions);
   if (told_.size() >= kMostTold) told_.clear();
   tell(&told_.insert_or_assign(offer.hash, std::move(library)).first->second);

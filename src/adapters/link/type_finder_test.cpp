@@ -204,7 +204,7 @@ TEST(TypeFinder, AsksTheNodeAndKeepsWhatItSays) {
     Finding finding(domain, {{ours.path()}, kept.path() / "types"});
     EXPECT_EQ(finding.find({"/driver", kType, hash, 0}), "cells charge ");
   }
-  // Nobody is there to be asked.
+  // No node can be asked any more.
   Finding later(domain, {{ours.path()}, kept.path() / "types"});
   EXPECT_EQ(later.find({"/driver", kType, hash, 0}), "cells charge ");
 }
@@ -219,7 +219,7 @@ TEST(TypeFinder, BelievesNobodyWhoseWordsDoNotFitTheHash) {
   std::ofstream(kept.path() / hash) << "int32 forged\n";
   Finding finding(domain, {{}, kept.path()});
   EXPECT_THAT(finding.find({"/driver", kType, hash, 0}),
-              HasSubstr("what its node tells of it is not what is published"));
+              HasSubstr("its node's description differs from the published type"));
   EXPECT_THAT(finding.find({"/driver", kType, "RIHS01_../../etc/passwd", 0}),
               HasSubstr("none that can be checked"));
 }
@@ -264,7 +264,7 @@ TEST(TypeFinder, AsksTheNodeWhatItsServiceLooksLike) {
     Finding finding(domain, {{ours.path()}, kept.path() / "types"});
     EXPECT_EQ(finding.find(offer), "slot ");
   }
-  // Nobody is there to be asked.
+  // No node can be asked any more.
   Finding later(domain, {{ours.path()}, kept.path() / "types"});
   EXPECT_EQ(later.find(offer), "slot ");
 }
@@ -273,7 +273,7 @@ TEST(TypeFinder, WaitsForNobodyForEver) {
   const TestDomain domain;
   Finding finding(domain);
   EXPECT_THAT(finding.find({"/driver", kType, type_hash(kType, battery()), 0}),
-              HasSubstr("its node does not tell it"));
+              HasSubstr("its node does not describe it"));
 }
 
 }  // namespace

@@ -278,7 +278,7 @@ void ModeManager::watch_overdue(const modes::Entity& entity, const modes::Target
   tasks_.post_at(ros2::Executor::Clock::now() + kOverdue, [this, &entity, target] {
     if (inference_.target(entity.name) != target || inference_.is_at(entity.name, target)) return;
     const modes::Actual& now = inference_.actual(entity.name);
-    trouble(entity.name + " was told to be " + to_string(target) + " and is " +
+    trouble(entity.name + " was requested to be " + to_string(target) + " but is " +
             std::string(ros2::label_of(now.state)) + ", mode " + mode_label(now));
   });
 }

@@ -29,7 +29,7 @@ struct Actual {
   bool operator==(const Actual&) const = default;
 };
 
-// What is unconfigured counts as inactive.
+// An unconfigured node counts as inactive.
 bool is_at(const Actual& actual, const Target& target);
 
 class Inference {
@@ -45,7 +45,7 @@ class Inference {
   void set_target(const std::string& entity, const Target& target);
   std::optional<Target> target(const std::string& entity) const;
 
-  // What was inferred last.
+  // The newest inferred state.
   const Actual& actual(const std::string& entity) const;
   bool is_at(const std::string& entity, const Target& target) const;
 

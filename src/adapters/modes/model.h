@@ -17,7 +17,7 @@ namespace culprit::modes {
 
 inline constexpr const char* kDefaultMode = "__DEFAULT__";
 
-// What a part is to be: "inactive", "active.FAST".
+// The target of a part: "inactive", "active.FAST".
 struct Target {
   bool is_active = true;
   std::string mode;  // empty of what is inactive

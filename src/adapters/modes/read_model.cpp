@@ -170,7 +170,7 @@ class Reader {
     }
   }
 
-  // Of the last mode.
+  // Reads the parameters of the last mode.
   void read_parameters(Entity& node, const YAML::Node& value) {
     const bool is_default = node.modes.size() == 1;
     Mode& mode = node.modes.back();

@@ -1,7 +1,7 @@
-// Random sequences of faults, for each kind of owner, culprit killed in between: what is asked of it
-// is what the manager asks. At no time are there two that culprit started, nor, with what somebody
-// else starts, two once it settled; then there is one, never none. What is composed is in
-// composed_nodes_test.cpp.
+// Random sequences of faults, for each kind of owner, with culprit killed in between. The test
+// requests the same things as the manager. At no time do two processes run that culprit started.
+// Once it has settled, exactly one runs, also if somebody else starts one. The sequences of
+// composed nodes are in composed_nodes_test.cpp.
 //
 // CULPRIT_SEQUENCES says how many of each kind (12 unless set), CULPRIT_SEQUENCES_SEED with which the
 // first begins.
@@ -53,7 +53,7 @@ std::vector<int> running(const std::string& program) {
   return pids;
 }
 
-// What is to be kept alive, whoever keeps it.
+// A program to be kept running, with the owner that keeps it running.
 class Kept {
  public:
   virtual ~Kept() = default;
@@ -68,7 +68,7 @@ class Kept {
   virtual void start_by_another() {}
   // Culprit hears which processes there are.
   virtual void hear() {}
-  // What must hold at any time; empty: it does.
+  // The invariant that is broken now; empty: none.
   virtual std::string wrong() { return ""; }
 };
 
@@ -131,7 +131,7 @@ class Launched : public Kept {
   void break_it(bool is_broken) override {
     fs::permissions(program_, is_broken ? fs::perms(0644) : fs::perms(0755));
   }
-  // Its parent ends, so it is nobody's here. Nobody but a person could end one of several.
+  // Its parent exits, so init is its parent. If several ran, only a person could end one of them.
   void start_by_another() override {
     if (!are_all_culprits()) return;
     // Closed when it is the program: until then nobody would find it to end it.
@@ -196,7 +196,8 @@ class Respawned : public Launched {
       start_by_another();
     }
   }
-  // What is left of an earlier launcher is nobody's, and nobody but a person could end one of several.
+  // A process that an earlier launcher left behind has no launcher, and only a person could end one
+  // of several.
   void start_by_another() override {
     if (!is_alive(launcher_) && are_all_culprits()) begin_launcher();
   }
@@ -297,7 +298,7 @@ class ContainerKept : public Asked {
   TestEngine engine_;
 };
 
-// What the manager does when it has one too few, or too many.
+// Does as the manager does when too few or too many run.
 void settle(Kept& kept) {
   kept.break_it(false);
   for (int tries = 0; tries < 10; ++tries) {
@@ -313,7 +314,7 @@ void settle(Kept& kept) {
     if (all.size() == 1 && state_letter(all.front()) != 'T') return;
     if (all.empty()) {
       kept.start();
-      // Who starts it again may take its time.
+      // The launcher that starts it again may take its time.
       for (const Time end = later(live_now(), 5s); kept.processes().empty() && live_now() < end;)
         std::this_thread::sleep_for(5ms);
     } else {

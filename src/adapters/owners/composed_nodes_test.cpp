@@ -373,9 +373,9 @@ TEST(ComposedNodes, NoneIsAskedWhileSeveralHaveItsName) {
 TEST(ComposedNodes, NothingIsEndedOnAStrangersWord) {
   OneContainer robot;
   robot.begin({"/detector"});
-  robot.lists({Outcome::kRefused, "somebody else answers"});
-  EXPECT_EQ(robot.stop(kDetector).text, "somebody else answers");
-  EXPECT_EQ(robot.start(kTracker).text, "somebody else answers");
+  robot.lists({Outcome::kRefused, "another process answers"});
+  EXPECT_EQ(robot.stop(kDetector).text, "another process answers");
+  EXPECT_EQ(robot.start(kTracker).text, "another process answers");
   EXPECT_THAT(robot.what_was_done(), ElementsAre("begin"));
 }
 

@@ -26,7 +26,7 @@ struct ContainerAnswer {
   std::vector<LoadedNode> nodes{};  // of list: all; of load: the one that was made
 };
 
-// Every call waits for the answer, `patience` at most, and believes it only if it comes from the
+// Every call waits at most `patience` for the answer. The answer counts only if it comes from the
 // process `pid`, as far as the operating system can prove that. Called on one thread for each
 // container.
 class ContainerServices {
@@ -38,7 +38,7 @@ class ContainerServices {
   virtual ContainerAnswer unload(const std::string& container, int pid, std::uint64_t id,
                                  Duration patience) = 0;
 
-  // What loading it takes is there: its parameters can be read, and the process `pid` would find its
+  // Whether it can be loaded: its parameters can be read, and the process `pid` would find its
   // class.
   virtual Expected<void> could_load(const Component& component, int pid) const = 0;
   // In words, if several nodes have the container's name: all of them would hear a request.

@@ -1,10 +1,10 @@
 // A container engine (docker, podman), asked over the REST API of its socket (Docker Engine API;
-// podman speaks the same). That of another computer is asked through its own `docker system
+// podman speaks the same). The engine of another computer is asked through its own `docker system
 // dial-stdio` or `podman system dial-stdio`, over ssh.
 //
-// Every call has a time limit, and blocks its thread for so long at most. What comes back is not
-// trusted: it has the form that the API documents, or is an error. Whoever may use the socket may do
-// all that the engine can (docs/security.md).
+// Every call has a time limit, and blocks its thread for so long at most. Its answers are not
+// trusted: one that has not the form of the API's documentation is an error. A user who may use the
+// socket may do all that the engine can (docs/security.md).
 #pragma once
 
 #include <map>
@@ -50,7 +50,7 @@ class Engine : public ServiceOwner {
   // One that is open, and how to say what is wrong with it.
   class Connection;
   Expected<Answer> ask(const std::string& method, const std::string& target, Duration patience);
-  // Asks for a change. What is not answered in time may be done all the same.
+  // Asks for a change. A change that is not answered in time may happen all the same.
   Expected<void> change(const std::string& container, const std::string& what, Duration patience);
   Error no_form(const std::string& what) const;
 

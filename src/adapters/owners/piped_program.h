@@ -17,7 +17,7 @@ struct Pipe {
 // Not inherited by programs.
 Expected<Pipe> make_pipe();
 
-// What the program gets as its own: descriptors that are ours to close.
+// The program's standard streams: descriptors that are ours to close.
 struct Streams {
   int in = -1;  // -1: nothing is there to read
   int out = -1;

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What /proc/<pid>/stat says after the command, which is in parentheses and may hold anything.
+// The rest of /proc/<pid>/stat after the command, which is in parentheses and may hold anything.
 std::string stat_after_command(int pid) {
   std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
   std::string line;
@@ -179,7 +179,7 @@ std::optional<std::string> hold_of_debugger(int pid) {
 }
 
 std::optional<int> status_of_zombie(int pid) {
-  // Of other users' processes it is 0 (proc(5)).
+  // For other users' processes it is 0 (proc(5)).
   struct stat owner {};
   const std::string folder = "/proc/" + std::to_string(pid);
   const bool may_be_told =
@@ -305,11 +305,10 @@ Expected<void> proc_is_of_our_processes() {
   // A kernel without PID namespaces tells none.
   if (is_our_number && numbers_of("self").size() <= 1) return {};
   return Error{
-      "/proc does not show culprit's own process: it is of another PID namespace, or there is "
-      "none, "
-      "and whoever goes by its numbers ends the wrong processes. Mount culprit's own (mount -t "
-      "proc "
-      "proc /proc); in a container take no /proc of the host's, but its namespace (--pid host)"};
+      "/proc does not show culprit's own process: it is of another PID namespace, or is not "
+      "mounted. By its PIDs culprit would end the wrong processes. Mount culprit's own "
+      "(mount -t proc proc /proc); in a container use not the host's /proc, but its PID namespace "
+      "(--pid host)"};
 }
 
 std::optional<Identity> identity_of(int pid) {

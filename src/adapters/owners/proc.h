@@ -1,4 +1,4 @@
-// What the kernel tells of processes in /proc.
+// Reads the kernel's data about processes from /proc.
 #pragma once
 
 #include <optional>
@@ -17,14 +17,15 @@ std::optional<char> state_letter(int pid);
 // Why it is not replaced: a debugger holds it, and whoever debugs it would lose it. Nothing: none does.
 std::optional<std::string> hold_of_debugger(int pid);
 
-// What its parent will be told of its end, as of wait(2). Nothing: it has not ended, its parent was told,
-// or it is another user's.
+// The exit status that its parent will receive, as in wait(2). Nothing: it has not ended, its
+// parent has received it, or it is another user's.
 std::optional<int> status_of_zombie(int pid);
 
-// Who started it, or who got it when that one had ended; nothing if there is no such process.
+// Its parent, or its new parent once that one has exited; nothing if there is no such process.
 std::optional<int> parent_of(int pid);
 
-// Who started a process that culprit did not start, past `ros2 run`, which only waits for it.
+// The process that started one that culprit did not start; `ros2 run` is skipped, for it only
+// waits.
 struct Origin {
   enum class What : std::uint8_t {
     kKnown,
@@ -46,8 +47,8 @@ std::vector<int> all_processes();
 // When it began, in ticks of the kernel since the machine was started: with its number, which process it is.
 std::optional<std::int64_t> start_ticks_of(int pid);
 
-// What stands behind `prefix` ("NAME=") in the environment that the process was started with. Empty: nothing, or it is a
-// process of another user.
+// The value after `prefix` ("NAME=") in the environment that the process was started with. Empty:
+// nothing, or it is a process of another user.
 std::string value_of_variable(int pid, const std::string& prefix);
 
 // Those that it started itself and that have not ended.
@@ -66,7 +67,7 @@ int own_number_of(int pid);
 // An error where /proc counts processes in another PID namespace than this process is in: its numbers are those of others here.
 Expected<void> proc_is_of_our_processes();
 
-// What a process runs: `script` is what an interpreter was given, as `ros2 run` is Python's.
+// The program of a process: `script` is an interpreter's argument, as `ros2 run` is Python's.
 struct Identity {
   unsigned user = 0;    // effective
   std::string program;  // with its path
@@ -95,7 +96,7 @@ std::vector<Relative> descendants_of(int pid);
 // Those in the process group and in the session that `leader` made, itself included.
 std::vector<int> members_of_group(int leader);
 
-// What processes have done and have.
+// The processor time that processes have used, and their memory.
 struct Work {
   Duration processor{};
   std::int64_t bytes = 0;  // of memory

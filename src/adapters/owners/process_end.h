@@ -1,8 +1,8 @@
 // How a process ended, and whether somebody wanted that.
 //
-// Only its parent is told how a process ended. Of other people's processes the kernel says it too,
-// to whom it may concern: since Linux 6.15 by the pidfd, and before that only until the parent has
-// heard of it, which is soon. Where neither says it nobody knows.
+// Only the parent of a process receives its exit status. For other processes the kernel shows it,
+// too: since Linux 6.15 by the pidfd, and before that only until the parent has received it, which
+// is soon. If neither shows it, it is unknown.
 #pragma once
 
 #include <string>
@@ -21,7 +21,7 @@ struct ProcessEnd {
 ProcessEnd exited(int code);
 ProcessEnd killed(int signal);
 
-// Of a process that has ended and is not our child. `pidfd` holds it.
+// The end of a process that has exited and is not our child. `pidfd` holds it.
 ProcessEnd end_of(int pid, int pidfd);
 
 }  // namespace culprit::owners

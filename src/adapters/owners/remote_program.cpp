@@ -97,7 +97,7 @@ RemoteProgram& RemoteProgram::operator=(RemoteProgram&& other) noexcept {
 
 RemoteProgram::~RemoteProgram() { end(); }
 
-// Nothing over there is lost with it, and it may hang.
+// Killing ssh loses nothing on the other computer; ssh itself may hang.
 void RemoteProgram::end() {
   if (pid_ == 0) return;
   kill(-pid_, SIGKILL);
@@ -154,8 +154,8 @@ std::string RemoteProgram::trouble() {
          "; does it work there by hand?";
 }
 
-// What a key may run over there may be fixed to another program, which ends, too, when it is told no
-// more.
+// The other computer may restrict our key to another program; that one ends, too, when its input
+// ends.
 Expected<void> could_reach(const std::string& host) {
   auto nothing = RemoteProgram::begin(host, {"true"});
   if (!nothing) return Error{nothing.error()};

@@ -1,11 +1,12 @@
 // A program on another computer, that is talked to over ssh: what it reads and what it prints are the
 // two directions of one socket here.
 //
-// ssh asks nobody anything (BatchMode): what needs a password, or whose key is not known yet, is an
-// error. The command is made of plain words that stand in this program, never of what a rule file or
-// the network says, so the shell over there has nothing to misread (one reads a variable of that user's own). Whom to connect to, and how, is
-// what `ssh computer` takes it from (~/.ssh/config). ssh ends with this object, and with culprit: the
-// program over there reads the end of its input then.
+// ssh never asks for input (BatchMode): a computer that needs a password, or whose key is not known
+// yet, is an error. The command consists of plain words from this program, never of text from a
+// rule file or the network. So the shell over there has nothing to misread (one word reads a
+// variable of that user's own). ssh takes the address and the way to connect from `ssh computer`'s
+// configuration (~/.ssh/config). ssh ends with this object, and with culprit: the program over
+// there then reads the end of its input.
 #pragma once
 
 #include <optional>
@@ -20,7 +21,7 @@ namespace culprit::owners {
 
 class RemoteProgram {
  public:
-  // What it takes at most until the other computer has let us in, or has not.
+  // Time limit for the other computer to let us in or to refuse.
   static constexpr Duration kPatience = std::chrono::seconds(4);
 
   // `host` is as ssh is told it: "robot@rover2". Does not wait. Errors: there is no ssh, or the system

@@ -1,5 +1,5 @@
-// Who runs services by itself and is asked to start and to end them: systemd its units, a container
-// engine its containers.
+// A program that runs services by itself, and that culprit asks to start and to end them: systemd
+// its units, a container engine its containers.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace culprit::owners {
 
-// What the owner says of a service.
+// The state of a service, as its owner reports it.
 struct UnitState {
   enum class Activity : std::uint8_t {
     kActive,
@@ -58,9 +58,9 @@ class ServiceOwner {
 
   // For people: "systemd", "docker".
   virtual std::string name() const = 0;
-  // What says why a service failed: "journalctl -u lidar.service".
+  // The command that shows why a service failed: "journalctl -u lidar.service".
   virtual std::string where_to_look(const std::string& service) const = 0;
-  // What says which services it has.
+  // The command that lists its services.
   virtual std::string what_lists_all() const = 0;
 };
 

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMostOutput = std::size_t{1} << 20;
 
-// The file sees no arguments. What it prints is for people, not for us.
+// The file sees no arguments. Its output is for people, so it goes to standard error.
 constexpr const char* kLine =
     R"(culprit_setup=$1; shift; . "$culprit_setup" >&2 && exec /usr/bin/env -0)";
 
@@ -37,7 +37,8 @@ bool take_from(int descriptor, std::string& text) {
 }
 
 enum class Over : std::uint8_t { kItself, kTime };
-// Reads until both ends are closed by all who have them, or `end`. Of errors the last part is kept.
+// Reads until both ends are closed by all who have them, or `end`. The last part of the errors is
+// kept.
 Over read_all(int out, int err, Time end, std::string& printed, std::string& errors) {
   std::array<pollfd, 2> files{{{out, POLLIN, 0}, {err, POLLIN, 0}}};
   while (files[0].fd >= 0) {

@@ -119,8 +119,8 @@ const char* first_executable(char* const* places) {
   return nullptr;
 }
 
-// What execve() would find out of a script: whether the program that its first line names can be
-// run. Sets errno.
+// Checks a script as execve() would: whether the program that its first line names can be run. Sets
+// errno.
 bool has_interpreter(const char* path) {
   std::array<char, 256> line{};
   const int file = open(path, O_RDONLY | O_CLOEXEC);
@@ -136,7 +136,8 @@ bool has_interpreter(const char* path) {
   return access(begin, X_OK) == 0;
 }
 
-// Where the child says why it failed; closed by a successful execve(). What it keeps is beside it.
+// Where the child says why it failed; closed by a successful execve(). The descriptors that it
+// keeps are beside it.
 constexpr int kReport = STDERR_FILENO + 1;
 constexpr int kKept = kReport + 1;
 

@@ -1,44 +1,50 @@
 // Starts, stops and watches the processes of components.
 //
-// In the words of Erlang/OTP: the supervisor starts a child from its launch command, shuts it down
-// by escalation (SIGINT, after kPolite SIGTERM, after kFirm SIGKILL; SIGINT, after kHung SIGKILL,
-// if it hangs), and tells what becomes of it, and until its node is there whether it works.
-// It decides nothing: restarting is up to the manager. A stopped process cannot act on a polite
-// signal and must not wake up to do so late: it is killed at once.
+// In the words of Erlang/OTP: the supervisor starts a child from its launch command. It shuts it
+// down by escalation: SIGINT, after kPolite SIGTERM, after kFirm SIGKILL; or, if it hangs, SIGINT,
+// after kHung SIGKILL. It reports when the process runs, stops and ends, and until its node is
+// there whether it works. It decides nothing: restarting is up to the manager. A process that is
+// stopped (SIGSTOP) cannot act on a polite signal and must not wake up to do so late: it is killed
+// at once.
 //
-// What it starts carries a mark (mark.h), so that whoever supervises the same robot later knows it
-// again, also if this process died the moment after: a component is never started beside a process
-// that runs already. It is not marked until its program runs; until then it has a lock on the log,
-// which outlives us, too. (The tools of ROS 2 leave a daemon behind, which outlives whatever was
-// launched with them.)
+// Each process that it starts carries a mark (mark.h). The next supervisor of the same robot
+// recognizes it by that, also if this process died the moment after: a component is never started
+// beside a process that runs already. A process is not marked until its program runs; until then it
+// holds a lock on the log, which outlives us, too. (The tools of ROS 2 leave a daemon behind, which
+// outlives whatever was launched with them.)
 //
-// Proof before harm. What was not started here, and carries no mark of ours, is ended only if it is
-// what the component was when its process was found first: the same program of the same user. What
-// is ended to be started again is ended only if the start was tried, all but its last step. Nobody
-// waits here for a program whose file system does not answer. What a debugger holds is not replaced.
+// Proof before harm. A process that was not started here, and carries no mark of ours, is ended
+// only if it still is what it was when the component's process was found first: the same program of
+// the same user. Before a process is ended to be started again, the start is tried, all but its
+// last step. The supervisor never waits for a program whose file system does not answer. A process
+// that a debugger holds is not replaced.
 //
-// A component that is RESPAWNED is its launcher's to start: it is ended, and its launcher starts it
-// again. It is started here only once that launcher is known and has ended.
+// The launcher of a RESPAWNED component starts it: culprit ends the process, and its launcher
+// starts it again. culprit starts it only once that launcher is known and has exited.
 //
-// That a process ended is told at once, with how, and whether somebody wanted that (process_end.h); what culprit itself
-// ended was wanted. Who started what culprit did not start is told, and when that one has ended.
+// The supervisor reports an exit at once, with its status, and whether somebody wanted it
+// (process_end.h); an end by culprit itself was wanted. It also reports which process started one
+// that culprit did not start, and when that one has exited.
 //
 // A process that is started while the launcher of the component's first one runs stands in for that one: its mark names
 // the launcher (StartedHere). Whether it is to end with the launch is up to the manager; it then ends as ros2 launch
 // ends its own, by end_with_launch().
 //
-// An order to stop is meant for the processes that run when it comes. Their successors are not ended by it.
+// An order to stop applies to the processes that run when it comes, and not to their successors.
 //
-// A start that fails because a file is not there, its program or its parameters, is reported with the path
-// (StartBarred), and tried all but its last step every kMissingPeriod until it would succeed.
+// If a start fails because its program or its parameter file is missing, that is reported with the
+// path (StartBarred). The supervisor then tries the start, all but its last step, every
+// kMissingPeriod until it would succeed.
 //
-// A process ends with all that it started, also with what leads a session of its own, as in a service of systemd: that
-// holds the device which the successor needs. It is found by the mark that it inherited, and by its parents. If the process ended
-// by itself without a fault, its children may be the node (a launch command that makes a daemon), and go on until
-// the component is ended or started. Children of what somebody else started are reported instead.
+// A process ends with all its descendants, also with one that leads a session of its own, as in a
+// service of systemd: such a descendant holds the device that the successor needs. Descendants are
+// found by the mark that they inherited, and by their parents. If the process exited by itself
+// without a fault, its children may be the node (a launch command that makes a daemon). They go on
+// until the component is ended or started. Children of a process that somebody else started are
+// reported instead.
 //
-// Whatever it started goes on running when the supervisor ends, unless stop_all() was called or its
-// lifetime is the starter's.
+// All processes that it started go on running when the supervisor ends, unless stop_all() was
+// called or their lifetime is the starter's.
 #pragma once
 
 #include <filesystem>
@@ -60,8 +66,8 @@
 namespace culprit::owners {
 
 enum class Ending : std::uint8_t { kForGood, kToStartAgain };
-// What hangs is not expected to act on a polite signal, and is waited for only as long as one that
-// needs no thread of its own to end.
+// A process that hangs is not expected to act on a polite signal. It gets only the time that a
+// process needs to end without a thread of its own.
 enum class Hangs : bool { kNo, kYes };
 
 // All members may be called from any thread. Observations (ProcessSeen, Reply) go to the inbox.
@@ -72,15 +78,16 @@ class Supervisor {
   static constexpr Duration kHung = std::chrono::milliseconds(300);
   // As ros2 launch: sigterm_timeout, sigkill_timeout.
   static constexpr Duration kOfLaunch = std::chrono::seconds(5);
-  // Of what was started and whose node is not there yet it is looked this often whether it works,
-  // for so long.
+  // After a start, until the node is there: how often the supervisor checks whether the process
+  // works, and for how long.
   static constexpr Duration kWorkPeriod = std::chrono::seconds(1);
   static constexpr Duration kComingUp = std::chrono::minutes(5);
   // How often it is looked whether a process was stopped; its end is known at once.
   static constexpr Duration kStatePeriod = std::chrono::milliseconds(200);
   // How often it is looked whether a log has become too long.
   static constexpr Duration kLogPeriod = std::chrono::seconds(1);
-  // What stands for less may be part of a stop that is on its way through a launch.
+  // A process that is stopped for a shorter time may be part of a stop that is on its way through a
+  // launch.
   static constexpr Duration kStopSettles = std::chrono::milliseconds(50);
   // How often it is looked whether what a start needs is there by now.
   static constexpr Duration kMissingPeriod = std::chrono::milliseconds(500);
@@ -96,8 +103,8 @@ class Supervisor {
     // supervisors started is not looked for.
     std::string robot{};
     Lifetime lifetime = Lifetime::kOwn;  // of what is started
-    // What a component has in its environment beside what it inherits, by component; those that
-    // have none may be left out. Where it could not be told, the component is neither ended to be
+    // The variables of each component beside the inherited ones; components that have none may be
+    // left out. If a component's environment could not be determined, it is neither ended to be
     // started again nor started.
     std::vector<Expected<std::vector<std::string>>> environments{};
   };
@@ -122,7 +129,7 @@ class Supervisor {
   // one that began later is another. Tells that it is gone if it is. Does nothing if it is watched already.
   void adopt(ComponentId component, int pid, Time known);
 
-  // Likewise, of a process that an earlier run of culprit knew, if it is not a zombie now. Says
+  // As adopt(), for a process that an earlier run of culprit knew, if it is not a zombie now. Says
   // nothing where another process of the component is watched.
   void adopt_again(ComponentId component, int pid, Time known);
 
@@ -130,17 +137,17 @@ class Supervisor {
   // same robot before, and there is one.
   bool has_started(ComponentId component) const;
 
-  // The component's processes that were started here, or by a supervisor of the same robot before,
-  // with all that they started and that is in their groups. Empty: there is none, or it is being
-  // started or ended.
+  // The component's processes that this or an earlier supervisor of the same robot started, with
+  // all their descendants and all that is in their groups. Empty: none, or one is being started or
+  // ended.
   std::set<int> started(ComponentId component) const;
 
   // Ends what was started of the component, here or by a supervisor of the same robot before, and
   // nothing else: it is not needed, for somebody else started one, too.
   void withdraw(ComponentId component);
 
-  // Likewise, as ros2 launch ends what it started: SIGINT, after kOfLaunch SIGTERM, after kOfLaunch SIGKILL. Does
-  // nothing where that is under way.
+  // As withdraw(), but with the signals of ros2 launch: SIGINT, after kOfLaunch SIGTERM, after
+  // kOfLaunch SIGKILL. Does nothing where that is under way.
   void end_with_launch(ComponentId component);
 
   // Ends every process that was started here, and waits until all are gone.
@@ -193,7 +200,7 @@ class Supervisor {
     Time escalate = kNever;  // when the next one is due; kNever: another shutdown sees to that
   };
 
-  // Who started a component that culprit did not start.
+  // The process that started a component that culprit did not start.
   struct Launcher {
     int pid = 0;  // 0: it has ended, or it was a supervisor, since that had ended
     std::optional<Time> began{};

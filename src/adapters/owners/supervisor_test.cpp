@@ -295,7 +295,7 @@ TEST(Supervisor, TakesOverFromALauncherThatEndedBeforeItCame) {
   EXPECT_NE(c.start(), 0) << "there is no launcher any more to wait for";
 }
 
-// Nobody knows who started it, and so whether that one will start it again.
+// Its launcher is unknown, and so is whether that launcher will start it again.
 TEST(Supervisor, WaitsForWhomeverInitStartedItFor) {
   int pid = 0;
   int pipe_of[2];
@@ -368,7 +368,8 @@ TEST(Supervisor, TellsHowALauncherEndedAndWhetherItRanOthers) {
   }
 }
 
-// What culprit starts while the launcher runs stands in for the launch, and says so itself.
+// A process that culprit starts while the launcher runs stands in for the launch, and its mark says
+// so.
 TEST(Supervisor, WhatItStartsWhileTheLauncherRunsStandsInForTheLaunch) {
   Supervised c("sleep 1000", "0/stand_in");
   const auto launcher = spawn({{"sh", "-c", "sleep 1000 & sleep 1001 & wait"}, {}, "/dev/null"});
@@ -620,7 +621,7 @@ TEST(Proc, WhoOnlyWaitsDoesNotWork) {
   EXPECT_TRUE((Work{1s, 11 << 20}.is_more_than(before)));
 }
 
-// What SETUP and ENV came to, also PATH; and CWD.
+// Checks the variables of SETUP and ENV, also PATH; and CWD.
 TEST(Supervisor, StartsWithTheEnvironmentAndInTheFolderOfTheComponent) {
   Supervised c(Supervised::Declared{"LAUNCH \"my_node\" CWD /usr"});
   const std::filesystem::path program = c.folder() / "bin/my_node";
@@ -1072,7 +1073,7 @@ TEST(Supervisor, DoesNotEndWhatItCannotStartAgain) {
   }
 }
 
-// What others started is known by what it ran when it was found first.
+// A process that others started is recognized by the program that it ran when it was found first.
 TEST(Supervisor, DoesNotEndAnotherProgramThanTheComponentWas) {
   Supervised c("sleep 1000");
   const int node = start_by_others("exec sleep 1000");

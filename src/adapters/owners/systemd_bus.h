@@ -1,10 +1,10 @@
-// systemd, asked over D-Bus: what its services do, and to start and to end them
-// (org.freedesktop.systemd1(5)). That of another computer is asked through its own
+// systemd, over D-Bus: reads the state of its services, and starts and ends them
+// (org.freedesktop.systemd1(5)). The systemd of another computer is asked through its own
 // systemd-stdio-bridge(1), over ssh.
 //
-// Every call has a time limit, and blocks its thread for so long at most. What comes back is not
-// trusted: it is of the type that systemd documents, or an error. The connection is made by the
-// first call, and again by the next one after it was lost.
+// Every call has a time limit, and blocks its thread for so long at most. Its answers are not
+// trusted: one that is not of the type that systemd documents is an error. The connection is made
+// by the first call, and again by the next one after it was lost.
 #pragma once
 
 #include <memory>

@@ -108,7 +108,7 @@ void TestEngine::end(TestContainer& container) {
   container.status = "exited";
 }
 
-// What has ended by itself is started again where its policy says so.
+// Starts a container again that ended by itself, if its policy says so.
 void TestEngine::notice(TestContainer& container) {
   if (container.pid == 0 || state_letter(container.pid).value_or('Z') != 'Z') return;
   end(container);

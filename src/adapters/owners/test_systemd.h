@@ -49,12 +49,12 @@ class TestSystemd {
   // As `systemctl start`.
   int start(const std::string& name);
   int pid_of(const std::string& name);
-  // What was asked, in order: "RestartUnit lidar.service".
+  // The requests that it received, in order: "RestartUnit lidar.service".
   std::vector<std::string> asked();
 
   // Every request is refused with this D-Bus error; empty: none.
   void refuse(const std::string& error);
-  // What it says instead of the states of units; empty: the truth.
+  // The state that it reports for all units in place of the truth; empty: the truth.
   void say(const std::string& active, std::uint32_t main_pid);
 
  private:

@@ -1,6 +1,6 @@
-// What is asked of systemd, and what its answers are taken for. The server is a stand-in that
-// speaks systemd's published interface on a real dbus-daemon and really runs a process for each
-// unit; units_live_test.cpp asks systemd itself.
+// Requests to systemd, and how its answers are read. The server is a stand-in that speaks systemd's
+// published interface on a real dbus-daemon and really runs a process for each unit;
+// units_live_test.cpp asks systemd itself.
 #include "owners/units.h"
 
 #include <csignal>

@@ -45,8 +45,8 @@ void WatchedProcess::signal(int number) const {
   }
 }
 
-// A child's number is its own until we reap it, and so is its group's. Of others each one is looked
-// at while it is held: a group of this number may be somebody else's by now.
+// A child's number is its own until we reap it, and so is its group's. Other processes are held and
+// checked one by one: a group of this number may be somebody else's by now.
 void WatchedProcess::signal_group(int number) const {
   if (relation_ == Relation::kChild) {
     // It may not lead its group yet.

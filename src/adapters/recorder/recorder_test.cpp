@@ -24,7 +24,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-// What was said, from the thread of a recorder.
+// The messages for people, from the thread of a recorder.
 class Said {
  public:
   void add(const std::string& text) {

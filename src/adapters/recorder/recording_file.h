@@ -21,7 +21,8 @@
 
 namespace culprit::recorder {
 
-// What rosbag2 keeps in a channel as "offered_qos_profiles": a list in YAML, with the numbers of rmw/types.h.
+// The text of "offered_qos_profiles" in rosbag2's channels: a list in YAML, with the numbers of
+// rmw/types.h.
 std::string offered_qos_profiles(const std::vector<ros2::Qos>& offers);
 
 struct RecordedTopic {
@@ -51,7 +52,7 @@ class RecordingFile {
   void end();
 
   const std::filesystem::path& path() const { return path_; }
-  // Why it cannot go on; empty: it can. What was written until then can be read.
+  // Why it cannot go on; empty: it can. The messages up to then can be read.
   const std::string& trouble() const { return trouble_; }
   std::uint64_t messages() const { return writer_->messages(); }
 

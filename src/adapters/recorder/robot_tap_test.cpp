@@ -1,4 +1,4 @@
-// What the tap hears of a live robot, on loopback.
+// Checks the messages that the tap receives from a live robot, on loopback.
 #include "recorder/robot_tap.h"
 
 #include <gmock/gmock.h>

@@ -60,8 +60,8 @@ class Context {
   void note_proven_here(const std::string& node);
   void look_at_unproven();
 
-  // Calls `on_left` on the executor's thread, before the graph's listener hears of it, whenever a
-  // server of `service` leaves the graph, until it is told to stop. `on_left` must not call back
+  // Calls `on_left` on the executor's thread whenever a server of `service` leaves the graph,
+  // before the graph's listener hears of it, until it is told to stop. `on_left` must not call back
   // into the context.
   void watch_servers(const void* owner, std::string service, std::function<void()> on_left);
   void unwatch_servers(const void* owner);
@@ -110,7 +110,7 @@ class Context {
   std::set<GuidPrefix> lost_;  // participants whose leases ran out
   bool is_listening_anew_ = false;
   DiscoveryCallback discovery_listener_;  // may be empty
-  // What was proven a moment ago. A process of many nodes is found once, not for each of them.
+  // Recent proofs. So a process of many nodes is looked up once, not for each of them.
   struct Proof {
     ParticipantInfo of;
     FoundProcess found;

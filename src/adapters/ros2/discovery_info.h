@@ -3,8 +3,8 @@
 // about that participant.
 //
 // The one type that is not wire-identical everywhere: up to Humble a gid takes 24 bytes (16 of
-// GUID, 8 of zeros), from Iron on 16. Both have the same type name, so a reader has to tell them
-// apart from the bytes, and a writer has to know what its peers speak: the wrong size makes them
+// GUID, 8 of zeros), from Iron on 16. Both have the same type name, so a reader must distinguish
+// them by the bytes, and a writer must know the size that its peers use: the wrong size makes them
 // print an error and not list our nodes.
 #pragma once
 

@@ -35,7 +35,7 @@ TEST(DomainLock, SaysWhenAllAreTakenAndFreesThemAtTheEnd) {
   EXPECT_TRUE(DomainLock::reserve(first, first + 1));
 }
 
-// Of a demonstration that was killed, say, or of a robot.
+// Such a listener may be a demonstration that was killed, or a robot.
 TEST(DomainLock, TakesNoDomainThatSomebodyListensIn) {
   std::optional<Expected<DomainLock>> lock = DomainLock::reserve();
   ASSERT_TRUE(*lock);

@@ -2,8 +2,8 @@
 //
 // A path such as `pose.pose.position.x`, `ranges[3]` or `status[0].level` is compiled once, against
 // the definition of the message type, into a flat plan: what to pass over, then what to read.
-// Nothing is allocated while reading, but for a string. Payloads are hostile: reading one takes
-// time proportional to its size, whatever it claims.
+// Reading allocates no memory, except for a string. Payloads are hostile: reading one takes time
+// proportional to its size, whatever it claims.
 #pragma once
 
 #include <cstdint>

@@ -32,7 +32,7 @@ std::optional<GraphEndpoint> ros_meaning(const EndpointInfo& info) {
                            !user_data_value(info.user_data, "serviceid").empty()};
 }
 
-// Nothing when a name breaks the grammar.
+// Gives nothing if a name breaks the grammar.
 std::optional<std::string> full_name(const NodeEntities& node) {
   if (!is_valid_namespace(node.name_space) || !is_valid_node_name(node.name)) return std::nullopt;
   return NodeName{node.name_space, node.name}.full();
@@ -139,7 +139,7 @@ void Graph::replace_claims(const GuidPrefix& prefix, Peer& peer, const Claims& b
   }
 }
 
-// What of `info` is well-formed and has room. @pre peer.claims is empty
+// The part of `info` that is well-formed and has room. @pre peer.claims is empty
 Graph::Claims Graph::read_claims(const DiscoveryInfo& info, Peer& peer) {
   assert(peer.claims.empty());
   Claims claims;
@@ -403,8 +403,8 @@ bool Graph::has_ended(const Peer& peer) const {
   return options_.find_process && options_.find_process(peer.info).has_ended;
 }
 
-// For a node that it comes to hold, of several at once for the first. Of an ended process nothing can be proven
-// any more: what was known of it stays known.
+// Looks for a node that the peer comes to hold; of several at once, for the first. If a process has
+// ended, nothing can be proven of it any more, and the old proof stays.
 void Graph::look_for_process(Peer& peer) {
   const bool is_next = std::exchange(looked_for_, &peer) == &peer;
   if (!is_next && options_.find_process && (peer.pid == 0 || !has_ended(peer))) {

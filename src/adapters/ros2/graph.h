@@ -9,15 +9,18 @@
 // - Two nodes of one name: the one that came last is the node, for a restarted process comes while
 //   its killed predecessor's lease still runs (20 s). The change is told as a vanishing and an
 //   appearing, and as trouble unless the predecessor's process is known to be gone.
-// - Once a process of this machine was proven to hold a name that belongs here (is_kept_here), participants without such
-//   a proof hold it no more: neither as the node nor as its namesake, for anybody may claim a name. It is told once.
-// - A participant that says that it holds a node no more is not believed at once if that node is_asked_about: the
-//   listener is told (NodeSaidToLeave) and finds out. A participant that leaves takes its nodes with it.
-// - Names come from the network. Nodes whose names break the grammar are left out and told as
+// - Once a process of this machine was proven to hold a name that belongs here (is_kept_here),
+//   participants without such a proof lose that name, both as the node and as its namesake: anybody
+//   may claim a name. It is reported once.
+// - If a participant says that it holds a node no more, and that node is_asked_about, the graph does
+//   not believe it at once: it reports NodeSaidToLeave, and the listener finds out. A participant
+//   that leaves takes its nodes with it.
+// - Names come from the network. Nodes whose names break the grammar are left out and reported as
 //   trouble once for each participant; endpoints that are not ROS 2's are left out silently.
 // - Tables are capped. Half of each is kept free for sources that are known: this machine, and those that hold a
-//   component. One source gets at most half of the other half. So a stranger who makes up participants does not keep
-//   the robot's from being seen. On this machine one that holds no node makes room for another.
+//   component. One source gets at most half of the other half. So a stranger who makes up
+//   participants does not keep the robot's from being discovered. On this machine a participant
+//   that holds no node makes room for another.
 //
 // A pure data structure: fed by one thread, no I/O, no clock.
 #pragma once
@@ -66,7 +69,7 @@ struct GraphNode {
 // The process of a participant, as far as it is proven.
 struct FoundProcess {
   int pid = 0;  // on this machine; 0: it is elsewhere, or not proven
-  // What is missing for a proof, in words: "nobody here has ...". Empty where nothing is claimed.
+  // The missing part of a proof, in words: "nobody here has ...". Empty where nothing is claimed.
   std::string missing;
   // It was on this machine, and sockets that it had are nobody's any more.
   bool has_ended = false;
@@ -142,12 +145,14 @@ class Graph {
   explicit Graph(Options options);
 
   void apply(const DiscoveryEvent& event);
-  // What `info.participant` said of its nodes, in which form; replaces what it said before.
+  // The nodes of `info.participant`, as it announced them in this form; replaces what it said
+  // before.
   void apply(const DiscoveryInfo& info, std::optional<GidSize> form = {});
   // A process of this machine has ended: whoever it was is gone, though leases may still run.
   void forget_process(int pid);
-  // Likewise all that claim a name that others claim too, and have ended by now, as far as the
-  // operating system can tell: by their processes, or by their sockets where those are not proven.
+  // As above, for all participants that claim a name that others claim too, and that have ended by
+  // now. The operating system shows that by their processes, or by their sockets if no process is
+  // proven.
   void forget_ended_namesakes();
 
   // It was found out that what was told as NodeSaidToLeave is so.

@@ -366,7 +366,7 @@ TEST(Graph, TellsOnceWhatIsMissingForTheProofOfAProcess) {
                   "+/a", "+/b", "+/c"));
 }
 
-// Of several nodes in a process one may be somebody else's to end, and another ours.
+// A process may hold a node that another owner ends, and one that culprit ends.
 TEST(Graph, NothingIsMissingForANodeThatOthersEnd) {
   Graph::Options options;
   options.find_process = [](const ParticipantInfo&) {
@@ -414,7 +414,7 @@ TEST(Graph, AnEndedProcessIsGoneAtOnce) {
   EXPECT_THAT(watched.told(), IsEmpty());
 }
 
-// One message says that the camera is no more. Whoever acts on that finds out first.
+// One message says that the camera has left. The listener that acts on that finds out first.
 TEST(Graph, ANodeThatIsAskedAboutStaysUntilItIsFoundToHaveLeft) {
   Graph::Options options;
   options.is_asked_about = [](const std::string& node) { return node == "/camera"; };
@@ -445,7 +445,7 @@ TEST(Graph, ANodeThatIsAskedAboutStaysUntilItIsFoundToHaveLeft) {
       << "the participant takes its nodes with it";
 }
 
-// Anybody may claim a name. Of a process of this machine there is proof.
+// Anybody may claim a name. A process of this machine can be proven.
 TEST(Graph, AClaimOfAStrangerIsNeitherTheNodeNorItsNamesake) {
   std::map<int, FoundProcess> found = {
       {10, {10, ""}}, {20, {0, "nobody here has it"}}, {30, {30, ""}}};
@@ -646,7 +646,7 @@ TEST(Graph, TellsWhetherWhoLeftSaidGoodBye) {
   EXPECT_THAT(lost, ElementsAre(true, false));
 }
 
-// Whatever comes in whatever order: what was told, taken together, is what the graph shows.
+// In any order of events: the reported changes add up to the graph's content.
 RC_GTEST_PROP(Graph, WhatItTellsAddsUpToWhatItShows, ()) {
   std::set<std::string> nodes, edges;
   Graph::Options options;

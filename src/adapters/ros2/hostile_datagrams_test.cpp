@@ -147,8 +147,8 @@ TEST_F(HostileDatagrams, FragmentsWithinTheBudgetTakeNoMoreThanIt) {
   EXPECT_LT(resident_bytes(), before + (64u << 20));
 }
 
-// What a participant announces comes to its own port for discovery again and again: the witness of
-// the thread there.
+// A participant's own announcements arrive at its discovery port again and again: they prove that
+// the thread there works.
 TEST_F(HostileDatagrams, TheOwnAnnouncementsComeThrough) {
   const auto is_within = [&](auto condition) {
     const auto end = std::chrono::steady_clock::now() + kPatience;
@@ -161,7 +161,7 @@ TEST_F(HostileDatagrams, TheOwnAnnouncementsComeThrough) {
   EXPECT_TRUE(is_within([&] { return victim->own_came_through() > first; }));
 }
 
-// What is said through the middleware comes back only through sockets and threads that live.
+// Messages through the middleware come back only if sockets and threads work.
 TEST(Hearing, IsDoubtfulWithoutTheThreadThatSpeaks) {
   const TestDomain domain;
   const auto participant = join(domain);

@@ -92,7 +92,7 @@ bool LifecycleNode::change_state(const LifecycleTransition* transition) {
   return result == TransitionResult::kSuccess;
 }
 
-// What the transition state that the node is in has to do.
+// Runs the callback of the node's present transition state.
 TransitionResult LifecycleNode::work() {
   const auto run = [](const LifecycleCallbacks::Work& callback) {
     return callback ? callback() : TransitionResult::kSuccess;

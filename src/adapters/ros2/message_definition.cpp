@@ -127,7 +127,7 @@ class Parser {
     return {};
   }
 
-  // What closes must have been opened; the value itself is never sent.
+  // A bracket or quote that opens must close; the value itself is never sent.
   Expected<void> parse_default(std::string_view value) const {
     if (value.empty() || value.starts_with('#')) return {};
     const char first = value.front();

@@ -93,7 +93,7 @@ std::optional<std::string> service_text(std::string_view type) {
          "_Response[<=1] response\n";
 }
 
-// What goes to and fro for an action, around its own three messages (rosidl_parser, "implicit" types).
+// The messages of an action around its own three (rosidl_parser, "implicit" types).
 std::optional<std::string> action_text(std::string_view type) {
   if (!is_of_kind(type, "/action/")) return std::nullopt;
   const auto action_before = [&](std::string_view suffix) -> std::optional<std::string> {
@@ -183,7 +183,8 @@ Expected<MessageDefinition> MessageLibrary::load(std::string_view type) const {
                " with --message-path"};
 }
 
-// What is no file, or a very large one, is passed over: others may decide what there is.
+// A path that is no file, or a very large file, is passed over: others may control the folder's
+// content.
 std::optional<std::string> MessageLibrary::read(const std::filesystem::path& path) const {
   const int file = open_below(root_, path);
   if (file < 0) return std::nullopt;

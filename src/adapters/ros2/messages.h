@@ -156,7 +156,7 @@ struct Log {
   bool operator==(const Log&) const = default;
 };
 
-// Of a managed node. Ids and labels: lifecycle.h.
+// The state of a lifecycle node. Ids and labels: lifecycle.h.
 struct State {
   static constexpr std::string_view kType = "lifecycle_msgs/msg/State";
   std::uint8_t id = 0;

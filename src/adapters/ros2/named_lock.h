@@ -21,8 +21,8 @@ class NamedLock {
     std::uint32_t user = 0;
   };
 
-  // Nothing: another process has it. Of a longer `name` than a socket may have, a hash takes the
-  // place of the end.
+  // Nothing: another process has it. If `name` is longer than a socket's name may be, a hash
+  // replaces its end.
   static Expected<std::optional<NamedLock>> take(const std::string& name);
   // Nothing: nobody has it, or that process has not called admit() for too long.
   static std::optional<Holder> holder(const std::string& name);

@@ -32,7 +32,7 @@ class ParameterStore {
   // added.
   using OnSet = std::function<Expected<void>(std::span<const msg::Parameter>)>;
 
-  // What happened is told here: declared (new), set (changed). The stamp is left to the receiver.
+  // Receives each event: declared (new), set (changed). The stamp is left to the receiver.
   using OnEvent = std::function<void(msg::ParameterEvent)>;
 
   // `node` is the full name that events carry.

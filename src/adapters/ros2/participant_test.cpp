@@ -391,7 +391,7 @@ std::unique_ptr<Participant> join(const ParticipantOptions& options,
   return std::move(*participant);
 }
 
-// Of the endpoints of all others, what is known now.
+// The endpoints of all others, as known now.
 class Known {
  public:
   DiscoveryCallback listener() {
@@ -528,8 +528,8 @@ TEST(Participant, WhoStaysAsItIsIsToldOfOnce) {
 // A port where a participant of this machine may be found (RTPS 2.3 §9.6.1.1), held by somebody who only listens.
 class Eavesdropper {
  public:
-  // That of `participant`, or the next lower one that nobody has: Fast DDS numbers the participants of a process, with those of
-  // earlier tests, and the one that is listened to may have the first.
+  // Binds the port of `participant`, or the next lower free one. Fast DDS numbers the participants
+  // of a process, with those of earlier tests, and the eavesdropped one may have the first.
   Eavesdropper(std::uint32_t domain, int participant) {
     sockaddr_in address{};
     address.sin_family = AF_INET;

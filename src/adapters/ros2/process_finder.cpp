@@ -48,7 +48,7 @@ Candidates sends_from(const UdpAddress& address, const std::vector<UdpSocket>& s
   return found;
 }
 
-// Who it runs as: the real and the effective user.
+// The users that it runs as: the real and the effective one.
 std::vector<unsigned> users_of(const fs::path& process) {
   std::ifstream file(process / "status");
   for (std::string line; std::getline(file, line);) {
@@ -139,7 +139,7 @@ FoundProcess ProcessFinder::prove(const ParticipantInfo& participant,
     // Every machine with containers has the address of a bridge, and it is the same one.
     if (!is_local(each.ip) && may_be_elsewhere) return {};
     if (!is_local(each.ip))
-      return {0, "it says that it is on this machine, but datagrams in its name come from " +
+      return {0, "it claims to be on this machine, but datagrams in its name come from " +
                      to_text(each)};
     addresses.push_back(each);
   }
@@ -167,8 +167,8 @@ FoundProcess ProcessFinder::prove(const ParticipantInfo& participant,
   std::string all;
   for (const UdpAddress& each : addresses) all += (all.empty() ? "" : ", ") + to_text(each);
   return {0,
-          "no process whose files can be seen holds all of its sockets (" + all +
-              ") alone; of another user's, culprit may see them only with CAP_SYS_PTRACE",
+          "no process with readable files holds all of its sockets (" + all +
+              ") alone; culprit may read another user's only with CAP_SYS_PTRACE",
           false, are_trusted};
 }
 

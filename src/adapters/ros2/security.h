@@ -27,7 +27,7 @@ struct Security {
 Expected<std::optional<Security>> security_from_environment(
     const std::function<const char*(const char* name)>& get);
 
-// What the middleware is told of it.
+// The properties that the middleware receives for it.
 std::vector<std::pair<std::string, std::string>> properties_of(const Security& security);
 
 }  // namespace culprit::ros2

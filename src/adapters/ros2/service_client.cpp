@@ -40,8 +40,9 @@ Expected<std::unique_ptr<ServiceClient>> ServiceClient::create(NodeEntry& node,
 
 ServiceClient::ServiceClient(NodeEntry& node) : node_(node), tasks_(node.context().executor()) {}
 
-// What has time is asked for again by us if it is lost: so answers need no acknowledgements. And only the last
-// request is kept, so that Fast DDS asks for the acknowledgement of each with the request itself.
+// A client with kSoon repeats a request itself if it is lost, so answers need no acknowledgements.
+// And only the last request is kept, so that Fast DDS asks for the acknowledgement of each with the
+// request itself.
 Expected<void> ServiceClient::open(const ServiceName& service, const Qos& qos, Haste haste) {
   if (!is_valid_topic_name(service.name))
     return Error{"'" + printable(service.name) + "' is not the name of a service"};
@@ -126,7 +127,7 @@ void ServiceClient::call(Bytes request, Repeat repeat, Duration timeout, Callbac
   call.repeat = repeat;
   call.callback = std::move(callback);
   if (server_for(repeat) != nullptr) send(number, call);
-  // What came in time may still lie in its socket.
+  // An answer that came in time may still lie in its socket.
   const Duration patience = haste == Haste::kSoon ? timeout + ReceiveThread::kSoon : timeout;
   call.deadline = tasks_.post_at(after(patience), [this, number] { on_deadline(number); });
   if (repeat == Repeat::kUntilAnswered) {
@@ -216,7 +217,7 @@ void ServiceClient::on_reply(const Sample& sample) {
 void ServiceClient::on_request_reader(const Guid& reader, Match match) {
   if (match == Match::kMade) {
     request_readers_.emplace(reader, ++matches_);
-    // What a dead server did not acknowledge must not come between its successor and us
+    // Requests that a dead server did not acknowledge must not delay those to its successor
     // (service_mapping.h).
     const MutexLock lock(mutex_);
     if (request_writer_) request_writer_->forget_unacknowledged();
@@ -313,7 +314,7 @@ void ServiceClient::start_probe() {
     round = proof_round_;
   }
   is_probing_ = true;
-  // Whoever waits for the proof hurries (call()).
+  // A caller that waits for the proof hastens it (call()).
   probe_->call(
       probe_request_, Repeat::kUntilAnswered, kProbeTimeout,
       [this, round](const CallResult& result) {

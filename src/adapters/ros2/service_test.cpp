@@ -89,7 +89,8 @@ TEST(Service, AnswersACall) {
   EXPECT_EQ(answers->all()[0].reply, request("hello"));
 }
 
-// Anybody may offer a service of that name. What he says is no answer, and keeps nobody from the true one.
+// Anybody may offer a service of that name. A stranger's reply is no answer, and does not block the
+// true one.
 TEST(Service, TakesAnswersOnlyOfTheParticipantThatIsMeant) {
   const TestDomain domain;
   Side stranger(domain, "stranger"), robot(domain, "robot"), manager(domain, "manager");

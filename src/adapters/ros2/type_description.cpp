@@ -66,7 +66,7 @@ msg::Field describe(const FieldDefinition& field) {
           {}};
 }
 
-// What a message without fields has on the wire, and in its description.
+// The field that a message without fields has on the wire and in its description.
 const FieldDefinition kFiller{.name = "structure_needs_at_least_one_member",
                               .element = Primitive::kUint8};
 

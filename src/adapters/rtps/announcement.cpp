@@ -194,7 +194,7 @@ std::optional<EndpointInfo> read_announcement(ByteView payload, EndpointRole rol
   const auto list = announced_list(payload);
   if (!list) return std::nullopt;
   EndpointInfo info;
-  // What is not said (DDS 1.4 §2.2.3): writers are reliable, readers are not.
+  // The default where none is announced (DDS 1.4 §2.2.3): writers are reliable, readers are not.
   if (role == EndpointRole::kReader) info.qos.reliability = Reliability::kBestEffort;
   bool is_good = true;
   const bool is_whole = for_each_parameter(*list, [&](std::uint16_t id, Announced value) {

@@ -501,7 +501,7 @@ class DiscoveringFilter : public Filter {
   TestDatagram announced(std::int64_t sequence, std::uint8_t number, std::string_view topic) const {
     return from(kWriters).announcement(kWriters, sequence, said(endpoint(number), topic));
   }
-  // Of each gap that is passed on: where it begins, and what follows it.
+  // For each gap that is passed on: its beginning, and the number that follows it.
   std::vector<std::pair<int, int>> gaps() const {
     std::vector<std::pair<int, int>> all;
     std::size_t at = 20;

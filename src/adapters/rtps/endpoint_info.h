@@ -14,7 +14,7 @@ namespace culprit::ros2 {
 
 enum class EndpointRole : std::uint8_t { kReader, kWriter };
 
-// What it says of itself. DDS names; strings as sent, cut at 1024 bytes. History depth is not announced.
+// Its announcement. DDS names; strings as sent, cut at 1024 bytes. History depth is not announced.
 struct EndpointInfo {
   Guid guid;
   std::string topic;

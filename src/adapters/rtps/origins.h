@@ -1,9 +1,9 @@
-// Which datagrams count: those that come from where the participant in whose name they speak is known to be.
+// Decides which datagrams count: those that come from the known place of the participant in whose name they speak.
 //
 // RTPS does not prove the sender of a datagram. The kernel does, for senders on this machine: its table of sockets
-// shows which process owns the source address. Once the process of a participant is known (prove()), a datagram in
-// the participant's name (header or INFO_SRC, RTPS 2.3 §8.3.7) counts only from a socket of that process. Others are
-// dropped before they have any effect.
+// shows which process owns the source address. Once the process of a participant is known
+// (prove()), a datagram in its name counts only from a socket of that process. (The name is in the
+// header or in INFO_SRC, RTPS 2.3 §8.3.7.) Others are dropped before they have any effect.
 //
 // The process may be unknown: it runs on another computer or in a container. Its participant is bound to the IP
 // addresses that it spoke from and announced; all addresses of this machine count as one. It is bound once it has
@@ -17,18 +17,18 @@
 // This does not stop:
 //   - anything before a process is proven or a participant bound. A process cannot be proven if it belongs to
 //     another user (without CAP_SYS_PTRACE), or to another PID or network namespace (a container). Its participant
-//     is bound to addresses only, and other programs of that computer or container share them
-//   - another machine can write the address of a third one into its datagrams, as nothing on the way forbids it
-//   - root and CAP_NET_RAW can write any source into a datagram on the loopback interface
-//   - the same user can take a socket out of the process (pidfd_getfd), or run code in it (ptrace)
+//     is bound to addresses only, and other programs of that computer or container share them.
+//   - another machine can write the address of a third one into its datagrams, as nothing on the way forbids it.
+//   - root and CAP_NET_RAW can write any source into a datagram on the loopback interface.
+//   - the same user can take a socket out of the process (pidfd_getfd), or run code in it (ptrace).
 //   - a program with thousands of sockets makes the tables slow to read; then a datagram from a socket that was not
-//     looked up counts (see below)
-// So none of this replaces the rule that a claim ends no process: that is for those who act.
+//     looked up counts (see below).
+// So none of this replaces the rule that a claim ends no process; the code that acts must keep it.
 //
 // A process may open sockets later, and others get its old ports. So an unknown address is looked up at once, and
 // the known ones are checked again and again (check()). One look takes a fraction of a millisecond. More than a
-// twentieth of the time is never spent on looks. A datagram whose source cannot be looked up counts: a robot that is
-// not heard is worse than a forged datagram, which culprit asks about before it acts.
+// twentieth of the time is never spent on looks. A datagram whose source cannot be looked up counts: missing a
+// robot's messages is worse than a forged datagram, which culprit asks about before it acts.
 #pragma once
 
 #include <cstdint>

@@ -18,7 +18,8 @@ enum class Durability : std::uint8_t { kVolatile, kTransientLocal };
 // what an endpoint is, and a reader matches no writer of the other kind.
 enum class Keys : std::uint8_t { kNone, kSome };
 enum class History : std::uint8_t { kKeepLast, kKeepAll };
-// Who says that a publisher lives: the middleware for the whole process, or the publisher itself.
+// How a publisher's liveliness is asserted: by the middleware for the whole process, or by the
+// publisher itself.
 enum class Liveliness : std::uint8_t { kAutomatic, kManualByTopic };
 // Whether a subscriber hears all publishers of a topic, or the strongest only. ROS 2 has no word for it;
 // XML profiles of the middleware have.

@@ -109,7 +109,7 @@ TEST(ReceiveThread, NothingIsHeardOfAPortThatWasClosed) {
   }
 }
 
-// Whoever hears something has heard all that was said before to those that have time.
+// A reader that receives a message has received all earlier ones to readers that have time.
 TEST(ReceiveThread, WhatHasTimeIsHandedOnBeforeWhatWasSaidLater) {
   Listener ears;
   const Voice speaker;

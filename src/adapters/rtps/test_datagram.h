@@ -54,7 +54,8 @@ class TestDatagram {
     append(parameters);
     return end();
   }
-  // That the endpoint, or the participant, has ended, as Fast DDS says it: all of it in inline parameters.
+  // The end of the endpoint, or the participant, as Fast DDS announces it: all of it in inline
+  // parameters.
   TestDatagram& farewell(const Guid& announcer, std::int64_t sequence, const Guid& endpoint) {
     begin(0x15, 2).u16(0).u16(16).readers().entity(announcer).sequence(sequence);
     u16(0x70).u16(16);
@@ -110,7 +111,7 @@ class TestDatagram {
   std::size_t start_ = 0;
 };
 
-// What is announced of an endpoint, little endian and without its encapsulation.
+// The announcement of an endpoint, little endian and without its encapsulation.
 class TestParameters {
  public:
   TestParameters& add(std::uint16_t id, Bytes value) {

@@ -19,7 +19,7 @@ struct UdpSocket {
   bool is_ipv6 = false;
 };
 
-// What cannot be read is left out: nothing where there are no such tables.
+// Unreadable lines are left out; without such tables the list is empty.
 std::vector<UdpSocket> udp_sockets(const std::filesystem::path& proc = "/proc");
 
 // The ports that they are bound to.

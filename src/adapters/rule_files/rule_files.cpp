@@ -42,7 +42,7 @@ std::vector<fs::path> below(const fs::path& folder, const std::string& extension
   return all;
 }
 
-// What was probably meant by `file`: one that is beside where it should be.
+// The file that `file` was probably meant to name: one beside its expected place.
 std::string near_file(const fs::path& file, const std::vector<fs::path>& places) {
   for (const fs::path& place : places) {
     std::vector<std::string> names;

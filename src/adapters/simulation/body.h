@@ -45,8 +45,8 @@ struct Body {
   // Gives whether there is such a parameter, of the value's type.
   bool set_parameter(const std::string& name, const Value& value);
 
-  // What one that can answer does about a request, and says. A routine succeeds, and any mode can be
-  // changed to. @pre `request` is neither StartProcess nor StopProcess
+  // The effect of a request on one that can answer, and the answer. A routine succeeds, and any
+  // mode can be changed to. @pre `request` is neither StartProcess nor StopProcess
   Answer answer(const decltype(Command::what)& request);
 };
 

@@ -155,7 +155,7 @@ RULE Slow
       ADAPTATION pump change_mode fast 5
 )";
 
-// What the manager resolved within ten seconds, and by what.
+// The failures that the manager resolved within ten seconds, and by which strategy.
 std::vector<std::string> resolved_by(Plant& plant, const std::string& text = kRules) {
   const RuleSet rules = *check(Source("test.rules", text)).rules;
   SimulatedRobot robot(rules, plant.world);
@@ -212,7 +212,7 @@ struct Later {
   std::function<void(Plant&)> what;
 };
 
-// What the manager says while it watches `plant` for `time`.
+// The manager's messages while it watches `plant` for `time`.
 std::vector<std::string> said(Plant& plant, const std::string& text, Duration time,
                               const std::vector<Later>& meanwhile = {}) {
   const RuleSet rules = *check(Source("test.rules", text)).rules;

@@ -3,7 +3,7 @@
 // Like a real one it has
 // - a process that takes time to start and to stop, that can be killed, stopped and hung, and that
 //   forgets everything when it is gone;
-// - one executor thread: what a callback takes, everything behind it waits for;
+// - one executor thread: while a callback runs, all later ones wait;
 // - a lifecycle, parameters, and topics that it uses while it is configured or active.
 //
 // A model of a node derives from this class and overrides what happens in it.
@@ -100,7 +100,7 @@ class Node {
   bool is_active() const { return body_.state == Lifecycle::kActive; }
 
  protected:
-  // What a model does. Called while the process runs.
+  // The behaviour of a model. Called while the process runs.
   virtual void on_start() {}  // a new process: whatever the old one remembered is forgotten
   virtual void on_configure() {}
   virtual void on_activate() {}
@@ -115,7 +115,7 @@ class Node {
   // A change by the node itself.
   void assign(const std::string& name, Value value);
 
-  // The callback under way takes this long. What it publishes goes out afterwards.
+  // The callback under way takes this long. Its messages go out afterwards.
   void occupy(Duration time);
   // Calls `action` every `period` of robot time while the process lives, on the executor; the first
   // time after `first`.

@@ -157,7 +157,7 @@ Node* SimulatedRobot::node_of(ComponentId component) const {
   return world_.node(binding_.node_of(component));
 }
 
-// Who serves the request: the component's node, or, of modes, the mode manager.
+// The node that serves the request: the component's node, or, for modes, the mode manager.
 Node* SimulatedRobot::server_of(const Command& command) const {
   const bool is_about_modes = std::holds_alternative<ChangeMode>(command.what) ||
                               std::holds_alternative<ReadMode>(command.what);

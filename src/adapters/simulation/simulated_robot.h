@@ -1,8 +1,8 @@
 // The adapter: a simulated world as a robot that a managing system watches and adapts.
 //
-// It tells what a live link would tell (nodes, topics, samples and signals that the rules read,
-// parameters, lifecycle, processes) and carries out requests, which take their way to the node,
-// wait for its executor, and take their way back.
+// It reports the same observations as a live link: nodes, topics, samples and signals that the
+// rules read, parameters, lifecycle, processes. It carries out requests, which take time to reach
+// the node, wait for its executor, and take time to come back.
 //
 // A system of a mode manager is a component like a node: it is there as long as its manager is.
 //

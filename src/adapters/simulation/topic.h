@@ -13,7 +13,7 @@
 
 namespace culprit::simulation {
 
-// What becomes of messages on their way.
+// The delay and the loss of messages on their way.
 struct Transport {
   Span latency;
   double loss = 0;  // probability
@@ -86,7 +86,7 @@ class Endpoint {
 
   // Tells the watchers if that changed.
   void report();
-  // What waits here is lost.
+  // Drops the messages that wait here.
   virtual void forget() {}
 
  protected:
@@ -141,7 +141,7 @@ class Publisher : public Endpoint {
   Publisher(Node& node, Topic<Message>& topic, Use use = Use::kWhileActive)
       : Endpoint(node, EndpointKind::kPublisher, topic.name(), use), topic_(topic) {}
 
-  // Nothing leaves while the endpoint is not open.
+  // While the endpoint is not open, messages are dropped.
   void publish(const Message& message) {
     if (is_open()) topic_.publish(departure(), message);
   }

@@ -20,7 +20,7 @@ class ModeManager;
 class Node;
 class TopicBase;
 
-// Who hears of what can be seen of the nodes from outside. Calls come in the order of time.
+// Receives the changes of nodes that are visible from outside. Calls come in the order of time.
 class Watcher {
  public:
   virtual ~Watcher() = default;
@@ -57,7 +57,7 @@ class World {
   bool step(Time until);
   // Does everything that is due not after `until`. Then it is `until`.
   void run(Time until);
-  // It is `time` now. Nothing may be due before.
+  // It is `time` now. No action may be due before.
   void set_time(Time time) { now_ = std::max(now_, time); }
 
   // Null if there is none of this name.

@@ -183,7 +183,7 @@ TEST(Crash, WhatWasCutShortLongAgoIsNotTakenUpAgain) {
   const journal::Recovery found = left_behind(61s, {});
   EXPECT_TRUE(found.interrupted.empty());
   EXPECT_THAT(found.given_up, testing::ElementsAre("redeploy for CameraDead: that was more than "
-                                                   "1min ago, so it is not gone on with"));
+                                                   "1min ago, so it is not continued"));
 }
 
 // On one machine, with journals of their own or with one for both; or on two machines.
