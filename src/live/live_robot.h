@@ -59,7 +59,7 @@ class LiveRobot : public Robot {
   // Something about culprit itself that a person should know. From any thread.
   void report(std::string trouble);
 
-  // What the fleet learned. From any thread.
+  // Takes the priors that the fleet learned. Callable from any thread.
   void tell(PriorsTold priors);
 
   ros2::Link& link() { return *link_; }

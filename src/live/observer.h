@@ -1,4 +1,4 @@
-// Who looks on while a robot is managed: a page in a browser, say.
+// Follows the management of a robot: a page in a browser, for example.
 #pragma once
 
 #include <functional>
@@ -21,7 +21,7 @@ class Observer {
  public:
   virtual ~Observer() = default;
 
-  // What people should know of nodes beyond what the manager knows, by full name.
+  // Remarks on nodes that the manager does not know of, by full name.
   using Remarks = std::map<std::string, std::string>;
 
   // Culprit's own node is there, for who tells something over DDS, until leaves() is called.

@@ -1,4 +1,4 @@
-// What the live robot has, for forms: looked at only once somebody asks.
+// The live robot's names, for forms: looked up only on request.
 #pragma once
 
 #include "base/mutex.h"

@@ -1,5 +1,5 @@
-// What a culprit that only looks on has seen of the robot, so that it knows it if it has to manage:
-// of each thing the latest observation, as of when it was made.
+// Observations of a culprit that only advises, so that it knows the robot if it becomes the
+// manager: of each thing the latest one, with its time.
 //
 // A manager that begins with these stands where one would that had begun to watch at since(), and
 // has heard of each topic once: nothing that was seen has to be discovered anew, and silences and

@@ -1,5 +1,5 @@
-// What systemd is told of a service of Type=notify (sd_notify(3)): datagrams to the socket that
-// $NOTIFY_SOCKET names. Without one, nothing.
+// Notifies systemd about a service of Type=notify (sd_notify(3)), by datagrams to the socket that
+// $NOTIFY_SOCKET names. Without this variable, it does nothing.
 //
 // The watchdog is fed from the decision loop, not from a thread of its own: what hangs is to be
 // found hanging.

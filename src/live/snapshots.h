@@ -29,7 +29,7 @@ class Snapshots : public Observer {
   // So long it may take to be discovered before that is said.
   static constexpr Duration kDiscovery = std::chrono::seconds(10);
 
-  // What such a recorder offers.
+  // The service of such a recorder.
   static std::string service_of(const std::string& recorder) { return recorder + "/snapshot"; }
 
   explicit Snapshots(Options options);
