@@ -15,7 +15,7 @@ void PlannerOptions::add_to(CLI::App& command) {
       ->check(CLI::IsMember({"bayes", "paper"}))
       ->capture_default_str();
   CLI::Option* wish =
-      command.add_option("--objective", objective, "What the bayes planner spares most")
+      command.add_option("--objective", objective, "Cost that the bayes planner minimizes")
           ->check(CLI::IsMember({"balanced", "downtime", "adaptations", "redeployments"}))
           ->capture_default_str();
   const std::string kFactors = "The paper planner's factors";

@@ -299,7 +299,7 @@ void add_demo(CLI::App& app, int& exit_code) {
   command->add_flag(
       "--extended", options->is_extended,
       "With --robot suave: the battery runs low as well, and what dies is started anew");
-  command->add_option("--seed", options->seed, "Of the flight or dive, and of 'random'")
+  command->add_option("--seed", options->seed, "Seed of the flight or dive, and of 'random'")
       ->capture_default_str();
   command->add_option("--speed", options->speed, "How much faster than real time the robot lives")
       ->check(CLI::Range(0.1, 20.0))

@@ -156,7 +156,7 @@ Expected<std::vector<study::LearningCurve>> learn(const StudyOptions& options, P
                       [&](std::uint64_t done) { progress.show(before + done); });
 }
 
-// Of the paper's full configuration, or of the first row if it has no such.
+// The row of the paper's full configuration, or the first if there is none.
 std::uint32_t told_row(const study::Campaign& campaign) {
   const auto row = std::find_if(campaign.rows.begin(), campaign.rows.end(),
                                 [](const auto& each) { return each.switches == PaperSwitches{}; });
@@ -277,7 +277,7 @@ void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
                     "Success probabilities that are 20 % off, beside ideal ones");
   command->add_flag(
       "--learning", options->learning,
-      "What is learned of each strategy, by the first planner that can (paper, bayes)");
+      "Show the learned rates of each strategy; uses the first learning planner (paper, bayes)");
   command
       ->add_option(
           "--planner", options->planners,
@@ -290,7 +290,7 @@ void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
       ->capture_default_str();
   command
       ->add_option("--objective", options->objectives,
-                   "What bayes spares most; several, one after the other")
+                   "Cost that bayes minimizes; several, one after the other")
       ->delimiter(',')
       ->check(CLI::IsMember({"balanced", "downtime", "adaptations", "redeployments"}))
       ->capture_default_str();
@@ -317,14 +317,13 @@ void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
       ->capture_default_str();
   command
       ->add_option("--experiments", options->experiments,
-                   "Of each series that is learned from; the paper has 162")
+                   "Experiments of each learning series; the paper has 162")
       ->check(CLI::Range(1U, 1'000'000U))
       ->capture_default_str();
-  command->add_option("--repetitions", options->repetitions, "Of the series that is learned from")
+  command->add_option("--repetitions", options->repetitions, "Number of learning series")
       ->check(CLI::Range(1U, 1'000'000U))
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "Of all that is left to chance")
-      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Seed of all random numbers")->capture_default_str();
   command
       ->add_option("--jobs", options->jobs_asked,
                    "Threads; the results do not depend on it. With --live, robots at once, each in "

@@ -62,7 +62,7 @@ struct RcaOptions {
   Times times() const { return timing ? Times::kShown : Times::kLeftOut; }
 };
 
-// Of one file, or of every combination of what was asked for.
+// One file's, or every combination of the options.
 Expected<RcaCampaign> campaign_of(const RcaOptions& options) {
   RcaCampaign campaign;
   if (!options.scenario.empty()) {
@@ -204,7 +204,7 @@ void add_share(CLI::App& command, const std::string& name, double& share, double
       ->default_str(usual);
 }
 
-// What differs from robot to robot (rca_study/factors.h).
+// The properties that differ from robot to robot (rca_study/factors.h).
 void add_factors(CLI::App& command, RcaFactors& factors) {
   add_range(command, "--detector-latency", factors.detector_latency_s, "0..0.4s",
             "Time until a detector shows a change");
@@ -293,7 +293,7 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
                     "Each rule's criticality is any (default: all are ERROR)");
   command->add_flag("--flapping", options->flapping, "Every fault comes and goes");
   command->add_flag("--unfixable", options->unfixable,
-                    "Nothing that the rules have helps against one of the faults");
+                    "No strategy of the rules repairs one of the faults");
   command->add_flag("--ignore", options->ignore,
                     "The rules IGNORE the infrastructure topics, as a user's would");
   add_factors(*command, options->factors);
@@ -338,8 +338,7 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
       ->capture_default_str()
       ->needs(learn);
   command
-      ->add_flag("--drift", options->drift,
-                 "What helps changes for the last quarter of what is learned from")
+      ->add_flag("--drift", options->drift, "Success rates change in the last quarter of learning")
       ->needs(learn);
   auto* regret = command->add_flag("--regret", options->regret,
                                    "How far bayes is from the optimum, for each objective, on "
@@ -357,14 +356,13 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
   command->add_option("--html", options->html, "Also a page with calibration plots")
       ->type_name("FILE")
       ->needs(learn);
-  command->add_option("--objective", options->objective, "What the bayes planner spares most")
+  command->add_option("--objective", options->objective, "Cost that the bayes planner minimizes")
       ->check(CLI::IsMember({"balanced", "downtime", "adaptations", "redeployments"}))
       ->capture_default_str();
-  command->add_option("--episodes", options->episodes, "Of each setting and planner")
+  command->add_option("--episodes", options->episodes, "Episodes of each setting and planner")
       ->check(CLI::Range(1U, 1'000'000U))
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "Of all that is left to chance")
-      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Seed of all random numbers")->capture_default_str();
   command->add_option("--jobs", options->jobs, "Threads; the results do not depend on it")
       ->check(CLI::Range(1U, 1024U));
   command->add_flag("--timing", options->timing,

@@ -126,7 +126,7 @@ std::string settings_of_command(const study::SuaveCampaign& campaign) {
   return text;
 }
 
-// What makes the campaign again.
+// The command that repeats the campaign.
 std::string command_of(const study::SuaveCampaign& campaign, const std::string& vehicle) {
   const std::string mission(campaign.plan->name);
   return fmt::format("culprit study suave {}--managers {} --generation {} --runs {} --seed {}{}{}",
@@ -239,7 +239,9 @@ void add_settings(CLI::App& command, SettingTexts& settings) {
           "--start", settings.start,
           "Where a run begins across the pipeline, y in m, A..B or A,B,C (default: as fitted)")
       ->group(kGroup);
-  command.add_option("--time-limit", settings.time_limit, "Of the mission, in s (default: 300)")
+  command
+      .add_option("--time-limit", settings.time_limit,
+                  "Time limit of the mission, in s (default: 300)")
       ->group(kGroup);
 }
 
@@ -292,8 +294,7 @@ void add_study_suave(CLI::App& study, const std::string& version, int& exit_code
   command->add_option("--runs", options->runs, "Of each manager")
       ->check(CLI::Range(1U, 1'000'000U))
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "Of all that is left to chance")
-      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Seed of all random numbers")->capture_default_str();
   command->add_option("--jobs", options->jobs, "Threads; the results do not depend on it")
       ->check(CLI::Range(1U, 1024U));
   add_settings(*command, options->settings);
