@@ -14,7 +14,7 @@ using Doctor = std::function<Expected<Json>(Duration time)>;
 // One examination runs at a time: each joins the robot's network.
 std::vector<Route> doctor_routes(Doctor doctor);
 
-// Of the robot of the environment (ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY).
+// Examines the robot of the environment (ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY).
 Expected<Json> examine_robot(Duration time);
 
 }  // namespace culprit::web

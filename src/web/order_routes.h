@@ -23,8 +23,8 @@ class OrderDesk : public live::OrderTaker {
   // Only a pause is taken meanwhile, and given to whoever is next.
   void close() override;
 
-  // 202: the manager has it, and an event of its number will say what becomes of it. Who says until
-  // when it is wanted (`valid_until`) is refused later, unless it restrains culprit.
+  // 202: the manager has it, and an event of its number will say what becomes of it. An order with
+  // `valid_until` is refused after that time, unless it restrains culprit.
   Answer take(const Json& body);
 
  private:
