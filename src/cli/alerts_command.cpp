@@ -62,7 +62,7 @@ void add_alerts(CLI::App& app, int& exit_code) {
   command->add_option("FILE", options->file, "Where alerts go (docs/alerts.md)")
       ->type_name("FILE")
       ->required();
-  command->add_flag("--json", options->json, "What became of each, as a JSON document");
+  command->add_flag("--json", options->json, "Print the result of each as a JSON document");
   command->callback([options, &exit_code] { exit_code = try_alerts(*options); });
 }
 

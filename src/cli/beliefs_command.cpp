@@ -23,7 +23,7 @@ struct BeliefsOptions {
   bool json = false;
 };
 
-// What export writes and import reads.
+// The document that export writes and import reads.
 Json document_of(const journal::Learned& learned) {
   Json document = {{"format", kFormat}, {"format_version", 1}};
   document.update(journal::to_json(learned));
@@ -145,7 +145,7 @@ void add_beliefs(CLI::App& app, int& exit_code) {
   out.first->add_option("-o,--output", out.second->output, "Where to (default: stdout)")
       ->type_name("FILE");
   const auto in = add("import", "Add what other robots learned", read_in);
-  in.first->add_option("FILE", in.second->files, "What culprit beliefs export wrote")
+  in.first->add_option("FILE", in.second->files, "A file that culprit beliefs export wrote")
       ->type_name("FILE")
       ->required();
   const auto forget = add("reset", "Forget what was learned", reset);

@@ -53,7 +53,7 @@ void print_findings(const RuleSet& rules, const LiveInventory& robot) {
   for (const std::string& line : findings(rules, robot)) fmt::print("  {}\n", line);
 }
 
-// What the robot has, of what the files name.
+// Looks up the robot's names that the files refer to.
 Expected<LiveInventory> look(const std::vector<Expansion>& files, Duration wait) {
   std::vector<Checked> checked;
   for (const Expansion& file : files) checked.push_back(check(file));

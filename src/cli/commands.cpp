@@ -8,7 +8,7 @@
 namespace culprit::cli {
 namespace {
 
-// What culprit-lab does in culprit's name.
+// A command of culprit-lab that culprit offers, too.
 struct OfLaboratory {
   const char* name;
   const char* description;

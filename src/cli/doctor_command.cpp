@@ -72,7 +72,7 @@ void print(const Report& report, const DoctorOptions& options) {
 
 bool is_same(const Finding& a, const Finding& b) { return a.code == b.code && a.who == b.who; }
 
-// What has come and what has gone since the last look.
+// Prints the findings that are new and those that are gone since the last look.
 void print_changes(const Report& before, const Report& now) {
   const auto is_in = [](const Finding& finding, const Report& report) {
     return std::ranges::any_of(report.findings,
@@ -117,7 +117,7 @@ int watch_robot(const doctor::LookOptions& how, const doctor::Baseline* healthy,
       [&](const doctor::Picture& picture) {
         Report now = report_of(picture, healthy);
         print_again(last ? &*last : nullptr, now, options);
-        // What was told and is in doubt now has neither gone nor come again.
+        // An earlier finding that is doubtful now is neither gone nor new.
         for (const Finding& each : last ? last->findings : std::vector<Finding>()) {
           if (std::ranges::any_of(now.doubtful,
                                   [&](const Finding& other) { return is_same(each, other); }))

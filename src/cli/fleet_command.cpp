@@ -23,7 +23,7 @@ struct FleetCommand {
   std::string html;
 };
 
-// Nobody interrupts a command but by ending it.
+// The only way to interrupt a command is to end it.
 const std::atomic<bool> kGoesOn = false;
 
 Expected<fleet::Server> connect(const FleetCommand& options) {

@@ -76,7 +76,7 @@ Expected<init::Sighting> look(const InitOptions& options) {
   return seen;
 }
 
-// What was written, in a sentence, and what to do next.
+// Reports the written file in a sentence, with the next step.
 void advise(const std::string& file, const RuleSet& rules) {
   say(stderr,
       "culprit: {} has {} components and {} rules. Read it, then try it:\n"
@@ -209,7 +209,7 @@ Expected<ParameterUpdate> parameter_update(
   return update;
 }
 
-// Nothing is written over what somebody changed meanwhile.
+// A file that was changed meanwhile is not overwritten.
 Expected<void> write_parameters(const ParameterUpdate& update) {
   if (update.after.empty()) return {};
   std::error_code error;

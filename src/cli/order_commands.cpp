@@ -1,4 +1,4 @@
-// What people order of a running culprit from a terminal: pause, resume, silence, approve, refuse,
+// People's orders to a running culprit from a terminal: pause, resume, silence, approve, refuse,
 // run-strategy.
 #include <algorithm>
 #include <functional>
@@ -139,7 +139,7 @@ CLI::App* add_order(CLI::App& app, int& exit_code, const char* name, const char*
                     MakeOrder make, const std::shared_ptr<OrderOptions>& options) {
   CLI::App* command = app.add_subcommand(name, description);
   command->add_option("--reason", options->reason, "Why, for the record");
-  command->add_flag("--json", options->json, "What became of it, as a JSON document");
+  command->add_flag("--json", options->json, "Print the result as a JSON document");
   options->which.add_to(*command);
   command->callback(
       [options, make = std::move(make), &exit_code] { exit_code = order(*options, make); });

@@ -72,8 +72,8 @@ bool all_is_known(const Knowledge& knowledge) {
   return true;
 }
 
-// Until discovery has settled and all that triggers read is known (or has had as long again to
-// come), and as long as rules wait until they call something a failure.
+// Runs until discovery has settled and all inputs of triggers are known (or as long again has
+// passed). Then it runs as long as rules wait before they report a failure.
 void watch(Manager& manager, live::LiveRobot& robot, const RuleSet& rules, Duration discovery,
            const std::atomic<bool>& stop) {
   Runtime runtime(manager, robot);
@@ -151,7 +151,7 @@ void add_plan(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "plan", "Show what would be decided now, why, and what would have changed the decision");
   command->add_option("RULES", options->rules, "The rule file")->type_name("FILE")->required();
-  CLI::Option_group* what = command->add_option_group("What is the case");
+  CLI::Option_group* what = command->add_option_group("State of the robot");
   what->add_option("--state", options->state, "A file that says how the robot is (docs/plan.md)")
       ->type_name("FILE");
   what->add_flag("--robot", options->robot,

@@ -130,8 +130,9 @@ void add_policy(CLI::App& app, int& exit_code) {
                    "openssl; systemd: a drop-in for packaging/culprit.service")
       ->check(CLI::IsMember({"sros2", "permissions", "systemd"}))
       ->capture_default_str();
-  command->add_option("--enclave", options->enclave,
-                      "Whose keys culprit has (default: ROS_SECURITY_ENCLAVE_OVERRIDE, /culprit)");
+  command->add_option(
+      "--enclave", options->enclave,
+      "The enclave with culprit's keys (default: ROS_SECURITY_ENCLAVE_OVERRIDE, /culprit)");
   command->add_option("--days", options->days, "How long the permissions are valid, from today on")
       ->check(CLI::Range(1, 36500))
       ->capture_default_str();

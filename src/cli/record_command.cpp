@@ -39,7 +39,7 @@ void add_record(CLI::App& app, int& exit_code) {
       "record",
       "Let a running culprit that records (run --record) write a recording now, of the last "
       "seconds and the next ones");
-  command->add_option("--name", options->name, "What it is called, beside when it was")
+  command->add_option("--name", options->name, "Name of the recording, beside its time")
       ->capture_default_str();
   command->add_flag("--json", options->json, "Where it is, as a JSON document");
   options->which.add_to(*command);

@@ -67,7 +67,7 @@ Json results_as_json(const Totals& totals, const std::vector<rule_test::SuiteRep
   return all;
 }
 
-// Folders as the files in them. What cannot be found is said and counted.
+// Replaces folders by the files in them. A missing path is reported and counted.
 std::vector<std::string> files_of(const std::vector<std::string>& paths, Totals& totals) {
   std::vector<std::string> all;
   for (const std::string& path : paths) {

@@ -55,10 +55,10 @@ void add(std::vector<web::Route>& all, std::vector<web::Route> more) {
   for (web::Route& route : more) all.push_back(std::move(route));
 }
 
-// What a person waits for, at most.
+// The longest wait of a person.
 constexpr Duration kDiskAnswers = std::chrono::seconds(3);
 
-// What is asked and told from a terminal of this machine, and on the page.
+// The calls for terminals of this machine, and for the page.
 std::vector<web::Route> local_routes(web::Hub& hub, const web::Metrics& metrics,
                                      web::OrderDesk& orders, live::LiveRun& live,
                                      RunRecording* recording) {

@@ -13,7 +13,7 @@ void FleetOptions::add_to(CLI::App& command) {
   command.add_option("--fleet", address,
                      "Share what is learned with other robots, in this PostgreSQL database "
                      "(postgresql://HOST/DATABASE, without a password; docs/fleet.md)");
-  command.add_option("--fleet-name", name, "What people call this robot (default: its host name)");
+  command.add_option("--fleet-name", name, "This robot's name for people (default: its host name)");
   command.add_option("--fleet-context", context,
                      "Where or at what it works: what robots learn elsewhere does not count here");
 }

@@ -83,8 +83,7 @@ void RunOptions::add_to(CLI::App& command) {
                    "The robot is simulated: nothing is judged while its /clock stands still");
   command
       .add_option("--node-name", node_name,
-                  "What culprit's own node is called, where a culprit of another machine is "
-                  "called /culprit, too (default: culprit, or culprit_2 and so on beside others "
+                  "Name of culprit's own node (default: culprit; culprit_2 and so on beside others "
                   "of this machine)")
       ->check([](const std::string& name) {
         return is_valid_node_name(name) ? std::string() : "'" + name + "' is no name of a node";
@@ -93,10 +92,7 @@ void RunOptions::add_to(CLI::App& command) {
                    "Take orders over DDS (~/pause, ~/run_strategy ...) on a domain without keys, "
                    "too: whoever is on "
                    "it can stop culprit, and have it restart nodes (docs/ros2-packages.md)");
-  command
-      .add_option("--forgetting", forgetting,
-                  "What was learned n outcomes ago weighs this to the n-th power; 1: nothing is "
-                  "forgotten")
+  command.add_option("--forgetting", forgetting, "Discount factor per outcome (1 = never forget)")
       ->check(CLI::Range(0.5, 1.0))
       ->capture_default_str();
   command.add_flag("--json", json,

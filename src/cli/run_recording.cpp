@@ -40,10 +40,10 @@ void RecordingOptions::add_to(CLI::App& command) {
       "--record", is_on,
       "Keep the last seconds of the robot's topics, and write a recording (MCAP) of each incident "
       "(docs/recording.md)");
-  add_seconds(command, "--record-before", before_seconds,
-              "What is recorded begins so long before a failure", 0, kMostSeconds);
+  add_seconds(command, "--record-before", before_seconds, "Start of a recording before the failure",
+              0, kMostSeconds);
   add_seconds(command, "--record-after", after_seconds,
-              "It ends so long after all is well again; after 5 min at the latest", 0, 300);
+              "End of a recording after the recovery; after 5 min at the latest", 0, 300);
   command
       .add_option("--record-topics", topics,
                   "Only these topics: names, with * for anything, or with ! before them: all but "
@@ -52,7 +52,7 @@ void RecordingOptions::add_to(CLI::App& command) {
   add_bytes(command, "--record-budget", memory,
             "The memory for what is kept; a quarter of it is for large messages", "200MB");
   add_bytes(command, "--record-disk", disk,
-            "What all recordings may have of the disk; the oldest goes first", "5GB");
+            "Disk space for all recordings; the oldest is deleted first", "5GB");
   command
       .add_option("--record-folder", folder,
                   "Where recordings go (default: recordings in the state folder)")

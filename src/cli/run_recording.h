@@ -34,7 +34,7 @@ struct RecordingOptions {
   void add_to(CLI::App& command);
 };
 
-// What people should know of it, from any thread.
+// Reports remarks on the recording, from any thread.
 void say_of_recording(const std::string& text);
 
 class RunRecording {

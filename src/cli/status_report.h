@@ -36,7 +36,7 @@ std::vector<std::string> component_lines(const WhatCulpritSays& said, Colour col
 // The latest events, oldest first.
 std::vector<std::string> event_lines(const WhatCulpritSays& said, std::size_t most, Colour colour);
 
-// Who says this, and where its page is.
+// culprit's identity, and the address of its page.
 std::vector<std::string> about_lines(const WhatCulpritSays& said);
 
 }  // namespace culprit::cli

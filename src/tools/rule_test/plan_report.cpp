@@ -239,7 +239,7 @@ std::string plan_as_text(const PlanReport& report) {
   for (const plan::ExplainedDecision& explained : report.decisions)
     out += as_text(explained, report);
   if (report.decisions.empty()) {
-    out += "Nothing waits for a decision.\n";
+    out += "No failure awaits a decision.\n";
     const auto near = near_triggers(report.knowledge, kMostNearTriggers);
     for (const NearTrigger& n : near)
       out += (&n == &near.front() ? "Nearest to a failure:\n  " : "  ") + nearness(n, rules) + "\n";
