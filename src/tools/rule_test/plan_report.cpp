@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMostNearTriggers = 3;
 
-// What triggers read and nobody has told yet.
+// Inputs of triggers without a value.
 std::vector<std::string> unknown_inputs(const Knowledge& knowledge) {
   std::vector<std::string> unknown;
   for (std::size_t i = 0; i < knowledge.rules.inputs.size(); ++i) {
