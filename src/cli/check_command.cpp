@@ -173,8 +173,7 @@ void add_check(CLI::App& app, int& exit_code) {
   command->add_flag("--strict", options->strict, "Every component and signal must be declared");
   auto* robot = command->add_flag(
       "--robot", options->robot,
-      "Check also against the live robot: nodes, topics, parameters, diagnostics and services "
-      "that it has not");
+      "Also report nodes, topics, parameters, diagnostics and services that the live robot lacks");
   add_seconds(*command, "--wait", options->wait_seconds, "How long to look at the robot", 0.1, 600)
       ->needs(robot);
   command

@@ -176,19 +176,17 @@ void add_doctor(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<DoctorOptions>();
   CLI::App* command = app.add_subcommand(
       "doctor",
-      "Say what is wrong with the robot, without a rule: looks for some seconds, changes nothing. "
-      "Exits with 0 if it finds nothing, with 3 if it only warns");
+      "Find problems of the robot, without rules: observes it for some seconds, changes nothing. "
+      "Exits with 0 if there are none, with 3 if there are only warnings");
   add_seconds(*command, "--for", options->seconds, "How long to look", 0.1, 3600);
   auto* json = command->add_flag("--json", options->json, "For programs");
   command->add_flag("--sarif", options->sarif, "For programs that read SARIF 2.1.0")
       ->excludes(json);
   auto* watch = command->add_flag("--watch", options->watch,
-                                  "Look again and again, and say what comes and goes");
-  auto* save =
-      command
-          ->add_option("--save", options->save, "Write the healthy robot as a file to compare with")
-          ->type_name("FILE");
-  command->add_option("--against", options->against, "Compare with a robot that was saved")
+                                  "Look again and again, and report new and cleared findings");
+  auto* save = command->add_option("--save", options->save, "Save the healthy robot as a baseline")
+                   ->type_name("FILE");
+  command->add_option("--against", options->against, "Compare with a saved baseline")
       ->type_name("FILE")
       ->excludes(save);
   save->excludes(watch);

@@ -196,33 +196,32 @@ void add_orders(CLI::App& app, int& exit_code) {
   const auto make = [] { return std::make_shared<OrderOptions>(); };
   auto options = make();
   CLI::App* pause = add_order(app, exit_code, "pause",
-                              "Let a running culprit change nothing more, until it is resumed",
+                              "Pause a running culprit: it changes nothing until it is resumed",
                               plain("pause"), options);
   options->which.add_all_to(*pause);
-  add_order(app, exit_code, "resume", "Let a culprit that is paused go on", plain("resume"),
-            make());
+  add_order(app, exit_code, "resume", "Resume a paused culprit", plain("resume"), make());
   add_order(app, exit_code, "revive",
-            "Let a running culprit start the components again that a person ended", plain("revive"),
+            "Have a running culprit restart the components that a person ended", plain("revive"),
             make());
   add_end_started(app, exit_code);
 
   options = make();
-  CLI::App* silence = add_order(
-      app, exit_code, "silence",
-      "Let a running culprit leave a component, or a rule, alone. It is watched all the same",
-      silence_of, options);
+  CLI::App* silence =
+      add_order(app, exit_code, "silence",
+                "Have a running culprit leave a component or a rule alone. It is still watched",
+                silence_of, options);
   silence->add_option("NAME", options->name, "A component or a rule")->required();
   auto* lasts = add_seconds(*silence, "--for", options->seconds,
-                            "For so long (default: until it is lifted)", 1, 7 * 24 * 3600)
+                            "Duration (default: until it is lifted)", 1, 7 * 24 * 3600)
                     ->default_str("");
-  silence->add_flag("--lift", options->lifts, "It is left alone no longer")->excludes(lasts);
+  silence->add_flag("--lift", options->lifts, "Lift the silence")->excludes(lasts);
 
   for (const auto& [word, call, description] :
        {std::tuple("approve", "approve",
-                   "Let a running culprit do what it asks for (run --approve)"),
+                   "Approve the strategy that a running culprit proposes (run --approve)"),
         std::tuple("refuse", "refuse",
-                   "Let a running culprit not do what it asks for, but the next best"),
-        std::tuple("run-strategy", "run", "Let a running culprit carry out a strategy now")}) {
+                   "Reject the proposed strategy; culprit proposes the next one"),
+        std::tuple("run-strategy", "run", "Have a running culprit carry out a strategy now")}) {
     options = make();
     add_order(app, exit_code, word, description, about_strategy(call), options)
         ->add_option("STRATEGY", options->name, "As culprit status names it: Rule.strategy")

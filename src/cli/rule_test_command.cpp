@@ -114,7 +114,7 @@ int run_tests(const TestOptions& options) {
 void add_test(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<TestOptions>();
   CLI::App* command = app.add_subcommand(
-      "test", "Run unit tests of rule files: what the manager does with a robot that is played");
+      "test", "Run unit tests of rule files: the manager's behaviour on a simulated robot");
   command->add_option("FILES", options->files, "Test files, and folders of *.test")
       ->type_name("FILE")
       ->required();

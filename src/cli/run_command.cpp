@@ -250,10 +250,10 @@ int run(const RunOptions& options) {
 void add_run(CLI::App& app, const std::string& version, int& exit_code) {
   auto options = std::make_shared<RunOptions>();
   options->version = version;
-  CLI::App* command =
-      app.add_subcommand("run",
-                         "Watch a live robot and heal it until Ctrl-C.\nJoins the DDS domain that "
-                         "ROS_DOMAIN_ID and ROS_LOCALHOST_ONLY name. SIGHUP reloads the rules.");
+  CLI::App* command = app.add_subcommand("run",
+                                         "Watch a live robot and repair it until Ctrl-C.\n"
+                                         "Joins the DDS domain that ROS_DOMAIN_ID and "
+                                         "ROS_LOCALHOST_ONLY name. SIGHUP reloads the rules.");
   options->add_to(*command);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

@@ -18,7 +18,7 @@ const Manual kManual{
     .environment = {},
     .examples = {{"culprit-lab demo", "A robot of real processes is broken and healed."},
                  {"culprit-lab study sunset", "The paper's tables beside ours."},
-                 {"culprit-lab torture --seeds 100", "Random robots with everything going wrong."}},
+                 {"culprit-lab torture --seeds 100", "Random robots with all kinds of faults."}},
     .see_also = "culprit(1)"};
 
 }  // namespace

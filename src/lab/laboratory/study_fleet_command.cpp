@@ -69,7 +69,7 @@ int study_fleet(const FleetStudyOptions& options) {
 void add_study_fleet(CLI::App& study, int& exit_code) {
   auto options = std::make_shared<FleetStudyOptions>();
   CLI::App* command = study.add_subcommand(
-      "fleet", "How many failed strategies what a fleet learned spares a new robot");
+      "fleet", "Failed strategies that a fleet's experience spares a new robot");
   const auto number = [&](const char* name, std::uint32_t& value, const char* help) {
     command->add_option(name, value, help)->check(CLI::Range(1U, 100'000U))->capture_default_str();
   };

@@ -216,11 +216,12 @@ void add_settings(CLI::App& command, SettingTexts& settings) {
       "Mission settings (where A..B: another value in each run; A,B,C: these by turns)";
   command
       .add_option("--visibility-period", settings.visibility_period,
-                  "In which the water clears and dims, in s (default: 80)")
+                  "Period of the water's visibility, in s (default: 80)")
       ->group(kGroup);
   command
-      .add_option("--visibility-shift", settings.visibility_shift,
-                  "How far it is when the mission begins, in s, A..B or A,B,C (default: 0)")
+      .add_option(
+          "--visibility-shift", settings.visibility_shift,
+          "Phase of the visibility at the mission's begin, in s, A..B or A,B,C (default: 0)")
       ->group(kGroup);
   command
       .add_option("--visibility", settings.visibility,
@@ -235,9 +236,8 @@ void add_settings(CLI::App& command, SettingTexts& settings) {
       ->excludes(thruster)
       ->group(kGroup);
   command
-      .add_option(
-          "--start", settings.start,
-          "Where a run begins across the pipeline, y in m, A..B or A,B,C (default: as fitted)")
+      .add_option("--start", settings.start,
+                  "Start position across the pipeline, y in m, A..B or A,B,C (default: as fitted)")
       ->group(kGroup);
   command
       .add_option("--time-limit", settings.time_limit,
