@@ -34,7 +34,7 @@ struct CheckOptions {
   double wait_seconds = 3;
 };
 
-// For people: what is wrong goes to stderr, a line for each good file to stdout.
+// For people: mistakes go to stderr, a line for each good file to stdout.
 void print_text(const Expansion& file, const Checked& checked) {
   fmt::print(stderr, "{}", render(checked.diagnostics, file.source, colour_of(STDERR_FILENO)));
   if (!checked.rules) {
@@ -70,8 +70,8 @@ Expected<LiveInventory> look(const std::vector<Expansion>& files, Duration wait)
   return robot;
 }
 
-// Launch commands that could not run on this computer. Where it has none of their programs, it is
-// most likely not the robot's: then one of them is told.
+// Launch commands that could not run on this computer. If it has none of their programs, it is most
+// likely not the robot's: then only one of them is reported.
 void check_launches(const Expansion& file, Checked& checked) {
   const RuleSet& rules = *checked.rules;
   const auto troubles = live::launch_troubles(rules);

@@ -1,4 +1,4 @@
-// Gives an order to a running culprit, and hears what becomes of it.
+// Gives an order to a running culprit, and waits for its outcome.
 //
 // It counts as done once the manager reports that it follows it. If it lasts (a pause, for example), it must also be on the disk, so that culprit keeps it
 // across a restart. Any other outcome is a failure.

@@ -127,7 +127,7 @@ int order(const OrderOptions& options, const MakeOrder& make) {
   if (options.json)
     say(stdout, "{}\n",
         to_line({{"orders", list}, {"others", here->others}, {"not_meant", here->not_meant}}));
-  // Somebody may have meant one of these.
+  // The user may have meant one of these.
   for (const auto* others : {&here->others, &here->not_meant}) {
     for (const std::string& other : *others)
       say(stderr, "culprit: not told: {}\n", escape_controls(other));

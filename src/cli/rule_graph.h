@@ -25,7 +25,7 @@ struct RuleGraph {
   struct Rule {
     std::string name;
     Criticality criticality = Criticality::kNonCritical;
-    // Components, each once, ascending. A topic is of nobody until a robot runs.
+    // Components, each once, ascending. A topic has no publisher until a robot runs.
     std::vector<ComponentId> reads;  // whether they live, their lifecycle, their parameters
     std::vector<ComponentId> adapts;
     Place place;

@@ -106,7 +106,7 @@ Expected<std::unique_ptr<RunRecording>> open_recording(const RunOptions& options
                              session.robot.link.participant, session.robot.link.types});
 }
 
-// On a domain with keys whoever speaks is somebody that its owner vouches for. Empty: no orders are taken.
+// On a domain with keys, the owner of the keys vouches for every participant. Empty: no orders are taken.
 ros_api::OrderServices::Give orders_over_dds(const RunOptions& options,
                                              const live::LiveSession::Options& session,
                                              web::OrderDesk& desk, web::Hub& hub,

@@ -1,5 +1,4 @@
-// How a robot is and what its culprit does about it, in words for a terminal: who is ill, who is blamed, what
-// happens next. Made from what a running culprit says of itself (docs/web.md).
+// The state of a robot and its culprit in words for a terminal: failures, root causes, next steps. Made from a running culprit's own report (docs/web.md).
 #pragma once
 
 #include <string>

@@ -85,7 +85,7 @@ std::vector<Alerting::Problem> Alerting::problems() const {
     for (const ComponentId c : each.components) alert.components.push_back(rules[c].name);
     alert.consequences = names_of_rules(each.consequences, rules);
     alert.doing = each.doing;
-    // Any other next step has passed before anybody reads the alert.
+    // Any other next step has passed before a person reads the alert.
     if (each.needs_person()) alert.next = each.next;
     problem.keys = {alert.consequences.begin(), alert.consequences.end()};
     problem.keys.insert(alert.rule);
@@ -266,7 +266,7 @@ void Alerting::tell(Fault& fault, Time now) {
   post_(fault.alert);
 }
 
-// If so, that is told.
+// If so, a message reports it.
 bool Alerting::is_over(Fault& fault, Time now) {
   if (fault.keys.empty()) return true;
   if (fault.gone == kNever || now < later(fault.gone, kStaysAway)) return false;

@@ -1,7 +1,7 @@
 // Turns what a manager finds into alerts for people: one fault, one alert, and one more when it is over.
 //
 // - A fault is what situation.h calls an incident: a cause, and all that fails because of it. While it lasts it
-//   may turn out to have another cause, or to be part of another fault; it is told as one.
+//   may turn out to have another cause, or to be part of another fault; it is reported as one.
 // - It is reported after `wait`. If it has cleared by then, one message reports both. It is reported at once if a person is needed, also if it was reported
 //   before.
 // - The end is reported once the fault has been absent for kStaysAway. If it returns earlier, it is the same fault.

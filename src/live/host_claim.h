@@ -19,7 +19,7 @@ class HostClaim {
   // `name`: what is claimed, the same for all culprits.
   explicit HostClaim(std::string name) : name_(std::move(name)) {}
 
-  // Looks anew. Gives whether it is ours: nobody who counts has it.
+  // Looks anew. Returns whether it is ours: no other entitled process has it.
   bool look();
   // The holder, "process 123"; empty while the claim is ours.
   const std::string& holder() const { return holder_; }

@@ -68,7 +68,7 @@ class Starting {
     end_ = std::min(end_, later(robot_.now(), times_.patience));
   }
 
-  // Says what went wrong; nothing: it is up, or nobody is to bring it up.
+  // Returns the problem; empty: it is up, or needs no lifecycle changes.
   std::optional<std::string> bring_up(ComponentId component) {
     const LifecycleDriver driver = rules_[component].lifecycle;
     const bool joined = joins(component);
@@ -203,7 +203,7 @@ class Starting {
     return it.began ? *it.joined - *it.began : Duration::zero();
   }
 
-  // Whether it leaves the state in which every lifecycle node begins, and nobody asked it here.
+  // Whether it leaves the state in which every lifecycle node begins, without a request from here.
   bool moves(ComponentId component) {
     const Part& it = part(component);
     using Driver = ComingUp::Driver;

@@ -1,4 +1,5 @@
-// `run --launch`: starts what is missing, and brings up what stands still after its start.
+// `run --launch`: starts missing components, and brings up nodes that stay inactive after their
+// start.
 //
 // A node counts as a lifecycle node if it offers lifecycle services within 1 s after its other endpoints. Where the file says LIFECYCLE managed, it has 10 s. A
 // lifecycle node without a manager stays unconfigured for ever, so culprit configures and activates it: in the order of the DEPENDENCY lines, else in that of

@@ -104,7 +104,7 @@ void LiveRobot::observe(Time until, std::vector<Observation>& observations) {
   observations.erase(std::remove_if(observations.begin() + static_cast<std::ptrdiff_t>(before),
                                     observations.end(), is_composed),
                      observations.end());
-  // A component whose process was found is watched from now on, whoever started it.
+  // A component whose process was found is watched from now on, also if culprit did not start it.
   for (std::size_t i = before; i < observations.size(); ++i) {
     containers_.observe(observations[i]);
     composed_->observe(observations[i]);
@@ -140,8 +140,8 @@ void LiveRobot::tell_what_ends_together(std::size_t before,
   }
 }
 
-// Until then, or until it becomes doubtful whether anything is heard, or no longer is. Between two
-// heartbeats there is nothing to tell.
+// Until then, or until hearing becomes doubtful or certain again. Between two heartbeats nothing
+// changes.
 void LiveRobot::listen(Time until, std::vector<Observation>& observations) {
   const std::size_t before = observations.size();
   while (true) {
@@ -156,9 +156,9 @@ void LiveRobot::listen(Time until, std::vector<Observation>& observations) {
 }
 
 // A silence is judged when its time is up, and that the robot was heard last may be shown of a
-// moment before it only. So culprit says something to itself, and what it hears until that comes
-// back, a fraction of a millisecond, belongs to what is judged. Where it does not come back in time
-// it is doubtful whether anything is heard.
+// moment before it only. So culprit sends a message to itself. Messages that arrive until it
+// returns, a fraction of a millisecond later, are judged as well. If it does not return in time,
+// hearing is doubtful.
 void LiveRobot::prove_hearing(std::vector<Observation>& observations) {
   constexpr Duration kLook = std::chrono::microseconds(100);
   const Time asked = live_now();

@@ -11,8 +11,8 @@
 namespace culprit::live {
 namespace {
 
-// How long nothing is heard before culprit begins anew. A cut cable is no reason: what it says to
-// itself does not leave the computer.
+// Time without any message before culprit begins anew. A cut cable is no reason: culprit's messages
+// to itself do not leave the computer.
 constexpr Duration kDeafAtMost = std::chrono::seconds(20);
 
 // If it is unknown whether a person has paused the robot, the successor starts paused.
@@ -221,7 +221,8 @@ Expected<void> LiveRun::run(OrderTaker& desk, const std::atomic<bool>& stopped) 
     if (frame_.orders.is_kept_again())
       session_->announce(announcements::kKept, "what people have ordered was not kept, and is now");
     watch_hearing(desk);
-    // Without a journal nobody would know what is under way: then the new rules wait for its end.
+    // Without a journal, the actions under way would be lost: then the new rules wait for their
+    // end.
     const bool has_to_wait = next && !frame_.records && session_->is_adapting();
     if (next && !has_to_wait) {
       change_rules(std::move(*next), desk);

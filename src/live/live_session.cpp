@@ -75,8 +75,8 @@ journal::Session session_of(const LiveSession::Frame& frame, const std::string& 
   return session;
 }
 
-// Also those that left the graph while nobody looked on, because they were stopped, say. Not where
-// the rules name another node now.
+// Also those that left the graph while culprit did not watch, for example because they were
+// stopped. Not where the rules name another node now.
 void adopt_again(LiveRobot& robot, const History& past, const Sightings& sightings) {
   for (const Event& event : past) {
     const auto* found = std::get_if<ComponentFound>(&event.what);
@@ -142,7 +142,7 @@ void add_what_stays_down(const Knowledge& knowledge, const RuleSet& next, Histor
 }
 
 // Verdicts that wait for their proof. None is due before the next session has had the time to see
-// the robot: what nobody looked at counts for nothing.
+// the robot: time without observation does not count.
 History waiting_verdicts(const Knowledge& knowledge, const RuleSet& next, Time first) {
   const RuleSet& rules = knowledge.rules;
   History waiting;
@@ -451,8 +451,7 @@ void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
   bequeath();
 }
 
-// Tells who may take over what was learned and tried, as far as it is new, and not for each step of
-// many.
+// Sends the successor what was learned and tried, if it is new, and not for each step of many.
 void LiveSession::bequeath() {
   ros2::LeaseLink* lease = robot_->link().lease();
   if (!bequest_ || lease == nullptr) return;

@@ -32,7 +32,7 @@ class LiveSession {
     LiveRobot::Options robot;
     PlannerFactory planner;
     Governor::Options governor;
-    // How both are written down in the journal, for whoever repeats the run.
+    // The form of both in the journal, for replays of the run.
     Json planner_record;
     Json governor_record = Json::object();
     double forgetting = 1;
@@ -85,8 +85,8 @@ class LiveSession {
   // it has seen, as the frame says: its manager and its journal begin anew, its link goes on in this
   // term. Whether it can is asked before.
   bool can_take_over() const;
-  // `elsewhere`: as leave_alone()'s, from the first step on. Errors: others cannot be told that it
-  // manages; nothing has changed then. @pre can_take_over()
+  // `elsewhere`: as leave_alone()'s, from the first step on. Errors: others cannot be notified that
+  // it manages; nothing has changed then. @pre can_take_over()
   Expected<void> take_over(const Frame& frame, const std::map<std::string, std::string>& elsewhere,
                            const std::atomic<bool>& stop);
 

@@ -2,7 +2,7 @@
 // so on. Every tool reports two nodes of one name as duplicates, and a request to their services reaches either.
 //
 // Where keys are used, what they permit is permitted to /culprit by name, and that is what it is called.
-// Culprits of other machines are not seen before they are met: they are told of, and --node-name helps.
+// Culprits of other machines are only discovered later: they are reported, and --node-name helps.
 #pragma once
 
 #include <optional>

@@ -31,7 +31,7 @@ using KeepOrder = std::function<Kept(const std::function<void()>& submit)>;
 // Keeps an order in this way; does not block.
 using KeepOrders = std::function<KeepOrder(const Order& order, const RuleSet& rules)>;
 
-// Where people give orders: by names of a rule set, for whoever manages with it.
+// Takes people's orders, by names of a rule set, for the current manager.
 class OrderTaker {
  public:
   virtual ~OrderTaker() = default;
@@ -55,13 +55,13 @@ class OrderKeeper {
   // they cannot be written, the error is put into `trouble`.
   journal::StandingOrders begin(std::filesystem::path file, const journal::StandingOrders& found,
                                 bool is_in_file, std::string& trouble);
-  // From now on orders are not kept; `why` tells people the reason. The orders in `found` hold as
+  // From now on orders are not kept; `why` is the reason for people. The orders in `found` hold as
   // well.
   journal::StandingOrders begin_without(std::string why, const journal::StandingOrders& found);
   // The same for a culprit that must not act: its dry run cannot be ended.
   journal::StandingOrders begin_advising(std::string why);
 
-  // For whoever takes orders from people.
+  // For the classes that take orders from people.
   KeepOrders keeping();
 
   // What holds now.

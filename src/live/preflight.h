@@ -35,7 +35,7 @@ Expected<Sighting> sight(const Source& source,
                          const std::vector<std::filesystem::path>& message_path);
 
 // Looks at the robot of the environment on a thread of its own, and says what it found: once all is
-// there, or 3 s are over. Where nobody is there it says that, and looks until somebody is.
+// there, or 3 s are over. Without a robot it says so, and looks until there is one.
 class Preflight {
  public:
   // The rules must be without errors. `say` is called on the thread, with whole lines.

@@ -14,7 +14,7 @@ class RobotNames {
   // web::Look. The first call finds little, for discovery takes a moment. Errors: the domain cannot
   // be joined. From any thread.
   Expected<LiveInventory> look(const LiveInterest& interest);
-  // The last lines that a node has logged since this was called first, the newest last. Errors: likewise.
+  // The last lines that a node has logged since this was called first, the newest last. Errors: the same.
   Expected<std::vector<ros2::msg::Log>> log_of(const std::string& node);
 
  private:

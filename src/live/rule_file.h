@@ -18,7 +18,7 @@ Expected<LoadedRules> read_rules(const std::string& path,
                                  Strictness strictness = Strictness::kLenient,
                                  Colour colour = Colour::kOff);
 
-// The same with rules for components that nobody wrote one for (language/improvise.h).
+// The same with rules for components without any (language/improvise.h).
 Expected<LoadedRules> improvised(LoadedRules loaded, const std::string& path);
 
 // The rules for `run`: from files that no other user can change (live/rule_trust.h), and improvised

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Whether nobody but `owner` is in the group.
+// Whether `owner` is the only member of the group.
 bool is_private_group(gid_t group, uid_t owner) {
   const passwd* user = getpwuid(owner);
   if (user == nullptr || user->pw_gid != group) return false;

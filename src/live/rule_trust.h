@@ -11,9 +11,9 @@
 
 namespace culprit::live {
 
-// Errors: the file or a folder above it belongs to somebody else, or is writable for its group or
-// for all. A group that is its owner's alone, as Debian gives each user one, is no other; in a
-// folder with the sticky bit, such as /tmp, nobody replaces what is not his own.
+// Errors: the file or a folder above it belongs to another user, or is writable for its group or
+// for all. A group that is its owner's alone, as Debian gives each user one, is no other. In a
+// folder with the sticky bit, such as /tmp, users can only replace their own files.
 Expected<void> trust_rules(const std::string& path);
 
 // The same for the SETUP of a launch command, a shell script. A missing file is an error, too.

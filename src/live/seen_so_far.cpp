@@ -164,7 +164,7 @@ std::vector<Observation> SeenSoFar::observations() const {
   std::vector<Observation> all;
   for (const Entry* entry : entries) {
     all.push_back(entry->observation);
-    // Those that were lost on the way before it belong to a rhythm that nobody knows any more.
+    // Samples that were lost on the way before it belong to an unknown rhythm.
     if (auto* sample = std::get_if<SampleArrived>(&all.back().what)) sample->published = 1;
   }
   return all;

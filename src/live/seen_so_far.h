@@ -33,7 +33,8 @@ class SeenSoFar {
   // In the order in which they were made.
   void note(std::span<const Observation> observations);
 
-  // Nobody listened before: nothing that was missing until then was missing on the robot.
+  // Before that culprit did not listen: messages that were missing until then need not have been
+  // missing on the robot.
   Time since() const { return since_; }
   // False: there were too many things, so that a manager has to discover the robot by itself.
   bool is_whole() const { return is_whole_; }

@@ -23,7 +23,7 @@ class ServiceManager {
   void ready(const std::string& status) const;
   void stopping() const;
 
-  // The decision loop is alive. Tells it only when it is time to.
+  // The decision loop is alive. Feeds the watchdog only when it is due.
   void feed(Time now);
   // The loop has to come round by then: half of the watchdog's time. kNever without a watchdog.
   Time next_feeding() const { return next_; }

@@ -16,9 +16,9 @@ namespace culprit::live {
 // or it fails.
 std::vector<Expected<std::vector<std::string>>> environments_of(const RuleSet& rules);
 
-// The components whose LAUNCH could not run here, and why. No program of the rule file is run, since the file may be somebody else's: a SETUP is only
-// inspected, and with a SETUP the program is not looked up. Each program is looked up once for each folder and environment, which takes a process. Checks that
-// a stop request cuts off are left out.
+// The components whose LAUNCH could not run here, and why. No program of the rule file is run, since the file may be another user's: a SETUP is only inspected,
+// and with a SETUP the program is not looked up. Each program is looked up once for each folder and environment, which takes a process. Checks that a stop
+// request cuts off are left out.
 std::vector<LiveInventory::LaunchTrouble> launch_troubles(const RuleSet& rules,
                                                           const std::stop_token& stop = {});
 

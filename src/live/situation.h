@@ -41,7 +41,7 @@ class Situation {
  public:
   // Takes what a manager did in one step, of these rules.
   void take(std::span<const Event> events, const RuleSet& rules);
-  // Other rules, or another manager: what is still there is told anew.
+  // Other rules, or another manager: existing failures are reported again.
   void forget() { failures_.clear(); }
 
   // Worst first. @pre take() was given all events of this manager

@@ -2,8 +2,8 @@
 // failure is detected, for what led to it, and again some seconds after all is well, for what came then. Each snapshot
 // begins where the one before it ended.
 //
-// The recorder is somebody else's: it changes nothing of the robot, and nothing depends on whether it answers. A failure
-// that comes and goes asks for no more than two in each Options::after.
+// culprit does not own the recorder: it changes nothing of the robot, and nothing depends on whether it answers. A failure that comes and goes asks for no more
+// than two in each Options::after.
 #pragma once
 
 #include <functional>

@@ -29,8 +29,8 @@ std::string line(const EventWords& words, Duration after, const std::string& tex
 std::string label_of(const EventWords& words, Colour colour);
 std::string in_tone(const std::string& text, Tone tone, Weight weight, Colour colour);
 
-// Prints at once. A reader who is gone, or a full disk, keeps nobody from managing a robot: what
-// cannot be said is left out.
+// Prints at once. A closed pipe or a full disk must not keep culprit from managing a robot: output
+// that cannot be written is dropped.
 void say_text(std::FILE* stream, const std::string& text);
 template <class... Args>
 void say(std::FILE* stream, fmt::format_string<Args...> format, Args&&... args) {

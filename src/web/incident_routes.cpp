@@ -98,7 +98,7 @@ class Recent {
   std::vector<std::pair<std::uint64_t, Json>> events_;
 };
 
-// Rules that see a failure now, as far as somebody told.
+// Rules that report a failure now, according to the latest events.
 std::set<std::string> failing_now(Hub& hub) {
   std::set<std::string> failing;
   const auto robot = hub.latest(Kind::kRobot);

@@ -27,11 +27,11 @@ class Metrics {
   // All counters of `manager` exist from now on, at 0: a rate needs a beginning. Counters of a
   // previous manager go on.
   void watch(const Manager& manager);
-  // After each step of `manager`, which took so long.
+  // Must be called after each step of `manager`, with its duration.
   void stepped(Duration took, std::size_t observations, const Manager& manager);
 
-  // How many datagrams were dropped because they came from elsewhere than whom they speak for; it is asked from now
-  // on. Empty: it can be asked no more, and what it gave last stays.
+  // `dropped` returns how many datagrams were dropped because their sender was not the participant that they claim; it is called from now on. Empty: it cannot
+  // be called any more, and its last value stays.
   void count_dropped(std::function<std::uint64_t()> dropped);
 
   // From any thread.

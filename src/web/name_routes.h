@@ -1,4 +1,4 @@
-// The call that tells what the live robot has, for forms to offer.
+// The call that lists the live robot's names, for forms.
 #pragma once
 
 #include <functional>

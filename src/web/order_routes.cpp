@@ -140,7 +140,8 @@ Expected<Order> read_order(const Json& body, const RuleSet& rules, std::uint64_t
   return order;
 }
 
-// Its sender was told meanwhile that nothing came of it: culprit was stopped, say, and goes on now.
+// The caller was answered meanwhile that the order failed: for example culprit was stopped, and
+// goes on now.
 bool is_late(const Order& order, const Json& body) {
   const auto until = body.find("valid_until");
   return until != body.end() && until->is_number() &&

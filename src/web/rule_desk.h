@@ -1,5 +1,5 @@
-// The rule file that a page edits. Many pages may have it open, and editors beside them: who saves
-// says which version was changed, so that nobody overwrites what another has written.
+// The rule file that a page edits. Many pages may have it open, and editors beside them: a client
+// that saves names the version that it changed, so that no change of another is overwritten.
 #pragma once
 
 #include <cstdint>
