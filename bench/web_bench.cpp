@@ -1,4 +1,4 @@
-// What it costs the manager that people look on: nothing but the telling, however many they are.
+// The manager's cost of being watched by web clients: only the publishing, however many they are.
 #include <chrono>
 #include <filesystem>
 #include <httplib.h>

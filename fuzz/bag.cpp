@@ -37,7 +37,7 @@ RULE R
   return set;
 }
 
-// What is drawn of it is bounded, too.
+// The curves of it must be bounded, too.
 void check_curves(const std::string& path) {
   incidents::CurveLimits limits;
   limits.most_memory = std::size_t{1} << 20;

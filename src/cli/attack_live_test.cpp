@@ -101,7 +101,7 @@ class Connections {
   std::vector<int> sockets_;
 };
 
-// What systemd would be told.
+// Receives culprit's notifications in place of systemd.
 class Notifications {
  public:
   explicit Notifications(const std::string& path) {
@@ -178,7 +178,7 @@ class Deafness {
   void keep(const std::vector<int>& threads) {
     held_ = threads.size();
     is_holding_ = true;
-    // Who is traced and dies has to be waited for, or its process cannot become another program.
+    // A traced thread that exits must be waited for, or its process cannot execute another program.
     while (!is_over_) {
       for (const int thread : threads) waitpid(thread, nullptr, __WALL | WNOHANG);
       std::this_thread::sleep_for(10ms);

@@ -39,8 +39,7 @@ int setting(const char* name, int otherwise) {
   return value == nullptr ? otherwise : std::atoi(value);
 }
 
-// What the robot's nodes are set to, and how old the pictures are that they send: for whoever has to
-// find out why it does not get well.
+// The settings of the robot's nodes and the age of their pictures: shows why the robot does not get well.
 std::string state_of_the_robot() {
   auto survey = live::open_survey();
   if (!survey) return survey.error();
@@ -174,7 +173,7 @@ struct Chaos : testing::Test {
     TestProgram culprit = run();
     for (const char* component : {"camera", "depth", "image_enhancement", "fusion", "segmentation"})
       EXPECT_TRUE(culprit.prints(std::string(component) + " is there")) << culprit.output();
-    // What was never published is unknown to whoever comes later.
+    // A topic that was never published is unknown to a late joiner.
     EXPECT_TRUE(culprit.prints("/managed_subsystem/sensors_fused")) << culprit.output();
     const Holdings holdings = holdings_of(culprit.pid());
     culprit.signal(SIGINT);

@@ -34,7 +34,7 @@ struct CheckOptions {
   double wait_seconds = 3;
 };
 
-// For people: what is wrong goes to stderr, a line for each good file to stdout.
+// For people: mistakes go to stderr, a line for each good file to stdout.
 void print_text(const Expansion& file, const Checked& checked) {
   fmt::print(stderr, "{}", render(checked.diagnostics, file.source, colour_of(STDERR_FILENO)));
   if (!checked.rules) {
@@ -53,7 +53,7 @@ void print_findings(const RuleSet& rules, const LiveInventory& robot) {
   for (const std::string& line : findings(rules, robot)) fmt::print("  {}\n", line);
 }
 
-// What the robot has, of what the files name.
+// Looks up the robot's names that the files refer to.
 Expected<LiveInventory> look(const std::vector<Expansion>& files, Duration wait) {
   std::vector<Checked> checked;
   for (const Expansion& file : files) checked.push_back(check(file));
@@ -70,8 +70,8 @@ Expected<LiveInventory> look(const std::vector<Expansion>& files, Duration wait)
   return robot;
 }
 
-// Launch commands that could not run on this computer. Where it has none of their programs, it is
-// most likely not the robot's: then one of them is told.
+// Launch commands that could not run on this computer. If it has none of their programs, it is most
+// likely not the robot's: then only one of them is reported.
 void check_launches(const Expansion& file, Checked& checked) {
   const RuleSet& rules = *checked.rules;
   const auto troubles = live::launch_troubles(rules);
@@ -173,8 +173,7 @@ void add_check(CLI::App& app, int& exit_code) {
   command->add_flag("--strict", options->strict, "Every component and signal must be declared");
   auto* robot = command->add_flag(
       "--robot", options->robot,
-      "Check also against the live robot: nodes, topics, parameters, diagnostics and services "
-      "that it has not");
+      "Also report nodes, topics, parameters, diagnostics and services that the live robot lacks");
   add_seconds(*command, "--wait", options->wait_seconds, "How long to look at the robot", 0.1, 600)
       ->needs(robot);
   command

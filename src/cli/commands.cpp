@@ -8,15 +8,15 @@
 namespace culprit::cli {
 namespace {
 
-// What culprit-lab does in culprit's name.
+// A command of culprit-lab that culprit offers, too.
 struct OfLaboratory {
   const char* name;
   const char* description;
 };
 constexpr OfLaboratory kOfLaboratory[] = {
-    {"demo", "Let culprit heal a live robot (by culprit-lab)"},
+    {"demo", "Demonstrate a repair on a live robot (by culprit-lab)"},
     {"study", "Campaigns over the exemplars and over random robots (by culprit-lab)"},
-    {"torture", "Run culprit on random robots with everything going wrong (by culprit-lab)"},
+    {"torture", "Run culprit on random robots with all kinds of faults (by culprit-lab)"},
 };
 
 }  // namespace

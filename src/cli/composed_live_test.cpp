@@ -80,7 +80,7 @@ struct Composed : testing::Test {
     return TestProgram(world, std::move(arguments));
   }
   std::string keeps() const { return (world.folder() / "keeps").string(); }
-  // What a box that culprit started has said.
+  // The output of a box that culprit started.
   std::string said() const {
     std::ifstream in(state() + "/log/box.log");
     return {std::istreambuf_iterator<char>(in), {}};
@@ -192,7 +192,7 @@ TEST_F(Composed, WhatAKilledCulpritLeftUnfinishedIsFinishedOnce) {
   end_box(culprit);
 }
 
-// Whoever is on the network can offer services of these names.
+// Any program on the network can offer services of these names.
 TEST_F(Composed, WhoOnlyOffersTheServicesOfAContainerIsNotBelieved) {
   const std::string stalls = (world.folder() / "stalls").string();
   TestProgram container(world, {"ros2_peer_node", domain(), "--active", "--stalls-if", stalls,

@@ -31,7 +31,7 @@ Expected<std::optional<Entry>> decision_at(const journal::Reader& journal, std::
     rule = text_of(body, "rule");
     if (is_decision(**row, body) || rule.empty()) return row;
   }
-  // Of no row in particular: a strategy that was chosen says more than a failure that waits.
+  // Without a given row, a chosen strategy says more than a failure that waits.
   std::int64_t before = id;
   while (true) {
     auto row = journal.newest(journal::kind::kEvent, before);
@@ -86,8 +86,8 @@ bool is_over(const std::string& type) {
   return type == words_of<FailureResolved>().name || type == words_of<FailureLost>().name;
 }
 
-// What followed for the same rule, up to the end of the strategy; the other rows in between are of
-// other failures.
+// The events after the decision for the same rule, up to the end of the strategy; the other rows in
+// between belong to other failures.
 Expected<std::vector<Entry>> sequel_of(const journal::Reader& journal, const Entry& decision,
                                        const std::string& rule) {
   std::vector<Entry> sequel;

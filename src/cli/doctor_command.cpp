@@ -72,7 +72,7 @@ void print(const Report& report, const DoctorOptions& options) {
 
 bool is_same(const Finding& a, const Finding& b) { return a.code == b.code && a.who == b.who; }
 
-// What has come and what has gone since the last look.
+// Prints the findings that are new and those that are gone since the last look.
 void print_changes(const Report& before, const Report& now) {
   const auto is_in = [](const Finding& finding, const Report& report) {
     return std::ranges::any_of(report.findings,
@@ -117,7 +117,7 @@ int watch_robot(const doctor::LookOptions& how, const doctor::Baseline* healthy,
       [&](const doctor::Picture& picture) {
         Report now = report_of(picture, healthy);
         print_again(last ? &*last : nullptr, now, options);
-        // What was told and is in doubt now has neither gone nor come again.
+        // An earlier finding that is doubtful now is neither gone nor new.
         for (const Finding& each : last ? last->findings : std::vector<Finding>()) {
           if (std::ranges::any_of(now.doubtful,
                                   [&](const Finding& other) { return is_same(each, other); }))
@@ -176,19 +176,17 @@ void add_doctor(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<DoctorOptions>();
   CLI::App* command = app.add_subcommand(
       "doctor",
-      "Say what is wrong with the robot, without a rule: looks for some seconds, changes nothing. "
-      "Exits with 0 if it finds nothing, with 3 if it only warns");
+      "Find problems of the robot, without rules: observes it for some seconds, changes nothing. "
+      "Exits with 0 if there are none, with 3 if there are only warnings");
   add_seconds(*command, "--for", options->seconds, "How long to look", 0.1, 3600);
   auto* json = command->add_flag("--json", options->json, "For programs");
   command->add_flag("--sarif", options->sarif, "For programs that read SARIF 2.1.0")
       ->excludes(json);
   auto* watch = command->add_flag("--watch", options->watch,
-                                  "Look again and again, and say what comes and goes");
-  auto* save =
-      command
-          ->add_option("--save", options->save, "Write the healthy robot as a file to compare with")
-          ->type_name("FILE");
-  command->add_option("--against", options->against, "Compare with a robot that was saved")
+                                  "Look again and again, and report new and cleared findings");
+  auto* save = command->add_option("--save", options->save, "Save the healthy robot as a baseline")
+                   ->type_name("FILE");
+  command->add_option("--against", options->against, "Compare with a saved baseline")
       ->type_name("FILE")
       ->excludes(save);
   save->excludes(watch);

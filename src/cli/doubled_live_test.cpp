@@ -134,7 +134,7 @@ TEST_F(Doubled, NothingIsEndedWhereCulpritIsToDoNothing) {
   if (ours > 0) kill(ours, SIGKILL);
 }
 
-// What was launched makes two nodes, and only one of them is doubled: none may be missing.
+// The launch makes two nodes, and only one of them is doubled; neither may be missing.
 TEST_F(Doubled, WhatElseWouldEndIsNotEnded) {
   const std::string peer = (own_folder() / "ros2_peer_node").string() + " " + domain;
   const std::string both =

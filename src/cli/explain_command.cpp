@@ -100,10 +100,11 @@ void add_explain(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ExplainOptions>();
   CLI::App* command = app.add_subcommand(
       "explain",
-      "Explain a decision from the journal, or what culprit check and culprit doctor say");
-  auto* code = command->add_option("WHAT", options->what,
-                                   "A row of culprit log, as in 123; or the code of a diagnostic, "
-                                   "as in R012, or of a finding, as in D001; nothing: all codes");
+      "Explain a decision from the journal, or a message of culprit check or culprit doctor");
+  auto* code =
+      command->add_option("WHAT", options->what,
+                          "A row of culprit log, as in 123; or the code of a diagnostic, as in "
+                          "R012, or of a finding, as in D001; without it: all codes");
   command->add_flag("--last", options->last, "The latest decision")->excludes(code);
   options->journal.add_to(*command);
   command->add_flag("--json", options->json, "As one JSON document");

@@ -1,6 +1,5 @@
-// A node whose only thread hangs in a callback. Its process runs, and so do the threads of its middleware: that its
-// topics are silent and that it answers nothing is all that tells it from one that is well. What is only slow, or held
-// by a debugger, is left alone. Times are the journal's.
+// A node whose only thread hangs in a callback. Its process runs, and so do the threads of its middleware: only its silent topics and unanswered requests
+// distinguish it from a healthy one. A node that is only slow, or held by a debugger, is left alone. Times are the journal's.
 #include <csignal>
 #include <fstream>
 #include <sys/ptrace.h>
@@ -85,7 +84,7 @@ RULE Silent
     EXPECT_EQ(rows().requests("lidar: stop process"), 0u) << rows().all();
   }
   Rows rows() const { return Rows(state_ + "/hung.journal"); }
-  // What was written once culprit has ended.
+  // The journal after culprit has ended.
   Rows rows_at_the_end() {
     run_->signal(SIGINT);
     EXPECT_EQ(run_->wait(), 0);

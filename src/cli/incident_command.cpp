@@ -147,26 +147,25 @@ int write_incident(const IncidentOptions& options) {
 
 void add_incident(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<IncidentOptions>();
-  CLI::App* command = app.add_subcommand(
-      "incident",
-      "List the times that the robot was not well; or write one as an HTML file that needs nothing "
-      "else, with plots of what was recorded meanwhile");
+  CLI::App* command = app.add_subcommand("incident",
+                                         "List the robot's incidents; or write one as a "
+                                         "self-contained HTML file, with plots of its recordings");
   CLI::Option* id =
-      command->add_option("ID", options->id, "Which, as the list says (default: list them)");
+      command->add_option("ID", options->id, "The id from the list (default: list them)");
   options->journal.add_to(*command);
   command
       ->add_option("--record-folder", options->recordings,
-                   "Where the recordings are (default: recordings beside the journal)")
+                   "Folder of the recordings (default: recordings beside the journal)")
       ->type_name("FOLDER");
-  command->add_option("-o,--output", options->output, "Where to write the file (default: stdout)")
+  command->add_option("-o,--output", options->output, "Output file (default: stdout)")
       ->type_name("FILE")
       ->needs(id);
   command
       ->add_option("--since", options->since,
-                   "List those of so long ago until now, and what lasted then: 10min, 2h")
+                   "Only incidents of this past time, and those that lasted then: 10min, 2h")
       ->excludes(id);
   command->add_flag("--json", options->json,
-                    "The list, or the incident with what happened and was recorded, as JSON");
+                    "The list, or the incident with its events and recordings, as JSON");
   command->callback([options, &exit_code] {
     exit_code = options->id.empty() ? list_incidents(*options) : write_incident(*options);
   });

@@ -49,12 +49,12 @@ int show(const LogOptions& options) {
 
 void add_log(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<LogOptions>();
-  CLI::App* command = app.add_subcommand("log", "Show what culprit found, decided and did");
+  CLI::App* command = app.add_subcommand("log", "Show culprit's findings, decisions and actions");
   options->journal.add_to(*command);
   command->add_option("-n,--lines", options->lines, "How many of the latest rows")
       ->check(CLI::Range(1, 1'000'000'000))
       ->capture_default_str();
-  command->add_option("--since", options->since, "All rows of so long ago until now: 10min, 2h");
+  command->add_option("--since", options->since, "Only rows of this past time: 10min, 2h");
   command->add_option("--kind", options->kind, "All rows of this kind only")
       ->check(CLI::IsMember({"session", "robot", "event", "intent", "outcome", "belief", "coupling",
                              "latency", "gap", "end"}));

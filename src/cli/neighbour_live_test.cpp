@@ -227,7 +227,7 @@ struct TwoMachines : Neighbours {
     std::this_thread::sleep_for(5s);  // as long as an elder is looked for
   }
 
-  // What `culprit graph` on the second computer knows of where the node runs: its "pid" there, or its "host".
+  // The node's location according to `culprit graph` on the second computer: its "pid" there, or its "host".
   std::string place_on_desk(const std::string& node) {
     const TestNetwork::Visit visit(*network, TestNetwork::kDesk);
     TestProgram graph(world, {"culprit", "graph", "--json"});
@@ -308,7 +308,7 @@ TEST_F(TwoMachines, TakeOverAndHealWithinThreeSecondsWhatDiedWithTheManager) {
   const Duration took(*asked - killed);
   std::cout << "first request " << seconds(took) << " s after the death of the manager\n";
   EXPECT_LE(took, kBusy * kPromise);
-  // What it decided can be decided again.
+  // Its decisions can be replayed.
   TestProgram replay(world,
                      {"culprit", "replay", (world.folder() / "second" / "robot.journal").string()});
   EXPECT_EQ(replay.wait(), 0) << replay.output();
@@ -395,7 +395,7 @@ RULE DepthGone
   }
   EXPECT_EQ(count(sunset::Member::kCamera), 1u) << second->output();
   EXPECT_EQ(count(sunset::Member::kDepth), 1u) << first->output();
-  // What breaks on one's own side is healed meanwhile.
+  // Failures on the robot's own side are healed meanwhile.
   camera->signal(SIGKILL);
   camera->wait();
   depth->signal(SIGKILL);

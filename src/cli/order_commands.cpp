@@ -1,4 +1,4 @@
-// What people order of a running culprit from a terminal: pause, resume, silence, approve, refuse,
+// People's orders to a running culprit from a terminal: pause, resume, silence, approve, refuse,
 // run-strategy.
 #include <algorithm>
 #include <functional>
@@ -127,7 +127,7 @@ int order(const OrderOptions& options, const MakeOrder& make) {
   if (options.json)
     say(stdout, "{}\n",
         to_line({{"orders", list}, {"others", here->others}, {"not_meant", here->not_meant}}));
-  // Somebody may have meant one of these.
+  // The user may have meant one of these.
   for (const auto* others : {&here->others, &here->not_meant}) {
     for (const std::string& other : *others)
       say(stderr, "culprit: not told: {}\n", escape_controls(other));
@@ -139,7 +139,7 @@ CLI::App* add_order(CLI::App& app, int& exit_code, const char* name, const char*
                     MakeOrder make, const std::shared_ptr<OrderOptions>& options) {
   CLI::App* command = app.add_subcommand(name, description);
   command->add_option("--reason", options->reason, "Why, for the record");
-  command->add_flag("--json", options->json, "What became of it, as a JSON document");
+  command->add_flag("--json", options->json, "Print the result as a JSON document");
   options->which.add_to(*command);
   command->callback(
       [options, make = std::move(make), &exit_code] { exit_code = order(*options, make); });
@@ -196,33 +196,32 @@ void add_orders(CLI::App& app, int& exit_code) {
   const auto make = [] { return std::make_shared<OrderOptions>(); };
   auto options = make();
   CLI::App* pause = add_order(app, exit_code, "pause",
-                              "Let a running culprit change nothing more, until it is resumed",
+                              "Pause a running culprit: it changes nothing until it is resumed",
                               plain("pause"), options);
   options->which.add_all_to(*pause);
-  add_order(app, exit_code, "resume", "Let a culprit that is paused go on", plain("resume"),
-            make());
+  add_order(app, exit_code, "resume", "Resume a paused culprit", plain("resume"), make());
   add_order(app, exit_code, "revive",
-            "Let a running culprit start the components again that a person ended", plain("revive"),
+            "Have a running culprit restart the components that a person ended", plain("revive"),
             make());
   add_end_started(app, exit_code);
 
   options = make();
-  CLI::App* silence = add_order(
-      app, exit_code, "silence",
-      "Let a running culprit leave a component, or a rule, alone. It is watched all the same",
-      silence_of, options);
+  CLI::App* silence =
+      add_order(app, exit_code, "silence",
+                "Have a running culprit leave a component or a rule alone. It is still watched",
+                silence_of, options);
   silence->add_option("NAME", options->name, "A component or a rule")->required();
   auto* lasts = add_seconds(*silence, "--for", options->seconds,
-                            "For so long (default: until it is lifted)", 1, 7 * 24 * 3600)
+                            "Duration (default: until it is lifted)", 1, 7 * 24 * 3600)
                     ->default_str("");
-  silence->add_flag("--lift", options->lifts, "It is left alone no longer")->excludes(lasts);
+  silence->add_flag("--lift", options->lifts, "Lift the silence")->excludes(lasts);
 
   for (const auto& [word, call, description] :
        {std::tuple("approve", "approve",
-                   "Let a running culprit do what it asks for (run --approve)"),
+                   "Approve the strategy that a running culprit proposes (run --approve)"),
         std::tuple("refuse", "refuse",
-                   "Let a running culprit not do what it asks for, but the next best"),
-        std::tuple("run-strategy", "run", "Let a running culprit carry out a strategy now")}) {
+                   "Reject the proposed strategy; culprit proposes the next one"),
+        std::tuple("run-strategy", "run", "Have a running culprit carry out a strategy now")}) {
     options = make();
     add_order(app, exit_code, word, description, about_strategy(call), options)
         ->add_option("STRATEGY", options->name, "As culprit status names it: Rule.strategy")

@@ -1,4 +1,4 @@
-// culprit policy as a user runs it. What it allows on DDS is ros2/policy_test.cpp's.
+// culprit policy as a user runs it. The policy's effect on DDS is tested in ros2/policy_test.cpp.
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>

@@ -75,7 +75,7 @@ TEST_F(RosApiLive, TellsWhatBreaksAndHowItIsHealed) {
   EXPECT_TRUE(incidents.wait_for_one([&](const Json& incident) {
     return incident["state"] == constant("Incident", "STATE_RESOLVED");
   }));
-  // Nobody may order anything on a domain without keys.
+  // Without keys, no participant of the domain may give orders.
   EXPECT_EQ(
       panel.call("/culprit/pause", kPauseType, {{"author", "ann"}}, std::chrono::milliseconds(500)),
       nullptr);
@@ -137,7 +137,7 @@ struct SecuredRosApi : RosApiLive {
   ros2::TestKeystore keys;
 };
 
-// What `culprit policy` says, but for the lines that `leave_out` is in.
+// The output of `culprit policy` without the lines that contain `leave_out`.
 std::string permissions_for(const TestWorld& world, const std::string& leave_out) {
   const std::string file = (world.folder() / "permissions.xml").string();
   TestProgram policy(world, {"culprit", "policy", world.write("allowed.rules", kRosApiRules),

@@ -1,5 +1,5 @@
-// What a person sees when culprit or its demonstration starts, and what becomes of both when that
-// person, or the terminal, is gone.
+// The output at the start of culprit or its demonstration, and the fate of both when the person or
+// the terminal is gone.
 #include <csignal>
 #include <thread>
 
@@ -81,7 +81,7 @@ TEST_F(Start, RunSaysWhatTheRobotHasOfTheRulesAndWhatNot) {
   EXPECT_THAT(plan.output(), HasSubstr("did you mean '/managed_subsystem/rgb_camera'?"));
 }
 
-// What it finds under a number in that /proc is not what it would signal under that number.
+// A PID in that /proc is another process in culprit's own namespace.
 TEST_F(Start, NothingIsManagedByTheProcOfAnotherNamespace) {
   TestProgram run(world, {"unshare", "--pid", "--fork", own_folder() / "culprit", "run", rules,
                           "--state-dir", state()});

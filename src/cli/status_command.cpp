@@ -79,12 +79,12 @@ int status(const StatusOptions& options) {
 
 void add_status(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<StatusOptions>();
-  CLI::App* command = app.add_subcommand("status",
-                                         "Show who is ill, who is blamed and what happens next, as "
-                                         "the culprits that run on this machine say.\n"
-                                         "Exits with 0 if all is well, with 3 if rules that are "
-                                         "not ERROR are blind and nothing else is wrong, else "
-                                         "with 1.");
+  CLI::App* command =
+      app.add_subcommand("status",
+                         "Show failures, their root cause and the next step, as reported by the "
+                         "culprits of this machine.\n"
+                         "Exits with 0 if all is well, with 3 if rules that are not ERROR are "
+                         "blind and nothing else is wrong, else with 1.");
   command->add_flag("--json", options->json, "As one JSON document (docs/web.md)");
   options->which.add_to(*command);
   options->which.add_all_to(*command);

@@ -80,7 +80,7 @@ std::string tinted(const std::string& text, Tone tone, Colour colour) {
   return in_tone(text, tone, Weight::kStrong, colour);
 }
 
-// What the wall clock showed at a time `t` of culprit's; nothing: it is not known.
+// The wall clock at culprit's time `t`; empty: unknown.
 std::optional<double> clock_at(const WhatCulpritSays& said, double t) {
   const auto now = number_at(said.state, "t");
   const auto clock = number_at(said.state, "clock");
@@ -104,7 +104,7 @@ std::string tinted_health(const std::string& text, const std::string& health, Co
   return tinted(text, tone, colour);
 }
 
-// What keeps culprit from acting as it usually does, in words; empty: nothing.
+// The modes that restrict culprit, in words; empty: none.
 std::vector<std::string> modes_of(const Json& control) {
   std::vector<std::string> modes;
   if (is_set(control, "paused")) modes.emplace_back("paused");
@@ -191,7 +191,7 @@ void add_blind(const WhatCulpritSays& said, Colour colour, Lines& lines) {
     lines.push_back(fmt::format("  {} more rules are blind", blind.size() - kMost));
 }
 
-// What people have ordered, and are asked.
+// Lists people's orders and the questions to them.
 void add_people(const WhatCulpritSays& said, Lines& lines) {
   const Json& control = said.control;
   const double now = number_at(said.state, "clock").value_or(0);
@@ -219,7 +219,7 @@ void add_people(const WhatCulpritSays& said, Lines& lines) {
   }
 }
 
-// What culprit started, and what a person ended.
+// Lists the components that culprit started, and those that a person ended.
 void add_started(const WhatCulpritSays& said, Lines& lines) {
   const double now = number_at(said.state, "clock").value_or(0);
   for (const Json& each : list_at(said.control, "started")) {

@@ -143,8 +143,8 @@ int top(const WhichCulprit& which) {
 
 void add_top(CLI::App& app, int& exit_code) {
   auto which = std::make_shared<WhichCulprit>();
-  CLI::App* command = app.add_subcommand(
-      "top", "Watch at a terminal how the robot is and what its culprit does, as it happens");
+  CLI::App* command =
+      app.add_subcommand("top", "Watch the robot and its culprit at a terminal, live");
   which->add_to(*command);
   command->callback([which, &exit_code] { exit_code = top(*which); });
 }

@@ -8,7 +8,7 @@
 namespace culprit::cli {
 namespace {
 
-// What the rules do to processes: names of components, each once, in file order.
+// The rules' effects on processes: names of components, each once, in file order.
 struct Processes {
   std::vector<std::string> started;
   std::vector<std::string> ended;

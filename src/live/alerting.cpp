@@ -85,7 +85,7 @@ std::vector<Alerting::Problem> Alerting::problems() const {
     for (const ComponentId c : each.components) alert.components.push_back(rules[c].name);
     alert.consequences = names_of_rules(each.consequences, rules);
     alert.doing = each.doing;
-    // What else comes next is over before anybody reads it.
+    // Any other next step has passed before a person reads the alert.
     if (each.needs_person()) alert.next = each.next;
     problem.keys = {alert.consequences.begin(), alert.consequences.end()};
     problem.keys.insert(alert.rule);
@@ -142,7 +142,7 @@ std::vector<Alerting::Problem> Alerting::problems_of_sight() const {
   return all;
 }
 
-// What no rule says.
+// Problems that no rule covers.
 std::vector<Alerting::Problem> Alerting::problems_of_the_whole() const {
   const Knowledge& knowledge = manager_->knowledge();
   std::vector<Problem> all;
@@ -172,7 +172,8 @@ std::vector<Alerting::Problem> Alerting::problems_of_the_whole() const {
   return all;
 }
 
-// One that has a rule or a component in common with it now, or had a moment ago; or a new one. Of several the one that was told.
+// Returns the fault that shares a rule or a component with the problem, now or a moment ago; else a new one. If several do, the one that was already reported
+// is preferred.
 Alerting::Fault& Alerting::fault_of(const Problem& problem, Time now) {
   std::vector<std::size_t> same;
   for (std::size_t i = 0; i < faults_.size(); ++i) {
@@ -211,7 +212,7 @@ void Alerting::close_part(Fault& part, const std::string& whole) {
 void Alerting::take(Problem problem, Time now) {
   Fault& fault = fault_of(problem, now);
   fault.gone = kNever;
-  // What became two is told as one until it was that for a while; the worse speaks for it.
+  // A fault that split in two is reported as one at first; the worse part gives it its name.
   if (std::exchange(fault.looked_at, now) == now) {
     fault.alert.doing += "; also: " + problem.alert.headline;
     is_one_of_two_ = true;
@@ -265,7 +266,7 @@ void Alerting::tell(Fault& fault, Time now) {
   post_(fault.alert);
 }
 
-// If so, that is told.
+// If so, a message reports it.
 bool Alerting::is_over(Fault& fault, Time now) {
   if (fault.keys.empty()) return true;
   if (fault.gone == kNever || now < later(fault.gone, kStaysAway)) return false;

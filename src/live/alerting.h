@@ -1,12 +1,11 @@
 // Turns what a manager finds into alerts for people: one fault, one alert, and one more when it is over.
 //
 // - A fault is what situation.h calls an incident: a cause, and all that fails because of it. While it lasts it
-//   may turn out to have another cause, or to be part of another fault; it is told as one.
-// - It is told after a while (`wait`). What is over by then was healed: one message says both. At once it is told
-//   if a person is needed, also where it was told before.
-// - That it is over is told when it stayed away for kStaysAway. What comes back before is the same fault.
-// - What concerns the whole robot is told likewise: a storm, that culprit cannot hear it, a REQUIRED component
-//   that is not there.
+//   may turn out to have another cause, or to be part of another fault; it is reported as one.
+// - It is reported after `wait`. If it has cleared by then, one message reports both. It is reported at once if a person is needed, also if it was reported
+//   before.
+// - The end is reported once the fault has been absent for kStaysAway. If it returns earlier, it is the same fault.
+// - Problems of the whole robot are reported in the same way: a storm, a deaf culprit, a missing REQUIRED component.
 #pragma once
 
 #include <functional>
@@ -44,7 +43,7 @@ class Alerting : public Observer {
   void announced(Time, const EventWords&, const std::string&) override {}
 
  private:
-  // What is wrong at a moment.
+  // A problem at one moment.
   struct Problem {
     std::set<std::string> keys{};           // by which it is known again: its rules, its components
     alerts::Alert alert{};                  // but for what is the same all the time

@@ -17,7 +17,7 @@ double clock_now() {
 void BlackBox::begins(const Manager& manager, std::function<Remarks()> /*remarks*/,
                       Time /*start*/) {
   manager_ = &manager;
-  // What is still wrong is found anew.
+  // The recorder finds all current incidents again.
   recorder_.over();
 }
 

@@ -26,7 +26,7 @@ struct Setups : testing::Test {
   static RuleSet rules(const std::string& components) {
     return *check(Source("test.rules", components)).rules;
   }
-  // Of a component with these clauses.
+  // For a component with these clauses.
   static std::optional<LiveInventory::LaunchTrouble> trouble(const std::string& clauses) {
     const auto all = launch_troubles(rules("COMPONENT c " + clauses + "\n"));
     return all.empty() ? std::nullopt : std::optional(all.front());

@@ -36,7 +36,7 @@ std::string_view condition_of(const ComponentState& state) {
   return state.hangs() ? "hung" : "dead";
 }
 
-// Of all of them; empty: they work, or differ.
+// Their common condition; empty: they work, or differ.
 std::string_view condition_of(const std::vector<ComponentId>& components,
                               const Knowledge& knowledge) {
   std::string_view all;
@@ -68,7 +68,7 @@ std::string time_until(Time at, Time now) {
   return to_string(Duration(std::chrono::ceil<Tenths>(std::max(at - now, Duration::zero()))));
 }
 
-// What comes next, and when, of a failure that something is being done about.
+// The next step for a failure that is being repaired, and its time.
 std::string next_of_exhausted(RuleId rule, const Knowledge& knowledge) {
   const auto& strategies = knowledge.rules[rule].strategies;
   const bool goes_on = std::any_of(strategies.begin(), strategies.end(), [&](StrategyId id) {
@@ -134,7 +134,7 @@ void Situation::take(const Event& event, const RuleSet& rules) {
     of(rules[asked->strategy].rule, rules) = {
         .candidates = asked->candidates, .suspects = asked->suspects, .blamed = asked->strategy};
   } else if (const auto* held = std::get_if<ActionHeldBack>(&event.what)) {
-    // Whose fault it is is known nevertheless.
+    // The failure is known to be its own cause all the same.
     Failure& failure = of(rules[held->strategy].rule, rules);
     failure.held_back = held->reason;
     failure.blamed = held->strategy;

@@ -1,5 +1,5 @@
-// What is wrong with the robot, as people think of it: one cause, and what fails because of it. Who
-// is ill, who is held responsible, what is done about it, and what comes next.
+// Incidents of the robot, as people think of them: one root cause and its effects. Each names the
+// failed components, the blamed one, the current action and the next one.
 //
 //     Situation situation;
 //     situation.take(manager.events(), rules);            // after each step
@@ -39,16 +39,16 @@ struct Incident {
 
 class Situation {
  public:
-  // What a manager did in one step, of these rules.
+  // Takes what a manager did in one step, of these rules.
   void take(std::span<const Event> events, const RuleSet& rules);
-  // Other rules, or another manager: what is still there is told anew.
+  // Other rules, or another manager: existing failures are reported again.
   void forget() { failures_.clear(); }
 
   // Worst first. @pre take() was given all events of this manager
   std::vector<Incident> incidents(const Manager& manager) const;
 
  private:
-  // What was said last about a failure.
+  // The latest report on a failure.
   struct Failure {
     std::vector<Candidate> candidates{};
     std::vector<Suspect> suspects{};

@@ -35,7 +35,7 @@ std::vector<Completed> places_of(const CLI::App& app, const Manual& manual) {
 
 enum class ValueKind { kNothing, kWords, kFile, kFolder, kText };
 
-// What an option, or an argument, takes.
+// The type of an option's or argument's value.
 struct ValueType {
   ValueKind kind = ValueKind::kNothing;
   std::string words{};  // "bayes paper"
@@ -238,7 +238,7 @@ std::string zsh_function(const Completed& place, const std::string& function,
   const std::string own = function + (place.path.empty() ? "" : "__" + identifier(place.path));
   const auto parts = commands_in(*place.command);
   if (place.is_of_others) {
-    // That one's command line begins with the name of its program.
+    // Its command line begins with the name of its program.
     return "\n" + own + "() {\n  words=(" + manual.others.program +
            " \"${words[@]}\")\n  (( CURRENT++ ))\n  (( $+functions[_" + manual.others.program +
            "] )) && _" + manual.others.program + "\n}\n";

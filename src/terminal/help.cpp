@@ -19,7 +19,7 @@ class HelpFormatter : public CLI::Formatter {
   std::string make_option_desc(const CLI::Option* option) const override {
     return wrapped(purpose_of(*option), kTexts);
   }
-  // Of the others of a command, the first line says enough.
+  // For a subcommand, the first line is enough.
   std::string make_subcommand(const CLI::App* command) const override {
     const std::string& text = command->get_description();
     std::stringstream out;

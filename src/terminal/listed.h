@@ -1,5 +1,4 @@
-// What people are told of a program's commands and options: all but those that are hidden. The manual and the shells'
-// completion are made of it.
+// A program's commands and options without the hidden ones. The manual and the shells' completion are made of it.
 #pragma once
 
 #include <vector>

@@ -56,7 +56,7 @@ std::string usage_of(const CLI::App& command, const std::string& path) {
 
 // ---- man(7)
 
-// What would be a request at the beginning of a line, or the beginning of an escape.
+// Escapes requests at the beginning of a line, and escape characters.
 std::string for_man(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -139,17 +139,15 @@ std::string upper(std::string text) {
 
 const Manual::Entries& exit_statuses() {
   static const Manual::Entries all = {
-      {"0", "What was asked for is done; nothing is wrong."},
+      {"0", "Success; nothing is wrong."},
       {"1",
-       "It could not be done, and why is said on the standard error output; or something is wrong: "
-       "with the "
+       "Failure; the reason is on the standard error output. Or a problem was found: with the "
        "robot (status, doctor), a file (check, fmt --check), a test (test), a record (audit, "
        "replay)."},
       {"2",
-       "It was asked for wrongly: an unknown command or option, a value that an option does not "
-       "take, or an "
-       "environment variable that makes no sense. Nothing was done."},
-      {"3", "There are warnings, and no error (doctor, status)."}};
+       "Usage error: an unknown command or option, an invalid value of an option, or an invalid "
+       "environment variable. Nothing was done."},
+      {"3", "Warnings, and no error (doctor, status)."}};
   return all;
 }
 
@@ -157,7 +155,7 @@ std::string examples_of(const Manual& manual) {
   std::string text = "Examples:\n";
   for (const auto& [command, purpose] : manual.examples)
     text += fmt::format("  {:<34} {}\n", command, purpose);
-  text += "culprit COMMAND --help tells the options of a command.";
+  text += "culprit COMMAND --help prints the options of a command.";
   return text;
 }
 

@@ -10,7 +10,7 @@
 
 namespace culprit {
 
-// What options do not say.
+// The part of the manual beyond the options.
 struct Manual {
   using Entries = std::vector<std::pair<std::string, std::string>>;
   std::string name;                        // "culprit"

@@ -17,7 +17,7 @@ Json to_json(const Candidate& candidate, const RuleSet& rules) {
           {"resolves", candidate.resolves}, {"excluded", exclusion_as_json(candidate, rules)}};
 }
 
-// What people who look on want beyond what the journal keeps of an event.
+// Fields of an event for people, beyond the journal's.
 struct Additions {
   const RuleSet& rules;
   Time start;

@@ -41,7 +41,7 @@ std::optional<Number> number_of(const Json& query, const char* name) {
   return number;
 }
 
-// Of what the stream still has.
+// The incidents that are still in the stream.
 class Recent {
  public:
   explicit Recent(Hub& hub) {
@@ -98,7 +98,7 @@ class Recent {
   std::vector<std::pair<std::uint64_t, Json>> events_;
 };
 
-// Rules that see a failure now, as far as somebody told.
+// Rules that report a failure now, according to the latest events.
 std::set<std::string> failing_now(Hub& hub) {
   std::set<std::string> failing;
   const auto robot = hub.latest(Kind::kRobot);
@@ -209,7 +209,7 @@ Answer page(Hub& hub, const std::filesystem::path& journal, const std::filesyste
   return html ? as_page(std::move(*html)) : refuse(503, html.error());
 }
 
-// What is asked for is compared with what is there, and never becomes part of a path.
+// The requested name is only compared with existing files, and never becomes part of a path.
 Answer recording(const std::filesystem::path& folder, const Json& query) {
   const auto name = text_of(query, "name");
   if (!name) return refuse(400, "say which, as GET /api/incidents tells them: ?name=...");

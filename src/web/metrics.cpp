@@ -36,7 +36,7 @@ std::string of_strategy(StrategyId id, const RuleSet& rules, std::string_view ou
          label("outcome", outcome);
 }
 
-// What held an action back (knowledge/event.h).
+// The reason that held an action back (knowledge/event.h).
 std::string_view word_of(Restraint restraint) {
   constexpr std::string_view kWords[] = {
       "paused",   "quiet_period", "storm",     "graph_in_doubt", "interlock", "overall",
@@ -202,7 +202,7 @@ std::string Metrics::text() const {
       counts.is_dry_run ? 1 : 0);
   one("culprit_storm", "gauge", "1 while so much is ill that nothing is done.",
       counts.is_storm ? 1 : 0);
-  one("culprit_observations_total", "counter", "What was observed of the robot.", observations_);
+  one("culprit_observations_total", "counter", "Observations of the robot.", observations_);
 
   begin("culprit_step_seconds", "histogram", "How long the manager's steps took.");
   std::uint64_t below = 0;

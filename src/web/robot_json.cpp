@@ -21,7 +21,7 @@ Json strategy_to_json(const Strategy& strategy, const RuleSet& rules) {
   return json;
 }
 
-// Who starts and ends it, in words; empty: nobody that the rules know.
+// The owner in words; empty: the rules name none.
 std::string owner_of(const Component& component) {
   using Engine = EngineContainer::Engine;
   if (component.unit)
@@ -86,7 +86,7 @@ Json rule_to_json(RuleId id, const Knowledge& knowledge, Time start) {
     if (!blind->input.empty()) json["blind"]["input"] = blind->input;
     if (!blind->near.empty()) json["blind"]["near"] = blind->near;
   }
-  // What is true and must hold a while longer, FOR or HOLD, is no failure yet.
+  // A trigger that is true, but not yet for the time of FOR or HOLD, is no failure yet.
   if (state.phase == RulePhase::kQuiet) {
     json["trigger"] =
         state.detection.trigger.known ? Json(state.detection.trigger.b) : Json(nullptr);
@@ -109,7 +109,7 @@ Json rule_to_json(RuleId id, const Knowledge& knowledge, Time start) {
   return json;
 }
 
-// What became of the process. One that is stopped is not gone: it goes on if somebody lets it.
+// The state of the process. A stopped process has not exited: it goes on after SIGCONT.
 std::string_view word_of_process(const ComponentState& state) {
   if (state.process == ProcessState::kStopped) return "stopped";
   if (state.hangs()) return "hung";
@@ -124,7 +124,7 @@ Json components_to_json(const Knowledge& knowledge) {
     const ComponentState& state = knowledge.components[id];
     Json json{{"health", kHealthWords[health[c]]}, {"present", knowledge.graph.is_present(id)}};
     json["alive"] = state.alive ? Json(*state.alive) : Json(nullptr);
-    // Of another computer its number says nothing here.
+    // A PID of another computer means nothing here.
     if (state.known_pid() != 0 && knowledge.rules.components[c].host().empty())
       json["pid"] = state.known_pid();
     if (state.alive) json["process"] = word_of_process(state);
@@ -153,7 +153,7 @@ Json topics_to_json(const Knowledge& knowledge) {
   return list;
 }
 
-// What was learned of which failure goes away with which.
+// The learned couplings between failures.
 Json couplings_to_json(const Knowledge& knowledge) {
   Json list = Json::array();
   for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
@@ -236,7 +236,7 @@ Json graph_to_json(const Knowledge& knowledge) {
 
 namespace {
 
-// What culprit started and what runs, and what it stands in for.
+// The running components that culprit started, and the launcher that each one stands in for.
 void add_started(const Knowledge& knowledge, Time start, Json& list) {
   for (const Departures::Started& each : knowledge.departures.started()) {
     Json entry{{"component", knowledge.rules[each.component].name},
@@ -247,7 +247,7 @@ void add_started(const Knowledge& knowledge, Time start, Json& list) {
   }
 }
 
-// What is not started again, since a person ended it, or may have.
+// The components that are not started again, since a person ended them, or may have.
 void add_down(const Knowledge& knowledge, Json& list) {
   for (std::size_t c = 0; c < knowledge.rules.components.size(); ++c) {
     const auto departure = knowledge.departures.of(ComponentId(c), knowledge.now);

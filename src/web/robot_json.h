@@ -1,4 +1,4 @@
-// What the manager knows, as JSON (docs/web.md): what never changes, the graph, the present state.
+// The manager's knowledge as JSON (docs/web.md): the constant part, the graph, the present state.
 #pragma once
 
 #include "live/situation.h"
@@ -17,11 +17,11 @@ Json graph_to_json(const Knowledge& knowledge);
 // How it stands: rules, components, topics, inputs, beliefs. Times are seconds since `start`.
 Json state_to_json(const Knowledge& knowledge, Time start);
 
-// What people have told the manager, and what it asks them: paused or not, silences, strategies
-// that wait for approval.
+// The orders of people, and questions to them: paused or not, silences, strategies that await
+// approval.
 Json control_to_json(const Manager& manager, Time start);
 
-// Who is ill and who is blamed: part of the present state.
+// The failed and the blamed components: part of the present state.
 Json incidents_to_json(const std::vector<live::Incident>& incidents, const RuleSet& rules,
                        Time start);
 

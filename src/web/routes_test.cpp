@@ -1,4 +1,4 @@
-// What the calls answer, and that openapi.json tells all of them.
+// The answers of the calls, and that openapi.json describes all of them.
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -143,7 +143,7 @@ TEST_F(Routes, AreAllInTheOpenApiDocument) {
   for (const auto& [path_told, calls] : document["paths"].items()) {
     for (const auto& [method, call] : calls.items()) told.insert(method + " " + path_told);
   }
-  // Of the server itself (server.cpp), and of the commands (cli/what_if_route.cpp,
+  // The calls of the server itself (server.cpp), and of the commands (cli/what_if_route.cpp,
   // cli/single_run_route.cpp).
   std::set<std::string> served{"get /api/about", "get /api/openapi.json", "get /api/stream",
                                "post /api/what-if", "post /api/studies/run"};
@@ -418,7 +418,7 @@ TEST_F(Routes, SayWhenTheManagerDoesNotTakeAnOrderInTime) {
   EXPECT_EQ(orders.size(), 1u) << "it takes it when it comes round";
 }
 
-// Who was stopped and goes on finds orders that their senders have given up.
+// A culprit that was stopped and goes on receives orders that their senders have given up.
 TEST_F(Routes, DoNotFollowAnOrderThatCameTooLateUnlessItRestrains) {
   Json order{{"order", "resume"}, {"author", "ada"}, {"valid_until", 0.001}};
   EXPECT_EQ(ask("post /api/orders", order).status, 408);

@@ -121,7 +121,7 @@ function Result() {
           ▲ Not recorded, because the rules that ran did not read it: {answer.missing.join(', ')}. What depends on it is unknown here.
         </p>
       )}
-      <Timeline view={view} label="What these rules would have seen" />
+      <Timeline view={view} label="Failures and repairs under these rules" />
       {rules.length === 0 && <p>Neither these rules nor those that ran saw a failure in that time.</p>}
       {rules.length > 0 && (
         <table>

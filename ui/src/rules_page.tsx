@@ -318,7 +318,7 @@ export function RulesPage() {
         </section>
         <section class="text" aria-label="Text">
           <div class="editor" ref={place} />
-          <ul class="found" aria-label="What the check says">
+          <ul class="found" aria-label="Findings of the check">
             {found.value.map((f) => (
               <li>
                 <button type="button" onClick={() => editor.current?.goTo(f.from)}>

@@ -56,7 +56,7 @@ function Freshness() {
   if (now.kind === 'connecting') return <span class="freshness">connecting</span>
   if (now.kind === 'fresh')
     return (
-      <span class="freshness well" title="What you see is new">
+      <span class="freshness well" title="This view is up to date">
         <span aria-hidden="true">● </span>
         <span class="long">live </span>
         <time>{byTheClock(nowByTheClock())}</time>

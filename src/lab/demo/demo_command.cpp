@@ -283,25 +283,25 @@ void add_demo(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<DemoOptions>();
   CLI::App* command = app.add_subcommand(
       "demo",
-      "Let culprit heal a live robot: SUNSET, a drone's segmentation pipeline of real processes.\n"
+      "Demonstrate a repair on a live robot: SUNSET, a drone's segmentation pipeline of real "
+      "processes.\n"
       "Plays three scenarios, each with an ERROR, a WARNING and a NON_CRITICAL fault at once.\n"
       "Then it goes on until Ctrl-C if a person watches.\n"
       "With --robot suave: an underwater robot that must find a pipeline in murky water, and loses "
       "a thruster.");
-  command->add_option("--robot", options->robot, "Which robot")
+  command->add_option("--robot", options->robot, "Robot")
       ->check(CLI::IsMember({"sunset", "suave"}))
       ->capture_default_str();
   command->add_option(
       "--scenario", options->scenario,
-      "One scenario instead: 001 to 018, a name such as image_shift+gpu_failure, 'random', or what "
-      "happens to "
-      "processes: kill:camera, stop:depth, crash:segmentation, kill:camera+segmentation");
+      "One scenario instead: 001 to 018, a name such as image_shift+gpu_failure, 'random', or "
+      "faults of processes: kill:camera, stop:depth, crash:segmentation, kill:camera+segmentation");
   command->add_flag(
       "--extended", options->is_extended,
-      "With --robot suave: the battery runs low as well, and what dies is started anew");
-  command->add_option("--seed", options->seed, "Of the flight or dive, and of 'random'")
+      "With --robot suave: the battery runs low as well, and killed processes are started again");
+  command->add_option("--seed", options->seed, "Seed of the flight or dive, and of 'random'")
       ->capture_default_str();
-  command->add_option("--speed", options->speed, "How much faster than real time the robot lives")
+  command->add_option("--speed", options->speed, "Speed relative to real time")
       ->check(CLI::Range(0.1, 20.0))
       ->capture_default_str();
   command
@@ -310,10 +310,9 @@ void add_demo(CLI::App& app, int& exit_code) {
       ->type_name("FILE");
   command
       ->add_option("--domain", options->domain,
-                   "The DDS domain (default: the first from 1 on that nobody on this machine uses)")
+                   "The DDS domain (default: the first from 1 on that is free on this machine)")
       ->check(CLI::Range(0, 101));
-  command->add_flag("--end", options->ends,
-                    "End after the scenarios also where a person watches, at a terminal");
+  command->add_flag("--end", options->ends, "End after the scenarios, also at a terminal");
   command
       ->add_flag("--stay", options->stay,
                  "Play no scenario: go on until Ctrl-C, and break the robot in the browser")

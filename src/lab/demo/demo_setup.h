@@ -1,4 +1,4 @@
-// What the demonstrations have in common: a world of their own for a live robot.
+// Base of all demonstrations: a world of its own for a live robot.
 #pragma once
 
 #include <cstdint>

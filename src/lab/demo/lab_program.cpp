@@ -14,11 +14,11 @@ const Manual kManual{
     .description = {"Demonstrations on live exemplars, studies on models of them and on random "
                     "robots, and torture. "
                     "`culprit demo`, `culprit study` and `culprit torture` start it."},
-    .files = {{"~/.local/state/culprit", "What demonstrations and studies leave behind."}},
+    .files = {{"~/.local/state/culprit", "The data of demonstrations and studies."}},
     .environment = {},
     .examples = {{"culprit-lab demo", "A robot of real processes is broken and healed."},
                  {"culprit-lab study sunset", "The paper's tables beside ours."},
-                 {"culprit-lab torture --seeds 100", "Random robots with everything going wrong."}},
+                 {"culprit-lab torture --seeds 100", "Random robots with all kinds of faults."}},
     .see_also = "culprit(1)"};
 
 }  // namespace

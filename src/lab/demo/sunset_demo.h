@@ -62,8 +62,8 @@ class SunsetDemo : private live::Listener {
   // between plays, or `stop` was set.
   Expected<PlayOutcome> play(const Play& play);
 
-  // What the browser can break: the faults of the scenarios, and processes that are killed or
-  // stopped ("kill:camera").
+  // The faults that the browser can inject: those of the scenarios, and processes that are killed
+  // or stopped ("kill:camera").
   Expected<void> inject(const std::string& fault);
   // Removes what was injected. Does not wait until the robot is well.
   Expected<void> clear_faults() { return world_->experiment().clear(); }

@@ -1,5 +1,5 @@
 // A live SUNSET in a world of its own: its own DDS domain on loopback, its own state folder, and
-// nothing left behind. Who manages it is up to others.
+// nothing left behind. Its manager is not part of it.
 #pragma once
 
 #include <cassert>
@@ -35,9 +35,9 @@ class SunsetWorld {
   // Starts the seven processes. Those of the robot are the components of `rules` and belong to
   // `robot`, which must live until end(). Errors: the domain cannot be joined.
   Expected<void> begin(owners::Supervisor& robot, const RuleSet& rules);
-  // Ends every process. Whoever drives the robot has ended before.
+  // Ends every process. The manager must have ended before.
   void end();
-  // Likewise, and removes the state folder, unless keep_state() was called.
+  // Ends every process, and removes the state folder unless keep_state() was called.
   ~SunsetWorld();
 
   // How the robot is joined. Errors: the environment is wrong.

@@ -21,7 +21,7 @@ class LiveSunset {
   ~LiveSunset();
 
   std::vector<int> processes(sunset::Member member) const;
-  // What is wrong with it just now; empty if nothing is.
+  // Its current fault; empty if it is well.
   std::string complaint() const;
   // False if it does not get well in time.
   bool is_well_within(Duration patience) const;

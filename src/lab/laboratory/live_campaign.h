@@ -1,9 +1,9 @@
 // The runs of a campaign on the live robot: each in a process of its own, several at once.
 //
-// A process for each run, because a world of SUNSET takes the environment of its process, and so
-// that a run which dies or hangs takes no other with it. What it started ends with it, and it ends
-// with us, however we end. A run that fails is told and played again; the third failure ends the
-// campaign.
+// Each run has a process of its own, because a world of SUNSET changes the environment of its
+// process, and so that a run that exits or hangs affects no other. The processes of a run end with
+// it, and it ends with us, however we end. A failed run is reported and played again; the third
+// failure ends the campaign.
 #pragma once
 
 #include <atomic>

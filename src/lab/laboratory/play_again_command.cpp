@@ -25,7 +25,7 @@ Json to_json(const study::TimelineEntry& incident) {
   return json;
 }
 
-// As the live stream has them. What nobody has words for is left out, as there.
+// As the live stream has them. Events without a text are left out, as there.
 Json to_json(const study::SingleRun& run) {
   std::vector<Json> events;
   for (const study::TimelineEntry& incident : run.incidents) events.push_back(to_json(incident));

@@ -62,7 +62,7 @@ struct RcaOptions {
   Times times() const { return timing ? Times::kShown : Times::kLeftOut; }
 };
 
-// Of one file, or of every combination of what was asked for.
+// One file's, or every combination of the options.
 Expected<RcaCampaign> campaign_of(const RcaOptions& options) {
   RcaCampaign campaign;
   if (!options.scenario.empty()) {
@@ -204,7 +204,7 @@ void add_share(CLI::App& command, const std::string& name, double& share, double
       ->default_str(usual);
 }
 
-// What differs from robot to robot (rca_study/factors.h).
+// The properties that differ from robot to robot (rca_study/factors.h).
 void add_factors(CLI::App& command, RcaFactors& factors) {
   add_range(command, "--detector-latency", factors.detector_latency_s, "0..0.4s",
             "Time until a detector shows a change");
@@ -278,7 +278,7 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
       ->delimiter(',')
       ->check(CLI::Range(std::size_t{2}, std::size_t{10'000}))
       ->capture_default_str();
-  command->add_option("--faults", options->faults, "How many come at once")
+  command->add_option("--faults", options->faults, "Number of faults at once")
       ->delimiter(',')
       ->check(CLI::Range(std::size_t{1}, std::size_t{10}))
       ->capture_default_str();
@@ -288,12 +288,12 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
       ->delimiter(',')
       ->check(CLI::Range(0.0, 0.4))
       ->capture_default_str();
-  command->add_flag("--cyclic", options->cyclic, "With feedback topics, so that there are circles");
+  command->add_flag("--cyclic", options->cyclic, "Add feedback topics, for feedback loops");
   command->add_flag("--mixed-levels", options->mixed_levels,
                     "Each rule's criticality is any (default: all are ERROR)");
   command->add_flag("--flapping", options->flapping, "Every fault comes and goes");
   command->add_flag("--unfixable", options->unfixable,
-                    "Nothing that the rules have helps against one of the faults");
+                    "No strategy of the rules repairs one of the faults");
   command->add_flag("--ignore", options->ignore,
                     "The rules IGNORE the infrastructure topics, as a user's would");
   add_factors(*command, options->factors);
@@ -320,15 +320,13 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
                    "Write the first episode's scenario there, and play nothing")
       ->type_name("FILE");
   command->add_option("--explain", options->explained,
-                      "Tell what happened in this episode, from 0, with each planner");
-  auto* learn =
-      command
-          ->add_option(
-              "--learn", options->learned,
-              "Let bayes learn from so many faults on one robot, and measure on as many or "
-              "more how true that is")
-          ->check(CLI::Range(1U, 1'000'000U))
-          ->excludes(scenario);
+                      "Explain this episode, from 0, with each planner");
+  auto* learn = command
+                    ->add_option("--learn", options->learned,
+                                 "Faults that bayes learns from on one robot, before its accuracy "
+                                 "is measured on as many or more")
+                    ->check(CLI::Range(1U, 1'000'000U))
+                    ->excludes(scenario);
   // It counts every rule as that of the component with its number, and every effect as one that
   // illness came to.
   for (const std::string factor : {"--unwatched", "--common-causes", "--false-alarms"})
@@ -338,37 +336,35 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
       ->capture_default_str()
       ->needs(learn);
   command
-      ->add_flag("--drift", options->drift,
-                 "What helps changes for the last quarter of what is learned from")
+      ->add_flag("--drift", options->drift, "Success rates change in the last quarter of learning")
       ->needs(learn);
-  auto* regret = command->add_flag("--regret", options->regret,
-                                   "How far bayes is from the optimum, for each objective, on "
-                                   "random robots of up to four components");
+  auto* regret = command->add_flag(
+      "--regret", options->regret,
+      "Measure bayes' regret for each objective, on random robots of up to four components");
   regret->excludes(scenario)->excludes(learn);
   for (const std::string& factor : factors) regret->excludes(factor);
-  command->add_option("--systems", options->systems, "So many robots")
+  command->add_option("--systems", options->systems, "Number of robots")
       ->check(CLI::Range(1U, 1'000'000U))
       ->capture_default_str()
       ->needs(regret);
   command
       ->add_flag("--untold", options->untold,
-                 "Robots that differ from what the rules say, as those of the benchmark do")
+                 "Use robots that differ from the rules, as those of the benchmark do")
       ->needs(regret);
   command->add_option("--html", options->html, "Also a page with calibration plots")
       ->type_name("FILE")
       ->needs(learn);
-  command->add_option("--objective", options->objective, "What the bayes planner spares most")
+  command->add_option("--objective", options->objective, "Cost that the bayes planner minimizes")
       ->check(CLI::IsMember({"balanced", "downtime", "adaptations", "redeployments"}))
       ->capture_default_str();
-  command->add_option("--episodes", options->episodes, "Of each setting and planner")
+  command->add_option("--episodes", options->episodes, "Episodes of each setting and planner")
       ->check(CLI::Range(1U, 1'000'000U))
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "Of all that is left to chance")
-      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Seed of all random numbers")->capture_default_str();
   command->add_option("--jobs", options->jobs, "Threads; the results do not depend on it")
       ->check(CLI::Range(1U, 1024U));
   command->add_flag("--timing", options->timing,
-                    "Also how long a plan takes on this machine: never the same twice");
+                    "Also measure the planning time on this machine: never the same twice");
   command->add_option("--format", options->format, "text, markdown, latex, csv or json")
       ->check(CLI::IsMember({"text", "markdown", "latex", "csv", "json"}))
       ->capture_default_str();

@@ -18,7 +18,7 @@ class RosaManager : public SuaveManager {
   explicit RosaManager(const Setting& setting);
 
  private:
-  // What the robot should do or does: the nodes that are active, and the altitude of the search.
+  // The robot's target or current state: the nodes that are active, and the altitude of the search.
   struct Configuration {
     std::map<std::string, bool> is_active;
     std::optional<double> altitude;

@@ -81,7 +81,7 @@ class ScriptedManager : public ManagingSystem {
   // Asks the component, and waits for its answer at most for `timeout`.
   Answer ask(const std::string& component, Request what, Duration timeout);
 
-  // What only one thread may be in at a time; they get in in the order of their coming.
+  // A mutex whose waiting threads enter in the order of their arrival.
   struct Gate {
     bool is_taken = false;
     std::deque<std::coroutine_handle<>> waiting;

@@ -87,7 +87,8 @@ TEST(RcaCampaign, IgnoresTheInfrastructureWhereTheRulesSaySo) {
   EXPECT_LT(rows->at(0).unresolved.mean(), rows->at(1).unresolved.mean());
 }
 
-// What waits with it is not replaced: its own fault is all that remains, and nobody else is tried.
+// Effects of the unfixable fault are not replaced: only that fault remains, and no other component
+// is tried.
 TEST(RcaCampaign, LeavesWhatNothingFixesToAPerson) {
   RcaCampaign campaign;
   RcaSetting setting{12, 2, 0, false};

@@ -159,7 +159,7 @@ const Optimum::Best& Optimum::best(const Situation& situation) {
     for (Begun& begun : all) {
       if (begun.least > best.cost + kTie) break;
       const double sum = cost_below(begun, best.cost + kTie);
-      // Of those that cost the same, the first.
+      // Among equal costs, the first round is kept.
       if (sum < best.cost - kTie || (sum < best.cost + kTie && begun.place < first)) {
         best = {sum, std::move(begun.round)};
         first = begun.place;

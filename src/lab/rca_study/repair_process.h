@@ -4,8 +4,8 @@
 //
 // Hidden truth: F, the components that have a fault now; the kind of each fault; and E, which
 // subscriptions pass failures on in this episode. At the beginning F is any set of as many
-// components as the scenario has faults, kinds are any of the seven, each equally likely, and
-// subscription e passes with its probability q_e. F only becomes smaller.
+// components as the scenario has faults. Each fault is of any of the seven kinds, equally likely,
+// and subscription e passes with its probability q_e. F only becomes smaller.
 //
 // Seen: who is ill, which F and E determine (scenario.h), and whose process is gone, which a crash
 // shows. Detectors make no mistakes, and what is seen has settled.
@@ -20,17 +20,18 @@
 //   h_tk   how likely treatment t helps against kind k: the scenario's truth
 //   m_t    how often t was tried at c in vain
 //
-// independently of the others; so what is known of kinds is the counts m. What is known of F and E
-// is a belief b(F, E), and an outcome o (who is ill, who is gone) changes it by Bayes' rule:
+// independently of the others; so the counts m are all that is known of kinds. The knowledge of F
+// and E is a belief b(F, E). An outcome o (which components are ill, which processes are gone)
+// changes it by Bayes' rule:
 //
 //     b'(F', E) ~ sum_F b(F, E) prod_{c in A, c in F} (sigma if c not in F', 1 - sigma if it is)
 //
 // over those F' and E that show o. With b and m nothing else of the past matters.
 //
-// What may begin is what culprit's planners promise: strategies that are valid, were not tried in
-// this round of the rule, one for each component, and none at a component that depends on another's
-// of A, unless its process is gone. When all were tried they may be tried again, up to kTurns times
-// each; then nothing is left.
+// A round may begin what culprit's planners allow: strategies that are valid, were not tried in
+// this round of the rule, one for each component. None may be at a component that depends on
+// another's of A, unless its process is gone. When all were tried they may be tried again, up to
+// kTurns times each; then no strategy is left.
 //
 // A round costs, in the weights of the objective (plan/bayes/objective.h),
 //
@@ -59,7 +60,7 @@ namespace culprit::study::rca {
 
 using Members = std::uint32_t;  // a set of components, or of subscriptions: one bit for each
 
-// What is known after some rounds.
+// The state of knowledge after some rounds.
 struct Situation {
   struct Tries {
     std::uint8_t tried = 0;  // in this turn: a bit for each treatment
@@ -103,7 +104,7 @@ class RepairProcess {
     double probability = 0;
     Situation situation;
   };
-  // What may be seen first, before anything was done.
+  // The possible first observations, before any action.
   std::vector<Outcome> beginnings() const;
   std::vector<Outcome> outcomes(const Situation& situation, const Round& round) const;
 
@@ -127,12 +128,12 @@ class RepairProcess {
   // Is nothing left to try at this component?
   bool is_exhausted(const Situation& situation, std::size_t component) const;
 
-  // Who talks to whom, as a manager sees it.
+  // Adds the edges of the graph, as a manager sees it.
   void connect(DependencyGraph& graph) const;
-  // What a manager knows in a situation. `knowledge` is of the same rules.
+  // A manager's knowledge in a situation. `knowledge` is of the same rules.
   void show(const Situation& situation, Knowledge& knowledge) const;
-  // The other way round: what is seen and tried by now, with the belief that this alone gives.
-  // Nothing while what is seen has not settled, so that no hypothesis explains it.
+  // The inverse: the observations and tries by now, with the belief that follows from them alone.
+  // Empty while the observations have not settled, so that no hypothesis explains them.
   std::optional<Situation> situation_of(const Knowledge& knowledge) const;
 
   std::size_t size() const { return scenario_.components.size(); }

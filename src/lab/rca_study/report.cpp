@@ -21,7 +21,7 @@ std::optional<double> plan_us(const RcaRow& row, Times times) {
   return row.planning_us / static_cast<double>(row.plans);
 }
 
-// By row, whether no other planner beats it in the same setting. Nothing of the optimum: it is a
+// By row, whether no other planner beats it in the same setting. Empty for the optimum: it is a
 // bound.
 std::vector<std::optional<bool>> on_front(const std::vector<RcaRow>& rows) {
   std::vector<std::optional<bool>> is_on(rows.size());

@@ -15,7 +15,7 @@ namespace culprit::study::rca {
 // Larger robots are not read.
 inline constexpr std::size_t kMostComponents = 10'000;
 
-// Ends with a line end. What is read from it is the same scenario.
+// Ends with a line end. Reading it back gives the same scenario.
 std::string to_json(const RcaScenario& scenario);
 
 // Errors: "components[3]: detector is wrong: miss is no probability".

@@ -9,8 +9,8 @@
 // good.
 //
 // A component is busy from a request to the tick that sees its answer. Its answer to the shutdown
-// ends a redeploy: the new process is started in the background. Nobody else learns how a request
-// ended.
+// ends a redeploy: the new process is started in the background. The outcome of a request reaches
+// no other part.
 #pragma once
 
 #include <optional>
@@ -58,7 +58,7 @@ class Execution {
     bool is_answered = false;
     bool has_succeeded = true;
   };
-  // What is done with one component.
+  // The adaptations of one component.
   struct Branch {
     std::vector<Order> waiting;
     Stage stage = Stage::kDone;  // in this round

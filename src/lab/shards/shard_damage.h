@@ -1,5 +1,4 @@
-// What becomes of a shard file that is damaged: it is kept under another name, and the shard goes on
-// behind the last line before the damage.
+// Repair of a damaged shard file: it is kept under another name, and the shard goes on behind the last line before the damage.
 #pragma once
 
 #include <filesystem>

@@ -61,7 +61,7 @@ std::string merge_error(const std::vector<std::string>& paths) {
   return merged ? "merged" : merged.error();
 }
 
-// Of a header and a run, with another header or line in their place.
+// The error for a shard file with this text.
 std::string read_error(const std::string& text) {
   std::istringstream in(text);
   const ShardSource source{"x", &in};

@@ -1,7 +1,8 @@
-// A campaign: so many runs of each of some configurations. What is needed to repeat it is in here.
+// A campaign: so many runs of each of some configurations. It holds all that is needed to repeat
+// it.
 //
 // Its runs have one order, by configuration and then by number, in which they are folded into the
-// result, so that the result is the same to the last bit however the work was spread.
+// result. So the result is the same to the last bit however the work was distributed.
 #pragma once
 
 #include <cassert>
@@ -55,7 +56,7 @@ struct Campaign {
   std::uint32_t runs = 0;  // of each row
   std::uint64_t seed = 0;
   std::string version;  // of culprit
-  // That makes the whole campaign: without shards, jobs, and where the output goes, which change
+  // The command that makes the whole campaign: without shards, jobs and output paths, which change
   // nothing.
   std::string command;
 

@@ -1,4 +1,4 @@
-// What one run of a study yields.
+// The metrics of one run of a study.
 //
 // Twice: as the exemplar's own script computes it (what never recovers
 // counts as no downtime, what is never resolved as no reaction time), and honestly.

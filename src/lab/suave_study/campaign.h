@@ -26,7 +26,7 @@ struct SuaveCampaign {
   std::vector<std::string> managers;
   std::uint32_t runs = 0;  // of each
   std::uint64_t seed = 0;
-  // What differs from the plan; nothing: it is played as it is.
+  // The changes to the plan; empty: it is played unchanged.
   std::optional<suave::model::MissionSettings> settings;
   suave::model::VehicleTraits vehicle;
   std::string version;  // of culprit

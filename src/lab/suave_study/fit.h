@@ -27,7 +27,7 @@ struct FitTarget {
   Moments distance_m;
 };
 
-// What is wanted of the managers of a campaign; its own managers, vehicle and number of runs are
+// The targets for the managers of a campaign; its own managers, vehicle and number of runs are
 // replaced.
 struct FitCampaign {
   SuaveCampaign campaign;

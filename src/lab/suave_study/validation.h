@@ -56,8 +56,8 @@ std::vector<Table> validation_tables(const Validation& validation);
 //                "within_1_sd": true, "difference", "low", "high", "margin", "p", "equivalent"}],
 //      "ranks": [{"metric", "managers", "spearman_rho", "kendall_tau"}]}
 //
-// low and high are those of the 90 % interval of modelled minus recorded. What cannot be tested is
-// null.
+// low and high are those of the 90 % interval of modelled minus recorded. Values that cannot be
+// tested are null.
 std::string validation_json(const Validation& validation);
 
 }  // namespace culprit::study

@@ -11,7 +11,7 @@ namespace {
 // Requests and verdicts follow each other at one point of time; so many of them never do.
 constexpr int kMostStepsAtOnce = 200;
 
-// What was well for so long is known to be, and so is what needs it.
+// A component that was well for this long is known to be well, and so are those that need it.
 constexpr Duration kKnownToBeWell = std::chrono::seconds(3);
 
 bool is_seen_as_it_is(const Scenario& scenario) {
@@ -134,8 +134,8 @@ void Invariants::note_the_dead(const Manager& manager, Time now) {
   }
 }
 
-// Whatever the budgets of a minute allow, a failure that nothing helps against does not cost more
-// than its attempts, in an hour or in a day; nor does one that comes and goes.
+// Whatever the budgets of a minute allow, a failure that no strategy repairs does not cost more
+// than its attempts, in an hour or in a day. Neither does one that flaps.
 void Invariants::count_attempts(const Event& event) {
   const auto count = [&](StrategyId strategy) {
     const RuleId rule = rules_[strategy].rule;
@@ -250,7 +250,7 @@ void Invariants::check_replacement(const Manager& manager, const Strategy& strat
     if (is_seen_true_ && well != kNever && well + kKnownToBeWell <= at)
       fail(at, name + " is begun though " + rules_[component].name + " is well");
     const auto& components = manager.knowledge().components;
-    // What is gone or stopped is replaced for that.
+    // An exited or stopped process is replaced for it.
     if (!is_bayes_ || components[component].process != ProcessState::kRunning) continue;
     const Time failed = manager.knowledge().states[strategy.rule].first_detected();
     for (const std::size_t needed : needs_[part]) {
@@ -312,7 +312,7 @@ void Invariants::check_the_dead(const Manager& manager, Time now) {
   for (const RuleId id : plannable) {
     const ComponentId component = rules_[id].components.front();
     const auto& strategies = rules_[id].strategies;
-    // Whoever can only set a parameter of what is dead waits until it is back.
+    // A strategy that can only set a parameter must wait until the dead component is back.
     const bool can_replace = std::any_of(strategies.begin(), strategies.end(),
                                          [&](StrategyId s) { return replaces(rules_[s]); });
     const bool is_left = can_replace && is_dead(knowledge.components[component]) && !is_held &&

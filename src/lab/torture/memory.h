@@ -1,7 +1,7 @@
-// What outlives a manager's crash, as the journal keeps it (journal/recovery.h), without a file:
-// what was told, and the strategies that were under way.
+// The state that outlives a manager's crash, as the journal keeps it (journal/recovery.h), without
+// a file: the events, and the strategies that were under way.
 //
-// What is told and asked for in a step is noted before its requests go out.
+// The events and requests of a step are noted before its requests go out.
 #pragma once
 
 #include <span>

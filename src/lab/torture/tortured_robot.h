@@ -34,7 +34,7 @@ class TorturedRobot : public Robot {
   void observe(Time until, std::vector<Observation>& observations) override;
   void execute(const Command& command) override;
 
-  // What happens to the robot, not to the manager. Those of people do nothing here.
+  // Applies a mishap to the robot, not to the manager. Mishaps of people have no effect here.
   void befall(const Mishap& mishap);
   // A manager that begins anew is told what is there, as by discovery, and which of the processes
   // that were known in the `past` are gone (process/supervisor.h, adopt_again()).
@@ -82,8 +82,8 @@ class TorturedRobot : public Robot {
   std::unique_ptr<simulation::Topic<int>> infrastructure_;  // null: there is none
   std::vector<std::unique_ptr<simulation::Topic<int>>> topics_;
   std::vector<std::unique_ptr<Machine>> machines_;
-  // One for each manager so far, the last for the present one. What is due in the world knows the
-  // earlier ones still.
+  // One for each manager so far, the last for the present one. Actions that are due in the world
+  // still refer to the earlier ones.
   std::vector<std::unique_ptr<simulation::SimulatedRobot>> robots_;
   std::array<std::deque<Late>, 3> on_the_way_;  // by source
   std::vector<CommandId> unanswered_;           // replies that get lost

@@ -1,4 +1,4 @@
-// What people read of a fleet: tables, each of which one query makes, as text, JSON or one HTML file.
+// Reports on a fleet: tables, each made by one query, as text, JSON or one HTML file.
 #pragma once
 
 #include <string>

@@ -153,7 +153,7 @@ std::vector<TableQuery> incident_queries(const Scope& scope) {
 
 std::vector<TableQuery> belief_queries(const Scope& scope) {
   return {in_scope(
-      {"What the fleet knows",
+      {"Learned success rates",
        "nothing was learned yet",
        "SELECT model, rule, strategy, context, count(*), sum(helped), sum(failed), "
        "sum(helped)::float8 "
@@ -210,7 +210,7 @@ void add_differences(const std::vector<std::string>& key, const std::vector<OfRo
     if (each.helped + each.failed < kFewest || robots.size() < 2) continue;
     RobotOutcomes others = sums;
     others.remove(each.helped, each.failed);
-    // What the designer said is not known here: nothing.
+    // The designer's guess is not known here, so none is used.
     const Belief prior = pooled_prior(initial_belief(percent(50), 1), others, {}, kAll);
     const double agrees = agreement(prior, each.helped, each.failed);
     if (agrees >= kHardly) continue;

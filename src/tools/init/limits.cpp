@@ -34,7 +34,7 @@ std::string called(const ros2::Survey::StatusKey& status, const Sighting& seen) 
   return "";
 }
 
-// A number that goes up and down. What only rises, counts; and what never changes has shown nothing.
+// A number that goes up and down. A number that only rises is a counter; one that never changes gives no range.
 bool has_range(const ros2::ValueCourse& value) {
   return value.numbers >= kFewestValues && value.others == 0 && value.rose && value.fell;
 }

@@ -1,5 +1,5 @@
-// What a draft says about diagnostics: a rule for each level, which reports, and proposals for the
-// numbers of their keys.
+// A draft's rules and proposals about diagnostics: a rule for each level, which reports, and
+// proposals for the numbers of their keys.
 #pragma once
 
 #include <string>

@@ -137,7 +137,7 @@ bool limits_fit(const std::string& before, const std::string& now) {
   });
 }
 
-// What was seen of a key, as its proposal says it.
+// The measured range of a key, as its proposal states it.
 struct Range {
   double least = 0, most = 0;
 };
@@ -151,8 +151,7 @@ std::optional<Range> range_in(const std::string& proposal) {
   return Range{number(1), number(2)};
 }
 
-// What was seen now would be within the limits that were proposed, as far away again as what was seen then
-// spans, and spans no small part of it.
+// The new range must lie within the proposed limits (the old range, widened by its span on both sides), and must not be much smaller than the old one.
 bool range_fits(const std::string& before, const std::string& now) {
   const auto old = range_in(before);
   const auto seen = range_in(now);
@@ -238,7 +237,7 @@ class Updating {
     known->text = mark->text;
   }
 
-  // That a person wrote it, or something that is about the same.
+  // Whether a person wrote it, or a part with the same subject.
   bool is_known(const Part& part) const {
     switch (part.kind) {
       case Part::Kind::kComponent:
@@ -299,7 +298,7 @@ class Updating {
     }
   }
 
-  // Of a list that is a person's by now.
+  // For a list that a person has changed.
   void note_left_out(const Part& part) {
     if (part.kind != Part::Kind::kLeftOut) return;
     for (const std::string& line : lines_in(part.text)) {
@@ -310,7 +309,7 @@ class Updating {
     }
   }
 
-  // Nothing is left out any more.
+  // Removes the list of omissions.
   void end_left_out() {
     const auto mark = mark_of({.kind = Part::Kind::kLeftOut, .subject = kAll, .text = ""});
     const auto known = std::ranges::find(marks_, mark->about, &Mark::about);

@@ -70,7 +70,7 @@ OpenCall open_call(std::string_view text) {
   return call;
 }
 
-// What fits at the end of one line's text.
+// The proposals for the end of one line's text.
 class Completion {
  public:
   Completion(const Document& document, std::string_view before, const LiveInventory* robot,

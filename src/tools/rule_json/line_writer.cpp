@@ -233,7 +233,7 @@ std::string LineWriter::write() {
   return line_;
 }
 
-// Of those of the statement's keyword, the one of which most is there.
+// Among the forms of the statement's keyword, the one with most members present.
 const Form* LineWriter::choose_form() const {
   const auto keyword = statement_.find("statement");
   const Form* best = nullptr;

@@ -58,7 +58,7 @@ class Reader {
     if (!is_read.value_or(false) || !read_.line_ends(s)) is_broken_ = true;
   }
 
-  // Nothing if no statement begins with `keyword`.
+  // Empty if no statement begins with `keyword`.
   std::optional<bool> read_statement(std::string_view keyword, Scanner& s) {
     for (const std::string_view known : SetupReader::keywords()) {
       if (keyword == known) return setup_.read(keyword, s, scenario());

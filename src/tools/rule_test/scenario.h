@@ -1,4 +1,4 @@
-// What happens to the robot in a test, and how it answers: the part of a test that is played.
+// The events on the robot in a test, and its answers: the part of a test that is played.
 //
 // Times count from the start of the test.
 #pragma once
@@ -104,7 +104,7 @@ struct Scenario {
   std::vector<Answer> answers;
   std::vector<Cure> cures;
 
-  // What `other` says comes after what this one says.
+  // The statements of `other` follow these.
   void append(const Scenario& other);
 };
 

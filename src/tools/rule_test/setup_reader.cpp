@@ -28,7 +28,7 @@ std::optional<Lifecycle> lifecycle_of(std::string_view word) {
   return std::nullopt;
 }
 
-// What can befall a process.
+// The incidents of a process.
 std::optional<Incident::Kind> incident_of(std::string_view word) {
   if (word == "KILLED") return Incident::Kind::kKilled;
   if (word == "STOPPED") return Incident::Kind::kStopped;

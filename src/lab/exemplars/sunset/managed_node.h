@@ -1,12 +1,12 @@
-// What the five managed nodes of SUNSET have in common: a lifecycle, a heartbeat, fault
-// parameters that heal by restart or by redeployment, and parameters that outlive the process.
+// Base of SUNSET's five managed nodes: a lifecycle, a heartbeat, fault parameters that heal by
+// restart or by redeployment, and parameters that outlive the process.
 //
 // - At the start of the process a node takes its parameters' last values, configures and activates
 //   itself. Configuring costs time, in which nothing is answered.
 // - Publishers and subscriptions of pictures exist only while it is active; the heartbeat from
 //   configuring on. Parameters and what a node has buffered survive a restart.
-// - What a fault parameter does is up to the node. Configuring clears some of them, activating
-//   others: so a redeployment heals both kinds, a restart the second.
+// - Each node defines the effect of its fault parameters. Configuring clears some of them,
+//   activating others: so a redeployment heals both kinds, a restart the second.
 // - A shutdown transition ends the process.
 //
 // Left out, because nothing here uses it: the service ~/set_lifecycle_changes (a list of

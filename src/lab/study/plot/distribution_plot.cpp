@@ -157,7 +157,7 @@ class Plot {
     }
   }
 
-  // What the histogram does not show.
+  // Statistics that the histogram does not show.
   void notes(const Summary& summary, double base) {
     const std::int64_t beyond = histogram(summary.distribution(), bins_).beyond;
     if (beyond > 0)

@@ -96,7 +96,7 @@ std::string embedded(const std::vector<Timeline>& timelines) {
 
 std::string timeline_section(const std::vector<Timeline>& timelines) {
   if (timelines.empty()) return "";
-  return "<section id=\"runs\">\n<h2>What happened in a run</h2>\n"
+  return "<section id=\"runs\">\n<h2>Timeline of a run</h2>\n"
          "<p>Who failed, who was blamed, and what was done. A broad line tells how long a "
          "component "
          "was failing.</p>\n"
@@ -121,7 +121,7 @@ std::string contents(const Findings& findings, bool has_agreement) {
   std::string out = "<nav aria-label=\"Contents\"><ul>";
   if (has_agreement) out += entry("agreement", "Agreement with the paper");
   out += entry("tables", "Tables") + entry("plots", "Plots");
-  if (!findings.timelines.empty()) out += entry("runs", "What happened in a run");
+  if (!findings.timelines.empty()) out += entry("runs", "Timeline of a run");
   return out + "</ul></nav>\n";
 }
 

@@ -1,4 +1,4 @@
-// What the tables of a study have in common.
+// Shared columns of a study's tables.
 #pragma once
 
 #include <string>

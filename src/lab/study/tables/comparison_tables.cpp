@@ -104,7 +104,7 @@ std::vector<Cell> robustness_row(const std::string& name, const Row& row) {
   return cells;
 }
 
-// What is compared between the live robot and its model.
+// Compares the live robot with its model.
 constexpr std::array kComparedLive = {
     Metric::kRatio,          Metric::kReaction,           Metric::kUnnecessaryRedeployments,
     Metric::kHonestDowntime, Metric::kStrategiesPerFault, Metric::kRecovery};

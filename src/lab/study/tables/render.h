@@ -7,7 +7,7 @@
 
 namespace culprit::study {
 
-// For a terminal. What colours tell is told by a sign behind the number: + better, ! worse.
+// For a terminal. A sign behind the number replaces the colours: + better, ! worse.
 std::string text(const Table& table);
 
 // GitHub's. Significant changes are bold, with the same signs.

@@ -20,7 +20,7 @@ inline bool is_near(const Position& a, const Position& b, double tolerance) {
   return std::abs(a.x - b.x) <= tolerance && std::abs(a.y - b.y) <= tolerance;
 }
 
-// What goes to the autopilot (mavros/setpoint_position/local).
+// A setpoint for the autopilot (mavros/setpoint_position/local).
 struct Setpoint {
   Position goal;
 };

@@ -30,7 +30,7 @@ struct Sea {
   SuaveModel model;
 };
 
-// What was said on /diagnostics under a key, with the mission's time.
+// The values of a key on /diagnostics, with the mission's time.
 struct Listener : simulation::Watcher {
   Listener(Sea& of, std::string of_key) : sea(of), key(std::move(of_key)) {
     sea.model.world().watch(*this);
