@@ -165,8 +165,9 @@ TEST_F(Plan, HearsTheEvidence) {
                      rules),
             kOk)
       << err;
-  EXPECT_THAT(out, HasSubstr("SegmentationSuspected.guess is held back: camera runs and publishes "
-                             "/managed_subsystem/rgb_camera; what is silent is not its"));
+  EXPECT_THAT(out,
+              HasSubstr("SegmentationSuspected.guess is held back: camera runs and publishes "
+                        "/managed_subsystem/rgb_camera; it does not publish the silent topic"));
   EXPECT_THAT(out, Not(HasSubstr("would redeploy camera")));
 }
 

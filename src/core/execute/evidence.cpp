@@ -89,7 +89,7 @@ std::optional<std::string> contradiction(const Strategy& strategy, const Knowled
     const auto heard = is_suspect ? std::nullopt : heard_topic(component, knowledge, now);
     if (heard)
       return rules[component].name + " runs and publishes " + rules.label(*heard) +
-             "; what is silent is not its";
+             "; it does not publish the silent topic";
   }
   return std::nullopt;
 }

@@ -423,7 +423,7 @@ std::optional<Pursuit::Request> Pursuit::look_again(Time now) {
     const bool was_accepted = answer_ && answer_->outcome == Outcome::kDone;
     return give_up((was_accepted ? "it accepted and did nothing: not " : "not ") + describe(goal_) +
                    " after " + in_words(now - (sent_.empty() ? begun_ : changed_)) +
-                   (is_left() ? "; who is to bring it up did not (LIFECYCLE)" : ""));
+                   (is_left() ? "; its driver did not bring it up (LIFECYCLE)" : ""));
   }
   wake_ = std::min(later(now, kPause), deadline_);
   step_ = Step::kPausing;

@@ -222,7 +222,7 @@ class Describer {
       case StaysDown::Why::kShutDown:
         return who + "its node was shut down" + remedy;
       case StaysDown::Why::kOrder:
-        return who + "a person ended what culprit had started" + remedy;
+        return who + "a person ended the processes that culprit had started" + remedy;
     }
     return who;
   }
@@ -621,11 +621,9 @@ std::string describe_exclusion(const Candidate& candidate, const RuleSet& rules)
     case Condition::kSettling:
       if (!candidate.remark.empty())
         return "it may only show that " + component + " " + candidate.remark;
-      return "it is expected to go away now that " + rules[*candidate.failure].name +
-             " is resolved";
+      return "it is expected to clear now that " + rules[*candidate.failure].name + " is resolved";
     case Condition::kInTheWay:
-      return strategy + " would be in the way of what is done about " +
-             rules[*candidate.failure].name;
+      return strategy + " would be in the way of the repair of " + rules[*candidate.failure].name;
     case Condition::kWithheld:
       return strategy + " is withheld: " + candidate.remark;
     case Condition::kUnheard: {

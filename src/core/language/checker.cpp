@@ -395,7 +395,7 @@ class Checker {
     report(Code::kIncomplete, rule.name.span,
            "rule '" + rule.name.text + "' is incomplete: no " + missing,
            "a rule says how critical the failure is (POLICIES), when it is there (TRIGGER) and "
-           "what may help (STRATEGY), or that a person is told (POLICIES ... REPORT)");
+           "what may help (STRATEGY), or that a person is notified (POLICIES ... REPORT)");
   }
 
   void policies(const syntax::Policies& written, const syntax::Rule& rule, Policies& policies) {

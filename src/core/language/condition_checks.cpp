@@ -256,7 +256,7 @@ void check_true_when_well(const RuleConditions& rule, const RuleSet& rules,
   diagnostics.push_back(
       {Code::kTrueWhenWell, Severity::kWarning, rule.trigger.span,
        "this is true while all is well: everything is there, and messages come",
-       "a trigger says what is wrong, as in age(/topic) > 1s; a rule that waits for something to "
+       "a trigger describes a failure, as in age(/topic) > 1s; a rule that waits for something to "
        "come has ON_CHANGE among its policies"});
 }
 

@@ -275,7 +275,7 @@ void check_interlocks(const std::vector<RuleConditions>& conditions, const RuleS
         diagnostics.push_back(
             {Code::kMovesInterlock, Severity::kWarning, rule.strategies[s]->adaptations[a].span,
              "last resort '" + strategy.name + "' changes what INTERLOCK " + interlock->text +
-                 " reads: it says then what culprit set, and not how the robot is",
+                 " reads: it then shows the setting of culprit, not the state of the robot",
              "let the INTERLOCK read a measurement, such as a speed"});
       }
     }

@@ -78,7 +78,7 @@ std::vector<Explanation> name_explanations() {
       {Code::kDuplicateName, "a name is given twice",
        "Constants, components and signals share one set of names, rules have theirs, and each "
        "rule's strategies have theirs. With two things of one name, neither a reader nor a message "
-       "could tell which is meant.",
+       "could distinguish them.",
        "CONST limit = 0.5\nCONST limit = 0.7\n", "CONST limit = 0.5\nCONST high_limit = 0.7\n"},
       {Code::kUnknownName, "an undeclared name is nearly a declared one",
        "Names that a file does not declare are looked up on the robot, so a slip of the fingers is "
@@ -215,9 +215,9 @@ std::vector<Explanation> value_explanations() {
 std::vector<Explanation> rule_explanations() {
   return {
       {Code::kContradiction, "a strategy contradicts itself",
-       "All adaptations of one step are applied together. One that undoes or repeats another, or "
-       "that reconfigures a process which the same step ends, cannot have been meant: the "
-       "robot would be left in whichever state came last. A restart beside a redeploy of the same "
+       "All adaptations of one step are applied together. An adaptation that undoes or repeats "
+       "another, or that reconfigures a process which the same step ends, is a mistake: the robot "
+       "would be left in whichever state came last. A restart beside a redeploy of the same "
        "component is in vain. A component may be started again after it was stopped. THEN begins a "
        "step: a later step may take back what an earlier one did, as in deactivate THEN redeploy "
        "another component THEN activate. Without THEN culprit takes such a strategy for steps, and "
@@ -246,10 +246,10 @@ std::vector<Explanation> rule_explanations() {
        "COMPONENT camera NODE /robot/camera LAUNCH \"ros2 run my_cameras driver\"\n" +
            rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY redeploy 90 10",
                      "ADAPTATION camera redeploy 10")},
-      {Code::kStopsRequired, "a strategy stops what is REQUIRED",
-       "REQUIRED says that a person is told when the component is not there. A strategy that stops "
-       "it, and does not start it again, brings just that about. A last resort may: it is a safe "
-       "stop, and a person is told of it anyway.",
+      {Code::kStopsRequired, "a strategy stops a REQUIRED component",
+       "With REQUIRED, culprit notifies a person when the component is not there. A strategy that "
+       "stops it, and does not start it again, causes just that. A last resort may: it is a safe "
+       "stop, and culprit notifies a person of it anyway.",
        "COMPONENT camera NODE /robot/camera REQUIRED\n" + rule_with("rate(/robot/image) < 1",
                                                                     "ERROR", "STRATEGY quiet 50 10",
                                                                     "ADAPTATION camera stop 5"),
@@ -262,11 +262,10 @@ std::vector<Explanation> rule_explanations() {
        "COMPONENT camera NODE /robot/camera UNIT camera.service LAUNCH \"camera_driver\"\n",
        "COMPONENT camera NODE /robot/camera UNIT camera.service\n"},
       {Code::kTrueWhenWell, "a trigger is true while all is well",
-       "A trigger says what is wrong. This one is true while every component lives and every topic "
-       "sends: the rule would adapt a robot that is well, and rest when it is ill. Most often a "
-       "comparison is the wrong way round. A rule that waits for something to come, and acts once, "
-       "has "
-       "ON_CHANGE among its policies.",
+       "A trigger describes a failure. This one is true while every component is alive and every "
+       "topic is received: the rule would adapt a healthy robot, and do nothing about a failed "
+       "one. Most often a comparison is the wrong way round. A rule that waits for something to "
+       "come, and acts once, has ON_CHANGE among its policies.",
        rule_with("age(/robot/image) < 500ms"), rule_with("age(/robot/image) > 500ms")},
       {Code::kNoShell, "a LAUNCH command is written for a shell",
        "A launch command is an argument vector: no shell reads it. Clauses do what a shell would "
@@ -278,10 +277,8 @@ std::vector<Explanation> rule_explanations() {
        "/opt/ros/humble/setup.bash\n"},
       {Code::kMovesInterlock, "a last resort changes what an INTERLOCK reads",
        "A last resort does not wait for an interlock, and often opens it: the robot stands, and "
-       "the "
-       "repair can begin. That is safe only if the interlock reads how the robot is. If it reads "
-       "the "
-       "parameter that the last resort sets, it opens before the robot has stopped.",
+       "the repair can begin. That is safe only if the interlock reads the state of the robot. If "
+       "it reads the parameter that the last resort sets, it opens before the robot has stopped.",
        "INTERLOCK parameter(base, max_speed) < 0.1\nCOMPONENT base NODE /robot/base\n" +
            rule_with("rate(/robot/image) < 1", "ERROR",
                      "STRATEGY restart 50 10\n      ADAPTATION camera restart 5\n"
@@ -329,12 +326,11 @@ std::vector<Explanation> meaning_explanations() {
   const std::string camera = "COMPONENT camera NODE /robot/camera LAUNCH \"camera_driver\"\n";
   return {
       {Code::kOscillation, "strategies of two rules undo one another",
-       "One rule's strategy sets what the other's resets, and nothing keeps them from taking "
-       "turns: both triggers can be true together, one of them always is, or the parameter that "
-       "each sets "
-       "makes the other's true. The robot could flip "
-       "between the two for ever. Leave a band between the triggers, as a thermostat does, or make "
-       "both strategies alternatives of one rule, which remembers what it tried.",
+       "One rule's strategy sets what the other's resets, and they can take turns: both triggers "
+       "can be true together, one of them always is, or the parameter that each sets makes the "
+       "other's true. The robot could flip between the two for ever. Leave a band between the "
+       "triggers, as a thermostat does, or make both strategies alternatives of one rule, which "
+       "remembers what it tried.",
        lights("0.2"), lights("0.7")},
       {Code::kAlwaysTrueInRange, "a condition is always true",
        "For every value that its inputs can have, by their RANGE or by what they are, this "
@@ -366,7 +362,7 @@ std::vector<Explanation> meaning_explanations() {
        rule_with("rate(/robot/image) < 1", "ERROR",
                  "STRATEGY restart 50 10 WHEN rate(/robot/image) > 0.1")},
       {Code::kNoLastResort, "no strategy helps if the process hangs",
-       "The rule fires when something falls silent, and a hung process is silent. It answers no "
+       "The rule fires when a topic falls silent, and a hung process is silent. It answers no "
        "lifecycle request and no parameter call, so all of the rule's strategies would fail, "
        "though a LAUNCH command is there. A strategy that redeploys is the last resort; it costs "
        "nothing while cheaper ones help.",
@@ -394,8 +390,8 @@ std::vector<Explanation> robot_explanations() {
   return {
       against_robot(Code::kNoSuchNode, "no node of the robot is this component",
                     "The graph of the robot was read, and it holds no node of this name: it is not "
-                    "started, it died, or its name or namespace is another one. Nothing can be "
-                    "observed of the component and nothing asked of it.",
+                    "started, it exited, or its name or namespace is another one. culprit can "
+                    "neither observe the component nor send it requests.",
                     "COMPONENT camera NODE /camera\n", camera),
       against_robot(Code::kNoSuchTopic, "no node publishes this topic",
                     "Its rate would be 0, its age and its fields unknown for ever; a node that is "
@@ -430,9 +426,10 @@ std::vector<Explanation> robot_explanations() {
                     "COMPONENT camera NODE /robot/camera UNIT camra.service\n",
                     "COMPONENT camera NODE /robot/camera UNIT camera.service\n"),
       against_robot(Code::kCannotLaunch, "culprit could not start this LAUNCH",
-                    "There is no such program, its SETUP is not there or could be changed "
-                    "by others than culprit's user and root, or its CWD is no folder. Nothing "
-                    "would be ended when the rule fires, for it could not be started again.",
+                    "There is no such program, its SETUP is not there or could be changed by "
+                    "others than culprit's user and root, or its CWD is no folder. When the rule "
+                    "fires, culprit would not end the component, because it could not start it "
+                    "again.",
                     "COMPONENT camera NODE /robot/camera LAUNCH \"camera_driver\" "
                     "SETUP /opt/ros/humbel/setup.bash\n",
                     "COMPONENT camera NODE /robot/camera LAUNCH \"camera_driver\" "
@@ -440,14 +437,14 @@ std::vector<Explanation> robot_explanations() {
       against_robot(
           Code::kRunsOtherwise, "the component runs otherwise than its LAUNCH says",
           "The robot's node runs with other arguments or parameters than its LAUNCH says, or its "
-          "program or a parameter file was changed or removed since it was started. A "
-          "redeploy would start something else than what is well now.",
+          "program or a parameter file was changed or removed since it was started. A redeploy "
+          "would start another program than the one that works now.",
           "COMPONENT lidar NODE /robot/camera LAUNCH \"scan_driver --fps 15\"\n",
           "COMPONENT lidar NODE /robot/camera LAUNCH \"/opt/lidar/driver --fps 30\"\n"),
       against_robot(Code::kNoSuchField, "the messages of this topic have no such field",
                     "Their type has none of this name, or it is not known what the type looks "
-                    "like: no .msg file of it was found, and the publisher's node did not tell it. "
-                    "So the signal would stay unknown and its rule quiet.",
+                    "like: no .msg file of it was found, and the publisher's node did not describe "
+                    "it. So the signal would stay unknown and its rule quiet.",
                     "SIGNAL lines TOPIC /robot/image FIELD heigt\n",
                     "SIGNAL lines TOPIC /robot/image FIELD height\n"),
       against_robot(Code::kSeveralNodes, "several nodes of the robot have this component's name",
@@ -467,10 +464,10 @@ std::vector<Explanation> robot_explanations() {
           "COMPONENT camera NODE /robot/camera UNIT camera.service HOST robot@rover2\n"),
       against_robot(
           Code::kBadRequest, "the service would not understand this call",
-          "The fields of a call have to fit the type of the service that the robot offers: "
-          "every field that is written has to be one of the request's, and of its type. "
-          "A field that is left out is 0, false or empty. Found by asking the robot for "
-          "the type; one of which no .srv file is found cannot be called either.",
+          "The fields of a call have to fit the type of the service that the robot offers: every "
+          "field that is written has to be one of the request's, and of its type. A field that is "
+          "left out is 0, false or empty. Found by asking the robot for the type. A service whose "
+          ".srv file is not found cannot be called either.",
           rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY light 50 10",
                     "ADAPTATION camera call ~/light \"on: true\" 5"),
           rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY light 50 10",
@@ -503,8 +500,8 @@ std::vector<Explanation> reuse_explanations() {
        "end.",
        template_with("USE silent(/robot/image, 10)"), template_with("USE silent(/robot/image)")},
       {Code::kUnknownParameter, "a template has no such parameter",
-       "In a template, {name} stands for what a USE gives for the parameter 'name'. One that the "
-       "first line of the template does not have stands for nothing.",
+       "In a template, {name} stands for what a USE gives for the parameter 'name'. A parameter "
+       "that is not in the first line of the template has no value.",
        template_with("USE silent(/robot/image)", "age({topik}) > 1s"),
        template_with("USE silent(/robot/image)")},
       {Code::kEndlessTemplate, "templates would go on without end",

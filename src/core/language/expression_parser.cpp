@@ -171,7 +171,7 @@ class ExpressionParser {
     const std::string topic = "/" + rest.text;
     return fail(Code::kSyntax, {slash.span.begin, rest.span.end}, "'" + topic + "' is no value",
                 "of a topic there are age(" + topic + "), rate(" + topic + ") and phi(" + topic +
-                    "); what its messages say is a SIGNAL: SIGNAL name TOPIC " + topic +
+                    "); a field of its messages is a SIGNAL: SIGNAL name TOPIC " + topic +
                     " FIELD field");
   }
 

@@ -38,7 +38,7 @@ ShellWord shell_word(const std::vector<std::string>& command) {
   if (is_shell(program)) return {};
   if (is_one_of(program, {"source", "."}))
     return {program,
-            "what is sourced first is a clause of its own: SETUP /opt/ros/humble/setup.bash"};
+            "a file to source first is a clause of its own: SETUP /opt/ros/humble/setup.bash"};
   if (program == "cd")
     return {program, "the folder to run in is a clause of its own: CWD /a/folder"};
   if (program == "export" || sets_variable(program))
@@ -125,10 +125,11 @@ void check_unused(const syntax::File& file, const RuleSet& rules,
   for (std::size_t i = 0; i < file.components.size(); ++i) {
     const Component& component = rules.components[i];
     if (is_used[i] || component.is_required) continue;
-    diagnostics.push_back({Code::kUnused, Severity::kWarning, file.components[i].name.span,
-                           "nothing in these rules is about component '" + component.name + "'",
-                           "write a rule about it, or add REQUIRED, so that a person is told if it "
-                           "is not there"});
+    diagnostics.push_back(
+        {Code::kUnused, Severity::kWarning, file.components[i].name.span,
+         "nothing in these rules is about component '" + component.name + "'",
+         "write a rule about it, or add REQUIRED, so that a person is notified if it "
+         "is not there"});
   }
 }
 

@@ -241,7 +241,7 @@ class Parser {
         if (!component.engine_container) return false;
       } else if (clause.text == "HOST" && !component.host) {
         s.next();
-        component.host = read_.name_or_text(s, "the computer that runs it, as ssh is told");
+        component.host = read_.name_or_text(s, "the computer that runs it, as for ssh");
         if (!component.host) return false;
       } else if (clause.text == "IN" && !component.container) {
         s.next();

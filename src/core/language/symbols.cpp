@@ -275,7 +275,7 @@ std::string Symbols::declared_host(const syntax::Component& written) {
                         (at + 1 < host.size() && host.find('@', at + 1) == std::string::npos &&
                          std::isalnum(static_cast<unsigned char>(host[at + 1])) != 0));
   if (!is_name)
-    report("this is no computer that ssh could be told",
+    report("this is no host name for ssh",
            "write HOST computer or HOST user@computer; what else it needs, as a port, is for "
            "~/.ssh/config");
   if (!written.unit && !written.engine)

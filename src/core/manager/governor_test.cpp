@@ -174,7 +174,7 @@ TEST(Storm, WhenMostIsIllAtOnceNothingIsDoneUntilItIsOver) {
   TestRobot robot = five(false);
   for (const char* c : {"a", "b", "c", "d"}) robot[c].fault = "redeploy";
   robot.run_for(20s);
-  EXPECT_EQ(robot.count("a person must look: 4 of 5 components are ill at once"), 1u)
+  EXPECT_EQ(robot.count("a person must look: 4 of 5 components failed at once"), 1u)
       << transcript(robot);
   EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
   robot["a"].fault.clear();

@@ -562,7 +562,7 @@ TEST(ALaunch, WhatCulpritStartedIsEndedOnAPersonsOrder) {
   robot.run_for(5s);
   robot.order({2, "anna", "", EndStarted{}});
   robot.run_for(100ms);
-  EXPECT_EQ(robot.count("a stays down: a person ended what culprit had started"), 1u)
+  EXPECT_EQ(robot.count("a stays down: a person ended the processes that culprit had started"), 1u)
       << transcript(robot);
   EXPECT_EQ(robot.manager().knowledge().departures.to_end(robot.id("a")), robot["a"].pid);
   robot.leave("a");

@@ -40,7 +40,7 @@ TEST(Lifecycles, ADeclaredDriverThatNeverComesIsAFailureThatSaysSo) {
   robot.kill("camera");
   robot.run_for(40s);
   EXPECT_FALSE(robot.was_asked("camera: configure")) << transcript(robot);
-  EXPECT_GE(robot.count("who is to bring it up did not (LIFECYCLE)"), 1u) << transcript(robot);
+  EXPECT_GE(robot.count("its driver did not bring it up (LIFECYCLE)"), 1u) << transcript(robot);
 }
 
 TEST(Lifecycles, AManagedNodeIsNotWaitedFor) {

@@ -148,7 +148,7 @@ std::optional<Invalid> invalidity(const Strategy& strategy, const Knowledge& kno
   const bool is_exhausted = knowledge.states[strategy.rule].search.is_exhausted;
   if (is_exhausted && !knowledge.only_starts_the_gone(strategy))
     return Invalid{strategy.adaptations.front().component,
-                   "its rule is exhausted, and only what is gone is started again"};
+                   "its rule is exhausted, and only exited processes are started again"};
   if (auto held = held_by_last_resort(strategy, knowledge)) return held;
   if (auto barred = barred_by_another(strategy, knowledge)) return barred;
   return impossibility(strategy, knowledge);

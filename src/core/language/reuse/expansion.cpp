@@ -263,7 +263,7 @@ class Expander {
     expanded_ += body.text.text.size() + 1;
     if (expanded_ > kMaxExpanded)
       return refuse(Code::kEndlessTemplate, use.pattern.span,
-                    "what the templates become is larger than 16 MiB", "");
+                    "the expanded templates are larger than 16 MiB", "");
     if (!body.said.empty()) {
       blame(body.text, of_arguments(body));
       return {};
