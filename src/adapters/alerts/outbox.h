@@ -1,7 +1,7 @@
 // Which alert is sent when, to one destination: the newest of each fault, those that need a person first; again
 // after a while if it could not be sent; not too many in a time, and not more than are kept.
 //
-// Pure: whoever sends tells it the time, and what became of it.
+// Pure: the sender gives it the time, and the result of each attempt.
 #pragma once
 
 #include <cstdint>

@@ -24,8 +24,8 @@ using How = Sent::How;
 
 // ---- over HTTP
 
-// Ends a request that takes too long as a whole, or is answered with too much: httplib waits anew for each byte,
-// and keeps what comes as headers.
+// Ends a request that takes too long as a whole, or is answered with too much: httplib waits again
+// for each byte, and keeps all headers that come.
 class Guard {
  public:
   Guard(Duration patience, const std::atomic<bool>& stop)

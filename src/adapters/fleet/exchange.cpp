@@ -69,7 +69,7 @@ FROM jsonb_to_recordset($1::jsonb)
 ON CONFLICT (run) DO NOTHING
 )sql";
 
-// A run belongs to the robot that told of it first.
+// A run belongs to the robot that reported it first.
 constexpr const char* kOutcomes = R"sql(
 INSERT INTO culprit.outcome(robot, run, rule_set, rule, strategy, context, definition, helped, failed)
 SELECT r.robot, r.run, r.rule_set, x.rule, x.strategy, r.context, x.definition, x.helped, x.failed

@@ -1,5 +1,5 @@
-// One visit to the database: what waits is sent, in transactions of a few hundred rows, and what the
-// fleet knows is taken back.
+// One visit to the database: it sends the waiting rows, in transactions of a few hundred, and takes
+// back the fleet's sums.
 #pragma once
 
 #include <functional>

@@ -212,7 +212,7 @@ TEST_F(Fleet, CountsAreTheSumOfWhatHappenedWhateverHappensToRobots) {
   EXPECT_GT(happened.helped + happened.failed, 10 * count);
 }
 
-// A process of its own that is killed again and again, while it learns and while it tells.
+// A process of its own that is killed again and again, while it learns and while it reports.
 TEST_F(Fleet, NothingIsLostOrCountedTwiceByOneThatIsKilledAtAnyInstant) {
   const fs::path journal = folder / "a.journal";
   std::mt19937 random(3);
@@ -250,7 +250,7 @@ TEST_F(Fleet, NothingIsLostOrCountedTwiceByOneThatIsKilledAtAnyInstant) {
   EXPECT_EQ(sums(), happened);
 }
 
-// A member, and all that it says.
+// A member, and all its messages.
 struct Listening {
   static constexpr Member::Pace kHurried{1ms, 1ms, 1ms, 1h, 1ms, 1ms, 5ms};
 
@@ -458,7 +458,7 @@ TEST_F(Fleet, ARobotReadsAndChangesNoRowsButItsOwn) {
   EXPECT_EQ(sums(), (Counts{1, 0}));
   EXPECT_EQ(postgres->query("SELECT 1 FROM culprit.robot WHERE name = 'mine'").size(), 0u);
   EXPECT_EQ(postgres->query("SELECT 1 FROM culprit.failure WHERE ended IS NULL").size(), 1u);
-  // Nor may it take back what it said itself, or change what it is not asked for.
+  // Nor may it take back its own rows, or change others.
   ASSERT_TRUE(rover.query("UPDATE culprit.outcome SET helped = 0"));
   EXPECT_EQ(sums(), (Counts{1, 0}));
   for (const char* change :
@@ -468,7 +468,7 @@ TEST_F(Fleet, ARobotReadsAndChangesNoRowsButItsOwn) {
         "DELETE FROM culprit.failure_other", "SELECT * FROM culprit.failure_other",
         "CREATE TABLE culprit.mine(x int)", "SET ROLE postgres"})
     EXPECT_FALSE(rover.query(change)) << change;
-  // The sums of all it may read, and they name nobody.
+  // It may read the sums of all, and they name no robot.
   EXPECT_TRUE(stranger.query("SELECT culprit.refresh_pool()"));
   EXPECT_EQ(text_in((*stranger.query("SELECT robots FROM culprit.pool"))[0][0]), "1");
   postgres->run("CREATE ROLE boss LOGIN IN ROLE culprit_reader");
@@ -477,7 +477,7 @@ TEST_F(Fleet, ARobotReadsAndChangesNoRowsButItsOwn) {
   EXPECT_FALSE(boss.query("UPDATE culprit.robot SET name = 'x'"));
 }
 
-// However many robots share a login, it is not all of them that are gone through to see whose a row is.
+// However many robots share a login, the owner of a row is found without going through all of them.
 TEST_F(Fleet, WhoseARowIsIsLookedUpByItsRobot) {
   postgres->run(R"sql(
 SET session_replication_role = replica;
@@ -573,7 +573,7 @@ TEST_F(Fleet, ANewRobotBeginsWithWhatTheOthersLearned) {
     const std::lock_guard lock(robot.mutex);
     EXPECT_EQ(robot.priors[0].source, "8 robots of rover");
   }
-  // And one that is not like the others is told of.
+  // And a database that differs from the others is reported.
   postgres->start();
   for (int n = 0; n < 12; ++n) journal.outcome("restart", true);
   EXPECT_TRUE(

@@ -127,7 +127,7 @@ void Member::State::run() {
     try {
       work();
     } catch (const std::exception& error) {
-      // Memory that runs out, say: whatever it is, the robot is managed by others.
+      // For example, there is no memory left: whatever it is, the robot is managed by others.
       fail_to_keep(error.what());
     }
     lock.lock();
@@ -230,7 +230,7 @@ Expected<void> Member::State::visit() {
   return {};
 }
 
-// Begins a session: what is known from before is told first.
+// Begins a session: priors known from before are reported first.
 void Member::State::listen() {
   {
     const MutexLock lock(mutex);
@@ -240,8 +240,8 @@ void Member::State::listen() {
   }
   told = {};
   ask_at = kLongAgo;
-  // Also where nothing is known: what was learned in an earlier run may have begun from more, or from
-  // what the rules said then.
+  // Also where nothing is known: outcomes of an earlier run may have begun from more, or from the
+  // former rules.
   const auto known = outbox->value("knowledge");
   if (known) tell(priors_for(*heard_rules, knowledge_from_text(known->value_or(""))));
 }
@@ -282,7 +282,7 @@ void Member::State::tell_of_deviations(const FleetKnowledge& knowledge) {
   if (is_news) (void)outbox->set_value("deviations", to_line(said));
 }
 
-// A copy of this robot's disk on a computer that cannot be told from this one.
+// A copy of this robot's disk on a computer that cannot be distinguished from this one.
 Expected<void> Member::State::look_for_twin(Server& server) {
   const auto twin = find_twin(server, outbox->identity(), *tail.run());
   if (!twin) return Error{twin.error()};

@@ -53,7 +53,7 @@ class Member {
   ~Member();
   Member(const Member&) = delete;
 
-  // A session with these rules: its priors are told, those known from before first.
+  // A session with these rules: its priors are reported, those known from before first.
   void begin(const RuleSet& rules, Ears ears);
   // Reports no more priors.
   void end();

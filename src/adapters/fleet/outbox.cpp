@@ -61,7 +61,7 @@ std::string random_number() {
   return digits;
 }
 
-// The computer's id is nobody else's business (machine-id(5)).
+// The computer's id is confidential (machine-id(5)).
 std::string fingerprint(const std::string& machine, const std::string& robot) {
   if (machine.empty()) return "";
   journal::Hasher hasher;

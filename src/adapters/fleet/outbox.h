@@ -55,7 +55,7 @@ class Outbox {
   static constexpr std::int64_t kMostFailures = 20'000;
   static constexpr std::int64_t kMostCounts = 50'000;
 
-  // Makes the file if it is not there; one that is damaged is set aside, and said in remark().
+  // Makes the file if it is not there; a damaged one is set aside, and reported in remark().
   // `machine`: the computer's id, empty if it has none. Errors: it cannot be written.
   static Expected<Outbox> open(const std::filesystem::path& path, const std::string& machine);
 
@@ -83,7 +83,7 @@ class Outbox {
   Expected<Waiting> waiting(int most) const;
   // It was sent as it is here; what changed since goes again.
   Expected<void> sent(const Waiting& what);
-  // How much was never sent and is gone, in all.
+  // How much was dropped without having been sent, in all.
   Expected<std::int64_t> dropped() const;
 
   // A value kept under a name; nothing: there is none.

@@ -1,4 +1,4 @@
-// The tables of a fleet's database, in the schema `culprit`, and who may do what there
+// The tables of a fleet's database, in the schema `culprit`, and the rights of each role there
 // (docs/fleet.md).
 //
 // Two roles without a login, which logins are members of: culprit_robot adds and reads its own rows

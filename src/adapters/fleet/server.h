@@ -48,7 +48,7 @@ class Server {
   // Several statements, without results.
   Expected<void> run(const std::string& sql);
 
-  // The SQLSTATE of what failed last; empty: the server did not say it.
+  // The SQLSTATE of what failed last; empty: the server gave none.
   const std::string& state() const { return state_; }
   // Restores the state of an earlier failure, which is the one that matters.
   void set_state(std::string state) { state_ = std::move(state); }

@@ -1,4 +1,4 @@
-// For tests: a journal as a robot's would be, written by the one who writes them all.
+// For tests: a journal as a robot's would be, written by the same writer.
 #pragma once
 
 #include <filesystem>

@@ -49,8 +49,9 @@ bool is_loopback(std::string_view address);
 // 128 random bits, as hexadecimal digits.
 std::string make_token();
 
-// The only line of a file that nobody else can read: at least 16 characters without blanks. `what`
-// it is, for messages. Errors: it cannot be read, is readable by others, or holds no such line.
+// The only line of a file that no other user can read: at least 16 characters without blanks.
+// `what` it is, for messages. Errors: it cannot be read, is readable by others, or holds no such
+// line.
 Expected<std::string> read_secret(const std::string& path, const std::string& what = "token");
 
 }  // namespace culprit::web

@@ -1,7 +1,7 @@
 // httplib's server, with a budget for each connection.
 //
 // httplib itself keeps every header that comes, however many and however long a line is, and waits
-// anew for each byte. Here the bytes of a connection are counted before they are parsed: so many
+// again for each byte. Here the bytes of a connection are counted before they are parsed: so many
 // bytes of headers, so many of a body, and so much time for both. A connection that exceeds them is
 // closed.
 //

@@ -42,12 +42,12 @@ class Hub {
   // A batch holds at most so many messages: what a reader has to have sent before the next.
   static constexpr std::size_t kBatch = 256;
 
-  // `wake` is called when a reader comes while there was none: whoever publishes only for readers
-  // can do so at once. It must not block.
+  // `wake` is called when a reader comes while there was none: a caller that publishes only for
+  // readers can do so at once. It must not block.
   explicit Hub(std::function<void()> wake = {});
 
   void publish(Kind kind, std::string data);
-  // Asks whoever publishes to come round, as if a reader had come.
+  // Asks the publisher to publish, as if a reader had come.
   void wake() const {
     if (wake_) wake_();
   }

@@ -45,9 +45,10 @@ class LocalClient {
                                                const std::string& path,
                                                std::span<const Json> bodies, Duration patience);
 
-  // GET /api/stream: calls `take` with each document and its kind ("state") until that says no, or the
-  // stream ends. A sign of life is of no kind, and comes each second at least. Errors: nobody listens, or
-  // nothing came for the time of `patience`, or a document was larger than kLargeAnswer.
+  // GET /api/stream: calls `take` with each document and its kind ("state") until that returns
+  // false, or the stream ends. A sign of life is of no kind, and comes each second at least.
+  // Errors: no server listens, or nothing came for the time of `patience`, or a document was larger
+  // than kLargeAnswer.
   using Take = std::function<bool(std::string_view kind, Json document)>;
   Expected<void> follow(const Take& take) const;
 

@@ -75,7 +75,8 @@ class Exchange {
     if (is_connected_ && !is_over()) receive();
   }
 
-  // Connected: what is waited for. Not connected: the other's queue is full, and nothing tells when it is not.
+  // Connected: what is waited for. Not connected: the other's queue is full, and no event reports
+  // when it is not.
   std::optional<pollfd> waits_for() const {
     if (!is_connected_) return std::nullopt;
     const bool sends = sent_ < request_.text.size();

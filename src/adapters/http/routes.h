@@ -1,5 +1,5 @@
 // The calls of the API, apart from how they travel: a method, a path, and what is answered to a
-// JSON document. docs/web.md tells them to people, openapi.json to programs.
+// JSON document. docs/web.md describes them for people, openapi.json for programs.
 #pragma once
 
 #include <functional>

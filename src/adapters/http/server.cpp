@@ -60,7 +60,7 @@ std::string method_of(const Route& route) {
   return name;
 }
 
-// Left to itself, httplib shares a port with whoever has it already.
+// By default, httplib shares a port with a process that has it already.
 void take_port_alone(int socket) {
   const int yes = 1;
   setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
@@ -74,7 +74,7 @@ const char* reason_for(int status) {
 
 constexpr int kGzip = 16 + MAX_WBITS;  // the form, for zlib
 
-// For whoever cannot unpack, which is seldom: nothing is kept of it.
+// For a client that cannot unpack, which is rare: nothing is kept of it.
 std::string unpacked(std::string_view gzip) {
   z_stream stream{};
   if (inflateInit2(&stream, kGzip) != Z_OK) return {};
@@ -289,7 +289,8 @@ class Server::Http {
   }
 
   // An address says little about the client: all users of this machine share one. Changes by the
-  // owner of the token have a limit of their own, so that nobody without the token can delay them.
+  // owner of the token have a limit of their own, so that requests without the token cannot delay
+  // them.
   bool is_within_limits(const httplib::Request& q, bool has_token) {
     const auto now = RateLimit::Clock::now();
     if (has_token && changes(q)) return owner_limit_.allows("", now);

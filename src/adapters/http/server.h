@@ -1,7 +1,7 @@
 // Serves the web app, its API and its stream of changes over HTTP, on threads of its own.
 //
-// It is made for hostile company: who may ask is in access.h; requests are bounded in size and in
-// number; connections are bounded, and one that dawdles is closed. A slow reader delays nobody but
+// It is made for hostile company: the rules of access are in access.h; requests are bounded in size
+// and in number; connections are bounded, and one that dawdles is closed. A slow reader delays only
 // itself, and the manager knows nothing of readers (hub.h).
 #pragma once
 

@@ -366,7 +366,8 @@ TEST_F(WebServer, SlowsDownWhoAsksTooOften) {
   EXPECT_EQ(refused, 1);
 }
 
-// On one machine all users have one address: without the token, nobody keeps the owner's pause out.
+// On one machine all users have one address: requests without the token do not keep the owner's
+// pause out.
 TEST_F(WebServer, TakesOrdersWithTheTokenWhileSomebodyElseAsksTooOften) {
   const auto ask_too_often = [&] {
     int refused = 0;
@@ -481,7 +482,7 @@ TEST(WebServerStart, LeavesDescriptorsToTheManager) {
     pause();
     _exit(0);
   }
-  // The flood is there when nobody else is served any more.
+  // The flood is there when no other client is served any more.
   httplib::Client impatient("127.0.0.1", server->port());
   impatient.set_connection_timeout(std::chrono::milliseconds(200));
   impatient.set_read_timeout(std::chrono::milliseconds(200));
@@ -524,7 +525,7 @@ struct LocalServer : testing::Test {
   const LocalClient client{path, std::chrono::seconds(20), geteuid()};
 };
 
-// No stack of this size can be had, so that no thread can be made while it lives.
+// No stack of this size is available, so no thread can be made while this exists.
 class NoThreads {
  public:
   NoThreads() {
@@ -614,7 +615,7 @@ TEST_F(LocalServer, TakesThePlaceOfWhatAKilledOneLeft) {
   EXPECT_TRUE(Server::start(options, {}, nullptr));
 }
 
-// The kernel says who asks: also where the file's permissions were opened by mistake.
+// The kernel shows which user asks: also where the file's permissions were opened by mistake.
 TEST_F(LocalServer, ServesNobodyElse) {
   if (geteuid() != 0) GTEST_SKIP() << "only root can become somebody else";
   std::filesystem::permissions(folder.path(), std::filesystem::perms::all);

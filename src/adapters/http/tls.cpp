@@ -65,7 +65,7 @@ std::unique_ptr<TlsConnection> TlsConnection::accept(const TlsContext& context, 
   return made;
 }
 
-// Says good-bye if that needs no waiting.
+// Sends close_notify if that needs no waiting.
 TlsConnection::~TlsConnection() {
   ERR_clear_error();
   SSL_shutdown(connection_);

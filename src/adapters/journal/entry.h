@@ -14,7 +14,7 @@
 
 namespace culprit::journal {
 
-// The kinds of rows. These words stand in files: they must not change.
+// The kinds of rows. Files hold these words: they must not change.
 namespace kind {
 inline constexpr std::string_view kSession = "session";    // culprit began to manage
 inline constexpr std::string_view kSteps = "steps";        // what the manager was stepped with

@@ -478,7 +478,7 @@ std::string line_of(const Event& event, const RuleSet& rules) {
   line.reserve(kUsual);
   JsonWriter json(line);
   json.begin_object();
-  // On disk the type of these stands behind the names.
+  // On disk their type comes after the names.
   if (!std::holds_alternative<NeverSeen>(event.what)) json.member("type", words_of(event).name);
   std::visit(EventWriter(rules, json), event.what);
   json.member("text", describe(event, rules));

@@ -13,7 +13,7 @@ namespace culprit::journal {
 // {"type": "failure_detected", "rule": "RGBDead", ..., "text": "...", "time": nanoseconds}
 std::string line_of(const Event& event, const RuleSet& rules);
 
-// The same, for whoever adds to it.
+// The same, for code that adds to it.
 Json to_json(const Event& event, const RuleSet& rules);
 
 // The subject of the event, and how it ended; reasons, remarks, candidates and suspects were for

@@ -82,7 +82,7 @@ std::optional<RuleId> searched(const Event& event, const RuleSet& rules) {
   return std::nullopt;
 }
 
-// Is it gone for so long that it would be another one if it came now?
+// Has its failure been cleared for so long that a new one would count as another?
 bool is_long_gone(const Event& event, Time now) { return later(event.at, kPastCounts) <= now; }
 
 // By rule: from which event on its failure is there, or may still come back; past.size() if not.

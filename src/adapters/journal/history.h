@@ -11,14 +11,14 @@ namespace culprit::journal {
 // and of each component its last process and its intended lifecycle state.
 inline constexpr Duration kPastCounts = std::chrono::hours(1);
 
-// Is it one that the next run is told of (knowledge/history.h)?
+// Does the next run need it (knowledge/history.h)?
 bool is_remembered(const Event& event);
 
 // Leaves out what does not count at `now` any more.
 History still_counting(const History& past, Time now, const RuleSet& rules);
 
-// Only what holds on another robot, and on this one after a restart of the machine, whose clock
-// then begins anew: silences. `shift` is added to their times.
+// Keeps only what also holds on another robot, and on this one after a reboot, when its clock
+// restarts: silences. `shift` is added to their times.
 History of_people(const History& past, Duration shift);
 
 Json to_json(const History& past, const RuleSet& rules);

@@ -18,14 +18,14 @@
 namespace culprit::journal {
 
 struct Inheritance {
-  // Events that are told; of more, the newest.
+  // Events for the successor; of more, the newest.
   static constexpr std::size_t kMostEvents = 1000;
 
   Learned learned;
   History past;
 };
 
-// Is it told to a successor?
+// Does a successor need it?
 bool is_inherited(const Event& event);
 
 // The events and beliefs that a manager leaves to a successor, gathered while it manages: each
@@ -35,7 +35,7 @@ class Bequest {
   // `rules` must outlive it.
   explicit Bequest(const RuleSet& rules) : rules_(rules) {}
 
-  // Whether it is told to a successor, or not.
+  // Keeps the event if a successor needs it.
   void add(const Event& event);
   // With what was learned. If all is too long for `most` bytes, the oldest events are left out;
   // empty if what was learned alone is too long.

@@ -13,7 +13,7 @@
 //     0 (4 bytes): the end
 //
 // Sizes and numbers lowest byte first; the others as in bytes.h. The first part follows the hash of
-// the 56 bytes before it. Once all parts stand in the journal the next one is written over the
+// the 56 bytes before it. Once all parts are in the journal, the next one is written over the
 // first, after a later row; what then remains behind the end was written before it.
 #pragma once
 
@@ -50,14 +50,15 @@ class IntentFile {
     std::string bytes;
     Hash hash{};
   };
-  // All parts stand in the journal, and the row that `head` was made of: the next part is the first one.
+  // All parts are in the journal, and the row that `head` was made of: the next part is the first
+  // one.
   void begin_after(Head head);
 
   // One more part, whole with the kernel when this returns. After an error it is not there, and the
   // parts before it are. @pre begin_after() was called
   Expected<void> append(Time step, std::string_view rows);
 
-  // All parts stand in the journal, and no more follow for now.
+  // All parts are in the journal, and no more follow for now.
   void empty();
 
  private:

@@ -10,8 +10,8 @@ Json to_json(const KnownRobot& known);
 // Leaves out what cannot be read.
 KnownRobot known_robot_from_json(const Json& json);
 
-// Another domain is another robot, and so is another start of the machine: what was seen there says
-// nothing here.
+// Another domain is another robot, and so is another start of the machine: observations from there
+// mean nothing here.
 struct Whereabouts {
   int domain = 0;
   std::string boot;  // boot_id()

@@ -10,7 +10,7 @@
 namespace culprit::journal {
 namespace {
 
-// A person was told that it holds.
+// A person received a confirmation that it holds.
 bool is_order(const Event& event) { return std::holds_alternative<OrderAccepted>(event.what); }
 
 // Replaces each part of `learned` that `news` has.
@@ -466,7 +466,7 @@ void Recorder::add(Entry row) {
   unsaved_.entries.push_back(std::move(row));
 }
 
-// In a file that takes the place of one that was removed or damaged, the run goes on.
+// The run goes on in a file that replaces one that was removed or damaged.
 Expected<void> Recorder::open_anew() {
   Writer::Options options = options_.writer;
   options.is_damaged = is_damaged_;
@@ -492,7 +492,7 @@ void Recorder::begin_session_anew(const std::filesystem::path& rows) {
     if (auto recovery = recover(*reader, {}, rules_, {now_, wall, where_.domain}))
       known = std::move(*recovery);
   }
-  // Without them nobody knows what is under way by now; what was at the beginning is not.
+  // Without them the strategies under way are unknown; what was at the beginning is not.
   Json interrupted = Json::array();
   if (known) {
     for (const Interrupted& each : known->interrupted) interrupted.push_back(to_json(each, rules_));
@@ -593,7 +593,7 @@ void Recorder::empty_intents() {
 }
 
 Expected<void> Recorder::failed(Error error) {
-  // A file that cannot be written now may be another one next time: it is opened anew.
+  // A file that cannot be written now may be another one next time: it is opened again.
   if (writer_) is_damaged_ = writer_->is_damaged();
   writer_.reset();
   bound_unsaved();

@@ -2,15 +2,15 @@
 //
 // The manager's thread keeps the steps that decide nothing, hands them over several at a time and
 // goes on; a thread of the recorder's own turns them into rows. Steps that decide nothing wait for
-// others, because each write costs whole pages of the disk, however little it is about; what was
-// said or asked is written soon. The manager waits only for a step that learned something, took an
+// others, because each write costs whole pages of the disk, however little it is about; events and
+// requests are written soon. The manager waits only for a step that learned something, took an
 // order or requests changes that cannot be read back later: its rows are on the disk before any
 // request or message goes out. A request that can be settled by reading back (settled_here.h) waits
 // for one write to the intent file only, and is on the disk soon.
 //
 // If the file cannot be written, the manager does not wait: the robot is managed all the same. Rows
 // are kept and written as soon as it is possible again. If they become too many, the oldest `steps`
-// go first, then the oldest others, and a `gap` row says how many.
+// go first, then the oldest others, and a `gap` row holds their number.
 #pragma once
 
 #include <array>
@@ -61,8 +61,8 @@ class Recorder {
   // How long an action waits for a disk that does not answer.
   static constexpr Duration kPatience = std::chrono::seconds(2);
   static constexpr std::size_t kMaxUnsaved = 16u << 20;  // bytes of rows, and of steps not yet rows
-  // A disk that has not answered for so long may keep whoever writes to it: then an action waits for
-  // the journal, and no longer than kPatience.
+  // A disk that has not answered for so long may block every writer: then an action waits for the
+  // journal, and no longer than kPatience.
   static constexpr Duration kStalled = std::chrono::milliseconds(100);
 
   struct Options {
@@ -80,7 +80,7 @@ class Recorder {
   // the first row.
   Recorder(std::optional<Writer> writer, Options options, const Session& session,
            const Knowledge& knowledge);
-  // As end(), but without a word: as if the process had ended by itself.
+  // As end(), but without a report: as if the process had ended by itself.
   ~Recorder();
   Recorder(const Recorder&) = delete;
 
@@ -104,7 +104,7 @@ class Recorder {
                        std::span<const Command> commands, std::span<const Event> events);
   void after_commands() { wake_writer(); }
 
-  // Writes what is waiting. An error says what is lost. No step after it.
+  // Writes what is waiting. An error names the lost rows. No step after it.
   Expected<void> end(Ending ending = Ending::kStopped);
 
  private:
@@ -118,7 +118,7 @@ class Recorder {
     std::optional<KnownRobot> robot;
   };
   // One cache line: between two steps of a robot at rest, others use the cache, and each line that
-  // is fetched anew lengthens the step.
+  // is fetched again lengthens the step.
   struct alignas(64) Pending {
     Time now{};
     std::int64_t wall = 0;

@@ -96,7 +96,7 @@ struct Recording : testing::Test {
     for (int i = 0; i < 3000 && !is_true(); ++i) std::this_thread::sleep_for(10ms);
     return is_true();
   }
-  // While this lives nobody else writes the journal: the recorder's thread hangs.
+  // While this exists, no other process writes the journal: the recorder's thread hangs.
   Database lock_the_file() const {
     Database other = value_of(Database::open(path, Database::Mode::kWrite));
     EXPECT_TRUE(other.run("BEGIN IMMEDIATE"));
@@ -241,7 +241,7 @@ TEST_F(RecordingHere, WithoutTheFileBesideItARequestIsOnTheDiskFirst) {
   fs::remove(intents_beside(path));
   asks_for_a_stop(*recorder);
   EXPECT_TRUE(has(kind::kIntent));
-  // It is made anew, by the recorder's thread.
+  // The recorder's thread makes it again.
   ASSERT_TRUE(comes_true([&] { return fs::exists(intents_beside(path)); }));
   auto locked = lock_the_file();
   asks_for_a_stop(*recorder);

@@ -63,7 +63,7 @@ class Trail {
   // When its run lived last, as far as is known.
   Time latest() const { return latest_; }
 
-  // Those that had begun to change anything. Not where nobody knows who changed what since.
+  // Those that had begun to change anything. Gives none if others may have changed the robot since.
   std::vector<Interrupted> open(Time now, std::optional<int> manager_before) && {
     std::erase_if(open_, [](const Interrupted& each) { return each.requests.empty(); });
     const bool is_long_ago = now - latest_ > kGoneOnWith;
@@ -117,7 +117,7 @@ class Trail {
   }
 
   void begin(const StrategyChosen& chosen) {
-    // A last resort is no part of what is gone on with: it is due anew, and begun at once.
+    // A last resort is never continued: it is due again, and begun at once.
     if (chosen.dry_run || rules_[chosen.strategy].is_last_resort) return;
     close(rules_[chosen.strategy].rule);
     open_.emplace_back();
@@ -136,7 +136,7 @@ class Trail {
     if (!command) return give_up(body, command.error());
     if (rules_[command->purpose.strategy].is_last_resort) return;
     Interrupted* found = find(command->purpose.strategy);
-    // A person may have ordered it without a failure: then nobody chose it.
+    // A person may have ordered it without a failure: then it was not chosen.
     if (found == nullptr) {
       found = &open_.emplace_back();
       found->strategy = command->purpose.strategy;
@@ -149,7 +149,7 @@ class Trail {
     const auto number = static_cast<std::uint64_t>(integer_of(body, "command"));
     const auto outcome = outcome_from(text_of(body, "outcome"));
     for (Interrupted& each : open_) {
-      // Numbers begin anew with each run: the latest is meant.
+      // Each run numbers its requests from the beginning: the latest is meant.
       const auto request = std::find_if(
           each.requests.rbegin(), each.requests.rend(),
           [&](const Interrupted::Request& r) { return r.command.id.number == number; });
@@ -184,7 +184,7 @@ Duration shift_of_clock(const Entry& begin, Time robot_then, const Moment& now) 
   return (now.robot - robot_then) - Duration(now.wall - begin.at);
 }
 
-// The newest row says all.
+// The newest row holds everything.
 Expected<KnownRobot> find_known_robot(const Reader& journal, const Whereabouts& where,
                                       std::int64_t last_run) {
   const auto newest = journal.newest(kind::kRobot);
@@ -230,7 +230,8 @@ Expected<Recovery> recover(const Reader& journal, const Unwritten& unwritten, co
     return false;
   };
   if (!row) return Error{row.error()};
-  // A row that somebody else could have written must not say which process is whose.
+  // A row that another user could have written must not decide which process belongs to a
+  // component.
   if (!is_good()) return recovery;
   const Json begin = parse_json((*last)->body);
   recovery.was_other_boot = text_of(begin, "boot") != boot_id();

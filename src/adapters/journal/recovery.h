@@ -1,5 +1,5 @@
 // Finds what the last run of culprit left unfinished, from its intents and its later events. The
-// newest of both may stand beside the journal only (unwritten.h).
+// newest rows of both may be beside the journal only (unwritten.h).
 //
 // A strategy was under way if it was chosen or resumed and at least one change for it was about to
 // be requested. Its success or the end of its undoing would be on record. It is not continued if
@@ -19,7 +19,7 @@
 
 namespace culprit::journal {
 
-// How long culprit may have been dead to go on with what it left in the middle.
+// The longest time without culprit after which it continues the strategies that it left unfinished.
 inline constexpr Duration kGoneOnWith = std::chrono::minutes(1);
 
 // How long culprit may have been away to expect that all is as it left it (KnownRobot::is_whole).
@@ -50,8 +50,8 @@ struct Moment {
 };
 
 // `unwritten`: what comes after the rows of `journal`. `manager_before`: the process of the culprit
-// that was seen to manage the robot until now, 0 for one on another machine; nothing: none was.
-// Errors: the file cannot be read.
+// that has managed the robot until now, 0 for one on another machine; nothing: none was. Errors:
+// the file cannot be read.
 Expected<Recovery> recover(const Reader& journal, const Unwritten& unwritten, const RuleSet& rules,
                            const Moment& now, std::optional<int> manager_before = {});
 

@@ -177,7 +177,7 @@ TEST_F(ExpectedRobot, IsNoneOfARunThatSawAPart) {
   EXPECT_FALSE(is_expected());
 }
 
-// It was killed before it saw anything; what is on record was seen under the rules of the one before.
+// It was killed before it saw anything; its record was made under the rules of the one before.
 TEST_F(ExpectedRobot, IsNoneOfTheRunBeforeTheLast) {
   write({});
   write_rows({}, {kind::kSession, kind::kEvent});

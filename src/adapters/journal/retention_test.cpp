@@ -111,7 +111,7 @@ TEST_F(Recovered, IsWhatARunLeftWhoseFirstRowsAreGone) {
   EXPECT_LT(fs::file_size(path), 512u << 10);
 }
 
-// No battery: it begins in 1970, and a minute later the network tells the time.
+// No battery: it begins in 1970, and a minute later the network gives the time.
 TEST_F(Recovered, IsWhatARunLeftWhoseClockJumped) {
   clock = 0;
   auto run = recorder();

@@ -16,7 +16,7 @@ std::optional<std::pair<double, double>> pair_from(const Json& json, const char*
   return std::pair((*found)[0].get<double>(), (*found)[1].get<double>());
 }
 
-// Pseudo-counts are above zero, and no robot lives long enough for the others.
+// Pseudo-counts are above zero, and no robot runs long enough for the others.
 bool is_belief(const Belief& belief) {
   return belief.alpha > 0 && belief.beta > 0 && belief.alpha < 1e15 && belief.beta < 1e15;
 }

@@ -1,4 +1,5 @@
-// One run of culprit: all that the manager was made with, so that a replay can make it anew.
+// One run of culprit: all inputs that the manager was made with, so that a replay can make it
+// again.
 #pragma once
 
 #include <optional>
@@ -34,14 +35,14 @@ struct Session {
   Json interrupted = Json::array();  // what the run before left behind (requests.h)
   Json past = Json::array();         // what earlier runs did that still counts (history.h)
   Json known_robot;                  // what they saw of this robot (known_robot.h)
-  // By a person's order in the run before, which goes on: said anew with the first step.
+  // By a person's order in the run before, which goes on: repeated with the first step.
   bool is_paused = false;
   bool is_dry_run = false;
   // People's standing orders are in a file of their own (standing_orders.h); older culprits have it
   // in the rows only.
   bool orders_kept = false;
   // The context in which what is learned is shared with a fleet; nothing: it is not. Beliefs begin
-  // from the fleet's priors then, which are told in the steps; those of `learned` hold until that.
+  // from the fleet's priors then, which the steps contain; those of `learned` hold until that.
   std::optional<std::string> fleet_context;
 };
 

@@ -2,9 +2,9 @@
 //
 // An intent must outlive us: the next culprit finishes what this one left in the middle. For that
 // it need not be on the disk, only with the kernel (intent_file.h). The disk matters only for a
-// power cut. After one no strategy is continued (recovery.h: the machine was booted anew), and
-// every process of this machine starts anew; its state is read back before any request. So for such
-// requests the disk may follow.
+// power cut. After one no strategy is continued (recovery.h: the machine was booted again), and
+// every process of this machine starts again; its state is read back before any request. So for
+// such requests the disk may follow.
 //
 // A request must be on the disk first if its effect cannot be read back, or outlives a power cut of
 // this machine:

@@ -66,8 +66,8 @@ History to_past(const StandingOrders& orders, const RuleSet& rules, Time now);
 std::vector<StandingOrders::Quiet> silences_of(const History& past, const RuleSet& rules);
 bool is_about_silence(const Event& event);
 
-// As text, also for a successor on another machine. A silence goes on for what is left of it; where
-// the clocks cannot tell how much that is, for longer rather than shorter.
+// As text, also for a successor on another machine. A silence goes on for what is left of it; if
+// the clocks do not show how much that is, for longer rather than shorter.
 std::string to_text(const StandingOrders& orders, const Clocks& now);
 Expected<StandingOrders> orders_from_text(const std::string& text, const Clocks& now);
 
@@ -75,7 +75,7 @@ Expected<StandingOrders> orders_from_text(const std::string& text, const Clocks&
 std::filesystem::path orders_beside(const std::filesystem::path& journal);
 
 // On the disk when it returns: in the file, or, where the disk is full, in the room that was taken beforehand
-// (order_reserve.h). Errors say why not in the file.
+// (order_reserve.h). Errors give the reason why it is not in the file.
 Expected<void> write_orders(const std::filesystem::path& path, const StandingOrders& orders,
                             const Clocks& now);
 // The orders that were written last, by their revision. Nothing: there is no such file. Errors: it cannot be read, or is damaged.

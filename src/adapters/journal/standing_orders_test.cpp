@@ -137,7 +137,7 @@ TEST(OrdersFile, IsReadAsItWasWritten) {
   EXPECT_EQ(**read, with_all());
 }
 
-// Wherever a bit flips and wherever it ends: the file never says something else than was written.
+// Wherever a bit flips and wherever it ends: the file never gives another text than was written.
 TEST(OrdersFile, IsUnreadableWithAnyBitChangedOrAnyByteMissing) {
   const TestFolder folder;
   const auto path = orders_beside(folder / "a.journal");

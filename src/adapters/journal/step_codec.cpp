@@ -3,7 +3,7 @@
 namespace culprit::journal {
 namespace {
 
-// These numbers stand in files: they must not change.
+// Files hold these numbers: they must not change.
 enum class Tag : std::uint8_t {
   kNodeAppeared = 1,
   kNodeVanished = 2,
@@ -367,7 +367,7 @@ class Decoder {
   }
 
  private:
-  // Damaged bytes may say anything; time must not overflow over it.
+  // Damaged bytes may hold anything; time must not overflow over it.
   Time earlier(Time now, std::int64_t nanoseconds) {
     std::int64_t at = 0;
     const bool overflows = __builtin_sub_overflow(now.time_since_epoch().count(), nanoseconds, &at);
@@ -376,7 +376,7 @@ class Decoder {
   }
 
   ObservationWhat what(Tag tag) {
-    // One field after the other: the order in which the arguments of a call are evaluated is open.
+    // One field after the other: the order of evaluation of a call's arguments is unspecified.
     switch (tag) {
       case Tag::kNodeAppeared: {
         std::string node = in_.text();

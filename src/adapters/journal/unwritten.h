@@ -18,8 +18,8 @@ struct Unwritten {
 };
 
 // `intents`: the file (intents_beside()). `journal`: the rows that it belongs to, wherever they are
-// now. The rows of a file that belongs to other rows are left out, and so are those of a run that
-// another one has followed: both are said or known to be over.
+// now. Leaves out the rows of a file that belongs to other rows, and those of a run that another
+// one has followed: both are reported, or known to be over.
 Unwritten unwritten_rows(const std::filesystem::path& intents, const Reader& journal);
 
 }  // namespace culprit::journal

@@ -203,8 +203,8 @@ void Writer::copy_learned() {
   copy_trouble_ = written ? "" : written.error();
 }
 
-// By ourselves, because with the first row that stands in the -wal file alone the copy has to be
-// written: it names that row, and so tells when the -wal file is lost.
+// culprit does this itself: once the first row exists in the -wal file alone, the copy must be
+// written. The copy names that row, and so shows when the -wal file is lost.
 void Writer::move_wal() {
   const fs::path wal = path_.string() + "-wal";
   std::error_code error;

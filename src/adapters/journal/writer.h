@@ -49,7 +49,7 @@ class Writer {
   const std::filesystem::path& aside() const { return aside_; }
 
   // Whether the error that append() gave comes from damage: then the writer is of no use any more,
-  // and the file has to be opened anew with Options::is_damaged.
+  // and the file must be opened again with Options::is_damaged.
   bool is_damaged() const { return is_damaged_; }
   // Why the second copy of what was learned is not written; empty: it is. It is tried again with
   // the next batch.

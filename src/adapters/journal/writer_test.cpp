@@ -329,7 +329,8 @@ TEST(Faults, ALatencyThatWasChangedBehindItsBackIsKnownFromTheSecondCopy) {
   EXPECT_EQ(value_of(writer.learned()).latencies, latencies);
 }
 
-// Root may write everywhere: while this lives, the test is nobody, and the folder is nobody's.
+// Root may write everywhere: while this exists, the test runs as nobody, and owns the folder as
+// nobody.
 class AsNobody {
  public:
   explicit AsNobody(const TestFolder& folder) : was_(geteuid()) {

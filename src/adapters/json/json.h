@@ -1,5 +1,5 @@
-// JSON documents, read from text and written as text. Here alone, for the library's parser is
-// compiled anew, which takes seconds, wherever it is called.
+// JSON documents, read from text and written as text. Here alone, for the library's parser takes
+// seconds to compile wherever it is called.
 //
 //     const Json answer = parse_json(R"({"node": "/camera", "pid": 42})");
 //     if (answer.is_discarded()) …       // it is no JSON

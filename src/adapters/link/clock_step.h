@@ -16,8 +16,9 @@ class ClockStep {
   // NTP slews smaller differences.
   static constexpr Duration kLeast = std::chrono::seconds(1);
 
-  // `steady`: a clock that nobody sets and that goes on while the computer sleeps; `wall`: the system clock
-  // at the same time. By how much that was set since the last call; nothing: it was not.
+  // `steady`: a clock that cannot be set and that goes on while the computer sleeps; `wall`: the
+  // system clock at the same time. By how much that was set since the last call; nothing: it was
+  // not.
   std::optional<Duration> look(Duration steady, Duration wall) {
     const Duration offset = wall - steady;
     const Duration before = offset_.value_or(offset);

@@ -21,9 +21,9 @@ using namespace std::chrono_literals;
 // How long a node that was just seen may take until its services answer.
 constexpr Duration kJoining = 5s;
 constexpr Duration kProbe = 500ms;
-// A node that says that it changes its state may answer nothing until it has.
+// A node that announces a transition may answer nothing until it has finished.
 constexpr Duration kTransitionAsked = 100ms;
-// Between two questions about what events say: a flood of them asks the node 20 times a second.
+// Between two requests after events: a flood of them asks the node 20 times a second.
 constexpr auto kAskedAgain = 50ms;
 
 Lifecycle to_lifecycle(std::uint8_t id) {
@@ -241,7 +241,8 @@ void ComponentLink::watch_transitions() {
   if (subscription) transitions_ = std::move(*subscription);
 }
 
-// Anybody may send such an event. It is a reason to ask the node for its state, and says nothing by itself.
+// Anybody may send such an event. It is a reason to ask the node for its state, and proves nothing
+// by itself.
 void ComponentLink::on_transition(const Sample& sample) {
   const auto event = decode<msg::TransitionEvent>(sample.payload);
   if (!event) return;
@@ -275,8 +276,8 @@ void ComponentLink::ask_for_transition() {
                });
 }
 
-// A node with one thread answers nothing during a transition: then its silence confirms that one is under way. Any other
-// state is told only by the node itself, but that it was shut down.
+// A node with one thread answers nothing during a transition: then its silence confirms that one is
+// under way. Any other state counts only from the node itself, except that it was shut down.
 void ComponentLink::on_state(const CallResult& result, const Claim& claim) {
   const auto response = result.outcome == CallOutcome::kAnswered
                             ? decode<srv::GetState::Response>(result.reply)
@@ -296,7 +297,7 @@ void ComponentLink::on_state(const CallResult& result, const Claim& claim) {
   }
 }
 
-// The event that says so may have come after the question, and before its answer.
+// The event about it may have come after the request, and before its answer.
 bool ComponentLink::was_shut_down(const Claim& claim) {
   const MutexLock lock(claimed_mutex_);
   return claim.is_shut_down || (claimed_.last && claimed_.last->is_shut_down);

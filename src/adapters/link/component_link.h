@@ -48,14 +48,15 @@ class ComponentLink {
   // for others.
   void lives_in(int pid, const GuidPrefix& participant);
 
-  // Its modes are told by this participant: its own, or that of a mode manager.
+  // Its modes come from this participant: its own, or that of a mode manager.
   void modes_come_from(const GuidPrefix& participant);
 
-  // Reads the parameters again: somebody says that they changed.
+  // Reads the parameters again: an event announced that they changed.
   void check_values() { read_parameters(); }
 
-  // The node was seen to offer a service: readies the client, reads the present state, and finds
-  // out what a routine takes while the node is well enough to be asked. On the executor's thread.
+  // The node was discovered to offer a service: readies the client, reads the present state, and
+  // finds out what a routine takes while the node is well enough to be asked. On the executor's
+  // thread.
   void service_seen(const GraphEndpoint& service);
 
   // A cheap read that proves that the node answers: of its lifecycle state, which is reported as by
@@ -68,12 +69,12 @@ class ComponentLink {
   // Asks once, by the same read, whether the node is there, and gives the participant that answered, if any does.
   // `then` may be called before this returns.
   void ask(std::function<void(std::optional<GuidPrefix> answered)> then);
-  // Its computer is known to be silent: what was not told yet never is.
+  // Its computer is known to be unreachable: answers that are still missing are never reported.
   void forget_unanswered();
 
-  // Reads the state of a node that was seen to have a lifecycle, and tells it if it is another than
-  // was told last. Events tell of transitions sooner, and they may be lost: nobody repeats them,
-  // and the first ones pass before both sides know of each other.
+  // Reads the state of a node that was discovered to have a lifecycle, and reports it if it differs
+  // from the last report. Events report transitions sooner, and they may be lost: they are not
+  // repeated, and the first ones pass before both sides have matched.
   void check_lifecycle();
 
   // Asks a node that lacks a parameter of the rules which ones it has: one of those may be meant.
@@ -161,7 +162,8 @@ class ComponentLink {
   Inbox& inbox_;
   TypeFinder& types_;
   Starvation& starvation_;
-  // Not under the mutex: a receive thread that waited for it would stop whoever makes a client.
+  // Not under the mutex: a receive thread that waited for it would block the thread that makes a
+  // client.
   std::atomic<int> pid_ = 0;
   std::atomic<Lifecycle> told_ = Lifecycle::kUnknown;
   std::atomic<bool> misses_parameter_ = false;  // found since it was asked for its names
@@ -181,7 +183,7 @@ class ComponentLink {
       CULPRIT_GUARDED_BY(mutex_);        // that the node offers, by name
   std::optional<ProcessorLook> looked_;  // when it did not answer last; of the executor's thread
   Mutex unanswered_mutex_;
-  // When the answers were due that nobody was told of.
+  // The due times of missing answers that are not reported yet.
   std::deque<Time> unanswered_ CULPRIT_GUARDED_BY(unanswered_mutex_);
   Mutex lists_mutex_;  // another one: receive threads take it
   std::map<std::string, std::uint8_t> lists_

@@ -14,7 +14,7 @@ struct ComponentNeeds {
       false;                     // change_state; also of a node that is brought back after a start
   bool sets_parameters = false;  // set_parameters
   bool changes_modes = false;    // change_mode, get_mode
-  // Whether it is alive is read, or it may be replaced: that its process runs does not tell that it
+  // Whether it is alive is read, or it may be replaced: a running process does not prove that it
   // works.
   bool is_to_answer = false;
   std::vector<std::string> routines{};  // services that are called, as the rules name them

@@ -34,7 +34,8 @@ class DiagnosticsReading {
 
   std::function<void(StatusHeard)> on_status;  // each status once
 
-  // Whether whoever published the message may say what `status` is, as the rules name it (signal_publishers.h).
+  // Whether the message's publisher may report `status`, as the rules name it
+  // (signal_publishers.h).
   using MaySay = std::function<bool(const std::string& status)>;
   // Calls the three above for what the rules want of `message`.
   void read(const msg::DiagnosticArray& message, const MaySay& may_say = {});

@@ -2,7 +2,8 @@
 // many nodes repeat there what has not changed.
 //
 // A status counts only from its publisher (signal_publishers.h). The watch looks up the node of a writer once, on the
-// executor's thread, where the writer's first message waits for that; and anew when nodes came or went.
+// executor's thread, where the writer's first message waits for that; and again when nodes came or
+// went.
 #pragma once
 
 #include <map>
@@ -25,7 +26,7 @@ class DiagnosticsWatch {
   static Expected<std::unique_ptr<DiagnosticsWatch>> create(NodeEntry& self, const RuleSet& rules,
                                                             Inbox& inbox);
 
-  // An earlier run learned who publishes that status. From any thread.
+  // An earlier run learned which node publishes that status. From any thread.
   void remember(const std::string& status, const std::string& node);
 
   // On the executor's thread.

@@ -1,5 +1,5 @@
-// The lease's way to the wire: announces the claim of this culprit in the domain, says its beats, and
-// hears those of others (manager_lease.h).
+// The lease's way to the wire: announces the claim of this culprit in the domain, sends its beats,
+// and receives those of others (manager_lease.h).
 #pragma once
 
 #include <functional>
@@ -39,7 +39,7 @@ class LeaseLink {
   // Until when it is sure that no other culprit manages the robot. Not later than `now`: it is not.
   Time sure_until(Time now) const;
   // Where the culprit runs, on another machine, that goes before this one for the robot, or for the
-  // node of this full name: a host's name, or "another machine" where it does not say. Nothing:
+  // node of this full name: a host's name, or "another machine" if it announces none. Nothing:
   // there is none.
   std::optional<std::string> elder() const;
   std::optional<std::string> elder_at(const std::string& node) const;
@@ -54,7 +54,8 @@ class LeaseLink {
   std::int64_t highest_term() const;
   // The state of this manager, from now on.
   void tell_state(std::string state);
-  // Tells who takes over, now and not with the next beat: the last word of who steps back or ends.
+  // Informs the successor now and not with the next beat: the last message of a culprit that steps
+  // back or ends.
   void say();
   // This one, which did not manage, does from now on, in this term, and announces it beside what it
   // had announced. By one thread. Errors: the middleware refuses; then nothing has changed.

@@ -25,7 +25,7 @@ namespace {
 constexpr Duration kProbePeriod = std::chrono::milliseconds(400);
 constexpr Duration kAskPeriod = std::chrono::milliseconds(100);
 constexpr Duration kPublishPeriod = std::chrono::seconds(1);
-// A node that was said to leave, and answered.
+// A node that was announced to leave, and answered.
 constexpr auto kLeavingAskedAgain = std::chrono::seconds(2);
 constexpr Duration kAskedForParameters = std::chrono::seconds(1);
 constexpr Duration kReminder = std::chrono::minutes(1);
@@ -34,8 +34,8 @@ constexpr auto kGivesBack = std::chrono::seconds(10);
 // One that ends, or is ended, needs no person.
 constexpr Duration kSettles = std::chrono::seconds(2);
 
-// Services that managers and tools use, of every node or of every managed node: who uses them
-// depends on nobody.
+// Services that managers and tools use, of every node or of every managed node: their users depend
+// on no node by them.
 bool is_for_management(std::string_view service) {
   constexpr std::array<std::string_view, 17> kNames = {
       "get_parameters",       "get_parameter_types",
@@ -60,7 +60,7 @@ std::string read_line(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// "process 99 (ros2 launch robot.launch.py)". A command line is what its process says of itself.
+// "process 99 (ros2 launch robot.launch.py)". A command line is the process's own claim.
 std::string process_in_words(int pid) {
   constexpr std::size_t kLongest = 120;
   std::string command = read_line("/proc/" + std::to_string(pid) + "/cmdline");
@@ -391,7 +391,7 @@ void Link::listen_to_hosts() {
   looked_at_hosts_ = now;
 }
 
-// Rules may have nothing to complain of, or complain late: this is told in its own right.
+// Rules may have nothing to complain of, or complain late: this is reported in its own right.
 void Link::on_namesakes(const NodeNamesakes& seen) {
   {
     const MutexLock lock(mutex_);
@@ -440,7 +440,7 @@ std::optional<std::string> Link::cut_off(ComponentId component) {
   return found->second;
 }
 
-// While it is not sure that we hear, nothing new is known of any.
+// While reception is doubtful, nothing new is known of any.
 void Link::look_at_hosts() {
   const Time now = live_now();
   if (sure_to_hear(now) <= now) return;
@@ -476,7 +476,7 @@ void Link::lives_on(ComponentId component, const std::string& host) {
   inbox_.put(LivesOn{component, host});
 }
 
-// Only a person can end that, and who comes late must hear of it too.
+// Only a person can end that, and late joiners must learn of it too.
 void Link::remind() {
   const Time now = live_now();
   std::vector<std::string> due;
@@ -573,7 +573,8 @@ void Link::doubt_leaving(const std::string& node, Leaving leaving) {
                  [this, node, doubt = leaving.doubt] { ask_leaving(node, doubt); });
 }
 
-// The middleware may know its services still, if somebody said in its name only that it holds no node.
+// The middleware may know its services still, if a message in its name announced only that it holds
+// no node.
 void Link::ask_leaving(const std::string& node, std::uint64_t doubt) {
   const auto component = binding_.bind(node);
   const auto found = leaving_.find(node);
@@ -611,7 +612,7 @@ void Link::vanished(const std::string& node, bool was_lost) {
   inbox_.put(NodeVanished{node});
 }
 
-// It says so itself, or somebody else does in its name: the node is asked.
+// The node announces it, or another program does in its name: the node is asked.
 void Link::on_said_to_leave(const std::string& node) {
   if (asked_whether_left_.insert(node).second)
     tasks_.post([this, node] { ask_whether_left(node); });
@@ -642,7 +643,7 @@ void Link::ask_whether_left(const std::string& node, int questions) {
       [then](const CallResult& result) { then(result.outcome == CallOutcome::kAnswered); });
 }
 
-// One that answers may be leaving all the same, so it is asked again while it is said.
+// One that answers may be leaving all the same, so it is asked again while that is announced.
 void Link::on_whether_left(const std::string& node, int questions, bool answers) {
   constexpr std::size_t kMost = 100;
   if (!answers && questions > 1) return ask_whether_left(node, questions - 1);
@@ -746,7 +747,8 @@ void Link::find_type(const std::string& node, const GraphEndpoint& endpoint, Top
       });
 }
 
-// The event of anybody else, and of a node that is not known to have this writer yet, is a reason to ask.
+// An event from another writer, or from one that is not known as the node's yet, is a reason to
+// ask.
 void Link::on_parameter_event(const msg::ParameterEvent& event, const Guid& writer) {
   const auto component = binding_.bind(event.node);
   if (!component || is_other_node(*component, event.node)) return;
@@ -810,7 +812,7 @@ void Link::probe() {
   }
 }
 
-// Only of a process on this machine that is proven to be the node's.
+// Reports only a process on this machine that is proven to be the node's.
 void Link::tell_usage() {
   for (auto& [component, meter] : meters_) {
     const auto pid = pids_.find(binding_.node_of(component));
@@ -844,8 +846,9 @@ void Link::prove_listening(Time until) {
   });
 }
 
-// Discovery data is ordered for each participant (service_client.h): who answers a client knows
-// each reader that was made before it. So each topic has a client of its own, made after its reader.
+// Discovery data is ordered for each participant (service_client.h): a node that answers a client
+// has discovered each reader that was made before it. So each topic has a client of its own, made
+// after its reader.
 void Link::ask_silent_ones() {
   const Time now = live_now();
   if (now >= asks_until_) {

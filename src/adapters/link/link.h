@@ -73,7 +73,7 @@ class Link {
   ~Link();
 
   void execute(const Command& command);
-  // Publishes at once, and again every second until there is something new to say.
+  // Publishes at once, and again every second until there is something new to publish.
   void publish(std::vector<Health> health);
   void log(Severity severity, std::string text);
 
@@ -84,8 +84,8 @@ class Link {
   // machine, or not proven. From any thread.
   std::map<std::string, std::vector<int>> doubled() const;
 
-  // The other computers that nodes of the graph run on, as their middleware says, by the nodes' full
-  // names. From any thread.
+  // The other computers that nodes of the graph run on, as their middleware announces them, by the
+  // nodes' full names. From any thread.
   std::map<std::string, std::string> nodes_elsewhere() const;
 
   // The other computer where the component was last discovered, if that computer is unreachable
@@ -93,7 +93,8 @@ class Link {
   // returns. From any thread.
   std::optional<std::string> cut_off(ComponentId component);
 
-  // The component's node was ordered to leave: until then nobody is asked whether that is so. From any thread.
+  // The component's node was ordered to leave: until then the node is not asked whether it left.
+  // From any thread.
   void expect_departure(ComponentId component, Time until);
   // An earlier run had proven that a process of this machine has this node. From any thread.
   void note_proven_here(const std::string& node) { context_->note_proven_here(node); }
@@ -101,18 +102,18 @@ class Link {
   // The publishers of diagnostics that an earlier run learned, by status. From any thread.
   void remember_publishers(const std::map<std::string, std::string>& publishers);
 
-  // Our own node, for clients of what is no component. It goes with the link.
+  // Our own node, for clients of nodes that are no component. It goes with the link.
   NodeEntry& entry() { return node_->entry(); }
 
   // Until when it is certain that the robot's messages arrive (hearing.h), that no other culprit
   // manages it (lease_link.h), and that its time passes (simulated_clock.h). From any thread, as
   // all of the following.
   Time doubtful() const;
-  // When it was last shown that the robot is heard, and to have it shown now.
+  // When reception was last proven, and to have it proven now.
   Time heard() const { return hearing_->heard(); }
   void prove_hearing() { hearing_->say(); }
   // Asks those that alone publish what the rules watch, and of which nothing comes, whether they know
-  // that it is listened to (ListenerKnown), until then. Not where a discovery server stands between.
+  // that it is listened to (ListenerKnown), until then. Not through a discovery server.
   void prove_listening(Time until);
   // The doubt, once that time has come.
   std::string doubt() const;
@@ -185,7 +186,7 @@ class Link {
   std::optional<Publisher<msg::DiagnosticArray>> diagnostics_;
   std::map<std::string, std::unique_ptr<TopicWatch>> watches_;  // by topic
   std::unique_ptr<TypeFinder> types_;
-  // If the robot is simulated, or a node says that it is. Made on the executor's thread, once.
+  // If the robot is simulated, or a node announces that it is. Made on the executor's thread, once.
   std::unique_ptr<SimulatedClock> clock_;
   std::atomic<const SimulatedClock*> made_clock_ = nullptr;  // for the other threads
   std::string simulated_node_;                               // the first that has use_sim_time
@@ -225,7 +226,7 @@ class Link {
     GuidPrefix participant{};
   };
   std::map<std::string, Unproven> unproven_;
-  // Such nodes that are said to have left.
+  // Such nodes that are announced to have left.
   struct Leaving {
     Unproven node;
     bool was_lost = false;

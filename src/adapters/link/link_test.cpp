@@ -127,7 +127,7 @@ struct Robot {
   std::unique_ptr<LifecycleNode> managed;
 };
 
-// It announces the port of no process, so nobody knows whose it is.
+// It announces the port of no process, so its process is unknown.
 TEST(Link, WhoIsSaidToHaveLeftByNobodyKnowsWhomIsGivenTheTimeToComeBack) {
   const TestDomain domain;
   Linked linked(domain);
@@ -192,7 +192,7 @@ TEST(Link, BelievesNoTransitionEventButTheNodesOwnAnswer) {
   ASSERT_TRUE(reads(Lifecycle::kUnconfigured));
   const auto forged =
       RawPublisher::create(liar, "/robot/transition_event", msg::TransitionEvent::kType, {});
-  // As its own would be, if somebody speaks in the name of its participant.
+  // As its own would be, if another program uses its participant's identity.
   const auto own = RawPublisher::create(robot.managed->node().entry(), "/robot/transition_event",
                                         msg::TransitionEvent::kType, {});
   ASSERT_TRUE(forged && own);
@@ -221,7 +221,7 @@ auto tells(const std::string& part) {
   return [part](const LinkTrouble& told) { return told.text.find(part) != std::string::npos; };
 }
 
-// As whoever speaks in the name of its participant can.
+// Any program that uses its participant's identity can do that.
 TEST(Link, AsksANodeThatIsSaidToLeave) {
   const TestDomain domain;
   Robot robot(domain);
@@ -312,7 +312,7 @@ TEST(Link, BelievesNoParameterEventOfOthers) {
   EXPECT_TRUE(linked.wait<ParameterRead>(is(3.0)));
 }
 
-// The announcement of a participant that nobody has (RTPS 2.3 §8.5.4.2, §9.6.2.2).
+// The announcement of a participant that does not exist (RTPS 2.3 §8.5.4.2, §9.6.2.2).
 Bytes announcement_of(std::uint16_t number) {
   Guid guid;
   guid.bytes = {1, 15, 0x5a, 0x5a};
@@ -386,13 +386,13 @@ TEST(Link, AsksWhetherANodeAnswersWhenItIsToldTo) {
     });
   });
   hangs.get_future().wait();
-  // Also on a machine that is too busy to tell.
+  // Also on a machine that is too busy to prove it.
   EXPECT_NE(ask().outcome, Outcome::kDone) << "its callback hangs";
   goes_on.set_value();
   hung.join();
 }
 
-// As with nodes of other users, in containers or not: nobody that can be seen holds their sockets.
+// As with nodes of other users, in containers or not: no visible process holds their sockets.
 TEST(Link, MissesNoProofOfWhatAnEngineOrSystemdEnds) {
   const TestDomain domain;
   Linked linked(domain, {},
@@ -507,7 +507,7 @@ TEST(Link, PublishesWhatItIsToldAgainAndAgain) {
   EXPECT_EQ(status.values.at(0).value, "6");
 }
 
-// A type that nobody compiled in: two .msg files, one of which names the other.
+// A type that is not compiled in: two .msg files, one of which names the other.
 TEST(Link, ReadsFieldsOfMessagesThatFilesDefine) {
   const std::filesystem::path folder = testing::TempDir() + "culprit_messages";
   std::filesystem::create_directories(folder / "my_msgs/msg");
@@ -580,7 +580,7 @@ TEST(Link, ReadsFieldsRhythmsAndDiagnostics) {
   auto diagnostics = robot.publisher<msg::DiagnosticArray>("/diagnostics");
   Linked linked(domain);
   ASSERT_TRUE(linked.sees("/robot"));
-  // Volatile data: published until it is heard.
+  // Volatile data: published until it arrives.
   Timer timer(robot.context->executor(), 20ms, [&] {
     visibility.publish({2.5});
     msg::DiagnosticStatus motor{1, "motor", "", "m1", {{"temperature", "60.5"}}};
@@ -708,8 +708,7 @@ RULE R
   EXPECT_LE(between, 15) << "but for a few, when somebody else had the processor";
 }
 
-// For whoever wrote a name otherwise: what is there instead is told once, and only while something
-// is missing.
+// For misspelled names: the existing names are reported once, and only while something is missing.
 TEST(Link, TellsWhatDiagnosticsAndParametersAreReallyCalled) {
   const TestDomain domain;
   Robot robot(domain);
@@ -999,7 +998,7 @@ TEST(Link, AnswersForRepliesOfTheWrongType) {
   const TestDomain domain;
   LiveContext liar(domain.options());
   NodeEntry entry(*liar, {"/", "robot"});
-  // Named and typed as the real service, but it answers with what is none of its responses.
+  // Named and typed as the real service, but its answers are none of its responses.
   auto server = ServiceServer::create(
       entry, {"/robot/get_state", std::string(srv::GetState::kType)}, qos::kServices,
       [](ByteView) { return Bytes{0, 1, 0, 0, 1, 0, 0, 0, 0xff, 0xff, 0xff, 0x7f}; });

@@ -176,7 +176,7 @@ void ManagerLease::tell_state(std::string state) {
   is_state_new_ = true;
 }
 
-// A round that has begun is told to its end, however often there is something new.
+// A round that has begun is sent to its end, however often there is something new.
 std::vector<std::string> ManagerLease::state_parts(Time now) {
   std::vector<std::string> parts;
   if (own_.key.empty() || !manages_ || !has_friends_) return parts;
@@ -261,7 +261,7 @@ Time ManagerLease::sure_until(Time now) const {
   return now < listens_until_ ? kLongAgo : later(*said_, kAway);
 }
 
-// While nothing is heard nobody is held to be gone.
+// While nothing is received, no other culprit counts as exited.
 bool ManagerLease::is_alive(const GuidPrefix& participant, Time now) const {
   const bool slept = now > later(ticked_, kAway);
   const auto life = lives_.find(participant);
@@ -269,7 +269,7 @@ bool ManagerLease::is_alive(const GuidPrefix& participant, Time now) const {
          now <= later(std::max(life->second.heard, hears_since_), kPatience);
 }
 
-// A claim of the same age is of this process, which joins the domain anew at times.
+// A claim of the same age is of this process, which rejoins the domain at times.
 template <class Predicate, class Order>
 std::optional<GuidPrefix> ManagerLease::first(Time now, const IsLeftOut& is_left_out,
                                               Predicate is_rival, Order order) const {

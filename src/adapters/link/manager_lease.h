@@ -21,7 +21,7 @@
 //
 //     proof=...;state=1;round=7;part=0;of=2;clock=81234567890;<bytes>
 //
-// All parts of a round are of one state. A round begins when there is something new to tell, and
+// All parts of a round are of one state. A round begins when there is something new to send, and
 // every kStatePeriod. A culprit that does not know these messages takes them for beats without a
 // proof, and ignores them; so does this one with those of another version.
 //
@@ -62,10 +62,10 @@ class ManagerLease {
   static constexpr const char* kType = "culprit::msg::dds_::Lease_";
   static constexpr Duration kPeriod = std::chrono::milliseconds(250);
   static constexpr Duration kPatience = std::chrono::milliseconds(1500);
-  // A manager whose beats stayed away for so long may be held to be gone, less what they need to
-  // arrive.
+  // A manager whose beats stayed away for so long may count as exited, less the time that they need
+  // to arrive.
   static constexpr Duration kAway = std::chrono::milliseconds(1000);
-  // Longer than it takes to take over, and to hear of it.
+  // Longer than it takes to take over, and to announce it.
   static constexpr Duration kListen = std::chrono::milliseconds(3000);
   static constexpr std::size_t kLongestBeat = 48 * 1024;  // one UDP datagram
   static constexpr Duration kStatePeriod = std::chrono::seconds(1);
@@ -81,9 +81,9 @@ class ManagerLease {
   std::vector<std::string> announcements() const;
   void apply(const DiscoveryEvent& event, Time now);
 
-  // To be called every kPeriod. `hears`: what others say is heard now. Gives the beat to be
-  // written; nothing if nobody would believe it, or nobody should rely on this one now. `orders`:
-  // what people have ordered; told only if it manages, and left out if it is too long.
+  // To be called every kPeriod. `hears`: messages of others arrive now. Gives the beat to be
+  // written; nothing if no other culprit would believe it, or none should rely on this one now.
+  // `orders`: what people have ordered; sent only if it manages, and left out if it is too long.
   std::optional<std::string> beat(Time now, bool hears, bool manages, const std::string& orders);
   // Sets the state for a successor; if it is longer than kLongestState, none is sent.
   void tell_state(std::string state);
@@ -95,13 +95,13 @@ class ManagerLease {
     Duration shift;  // what our clock showed when it came, minus what theirs showed
   };
   const std::optional<ToldState>& told_state() const { return told_state_; }
-  // This culprit manages from now on, in this term: announcements() say so, and the orders and
+  // This culprit manages from now on, in this term: announcements() contain it, and the orders and
   // state from others no longer count. Does not announce anything itself.
   void take_over(std::int64_t term);
   // A message that a writer of this participant wrote.
   void hear(const GuidPrefix& participant, std::string_view beat, Time now);
-  // Until when it is sure that nobody has taken over from this manager unless we heard of it. Not
-  // later than `now`: it is not.
+  // Until when it is certain that no other culprit has taken over from this manager without our
+  // knowing it. Not later than `now`: it is not.
   Time sure_until(Time now) const;
   // The orders in the latest beat of another manager of this robot; empty: it sent none. Nothing:
   // no such beat arrived.

@@ -97,7 +97,7 @@ TEST(ManagerLease, IsNotLostToAStranger) {
               kNow);
   lease.apply(says(2, "robot=drone;since=1;id=2;term=0;nodes=;"), kNow);
   lease.apply(says(3, "robot=drone;since=1;id=3;term=0;nodes=;proof=00;"), kNow);
-  // Repeats what a friend said.
+  // Repeats a friend's claim.
   lease.apply(says(4, claim(9, {"drone", 1, 1}).user_data), kNow);
   EXPECT_FALSE(lease.elder(kNow));
   EXPECT_EQ(lease.strangers().size(), 4u);
@@ -151,7 +151,7 @@ TEST(ManagerLease, NamesEveryNodeOfARobotHoweverMany) {
   for (const std::string& node : nodes) EXPECT_TRUE(lease.elder_at(node, kNow)) << node;
 }
 
-// Two culprits of one robot on two machines, and what is between them, in virtual time.
+// Two culprits of one robot on two machines, and the network between them, in virtual time.
 struct Machine {
   Machine(std::uint8_t participant, std::int64_t since, std::int64_t term = 0)
       : prefix(writer(participant).prefix()),
@@ -289,7 +289,7 @@ TEST_F(TwoMachines, TakeOverAsTheSameParticipantAndGoBeforeTheOneThatWasSlow) {
   second.lease.take_over(second.lease.highest_term() + 1);
   second.manages = true;
   EXPECT_FALSE(second.lease.told_orders()) << "what the dead one was ordered is in force by now";
-  // Its new claim stands beside the one that it had.
+  // Its new claim is added to the one that it had.
   EndpointInfo anew = second.announcement();
   anew.guid.bytes[14] = 7;
   first.lease.apply(anew, now);
@@ -366,7 +366,7 @@ TEST_F(TwoMachines, BelieveNoStateOfAStrangerAndTellNoneThatIsTooLong) {
   for (const char* nonsense : {"proof=;state=1;", "proof=00;state=1;round=1;part=0;of=1;clock=0;x"})
     second.lease.hear(first.prefix, nonsense, now);
   EXPECT_FALSE(second.lease.told_state());
-  // An older culprit takes it for a beat without a proof: it is none of a newer one either.
+  // An older culprit takes it for a beat without a proof: it counts as none of a newer one either.
   std::string beat = parts[0];
   beat.replace(beat.find("state=1;"), 8, "count=9;manages=1;");
   second.lease.hear(first.prefix, beat, now);

@@ -1,5 +1,5 @@
 // Another node that has the name of ours. It may be our own of before, which is just leaving when rules are
-// reloaded: then it is nobody else.
+// reloaded: then it is no other node.
 #pragma once
 
 #include <optional>

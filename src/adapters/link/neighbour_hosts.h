@@ -23,7 +23,7 @@
 
 namespace culprit::ros2 {
 
-// All that it says of its addresses must be ours: addresses of bridges are the same on many machines.
+// All addresses that it announces must be ours: addresses of bridges are the same on many machines.
 bool is_on_this_machine(const ParticipantInfo& info);
 
 // All members may be called from any thread.
@@ -41,12 +41,12 @@ class NeighbourHosts {
   void joined(const GuidPrefix& participant, const std::string& host, bool is_here);
   void left(const GuidPrefix& participant, bool was_lost, Time now);
 
-  // Nobody listened before: what did not come until `now` may have been said.
+  // Nobody listened before: messages up to `now` may have been missed.
   void listens_from(Time now);
 
   bool is_silent(const std::string& host, Time now) const;
-  // When something of it came last. kNever where that says nothing of a node there: the computer is not
-  // known, or has no second participant.
+  // When something of it came last. kNever where that proves nothing about a node there: the
+  // computer is not known, or has no second participant.
   Time heard(const std::string& host) const;
 
  private:

@@ -13,7 +13,7 @@ GuidPrefix participant(std::uint8_t number) {
   return prefix;
 }
 
-// Participants 1 and 2 of rover2 were heard at 10 s.
+// The last datagrams of participants 1 and 2 of rover2 came at 10 s.
 struct Domain {
   Domain() {
     joined(1);

@@ -90,7 +90,7 @@ Rights rights_of(const RuleSet& rules, const NodeName& self) {
   const auto lease = demangle_topic(ManagerLease::kTopic);
   const auto hearing = demangle_topic(Hearing::kTopic);
   rights.publishes = {"/diagnostics", "/parameter_events", "/rosout", lease->name, hearing->name};
-  // Of ros_api/: what is told, and the orders that are taken.
+  // Of ros_api/: its messages, and the orders that are taken.
   for (const char* topic :
        {"status", "incidents", "decisions", "wait_for_recovery/_action/feedback",
         "wait_for_recovery/_action/status"})

@@ -1,6 +1,6 @@
 // The rights of culprit on a secured domain (SROS2): those that a rule file needs, and no more.
 //
-// rights_of() says it in names of ROS 2. It is written as a policy of SROS2, whose tools make
+// rights_of() gives them in names of ROS 2. It is written as a policy of SROS2, whose tools make
 // permissions of it and sign them, or as the permissions themselves, which openssl signs. All
 // endpoints that link.h, component_link.h, node.h and ros_api.h create must be among the rights; a
 // test runs them so.

@@ -4,8 +4,8 @@
 // The request is YAML, as `ros2 service call` takes it: `data: true`, `{name: arm, target_state: {label:
 // active}}`. Omitted fields are 0, false or empty.
 //
-// An answer refuses if it says so: by `success`, `ok`, `successful` or `result.successful`. If it
-// has none of these fields, any answer counts as success.
+// An answer is a refusal if one of these fields is false: `success`, `ok`, `successful` or
+// `result.successful`. If it has none of these fields, any answer counts as success.
 #pragma once
 
 #include <optional>

@@ -45,7 +45,7 @@ TEST(SignalPublishers, MayPublishStatusesOfSeveralAndOfOthers) {
   EXPECT_FALSE(statuses.publishers.judge("camera", {"/camera", true}, Time(), is_there).is_used);
 }
 
-// The vehicle says that a thruster failed, and the controller that it works again.
+// The vehicle reports that a thruster failed, and the controller that it works again.
 TEST(SignalPublishers, MayBeBesidesAComponentThatIsProven) {
   Statuses statuses;
   statuses.says(kDriver);

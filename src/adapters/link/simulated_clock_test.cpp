@@ -7,7 +7,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// A clock that is told at this rate how far the simulation is.
+// A clock that advances with the simulation at this rate.
 struct Simulation {
   SimulatedClock clock;
   Time now{10s};

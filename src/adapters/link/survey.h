@@ -37,19 +37,19 @@ class Survey {
   static Expected<std::unique_ptr<Survey>> open(Options options);
   ~Survey();
 
-  // Instead of what was asked for before.
+  // Replaces the former request.
   void ask_for(LiveInterest interest);
 
   // The present snapshot.
   LiveInventory inventory() const;
-  // Hears /rosout from now on.
+  // Subscribes to /rosout from now on.
   void listen_to_log();
   // The last lines that loggers of this name, and of names below it, wrote since then; the newest last.
   std::vector<msg::Log> log_of(const std::string& logger) const;
   // How the messages came of the topics that were asked for, since they are.
   std::map<std::string, Rhythm> rhythms() const;
 
-  // How the fields went that were asked for of a topic, since they are; by topic and field.
+  // The courses of the requested fields of a topic, since the request; by topic and field.
   std::map<std::string, std::map<std::string, ValueCourse>> fields() const;
   // How each diagnostic status went; by name and hardware id.
   using StatusKey = std::pair<std::string, std::string>;

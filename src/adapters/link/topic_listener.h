@@ -24,14 +24,15 @@ class TopicListener {
   struct Callbacks {
     // A sample came now: of the best effort reader, so each is a beat of the topic's rhythm.
     SampleCallback on_arrival;
-    // A sample to read, newer than what its writer was heard to say before. Needs kWhole or kWholeLater; one at a time.
+    // A sample to read, newer than its writer's earlier ones. Needs kWhole or kWholeLater; one at a
+    // time.
     SampleCallback on_message;
     // Samples came that cannot be put together (ReaderOptions).
     std::function<void()> on_unheard;
   };
 
   // `self` outlives the listener. `type` is "package/msg/Type". `keys`: whether its publishers have
-  // them; the others are not heard.
+  // them; the others are not received.
   static Expected<std::unique_ptr<TopicListener>> open(NodeEntry& self, const std::string& topic,
                                                        const std::string& type, Keys keys,
                                                        PayloadUse use, Callbacks callbacks);

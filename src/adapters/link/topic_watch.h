@@ -29,8 +29,8 @@ class TopicWatch {
 
   // Which component has made each writer of the topic.
   using Writers = std::unordered_map<Guid, ComponentId>;
-  // `ask` is called when a writer is heard that is not known, and that may matter: on any thread, at
-  // most once a second. Before a publisher is seen.
+  // `ask` is called when a message of an unknown writer arrives that may matter: on any thread, at
+  // most once a second. To be called before a publisher is discovered.
   void asks_for_writers(std::function<void()> ask) { ask_for_writers_ = std::move(ask); }
   // From any thread.
   void knows_writers(Writers writers);

@@ -6,7 +6,7 @@
 // hash: the files that the node's process was started with (AMENT_PREFIX_PATH, below its own root
 // directory) go before ours.
 //
-// A node tells of a service by the hash of the service itself, which only Lyrical and newer announce
+// A node announces a service with the hash of the service itself only from Lyrical on
 // ("sertypehash"). From Iron to Kilted only the hashes of its two messages are announced: files are
 // compared with that of the request, and the node cannot be asked.
 #pragma once
@@ -29,7 +29,7 @@ class TypeFinder {
  public:
   struct Options {
     std::vector<std::filesystem::path> message_path;  // where to find .msg and .srv files
-    // Where types that nodes told of are kept, by hash; what is there proves itself by it. Empty:
+    // Where types that nodes described are kept, by hash; what is there proves itself by it. Empty:
     // nowhere.
     std::filesystem::path kept_types;
   };
@@ -47,13 +47,13 @@ class TypeFinder {
   // callback runs. Errors: why there is nothing, and what to do.
   using Callback = std::function<void(Expected<MessageLibrary*>)>;
 
-  // Others may be asked for so long.
+  // How long nodes may take to answer.
   static constexpr Duration kPatience = std::chrono::seconds(3);
 
   // `self` outlives the finder.
   TypeFinder(Node& self, Options options);
 
-  // At once, or when the node has answered; not after the finder is gone.
+  // At once, or when the node has answered; not after the finder is destroyed.
   void find(const Offer& offer, Callback found);
 
  private:

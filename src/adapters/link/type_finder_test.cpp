@@ -132,7 +132,7 @@ class Finding {
   std::unique_ptr<TypeFinder> finder_;
 };
 
-// A node as Jazzy's, which tells what `told` looks like whatever it is asked.
+// A node as Jazzy's, which describes `told` for any request.
 class TellingNode {
  public:
   TellingNode(const TestDomain& domain, const MessageDefinitions& told, const char* type = kType)
@@ -239,7 +239,8 @@ TEST(TypeFinder, TakesTheFilesOfTheServersProcessForAService) {
             "my_msgs/srv/Other.srv with --message-path");
 }
 
-// From Iron to Kilted: nobody can be asked, but a request that the server would misread is not sent.
+// From Iron to Kilted: the node cannot be asked, but a request that the server would misread is not
+// sent.
 TEST(TypeFinder, TakesNoFileOfAnotherServiceThanTheOneOffered) {
   const TestDomain domain;
   const test::TestFolder ours;

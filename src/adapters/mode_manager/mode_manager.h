@@ -1,5 +1,5 @@
-// The mode manager of a live robot: changes the modes of systems and nodes, and tells in which they
-// are. It offers what the mode_manager of system_modes offers, as the node /__mode_manager:
+// The mode manager of a live robot: changes the modes of systems and nodes, and reports their
+// modes. It offers what the mode_manager of system_modes offers, as the node /__mode_manager:
 //
 // - of each system: change_state, get_state, get_available_states, and transition_event;
 // - of each system and node: change_mode, get_mode, get_available_modes, mode_event, and what was

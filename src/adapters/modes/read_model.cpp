@@ -69,7 +69,7 @@ YAML::Node needed(const YAML::Node& map, const std::string& name, const std::str
   return entry;
 }
 
-// A name in the file stands beside the others of its namespace.
+// A name in the file belongs to the namespace of the others beside it.
 std::string full_name(const std::string& name_space, const std::string& name,
                       const YAML::Node& at) {
   const std::string full = name.front() == '/' ? name : name_space + "/" + name;
@@ -124,7 +124,7 @@ class Reader {
              });
   }
 
-  // All but what a system says of its parts: those are not known yet.
+  // Reads all but the parts of a system: those are not known yet.
   void read_entity(Entry entry, const std::string& name) {
     if (model_.find(name) != nullptr) fail(entry.key, name + " is there twice");
     if (!entry.fields.IsMap()) fail(entry.fields, name + ": ros__parameters must be a mapping");
