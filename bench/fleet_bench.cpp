@@ -31,7 +31,7 @@ using namespace fleet;
 
 constexpr int kRobots = 10'000;
 constexpr int kDecisions = 20;  // of a robot in a day
-// A failure, its end and what that proves are told together (member.h); one in four takes longer than they are gathered.
+// A failure, its end and its outcomes are sent together (member.h); one in four lasts longer than they are gathered.
 constexpr double kVisitsPerDecision = 1.25;
 constexpr int kBeats = 36;   // a day; the fleet's priors are asked for then, too
 constexpr int kPools = 144;  // a day: the sums are made anew

@@ -91,7 +91,7 @@ std::string crowded_robot(int rules) {
   return text;
 }
 
-// Signals that are not declared, and of which only the last rule tells the type.
+// Undeclared signals, whose type only the last rule reveals.
 std::string chain(int rules) {
   std::string text;
   for (int i = rules; i > 1; --i)

@@ -2,8 +2,8 @@
 // read can be written again unchanged, and the manager can be stepped with them.
 //
 // The first line of the input is the kind of a row, the rest its body, which is read as the row
-// would be. If it is `file`, the rest is the whole database; if it is `inheritance`, what another
-// culprit tells.
+// would be. If it is `file`, the rest is the whole database; if it is `inheritance`, the state that
+// another culprit hands over.
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>

@@ -34,7 +34,7 @@ Guid guid_of(std::uint8_t participant, std::uint8_t entity) {
   return guid;
 }
 
-// Keeps the books on what is told.
+// Keeps the books on the graph's notifications.
 class Books {
  public:
   void enter(const GraphChange& change) {

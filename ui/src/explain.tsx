@@ -155,7 +155,7 @@ function Why({ failure, isOpen }: { failure: Failure; isOpen: boolean }) {
   )
 }
 
-// Under its cause: what it waits for is told, the tables are those of the cause.
+// Under its cause: the reason for waiting is shown, the tables are those of the cause.
 function Consequence({ failure, view }: { failure: Failure; view: View }) {
   return (
     <li class={healthOf(failure)}>
@@ -220,7 +220,7 @@ function ComponentButton({ name, sign }: { name: string; sign: string }) {
 
 const kPeriod = 150 // ms
 
-// The same as the graph in words, for whoever cannot see or point at it.
+// The same as the graph in words, for readers that cannot see or point at it.
 export function Components() {
   const signs = usePaced(() => {
     const sick = new Set(situation.value.failures.map((f) => f.rule))

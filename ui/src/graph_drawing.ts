@@ -185,7 +185,7 @@ export class Drawing {
     const byName = new Map(shown.value.nodes.map((n) => [n.node, n]))
     return groupedLayout(names, links, (name) => groupOf(byName.get(name)!))
   }
-  // Beside whom a newcomer of a group belongs.
+  // The other members of a new node's group, beside which it is drawn.
   private companions(nodes: Node[]): (name: string) => string[] {
     if (this.groups === 'none') return () => []
     const groups = new Map(nodes.map((n) => [n.node, groupOf(n)]))

@@ -9,7 +9,7 @@ import { tell } from './notices'
 import { culprits, health, isLive, robot, selected, situation, state } from './store'
 import { isDark } from './theme'
 
-// A large graph takes a while to paint; nobody sees more than so many changes.
+// A large graph takes a while to paint; changes at a shorter period would not be visible.
 const kPeriod = 66 // ms
 
 // The inputs of a drawing.

@@ -9,7 +9,8 @@ const author = signal(localStorage.getItem(kAuthorKey) ?? '')
 // For the record.
 export const authorName = () => author.value || 'somebody at the page'
 
-// The answer to a standing order (a pause, say) tells whether it outlives a restart of culprit.
+// The answer to a standing order (a pause, for example) includes whether it outlives a restart of
+// culprit.
 export async function order(what: string, body: Record<string, unknown>): Promise<boolean> {
   let text = 'done'
   const isDone = await act(what, async () => {

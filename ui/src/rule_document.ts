@@ -24,8 +24,7 @@ export function endOf(document: RuleDocument, begin: number): number {
   return end
 }
 
-// Tells for each statement whether it stands in a template, with its TEMPLATE and END lines: such statements have
-// parameters, and are no rules until the template is used.
+// Whether each statement is in a template, including its TEMPLATE and END lines: such statements have parameters, and are no rules until the template is used.
 export function inTemplates(document: RuleDocument): boolean[] {
   let isIn = false
   return document.statements.map((s) => {

@@ -84,7 +84,7 @@ function Difference({ before, after }: { before: string; after: string }) {
   )
 }
 
-// Drafts from before a reload, and versions that somebody else saved meanwhile. The page never discards one unasked.
+// Drafts from before a reload, and versions that another client saved meanwhile. The page never discards one unasked.
 function Restored({ write }: { write: (text: string) => void }) {
   const draft = restored.value
   const other = theirs.value

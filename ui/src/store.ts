@@ -35,7 +35,7 @@ export async function start(): Promise<void> {
     frame = 0
     batch(() => {
       if (newest.robot) {
-        // The lists of a state are in the order of the rule set that it was told for.
+        // A state's lists are in the order of its rule set, so new rules drop the older state.
         robot.value = newest.robot as Robot
         state.value = null
       }
@@ -62,7 +62,7 @@ export async function start(): Promise<void> {
         newest[event] = told
         if (event === 'state') hearsState(told.clock)
       }
-      // A page that nobody sees draws no frames, but its title tells how the robot is.
+      // A hidden page draws no frames, but its title shows the robot's state.
       if (frame === 0) frame = document.hidden ? window.setTimeout(show, kHiddenPeriod) : requestAnimationFrame(show)
     },
     hearsSign,
@@ -70,7 +70,7 @@ export async function start(): Promise<void> {
   )
 }
 
-// Without a robot nothing is told, but that the server is there matters, too.
+// Without a robot there are no messages, but whether the server runs matters, too.
 async function watchServer(): Promise<void> {
   for (;;) {
     try {
@@ -83,7 +83,8 @@ async function watchServer(): Promise<void> {
   }
 }
 
-// Where things stand in the lists of a state, and who is about whom: for robots of many parts.
+// The places in the lists of a state, and the relations between components and rules: for robots of
+// many parts.
 const byPlace = (names: string[]) => new Map(names.map((name, place) => [name, place]))
 const placesOfComponents = computed(() => byPlace(robot.value?.components.map((c) => c.name) ?? []))
 const placesOfTopics = computed(() => byPlace(robot.value?.topics ?? []))
@@ -127,7 +128,7 @@ export const live = viewOf(events, now, {
 export const { moment, isNewest: isLive, situation, culprits } = live
 
 // By the clock on the wall, when it was `t` seconds since culprit began to watch. Simulated time has its own pace,
-// so the nearest that was told of counts.
+// so the nearest published time counts.
 export function clockAt(t: number): number {
   let before = state.value ? { t: state.value.t, clock: state.value.clock } : { t, clock: nowByTheClock() }
   const list = events.value

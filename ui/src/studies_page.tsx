@@ -147,7 +147,7 @@ function Open() {
   )
 }
 
-// Somebody who has never seen a result.
+// For a reader who has never seen a result.
 function First() {
   if (opened.value || campaign.value) return null
   const start = () =>

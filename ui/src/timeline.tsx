@@ -130,7 +130,7 @@ function Bars({ lane, row, begin, end }: { lane: Lane; row: number; begin: numbe
   )
 }
 
-// What is shown: the newest while nobody looks elsewhere, else what is around the moment.
+// The shown window: the newest data, unless the reader looks at another moment.
 function windowOf(view: View): { begin: number; end: number } {
   const newest = Math.max(view.newest.value, 1)
   const oldest = Math.min(view.oldest(), newest - kShortest)

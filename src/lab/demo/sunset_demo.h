@@ -45,7 +45,7 @@ class SunsetDemo : private live::Listener {
     // Called for each event of the manager, on its thread, with its time since the start of the
     // demo.
     std::function<void(const Event&, const RuleSet&, Time start)> on_event{};
-    // Looks on, and outlives the demo; null: nobody does.
+    // Observes the demo, and must outlive it; null: none.
     live::Observer* observer = nullptr;
   };
 

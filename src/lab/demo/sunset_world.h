@@ -59,7 +59,7 @@ class SunsetWorld {
   const std::filesystem::path state_;
   bool keeps_state_ = false;
 
-  // The bag player and the evaluator: processes that nobody manages.
+  // The bag player and the evaluator: processes without a manager.
   RuleSet extras_rules_;
   Inbox extras_inbox_;
   std::unique_ptr<owners::Supervisor> extras_;

@@ -1,4 +1,4 @@
-// For tests with a live robot that outlives whoever manages it.
+// For tests with a live robot that outlives its manager.
 #pragma once
 
 #include <memory>

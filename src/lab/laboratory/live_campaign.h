@@ -25,8 +25,8 @@ class LiveCampaign {
   ~LiveCampaign();
   LiveCampaign(LiveCampaign&& other) noexcept;
 
-  // From several threads. `seed` is of this run (SunsetStudy::seed_of). An error tells why it
-  // failed the last time, or that `stop` was set.
+  // From several threads. `seed` is of this run (SunsetStudy::seed_of). An error is the reason of
+  // the last failure, or that `stop` was set.
   Expected<study::RunMetrics> play(const study::Configuration& configuration, std::uint32_t run,
                                    std::uint64_t seed, const std::atomic<bool>& stop) const;
 

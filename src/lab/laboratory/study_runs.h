@@ -25,7 +25,7 @@ struct ShardOptions {
   std::string file;
 
   bool is_sharded() const { return shard != "1/1" || !file.empty(); }
-  // Which one this is. Errors: nobody says so.
+  // Which one this is. Errors: no shard is named.
   Expected<study::Shard> which() const;
   // The file of `its`: "%" stands for its number.
   std::string file_of(const study::Shard& its) const;

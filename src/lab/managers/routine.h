@@ -40,7 +40,7 @@ class [[nodiscard]] Routine {
     if (handle_) handle_.destroy();
   }
 
-  // Begins it. For routines that nobody awaits.
+  // Begins it. For routines without a co_await.
   void begin() const { handle_.resume(); }
 
   bool await_ready() const noexcept { return false; }

@@ -22,7 +22,7 @@ class ScriptedManager : public ManagingSystem {
  public:
   std::vector<Command> step(Time now, std::span<const Observation> observations) override;
   Time next_deadline() const override;
-  // It tells nothing of itself.
+  // It reports no events.
   std::span<const Event> events() const override { return {}; }
 
  protected:

@@ -35,7 +35,7 @@ class SuaveManager : public ScriptedManager {
   // The mission's task as it reports it; empty before the first report.
   std::string task() const;
 
-  // Asks for a mode. `is_done` (null: nobody cares) is whether that was accepted.
+  // Asks for a mode. `is_done` (null: not needed) is whether that was accepted.
   Routine change_mode(std::string system, std::string mode, bool* is_done = nullptr);
 
   void on_signal(const std::string& name, const Value& value) override;

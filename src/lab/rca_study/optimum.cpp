@@ -133,10 +133,10 @@ class OptimumPlanner : public Planner {
 
 }  // namespace
 
-// Branch and bound: what may cost least is looked at first, and nothing that must cost more than
-// what is known already.
+// Branch and bound: the round that may cost least is examined first; a round that must cost more
+// than a known one is not.
 const Optimum::Best& Optimum::best(const Situation& situation) {
-  // If all is known, the other components that are ill do not matter.
+  // If all is known, the other ill components do not matter.
   if (const auto told = process_.told_by_itself(situation)) return best(*told);
   const std::string key = key_of(situation);
   const auto known = known_.find(key);

@@ -43,7 +43,7 @@ class Optimum {
   // The expected cost until all is well, from the beginning, and from a situation on.
   double cost();
   double cost(const Situation& situation) { return best(situation).cost; }
-  // The round to begin; nothing if nothing is left to try or worth it, or nobody is ill.
+  // The round to begin; empty if no strategy is left or worth it, or no component is ill.
   const Round& round(const Situation& situation) { return best(situation).round; }
 
  private:
@@ -70,9 +70,9 @@ class Optimum {
 double expected_cost(const RepairProcess& process, const RuleSet& rules, const Planner& planner);
 
 // Plays the optimum on culprit's manager, in rounds: nothing is begun while a strategy is under
-// way, or shortly after a failure came or went. It knows no more of the past than what is seen and
-// was tried, so that its belief may be less sharp than the one above.
-// @pre RepairProcess::is_small(scenario)
+// way, or shortly after a failure came or went. It knows no more of the past than the current
+// observations and earlier tries, so its belief may be less sharp than the one above. @pre
+// RepairProcess::is_small(scenario)
 std::unique_ptr<const Planner> optimum_planner(const RcaScenario& scenario, Objective objective);
 
 }  // namespace culprit::study::rca

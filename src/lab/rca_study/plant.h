@@ -1,4 +1,4 @@
-// The hidden truth of a scenario while it is played: who is ill, and since when.
+// The hidden truth of a scenario while it is played: the ill components, and since when.
 //
 // Illness travels: a component is ill one delay after the component that a subscription connects it
 // to, and well again as long after its last cause is gone. If there are several paths, the quickest

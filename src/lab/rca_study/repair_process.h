@@ -1,17 +1,17 @@
-// A small robot of the benchmark as a decision process: what can be done, what it costs, and what
-// is known of the hidden truth after each outcome. The optimum (optimum.h) is worked out in it, and
-// every planner's regret.
+// A small robot of the benchmark as a decision process: the possible actions, their costs, and the
+// knowledge of the hidden truth after each outcome. The optimum (optimum.h) is worked out in it,
+// and every planner's regret.
 //
 // Hidden truth: F, the components that have a fault now; the kind of each fault; and E, which
 // subscriptions pass failures on in this episode. At the beginning F is any set of as many
 // components as the scenario has faults. Each fault is of any of the seven kinds, equally likely,
 // and subscription e passes with its probability q_e. F only becomes smaller.
 //
-// Seen: who is ill, which F and E determine (scenario.h), and whose process is gone, which a crash
-// shows. Detectors make no mistakes, and what is seen has settled.
+// Seen: which components are ill, which F and E determine (scenario.h), and whose process is gone,
+// which a crash shows. Detectors make no mistakes, and what is seen has settled.
 //
-// A round: strategies s in a set A, each at a component c that is ill, begin together; then all is
-// seen again. A fault is gone with the probability
+// A round: strategies s in a set A, each at an ill component c, begin together; then all is seen
+// again. A fault is gone with the probability
 //
 //     sigma(c, s) = sum_k p_k prod_t (1 - h_tk)^m_t h_sk / sum_k p_k prod_t (1 - h_tk)^m_t
 //
@@ -113,17 +113,18 @@ class RepairProcess {
   double cost(const Situation& situation, const Round& round) const;
   double cost_of_leaving_it_ill(const Situation& situation) const;
 
-  // The situation if somebody said which components have a fault, and always would: only those are
-  // ill, as if no subscription passed anything on. No way on costs less than on average over what
-  // may be said: fewer are ill, so time weighs no more. `faulty` is one of its hypotheses'.
+  // The situation if it were revealed for good which components have a fault: only those are ill,
+  // as if no subscription passed anything on. No way on costs less than on average over the
+  // possible revelations: fewer are ill, so time weighs no more. `faulty` is one of its
+  // hypotheses'.
   Situation told(const Situation& situation, Members faulty) const;
-  // The same if nobody need say it: what is seen shows it, and always will, and no effect is more
+  // The same without a revelation: the observations show it for good, and no effect is more
   // critical than every fault. Returns nothing otherwise, or if this is such a situation already.
   std::optional<Situation> told_by_itself(const Situation& situation) const;
   // Is it such a situation?
   bool is_told(const Situation& situation) const;
 
-  // Is anybody ill for whom something is left to try?
+  // Is any component ill for which a strategy is left to try?
   bool is_open(const Situation& situation) const;
   // Is nothing left to try at this component?
   bool is_exhausted(const Situation& situation, std::size_t component) const;
@@ -154,8 +155,8 @@ class RepairProcess {
     return faulty << paths_.size() | passing;
   }
   Members ill(Members faulty, Members passing) const { return ill_[place(faulty, passing)]; }
-  // The first set of subscriptions that can never be told from `passing` as long as there are no
-  // other faults than these.
+  // The first set of subscriptions that can never be distinguished from `passing` as long as there
+  // are no other faults than these.
   Members alike(Members faulty, Members passing) const { return alike_[place(faulty, passing)]; }
   void tell_apart();
   double probability_of(Members passing) const;

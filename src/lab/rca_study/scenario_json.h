@@ -1,8 +1,8 @@
 // Scenario files: the benchmark for others (docs/study-rca.md). JSON; components are referred to by
 // name.
 //
-// A file may come from anywhere: what is missing, unknown, out of range or does not fit together is
-// refused with the place where it stands.
+// A file may come from anywhere: a field that is missing, unknown, out of range or inconsistent is
+// refused with its place.
 #pragma once
 
 #include <string>

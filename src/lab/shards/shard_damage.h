@@ -7,8 +7,8 @@
 
 namespace culprit::study {
 
-// Gives what the damaged file is called now. Errors: the file is not damaged, or is none of this
-// campaign and shard, as far as can be told; it is left as it was.
+// Gives what the damaged file is called now. Errors: the file is not damaged, or is recognizably
+// none of this campaign and shard; it is left as it was.
 template <class C>
 Expected<std::filesystem::path> set_damage_aside(const std::filesystem::path& path,
                                                  const ShardHeader<C>& header);

@@ -1,4 +1,5 @@
-// One run of a campaign with all that was told of it, for people who look at it moment by moment.
+// One run of a campaign with all of its reported events, for people who look at it moment by
+// moment.
 #pragma once
 
 #include <string>

@@ -40,7 +40,7 @@ struct VehicleFit {
   double misfit = 0;
 };
 
-// `runs` of each target for each candidate, 2 or more. `tell` hears of each step that made it
+// `runs` of each target for each candidate, 2 or more. `tell` is called for each step that made it
 // better. Error: no target is left.
 Expected<VehicleFit> fit_vehicle(std::vector<FitCampaign> campaigns,
                                  suave::model::VehicleTraits begin, std::uint32_t runs,

@@ -2,9 +2,9 @@
 //
 // "Within 1 sd" says little where deviations are as large as here. So for each manager, and for
 // search time and distance, equivalence is tested (statistics/equivalence.h): a difference of means
-// beyond the margin, in standard deviations of what was recorded, is to be ruled out at 5 %. And
-// whoever wants to know which manager is the best asks for their order: rank correlations of the
-// managers' means (statistics/rank_correlation.h).
+// beyond the margin, in standard deviations of the recorded runs, must be ruled out at 5 %. The
+// order of the managers answers which one is the best: rank correlations of their means
+// (statistics/rank_correlation.h).
 #pragma once
 
 #include <optional>

@@ -26,8 +26,8 @@ namespace culprit::study {
 class SunsetStudy {
  public:
   // Errors: an unknown planner or profile; a planner that cannot watch a profile (the reference
-  // needs a blackboard), or cannot play the live robot (the oracle knows what only a model can
-  // tell). A profile may name its detectors (detectors.h).
+  // needs a blackboard), or cannot play the live robot (the oracle needs a model's truth). A
+  // profile may name its detectors (detectors.h).
   static Expected<SunsetStudy> make(std::vector<Configuration> rows, std::uint64_t seed);
 
   // From several threads if you like. @pre the row is not of profile kLiveRobot
@@ -55,7 +55,7 @@ class SunsetStudy {
   // `experiments` runs after each other with beliefs that are carried on, `repetitions` times: what
   // row 0, of culprit's own planners, learns. A curve for each strategy of the paper's failures F1
   // to F5.
-  // `told` is told how many are done of all (null: nobody is).
+  // `told` is called with the number of finished ones (null: never).
   std::vector<LearningCurve> learn(std::uint32_t experiments, std::uint32_t repetitions,
                                    const std::function<void(std::uint64_t done)>& told) const;
 

@@ -255,8 +255,8 @@ void Invariants::check_replacement(const Manager& manager, const Strategy& strat
     const Time failed = manager.knowledge().states[strategy.rule].first_detected();
     for (const std::size_t needed : needs_[part]) {
       const ComponentId cause(needed);
-      // As far as anybody can see: while it is inactive it needs nobody, and where either may need
-      // the other they take turns.
+      // As far as can be observed: while it is inactive it needs no other, and where either may
+      // need the other they take turns.
       const auto needs = [&](ComponentId consumer, ComponentId producer) {
         const auto& upstream = manager.knowledge().graph.upstream(consumer);
         return std::find(upstream.begin(), upstream.end(), producer) != upstream.end();

@@ -16,8 +16,7 @@
 //   one decision of its detection where the governor allows, whatever the levels.
 // - With bayes, no process is replaced for a silence that a dead or exhausted component which it
 //   needs, and that does not seem to need it in turn, explains.
-// - No failure is treated more often than its ATTEMPTS allow, until it was proven gone; starts of what is
-//   known to be gone do not count.
+// - No failure is treated more often than its ATTEMPTS allow, until it was proven gone; starts of components known to be gone do not count.
 // - A component that was never there is not started.
 // - No healthy process is replaced, as long as samples and clocks are not tampered with.
 // - No strategy begins while culprit is deaf.

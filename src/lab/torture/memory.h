@@ -18,7 +18,7 @@ class Memory {
   // `rules` must outlive the memory.
   explicit Memory(const RuleSet& rules) : rules_(rules) {}
 
-  // A step: what was observed, what was told, and what is about to be asked for.
+  // A step: its observations, its events, and the requests that are about to go out.
   void note(std::span<const Observation> observations, std::span<const Event> events,
             std::span<const Command> commands);
 

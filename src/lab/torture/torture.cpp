@@ -354,7 +354,7 @@ class Run {
     return left;
   }
 
-  // It never spoke, and that was told.
+  // It never published, and that was reported.
   bool is_never_seen(std::size_t part) const {
     const std::string topic = "/c" + std::to_string(part);
     for (std::size_t t = 0; t < rules_.topics.size(); ++t) {

@@ -19,7 +19,7 @@ simulation::NodeTraits machine_traits() {
 
 bool take(std::vector<CommandId>& ids, CommandId id) { return std::erase(ids, id) > 0; }
 
-// As the operating system tells it. "stopped": it was asked to end, by culprit or by somebody else.
+// As the operating system reports it. "stopped": it was asked to end, by culprit or by another.
 Cause cause_of(const ProcessSeen& seen) {
   if (seen.state == ProcessState::kRunning || seen.remark.empty())
     return seen.state == ProcessState::kStopped ? Cause::kFault : Cause::kUnknown;
@@ -265,7 +265,7 @@ void TorturedRobot::launch(std::size_t part) {
   launched_[part] = world_.now();
 }
 
-// One after the other, then who had started them; and after `pause` somebody starts them again.
+// One after the other, then their launcher; after `pause` they are started again.
 void TorturedRobot::end_launch(Duration pause) {
   const int launcher = *std::ranges::max_element(launcher_of_);
   if (launcher == 0) return;

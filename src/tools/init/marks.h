@@ -30,8 +30,7 @@ std::optional<Mark> mark_of(const Part& part);
 // As the comments at the end of a file.
 std::string text_of(const std::vector<Mark>& marks);
 
-// A whole file of culprit's, with a mark in front by which is_as_written() knows later that nobody changed it.
-// Here layout counts.
+// A whole file of culprit's, with a mark in front by which is_as_written() finds out later whether it was changed. Here layout counts.
 std::string with_mark(std::string_view text);
 bool is_as_written(std::string_view text);
 

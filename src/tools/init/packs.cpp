@@ -110,7 +110,7 @@ class PackChoice {
     return topics;
   }
 
-  // The only topic of that type that anybody publishes; empty: there is none, or several.
+  // The only published topic of that type; empty: there is none, or several.
   std::string only_topic(const std::string& type) const {
     std::string only;
     for (const auto& each : seen_.robot.topics) {

@@ -8,7 +8,7 @@
 
 namespace culprit::init {
 
-// Silence is what is longer. Errors: why no rhythm can be told.
+// Silence is what is longer. Errors: why no rhythm can be found.
 Expected<Duration> silence_of(const Sighting& seen, const std::string& topic);
 
 // Messages in a second, in those that came. @pre silence_of() it is known

@@ -18,7 +18,8 @@
 namespace culprit::init {
 namespace {
 
-// A limit is near what was measured, or far from it, where a new one would be so many times it.
+// A limit is too near the measurements, or too far from them, where a new one would be this many
+// times it.
 constexpr double kTooShort = 2;
 constexpr double kTooLong = 0.25;
 

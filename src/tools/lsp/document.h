@@ -1,4 +1,4 @@
-// One open rule file: its text, what it says, and what is wrong with it.
+// One open rule file: its text, its declarations, and its diagnostics.
 #pragma once
 
 #include <map>

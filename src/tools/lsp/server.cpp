@@ -511,7 +511,7 @@ Json Server::formatting(const Document& document) const {
   return Json::array({{{"range", to_json(document.source(), {0, end})}, {"newText", *text}}});
 }
 
-// The fixes of what is wrong within the range that the client asks about.
+// The fixes of mistakes within the range that the client asks about.
 Json Server::code_actions(const std::string& uri, const Document& document,
                           const Json& params) const {
   Json actions = Json::array();

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kMaxMembers = 64;
 
-// Reads a text and keeps nothing but what is wrong with it.
+// Reads a text and keeps only its mistakes.
 class Inspector : public nlohmann::json_sax<Json> {
  public:
   const std::string& complaint() const { return complaint_; }

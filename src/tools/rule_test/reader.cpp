@@ -87,7 +87,7 @@ class Reader {
 
   // ---- the file and its tests
 
-  // Its paths are read by rule_files(), which also says what is wrong with them.
+  // Its paths are read by rule_files(), which also reports their errors.
   bool rules_line(Scanner& s) {
     if (!suite_.tests.empty())
       return read_.fail(Code::kOutOfPlace, keyword_, "RULES stands inside a test",

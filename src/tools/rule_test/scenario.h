@@ -40,7 +40,7 @@ struct Need {
   ComponentId consumer;
   ComponentId producer;
 };
-// `subject` is told by `component` alone: it is silent while the component does not work.
+// `subject` is published by `component` alone: it is silent while the component does not work.
 struct Origin {
   ComponentId component;
   Subject subject;

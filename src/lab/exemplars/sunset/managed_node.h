@@ -81,7 +81,7 @@ class ManagedNode {
   virtual Expected<void> activate() = 0;
   // Destroys them; also after an activation that failed.
   virtual void deactivate() = 0;
-  // Somebody wants to change a parameter. An error refuses.
+  // Called for a request to change a parameter. An error refuses.
   virtual Expected<void> on_set(const ros2::msg::Parameter&) { return {}; }
 
   Expected<void> declare_parameters();

@@ -51,7 +51,7 @@ Shade shade(published::Significance significance) {
   return Shade::kNone;
 }
 
-// The largest significant changes of a metric, so that colours can tell how large one is.
+// The largest significant changes of a metric, to scale the colours.
 struct Largest {
   double ours = 0;
   double theirs = 0;

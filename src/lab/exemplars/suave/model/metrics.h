@@ -18,8 +18,8 @@ namespace culprit::suave::model {
 
 struct Reactions {
   std::vector<double> answered_s;
-  // What nobody answered: how long it had been there when it was over, or when the mission was.
-  // Lower bounds. A mismatch is over when nobody searches any more.
+  // Ages of mismatches without an answer, when they were over, or when the mission was. Lower
+  // bounds. A mismatch is over when the search is.
   std::vector<double> unanswered_s;
 
   bool operator==(const Reactions&) const = default;
@@ -35,7 +35,7 @@ class Metrics : private simulation::Watcher {
   void finish();
 
   std::optional<Time> found() const { return found_; }
-  // The last that was told: since the following of the pipeline began the last time.
+  // The last reported value: since the following of the pipeline began the last time.
   double distance() const { return distance_; }
   // Of all stretches.
   double whole_distance() const { return earlier_distance_ + distance_; }

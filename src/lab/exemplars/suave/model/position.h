@@ -1,4 +1,4 @@
-// Where something is, and where a vehicle is told to go.
+// Positions of things, and goals of the vehicle.
 //
 // The frame is the simulation's: metres, x and y level, z up, the surface of the water at 0.
 #pragma once
