@@ -24,7 +24,7 @@
 //
 // LASTRESORT strategies are no part of the rounds. They are due WITHIN their time of the detection,
 // or earlier if no other strategy can begin or help by then, and go beside whatever is under way. They
-// have no verdict: what they changed stays while the failure is there, and the other strategies go on.
+// have no verdict: their changes stay while the failure is there, and the other strategies go on.
 // One that could not be carried out is tried again with back-off, up to ATTEMPTS times. Several follow
 // each other by WITHIN, each after the impact of the one before.
 //
@@ -58,13 +58,14 @@ class Analyzer {
  public:
   static constexpr Duration kFirstBackoff = std::chrono::seconds(1);
   static constexpr Duration kLongestBackoff = std::chrono::seconds(60);
-  // Between two starts of what is known to be gone, once the rule is exhausted: doubled each time.
+  // Between two starts of a process that is known to have exited, once the rule is exhausted:
+  // doubled each time.
   static constexpr Duration kFirstPauseOfStarts = std::chrono::seconds(10);
   static constexpr Duration kLongestPauseOfStarts = std::chrono::minutes(5);
   // A failing rule whose trigger is unknown for longer is no longer called failing: whether it is
   // cannot be known.
   static constexpr Duration kLostAfter = std::chrono::seconds(30);
-  // A verdict on what was started waits for its inputs so long, and not for ever.
+  // The longest time that a verdict on a started component waits for its inputs.
   static constexpr Duration kInputs = std::chrono::seconds(14);
   // A failure that is back within so long may be an effect that its cause brought back.
   static constexpr Duration kRecurs = std::chrono::seconds(5);
@@ -121,16 +122,15 @@ class Analyzer {
   // The rule's strategy under way ends without a verdict.
   void abandon(RuleId id, Time now);
 
-  // The rule's strategy under way, which has taken effect, leaves its components to `other`. If
-  // what it brought about stays, it is judged when it has them back; else it ends without a
-  // verdict.
+  // The rule's strategy under way, which has taken effect, leaves its components to `other`. If its
+  // changes stay, it is judged when it has the components back; else it ends without a verdict.
   void make_way(RuleId id, StrategyId other, Time now);
 
   // No other strategy of the rule can begin or help in time: its last resorts are due, if it has any.
   void turn_to_last_resort(RuleId id, Time now);
   // The last resort of the rule that has to be begun now.
   std::optional<StrategyId> last_resort_due(RuleId id, Time now) const;
-  // The one that comes next, due or not; nothing: each took effect, or there is none.
+  // The one that comes next, due or not; empty: each took effect, or there is none.
   std::optional<StrategyId> next_last_resort(RuleId id) const;
   // The last resort under way is abandoned. @pre there is one
   void abandon_last_resort(RuleId id, Time now);

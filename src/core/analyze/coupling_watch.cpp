@@ -156,8 +156,8 @@ Time CouplingWatch::shown(const Change& change, RuleId rule) const {
                   later(std::min(change.effective, change.end), knowledge_.signals.latency(rule)));
 }
 
-// The same, where what was tried for that failure took down what would have shown it: it begins to
-// show once that is up again.
+// The same, if an attempt at that failure took down components that would have shown the recovery:
+// it can show only once they are up again.
 Time CouplingWatch::shown_after_all(const Change& change, RuleId rule) const {
   Time at = shown(change, rule);
   const Duration delay = at - change.end;

@@ -27,7 +27,7 @@ class CouplingWatch {
  public:
   // Signals that would show the recovery may stay silent: the watch ends after this time.
   static constexpr Duration kPatience = std::chrono::seconds(30);
-  // More failures at once than this, and what is learned from them is left to quieter times.
+  // At most this many open questions; outcomes beyond them are not learned.
   static constexpr std::size_t kMostWatched = 1000;
   // An effect that comes or goes later than so long after its cause is taken for none.
   static constexpr Duration kLongestDelay = std::chrono::seconds(5);

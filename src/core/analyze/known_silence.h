@@ -27,7 +27,7 @@ class KnownSilence {
   // `knowledge` must outlive it.
   explicit KnownSilence(const Knowledge& knowledge);
 
-  // The component whose known death makes the trigger of `rule` true. Nothing: none does.
+  // The component whose known death makes the trigger of `rule` true. Empty: none does.
   // @pre what the trigger reads does not make it true by itself
   std::optional<ComponentId> behind(RuleId rule) const;
 

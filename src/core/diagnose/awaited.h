@@ -53,7 +53,7 @@ class Awaited {
  private:
   struct Best {
     Duration within{};
-    std::optional<RuleId> rule;  // nothing: none
+    std::optional<RuleId> rule;  // empty: none
   };
   // The best and the second best of another rule: a failure does not wait for itself.
   struct Two {

@@ -29,7 +29,7 @@ class Reach {
     return places_[component.index];
   }
 
-  // The places of those that `place` depends on: itself only through a circle.
+  // The places of those that `place` depends on: itself only through a loop.
   std::span<const Word> upstream(std::size_t place) const { return upstream_[place]; }
   std::span<const Word> downstream(std::size_t place) const { return downstream_[place]; }
 

@@ -15,9 +15,9 @@
 //
 // where t is the time from which the trigger has been true (HOLD n/k: the detection; k cycles more for
 // e_r and E_r, n - 1 cycles less for l_r), `gap` the usual pause of the topic, `reading` the period of
-// the signal; `silent since` is the last sample, or the time when culprit heard again after a gap; and the
-// lateness is that of knowledge/latencies.h. If a trigger reads several, what is silent or down decides
-// before values.
+// the signal; `silent since` is the last sample, or the time when culprit received again after a gap; and
+// the lateness is that of knowledge/latencies.h. If a trigger reads several inputs, silent topics and dead
+// components decide before values.
 //
 // Rule u can be the cause of failure i only if it began before it: e_u <= l_i. While
 //

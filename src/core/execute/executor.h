@@ -5,7 +5,7 @@
 // strategy failed, its changes are undone in reverse order where they can be. A component that was
 // taken down while another one was adapted is not brought up again where that one is down. From its choice to
 // the end of its undoing a strategy has its components to itself, but for last resorts: these go
-// beside it, are not undone, and what they changed is not undone by others either.
+// beside it and are not undone, and no other undoing touches their changes.
 #pragma once
 
 #include <optional>

@@ -96,8 +96,8 @@ std::vector<Goal> starting_again(const Adaptation& stop, Lifecycle before,
 using Look = std::variant<ReadParameter, ReadLifecycle, ReadMode>;
 std::optional<Look> look_for(const Goal& goal);
 
-// The goal that brings back what was read before the change; nothing if a change of this kind is
-// not undone, or what was read is no state to go back to: an unknown mode, a number that is none.
+// The goal that restores the value from before the change. Empty if a change of this kind is not
+// undone, or if that value is no state to go back to: an unknown mode, a number that is none.
 std::optional<Goal> undoing(const Goal& goal, AdaptationType type, const Reply& before);
 
 // Whether both are about the same state: one parameter, the lifecycle, the mode.

@@ -1,8 +1,8 @@
-// Decides whether what was planned may be done now (docs/governor.md).
+// Decides whether the planned strategies may begin now (docs/governor.md).
 //
-// It chooses nothing and does nothing by itself: it says yes, or no with a reason. A reason is
-// about everything (paused, a storm), or about one strategy; then the next best one may be tried.
-// A person's orders go through it too.
+// It chooses nothing and does nothing by itself: it permits, or refuses with a reason. A reason is
+// about everything (paused, a storm), or about one strategy; then the next best one may be tried. A
+// person's orders go through it, too.
 #pragma once
 
 #include <optional>

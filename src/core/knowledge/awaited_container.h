@@ -15,7 +15,7 @@ inline constexpr Duration kContainerDetected = std::chrono::seconds(3);
 inline constexpr Duration kContainerLoads = std::chrono::seconds(10);
 inline constexpr Duration kLoadedSpeaks = std::chrono::seconds(2);
 
-// The container whose repair brings the component back. Nothing: it lives in none, its container works
+// The container whose repair brings the component back. Empty: it lives in none, its container works
 // and loaded it, or did not in time, or no strategy replaces the container.
 std::optional<ComponentId> awaited_container(ComponentId component, const Knowledge& knowledge);
 

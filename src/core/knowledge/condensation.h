@@ -1,5 +1,4 @@
-// The dependency graph with every circle condensed into one node, to answer questions about many
-// components at once.
+// The dependency graph with every feedback loop condensed into one node, to answer questions about many components at once.
 //
 // An SCC is a node, or several that all depend on each other (a strongly connected component). The
 // SCCs are numbered so that each comes after all that it depends on: one pass from the first to

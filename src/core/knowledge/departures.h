@@ -94,7 +94,7 @@ class Departures {
     Time until = kNever;
     StaysDown::Why why = StaysDown::Why::kPerson;  // kStaysDown
   };
-  // Nothing: it may be adapted.
+  // Empty: it may be adapted.
   std::optional<Departure> of(ComponentId component, Time now) const;
   bool stays_down(ComponentId component) const {
     return members_[component.index].down.has_value();

@@ -81,7 +81,7 @@ class DependencyGraph {
   bool reads_others(ComponentId component) const;
 
   // A topic that the component's node subscribes to, or a service that it is a client of, that no node
-  // offers; the first by name. Nothing: all that it reads is offered.
+  // offers; the first by name. Empty: all that it reads is offered.
   std::optional<std::string> unsupplied_input(ComponentId component) const;
 
   // How many nodes publish `topic`, as far as was seen and is not ignored, and whether the
@@ -114,7 +114,7 @@ class DependencyGraph {
   std::optional<ComponentId> first_upstream(ComponentId component, const Predicate& is_it) const;
   std::optional<ComponentId> first_downstream(ComponentId component, const Predicate& is_it) const;
 
-  // All that counts now, with circles drawn together. Found anew when it is asked for after a change
+  // All that counts now, with each loop condensed. Found anew when it is asked for after a change
   // (docs/performance.md says what that costs); the reference is valid until the next change.
   const Condensation& condensation() const;
   // Empty while the component was not seen and is not declared to depend on another.
@@ -210,7 +210,7 @@ class DependencyGraph {
 
   std::uint64_t changes_ = 0;
 
-  mutable std::optional<Whole> whole_;  // nothing: something changed
+  mutable std::optional<Whole> whole_;  // empty: something changed
 
   // Scratch of reach(): the search that visited each last; first the nodes, then the channels.
   mutable std::vector<std::uint32_t> visited_;

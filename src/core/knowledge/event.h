@@ -39,7 +39,7 @@ enum class Condition : std::uint8_t {
 struct Candidate {
   StrategyId strategy;
   double cost = 0;                    // paper, Eq. 1; bayes: expected (plan/bayes/value.h)
-  std::optional<Condition> excluded;  // nothing: chosen
+  std::optional<Condition> excluded;  // empty: chosen
   ComponentId component;              // that the condition is about
   std::optional<RuleId> failure;      // kDependency: what `component` may be the cause of;
                                       // also kSuspect, kSettling, kInTheWay: the other failure

@@ -13,7 +13,7 @@ struct Interrupted {
   // A request that changes something. It went out, or was about to.
   struct Request {
     Command command;
-    std::optional<Outcome> outcome;  // nothing: it is not known how it ended
+    std::optional<Outcome> outcome;  // empty: it is not known how it ended
   };
 
   StrategyId strategy;

@@ -3,8 +3,8 @@
 //
 // And the health of components that follows from it. Health is a set: a component is as sick as the
 // most critical failing rule that touches it, and one rule's recovery never wipes another's. An
-// exhausted rule is none of these: nothing more will be done about it. But while its trigger is
-// true it still is the cause of what it explains, which waits for a person with it.
+// exhausted rule is none of these: culprit does nothing more about it. But while its trigger is
+// true, its failure is still the cause of its effects, which wait for a person with it.
 #pragma once
 
 #include <algorithm>
@@ -71,8 +71,8 @@ struct Detection {
   int true_in_history = 0;
   Time sampled = kLongAgo;
 
-  // The trigger is true although what it reads does not say so yet: who published that is known
-  // dead. Nothing: it says so itself, or is not true.
+  // The trigger is true although its inputs do not show it yet: their publisher is known dead.
+  // Empty: the inputs show it, or it is not true.
   struct KnownDeath {
     ComponentId component;
     Time since{};

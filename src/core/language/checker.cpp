@@ -241,7 +241,7 @@ class Checker {
     add_and_remember(written, text);
   }
 
-  // Adds the rule as it was checked before. False if what is known of its names is not what it was.
+  // Adds the rule as it was checked before. False if its names do not mean the same as before.
   bool recall(const syntax::Rule& written, RememberedRule& remembered) {
     if (remembered.has_broken_part != written.has_broken_part ||
         !symbols_.answers_the_same(remembered.uses))

@@ -258,9 +258,9 @@ TEST(Checker, SplitsLaunchCommandsWithoutAShell) {
             (std::vector<std::string>{"prog", "--name", "two words", "a b", "$HOME", ";", "rm"}));
 }
 
-// Each file in golden/ holds mistakes, and beside it what is said about them.
-// strict_* are checked strictly, live_* against example_robot(); newcomer_* are what people write
-// who come from elsewhere. CULPRIT_WRITE_GOLDEN=1 writes what is said now, for a person to read and
+// Each file in golden/ holds mistakes, and beside it are the diagnostics. strict_* are checked
+// strictly, live_* against example_robot(); newcomer_* hold the mistakes of people who come from
+// elsewhere. CULPRIT_WRITE_GOLDEN=1 writes the present diagnostics, for a person to read and
 // commit.
 TEST(Checker, SaysWhatTheGoldenFilesSay) {
   const std::filesystem::path folder = "src/core/language/golden";

@@ -298,8 +298,8 @@ std::vector<Explanation> rule_explanations() {
        "A trigger that reads no signal, topic or component says the same whatever the robot does: "
        "this failure would never be detected.",
        rule_with("1 > 2"), rule_with("1 > rate(/robot/image)")},
-      {Code::kCircularDependency, "declared dependencies lead in a circle",
-       "DEPENDENCY a ON b says that failures of b show at a. In a circle every component could be "
+      {Code::kCircularDependency, "declared dependencies form a loop",
+       "DEPENDENCY a ON b says that failures of b show at a. In a loop every component could be "
        "blamed on every other, and the search for the culprit could not begin anywhere.",
        "COMPONENT camera\nCOMPONENT fusion\nDEPENDENCY fusion ON camera\n"
        "DEPENDENCY camera ON fusion\n",

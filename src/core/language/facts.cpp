@@ -249,7 +249,7 @@ bool Facts::narrow(const Typed& e, const ValueSet& set) {
   return possible;
 }
 
-// Most of what is known is of numbers, which need no set that might be of something else.
+// Most facts are about numbers, which need no set that might be of another type.
 bool Facts::narrow(const Typed& e, const Interval& interval) {
   const Typed& leaf = e.op == Op::kIntToDouble ? e.children[0] : e;
   if (leaf.op != Op::kInput) return !is_empty(intersection(interval_of(e), interval));

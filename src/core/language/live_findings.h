@@ -1,5 +1,5 @@
-// Rules x robot -> what of the rules this robot has, for people. live_checks.h says what it has
-// not.
+// Rules x robot -> the parts of the rules that this robot has, for people. live_checks.h reports
+// the missing ones.
 #pragma once
 
 #include <string>

@@ -240,8 +240,8 @@ Common common(std::string_view a, std::string_view b) {
   return {static_cast<std::uint32_t>(front), static_cast<std::uint32_t>(back)};
 }
 
-// Where a tree can be cut: the parser is at the begin of such a line what it is at the begin of a
-// text, or becomes the same whatever it was.
+// Places where a tree can be cut: at the begin of such a line the parser is in the same state as at
+// the begin of a text, or comes to the same state from any.
 class Cuts {
  public:
   // Up to `plain_end` no rule and no template has begun, and no part of a rule stands there.

@@ -354,7 +354,7 @@ void check_circles(const syntax::File& file, const RuleSet& rules,
     if (in_circle.erase(consumer.index) == 0) continue;
     diagnostics.push_back({Code::kCircularDependency, Severity::kError, d.consumer.span,
                            "the declared dependencies of '" + d.consumer.text + "' lead back to it",
-                           "remove the DEPENDENCY that closes the circle"});
+                           "remove the DEPENDENCY that closes the loop"});
   }
 }
 

@@ -287,7 +287,7 @@ inline bool is_container(ComponentId component, const RuleSet& rules) {
          });
 }
 
-// The component that loads it; nothing: it lives in no container, or no component has that node.
+// The component that loads it; empty: it lives in no container, or no component has that node.
 inline std::optional<ComponentId> container_of(ComponentId component, const RuleSet& rules) {
   const auto& composed = rules[component].composed;
   if (!composed) return std::nullopt;

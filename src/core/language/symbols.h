@@ -24,8 +24,8 @@ enum class Strictness : std::uint8_t { kLenient, kStrict };
 
 class Symbols {
  public:
-  // So many names are compared with one another to find what was meant. A file with more has
-  // thousands of names that it does not declare: those are no slips.
+  // At most this many comparisons of names to suggest the one that was meant. A file that needs
+  // more has thousands of undeclared names, which are no slips.
   static constexpr std::size_t kMaxComparisons = 200'000;
 
   Symbols(RuleSet& rules, Strictness strictness, std::vector<Diagnostic>& diagnostics)
@@ -45,7 +45,7 @@ class Symbols {
   struct Uses {
     struct OfConstant {
       std::string name;
-      std::optional<Constant> answer;  // nothing: it is none
+      std::optional<Constant> answer;  // empty: it is none
     };
     struct OfComponent {
       syntax::Name name;

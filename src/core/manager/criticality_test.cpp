@@ -257,7 +257,8 @@ TEST(Criticality, OfACauseIsThatOfTheWorstFailureThatItExplains) {
   EXPECT_FALSE(robot.was_asked("segmentation:")) << "it was never ill" << transcript(robot);
 }
 
-// They take 300 ms each, and what is upstream is back before the verdict on what depends on it.
+// They take 300 ms each, and the upstream one is back before the verdict on the one that depends on
+// it.
 TEST(Criticality, LetsTheDeadBeReplacedSideBySide) {
   TestRobot robot = blind();
   robot.kill("camera");

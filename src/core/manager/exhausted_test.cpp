@@ -147,7 +147,7 @@ TEST(Exhausted, WhatWaitsForAPersonHoldsUpNoLesserFailure) {
   EXPECT_TRUE(robot.was_asked("c1: set angle to 1")) << transcript(robot);
 }
 
-// A circle of three, one of which dies and does not come up again.
+// A feedback loop of three, one of which dies and does not come up again.
 TEST(Exhausted, LeavesTheCircleOfWhatIsDeadToThePersonToo) {
   TestRobot robot(rule(0) + rule(1) + rule(2));
   robot.add("c0", {"c2"}, "/c0").dies_at_start = true;

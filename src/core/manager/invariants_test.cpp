@@ -19,7 +19,7 @@ struct Broken {
   std::string fault;  // as TestRobot's, or "kill", "stop", "hang", "" (none)
 };
 
-// Components that need earlier ones, and hear any others: circles through which no failure goes.
+// Components that need earlier ones, and subscribe to any others: loops that no failure takes.
 std::vector<Broken> random_components() {
   std::vector<Broken> all;
   const int count = *rc::gen::inRange(1, 7);

@@ -340,7 +340,7 @@ TEST(ALaunch, OfWhichOneAloneEndedIsCompletedAgain) {
   EXPECT_GE(chosen->at - left, Departures::kAlone);
 }
 
-// on_exit=Shutdown(), or a person who was quick.
+// on_exit=Shutdown(), or a quick person.
 TEST(ALaunch, ThatEndsSoonAfterACrashStaysDownAndSaysWhy) {
   TestRobot robot = launch_of_five();
   robot.kill("a");

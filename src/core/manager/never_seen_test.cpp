@@ -1,4 +1,4 @@
-// Absent is not dead: nothing is done about what was never seen.
+// Absent is not dead: culprit does nothing about components and topics that were never seen.
 #include <gtest/gtest.h>
 
 #include "manager/test_robot.h"

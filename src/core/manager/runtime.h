@@ -45,7 +45,7 @@ class Runtime {
   // the observations.
   std::function<void(const Step&)> on_step;
 
-  // When a step is wanted though the manager has no reason for one; nothing: never. Called on the
+  // When a step is wanted though the manager has no reason for one; null: never. Called on the
   // thread of run().
   std::function<Time()> next_look;
 

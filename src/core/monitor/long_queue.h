@@ -73,7 +73,7 @@ class LongQueue {
   }
 
   std::size_t limit_;
-  std::vector<Piece> pieces_;  // a circle that begins with `head_`; null: not needed yet
+  std::vector<Piece> pieces_;  // a ring that begins with `head_`; null: not needed yet
   std::size_t head_ = 0;
   std::size_t first_ = 0;  // of the first piece
   std::size_t size_ = 0;

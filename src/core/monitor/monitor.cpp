@@ -205,7 +205,7 @@ void Monitor::remember(const KnownRobot& known) {
   expect(known);
 }
 
-// Those of the rules that are what `publisher` publishes as `name`; nothing: a node that is none.
+// Those of the rules that are what `publisher` publishes as `name`; empty: a node that is none.
 std::vector<TopicId> Monitor::topics_of(std::optional<ComponentId> publisher,
                                         const std::string& name) const {
   std::vector<TopicId> topics;

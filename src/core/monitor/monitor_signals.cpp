@@ -11,7 +11,7 @@ namespace {
 
 using Kind = Input::Kind;
 
-// A number, also one that a diagnostic has as a text. Nothing: it is no number.
+// A number, also one that a diagnostic has as a text. Empty: it is no number.
 std::optional<double> number_in(const Value& value) {
   if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
   if (const auto* number = std::get_if<double>(&value)) return *number;

@@ -185,7 +185,7 @@ void Monitor::forget_goals(TopicId topic, Time now) {
   for (const InputId id : topics_[topic.index].inputs) update(id, now);
 }
 
-// How long it has been listened to the status of the action; nothing: its server was never seen.
+// How long it has been listened to the status of the action; empty: its server was never seen.
 std::optional<Time> Monitor::goals_known_since(TopicId topic) const {
   const auto first = knowledge_.sightings.first(topic);
   return first ? std::optional(heard_since(std::max(*first, start_))) : std::nullopt;
@@ -208,7 +208,7 @@ Slot Monitor::goal_age(TopicId topic, Time now) const {
   return Slot::of(oldest ? now - heard_since(*oldest) : Duration::zero());
 }
 
-// When the oldest goal that is not over began; nothing: none runs.
+// When the oldest goal that is not over began; empty: none runs.
 std::optional<Time> Monitor::oldest_goal(TopicId topic) const {
   std::optional<Time> oldest;
   for (const auto& [id, goal] : topics_[topic.index].goals.all) {

@@ -1,4 +1,4 @@
-// A queue in a circle: grows up to its limit and then stays as it is, so that nothing allocates in
+// A ring buffer: grows up to its limit and then stays as it is, so that nothing allocates in
 // steady state.
 #pragma once
 

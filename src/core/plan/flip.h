@@ -11,7 +11,7 @@
 
 namespace culprit::plan {
 
-// Copies what is known once, and plans once for each change that it tries: some fifty times for
+// Copies the knowledge once, and plans once for each change that it tries: some fifty times for
 // each strategy that is asked about.
 class FlipFinder {
  public:

@@ -310,7 +310,7 @@ std::string summary(const std::vector<ExplainedDecision>& decisions) {
   return out;
 }
 
-// A little less of the change, where there is less of it; nothing: less is none.
+// A little less of the change, where there is less of it; empty: less is none.
 std::optional<Change> a_step_less(const Change& change, const Knowledge& knowledge) {
   if (const auto* success = std::get_if<SuccessChange>(&change)) {
     const double now = knowledge.beliefs[success->strategy].mean().value;

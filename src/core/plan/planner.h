@@ -30,7 +30,7 @@ namespace culprit {
 // The decision about one failure.
 struct Decision {
   RuleId rule;
-  std::optional<StrategyId> chosen;  // nothing: the failure has to wait, or nothing is left
+  std::optional<StrategyId> chosen;  // empty: the failure has to wait, or nothing is left
   bool is_spent = false;             // no untried strategy is valid now: the round is over
   std::vector<Candidate>
       candidates;                   // every strategy of the rule, best first, with what excluded it

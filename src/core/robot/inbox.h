@@ -1,5 +1,5 @@
-// Where the adapters of a live robot put what they observe, from any thread, and the runtime takes
-// it out.
+// The queue of observations: the adapters of a live robot fill it, from any thread, and the runtime
+// empties it.
 #pragma once
 
 #include <vector>

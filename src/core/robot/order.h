@@ -40,7 +40,7 @@ struct Refuse {
 using Silenceable = std::variant<ComponentId, RuleId>;
 struct Silence {
   Silenceable what;
-  std::optional<Duration> lasts{};  // nothing: until it is lifted
+  std::optional<Duration> lasts{};  // empty: until it is lifted
 };
 struct LiftSilence {
   Silenceable what;

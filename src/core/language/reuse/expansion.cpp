@@ -76,7 +76,7 @@ class Expander {
     syntax::File tree;
     std::vector<Lexeme> lexemes;
     std::uint32_t step;
-    std::vector<std::optional<std::uint32_t>> included;  // by each INCLUDE; nothing: was there
+    std::vector<std::optional<std::uint32_t>> included;  // by each INCLUDE; empty: was there
     std::uint32_t wreck_begin = Step::kNone;             // where wreck_ has it
   };
   struct Known {

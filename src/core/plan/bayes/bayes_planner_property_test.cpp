@@ -228,7 +228,7 @@ RC_GTEST_PROP(BayesPlannerOnRandomRobots, NeverDelaysTheMoreCritical, ()) {
   }
 }
 
-// A robot without circles, where each failure is of one component.
+// A robot without feedback loops, where each failure is of one component.
 struct RandomPipeline {
   Scene scene;
   std::vector<int> failing;

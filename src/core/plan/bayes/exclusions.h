@@ -10,8 +10,8 @@
 
 namespace culprit::plan {
 
-// A strategy that helps at least so likely, and takes nothing down, need not wait for what is wrong
-// downstream of it: whether it helped may not be seen, but hardly matters.
+// A strategy that helps at least so likely, and takes nothing down, need not wait for failures
+// downstream of it: its own effect may be hidden, but hardly matters.
 inline constexpr double kSure = 0.9;
 
 // Does it take a component down, if only for a moment?
