@@ -28,7 +28,7 @@ using syntax::LifecycleDriver;
 struct SystemdUnit {
   std::string name;         // "lidar.service"
   bool is_of_user = false;  // of the user's own systemd, not of the system's
-  std::string host{};       // the computer, as ssh is told: "robot@rover2"; empty: this one
+  std::string host{};       // the computer, as for ssh: "robot@rover2"; empty: this one
   bool operator==(const SystemdUnit&) const = default;
 };
 

@@ -96,7 +96,7 @@ struct Component {
   bool is_users_unit = false;
   Seldom<Name> engine{};  // "docker" or "podman"
   Seldom<Name> engine_container{};
-  Seldom<Name> host{};       // the computer that runs it, as ssh is told: "robot@rover2"
+  Seldom<Name> host{};       // the computer that runs it, as for ssh: "robot@rover2"
   Seldom<Name> container{};  // the node that loads it
   Seldom<Name> plugin{};
   Seldom<Name> package{};
