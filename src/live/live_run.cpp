@@ -1,10 +1,10 @@
 #include "live/live_run.h"
 
-#include <cassert>
 #include <cstdlib>
 
 #include <fmt/core.h>
 
+#include "base/invariant.h"
 #include "live/announcements.h"
 #include "live/begin_anew.h"
 
@@ -104,7 +104,7 @@ Expected<void> LiveRun::join(LoadedRules rules) {
 }
 
 void LiveRun::begin(OrderTaker& desk, const std::atomic<bool>& stopped) {
-  assert(session_);
+  CULPRIT_ASSERT(session_);
   session_->begin(stopped);
   open(desk);
 }
@@ -208,7 +208,7 @@ void LiveRun::watch_hearing(OrderTaker& desk) {
 }
 
 Expected<void> LiveRun::run(OrderTaker& desk, const std::atomic<bool>& stopped) {
-  assert(session_);
+  CULPRIT_ASSERT(session_);
   systemd_.ready("watching " + name_of(session_->rules()));
   std::optional<Next> next;
   Time joined = session_->now();

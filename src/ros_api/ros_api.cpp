@@ -1,6 +1,6 @@
 #include "ros_api/ros_api.h"
 
-#include <cassert>
+#include "base/invariant.h"
 
 namespace culprit::ros_api {
 namespace {
@@ -78,7 +78,7 @@ void RosApi::tell(Topic topic, const Json& message) {
   const Told& told = told_[place_of(topic)];
   if (!told.publisher) return;
   const auto payload = encode(message, *told.type);
-  assert(payload);
+  CULPRIT_ASSERT(payload);
   if (payload) (void)told.publisher->publish(*payload);
 }
 

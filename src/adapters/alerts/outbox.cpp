@@ -1,7 +1,8 @@
 #include "alerts/outbox.h"
 
 #include <algorithm>
-#include <cassert>
+
+#include "base/invariant.h"
 
 namespace culprit::alerts {
 
@@ -72,7 +73,7 @@ Time Outbox::due() const {
 }
 
 void Outbox::sent(Time now) {
-  assert(under_way_);
+  CULPRIT_ASSERT(under_way_);
   Alert alert = *std::exchange(under_way_, std::nullopt);
   failures_ = 0;
   retry_at_ = kLongAgo;
@@ -87,7 +88,7 @@ void Outbox::sent(Time now) {
 }
 
 void Outbox::failed(Time now, bool is_final) {
-  assert(under_way_);
+  CULPRIT_ASSERT(under_way_);
   Alert alert = *std::exchange(under_way_, std::nullopt);
   if (is_final) {
     firing_.erase(alert.id);

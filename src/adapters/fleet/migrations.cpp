@@ -1,7 +1,8 @@
 #include "fleet/migrations.h"
 
 #include <array>
-#include <cassert>
+
+#include "base/invariant.h"
 
 namespace culprit::fleet {
 namespace {
@@ -293,7 +294,7 @@ const std::array kMigrations = {std::string(kTables) + kFunctions + kRights,
 int migration_count() { return static_cast<int>(kMigrations.size()); }
 
 std::string migration(int n) {
-  assert(n >= 0 && n < migration_count());
+  CULPRIT_ASSERT(n >= 0 && n < migration_count());
   return kMigrations[static_cast<std::size_t>(n)];
 }
 

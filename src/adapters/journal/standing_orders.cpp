@@ -1,8 +1,8 @@
 #include "journal/standing_orders.h"
 
 #include <algorithm>
-#include <cassert>
 
+#include "base/invariant.h"
 #include "base/name_grammar.h"
 #include "journal/json.h"
 #include "journal/order_reserve.h"
@@ -50,7 +50,7 @@ std::pair<About, std::string> named(const Silenceable& what, const RuleSet& rule
 }  // namespace
 
 NamedOrder by_name(const Order& order, const RuleSet& rules) {
-  assert(standing_of(order) != Standing::kNot);
+  CULPRIT_ASSERT(standing_of(order) != Standing::kNot);
   NamedOrder out{order.what, {order.author, order.reason}, About::kComponent, ""};
   if (const auto* silence = std::get_if<Silence>(&order.what))
     std::tie(out.about, out.name) = named(silence->what, rules);

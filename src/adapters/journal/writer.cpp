@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <system_error>
 
+#include "base/invariant.h"
 #include "journal/schema.h"
 #include "json/json.h"
 
@@ -353,6 +354,7 @@ Expected<void> Writer::drop_old(std::int64_t now) {
   wants_new_session_ = end >= *oldest && session_ == *oldest;
   if (session_ > 0) end = std::min(end, session_ - 1);
   if (end < *oldest) return {};
+  CULPRIT_ASSERT(end < newest_.id);  // the chain goes on from the newest row
   const std::string id = std::to_string(end);
   return database_.run(
       "DELETE FROM anchor; INSERT INTO anchor SELECT id, hash FROM entry WHERE id = " + id +

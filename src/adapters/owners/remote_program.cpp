@@ -10,6 +10,7 @@
 #include <thread>
 #include <unistd.h>
 
+#include "base/invariant.h"
 #include "base/live_clock.h"
 #include "owners/piped_program.h"
 #include "owners/spawn.h"
@@ -100,6 +101,7 @@ RemoteProgram::~RemoteProgram() { end(); }
 // Killing ssh loses nothing on the other computer; ssh itself may hang.
 void RemoteProgram::end() {
   if (pid_ == 0) return;
+  CULPRIT_ASSERT(pid_ > 1);
   kill(-pid_, SIGKILL);
   while (waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
   }

@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/invariant.h"
 #include "base/live_clock.h"
 #include "owners/piped_program.h"
 #include "owners/spawn.h"
@@ -82,6 +83,7 @@ Expected<std::vector<std::string>> environment_after(const std::filesystem::path
   std::string errors;
   const Over over =
       read_all(out->read_end.get(), err->read_end.get(), later(live_now(), limit), printed, errors);
+  CULPRIT_ASSERT(*pid > 1);
   kill(-*pid, SIGKILL);  // what it started in the background, too
   int status = 0;
   while (waitpid(*pid, &status, 0) < 0 && errno == EINTR) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
@@ -18,6 +17,8 @@
 #include <system_error>
 #include <unistd.h>
 #include <utility>
+
+#include "base/invariant.h"
 
 extern char** environ;
 
@@ -348,7 +349,7 @@ Launch::~Launch() {
 }
 
 Expected<void> Launch::outcome() {
-  assert(report_.get() >= 0);
+  CULPRIT_ASSERT(report_.get() >= 0);
   const int pid = std::exchange(pid_, 0);
   Failure failure{};
   ssize_t size = 0;

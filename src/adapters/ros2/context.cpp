@@ -1,9 +1,9 @@
 #include "ros2/context.h"
 
-#include <cassert>
 #include <chrono>
 #include <utility>
 
+#include "base/invariant.h"
 #include "base/live_clock.h"
 #include "ros2/process_finder.h"
 #include "ros2/type_description.h"
@@ -139,7 +139,7 @@ void Context::note_return(const DiscoveryEvent& event) {
 }
 
 Context::~Context() {
-  assert(nodes_.empty());
+  CULPRIT_ASSERT(nodes_.empty());
   tasks_.close();
 }
 

@@ -1,9 +1,9 @@
 #include "ros2/graph.h"
 
 #include <algorithm>
-#include <cassert>
 #include <utility>
 
+#include "base/invariant.h"
 #include "base/ros_names.h"
 #include "ros2/service_mapping.h"
 
@@ -141,7 +141,7 @@ void Graph::replace_claims(const GuidPrefix& prefix, Peer& peer, const Claims& b
 
 // The part of `info` that is well-formed and has room. @pre peer.claims is empty
 Graph::Claims Graph::read_claims(const DiscoveryInfo& info, Peer& peer) {
-  assert(peer.claims.empty());
+  CULPRIT_ASSERT(peer.claims.empty());
   Claims claims;
   std::size_t new_nodes = 0;
   for (const NodeEntities& node : info.nodes) {

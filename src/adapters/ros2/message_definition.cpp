@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <charconv>
 #include <optional>
 #include <set>
 #include <utility>
 
+#include "base/invariant.h"
 #include "ros2/names.h"
 
 namespace culprit::ros2 {
@@ -230,7 +230,7 @@ std::string to_text(std::string_view type, const MessageDefinitions& definitions
     return text;
   };
   const auto described = definitions.find(type);
-  assert(described != definitions.end());
+  CULPRIT_ASSERT(described != definitions.end());
   std::string text = fields_of(described->second);
   for (const auto& [name, part] : definitions) {
     if (name != type) text += std::string(80, '=') + "\nMSG: " + name + "\n" + fields_of(part);

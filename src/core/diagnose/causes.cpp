@@ -1,9 +1,9 @@
 #include "diagnose/causes.h"
 
 #include <algorithm>
-#include <cassert>
 #include <iterator>
 
+#include "base/invariant.h"
 #include "diagnose/imminent.h"
 
 namespace culprit::diagnose {
@@ -287,7 +287,7 @@ void Causes::find_loops(const BitRows& effects) {
 }
 
 std::size_t Causes::index_of(RuleId rule) const {
-  assert(holds(rule));
+  CULPRIT_ASSERT(holds(rule));
   return places_[rule.index];
 }
 

@@ -4,9 +4,9 @@
 // consumers: with e edges and n components that is e * n / 64 steps, whatever the paths are.
 #pragma once
 
-#include <cassert>
 #include <vector>
 
+#include "base/invariant.h"
 #include "diagnose/bit_rows.h"
 #include "knowledge/condensation.h"
 #include "knowledge/knowledge.h"
@@ -25,7 +25,7 @@ class Reach {
   ComponentId operator[](std::size_t place) const { return components_[place]; }
   // @pre it is one of the components
   std::size_t place_of(ComponentId component) const {
-    assert(places_[component.index] != kAbsent);
+    CULPRIT_ASSERT(places_[component.index] != kAbsent);
     return places_[component.index];
   }
 

@@ -1,9 +1,9 @@
 #include "execute/executor.h"
 
 #include <algorithm>
-#include <cassert>
 #include <utility>
 
+#include "base/invariant.h"
 #include "execute/limits.h"
 #include "knowledge/ambiguity.h"
 
@@ -18,10 +18,11 @@ Executor::Executor(const Knowledge& knowledge, Writes writes)
 Executor::~Executor() = default;
 
 void Executor::begin(StrategyId strategy, Time now) {
-  [[maybe_unused]] const Strategy& begun = knowledge_.rules[strategy];
-  assert(begun.is_last_resort ||
-         std::none_of(begun.components.begin(), begun.components.end(),
-                      [&](ComponentId c) { return knowledge_.states.reservation(c) != nullptr; }));
+  const Strategy& begun = knowledge_.rules[strategy];
+  CULPRIT_ASSERT(begun.is_last_resort ||
+                 std::none_of(begun.components.begin(), begun.components.end(), [&](ComponentId c) {
+                   return knowledge_.states.reservation(c) != nullptr;
+                 }));
   write_.attempts.begin(strategy, now);
   add_run(strategy);
 }
@@ -39,7 +40,8 @@ Executor::Run& Executor::add_run(StrategyId strategy) {
 }
 
 void Executor::resume(Interrupted interrupted, Time now, Time from) {
-  assert(std::all_of(runs_.begin(), runs_.end(), [](const Run& r) { return r.interrupted; }));
+  CULPRIT_ASSERT(
+      std::all_of(runs_.begin(), runs_.end(), [](const Run& r) { return r.interrupted; }));
   write_.attempts.resume(interrupted.strategy, now);
   Run& run = add_run(interrupted.strategy);
   // An answer to a request of the earlier process must not be taken for one to ours.

@@ -1,8 +1,8 @@
 #include "execute/governor.h"
 
 #include <algorithm>
-#include <cassert>
 
+#include "base/invariant.h"
 #include "execute/evidence.h"
 #include "knowledge/awaited_container.h"
 #include "knowledge/describe.h"
@@ -191,11 +191,11 @@ void Governor::obey(const Order& order, Time now) {
       Overload{[&](const Pause&) { is_paused_ = true; }, [&](const Resume&) { is_paused_ = false; },
                [&](const Approve& o) {
                  Question* const question = question_of(o.strategy);
-                 assert(question != nullptr);
+                 CULPRIT_ASSERT(question != nullptr);
                  question->is_approved = true;
                },
                [&](const Refuse& o) {
-                 assert(question_of(o.strategy) != nullptr);
+                 CULPRIT_ASSERT(question_of(o.strategy) != nullptr);
                  const Question& question = *question_of(o.strategy);
                  refused_[o.strategy.index] = question.failing_since;
                  questions_.erase(questions_.begin() + (&question - questions_.data()));

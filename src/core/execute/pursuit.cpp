@@ -1,10 +1,10 @@
 #include "execute/pursuit.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 #include "base/duration_words.h"
+#include "base/invariant.h"
 #include "base/value_list.h"
 #include "execute/evidence.h"
 
@@ -172,7 +172,7 @@ bool Pursuit::must_insist(const Knowledge& knowledge) const {
 }
 
 std::optional<Pursuit::Request> Pursuit::advance(const Knowledge& knowledge, Time now) {
-  assert(is_under_way());
+  CULPRIT_ASSERT(is_under_way());
   if (is_lost(knowledge)) {
     const ComponentState& state = knowledge.components[component_];
     took_too_long_ = state.hangs() && has_changed_anything();

@@ -1,14 +1,15 @@
 #include "knowledge/attempts.h"
 
-#include <cassert>
 #include <utility>
+
+#include "base/invariant.h"
 
 namespace culprit {
 
 void Attempts::begin(StrategyId strategy, Time now) {
   const RuleId rule = states_.rules()[strategy].rule;
   auto& slot = states_.slot_of(strategy);
-  assert(!slot);
+  CULPRIT_ASSERT(!slot);
   slot.emplace();
   slot->strategy = strategy;
   slot->chosen = now;
@@ -55,7 +56,7 @@ void Attempts::undone(StrategyId strategy) { of(strategy).stage = Attempt::Stage
 
 Attempt& Attempts::of(StrategyId strategy) {
   auto& attempt = states_.slot_of(strategy);
-  assert(attempt && attempt->strategy == strategy);
+  CULPRIT_ASSERT(attempt && attempt->strategy == strategy);
   return *attempt;
 }
 

@@ -65,8 +65,13 @@ struct Mean {
   }
 };
 
-// log of the Beta function.
-double log_beta(double a, double b) { return std::lgamma(a) + std::lgamma(b) - std::lgamma(a + b); }
+// std::lgamma writes a global variable, which threads would share.
+double log_gamma(double x) {
+  int sign = 0;
+  return lgamma_r(x, &sign);
+}
+
+double log_beta(double a, double b) { return log_gamma(a) + log_gamma(b) - log_gamma(a + b); }
 
 }  // namespace
 
@@ -144,7 +149,7 @@ double agreement(const Belief& prior, double helped, double failed) {
   }
   const double scale = log_beta(prior.alpha, prior.beta);
   const auto log_probability = [&](double s) {
-    return std::lgamma(tried + 1) - std::lgamma(s + 1) - std::lgamma(tried - s + 1) +
+    return log_gamma(tried + 1) - log_gamma(s + 1) - log_gamma(tried - s + 1) +
            log_beta(prior.alpha + s, prior.beta + tried - s) - scale;
   };
   constexpr double kTie = 1e-9;

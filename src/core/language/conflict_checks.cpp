@@ -1,12 +1,12 @@
 #include "language/conflict_checks.h"
 
 #include <algorithm>
-#include <cassert>
 #include <map>
 #include <optional>
 #include <set>
 #include <unordered_map>
 
+#include "base/invariant.h"
 #include "language/compiler.h"
 #include "language/evaluate.h"
 #include "language/facts.h"
@@ -171,7 +171,7 @@ bool set_off_one_another(const Doing& a, const Doing& b, const RuleSet& rules) {
 
 // @pre both are about the same thing
 bool undo_one_another(const Doing& a, const Doing& b, const RuleSet& rules) {
-  assert(a.effect.thing == b.effect.thing);
+  CULPRIT_ASSERT(a.effect.thing == b.effect.thing);
   return a.rule != b.rule && a.effect.state != b.effect.state &&
          (take_turns(*a.rule, *b.rule, rules) || set_off_one_another(a, b, rules));
 }

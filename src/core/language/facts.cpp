@@ -1,7 +1,8 @@
 #include "language/facts.h"
 
 #include <algorithm>
-#include <cassert>
+
+#include "base/invariant.h"
 
 namespace culprit {
 namespace {
@@ -133,7 +134,7 @@ void Facts::know(InputId input, ValueSet values) {
 void Facts::know(InputId number, const Interval& interval) { enter(number, interval, numbers_); }
 
 bool Facts::assume(const Typed& e, bool truth) {
-  assert(e.type == Type::kBool);
+  CULPRIT_ASSERT(e.type == Type::kBool);
   const auto child = [&](std::size_t i, bool t) {
     return [&e, i, t](Facts& f) { return f.assume(e.children[i], t); };
   };

@@ -1,7 +1,8 @@
 #include "language/origins.h"
 
 #include <algorithm>
-#include <cassert>
+
+#include "base/invariant.h"
 
 namespace culprit {
 namespace {
@@ -33,7 +34,7 @@ std::vector<Step> up_from(std::uint32_t step, const std::vector<Step>& steps) {
 
 Origin origin_of(Span span, const std::vector<Piece>& pieces, const std::vector<Step>& steps,
                  std::uint32_t size) {
-  assert(!pieces.empty() && span.begin <= span.end && span.end <= size);
+  CULPRIT_ASSERT(!pieces.empty() && span.begin <= span.end && span.end <= size);
   const std::size_t first = piece_at(span.begin, pieces);
   const std::size_t last = piece_at(span.end > span.begin ? span.end - 1 : span.begin, pieces);
   const Piece& begin = pieces[first];

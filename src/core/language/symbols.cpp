@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <cassert>
 #include <utility>
+
+#include "base/invariant.h"
 
 namespace culprit {
 namespace {
@@ -677,7 +678,7 @@ template <class Use, class Id>
 Id now_of(const std::vector<Use>& uses, Id was) {
   const auto use =
       std::find_if(uses.begin(), uses.end(), [was](const Use& u) { return u.was == was; });
-  assert(use != uses.end());
+  CULPRIT_ASSERT(use != uses.end());
   return use->id;
 }
 
@@ -695,7 +696,7 @@ bool Symbols::answers_the_same(const Uses& uses) const {
     const auto owner =
         std::find_if(uses.components.begin(), uses.components.end(),
                      [&](const Uses::OfComponent& c) { return c.id == p.component; });
-    assert(owner != uses.components.end());
+    CULPRIT_ASSERT(owner != uses.components.end());
     const auto component = known_component(owner->name.text);
     if (!component) return std::nullopt;
     const auto found = known_parameter(*component, p.name);

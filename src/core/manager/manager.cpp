@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/invariant.h"
 #include "diagnose/questions.h"
 #include "knowledge/undoes.h"
 #include "plan/allowed.h"
@@ -113,7 +114,18 @@ std::vector<Command> Manager::step(Time now, std::span<const Observation> observ
   }
   if (hears_) analyzer_.look_for_blind(now_);
   governor_.note(knowledge_.events);
+  check(commands);
   return commands;
+}
+
+// A command that changes the robot against these would do harm.
+void Manager::check(std::span<const Command> commands) const {
+  CULPRIT_ASSERT(hears_ || commands.empty());
+  for (const Command& command : commands) {
+    CULPRIT_ASSERT(command.component.index < knowledge_.rules.components.size());
+    CULPRIT_ASSERT(is_read(command) || !governor_.is_paused());
+    CULPRIT_ASSERT(command.timeout > Duration::zero());
+  }
 }
 
 void Manager::take_in(Time now, std::span<const Observation> observations) {

@@ -86,6 +86,7 @@ class Manager : public ManagingSystem {
   void resume(Interrupted interrupted);
 
  private:
+  void check(std::span<const Command> commands) const;
   void take_in(Time now, std::span<const Observation> observations);
   void answered(const Reply& reply, Time now);
   void restart(Time since, Time now);

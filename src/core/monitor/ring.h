@@ -3,9 +3,10 @@
 #pragma once
 
 #include <algorithm>
-#include <cassert>
 #include <cstddef>
 #include <vector>
+
+#include "base/invariant.h"
 
 namespace culprit::monitor {
 
@@ -27,14 +28,14 @@ class Ring {
 
   // @pre !full()
   void push_back(const T& item) {
-    assert(!full());
+    CULPRIT_ASSERT(!full());
     if (size_ == items_.size()) grow();
     ++size_;
     back() = item;
   }
   // @pre !empty()
   void pop_front() {
-    assert(!empty());
+    CULPRIT_ASSERT(!empty());
     first_ = (first_ + 1) % items_.size();
     --size_;
   }

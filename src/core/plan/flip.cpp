@@ -1,9 +1,9 @@
 #include "plan/flip.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
+#include "base/invariant.h"
 #include "plan/ties.h"
 
 namespace culprit::plan {
@@ -41,7 +41,7 @@ FlipFinder::FlipFinder(const Planner& planner, std::vector<RuleId> failures,
       decisions_(planner.plan(failures_, what_if_.knowledge())) {}
 
 std::vector<Change> FlipFinder::flips(StrategyId loser) {
-  assert(std::any_of(decisions_.begin(), decisions_.end(), [&](const Decision& decision) {
+  CULPRIT_ASSERT(std::any_of(decisions_.begin(), decisions_.end(), [&](const Decision& decision) {
     const auto& all = decision.candidates;
     return decision.chosen != loser && std::any_of(all.begin(), all.end(), [&](const Candidate& c) {
              return c.strategy == loser;

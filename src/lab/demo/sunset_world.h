@@ -2,12 +2,12 @@
 // nothing left behind. Its manager is not part of it.
 #pragma once
 
-#include <cassert>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 
+#include "base/invariant.h"
 #include "exemplars/sunset/experiment.h"
 #include "live/live_robot.h"
 #include "ros2/domain_lock.h"
@@ -44,7 +44,7 @@ class SunsetWorld {
   Expected<live::LiveRobot::Options> robot() const;
   // @pre begin() succeeded
   sunset::Experiment& experiment() {
-    assert(experiment_);
+    CULPRIT_ASSERT(experiment_);
     return *experiment_;
   }
   std::uint32_t domain() const { return domain_.domain(); }

@@ -1,9 +1,9 @@
 #include "rca_study/optimum.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
+#include "base/invariant.h"
 #include "rca_study/rules.h"
 
 namespace culprit::study::rca {
@@ -208,7 +208,7 @@ double expected_cost(const RepairProcess& process, const RuleSet& rules, const P
 }
 
 std::unique_ptr<const Planner> optimum_planner(const RcaScenario& scenario, Objective objective) {
-  assert(RepairProcess::is_small(scenario));
+  CULPRIT_ASSERT(RepairProcess::is_small(scenario));
   return std::make_unique<OptimumPlanner>(scenario, objective);
 }
 

@@ -5,12 +5,12 @@
 // result. So the result is the same to the last bit however the work was distributed.
 #pragma once
 
-#include <cassert>
 #include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "base/invariant.h"
 #include "plan/paper_planner.h"
 
 namespace culprit::study {
@@ -64,7 +64,7 @@ struct Campaign {
   std::uint64_t size() const { return std::uint64_t{runs} * rows.size(); }
   // The runs in their order. @pre index < size()
   RunId operator[](std::uint64_t index) const {
-    assert(index < size());
+    CULPRIT_ASSERT(index < size());
     return {static_cast<std::uint32_t>(index / runs), static_cast<std::uint32_t>(index % runs)};
   }
 

@@ -4,12 +4,12 @@
 // phases of all timers, the same drift as long as nothing is done differently.
 #pragma once
 
-#include <cassert>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "base/invariant.h"
 #include "exemplars/suave/model/mission_settings.h"
 #include "study/campaign.h"
 #include "study/single_run.h"
@@ -36,7 +36,7 @@ struct SuaveCampaign {
   std::uint64_t size() const { return std::uint64_t{runs} * managers.size(); }
   // The runs in their order, by manager; a RunId's row is the manager. @pre index < size()
   RunId operator[](std::uint64_t index) const {
-    assert(index < size());
+    CULPRIT_ASSERT(index < size());
     return {static_cast<std::uint32_t>(index / runs), static_cast<std::uint32_t>(index % runs)};
   }
 
@@ -90,7 +90,7 @@ class SuaveFold {
 
   // @pre is_complete()
   SuaveResult result() && {
-    assert(is_complete());
+    CULPRIT_ASSERT(is_complete());
     return std::move(result_);
   }
 

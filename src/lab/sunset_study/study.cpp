@@ -1,8 +1,8 @@
 #include "sunset_study/study.h"
 
 #include <algorithm>
-#include <cassert>
 
+#include "base/invariant.h"
 #include "knowledge/describe.h"
 #include "language/checker.h"
 #include "managers/one_by_one_planner.h"
@@ -201,7 +201,7 @@ const sunset::Scenario& SunsetStudy::scenario_of(RunId id) {
 
 SunsetRun SunsetStudy::play(RunId id) const {
   const Setting& setting = settings_[id.row];
-  assert(setting.configuration.profile != kLiveRobot);
+  CULPRIT_ASSERT(setting.configuration.profile != kLiveRobot);
   sunset::model::SunsetModel model(*setting.profile, seed_of(id));
   const auto managing = manager(id, manager_options(*setting.profile));
   return study::play(model, *setting.rules, *managing, scenario_of(id));

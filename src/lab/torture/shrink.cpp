@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <cassert>
 #include <cstdio>
 #include <utility>
 
+#include "base/invariant.h"
 #include "torture/torture.h"
 
 namespace culprit::torture {
@@ -40,7 +40,7 @@ bool clear(T& part) {
 }  // namespace
 
 Scenario shrink(Scenario scenario) {
-  assert(run(scenario).violation);
+  CULPRIT_ASSERT(run(scenario).violation);
   while (true) {
     bool is_smaller = leave_out(scenario, &Scenario::mishaps);
     // No other part needs the last one.

@@ -14,7 +14,6 @@
 // parameters and topics that the exemplar's scenarios do not touch and its nodes do not read.
 #pragma once
 
-#include <cassert>
 #include <memory>
 #include <optional>
 #include <span>
@@ -24,6 +23,7 @@
 #include <vector>
 
 #include "base/expected.h"
+#include "base/invariant.h"
 #include "exemplars/sunset/heartbeat.h"
 #include "exemplars/sunset/members.h"
 #include "exemplars/sunset/node_options.h"
@@ -55,7 +55,7 @@ class ManagedNode {
   const NodeOptions& options() const { return options_; }
   // @pre configured
   Heartbeat& heartbeat() {
-    assert(heartbeat_);
+    CULPRIT_ASSERT(heartbeat_);
     return *heartbeat_;
   }
   bool is_active() const;

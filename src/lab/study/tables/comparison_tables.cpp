@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 
 #include <fmt/core.h>
 
+#include "base/invariant.h"
 #include "study/statistics/welch.h"
 #include "study/tables/columns.h"
 #include "study/tables/study_tables.h"
@@ -229,8 +229,8 @@ Table live_table(const CampaignResult& result) {
 }
 
 Table robustness_table(const Row& ideal, const Row& misspecified) {
-  assert(ideal.configuration.planner == misspecified.configuration.planner &&
-         ideal.configuration.profile == misspecified.configuration.profile);
+  CULPRIT_ASSERT(ideal.configuration.planner == misspecified.configuration.planner &&
+                 ideal.configuration.profile == misspecified.configuration.profile);
   Table table{id_of("robustness", ideal.configuration.planner, ideal.configuration.profile),
               "Probabilities off by 20 %: " +
                   played(ideal.configuration.planner, ideal.configuration.profile),
