@@ -1,5 +1,5 @@
-// Which components live in a component container (rclcpp_components): one process with many nodes,
-// of which one loads the others. To end that process is to end them all.
+// Finds the components that live in a component container (rclcpp_components): one process with
+// many nodes, of which one loads the others. To end that process is to end them all.
 //
 // A node in one process with others is nothing of the kind by itself: many programs make several
 // nodes, and start with all of them again.

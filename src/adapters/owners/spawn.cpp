@@ -102,7 +102,7 @@ const char* first_readable(char* const* places) {
   return nullptr;
 }
 
-// A time of the file that lies ahead says nothing: the clock was set back.
+// A modification time in the future proves nothing: the clock was set back.
 bool is_being_written(const char* path) {
   struct stat status {};
   if (stat(path, &status) != 0) return true;
@@ -136,8 +136,8 @@ bool has_interpreter(const char* path) {
   return access(begin, X_OK) == 0;
 }
 
-// Where the child says why it failed; closed by a successful execve(). The descriptors that it
-// keeps are beside it.
+// The child's report why it failed; closed by a successful execve(). The descriptors that it keeps
+// are beside it.
 constexpr int kReport = STDERR_FILENO + 1;
 constexpr int kKept = kReport + 1;
 
@@ -343,7 +343,7 @@ Launch::~Launch() {
     return;
   }
   kill(pid_, SIGKILL);
-  // One that hangs in a file system dies when that lets it go: nobody can wait for it.
+  // One that hangs in a file system dies when that lets it go: the supervisor cannot wait for it.
   waitpid(pid_, nullptr, WNOHANG);
 }
 

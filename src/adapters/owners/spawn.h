@@ -11,7 +11,7 @@
 
 namespace culprit::owners {
 
-// How long a process lives that nobody ends.
+// How long a process runs if it is not ended.
 enum class Lifetime : std::uint8_t {
   kOwn,     // it outlives whoever started it, however that ends
   kStarter  // it is killed with the thread that started it: for worlds that are gone with theirs

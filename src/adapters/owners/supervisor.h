@@ -91,7 +91,7 @@ class Supervisor {
   static constexpr Duration kStopSettles = std::chrono::milliseconds(50);
   // How often it is looked whether what a start needs is there by now.
   static constexpr Duration kMissingPeriod = std::chrono::milliseconds(500);
-  // The supervisor waits so long for the children that it kills.
+  // How long the supervisor waits for the children that it kills.
   static constexpr Duration kLeftEnds = std::chrono::milliseconds(200);
   // How long the trial of a start may take.
   static constexpr Duration kTrial = std::chrono::seconds(5);
@@ -126,11 +126,12 @@ class Supervisor {
             Hangs hangs = Hangs::kNo);
 
   // Watches the process that had this number at `known` as the component's, for its node is there;
-  // one that began later is another. Tells that it is gone if it is. Does nothing if it is watched already.
+  // one that began later is another. Reports that it has exited if it has. Does nothing if it is
+  // watched already.
   void adopt(ComponentId component, int pid, Time known);
 
-  // As adopt(), for a process that an earlier run of culprit knew, if it is not a zombie now. Says
-  // nothing where another process of the component is watched.
+  // As adopt(), for a process that an earlier run of culprit knew, if it is not a zombie now.
+  // Reports nothing if another process of the component is watched.
   void adopt_again(ComponentId component, int pid, Time known);
 
   // Whether all processes of the component that run were started here, or by a supervisor of the
@@ -150,7 +151,7 @@ class Supervisor {
   // kOfLaunch SIGKILL. Does nothing where that is under way.
   void end_with_launch(ComponentId component);
 
-  // Ends every process that was started here, and waits until all are gone.
+  // Ends every process that was started here, and waits until all have exited.
   void stop_all();
 
  private:
