@@ -37,7 +37,8 @@ class RecoveryGoals {
 
   using Id = std::array<std::uint8_t, 16>;  // unique_identifier_msgs/msg/UUID
 
-  // As action_msgs/msg/GoalStatus numbers them. Nothing is between: who waits neither starts nor stops.
+  // As action_msgs/msg/GoalStatus numbers them. Nothing is between: a waiting goal neither starts
+  // nor stops.
   enum class State : std::int8_t {
     kUnknown = 0,
     kExecuting = 2,

@@ -42,7 +42,7 @@ constexpr const char* kStatus = "culprit_msgs/msg/Status";
 
 enum class Orders : std::uint8_t { kNone, kTaken };
 
-// culprit's node, a manager, and what it was told through the very desk that HTTP's orders go to.
+// culprit's node, a manager, and the orders that it gets through the same desk as HTTP's.
 struct OrderedCulprit {
   explicit OrderedCulprit(Orders orders = Orders::kNone, Approval approval = Approval::kNone)
       : OrderedCulprit(

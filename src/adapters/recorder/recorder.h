@@ -29,7 +29,7 @@ namespace culprit::recorder {
 // All members may be called from any thread.
 class Recorder {
  public:
-  // A recording that nobody ends is ended after so long.
+  // A recording that is not ended is ended after so long.
   static constexpr Duration kLongest = std::chrono::minutes(5);
   // A killed process loses at most so much.
   static constexpr Duration kFlushes = std::chrono::seconds(1);
@@ -68,14 +68,14 @@ class Recorder {
   // replace the earlier ones, except in recordings that have those already. kNoTopic: there are too
   // many; the topic is not kept.
   std::size_t add_topic(RecordedTopic topic);
-  // `number` and `at` are filled in, and `received`, if it is not said, with the same moment.
+  // `number` and `at` are filled in, and `received`, if it is not given, with the same moment.
   void take(RingMessage message, Share share = Share::kSmall);
   // As take(), for a latched topic, whose last message stays.
   void take_latched(RingMessage message, const ros2::Guid& publisher, Share share);
 
   // An event of culprit (a failure, a decision, an action): a JSON document.
   void note_event(const std::string& json);
-  // The robot's graph from now on, likewise.
+  // The robot's graph from now on, in the same form.
   void note_graph(const std::string& json);
 
   // A failure, called `why`, which is there until over(). If a recording is on, it goes on.

@@ -34,7 +34,7 @@ class RobotTap {
  public:
   static constexpr std::size_t kSmall = 16 * 1024;  // bytes
   static constexpr std::size_t kLarge = 64 * 1024;
-  // So many are heard at a time: each costs memory, and the network decides how many there are.
+  // The most topics at a time: each costs memory, and the network decides how many there are.
   static constexpr std::size_t kMostHeard = 2000;
 
   struct Options {

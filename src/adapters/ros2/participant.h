@@ -62,7 +62,7 @@ struct ParticipantGone {
 using DiscoveryEvent = std::variant<ParticipantInfo, EndpointInfo, ParticipantGone, EndpointGone>;
 using DiscoveryCallback = std::function<void(DiscoveryEvent)>;
 
-// A sample as it came. `payload` is gone when the callback returns.
+// A sample as it came. `payload` is invalid when the callback returns.
 struct Sample {
   ByteView
       payload;  // with its encapsulation; empty for a reader of headers, cut for one of beginnings
@@ -100,7 +100,7 @@ constexpr bool is_whole(PayloadUse use) {
   return use == PayloadUse::kWhole || use == PayloadUse::kWholeLater;
 }
 inline constexpr std::size_t kBeginningSize = 512;  // bytes
-// So much is given of a payload of `size` bytes.
+// The bytes that a reader gets of a payload of `size` bytes.
 constexpr std::size_t given_of(PayloadUse use, std::size_t size) {
   if (use == PayloadUse::kHeader) return 0;
   return is_whole(use) ? size : std::min(size, kBeginningSize);
@@ -175,8 +175,9 @@ class Participant {
 
   const Guid& guid() const;
 
-  // Says nothing more but the goodbye of its end, which tells the others of the end of all its readers
-  // and writers at once: for who has many, and ends. @pre nothing more is created or written.
+  // Sends nothing more but the goodbye at its end, which announces the end of all its readers and
+  // writers at once: for a participant with many endpoints that ends. @pre nothing more is created
+  // or written.
   void leave();
 
   // While one of these lives, no announcement is sent. Endpoints that are created meanwhile are
@@ -195,8 +196,8 @@ class Participant {
     Impl& participant_;
   };
 
-  // While one of these lives, what comes to readers and writers that have time does not come late. For who waits for
-  // an answer.
+  // While one of these lives, samples to readers and writers that have time do not come late. For a
+  // caller that waits for an answer.
   class Hurry {
    public:
     explicit Hurry(Participant& participant);
@@ -218,8 +219,8 @@ class Participant {
   Origins& origins();
   // When its last one came; kLongAgo: it is not there.
   Time heard_last(const GuidPrefix& participant) const;
-  // Since when nothing of its own came through one of its ports (DatagramSources).
-  // Every second something should.
+  // Since when no own datagram came through one of its ports (DatagramSources). Every second
+  // something should.
   Time own_came_through() const;
   // Whether the thread that receives is at work (ReceiveWatch): looks, and until when it was.
   void look_at_receivers(Time now);

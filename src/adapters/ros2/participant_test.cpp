@@ -525,7 +525,8 @@ TEST(Participant, WhoStaysAsItIsIsToldOfOnce) {
   EXPECT_EQ(told.all().size(), 1u);
 }
 
-// A port where a participant of this machine may be found (RTPS 2.3 §9.6.1.1), held by somebody who only listens.
+// A port where a participant of this machine may be found (RTPS 2.3 §9.6.1.1), held by a mere
+// listener.
 class Eavesdropper {
  public:
   // Binds the port of `participant`, or the next lower free one. Fast DDS numbers the participants

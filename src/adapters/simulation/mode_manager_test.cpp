@@ -252,7 +252,8 @@ RULE NotSix
   EXPECT_EQ(plant.mode(), "slow");
 }
 
-// Killed at any moment of the change: the mode is reached all the same, by a manager begun anew.
+// Killed at any moment of the change: the mode is reached all the same, by a manager that was
+// started again.
 TEST(SimulatedSystem, ReachesItsModeThoughItsModeManagerDiesInBetween) {
   const std::string rules = std::string(kRules) + R"(
 RULE ModesDead

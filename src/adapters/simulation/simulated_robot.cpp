@@ -181,8 +181,8 @@ void SimulatedRobot::execute(const Command& command) {
   }
 }
 
-// A request to a node that is not in the graph has nobody to go to; one that nobody answers is over
-// when the patience is.
+// A request to a node that is not in the graph reaches none; one without an answer ends with the
+// time limit.
 void SimulatedRobot::request(const Command& command, Node& node) {
   world_.after(command.timeout, [this, id = command.id] { reply(id, Outcome::kTimedOut); });
   if (!node.is_in_graph()) {
