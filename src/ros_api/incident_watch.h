@@ -47,7 +47,7 @@ class IncidentWatch {
     WallTime since;
     std::set<std::string> rules;  // that fail, or failed until then
     Json message;                 // as it is now
-    Json told;                    // as it was told last, without what changes with the time
+    Json told;                    // as published last, without what changes with the time
     Time told_at = kLongAgo;
   };
 

@@ -57,7 +57,7 @@ class RecoveryGoals {
     WallTime accepted{};
     Time ends = kNever;
     State state = State::kExecuting;
-    Json feedback;  // a WaitForRecovery_Feedback, as it was told last; null: none was
+    Json feedback;  // a WaitForRecovery_Feedback, as published last; null: none was
     Json result;    // a WaitForRecovery_Result, once it has ended
   };
 
@@ -90,7 +90,7 @@ class RecoveryGoals {
   void consider(Goal& goal);
   void end(Goal& goal, State state, std::string message);
 
-  Json status_;  // null: none was told
+  Json status_;  // null: none was published
   std::map<Id, Goal> goals_;
   std::deque<Id> order_;  // in which they came
   std::vector<Id> ended_, news_;

@@ -27,7 +27,7 @@ class Member {
   // How long it takes until ...
   struct Pace {
     Duration read = std::chrono::seconds(1);        // the journal is read after something happened
-    Duration gather = std::chrono::seconds(25);     // news is told, with what came since
+    Duration gather = std::chrono::seconds(25);     // news is sent after this time, with later news
     Duration visit = std::chrono::seconds(10);      // the database is visited again
     Duration beat = std::chrono::minutes(40);       // it is visited though there is no news
     Duration ask = std::chrono::minutes(40);        // it is asked for the fleet's priors again

@@ -48,7 +48,7 @@ class ComponentContainers {
   ComponentBinding binding_;
   std::map<std::string, int> processes_;  // of the nodes of the graph; 0: not known
   std::set<std::string> containers_;      // among them
-  std::map<ComponentId, int> last_;       // where each was seen last; likewise
+  std::map<ComponentId, int> last_;       // the last known process of each; 0: not known
 };
 
 }  // namespace culprit::owners

@@ -103,8 +103,8 @@ class ComposedNodes {
     // Of its thread.
     std::map<ComponentId, int> unanswered{};        // loads, and the process that was asked
     std::set<ComponentId> barred{};                 // parts whose class or parameters are missing
-    std::optional<std::set<std::string>> listed{};  // what it said last that it has
-    int listed_by = 0;                              // the process that said so
+    std::optional<std::set<std::string>> listed{};  // its last list
+    int listed_by = 0;                              // the process that gave that list
     Time coming_up = kLongAgo;                      // until when, since it was started here
     int coming_pid = 0;                             // its process then; 0: not known
     std::thread thread{};

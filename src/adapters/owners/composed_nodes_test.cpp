@@ -259,7 +259,7 @@ TEST(ComposedNodes, AContainerThatDoesNotUnloadIsReplacedWithAllThatItHadInOrder
     OneContainer robot;
     robot.begin({"/tracker", "/detector"});
     if (says_so) robot.unloads({Outcome::kRefused, "cannot"});
-    robot.keeps_nodes = !says_so;  // it says that it did
+    robot.keeps_nodes = !says_so;  // it reports that it did
     EXPECT_EQ(robot.stop(kTracker).outcome, Outcome::kDone);
     robot.unloads({});
     EXPECT_EQ(robot.start(kTracker).outcome, Outcome::kDone);

@@ -316,7 +316,7 @@ std::optional<Identity> identity_of(int pid) {
   std::error_code error;
   std::string program = fs::read_symlink(process + "/exe", error).native();
   if (error) return std::nullopt;
-  constexpr std::string_view kDeleted = " (deleted)";  // it was installed anew since
+  constexpr std::string_view kDeleted = " (deleted)";  // it was reinstalled since
   if (program.ends_with(kDeleted)) program.resize(program.size() - kDeleted.size());
   const auto users = users_of(pid);
   if (!users) return std::nullopt;

@@ -51,7 +51,7 @@ struct Preparation {
   char* pid_digits;           // where the pid's are to be written; null: nowhere
   int kept;
   Until until;
-  pid_t ends_with;  // whose end ends it; 0: nobody's
+  pid_t ends_with;  // the process whose end ends it; 0: none
   mode_t mask;
 };
 constexpr std::size_t kPidDigits = 10;
@@ -173,7 +173,7 @@ Failure become(const Preparation& ready, int report) {
   setsid();
   if (ready.ends_with != 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != ready.ends_with) _exit(127);  // it ended before it could be told
+    if (getppid() != ready.ends_with) _exit(127);  // it exited before the request took effect
   }
   prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0);
   // Our DDS sockets are not marked close-on-exec; a child that kept one would keep its port.

@@ -395,7 +395,7 @@ std::optional<std::string> Supervisor::why_not_end(ComponentId component, Ending
   for (const Member& member : members_) {
     if (member.component != component) continue;
     if (auto why = doubt(member)) return why;
-    if (ending == Ending::kForGood) continue;  // that is what is wanted, whoever looks at it
+    if (ending == Ending::kForGood) continue;  // it is to end in any case
     if (auto why = hold_of(member)) return why;
   }
   const Component& what = rules_[component];

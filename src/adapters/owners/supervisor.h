@@ -97,7 +97,7 @@ class Supervisor {
   static constexpr Duration kTrial = std::chrono::seconds(5);
 
   struct Options {
-    std::filesystem::path log_folder;  // on this machine: nobody waits for it elsewhere
+    std::filesystem::path log_folder;  // on this machine: a remote file system could hang
     std::vector<std::filesystem::path> search_first;  // for launch commands without a path
     // Which robot, of all on this machine: "0/sunset". Empty: nothing is marked, and what other
     // supervisors started is not looked for.
@@ -170,7 +170,7 @@ class Supervisor {
     std::optional<Work> work{};
     std::vector<Relative> left{};  // what somebody else's had started when its end was ordered
     Time left_at{};
-    std::optional<Time> stands_since{};  // while it is not told yet that it was stopped
+    std::optional<Time> stands_since{};  // while its stop is not reported yet
     int launcher = 0;        // that it stands in for, while its program does not run yet
     std::string variable{};  // what it and all that it started have in their environment
     std::vector<FileDescriptor> tree{};  // what it had started when its end was ordered
@@ -192,7 +192,7 @@ class Supervisor {
   };
   // A shutdown under way.
   struct Shutdown {
-    CommandId command;  // number 0: nobody waits for a reply
+    CommandId command;  // number 0: no reply is due
     ComponentId component;
     Hangs hangs = Hangs::kNo;
     std::set<std::uint64_t> meant{};  // members
@@ -207,7 +207,7 @@ class Supervisor {
     std::optional<Time> began{};
     std::vector<int> children{};  // when it was looked last, each kLogPeriod
     bool ran_others = false;      // when the component's process had ended
-    FileDescriptor held{};        // until it ended, which is told
+    FileDescriptor held{};        // until its end, which is reported
   };
 
   std::string marked_as(ComponentId component) const;

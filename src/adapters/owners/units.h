@@ -165,8 +165,8 @@ class Units {
   std::set<ComponentId> ended_here_;  // on culprit's request, and not seen to run since
   std::map<ComponentId, Elsewhere> elsewhere_;
   int failures_ = 0;          // in a row, to ask the computer
-  bool is_reached_ = true;    // as it was told
-  Time returned_ = kLongAgo;  // when it could be asked again, if that was not told yet
+  bool is_reached_ = true;    // as reported
+  Time returned_ = kLongAgo;  // when it could be asked again, if that is not reported yet
   // The node's process, and the main process of the unit then: `ros2 run` is another one.
   std::map<ComponentId, std::pair<int, int>> found_with_;
   std::map<ComponentId, Found> last_found_;

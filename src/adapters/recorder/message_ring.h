@@ -25,7 +25,7 @@ namespace culprit::recorder {
 
 struct RingMessage {
   std::uint64_t number = 0;    // in the order in which they came, from 1; the ring gives it
-  std::size_t topic = 0;       // as whoever fills the ring counts them
+  std::size_t topic = 0;       // the caller's number for it
   std::uint32_t sequence = 0;  // of its publisher
   Time at{};                   // when it came, by the clock that never jumps
   std::int64_t received = 0;   // the same by the wall clock, nanoseconds since 1970

@@ -44,7 +44,7 @@ class Recorder {
   struct Options {
     std::filesystem::path folder;
     std::string robot;    // its name
-    std::string library;  // who writes it: "culprit 0.1.0"
+    std::string library;  // the program that writes it: "culprit 0.1.0"
     Duration before = std::chrono::seconds(20);
     Duration after = std::chrono::seconds(10);
     std::size_t memory = 200'000'000;    // bytes, of all that is kept
@@ -132,7 +132,7 @@ class Recorder {
   std::uint64_t written_ = 0;            // the last message that is in it
   Time since_{};                         // what it begins with
   Time opened_{};
-  std::string trouble_;  // the last that was said
+  std::string trouble_;  // the last one that was reported
 
   std::thread thread_;  // last: it begins when all is there
 };

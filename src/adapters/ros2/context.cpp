@@ -249,8 +249,7 @@ void Context::discovered(const DiscoveryEvent& event) {
 void Context::on_info(const Bytes& payload, const GuidPrefix& sender) {
   if (sender == participant_->guid().prefix()) return;
   const auto info = decode_discovery_info(payload);
-  if (!info || info->participant.prefix() != sender)
-    return;  // nobody speaks for another participant
+  if (!info || info->participant.prefix() != sender) return;  // a participant announces only itself
   if (!gid_size_) decide(gid_size_of(payload));
   graph_.apply(*info, gid_size_of(payload));
 }
@@ -273,7 +272,7 @@ void Context::announce() {
   {
     const MutexLock lock(mutex_);
     is_scheduled_ = false;
-    if (!is_open_ || !gid_size_) return;  // without a peer there is nobody to read it
+    if (!is_open_ || !gid_size_) return;  // without a peer it has no reader
     info.participant = participant_->guid();
     for (const NodeEntry* node : nodes_) {
       NodeEntities& entities =

@@ -166,7 +166,7 @@ Graph::Claims Graph::read_claims(const DiscoveryInfo& info, Peer& peer) {
     for (const auto* guids : {&node.readers, &node.writers}) {
       for (const Guid& guid : *guids) {
         if (guid.prefix() != info.participant.prefix())
-          continue;  // nobody speaks for another participant
+          continue;  // a participant announces only itself
         if (!endpoints.contains(guid) && claim_count_ >= options_.limits.endpoints) {
           warn_of_limit("endpoints");
           return claims;

@@ -61,7 +61,7 @@ struct GraphEndpoint {
 struct GraphNode {
   std::string name;  // full: "/namespace/name"
   Vendor vendor = Vendor::kOther;
-  std::string host;          // empty where the participant does not say
+  std::string host;          // empty if the participant announces none
   int pid = 0;               // on this machine; 0 where it is not known
   GuidPrefix participant{};  // that holds it
 };
@@ -81,7 +81,7 @@ struct NodeJoined {
 };
 struct NodeLeft {
   std::string node;
-  bool was_lost = false;  // it said no good-bye: its lease ran out
+  bool was_lost = false;  // without leaving in order: its lease ran out
 };
 struct EndpointJoined {
   std::string node;
@@ -201,7 +201,7 @@ class Graph {
   struct ParticipantView {
     ParticipantInfo info;
     int pid = 0;                    // on this machine, as far as it is known
-    std::optional<GidSize> form{};  // of what it said of its nodes; nothing: it said nothing
+    std::optional<GidSize> form{};  // of its announcement of nodes; nothing: there was none
     std::vector<std::string> nodes{};
     std::vector<OwnedEndpoint> endpoints{};
     std::size_t undiscovered = 0;  // endpoints that its nodes claim, and that were not discovered
@@ -220,9 +220,9 @@ class Graph {
     int pid = 0;
     bool pid_is_known = false;
     std::string missing;       // for a proof of its process
-    std::string told_missing;  // what was told of last
+    std::string told_missing;  // the last one that was reported
     bool is_trusted = false;
-    std::set<std::string> doubted;  // nodes that it is said to hold no more
+    std::set<std::string> doubted;  // nodes that it announced to hold no more
     bool told_of_stranger = false;
     std::string source;
     std::uint64_t number = 0;  // in the order in which they came
@@ -245,7 +245,7 @@ class Graph {
     int count = 0;  // of the endpoints that make it
   };
   struct Node {
-    std::vector<GuidPrefix> claimants;  // who says it holds this node; the last one that may counts
+    std::vector<GuidPrefix> claimants;  // that announce this node; the last one that may counts
     std::optional<GuidPrefix> told;     // whose node the listener knows
     std::map<EdgeKey, Edge> edges;      // that the listener knows
     int namesakes = 0;                  // that the listener knows
@@ -296,8 +296,8 @@ class Graph {
   std::unordered_map<Guid, std::string> owners_;  // endpoint -> the node that claims it
   std::map<std::string, Node> nodes_;
   std::set<std::string> proven_here_;  // names that are kept here, and were proven to be held here
-  std::set<const char*> exceeded_;     // limits that trouble was told of
-  bool is_losing_ = false;             // who leaves now said no good-bye
+  std::set<const char*> exceeded_;     // limits whose trouble was reported
+  bool is_losing_ = false;             // participants leave now by their leases
   const Peer* looked_for_ = nullptr;   // whose process was looked for last, in one change
 };
 

@@ -408,7 +408,7 @@ TEST(Graph, AnEndedProcessIsGoneAtOnce) {
   watched.says(1, {node("/", "a")}).says(2, {node("/", "b")}).says(3, {node("/", "c")}).told();
   watched.ends(10);
   EXPECT_THAT(watched.told(), ElementsAre("-/a"));
-  watched.ends(0);  // nobody's
+  watched.ends(0);  // no process
   EXPECT_THAT(watched.told(), IsEmpty());
   watched.leaves(1);  // its lease
   EXPECT_THAT(watched.told(), IsEmpty());

@@ -300,7 +300,7 @@ struct ParameterDescriptor {
 
 struct FieldType {
   static constexpr std::string_view kType = "type_description_interfaces/msg/FieldType";
-  std::uint8_t type_id = 0;           // type_description.h says which is which
+  std::uint8_t type_id = 0;           // numbered in type_description.h
   std::uint64_t capacity = 0;         // of an array, or a bounded sequence
   std::uint64_t string_capacity = 0;  // of a bounded string
   std::string nested_type_name;

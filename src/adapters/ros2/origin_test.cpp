@@ -119,7 +119,7 @@ TEST(Origin, FarewellsThatBeganBeforeItWasSeenDoNotKeepAProcessFromBeingProven) 
   LiveContext listener(domain.options());
   Robot robot(domain, listener);
   ASSERT_TRUE(robot.is_seen);
-  std::vector<UdpAddress> to;  // also where nobody listens yet
+  std::vector<UdpAddress> to;  // also where nothing listens yet
   for (std::uint32_t i = 10; i < 250; ++i)
     to.push_back({{127, 0, 0, 1}, static_cast<std::uint16_t>(7400 + 250 * domain.number() + i)});
   const HostileProcess stranger(robot.farewells(), to, 200ms);

@@ -43,8 +43,8 @@ enum class Vendor : std::uint8_t { kFastDds, kCyclone, kOther };
 struct ParticipantInfo {
   Guid guid;
   Vendor vendor = Vendor::kOther;
-  std::string host;  // its machine; empty when it does not say
-  int pid = 0;       // its process there, as seen by itself; 0 when it does not say
+  std::string host;                     // its machine; empty if not announced
+  int pid = 0;                          // its process, by its own PID namespace; 0 if not announced
   std::vector<UdpAddress> metatraffic;  // where it listens for discovery
   bool shares_memory = false;           // it listens in shared memory, too (Fast DDS)
   bool is_secured = false;              // it has an identity, signed by somebody
@@ -55,7 +55,7 @@ struct ParticipantInfo {
 
 struct ParticipantGone {
   Guid guid;
-  bool was_lost = false;  // it said no good-bye: its lease ran out
+  bool was_lost = false;  // without a goodbye: its lease ran out
 };
 
 // Also sent again when what is known changes, and only then.

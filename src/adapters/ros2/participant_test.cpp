@@ -515,7 +515,7 @@ TEST(Participant, WhoStaysAsItIsIsToldOfOnce) {
   ASSERT_TRUE(told.wait_for_count(1));
   const Time joined = live_now();
   const auto announced = [&] { return watcher->heard_last(other->guid().prefix()); };
-  for (int i = 0; i < 2; ++i) {  // without endpoints it says nothing else
+  for (int i = 0; i < 2; ++i) {  // without endpoints it sends nothing else
     const Time before = std::max(joined, announced());
     const Time end = later(live_now(), kPatience);
     while (later(before, std::chrono::milliseconds(500)) >= announced() && live_now() < end)

@@ -120,7 +120,7 @@ bool ProcessFinder::has_ended(const ParticipantInfo& participant) const {
   const auto is_here = [](const UdpAddress& each) { return is_local(each.ip); };
   if (!std::all_of(from.begin(), from.end(), is_here)) return false;
   const std::vector<UdpSocket> sockets = udp_sockets(proc_);
-  if (sockets.empty()) return false;  // there is at least the one that this was heard by
+  if (sockets.empty()) return false;  // at least the socket that sent the announcement exists
   const auto is_nobodys = [&](const UdpAddress& each) {
     return bound_to(each, sockets).sockets.empty();
   };

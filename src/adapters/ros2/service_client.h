@@ -55,7 +55,7 @@ enum class CallOutcome : std::uint8_t {
 struct CallResult {
   CallOutcome outcome = CallOutcome::kUnreachable;
   ByteView reply;     // a payload with its encapsulation; gone when the callback returns
-  GuidPrefix server;  // who answered
+  GuidPrefix server;  // the participant that answered
 };
 
 // Thread-safe. The callback of a call comes once: an answer on a receive thread (participant.h

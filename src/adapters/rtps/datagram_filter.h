@@ -222,9 +222,9 @@ class DatagramFilter {
   std::size_t& total(const Guid& writer) CULPRIT_REQUIRES(mutex_);
 
   mutable Mutex mutex_;
-  std::unordered_map<Guid, Writer> writers_ CULPRIT_GUARDED_BY(mutex_);  // that are heard
+  std::unordered_map<Guid, Writer> writers_ CULPRIT_GUARDED_BY(mutex_);  // with a reader here
   std::unordered_map<Guid, Readers> readers_
-      CULPRIT_GUARDED_BY(mutex_);  // by writer that they hear
+      CULPRIT_GUARDED_BY(mutex_);  // by the writer that they receive
   std::unordered_set<GuidPrefix> participants_ CULPRIT_GUARDED_BY(mutex_);  // that are there
   std::size_t reserved_reliable_ CULPRIT_GUARDED_BY(mutex_) = 0;
   std::size_t reserved_best_effort_ CULPRIT_GUARDED_BY(mutex_) = 0;

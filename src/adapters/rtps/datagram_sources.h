@@ -51,7 +51,7 @@ class DatagramSources {
 
   struct Origin {
     std::vector<UdpAddress> addresses;  // in the order of their first datagrams
-    bool is_complete = false;           // false: nothing was heard, or from more than these
+    bool is_complete = false;           // false: nothing came, or from more than these
     bool operator==(const Origin&) const = default;
   };
 

@@ -292,7 +292,7 @@ void Origins::note(const GuidPrefix& participant, const Proven& proven, const Ud
   ForeignSource source{from, std::nullopt, participant, proven.pid};
   if (is_of_this_machine(from.ip, asked_for_own_)) {
     const auto foreign = proven.foreign.find(from);
-    if (foreign == proven.foreign.end()) return;  // it is told of when its socket was looked up
+    if (foreign == proven.foreign.end()) return;  // it is reported once its socket was looked up
     source.user = foreign->second.user;
   }
   note(source);

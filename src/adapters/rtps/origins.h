@@ -70,7 +70,7 @@ class Origins {
   // participants run that long.
   static constexpr Duration kAfterEnd = std::chrono::seconds(30);
   static constexpr std::size_t kMostAddresses = 64;  // kept of one participant that are not its own
-  static constexpr std::size_t kMostSources = 64;    // told of
+  static constexpr std::size_t kMostSources = 64;    // that are reported
 
   // For a participant whose process is unknown (above).
   static constexpr Duration kAlone = std::chrono::seconds(5);

@@ -70,7 +70,7 @@ class ReceiveThread {
     std::uint32_t buffer = 0;  // bytes, which net.core.rmem_max caps; 0: the system's
     std::uint32_t largest = kLargest;  // bytes of a datagram; what is longer is cut
     Haste haste = Haste::kNow;
-    HasTime has_time{};  // empty: always as `haste` says
+    HasTime has_time{};  // empty: always as `haste` sets
   };
   // Errors: the place is taken, or the system refuses. The thread begins with the first socket.
   Expected<void> open(const Place& place, OnDatagram on_datagram);

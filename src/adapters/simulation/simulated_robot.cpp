@@ -26,7 +26,7 @@ SimulatedRobot::~SimulatedRobot() { world_.unwatch(*this); }
 
 void SimulatedRobot::index_rules() {
   for (std::size_t t = 0; t < rules_.topics.size(); ++t) {
-    if (rules_.topics[t].publisher) continue;  // its messages do not say who published them
+    if (rules_.topics[t].publisher) continue;  // its messages do not name their publisher
     topics_.emplace(rules_.topics[t].name, TopicId(t));
     if (TopicBase* topic = world_.topic(rules_.topics[t].name)) topic->set_watched(true);
   }
