@@ -20,7 +20,7 @@ Json names_of(const auto& ids, const RuleSet& rules) {
   return names;
 }
 
-// "CameraSilent@1795538700.250": nobody has to read it, and nothing has it twice.
+// "CameraSilent@1795538700.250": people need not read it, and it is unique.
 std::string id_of(const std::string& rule, WallTime since) {
   const auto ms =
       std::chrono::duration_cast<std::chrono::milliseconds>(since.time_since_epoch()).count();

@@ -35,7 +35,7 @@ class IncidentWatch {
   // Messages for the topic. `all` are the incidents now, `wall` is the time on the wall of `now`.
   std::vector<Json> look(const std::vector<live::Incident>& all, const RuleSet& rules, Time now,
                          WallTime wall);
-  // When something that changed may be told; kNever: all is told.
+  // When a change may be published; kNever: all is told.
   Time due() const { return due_; }
 
   // Those that are open, as they were at the last look, the worst first.
@@ -47,7 +47,7 @@ class IncidentWatch {
     WallTime since;
     std::set<std::string> rules;  // that fail, or failed until then
     Json message;                 // as it is now
-    Json told;                    // as it was told last, without what changes with the time
+    Json told;                    // as published last, without what changes with the time
     Time told_at = kLongAgo;
   };
 

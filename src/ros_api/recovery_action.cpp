@@ -33,7 +33,8 @@ constexpr int kErrorNone = 0;
 constexpr int kErrorUnknownGoal = 2;
 constexpr int kErrorGoalTerminated = 3;
 
-// rcl_action's: services as such, the topics reliable, and who comes late gets the newest state of all goals.
+// rcl_action's: services as such, the topics reliable, and a late joiner gets the newest state of
+// all goals.
 constexpr ros2::Qos kFeedbackQos{.depth = 10};
 // A client of rclcpp takes feedback before answers, and drops what is about a goal that it does not
 // know yet: so a goal's first feedback comes so long after the answer that accepts it.
@@ -170,7 +171,7 @@ class RecoveryAction::Offer {
     answer_with(answer, kGetResult, {{"status", number_of(goal.state)}, {"result", goal.result}});
   }
 
-  // Tells what has come of the goals, and waits for the next time that runs out.
+  // Publishes the goals' progress, and waits for the next time limit.
   void follow() {
     goals_.expire(live_now());
     for (const Id& id : goals_.take_news()) {

@@ -24,7 +24,7 @@ class RecoveryAction {
   std::vector<std::string> open(ros2::NodeEntry& node);
   void close();
 
-  // A culprit_msgs/msg/Status as it was told. On the thread that opens and closes.
+  // A culprit_msgs/msg/Status as it was published. On the thread that opens and closes.
   void told(const Json& status);
 
  private:

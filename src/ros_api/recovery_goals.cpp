@@ -14,7 +14,7 @@ constexpr int kFirstBadProcess = 2;
 
 // The facts of a status about the subject of a goal.
 struct Outlook {
-  bool is_known = false;  // the robot is heard
+  bool is_known = false;  // the robot's messages arrive
   bool is_there = false;  // and has such a component
   std::vector<std::string> ill;
   std::string doing;

@@ -37,7 +37,8 @@ class RecoveryGoals {
 
   using Id = std::array<std::uint8_t, 16>;  // unique_identifier_msgs/msg/UUID
 
-  // As action_msgs/msg/GoalStatus numbers them. Nothing is between: who waits neither starts nor stops.
+  // As action_msgs/msg/GoalStatus numbers them. Nothing is between: a waiting goal neither starts
+  // nor stops.
   enum class State : std::int8_t {
     kUnknown = 0,
     kExecuting = 2,
@@ -56,7 +57,7 @@ class RecoveryGoals {
     WallTime accepted{};
     Time ends = kNever;
     State state = State::kExecuting;
-    Json feedback;  // a WaitForRecovery_Feedback, as it was told last; null: none was
+    Json feedback;  // a WaitForRecovery_Feedback, as published last; null: none was
     Json result;    // a WaitForRecovery_Result, once it has ended
   };
 
@@ -89,7 +90,7 @@ class RecoveryGoals {
   void consider(Goal& goal);
   void end(Goal& goal, State state, std::string message);
 
-  Json status_;  // null: none was told
+  Json status_;  // null: none was published
   std::map<Id, Goal> goals_;
   std::deque<Id> order_;  // in which they came
   std::vector<Id> ended_, news_;

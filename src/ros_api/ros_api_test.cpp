@@ -42,7 +42,7 @@ constexpr const char* kStatus = "culprit_msgs/msg/Status";
 
 enum class Orders : std::uint8_t { kNone, kTaken };
 
-// culprit's node, a manager, and what it was told through the very desk that HTTP's orders go to.
+// culprit's node, a manager, and the orders that it gets through the same desk as HTTP's.
 struct OrderedCulprit {
   explicit OrderedCulprit(Orders orders = Orders::kNone, Approval approval = Approval::kNone)
       : OrderedCulprit(
@@ -273,7 +273,7 @@ TEST(RosApi, AForgedRequestIsAnsweredWithAnErrorAndDoesNothing) {
   ros2::CdrWriter no_text;
   no_text.write_string("ann\xff");
   no_text.write_string("");
-  ros2::CdrWriter too_long;  // it says, and is not
+  ros2::CdrWriter too_long;  // its length field is too large
   too_long.write(std::uint32_t{0xFFFFFFFF});
   for (const ros2::Bytes& request : {ros2::Bytes{0, 1, 0, 0}, ros2::Bytes{0, 9, 0, 0, 1, 2, 3, 4},
                                      no_text.take(), too_long.take()}) {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::string_view kComponentType = "culprit_msgs/msg/Component";
 
-// Samples and values come at the rate of the robot's topics; what they mean is told by events.
+// Samples and values come at the rate of the robot's topics; events report their meaning.
 bool may_change_status(const Observation& observation) {
   const auto& what = observation.what;
   const auto* reply = std::get_if<Reply>(&what);

@@ -1,5 +1,5 @@
-// Says in messages of culprit_msgs what a manager finds and does. It knows no middleware: where the messages
-// go is whoever's who made it (ros_api.h).
+// Reports a manager's findings and actions in messages of culprit_msgs. It knows no middleware:
+// its creator publishes the messages (ros_api.h).
 //
 // - Status: what is there now. When it has changed, at most every kPeriod.
 // - Incident: incident_watch.h.

@@ -279,7 +279,7 @@ TEST(Teller, ANewManagerKnowsOfNoIncidentUntilItSeesOne) {
   EXPECT_THAT(told.statuses.back()["incidents"], IsEmpty());
 }
 
-// Two causes at first, in whichever order they are told; each keeps its name.
+// Two causes at first, in any order; each keeps its name.
 TEST(IncidentWatch, KnowsAnIncidentAgainByItsCause) {
   const ToldRobot told;
   const RuleSet& rules = told.robot->rules();

@@ -1,4 +1,5 @@
-// A node of the robot's user, as rclcpp makes one: it hears what culprit tells, and gives it orders.
+// A node of the robot's user, as rclcpp makes one: it receives culprit's messages, and gives it
+// orders.
 #pragma once
 
 #include <memory>

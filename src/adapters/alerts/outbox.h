@@ -21,7 +21,7 @@ class Outbox {
   struct Limits {
     std::size_t kept = 64;                       // alerts that wait; beyond, the oldest is given up
     std::size_t burst = 10;                      // so many at once
-    Duration refill = std::chrono::seconds(30);  // and then one each so long
+    Duration refill = std::chrono::seconds(30);  // and then one each time this has passed
     Duration first_retry = std::chrono::seconds(1);  // doubled with each failure
     Duration longest_retry = std::chrono::minutes(5);
     std::optional<Duration> repeat{};  // what is not over is sent again; nothing: it is not

@@ -51,7 +51,7 @@ struct Member::State {
   std::optional<Outbox> outbox;
   JournalTail tail;
   std::mt19937 random;
-  std::shared_ptr<const RuleSet> heard_rules;  // of the session that priors are told to
+  std::shared_ptr<const RuleSet> heard_rules;  // of the session that gets the priors
   std::uint64_t heard_session = 0;
   PriorsTold told;           // in this session
   Time read_at = kLongAgo;   // the journal is not read before
@@ -122,7 +122,7 @@ void Member::State::run() {
     woken.wait_for(lock, kLook, [&]() CULPRIT_REQUIRES(mutex) { return stop || has_news; });
     if (stop) break;
     has_news = false;
-    if (!is_on) continue;  // another process may write the journal, and tell of it
+    if (!is_on) continue;  // another process may write the journal, and report it
     lock.unlock();
     try {
       work();
@@ -204,7 +204,7 @@ bool Member::State::is_to_be_told(Time now) {
 
 void Member::State::fail_to_keep(const std::string& why) {
   tell_of(kNotKept, said_of_disk, why, "");
-  outbox.reset();  // it may be damaged: that is seen when it is opened
+  outbox.reset();  // it may be damaged: opening it shows that
   read_at = later(live_now(), jittered(options.pace.retry));
 }
 

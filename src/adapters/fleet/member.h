@@ -1,7 +1,7 @@
 // A robot as a member of its fleet: its outcomes go to a PostgreSQL database, and the others'
 // outcomes come back as priors of the planner's beliefs.
 //
-// All of it happens on a thread of its own, which the robot never waits for. That thread reads the
+// All of it happens on a thread of its own, which the robot never waits for. The thread reads the
 // journal, as any other reader does, and keeps its sums beside it (outbox.h). It visits the
 // database when there is news, and now and then. A visit costs the database mostly a connection. So
 // a failure and its end half a minute later are sent in one visit; a failure that needs a person is
@@ -27,7 +27,7 @@ class Member {
   // How long it takes until ...
   struct Pace {
     Duration read = std::chrono::seconds(1);        // the journal is read after something happened
-    Duration gather = std::chrono::seconds(25);     // news is told, with what came since
+    Duration gather = std::chrono::seconds(25);     // news is sent after this time, with later news
     Duration visit = std::chrono::seconds(10);      // the database is visited again
     Duration beat = std::chrono::minutes(40);       // it is visited though there is no news
     Duration ask = std::chrono::minutes(40);        // it is asked for the fleet's priors again

@@ -19,7 +19,7 @@ int schema_version();
 using Done = std::vector<std::string>;
 
 struct Setup {
-  int keep_days = 400;  // failures are kept for so long
+  int keep_days = 400;  // how long failures are kept
 };
 
 // Makes the schema and the roles, or brings them up to date; makes partitions for the months that

@@ -44,7 +44,7 @@ struct Failure {
   std::int64_t incident = 0;  // the row of the first failure since all was well
   std::string rule;
   std::string criticality;
-  std::string component;        // that was held responsible; empty: nobody said
+  std::string component;        // the blamed one; empty: unknown
   std::int64_t began = 0;       // nanoseconds since 1970
   std::int64_t ended = 0;       // 0: it is still there
   double repair_seconds = -1;   // by the robot's own clock; below zero: it was not resolved

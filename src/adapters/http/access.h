@@ -22,7 +22,7 @@ namespace culprit::web {
 enum class Role : std::uint8_t {
   kLook,       // see all, and ask about rules that are not in force
   kOperate,    // give orders, and have recordings made
-  kAdminister  // change the rules, and have them read anew
+  kAdminister  // change the rules, and reload them
 };
 // "look", "operate", "administer"
 std::string_view to_string(Role role);

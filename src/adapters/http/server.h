@@ -44,7 +44,7 @@ class Server {
     // Where to listen instead: a unix socket. Only processes of this user and of root
     // are served there, and need no token.
     std::string socket{};
-    Json about = Json::object();  // whose server this is, to be told beside what it offers
+    Json about = Json::object();  // identifies the server, beside its calls
     std::span<const Asset> app{};
     std::string_view openapi{};  // describes `routes`, at /api/openapi.json; outlives the server
   };

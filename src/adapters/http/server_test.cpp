@@ -406,7 +406,7 @@ TEST_F(WebServer, BoundsTheNumberOfStreams) {
     ASSERT_THAT(readers.back()->receive("hello"), HasSubstr("hello"));
   }
   EXPECT_EQ(client().Get("/api/stream")->status, 503);
-  readers.clear();  // and whoever publishes does not notice that they are gone
+  readers.clear();  // and the publisher does not notice that
   for (int i = 0; i < 10; ++i) hub.publish(Kind::kEvent, "{}");
 }
 

@@ -24,7 +24,7 @@ inline constexpr std::string_view kOutcome = "outcome";    // how such a request
 inline constexpr std::string_view kBelief = "belief";      // what is believed of a strategy now
 inline constexpr std::string_view kCoupling = "coupling";  // which failures go away together
 inline constexpr std::string_view kLatency = "latency";    // how late a rule shows a change
-inline constexpr std::string_view kRobot = "robot";        // what was seen of the robot, all of it
+inline constexpr std::string_view kRobot = "robot";        // the known robot, all of it
 inline constexpr std::string_view kGap = "gap";            // what could not be written
 inline constexpr std::string_view kEnd = "end";            // culprit was asked to stop
 }  // namespace kind

@@ -417,7 +417,7 @@ class EventReader {
   bool complete(OrderRefused& event) const { return complete(event.order); }
   bool complete(ActionHeldBack&) const { return false; }  // by which restraint?
   bool complete(SilenceEnded&) const { return false; }    // of what?
-  bool complete(NeverSeen&) const { return false; }       // each run finds out anew
+  bool complete(NeverSeen&) const { return false; }       // each run detects it by itself
   bool complete(PriorsAdopted&) const { return false; }   // likewise
   bool complete(HostSilent&) const { return false; }      // likewise
   bool complete(HostBack&) const { return false; }        // likewise

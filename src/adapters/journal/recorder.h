@@ -49,7 +49,7 @@ class Recorder {
   // How long steps that decide nothing wait to be written, by the robot's clock.
   static constexpr Duration kPeriod = std::chrono::seconds(20);
   static constexpr Duration kSoon = std::chrono::milliseconds(200);  // between two writes
-  static constexpr std::size_t kMany = 1 << 13;  // observations that do not wait for so long
+  static constexpr std::size_t kMany = 1 << 13;  // observations that are not kept waiting
   // How long, and how many, steps that decide nothing are kept before they are handed over.
   static constexpr Duration kKept = std::chrono::milliseconds(100);
   static constexpr std::size_t kMaxKept = 16;
@@ -228,7 +228,7 @@ class Recorder {
   // Used by the recorder's thread only.
   std::optional<Writer> writer_;
   bool is_damaged_ = false;   // the file, which cannot be written any more
-  std::string copy_trouble_;  // that was told
+  std::string copy_trouble_;  // that was reported
   std::string told_of_intents_;
   Time now_{};                    // of the newest step
   std::uint64_t unsaved_to_ = 0;  // the newest decision in `unsaved_`, or before it

@@ -28,7 +28,7 @@ inline constexpr Duration kExpected = std::chrono::minutes(10);
 struct Recovery {
   bool had_run = false;           // there was a run before
   bool was_stopped = false;       // and it was asked to end
-  bool was_other_boot = false;    // the machine was started anew since
+  bool was_other_boot = false;    // the machine was booted since
   bool was_other_domain = false;  // or it was another robot
   bool is_other_robot() const { return was_other_boot || was_other_domain; }
   bool orders_kept = false;  // in a file of their own, which alone counts (standing_orders.h)

@@ -23,7 +23,7 @@ struct Session {
   bool advises = false;
   bool continued = false;  // the run began in another file, which is gone: it cannot be replayed
   int domain = 0;          // of DDS: another domain is another robot
-  int process = 0;         // culprit's, on its machine; 0: an older culprit did not say
+  int process = 0;         // culprit's, on its machine; 0: an older culprit left it out
   std::string boot;        // which start of the machine: the robot's clock counts from there
   Time start{};
   // The manager began with what this process had seen while another culprit managed, and so as if it

@@ -75,7 +75,7 @@ class LeaseLink {
   const Options options_;
   Context& context_;
   const Hearing& hearing_;
-  std::vector<std::unique_ptr<Writer>> writers_;      // the first says the beats
+  std::vector<std::unique_ptr<Writer>> writers_;      // the first sends the beats
   std::vector<std::unique_ptr<Writer>> of_new_term_;  // after take_over()
 
   mutable Mutex mutex_;  // the middleware is not called under it

@@ -198,7 +198,7 @@ class Link {
   std::unique_ptr<RawSubscription> parameter_events_;
   std::atomic<int> parameter_events_waiting_ = 0;
   std::map<ComponentId, Time> parameters_asked_;           // because of somebody else's event
-  std::set<std::pair<std::string, std::string>> told_of_;  // nodes, and who speaks for them
+  std::set<std::pair<std::string, std::string>> told_of_;  // nodes, and the sources in their names
   std::map<std::string, GuidPrefix> holders_;              // participants of nodes that are there
   std::map<std::string, std::string> mode_managers_;       // by system: the node whose modes count
   struct ToProbe {
@@ -244,27 +244,27 @@ class Link {
   std::unique_ptr<Timer> probing_;
   std::unique_ptr<Timer> publishing_;
   std::unique_ptr<Hearing> hearing_;
-  std::uint64_t refused_ = 0;  // datagrams that were told of
+  std::uint64_t refused_ = 0;  // datagrams that were reported
   std::unique_ptr<LeaseLink> lease_;
   std::unique_ptr<NeighbourHosts> hosts_;
   Time looked_at_hosts_ = kLongAgo;              // on the executor's thread
   bool gives_memory_back_ = false;               // soon
-  std::set<std::string> asked_whether_left_;     // nodes that were said to leave
+  std::set<std::string> asked_whether_left_;     // nodes that were announced to leave
   std::set<std::string> told_of_false_leaving_;  // those of them that answered once
 
   mutable Mutex mutex_;
   // A component's node that others have the name of.
   struct Contest {
     std::string text;
-    Time due{};  // to be told
+    Time due{};  // for the report
   };
   std::map<std::string, Contest> contested_ CULPRIT_GUARDED_BY(mutex_);            // by node
   std::map<std::string, std::vector<int>> doubled_ CULPRIT_GUARDED_BY(mutex_);     // by node
   std::map<std::string, std::string> nodes_elsewhere_ CULPRIT_GUARDED_BY(mutex_);  // by node
   std::map<ComponentId, std::string> elsewhere_
-      CULPRIT_GUARDED_BY(mutex_);  // the other computer where it ran last, if it said no good-bye
+      CULPRIT_GUARDED_BY(mutex_);  // the other computer where it ran last, unless it left in order
   std::map<ComponentId, Time> departures_ CULPRIT_GUARDED_BY(mutex_);  // expected until then
-  std::set<std::string> silent_hosts_ CULPRIT_GUARDED_BY(mutex_);      // that were told of
+  std::set<std::string> silent_hosts_ CULPRIT_GUARDED_BY(mutex_);      // that were reported
   std::vector<Health> health_ CULPRIT_GUARDED_BY(mutex_);
   std::vector<std::unique_ptr<ComponentLink>> links_
       CULPRIT_GUARDED_BY(mutex_);  // by component; one that is made stays

@@ -338,7 +338,7 @@ Bytes announcement_of(std::uint16_t number) {
 TEST(Link, DiscoversANewProcessBesideAThousandParticipantsOfAStranger) {
   const TestDomain domain;
   Linked linked(domain, {}, kAliveRules);
-  EventLog<std::uint16_t> ports;  // anybody in the domain knows who listens where
+  EventLog<std::uint16_t> ports;  // announced to the whole domain
   const auto spy = Participant::create(domain.options(), [&](const DiscoveryEvent& event) {
     const auto* info = std::get_if<ParticipantInfo>(&event);
     if (info != nullptr && !info->metatraffic.empty()) ports.add(info->metatraffic.front().port);
@@ -696,7 +696,7 @@ RULE R
   };
   while (!comes_after(said[said.size() - 2]) && live_now() < end)
     (void)linked.wait<LinkTrouble>([](const LinkTrouble&) { return false; }, 20ms);
-  int between = 0;  // two messages, as seen by who said them
+  int between = 0;  // two messages, by the publisher's count
   for (const Observation& each : linked.seen()) {
     if (!std::holds_alternative<SampleArrived>(each.what) || each.at < said.front()) continue;
     constexpr Duration kClocks = 1ms;  // of the kernel and of us

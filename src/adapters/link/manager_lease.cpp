@@ -231,7 +231,7 @@ void ManagerLease::hear_state(const GuidPrefix& participant, std::string_view pr
     text += *each;
   }
   told_state_ = {std::move(text), Duration(shift)};
-  round.parts.clear();  // heard
+  round.parts.clear();  // complete
 }
 
 void ManagerLease::hear(const GuidPrefix& participant, std::string_view beat, Time now) {

@@ -52,7 +52,7 @@ struct LeaseClaim {
   // The nodes that it adapts, by full name; "*/camera" for a node of that own name in any
   // namespace.
   std::vector<std::string> nodes{};
-  std::string key{};  // shared by those who believe each other; empty: no claim but our own counts
+  std::string key{};  // shared by culprits that trust each other; empty: only our own claim counts
   std::int64_t term = 0;  // how often the robot was taken over, as far as it is known
 };
 
@@ -165,19 +165,19 @@ class ManagerLease {
   std::optional<std::string> told_orders_;
   std::map<GuidPrefix, Round> rounds_;  // of those that are proven
   std::optional<ToldState> told_state_;
-  std::string state_;          // that we tell
+  std::string state_;          // that we send
   bool is_state_new_ = false;  // and did not begin to
-  std::string round_state_;    // that the present round tells
+  std::string round_state_;    // that the present round sends
   std::uint64_t round_ = 0;    // its number; 0: there was none
   std::size_t next_part_ = 0;  // of it
   std::size_t parts_ = 0;      // it has
   Time round_began_ = kLongAgo;
-  std::uint64_t beats_ = 0;   // that we said
+  std::uint64_t beats_ = 0;   // that we sent
   std::optional<Time> said_;  // the latest of them
   bool has_friends_ = false;  // some were proven
   bool manages_ = false;
   Time ticked_ = kLongAgo;       // when we were last asked for a beat
-  Time hears_since_ = kLongAgo;  // what others say is heard without a gap
+  Time hears_since_ = kLongAgo;  // messages arrive without a gap since then
   Time listens_until_ = kLongAgo;
 };
 

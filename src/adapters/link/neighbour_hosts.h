@@ -52,7 +52,7 @@ class NeighbourHosts {
  private:
   struct Host {
     std::set<GuidPrefix> there;
-    std::size_t lost = 0;  // whose leases ran out since it was heard last
+    std::size_t lost = 0;  // whose leases ran out since the last datagram
   };
   Time heard(const Host& host) const CULPRIT_REQUIRES(mutex_);
 

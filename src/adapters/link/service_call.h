@@ -28,7 +28,7 @@ class ServiceCall {
 
   struct Verdict {
     bool is_done = false;
-    std::string text;  // what the server says of it; may be empty
+    std::string text;  // the server's message; may be empty
   };
   // Nothing: the payload is no answer of that type.
   std::optional<Verdict> judge(ByteView answer) const;

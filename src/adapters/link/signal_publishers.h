@@ -49,7 +49,7 @@ class SignalPublishers {
   struct Answer {
     bool is_used = false;
     bool is_learned = false;  // from now on it is the publisher
-    std::string conflict{};   // for people; empty: there is none, or it was told
+    std::string conflict{};   // for people; empty: none, or it was reported
   };
   // May `by` report `status`?
   Answer judge(const std::string& status, const Publisher& by, Time now, const IsThere& is_there);
@@ -69,7 +69,7 @@ class SignalPublishers {
   Answer refuse(const std::string& status, const Publisher& by, const std::string& bound);
 
   std::map<std::string, Bound> bound_;  // by status
-  std::map<std::string, Time> first_;   // by status without a publisher: when it was first heard
+  std::map<std::string, Time> first_;   // by status without a publisher: when it first came
   std::set<std::pair<std::string, std::string>> told_;  // status, node
   std::map<std::string, std::string> conflicts_;
 };

@@ -26,7 +26,7 @@ Expected<std::unique_ptr<SimulatedClock>> SimulatedClock::open(NodeEntry& self) 
 
 void SimulatedClock::tick(Duration shown, Time now) {
   const MutexLock lock(mutex_);
-  if (shown_ && shown == *shown_) return;  // told again: it stands still
+  if (shown_ && shown == *shown_) return;  // repeated: it stands still
   if (shown_) {
     const Duration step = shown - *shown_;
     const Duration pause = std::min(now - advanced_, kPatienceAtMost);

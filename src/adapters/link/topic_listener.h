@@ -55,7 +55,7 @@ class TopicListener {
   const std::string topic_;
   const std::string type_;
   const Keys keys_;
-  const bool reads_;  // what samples say
+  const bool reads_;  // the samples' content
   const Callbacks callbacks_;
   Mutex mutex_;
   std::unordered_map<Guid, std::int64_t> last_read_ CULPRIT_GUARDED_BY(mutex_);  // by writer

@@ -67,7 +67,7 @@ void TopicReading::tell(LiveInventory::Topic& topic) const {
   const MutexLock lock(mutex_);
   topic.fields = values_;
   topic.unreadable = unreadable_;
-  if (now - since_ < kWindow) return;  // too early to tell
+  if (now - since_ < kWindow) return;  // too early for a rate
   const auto recent = std::count_if(arrivals_.begin(), arrivals_.end(),
                                     [&](Time at) { return at >= now - kWindow; });
   topic.rate = static_cast<double>(recent) / seconds(kWindow);

@@ -73,7 +73,7 @@ class TopicWatch {
     TopicId topic;
     ComponentId publisher;
   };
-  std::optional<TopicId> whole_;            // whatever who publishes it
+  std::optional<TopicId> whole_;            // from any publisher
   std::vector<OfPublisher> of_publishers_;  // FROM
   bool counts_ = false;                     // the rules read the rhythm of any of them
   bool reads_goals_ = false;                // it is the status of an action

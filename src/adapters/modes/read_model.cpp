@@ -14,7 +14,7 @@
 namespace culprit::modes {
 namespace {
 
-constexpr std::size_t kLongest = 1 << 20;  // bytes; nobody writes such a model by hand
+constexpr std::size_t kLongest = 1 << 20;  // bytes; such a model is not written by hand
 constexpr int kDeepest = 8;                // namespaces
 
 // Leaves the reader at the first thing that is wrong; yaml-cpp's own errors leave it likewise.

@@ -3,8 +3,8 @@
 // Once it has settled, exactly one runs, also if somebody else starts one. The sequences of
 // composed nodes are in composed_nodes_test.cpp.
 //
-// CULPRIT_SEQUENCES says how many of each kind (12 unless set), CULPRIT_SEQUENCES_SEED with which the
-// first begins.
+// CULPRIT_SEQUENCES sets how many of each kind (12 unless set), CULPRIT_SEQUENCES_SEED with which
+// the first begins.
 #include <algorithm>
 #include <array>
 #include <csignal>
@@ -64,9 +64,9 @@ class Kept {
   virtual bool redeploy() = 0;
   virtual bool start() = 0;
   virtual void break_it(bool is_broken) = 0;
-  // Somebody who is not culprit starts one beside.
+  // Another program than culprit starts one beside.
   virtual void start_by_another() {}
-  // Culprit hears which processes there are.
+  // Culprit receives the present processes.
   virtual void hear() {}
   // The invariant that is broken now; empty: none.
   virtual std::string wrong() { return ""; }
@@ -134,7 +134,7 @@ class Launched : public Kept {
   // Its parent exits, so init is its parent. If several ran, only a person could end one of them.
   void start_by_another() override {
     if (!are_all_culprits()) return;
-    // Closed when it is the program: until then nobody would find it to end it.
+    // Closed when it is the program: before that, the test could not find it to end it.
     std::array<int, 2> begun{};
     ASSERT_EQ(pipe2(begun.data(), O_CLOEXEC), 0);
     const pid_t parent = fork();
@@ -179,7 +179,8 @@ class Launched : public Kept {
 class Respawned : public Launched {
  public:
   Respawned() : Launched("RESPAWNED") { begin_launcher(); }
-  // With what it has forked and what is no process of the program yet: nobody would find that later.
+  // With what it has forked and what is no process of the program yet: the test could not find that
+  // later.
   ~Respawned() override {
     if (launcher_ != 0) kill(-launcher_, SIGKILL);
     end_launcher();
@@ -222,7 +223,7 @@ class Respawned : public Launched {
   int launcher_ = 0;
 };
 
-// By somebody who is asked.
+// The owner is asked to start and end it.
 class Asked : public Kept {
  public:
   Asked(const std::string& clauses, Units::Of whose)

@@ -133,7 +133,7 @@ void ComposedNodes::remember(ComponentId component, int pid) {
 bool ComposedNodes::answered(const Reply& reply) {
   const MutexLock lock(mutex_);
   const auto asked = asked_.find(reply.command);
-  // Also one that nobody waits for any more.
+  // Also a reply after its time limit.
   if (asked == asked_.end())
     return reply.command.number >= kFirstRequest &&
            reply.command.number <= kFirstRequest + requests_;
@@ -146,7 +146,7 @@ ComposedNodes::Process ComposedNodes::process_of(const std::string& node) const 
   const MutexLock lock(mutex_);
   const auto found = nodes_.find(node);
   if (found == nodes_.end()) return {};
-  // Where its process has ended the graph says so in a moment.
+  // If its process has exited, the graph reports that in a moment.
   return {found->second == 0 || has_process(found->second), found->second};
 }
 
@@ -326,7 +326,7 @@ ComposedNodes::Answer ComposedNodes::unload(Container& container, const Errand& 
     return Answer{answer.outcome, container.node + " did not unload " + part.name +
                                       (answer.text.empty() ? "" : ": " + answer.text)};
   };
-  // A process that is stopped by a signal answers nobody, however long it is waited for.
+  // A process that is stopped by a signal never answers.
   if (state_letter(pid) == 'T') return stuck({Outcome::kTimedOut, "its process is stopped"});
   ContainerAnswer has = list(container, pid, patience);
   if (!has_process(pid)) return {};
@@ -448,7 +448,7 @@ ComposedNodes::Answer ComposedNodes::ensure(Container& container, Duration patie
 
 void ComposedNodes::start_part(Container& container, const Errand& errand) {
   if (errand.component == container.component) {
-    // The answer is its process's; that its components come back, too, is nobody's to wait for.
+    // The answer is its process's; the order does not wait for its components to come back, too.
     if (process_of(container.node).is_there) {
       reply(errand.command, {Outcome::kDone, "", process_of(container.node).pid});
     } else if (is_coming(container)) {

@@ -7,9 +7,9 @@
 // If the container does not unload it, or does not answer, the container itself is replaced: its
 // owner ends and starts it, and everything that lived in it is loaded again, in order, producers
 // first. That is done only if all of it can come back: the container is a component that can start
-// again, and each node that it lists is one that the rules say how to load. If the container has
-// exited, for whatever reason, culprit loads its former components when it starts the container.
-// A component that somebody unloaded on purpose before is not loaded.
+// again, and the rules describe how to load each node that it lists. If the container has exited,
+// for whatever reason, culprit loads its former components when it starts the container. A
+// component that somebody unloaded on purpose before is not loaded.
 //
 // A stop names the process that it is meant for. Once that process has exited, the stop is done,
 // and nothing is unloaded from the container's successor.
@@ -47,14 +47,14 @@ namespace culprit::owners {
 // All members may be called from any thread. Replies go to the inbox.
 class ComposedNodes {
  public:
-  // Until a container has to answer what it has at hand; until a node that it says it has unloaded
-  // must have left the graph.
+  // Until a container has to answer what it has at hand; until a node must have left the graph
+  // after the container reported it unloaded.
   static constexpr Duration kAnswer = std::chrono::seconds(2);
   static constexpr Duration kHungAnswer = std::chrono::milliseconds(500);
   static constexpr Duration kUnload = std::chrono::seconds(3);
   // Until a container that was started must be in the graph.
   static constexpr Duration kComingUp = std::chrono::seconds(30);
-  // How long one of a container that it starts itself may load.
+  // How long a node may take to load in a container that was started here.
   static constexpr Duration kLoad = std::chrono::seconds(30);
 
   // The owner of a container's own process: starts and ends it. The reply to a command has to come
@@ -79,7 +79,7 @@ class ComposedNodes {
   void observe(const Observation& observation);
   // The component lived in this process when an earlier run of culprit saw it.
   void remember(ComponentId component, int pid);
-  // Whether the reply is one to a container's owner, and nobody else's.
+  // Whether the reply is for a request of this object to a container's owner.
   bool answered(const Reply& reply);
 
  private:
@@ -103,8 +103,8 @@ class ComposedNodes {
     // Of its thread.
     std::map<ComponentId, int> unanswered{};        // loads, and the process that was asked
     std::set<ComponentId> barred{};                 // parts whose class or parameters are missing
-    std::optional<std::set<std::string>> listed{};  // what it said last that it has
-    int listed_by = 0;                              // the process that said so
+    std::optional<std::set<std::string>> listed{};  // its last list
+    int listed_by = 0;                              // the process that gave that list
     Time coming_up = kLongAgo;                      // until when, since it was started here
     int coming_pid = 0;                             // its process then; 0: not known
     std::thread thread{};

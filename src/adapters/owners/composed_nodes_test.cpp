@@ -259,7 +259,7 @@ TEST(ComposedNodes, AContainerThatDoesNotUnloadIsReplacedWithAllThatItHadInOrder
     OneContainer robot;
     robot.begin({"/tracker", "/detector"});
     if (says_so) robot.unloads({Outcome::kRefused, "cannot"});
-    robot.keeps_nodes = !says_so;  // it says that it did
+    robot.keeps_nodes = !says_so;  // it reports that it did
     EXPECT_EQ(robot.stop(kTracker).outcome, Outcome::kDone);
     robot.unloads({});
     EXPECT_EQ(robot.start(kTracker).outcome, Outcome::kDone);
@@ -274,7 +274,7 @@ TEST(ComposedNodes, AContainerThatIsStoppedIsNotWaitedForAndReplaced) {
   OneContainer box;
   box.begin({"/detector", "/tracker"});
   box.what_was_done();
-  // It would say all that it is asked for: what is not asked cannot be waited for.
+  // It would report every request, and must not be asked: what is not asked cannot be waited for.
   kill(box.pid, SIGSTOP);
   while (state_letter(box.pid) != 'T') std::this_thread::sleep_for(1ms);
   EXPECT_EQ(box.stop(kDetector).outcome, Outcome::kDone);
@@ -310,7 +310,7 @@ TEST(ComposedNodes, ARedeployedContainerHasAllThatItHad) {
               ElementsAre("begin", "end", "begin", "load detector", "load tracker"));
 }
 
-// By somebody who wanted it so.
+// Somebody unloaded it on purpose.
 TEST(ComposedNodes, WhatWasUnloadedLongBeforeTheContainerEndedIsNotLoaded) {
   OneContainer robot;
   robot.begin({"/detector"});

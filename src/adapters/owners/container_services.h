@@ -18,8 +18,8 @@ struct LoadedNode {
   std::uint64_t id = 0;
 };
 
-// kDone: it did what was asked. kRefused: it said that it does not, or it was somebody else who
-// answered. kUnreachable: it was not asked. kTimedOut: it was asked and did not answer in time.
+// kDone: it did what was asked. kRefused: it refused, or another process answered. kUnreachable: it
+// was not asked. kTimedOut: it was asked and did not answer in time.
 struct ContainerAnswer {
   Outcome outcome = Outcome::kDone;
   std::string text{};
@@ -41,7 +41,7 @@ class ContainerServices {
   // Whether it can be loaded: its parameters can be read, and the process `pid` would find its
   // class.
   virtual Expected<void> could_load(const Component& component, int pid) const = 0;
-  // In words, if several nodes have the container's name: all of them would hear a request.
+  // In words, if several nodes have the container's name: all of them would receive a request.
   virtual std::optional<std::string> contest(const std::string& container) const = 0;
 
   // The calls that wait return now, and later ones at once.

@@ -30,7 +30,7 @@ std::string variable(const char* name) {
 }
 
 // Where the engine listens: what its own tools take it from, or where its packages put it. Errors:
-// it is told to be elsewhere than on this machine.
+// the engine is set to be on another machine.
 Expected<std::string> socket_of(EngineContainer::Engine engine) {
   const bool is_docker = engine == EngineContainer::Engine::kDocker;
   const char* name = is_docker ? "DOCKER_HOST" : "CONTAINER_HOST";

@@ -20,7 +20,7 @@ class Engine : public ServiceOwner {
  public:
   static constexpr Duration kPatience = std::chrono::seconds(2);
 
-  // `host`: the computer, as ssh is told; empty: this one.
+  // `host`: the computer, as ssh takes it; empty: this one.
   explicit Engine(EngineContainer::Engine which, std::string host = {})
       : which_(which), host_(std::move(host)) {}
 
@@ -30,8 +30,8 @@ class Engine : public ServiceOwner {
   Expected<void> stop(const std::string& container, Duration polite) override;
   Expected<void> restart(const std::string& container, Duration polite) override;
   Expected<void> kill(const std::string& container) override;
-  // By the control group that the kernel says it is in; or it is the first process of the container,
-  // or comes from that.
+  // By its control group, as the kernel shows it; or it is the first process of the container, or
+  // comes from that.
   Expected<bool> runs(const std::string& container, int pid) override;
   Expected<std::vector<std::string>> services() override;
   Expected<void> may_manage(const std::string& container) override;
@@ -47,7 +47,7 @@ class Engine : public ServiceOwner {
     int status = 0;  // 0: none came in time
     std::string body;
   };
-  // One that is open, and how to say what is wrong with it.
+  // An open connection, and the words for its errors.
   class Connection;
   Expected<Answer> ask(const std::string& method, const std::string& target, Duration patience);
   // Asks for a change. A change that is not answered in time may happen all the same.

@@ -57,7 +57,7 @@ std::vector<MarkedProcess> marked_processes(const std::string& prefix);
 std::vector<int> launched_as(const std::string& component);
 
 // Living processes that those of the component had started, also in sessions of their own. `process`: of the one with
-// this variable (variable_of) only; empty: of those that have ended.
+// this variable (variable_of) only; empty: of those that have exited.
 std::vector<int> left_by(const std::string& component, const std::string& process);
 // Whether another process than that with this variable was launched with a mark, and it is part of that one's.
 bool is_anothers(int pid, const std::string& process);

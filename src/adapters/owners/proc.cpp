@@ -144,7 +144,7 @@ std::optional<Users> users_of(int pid) {
   return std::nullopt;
 }
 
-// Both: a program that any user may run as its owner (setuid) keeps who ran it as the real one.
+// Both: a program that any user may run as its owner (setuid) keeps the caller as its real user.
 bool is_of_own_user(int pid) {
   const auto users = users_of(pid);
   return users && users->real == geteuid() && users->effective == geteuid();
@@ -302,7 +302,7 @@ Expected<void> proc_is_of_our_processes() {
   std::error_code error;
   const bool is_our_number =
       fs::read_symlink("/proc/self", error).native() == std::to_string(getpid());
-  // A kernel without PID namespaces tells none.
+  // A kernel without PID namespaces shows none.
   if (is_our_number && numbers_of("self").size() <= 1) return {};
   return Error{
       "/proc does not show culprit's own process: it is of another PID namespace, or is not "
@@ -316,7 +316,7 @@ std::optional<Identity> identity_of(int pid) {
   std::error_code error;
   std::string program = fs::read_symlink(process + "/exe", error).native();
   if (error) return std::nullopt;
-  constexpr std::string_view kDeleted = " (deleted)";  // it was installed anew since
+  constexpr std::string_view kDeleted = " (deleted)";  // it was reinstalled since
   if (program.ends_with(kDeleted)) program.resize(program.size() - kDeleted.size());
   const auto users = users_of(pid);
   if (!users) return std::nullopt;
@@ -337,7 +337,7 @@ std::vector<Relative> descendants_of(int pid) {
   }
   std::vector<Relative> found;
   std::vector<int> open = {pid};
-  // Numbers are given out anew while they are read: no more are found than there are.
+  // PIDs are reused while they are read: no more are found than there are.
   while (!open.empty() && found.size() <= parents.size()) {
     const int parent = open.back();
     open.pop_back();

@@ -14,7 +14,7 @@ namespace culprit::owners {
 // 'R', 'S', 'T' (stopped), 'Z' (ended, not reaped) ...; nothing if there is no such process.
 std::optional<char> state_letter(int pid);
 
-// Why it is not replaced: a debugger holds it, and whoever debugs it would lose it. Nothing: none does.
+// Why it is not replaced: a debugger holds it, and its user would lose it. Nothing: none does.
 std::optional<std::string> hold_of_debugger(int pid);
 
 // The exit status that its parent will receive, as in wait(2). Nothing: it has not ended, its
@@ -41,7 +41,7 @@ Origin origin_of(int pid);
 // On live_now()'s clock, to a hundredth of a second.
 std::optional<Time> started_at(int pid);
 
-// All processes that can be seen.
+// All processes that are visible.
 std::vector<int> all_processes();
 
 // When it began, in ticks of the kernel since the machine was started: with its number, which process it is.
@@ -60,9 +60,9 @@ bool has_variable(int pid, const std::string& variable);
 // All such processes.
 std::vector<int> processes_with(const std::string& variable);
 
-// Where processes are counted: "pid:[4026531836]". Empty if it cannot be told.
+// Where processes are counted: "pid:[4026531836]". Empty if it is unknown.
 std::string pid_namespace_of(int pid);
-// The number that a process has in the innermost namespace that it is in; 0 if it cannot be told.
+// The number that a process has in the innermost namespace that it is in; 0 if it is unknown.
 int own_number_of(int pid);
 // An error where /proc counts processes in another PID namespace than this process is in: its numbers are those of others here.
 Expected<void> proc_is_of_our_processes();
@@ -74,7 +74,7 @@ struct Identity {
   std::string script;   // with its path; empty for other programs
   bool operator==(const Identity&) const = default;
 };
-// Nothing: there is no such process, or it may not be seen.
+// Nothing: there is no such process, or it is not visible.
 std::optional<Identity> identity_of(int pid);
 // "/usr/bin/python3 /opt/ros/bin/ros2 of user 1000"
 std::string to_string(const Identity& identity);
@@ -84,7 +84,7 @@ std::string to_string(const Identity& identity);
 std::optional<SystemdUnit> unit_started_as(int pid);
 
 // The container of an engine (docker, podman) that it lives in, by its control group: its id, 64
-// digits. Empty: in none that can be told.
+// digits. Empty: in none, or unknown.
 std::string container_of(int pid);
 
 struct Relative {

@@ -17,7 +17,7 @@ struct ProcessEnd {
 };
 
 // SIGINT, SIGTERM, SIGHUP and SIGQUIT are how people and launchers ask; so are the exit codes with
-// which programs pass on that it was one of these (130, 143; ros2 run says 254, 241).
+// which programs pass on that it was one of these (130, 143; ros2 run gives 254, 241).
 ProcessEnd exited(int code);
 ProcessEnd killed(int signal);
 

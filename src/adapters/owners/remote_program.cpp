@@ -129,7 +129,7 @@ bool RemoteProgram::was_let_in(Time until) {
   return status(until).value_or(kFailureOfSsh) != kFailureOfSsh;
 }
 
-// ssh says whom it speaks of now and then; we always do.
+// ssh names the computer in some of its messages; we always do.
 std::string RemoteProgram::without_its_name(std::string said) const {
   const std::string name = host_ + ": ";
   if (said.starts_with(name)) said.erase(0, name.size());

@@ -24,8 +24,8 @@ class RemoteProgram {
   // Time limit for the other computer to let us in or to refuse.
   static constexpr Duration kPatience = std::chrono::seconds(4);
 
-  // `host` is as ssh is told it: "robot@rover2". Does not wait. Errors: there is no ssh, or the system
-  // gives no process.
+  // `host` is as ssh takes it: "robot@rover2". Does not wait. Errors: there is no ssh, or the
+  // system gives no process.
   static Expected<RemoteProgram> begin(const std::string& host, std::vector<std::string> words);
   RemoteProgram(RemoteProgram&& other) noexcept;
   RemoteProgram& operator=(RemoteProgram&& other) noexcept;
@@ -34,11 +34,11 @@ class RemoteProgram {
   // Where it is talked to, without waiting.
   int socket() const { return socket_.get(); }
 
-  // Says no more, and gives whether ssh was let in, and what it ran there has ended by then.
+  // Ends the input, and gives whether ssh was let in, and the program there has ended by then.
   bool was_let_in(Time until);
 
-  // Why it does not answer, and what to do: what ssh said, that it ended, or that it hangs. For when
-  // it did not answer.
+  // Why it does not answer, and what to do: ssh's message, that it ended, or that it hangs. For
+  // when it did not answer.
   std::string trouble();
 
  private:
@@ -63,7 +63,7 @@ class RemoteProgram {
   FileDescriptor errors_;
 };
 
-// Whether culprit's user is let in there without being asked. Errors say what is wrong and what to do.
+// Whether culprit's user is let in there without being asked. Errors give the fault and the remedy.
 // Waits for it, RemoteProgram::kPatience and a second at most.
 Expected<void> could_reach(const std::string& host);
 

@@ -31,16 +31,16 @@ struct UnitState {
   bool is_over() const { return activity == Activity::kInactive || activity == Activity::kFailed; }
 };
 
-// Every call has a time limit, and blocks its thread for so long at most. Errors say what is wrong
-// and what to do; nothing was done then.
+// Every call has a time limit, and blocks its thread for so long at most. Errors give the fault and
+// the remedy; nothing was done then.
 class ServiceOwner {
  public:
   virtual ~ServiceOwner() = default;
 
   virtual Expected<UnitState> state_of(const std::string& service) = 0;
   virtual Expected<void> start(const std::string& service) = 0;
-  // `polite`: how long its processes have to end by themselves, if that can be said with the request
-  // (an engine kills them then; systemd waits as its unit says).
+  // `polite`: how long its processes have to end by themselves, if the request can contain that (an
+  // engine kills them then; systemd waits as its unit configures).
   virtual Expected<void> stop(const std::string& service, Duration polite) = 0;
   virtual Expected<void> restart(const std::string& service, Duration polite) = 0;
   // SIGKILL to all its processes.

@@ -38,7 +38,7 @@ bool take_from(int descriptor, std::string& text) {
 }
 
 enum class Over : std::uint8_t { kItself, kTime };
-// Reads until both ends are closed by all who have them, or `end`. The last part of the errors is
+// Reads until all holders of both ends have closed them, or `end`. The last part of the errors is
 // kept.
 Over read_all(int out, int err, Time end, std::string& printed, std::string& errors) {
   std::array<pollfd, 2> files{{{out, POLLIN, 0}, {err, POLLIN, 0}}};
@@ -54,7 +54,7 @@ Over read_all(int out, int err, Time end, std::string& printed, std::string& err
   return Over::kItself;
 }
 
-// ": No such file or directory", of what it said last.
+// ": No such file or directory", from its last output.
 std::string last_words(const std::string& errors) {
   const std::string line = last_line(errors);
   return line.empty() ? "" : ": " + line;

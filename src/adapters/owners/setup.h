@@ -20,8 +20,8 @@ inline constexpr Duration kSetup = std::chrono::seconds(10);
 // Returns "NAME=value" for each variable that `file` leaves, after culprit's own environment and
 // `given`. The shell that reads it has no input, none of culprit's files and none of its
 // capabilities, and is killed after `limit`. The variables in `given` keep their values, whatever
-// the file sets. Errors, with what the file said last: it failed, took too long, or printed more
-// than an environment.
+// the file sets. Errors, with the last output of the file: it failed, took too long, or printed
+// more than an environment.
 Expected<std::vector<std::string>> environment_after(const std::filesystem::path& file,
                                                      const std::vector<std::string>& given,
                                                      Duration limit = kSetup);

@@ -52,7 +52,7 @@ struct Preparation {
   char* pid_digits;           // where the pid's are to be written; null: nowhere
   int kept;
   Until until;
-  pid_t ends_with;  // whose end ends it; 0: nobody's
+  pid_t ends_with;  // the process whose end ends it; 0: none
   mode_t mask;
 };
 constexpr std::size_t kPidDigits = 10;
@@ -103,7 +103,7 @@ const char* first_readable(char* const* places) {
   return nullptr;
 }
 
-// A time of the file that lies ahead says nothing: the clock was set back.
+// A modification time in the future proves nothing: the clock was set back.
 bool is_being_written(const char* path) {
   struct stat status {};
   if (stat(path, &status) != 0) return true;
@@ -137,8 +137,8 @@ bool has_interpreter(const char* path) {
   return access(begin, X_OK) == 0;
 }
 
-// Where the child says why it failed; closed by a successful execve(). The descriptors that it
-// keeps are beside it.
+// The child's report why it failed; closed by a successful execve(). The descriptors that it keeps
+// are beside it.
 constexpr int kReport = STDERR_FILENO + 1;
 constexpr int kKept = kReport + 1;
 
@@ -174,7 +174,7 @@ Failure become(const Preparation& ready, int report) {
   setsid();
   if (ready.ends_with != 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != ready.ends_with) _exit(127);  // it ended before it could be told
+    if (getppid() != ready.ends_with) _exit(127);  // it exited before the request took effect
   }
   prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0);
   // Our DDS sockets are not marked close-on-exec; a child that kept one would keep its port.
@@ -344,7 +344,7 @@ Launch::~Launch() {
     return;
   }
   kill(pid_, SIGKILL);
-  // One that hangs in a file system dies when that lets it go: nobody can wait for it.
+  // One that hangs in a file system dies when that lets it go: the supervisor cannot wait for it.
   waitpid(pid_, nullptr, WNOHANG);
 }
 

@@ -11,9 +11,9 @@
 
 namespace culprit::owners {
 
-// How long a process lives that nobody ends.
+// How long a process runs if it is not ended.
 enum class Lifetime : std::uint8_t {
-  kOwn,     // it outlives whoever started it, however that ends
+  kOwn,     // it outlives its starter, however that ends
   kStarter  // it is killed with the thread that started it: for worlds that are gone with theirs
 };
 
@@ -42,7 +42,7 @@ struct Program {
 enum class Until : std::uint8_t {
   kItRuns,
   kItCouldRun,  // all is done but the last step: the program is not run
-  kItIsReady    // likewise, and its files were not written for kSettles: no build is at them
+  kItIsReady    // as above, and its files were not written for kSettles: no build is at them
 };
 
 // A start under way: the process is there, whether the program runs will be known. It may take as

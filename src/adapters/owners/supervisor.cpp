@@ -22,7 +22,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Numbers are given out anew.
+// PIDs are reused.
 bool was_there(int pid, Time known) {
   const auto started = started_at(pid);
   return started && *started <= known;
@@ -79,7 +79,7 @@ std::filesystem::path Supervisor::log_of(ComponentId component) const {
   return options_.log_folder / (rules_[component].name + ".log");
 }
 
-// `launcher`: that it stands in for; 0: none.
+// `launcher`: the launcher whose process it stands in for; 0: none.
 Program Supervisor::program_of(ComponentId component, int launcher) const {
   const Component& what = rules_[component];
   Program program{what.launch, options_.search_first, log_of(component), {}, {}};
@@ -105,7 +105,7 @@ Expected<std::vector<std::string>> Supervisor::environment_of(ComponentId compon
 
 // From the decision to start until the program runs, and carries the mark, no other culprit may start it. The kernel
 // lets go of the lock when the last process that holds it has ended or runs the program. The file is its user's alone
-// from the beginning: whoever can open a file can lock it.
+// from the beginning: any user that can open a file can lock it.
 Expected<FileDescriptor> Supervisor::lock_start_of(ComponentId component) const {
   const std::filesystem::path log = log_of(component);
   std::error_code error;
@@ -383,7 +383,7 @@ void Supervisor::tell_ended_launchers() {
   }
 }
 
-// Also if it is not known who its launcher is: two of one name would be worse than none.
+// Also if its launcher is unknown: two of one name would be worse than none.
 bool Supervisor::is_left_to_launcher(ComponentId component) const {
   if (!rules_[component].is_respawned) return false;
   const auto launcher = launchers_.find(component);
@@ -395,7 +395,7 @@ std::optional<std::string> Supervisor::why_not_end(ComponentId component, Ending
   for (const Member& member : members_) {
     if (member.component != component) continue;
     if (auto why = doubt(member)) return why;
-    if (ending == Ending::kForGood) continue;  // that is what is wanted, whoever looks at it
+    if (ending == Ending::kForGood) continue;  // it is to end in any case
     if (auto why = hold_of(member)) return why;
   }
   const Component& what = rules_[component];
@@ -636,8 +636,8 @@ void Supervisor::end_member(Member& member) {
   }
 }
 
-// Its children may leave its group, and clear their environment: then their parents tell. Not what is another component's, as where
-// it is a culprit of its own.
+// Its children may leave its group, and clear their environment: then they are found by their
+// parents. Not processes of another component, for example if it is a culprit of its own.
 void Supervisor::signal_tree(Member& member, int signal) const {
   if (member.variable.empty()) return;
   const std::vector<int> group = members_of_group(member.process.pid());
@@ -674,7 +674,7 @@ void Supervisor::kill_left(ComponentId component, const std::string& process) co
   }
 }
 
-// Ctrl-Z stops what was started together, and who started it.
+// Ctrl-Z stops the processes that were started together, and their launcher.
 Cause Supervisor::cause_of_stop(const Member& member) const {
   const auto launcher = launchers_.find(member.component);
   const bool is_wish = launcher != launchers_.end() && launcher->second.held &&
@@ -737,7 +737,7 @@ void Supervisor::run() {
     const auto wait =
         until == kNever ? Duration(-1) : std::max(Duration::zero(), until - live_now());
     lock.unlock();
-    // Without the lock: nobody waits for a disk.
+    // Without the lock: a slow disk must block no caller.
     for (const std::filesystem::path& log : std::exchange(logs, {})) bound_log(log);
     // Round up: a deadline that is a fraction of a millisecond away must not be polled for in a
     // hurry.

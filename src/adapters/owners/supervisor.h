@@ -91,13 +91,13 @@ class Supervisor {
   static constexpr Duration kStopSettles = std::chrono::milliseconds(50);
   // How often it is looked whether what a start needs is there by now.
   static constexpr Duration kMissingPeriod = std::chrono::milliseconds(500);
-  // The supervisor waits so long for the children that it kills.
+  // How long the supervisor waits for the children that it kills.
   static constexpr Duration kLeftEnds = std::chrono::milliseconds(200);
   // How long the trial of a start may take.
   static constexpr Duration kTrial = std::chrono::seconds(5);
 
   struct Options {
-    std::filesystem::path log_folder;  // on this machine: nobody waits for it elsewhere
+    std::filesystem::path log_folder;  // on this machine: a remote file system could hang
     std::vector<std::filesystem::path> search_first;  // for launch commands without a path
     // Which robot, of all on this machine: "0/sunset". Empty: nothing is marked, and what other
     // supervisors started is not looked for.
@@ -126,11 +126,12 @@ class Supervisor {
             Hangs hangs = Hangs::kNo);
 
   // Watches the process that had this number at `known` as the component's, for its node is there;
-  // one that began later is another. Tells that it is gone if it is. Does nothing if it is watched already.
+  // one that began later is another. Reports that it has exited if it has. Does nothing if it is
+  // watched already.
   void adopt(ComponentId component, int pid, Time known);
 
-  // As adopt(), for a process that an earlier run of culprit knew, if it is not a zombie now. Says
-  // nothing where another process of the component is watched.
+  // As adopt(), for a process that an earlier run of culprit knew, if it is not a zombie now.
+  // Reports nothing if another process of the component is watched.
   void adopt_again(ComponentId component, int pid, Time known);
 
   // Whether all processes of the component that run were started here, or by a supervisor of the
@@ -150,7 +151,7 @@ class Supervisor {
   // kOfLaunch SIGKILL. Does nothing where that is under way.
   void end_with_launch(ComponentId component);
 
-  // Ends every process that was started here, and waits until all are gone.
+  // Ends every process that was started here, and waits until all have exited.
   void stop_all();
 
  private:
@@ -169,7 +170,7 @@ class Supervisor {
     std::optional<Work> work{};
     std::vector<Relative> left{};  // what somebody else's had started when its end was ordered
     Time left_at{};
-    std::optional<Time> stands_since{};  // while it is not told yet that it was stopped
+    std::optional<Time> stands_since{};  // while its stop is not reported yet
     int launcher = 0;        // that it stands in for, while its program does not run yet
     std::string variable{};  // what it and all that it started have in their environment
     std::vector<FileDescriptor> tree{};  // what it had started when its end was ordered
@@ -191,7 +192,7 @@ class Supervisor {
   };
   // A shutdown under way.
   struct Shutdown {
-    CommandId command;  // number 0: nobody waits for a reply
+    CommandId command;  // number 0: no reply is due
     ComponentId component;
     Hangs hangs = Hangs::kNo;
     std::set<std::uint64_t> meant{};  // members
@@ -206,7 +207,7 @@ class Supervisor {
     std::optional<Time> began{};
     std::vector<int> children{};  // when it was looked last, each kLogPeriod
     bool ran_others = false;      // when the component's process had ended
-    FileDescriptor held{};        // until it ended, which is told
+    FileDescriptor held{};        // until its end, which is reported
   };
 
   std::string marked_as(ComponentId component) const;

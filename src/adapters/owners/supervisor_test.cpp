@@ -35,7 +35,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Supervises component c with the given launch command and tells what came of it.
+// Supervises component c with the given launch command and reports the results.
 class Supervised {
  public:
   explicit Supervised(const std::string& launch, const std::string& robot = "")
@@ -319,7 +319,7 @@ TEST(Supervisor, WaitsForWhomeverInitStartedItFor) {
   EXPECT_EQ(c.start(), 0);
 }
 
-// It ends with what it runs, and whoever started it starts it again.
+// It ends with its program, and its launcher starts it again.
 TEST(Supervisor, TakesRos2RunForNoLauncher) {
   const test::TestFolder folder;
   const std::string tool = folder.path() / "ros2";
@@ -397,7 +397,7 @@ TEST(Supervisor, WhatItStartsWhileTheLauncherRunsStandsInForTheLaunch) {
   EXPECT_TRUE(ended.has_ended);
   EXPECT_TRUE(ended.has_crashed);
   EXPECT_FALSE(place_held_by(pid).goes_on);
-  // A culprit that comes after the end is told of it at once.
+  // A culprit that starts after the end receives it at once.
   c.supervise();
   EXPECT_TRUE(c.launcher().has_ended);
   c.supervisor->end_with_launch(ComponentId(0));
@@ -437,7 +437,7 @@ TEST(Supervisor, AStopThatIsMeantForAProcessNeverReachesItsSuccessor) {
   EXPECT_NE(state_letter(second).value_or('Z'), 'Z');
 }
 
-// Whether somebody wanted the end of a process, whoever started it.
+// Whether somebody wanted the end of a process, whichever program started it.
 TEST(Supervisor, TellsWhetherAnEndWasWanted) {
   Supervised own("sleep 1000");
   kill(own.start(), SIGKILL);
@@ -473,7 +473,7 @@ TEST(Supervisor, TellsWhoStartedAProcessAndThatThisOneEnded) {
   EXPECT_NE(c.state(ProcessState::kGone).cause, Cause::kWish);
 }
 
-// Before its parent heard of it, and, where the kernel keeps it, after that.
+// Before its parent received it, and, where the kernel keeps it, after that.
 TEST(ProcessEnd, OfSomebodyElsesProcessIsToldByTheKernel) {
   const int pid = fork();
   if (pid == 0) {
@@ -840,7 +840,7 @@ TEST(Launch, WhatRunsGoesOnWhetherOrNotAnybodyAsked) {
   ASSERT_EQ(waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED), 0) << "it is ours to reap";
 }
 
-// As after a crash: nothing is known but what the operating system says.
+// As after a crash: only the operating system's data are known.
 TEST(Supervisor, TakesOverWhatAnotherOneOfTheSameRobotStarted) {
   const std::string robot = "test/" + std::to_string(getpid());
   auto first = std::make_unique<Supervised>("sleep 1000", robot);
@@ -984,7 +984,7 @@ TEST(Supervisor, AProcessThatBeganLaterIsAnother) {
 
 // ---- proof before harm
 
-// No more than `count`, for as long as it lives.
+// No more than `count` while this exists.
 class DescriptorsLeft {
  public:
   explicit DescriptorsLeft(std::size_t count) {
@@ -1116,7 +1116,7 @@ TEST(Supervisor, LeavesTheGroupOfSomebodyElseAloneAndSaysWhatStays) {
   kill(child, SIGKILL);
 }
 
-// A culprit that was killed had started it: nobody's child any more, and the group is ours.
+// A culprit that was killed had started it: its parent has exited, and the group is ours.
 TEST(Supervisor, EndsTheGroupThatAnEarlierOneHadMade) {
   const std::string robot = "test/group/" + std::to_string(getpid());
   Supervised c("sleep 1000", robot);
@@ -1170,7 +1170,7 @@ TEST(Supervisor, StartsNothingWhileAnotherCulpritStartsIt) {
   EXPECT_NE(c.start(), 0);
 }
 
-// A reader of the log, of an older culprit's say, may lock that for as long as it likes.
+// A reader of the log, for example an older culprit, may lock it for as long as it likes.
 TEST(Supervisor, WaitsForNoLockOfAReaderOfItsLog) {
   Supervised c("sleep 1000");
   std::filesystem::create_directories(c.folder());
@@ -1236,7 +1236,7 @@ TEST(Supervisor, AMarkOfAnotherUsersProcessDoesNotCount) {
   kill(stranger, SIGKILL);
 }
 
-// As on a file system that does not answer: a script whose interpreter is a pipe nobody writes to
+// As on a file system that does not answer: a script whose interpreter is a pipe without a writer
 // would hang; so does a program on a stopped server. Here the log is what the child waits for.
 TEST(Supervisor, WaitsForNoFileSystemOfAProgram) {
   Supervised c("sleep 1000");

@@ -30,10 +30,10 @@ class SystemdBus : public ServiceOwner {
   enum class Whose : std::uint8_t { kSystem, kUser };
   static constexpr Duration kPatience = std::chrono::seconds(2);
 
-  // `host`: the computer, as ssh is told; empty: this one.
+  // `host`: the computer, as ssh takes it; empty: this one.
   explicit SystemdBus(Whose whose, std::string host = {}) : whose_(whose), host_(std::move(host)) {}
 
-  // Errors say what is wrong and what to do. Where systemd refused, nothing was done.
+  // Errors give the fault and the remedy. Where systemd refused, nothing was done.
   Expected<UnitState> state_of(const std::string& unit) override;
   Expected<void> start(const std::string& unit) override { return ask("StartUnit", unit); }
   Expected<void> stop(const std::string& unit, Duration) override { return ask("StopUnit", unit); }

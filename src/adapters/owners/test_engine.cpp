@@ -55,7 +55,7 @@ void TestEngine::add(const std::string& name, TestContainer container) {
 int TestEngine::start(const std::string& name) {
   const MutexLock lock(mutex_);
   TestContainer& container = containers_[name];
-  notice(container);  // its policy may be quicker: of two nobody would end the first
+  notice(container);  // its policy may be quicker, and must not start two
   if (container.pid == 0) run(container);
   return container.pid;
 }

@@ -1,5 +1,5 @@
-// A stand-in for ssh and for the computer that it connects to, for tests: the commands run here, as a
-// shell of that computer would run them, unless it is told to refuse, to hang, or to be cut.
+// A stand-in for ssh and for the computer that it connects to, for tests: the commands run here, as
+// a shell of that computer would run them, unless it is set to refuse, to hang, or to be cut.
 #pragma once
 
 #include <string>

@@ -13,7 +13,7 @@ namespace {
 
 using Activity = UnitState::Activity;
 
-// Numbers are given out anew; two readings of one start differ by the clocks' rounding.
+// PIDs are reused; two readings of one start differ by the clocks' rounding.
 bool is_running(int pid, std::optional<Time> began) {
   constexpr Duration kSame = std::chrono::milliseconds(100);
   const auto begins = started_at(pid);
@@ -91,7 +91,7 @@ ServiceOwner& Units::owner_of(ComponentId component) {
   return what.unit->is_of_user ? user_ : system_;
 }
 
-// Numbers of processes here say nothing of those on another computer.
+// PIDs of this computer mean nothing on another one.
 bool Units::runs_here(int pid, std::optional<Time> began) const {
   return is_here() && is_running(pid, began);
 }
@@ -204,7 +204,7 @@ void Units::look_at(ComponentId component, const UnitState& state) {
 // again.
 void Units::note_reach(const std::optional<std::string>& trouble) {
   if (trouble) {
-    // A connection that was lost says little of why.
+    // The error of a lost connection hardly gives the cause.
     constexpr int kEnough = 2;
     if (++failures_ < kEnough) return;
     returned_ = kLongAgo;
@@ -275,7 +275,7 @@ bool Units::advance(Errand& errand) {
   ServiceOwner& owner = owner_of(errand.component);
   const auto state = owner.state_of(name);
   if (!state) {
-    // A connection that was lost is made anew.
+    // A lost connection is made again.
     if (!is_here() && !owner.was_reached() && live_now() < later(errand.since, kReconnect))
       return false;
     if (errand.was_asked && live_now() < std::min(errand.until, errand.latest)) return false;

@@ -51,12 +51,12 @@ class Units {
   // How often it is looked: while something is asked for, and else.
   static constexpr Duration kPeriod = std::chrono::milliseconds(50);
   static constexpr Duration kIdlePeriod = std::chrono::seconds(1);
-  // Likewise over ssh. An engine takes a connection of its own for each look.
+  // Likewise over ssh. An engine needs a connection of its own for each look.
   static constexpr Duration kRemotePeriod = std::chrono::milliseconds(200);
   static constexpr Duration kRemoteIdlePeriod = std::chrono::seconds(2);
   static constexpr Duration kEngineIdlePeriod = std::chrono::seconds(5);
   static constexpr Duration kReconnect = std::chrono::seconds(1);
-  // How long the nodes of a computer that can be asked again have to be seen again.
+  // Once a computer can be asked again, its nodes have so long to be discovered.
   static constexpr Duration kReturn = std::chrono::seconds(10);
   // A process that somebody else started so recently is not replaced: it takes the place of the
   // missing one.
@@ -79,9 +79,9 @@ class Units {
   // Starts the component's unit and replies when systemd has started it, or does so by itself.
   void start(CommandId command, ComponentId component);
 
-  // Ends the process `pid` of the component's unit, and the unit; 0: whichever it runs. Replies when
-  // systemd and the kernel say that it is gone. `hangs` counts on this computer only: a node on
-  // another computer that does not answer may be hard to reach.
+  // Ends the process `pid` of the component's unit, and the unit; 0: whichever it runs. Replies
+  // when systemd and the kernel report that it has exited. `hangs` counts on this computer only: a
+  // node on another computer that does not answer may be hard to reach.
   void stop(CommandId command, ComponentId component, int pid, Ending ending,
             Hangs hangs = Hangs::kNo);
 
@@ -165,8 +165,8 @@ class Units {
   std::set<ComponentId> ended_here_;  // on culprit's request, and not seen to run since
   std::map<ComponentId, Elsewhere> elsewhere_;
   int failures_ = 0;          // in a row, to ask the computer
-  bool is_reached_ = true;    // as it was told
-  Time returned_ = kLongAgo;  // when it could be asked again, if that was not told yet
+  bool is_reached_ = true;    // as reported
+  Time returned_ = kLongAgo;  // when it could be asked again, if that is not reported yet
   // The node's process, and the main process of the unit then: `ros2 run` is another one.
   std::map<ComponentId, std::pair<int, int>> found_with_;
   std::map<ComponentId, Found> last_found_;
@@ -181,8 +181,8 @@ class Units {
   std::thread thread_;
 };
 
-// All that the rules name, each owner of each computer by itself: who does not answer holds up nobody
-// else.
+// All that the rules name, each owner of each computer by itself: an owner that does not answer
+// delays no other.
 class AllUnits {
  public:
   // `rules` and `inbox` must outlive this.

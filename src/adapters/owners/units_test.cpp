@@ -241,7 +241,7 @@ TEST_F(UnitsOnAStandInForSystemd, ThatFailedBeforeAnybodyLookedAreDead) {
 TEST_F(UnitsOnAStandInForSystemd, ThatEndInAnOrderlyWayAreToldAsAnOrder) {
   for (const bool by_culprit : {false, true}) {
     const int pid = by_culprit ? now_running() : running();
-    std::this_thread::sleep_for(2 * Units::kIdlePeriod);  // it was seen to run
+    std::this_thread::sleep_for(2 * Units::kIdlePeriod);  // Units has noticed that it runs
     if (by_culprit) {
       units->stop(CommandId{++count}, ComponentId(0), pid, Ending::kForGood, Hangs::kNo);
     } else {

@@ -47,7 +47,7 @@ std::string as_written(const std::function<void(McapWriter&, std::uint16_t chann
   return bytes;
 }
 
-// How every message begins; the reader tells others.
+// How every message begins; the reader recognizes others.
 const std::string kCdr("\0\1\0\0", 4);
 
 RC_GTEST_PROP(McapWriter, IsReadBackAsItWasWritten, ()) {
@@ -92,7 +92,8 @@ TEST(McapWriter, LosesNothingThatWasFlushedWhereverItIsCut) {
   }
 }
 
-// A process that writes is killed at some moment; what it said to be flushed is in its file.
+// A process that writes is killed at some moment; the part that it reported as flushed is in its
+// file.
 TEST(McapWriter, LeavesAFileThatCanBeReadWhenItsProcessIsKilled) {
   const test::TestFolder own;
   for (int round = 0; round < 20; ++round) {

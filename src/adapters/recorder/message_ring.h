@@ -1,8 +1,8 @@
 // The last messages of a robot, in bounded memory: messages that are too old, or for which there is
 // no room, go, the oldest first.
 //
-// Large messages have room of their own, so that one camera does not drive out everything else. Of
-// latched topics (a map, static transforms) the last message of each publisher stays, however old.
+// Large messages have room of their own, so that one camera does not drive out everything else. The
+// last message of each publisher of a latched topic (a map, static transforms) stays, however old.
 //
 // It is the only buffer between the receive threads and the writer, which takes the messages that
 // it has not seen yet. If the writer is too slow, messages are lost and counted, and no receive
@@ -25,7 +25,7 @@ namespace culprit::recorder {
 
 struct RingMessage {
   std::uint64_t number = 0;    // in the order in which they came, from 1; the ring gives it
-  std::size_t topic = 0;       // as whoever fills the ring counts them
+  std::size_t topic = 0;       // the caller's number for it
   std::uint32_t sequence = 0;  // of its publisher
   Time at{};                   // when it came, by the clock that never jumps
   std::int64_t received = 0;   // the same by the wall clock, nanoseconds since 1970
@@ -36,7 +36,7 @@ using SharedMessage = std::shared_ptr<const RingMessage>;
 
 enum class Share : std::uint8_t { kSmall, kLarge };
 
-// From any thread; nobody waits for more than another's call.
+// From any thread; a call waits at most for another thread's call.
 class MessageRing {
  public:
   struct Limits {
@@ -51,7 +51,7 @@ class MessageRing {
   explicit MessageRing(Limits limits) : limits_(limits) {}
 
   void push(RingMessage message, Share share);
-  // It stays until its publisher says something else. It is not given by after().
+  // It stays until its publisher publishes another one. It is not given by after().
   void latch(RingMessage message, const ros2::Guid& publisher);
 
   // Those after `number` that came at `since` or later, in the order in which they came; so many bytes of them, and at least one if there

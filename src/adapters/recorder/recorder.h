@@ -29,7 +29,7 @@ namespace culprit::recorder {
 // All members may be called from any thread.
 class Recorder {
  public:
-  // A recording that nobody ends is ended after so long.
+  // A recording that is not ended is ended after so long.
   static constexpr Duration kLongest = std::chrono::minutes(5);
   // A killed process loses at most so much.
   static constexpr Duration kFlushes = std::chrono::seconds(1);
@@ -44,7 +44,7 @@ class Recorder {
   struct Options {
     std::filesystem::path folder;
     std::string robot;    // its name
-    std::string library;  // who writes it: "culprit 0.1.0"
+    std::string library;  // the program that writes it: "culprit 0.1.0"
     Duration before = std::chrono::seconds(20);
     Duration after = std::chrono::seconds(10);
     std::size_t memory = 200'000'000;    // bytes, of all that is kept
@@ -68,14 +68,14 @@ class Recorder {
   // replace the earlier ones, except in recordings that have those already. kNoTopic: there are too
   // many; the topic is not kept.
   std::size_t add_topic(RecordedTopic topic);
-  // `number` and `at` are filled in, and `received`, if it is not said, with the same moment.
+  // `number` and `at` are filled in, and `received`, if it is not given, with the same moment.
   void take(RingMessage message, Share share = Share::kSmall);
   // As take(), for a latched topic, whose last message stays.
   void take_latched(RingMessage message, const ros2::Guid& publisher, Share share);
 
   // An event of culprit (a failure, a decision, an action): a JSON document.
   void note_event(const std::string& json);
-  // The robot's graph from now on, likewise.
+  // The robot's graph from now on, in the same form.
   void note_graph(const std::string& json);
 
   // A failure, called `why`, which is there until over(). If a recording is on, it goes on.
@@ -132,7 +132,7 @@ class Recorder {
   std::uint64_t written_ = 0;            // the last message that is in it
   Time since_{};                         // what it begins with
   Time opened_{};
-  std::string trouble_;  // the last that was said
+  std::string trouble_;  // the last one that was reported
 
   std::thread thread_;  // last: it begins when all is there
 };

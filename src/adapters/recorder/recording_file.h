@@ -1,9 +1,10 @@
 // One recording on the disk, as rosbag2 and Foxglove read it: MCAP of the profile "ros2", CDR in every channel, the
 // definitions of types as ros2msg, the offered quality of service as rosbag2 writes it.
 //
-// All channels have one encoding: rosbag2 opens no file with two ("All topics must have the same serialization format"). So what culprit
-// tells is CDR, too: JSON in a std_msgs/msg/String. A type that is not known has a schema without an encoding, as the
-// specification wants it; rosbag2 opens no channel without a schema.
+// All channels have one encoding: rosbag2 opens no file with two ("All topics must have the same
+// serialization format"). So culprit's own messages are CDR, too: JSON in a std_msgs/msg/String. A
+// type that is not known has a schema without an encoding, as the specification wants it; rosbag2
+// opens no channel without a schema.
 #pragma once
 
 #include <filesystem>
@@ -43,7 +44,8 @@ class RecordingFile {
   ~RecordingFile();
   RecordingFile(const RecordingFile&) = delete;
 
-  // `topic` is what message.topic means. `logged`: when it counts as heard, if not when it was.
+  // `topic` is what message.topic means. `logged`: the time at which it counts as received; by
+  // default, when it was.
   void add(const RingMessage& message, const RecordedTopic& topic,
            std::optional<std::int64_t> logged = {});
   // Writes what is there so far; from now on a crash loses none of it.

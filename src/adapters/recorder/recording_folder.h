@@ -40,7 +40,7 @@ class RecordingFolder {
   // statvfs(2).
   static Expected<Space> space_of(const std::filesystem::path& folder);
 
-  // So much of a file system stays free: a gigabyte, or a tenth of it where that is less.
+  // The part of a file system that stays free: a gigabyte, or a tenth of it where that is less.
   static constexpr std::uint64_t kLeftFree = 1'000'000'000;
   static std::uint64_t left_free(const Space& space);
 

@@ -25,7 +25,7 @@ std::int64_t nanoseconds_of(ros2::SystemTime time) { return time.time_since_epoc
 
 }  // namespace
 
-// One topic that is heard. Its callback runs on receive threads, one at a time.
+// One topic that is received. Its callback runs on receive threads, one at a time.
 class RobotTap::Listening {
  public:
   Listening(RobotTap& tap, std::string topic, std::size_t number, bool may_be_given_up)

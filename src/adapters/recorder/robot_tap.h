@@ -34,7 +34,7 @@ class RobotTap {
  public:
   static constexpr std::size_t kSmall = 16 * 1024;  // bytes
   static constexpr std::size_t kLarge = 64 * 1024;
-  // So many are heard at a time: each costs memory, and the network decides how many there are.
+  // The most topics at a time: each costs memory, and the network decides how many there are.
   static constexpr std::size_t kMostHeard = 2000;
 
   struct Options {
@@ -57,7 +57,7 @@ class RobotTap {
 
   struct TopicUse {
     std::map<std::string, ros2::GraphEndpoint> publishers;  // by node
-    std::unique_ptr<Listening> listening;                   // null: it is not heard
+    std::unique_ptr<Listening> listening;                   // null: not received
     bool is_asked_for = false;                              // its type is
     bool is_given_up = false;                               // it is too large
   };
@@ -83,9 +83,9 @@ class RobotTap {
   Recorder& recorder_;
   std::map<std::string, TopicUse> topics_;
   std::map<std::string, int> pids_;      // of the nodes that are there
-  std::set<std::string> unknown_types_;  // that were told of
+  std::set<std::string> unknown_types_;  // that were reported
   bool is_graph_due_ = false;
-  bool are_too_many_ = false;  // topics, and that was said
+  bool are_too_many_ = false;  // topics, and that was reported
 
   ros2::Executor executor_;
   std::unique_ptr<ros2::TaskGroup> tasks_;

@@ -104,7 +104,7 @@ TEST_F(RobotTaps, GiveUpWhatIsTooLargeAndSayItOnce) {
   EXPECT_THAT(said.all(), testing::Contains(HasSubstr("my_msgs/msg/Odd is not known")));
 }
 
-// A topic that begins small and becomes large is heard another way from then on.
+// A topic that begins small and becomes large is received in another way from then on.
 TEST_F(RobotTaps, HearWhatBecomesLargeOnTheWay) {
   const auto scan = publisher("/scan", "std_msgs/msg/String");
   const auto hears = tap({}, 1'000'000);

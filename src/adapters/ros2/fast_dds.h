@@ -133,8 +133,8 @@ class RawType final : public dds::TopicDataType {
 
   void* createData() override { return new Incoming; }
   void deleteData(void* data) override { delete static_cast<Incoming*>(data); }
-  // Where the key is in a payload is not known, nor does it matter to whoever takes each sample: they
-  // are of one instance, unless the writer says which.
+  // The place of the key in a payload is unknown, and does not matter to a reader that takes each
+  // sample: they are of one instance, unless the writer announces which.
   bool getKey(void*, rtps::InstanceHandle_t* handle, bool) override {
     handle->value.clear();
     handle->value[0] = 1;
@@ -222,7 +222,7 @@ inline dds::DataReaderQos reader_qos(const Qos& qos, const std::string& user_dat
   dds::DataReaderQos out;
   apply(out, qos, user_data);
   if (port != 0) out.endpoint().unicast_locator_list.push_back(locator("0.0.0.0", port));
-  // How often a reader that has not heard of a writer's history asks for it; 70 ms by default.
+  // How often a reader that has not received a writer's history asks for it; 70 ms by default.
   out.reliable_reader_qos().times.initialAcknackDelay = {0, 10'000'000};
   return out;
 }
@@ -253,7 +253,8 @@ inline void speak_through_sockets() {
   eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
 }
 
-// All that the servers know is told to a super client; a mere client hears of what it uses only.
+// A super client receives everything that the servers know; a mere client receives only what it
+// uses.
 inline void find_through(const std::vector<DiscoveryServer>& servers,
                          rtps::BuiltinAttributes& builtin) {
   builtin.discovery_config.discoveryProtocol = rtps::DiscoveryProtocol::SUPER_CLIENT;

@@ -25,7 +25,7 @@ enum class FieldStatus : std::uint8_t {
 
 class FieldReader {
  public:
-  // A path ends at a primitive or a string. Errors say what there is instead.
+  // A path ends at a primitive or a string. Errors list the existing fields.
   static Expected<FieldReader> compile(MessageLibrary& library, std::string_view type,
                                        std::string_view path);
 

@@ -11,7 +11,7 @@ namespace culprit::ros2 {
 namespace {
 
 // A node's reader of a topic is a subscriber, its reader of requests a server, and so on. The other
-// halves of services (replies) say nothing new.
+// halves of services (replies) add nothing.
 std::optional<GraphEndpoint> ros_meaning(const EndpointInfo& info) {
   auto channel = demangle_topic(info.topic);
   if (!channel || channel->channel == Channel::kReply) return std::nullopt;
@@ -166,7 +166,7 @@ Graph::Claims Graph::read_claims(const DiscoveryInfo& info, Peer& peer) {
     for (const auto* guids : {&node.readers, &node.writers}) {
       for (const Guid& guid : *guids) {
         if (guid.prefix() != info.participant.prefix())
-          continue;  // nobody speaks for another participant
+          continue;  // a participant announces only itself
         if (!endpoints.contains(guid) && claim_count_ >= options_.limits.endpoints) {
           warn_of_limit("endpoints");
           return claims;
@@ -217,7 +217,7 @@ void Graph::remove_participant(const GuidPrefix& prefix) {
   looked_for_ = nullptr;
   const auto found = peers_.find(prefix);
   if (found == peers_.end()) return;
-  // As if it had said that it holds nothing, and then left.
+  // As if it had announced that it holds nothing, and then left.
   Peer& peer = found->second;
   const Claims before = std::exchange(peer.claims, {});
   for (const auto& [name, guids] : before) claim_count_ -= guids.size();
@@ -274,7 +274,7 @@ void Graph::claim(const GuidPrefix& prefix, const std::string& name) {
   if (!may_hold(name, peer)) return tell_of_stranger(name, peer);
   if (node.told) {
     warn_of_duplicate(name, node);
-    // First, so that its leaving is no loss; and again below, when more is known of who came.
+    // First, so that its leaving is no loss; and again below, when more is known of the new one.
     if (!has_ended(peers_.at(*node.told))) {
       count_namesakes(name, node);
       node.namesakes = -1;
@@ -496,8 +496,8 @@ bool Graph::has_room(const std::string& source, std::size_t Source::*what, std::
                           of_this < std::max<std::size_t>(limit / 4, 1));
 }
 
-// A participant of this machine that is there for longest without any node goes. One of ROS 2 says what its nodes are at
-// once.
+// A participant of this machine that is there for longest without any node goes. A ROS 2
+// participant announces its nodes at once.
 bool Graph::make_room() {
   const Peer* oldest = nullptr;
   for (const auto& [prefix, peer] : peers_) {

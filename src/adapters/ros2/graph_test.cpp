@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-// Endpoint ids: the last byte says reader (4) or writer (3).
+// Endpoint ids: the last byte marks a reader (4) or a writer (3).
 Guid guid_of(std::uint8_t participant, std::uint8_t entity, bool is_reader) {
   Guid guid;
   guid.bytes[0] = participant;
@@ -48,7 +48,7 @@ NodeEntities node(std::string name_space, std::string name, std::vector<Guid> en
   return entities;
 }
 
-// A graph, and everything that it told, as short texts.
+// A graph, and all its reports, as short texts.
 class Watched {
  public:
   explicit Watched(Graph::Options options = {}) : graph_(with_listener(std::move(options))) {}
@@ -408,13 +408,13 @@ TEST(Graph, AnEndedProcessIsGoneAtOnce) {
   watched.says(1, {node("/", "a")}).says(2, {node("/", "b")}).says(3, {node("/", "c")}).told();
   watched.ends(10);
   EXPECT_THAT(watched.told(), ElementsAre("-/a"));
-  watched.ends(0);  // nobody's
+  watched.ends(0);  // no process
   EXPECT_THAT(watched.told(), IsEmpty());
   watched.leaves(1);  // its lease
   EXPECT_THAT(watched.told(), IsEmpty());
 }
 
-// One message says that the camera has left. The listener that acts on that finds out first.
+// One message announces that the camera has left. The listener that acts on that finds out first.
 TEST(Graph, ANodeThatIsAskedAboutStaysUntilItIsFoundToHaveLeft) {
   Graph::Options options;
   options.is_asked_about = [](const std::string& node) { return node == "/camera"; };

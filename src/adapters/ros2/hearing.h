@@ -63,7 +63,7 @@ class Hearing {
   Participant& participant_;
   // Shared with the reader's callback, which runs before there is a Hearing.
   std::shared_ptr<std::atomic<std::int64_t>> heard_;
-  std::uint64_t secret_ = 0;  // nobody else says it
+  std::uint64_t secret_ = 0;  // no other participant sends it
   std::unique_ptr<Reader> reader_;
   std::unique_ptr<Writer> writer_;
   std::unique_ptr<Timer> timer_;

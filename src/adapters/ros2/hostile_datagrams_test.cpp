@@ -70,7 +70,7 @@ class HostileDatagrams : public testing::Test {
     EXPECT_TRUE(speaks());
   }
 
-  // The robot's writers, as the attacker knows them: its own, and those that tell of endpoints.
+  // The robot's writers, as the attacker knows them: its own, and those that announce endpoints.
   std::vector<Guid> writers() const {
     std::vector<Guid> all{writer->guid()};
     for (const std::uint8_t entity : {3, 4}) {
@@ -80,7 +80,7 @@ class HostileDatagrams : public testing::Test {
     }
     return all;
   }
-  // Whether what the robot writes is heard.
+  // Whether the robot's samples arrive.
   bool speaks() {
     const auto sequence = writer->write(kSmall);
     return sequence && samples.wait_for_one([&](std::int64_t heard) { return heard == *sequence; });

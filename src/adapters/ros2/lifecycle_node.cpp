@@ -115,7 +115,7 @@ TransitionResult LifecycleNode::work() {
   }
 }
 
-// Only the states, as rcl does: whoever relies on the rest would fail with real nodes.
+// Only the states, as rcl does: a program that relies on the rest would fail with real nodes.
 void LifecycleNode::publish(const LifecycleTransition& step) {
   msg::TransitionEvent event;
   event.start_state = to_message(step.start);

@@ -76,8 +76,8 @@ Place place_of(std::string_view type) {
   return {std::string(type) + ".msg"};
 }
 
-// A service as a type of its own, by whose hash it is known (rosidl, from Iron on): what is asked, what is
-// answered, and what is told of a call where it is watched.
+// A service as a type of its own, by whose hash it is known (rosidl, from Iron on): the request,
+// the response, and the event of a call where calls are introspected.
 std::optional<std::string> service_text(std::string_view type) {
   constexpr std::string_view kEvent = "_Event";
   const bool is_event = type.ends_with(kEvent);

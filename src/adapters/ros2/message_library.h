@@ -41,7 +41,7 @@ class MessageLibrary {
   // The hash that endpoints of this very type announce (type_description.h). Errors: as
   // with_parts().
   Expected<std::string> hash_of(std::string_view type);
-  // Makes these the definitions, whatever was known of those types before.
+  // Replaces all earlier definitions of those types.
   void define(const MessageDefinitions& definitions);
 
  private:

@@ -11,8 +11,8 @@
 //     executor.run();    // until stop()
 //
 // Everything calls back on the executor's thread unless it says otherwise. Parameters belong to
-// that thread (before it runs, to whoever sets the node up). Errors are bad names, or what the
-// middleware refuses.
+// that thread (before it runs, to the thread that sets the node up). Errors are bad names, or what
+// the middleware refuses.
 #pragma once
 
 #include <functional>

@@ -1,6 +1,6 @@
-// How a participant joins: which domain, how far it reaches, what it says of itself. The
-// environment variables are those that the robot's own nodes obey, so that culprit started in the
-// same shell meets the same robot.
+// How a participant joins: which domain, its reach, and its announcement. The environment variables
+// are those that the robot's own nodes obey, so that culprit started in the same shell meets the
+// same robot.
 #pragma once
 
 #include <cstdint>
@@ -33,7 +33,7 @@ struct ParticipantOptions {
   std::string enclave = "/";
   std::vector<std::string>
       peers;  // further IPv4 addresses or host names to announce to, where multicast does not reach
-  // Not empty: all that these know is seen (a super client), and nobody else is found.
+  // Not empty: everything that these know is discovered (a super client), and nothing else.
   std::vector<DiscoveryServer> servers{};
   // The form in which ros_discovery_info is written. Nothing: the form of the first peer.
   std::optional<GidSize> gid_size;

@@ -97,7 +97,7 @@ class Gate {
   bool open_ CULPRIT_GUARDED_BY(mutex_) = true;
 };
 
-// The writers that one reader hears, which the filter has to know.
+// The writers that one reader receives, which the filter must know.
 class HeardWriters {
  public:
   HeardWriters(DatagramFilter& filter, const Qos& qos, std::function<void()> on_unheard,
@@ -116,9 +116,9 @@ class HeardWriters {
   }
   HeardWriters(const HeardWriters&) = delete;
 
-  // Matches of two threads at once are told as if they were one (Fast DDS 2.9,
-  // DataReaderImpl::update_subscription_matched_status): then it is not clear any more who is heard.
-  // `reader` is always the same.
+  // Matches of two threads at once are reported as one (Fast DDS 2.9,
+  // DataReaderImpl::update_subscription_matched_status): then it is unclear which writers are
+  // matched. `reader` is always the same.
   void note(const Guid& writer, const Guid& reader, int change) {
     const MutexLock lock(mutex_);
     reader_ = reader;
@@ -162,7 +162,7 @@ class HeardWriters {
   std::optional<DatagramFilter::Change> unclear_ CULPRIT_GUARDED_BY(mutex_);
 };
 
-// Why the middleware may refuse a reader or writer, as far as one can tell.
+// The likely reason why the middleware refused a reader or writer.
 std::string likely_refusal(const std::optional<Security>& security) {
   if (!security) return "";
   return "; do the permissions of the enclave " + security->enclave +

@@ -43,8 +43,8 @@ enum class Vendor : std::uint8_t { kFastDds, kCyclone, kOther };
 struct ParticipantInfo {
   Guid guid;
   Vendor vendor = Vendor::kOther;
-  std::string host;  // its machine; empty when it does not say
-  int pid = 0;       // its process there, as seen by itself; 0 when it does not say
+  std::string host;                     // its machine; empty if not announced
+  int pid = 0;                          // its process, by its own PID namespace; 0 if not announced
   std::vector<UdpAddress> metatraffic;  // where it listens for discovery
   bool shares_memory = false;           // it listens in shared memory, too (Fast DDS)
   bool is_secured = false;              // it has an identity, signed by somebody
@@ -55,14 +55,14 @@ struct ParticipantInfo {
 
 struct ParticipantGone {
   Guid guid;
-  bool was_lost = false;  // it said no good-bye: its lease ran out
+  bool was_lost = false;  // without a goodbye: its lease ran out
 };
 
 // Also sent again when what is known changes, and only then.
 using DiscoveryEvent = std::variant<ParticipantInfo, EndpointInfo, ParticipantGone, EndpointGone>;
 using DiscoveryCallback = std::function<void(DiscoveryEvent)>;
 
-// A sample as it came. `payload` is gone when the callback returns.
+// A sample as it came. `payload` is invalid when the callback returns.
 struct Sample {
   ByteView
       payload;  // with its encapsulation; empty for a reader of headers, cut for one of beginnings
@@ -100,7 +100,7 @@ constexpr bool is_whole(PayloadUse use) {
   return use == PayloadUse::kWhole || use == PayloadUse::kWholeLater;
 }
 inline constexpr std::size_t kBeginningSize = 512;  // bytes
-// So much is given of a payload of `size` bytes.
+// The bytes that a reader gets of a payload of `size` bytes.
 constexpr std::size_t given_of(PayloadUse use, std::size_t size) {
   if (use == PayloadUse::kHeader) return 0;
   return is_whole(use) ? size : std::min(size, kBeginningSize);
@@ -175,8 +175,9 @@ class Participant {
 
   const Guid& guid() const;
 
-  // Says nothing more but the goodbye of its end, which tells the others of the end of all its readers
-  // and writers at once: for who has many, and ends. @pre nothing more is created or written.
+  // Sends nothing more but the goodbye at its end, which announces the end of all its readers and
+  // writers at once: for a participant with many endpoints that ends. @pre nothing more is created
+  // or written.
   void leave();
 
   // While one of these lives, no announcement is sent. Endpoints that are created meanwhile are
@@ -195,8 +196,8 @@ class Participant {
     Impl& participant_;
   };
 
-  // While one of these lives, what comes to readers and writers that have time does not come late. For who waits for
-  // an answer.
+  // While one of these lives, samples to readers and writers that have time do not come late. For a
+  // caller that waits for an answer.
   class Hurry {
    public:
     explicit Hurry(Participant& participant);
@@ -218,8 +219,8 @@ class Participant {
   Origins& origins();
   // When its last one came; kLongAgo: it is not there.
   Time heard_last(const GuidPrefix& participant) const;
-  // Since when nothing of its own came through one of its ports (DatagramSources).
-  // Every second something should.
+  // Since when no own datagram came through one of its ports (DatagramSources). Every second
+  // something should.
   Time own_came_through() const;
   // Whether the thread that receives is at work (ReceiveWatch): looks, and until when it was.
   void look_at_receivers(Time now);

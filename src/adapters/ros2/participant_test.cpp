@@ -515,7 +515,7 @@ TEST(Participant, WhoStaysAsItIsIsToldOfOnce) {
   ASSERT_TRUE(told.wait_for_count(1));
   const Time joined = live_now();
   const auto announced = [&] { return watcher->heard_last(other->guid().prefix()); };
-  for (int i = 0; i < 2; ++i) {  // without endpoints it says nothing else
+  for (int i = 0; i < 2; ++i) {  // without endpoints it sends nothing else
     const Time before = std::max(joined, announced());
     const Time end = later(live_now(), kPatience);
     while (later(before, std::chrono::milliseconds(500)) >= announced() && live_now() < end)
@@ -525,7 +525,8 @@ TEST(Participant, WhoStaysAsItIsIsToldOfOnce) {
   EXPECT_EQ(told.all().size(), 1u);
 }
 
-// A port where a participant of this machine may be found (RTPS 2.3 §9.6.1.1), held by somebody who only listens.
+// A port where a participant of this machine may be found (RTPS 2.3 §9.6.1.1), held by a mere
+// listener.
 class Eavesdropper {
  public:
   // Binds the port of `participant`, or the next lower free one. Fast DDS numbers the participants

@@ -53,7 +53,7 @@ TEST(PeerNode, IsSeenWithItsProcess) {
   EXPECT_TRUE(manager.context.sees_process("/ns/peer", peer->pid()));
 }
 
-// As one whose computer was cut off: its lease runs out, and it has said all of itself before.
+// As one whose computer was cut off: its lease runs out, and it has announced everything before.
 TEST(PeerNode, IsSeenAgainWhenItComesBackAfterItsLeaseRanOut) {
   const TestDomain domain;
   Manager manager(domain);

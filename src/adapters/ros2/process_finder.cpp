@@ -60,7 +60,7 @@ std::vector<unsigned> users_of(const fs::path& process) {
   return {};
 }
 
-// Those of its sockets that are its own: a file of another user's socket may have been given to it.
+// The sockets that it opened itself: a file of another user's socket may have been given to it.
 class Holdings {
  public:
   explicit Holdings(const fs::path& process)
@@ -90,7 +90,7 @@ int to_pid(const fs::path& process) {
   return error == std::errc() && rest == name.data() + name.size() ? pid : 0;
 }
 
-// The latest if it cannot be told.
+// The latest if it is unknown.
 std::uint64_t began(const fs::path& process) { return running_since(process).value_or(UINT64_MAX); }
 
 }  // namespace
@@ -113,14 +113,14 @@ FoundProcess ProcessFinder::find(const ParticipantInfo& participant) const {
   return found;
 }
 
-// A participant keeps the sockets where it listens as long as it lives, and one that it sends from.
-// A new process may get the first ones.
+// A participant keeps its listening sockets until it exits, and one that it sends from. A new
+// process may get the first ones.
 bool ProcessFinder::has_ended(const ParticipantInfo& participant) const {
   const std::vector<UdpAddress>& from = participant.origin.addresses;
   const auto is_here = [](const UdpAddress& each) { return is_local(each.ip); };
   if (!std::all_of(from.begin(), from.end(), is_here)) return false;
   const std::vector<UdpSocket> sockets = udp_sockets(proc_);
-  if (sockets.empty()) return false;  // there is at least the one that this was heard by
+  if (sockets.empty()) return false;  // at least the socket that sent the announcement exists
   const auto is_nobodys = [&](const UdpAddress& each) {
     return bound_to(each, sockets).sockets.empty();
   };
@@ -190,7 +190,7 @@ int ProcessFinder::speaker(const ParticipantInfo& participant) const {
   });
 }
 
-// Forks of a process hold the same sockets: what it says helps to choose among those.
+// Forks of a process hold the same sockets: the claimed PID helps to choose among those.
 int ProcessFinder::oldest(int said, const std::function<bool(const fs::path&)>& is_it) const {
   if (said > 0 && is_it(proc_ / std::to_string(said))) return said;
   int oldest = 0;

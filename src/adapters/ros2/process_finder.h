@@ -37,7 +37,7 @@ class ProcessFinder {
   // may have sent earlier datagrams in that name, so this does not prove which program runs there.
   int speaker(const ParticipantInfo& participant) const;
 
-  // Not one that has ended and was not reaped: where nobody reaps, it keeps its number for good.
+  // Not one that has ended and was not reaped: if it is never reaped, it keeps its PID for good.
   bool is_running(int pid) const;
 
  private:

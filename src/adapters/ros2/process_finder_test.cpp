@@ -99,7 +99,7 @@ TEST(ProcessFinder, AnAnnouncedPortAloneProvesNothing) {
             "203.0.113.1:4321");
 }
 
-// Somebody on the network speaks in the name of a participant that is here.
+// A sender on the network speaks in the name of a participant of this machine.
 TEST(ProcessFinder, OneForeignDatagramSpeaksAgainstIt) {
   const Sockets sockets;
   ParticipantInfo info = sockets.participant(getpid());

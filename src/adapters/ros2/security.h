@@ -1,4 +1,5 @@
-// Security of DDS as ROS 2 uses it (SROS2): who one is, who vouches for it, and what one may do.
+// Security of DDS as ROS 2 uses it (SROS2): one's identity, the authority that signed it, and one's
+// rights.
 //
 // Six files in the enclave's folder of a keystore, as `ros2 security create_enclave` lays them out;
 // sources: DDS Security 1.1, https://design.ros2.org/articles/ros2_security_enclaves.html.

@@ -217,7 +217,7 @@ void ServiceClient::on_reply(const Sample& sample) {
 void ServiceClient::on_request_reader(const Guid& reader, Match match) {
   if (match == Match::kMade) {
     request_readers_.emplace(reader, ++matches_);
-    // Requests that a dead server did not acknowledge must not delay those to its successor
+    // Requests that an exited server did not acknowledge must not delay those to its successor
     // (service_mapping.h).
     const MutexLock lock(mutex_);
     if (request_writer_) request_writer_->forget_unacknowledged();
@@ -262,7 +262,7 @@ void ServiceClient::update_servers() {
       has_new = has_new || !is_known(before, server.participant);
       servers_.push_back(server);
     }
-    // A new server may be the successor of the one that proved to know us, and that one dead.
+    // A new server may be the successor of the one that proved to know us and has exited.
     if (has_new || (proven_ && !is_known(servers_, proven_->participant))) lose_proof();
     for (auto& [number, call] : calls_) {
       if (has_new && call.repeat == Repeat::kUntilAnswered) send(number, call);
@@ -272,7 +272,7 @@ void ServiceClient::update_servers() {
   send_waiting();
 }
 
-// Perhaps it was ours, and dead. If it lives, it will prove it.
+// It may have been ours. If ours still runs, it will prove it.
 void ServiceClient::on_server_left() {
   {
     const MutexLock lock(mutex_);
@@ -281,8 +281,8 @@ void ServiceClient::on_server_left() {
   tasks_.post([this] { start_probe(); });
 }
 
-// Whether both belong to one server. Two services of one name in one process are told apart only on
-// Cyclone.
+// Whether both belong to one server. Two services of one name in one process can be distinguished
+// only on Cyclone.
 bool ServiceClient::is_pair(const Guid& reader, const Guid& writer) const {
   if (reader.prefix() != writer.prefix()) return false;
   const Graph& graph = node_.context().graph();

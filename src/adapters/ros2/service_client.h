@@ -14,7 +14,7 @@
 //
 // A killed server stays matched until its lease ends (20 s), next to its restarted successor:
 // requests go to both, and the newest server, or the one that has proven to be alive, decides the
-// mapping. A proof is good until another server comes, or the graph says that one has left; so a
+// mapping. A proof is good until another server comes, or the graph reports that one has left; so a
 // caller that learns from the graph that a node is there can call it.
 #pragma once
 
@@ -55,12 +55,12 @@ enum class CallOutcome : std::uint8_t {
 struct CallResult {
   CallOutcome outcome = CallOutcome::kUnreachable;
   ByteView reply;     // a payload with its encapsulation; gone when the callback returns
-  GuidPrefix server;  // who answered
+  GuidPrefix server;  // the participant that answered
 };
 
-// Thread-safe. The callback of a call comes once: an answer on a receive thread (participant.h says
-// what is not allowed there), its absence on the executor's thread. When the client is destroyed,
-// calls under way are forgotten.
+// Thread-safe. The callback of a call comes once: an answer on a receive thread (participant.h
+// lists what is not allowed there), its absence on the executor's thread. When the client is
+// destroyed, calls under way are forgotten.
 class ServiceClient {
  public:
   using Callback = std::function<void(const CallResult&)>;
@@ -70,8 +70,9 @@ class ServiceClient {
     Bytes request;
   };
 
-  // The node entry outlives the client. kSoon: for one that asks again and again, and mostly has time, as the client of
-  // a probe; its answers are not sent again by the server if they are lost.
+  // The node entry outlives the client. kSoon: for a client that repeats its requests, and mostly
+  // has time, as the client of a probe; its answers are not sent again by the server if they are
+  // lost.
   static Expected<std::unique_ptr<ServiceClient>> create(NodeEntry& node,
                                                          const ServiceName& service,
                                                          const Qos& qos = qos::kServices,

@@ -26,7 +26,7 @@
 
 namespace culprit::ros2 {
 
-// By which the types of a service are known (type_description.h); empty: not announced.
+// The hashes that identify the types of a service (type_description.h); empty: not announced.
 struct ServiceHashes {
   std::string request{};
   std::string response{};
@@ -38,8 +38,8 @@ class ServiceServer {
   // Request payload to reply payload, both with their encapsulation. An empty reply is none: the
   // request was malformed.
   using Handler = std::function<Bytes(ByteView request)>;
-  // For who needs time: the answer is given when it is there, once, from any thread. It may come
-  // when the server is gone, and goes nowhere then.
+  // For a handler that needs time: the answer is given when it is there, once, from any thread. If
+  // it comes after the server was destroyed, it is dropped.
   using Answer = std::function<void(Bytes reply)>;
   using SlowHandler = std::function<void(ByteView request, Answer answer)>;
 
@@ -73,7 +73,7 @@ class ServiceServer {
     Bytes request;
     Reply reply;
   };
-  // The server as those see it who answer late.
+  // The server as late answers see it.
   struct Late {
     Mutex mutex;
     ServiceServer* server CULPRIT_GUARDED_BY(mutex) = nullptr;  // null: it is gone

@@ -327,7 +327,7 @@ TEST(Service, ServersMayGoWhileRequestsCome) {
   std::thread asking([&] {
     while (!stop) {
       client->call(request("x"), Repeat::kUntilAnswered, 5ms, [](const CallResult&) {});
-      // Far more than anybody asks, and discovery still gets its share of a busy computer.
+      // Far more than any client sends, and discovery still gets its share of a busy computer.
       std::this_thread::sleep_for(1ms);
     }
   });

@@ -1,6 +1,6 @@
 // Describes a message type and hashes the description, as ROS 2 Iron and newer announce it for
 // every endpoint (REP 2011, "RIHS01"): the SHA-256 of the fields of the type and of all types in
-// it. Two programs that announce the same hash mean the same type, whatever their files say.
+// it. Two programs that announce the same hash mean the same type, whatever their files contain.
 #pragma once
 
 #include <string>

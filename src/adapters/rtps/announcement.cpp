@@ -55,7 +55,7 @@ class Announced {
     bytes_ = bytes_.subspan(count);
     return taken;
   }
-  // So many bytes as are said, and the padding behind them.
+  // As many bytes as the length gives, and the padding behind them.
   std::string_view counted() {
     const std::size_t size = u32();
     const ByteView bytes = take(size);

@@ -23,14 +23,15 @@ std::optional<std::string_view> announced_topic(ByteView payload);
 std::optional<EndpointInfo> read_announcement(ByteView payload, EndpointRole role);
 
 // Which endpoint ends. `parameters` are those of its submessage, whose order of bytes this is; `payload` is
-// its key, with its encapsulation, and may be empty. Nothing: none ends, or it is not said which.
+// its key, with its encapsulation, and may be empty. Nothing: none ends, or none is named.
 std::optional<Guid> read_end(ByteView parameters, Endianness order, ByteView payload);
 
 // The participants and endpoints that are announced, or have ended: every key that the lists name.
 // `parameters` and `payload` as above. A damaged list is passed over.
 std::vector<Guid> announced_keys(ByteView parameters, Endianness order, ByteView payload);
 
-// The datagram by which the participant says that it has left, as Fast DDS writes it, with the number `sequence`.
+// The datagram by which the participant announces that it has left, as Fast DDS writes it, with the
+// number `sequence`.
 Bytes farewell_of(const GuidPrefix& participant, std::int64_t sequence);
 
 }  // namespace culprit::ros2

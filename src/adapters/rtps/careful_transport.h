@@ -51,7 +51,7 @@
 
 namespace culprit::ros2::fast_dds {
 
-// So many participants of one machine are announced to, as ROS 2 Iron and newer do.
+// The number of participants of one machine that get announcements, as in ROS 2 Iron and newer.
 inline constexpr std::uint32_t kAnnouncedTo = 32;
 
 // State that a participant and its transport share.
@@ -60,7 +60,7 @@ struct Reception {
   std::shared_ptr<std::atomic<bool>> speaks = std::make_shared<std::atomic<bool>>(false);
   // How many holds forbid sending now (Participant::Hold).
   std::shared_ptr<std::atomic<int>> holds = std::make_shared<std::atomic<int>>(0);
-  // A discovery server may tell of others than itself.
+  // A discovery server may announce others than itself.
   std::shared_ptr<std::atomic<bool>> relays = std::make_shared<std::atomic<bool>>(false);
   std::shared_ptr<DatagramSources> sources = std::make_shared<DatagramSources>();
   std::shared_ptr<Origins> origins = std::make_shared<Origins>();
@@ -184,9 +184,10 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
  private:
   using Locators = eprosima::fastdds::rtps::Locators;
 
-  // An announcement goes to each port that a participant of this machine may have, most of which nobody
-  // has; the system needs as long for those as for others. They are left out where it tells who has
-  // which, and knows ours among them. A port that is opened meanwhile is told a moment later.
+  // An announcement goes to each port that a participant of this machine may have, most of which
+  // are unused; the system needs as long for those as for others. Unused ports are left out if the
+  // system lists the used ones, and ours among them. A port that is opened meanwhile gets it a
+  // moment later.
   std::vector<Locator> those_of_somebody(const std::vector<Locator>& all) {
     constexpr Duration kLasts = std::chrono::milliseconds(200);
     const MutexLock lock(mutex_);
@@ -250,7 +251,7 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
     return true;
   }
 
-  // Before there is a reader for it, so that nobody else can take the port until then.
+  // Before there is a reader for it, so that no other process can take the port until then.
   void open_for_patient() {
     constexpr std::uint32_t kFirst = 60;
     constexpr std::uint32_t kLast = 119;
@@ -316,8 +317,8 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
     return (IpLocator::getPhysicalPort(local) - 7400 - 250 * domain_) % 2 == 0;  // RTPS 2.3 §9.6.1
   }
 
-  // For the middleware the participant has left, and comes back with its next announcement: nothing that others said in
-  // its name stays.
+  // For the middleware the participant has left, and comes back with its next announcement: earlier
+  // claims of others in its name are dropped.
   void discover_again(Receiver& receiver, const Locator& local) const {
     constexpr std::int64_t kLater = std::int64_t{1} << 30;  // than all that it has written
     const auto doubtful = reception_.origins->take_doubtful();

@@ -63,7 +63,7 @@ class DatagramFilter::Submessage {
     const auto low = read<std::uint32_t>();
     return static_cast<std::int64_t>((std::uint64_t{high} << 32) | low);
   }
-  // Nothing: what was sent before does not count, and no other time is said.
+  // Nothing: an earlier timestamp does not count, and there is no other.
   std::optional<SystemTime> read_time() {
     if ((flags & 2) != 0) return std::nullopt;
     const auto seconds = read<std::uint32_t>();
@@ -320,10 +320,10 @@ bool DatagramFilter::tell_of_announcement(const Submessage& submessage) {
   return true;
 }
 
-// ---- who hears what
+// ---- which reader receives which writer
 
-// To the one reader that hears its writer, if it is addressed to all. Gives whether the middleware has a
-// reader for it.
+// Addresses it to the one reader of its writer, if it is addressed to all. Gives whether the
+// middleware has a reader for it.
 bool DatagramFilter::address(std::span<std::uint8_t> submessage, const Course& course,
                              Clock::time_point now) {
   const std::uint8_t kind = submessage[0];
@@ -512,7 +512,7 @@ const char* DatagramFilter::objection_to_heartbeat(const Submessage& submessage,
   const std::int64_t last = body.read_sequence();
   body.skip(4);
   if (!body.ok()) return "a damaged heartbeat";
-  // Best effort readers do not hear it, and a reliable one counts up to it.
+  // Best effort readers ignore it, and a reliable one counts up to it.
   if (first < 1 || last < first - 1 || is_far(guid, last, now) ||
       (is_reliable(guid) && is_far(guid, first, now)))
     return "a heartbeat with an absurd number";

@@ -84,10 +84,10 @@ class DatagramFilter {
   // reader no state is kept or needed.
   using OnUnheard = std::shared_ptr<const std::function<void()>>;
   static constexpr int kUnheard = 3;
-  // So much is passed on in a second of a writer that no reader is known to hear.
+  // The number of samples in a second that are passed on from a writer without a known reader.
   static constexpr int kTries = 8;
   enum class Reading : std::uint8_t { kBestEffort, kReliable };
-  // A sample that came whole. `payload` is gone when the callback returns.
+  // A sample that came whole. `payload` is invalid when the callback returns.
   struct Whole {
     Guid writer;
     std::int64_t sequence = 0;
@@ -104,8 +104,9 @@ class DatagramFilter {
   void begin_hearing(const Guid& writer, const Guid& reader, Reading how, OnUnheard on_unheard = {},
                      OnWhole on_whole = {});
   void end_hearing(const Guid& writer, const Guid& reader);
-  // From now on it addresses; not before, for in a secured domain it is not clear who hears whom. While
-  // readers are being made or unmade, it is not clear either: then everything stays as it is.
+  // From now on it addresses; not before, for in a secured domain it is unclear which readers have
+  // matched. While readers are being made or unmade, it is not clear either: then everything stays
+  // as it is.
   void begin_to_address();
   class Change {
    public:
@@ -127,7 +128,7 @@ class DatagramFilter {
   using NeverMeets = std::function<bool(std::string_view topic, EndpointRole role)>;
   void discover(const GuidPrefix& self, NeverMeets never_meets,
                 std::function<void(const EndpointNews&)> on_news);
-  // The participant is there: its discovery is heard. Or it is gone, and what it took is free
+  // The participant is there: its discovery data count. Or it has left, and its memory is free
   // again.
   void know(const GuidPrefix& participant);
   void forget(const GuidPrefix& participant);
@@ -221,14 +222,14 @@ class DatagramFilter {
   std::size_t& total(const Guid& writer) CULPRIT_REQUIRES(mutex_);
 
   mutable Mutex mutex_;
-  std::unordered_map<Guid, Writer> writers_ CULPRIT_GUARDED_BY(mutex_);  // that are heard
+  std::unordered_map<Guid, Writer> writers_ CULPRIT_GUARDED_BY(mutex_);  // with a reader here
   std::unordered_map<Guid, Readers> readers_
-      CULPRIT_GUARDED_BY(mutex_);  // by writer that they hear
+      CULPRIT_GUARDED_BY(mutex_);  // by the writer that they receive
   std::unordered_set<GuidPrefix> participants_ CULPRIT_GUARDED_BY(mutex_);  // that are there
   std::size_t reserved_reliable_ CULPRIT_GUARDED_BY(mutex_) = 0;
   std::size_t reserved_best_effort_ CULPRIT_GUARDED_BY(mutex_) = 0;
   Refused refused_ CULPRIT_GUARDED_BY(mutex_);
-  // Writers that no reader is known to hear: what was passed on of them in this second.
+  // Writers without a known reader: what was passed on of them in this second.
   struct Stranger {
     Clock::time_point since;
     int tries = 0;
@@ -249,7 +250,7 @@ class DatagramFilter {
     std::function<void(const EndpointNews&)> on_news;
   };
   std::shared_ptr<const Discovery> discovery_ CULPRIT_GUARDED_BY(mutex_);  // null: not here
-  // In which announcement each endpoint was told of last, or its end: older ones may come later.
+  // The newest announcement of each endpoint, or of its end: older ones may come later.
   std::unordered_map<Guid, std::int64_t> announced_ CULPRIT_GUARDED_BY(mutex_);
   std::vector<EndpointNews> news_ CULPRIT_GUARDED_BY(mutex_);
 };

@@ -56,7 +56,7 @@ class Filter : public testing::Test {
     passed = filter.pass(buffer, now, kReceived);
     return passed.size();
   }
-  // To whom the submessage at `position` of what was passed on is addressed: an entity's number.
+  // The addressee of the submessage at `position` of the passed datagram: an entity's number.
   int addressee(std::size_t position) const {
     const bool is_sample = passed[position] == 0x15 || passed[position] == 0x16;
     return passed[position + 4 + (is_sample ? 4 : 0) + 2];
@@ -92,7 +92,7 @@ TEST_F(Filter, DropsWhatIsNoMessage) {
   EXPECT_EQ(filter.refused().count, 3u);
 }
 
-// A sample and the heartbeat behind it come in one datagram: the sample is heard all the same.
+// A sample and the heartbeat behind it come in one datagram: the sample arrives all the same.
 TEST_F(Filter, TakesOutTheSubmessageAndNotTheRest) {
   EXPECT_EQ(
       pass(from(kCamera).data(kCamera, 1).heartbeat(kCamera, 1, kAbsurd).data(kCamera, 2)),
@@ -199,7 +199,7 @@ TEST_F(Filter, AllCamerasTogetherAreBounded) {
   EXPECT_EQ(came, 5);
 }
 
-// It is silent only for us: too large, or lost in part, or behind a forged number.
+// It only seems silent to us: too large, or lost in part, or behind a forged number.
 TEST_F(Filter, AWriterWhoseSamplesAreNotDeliveredIsNotSilent) {
   int signs = 0;
   const Guid lidar = writer_of_kind(0x03, 9);
@@ -258,7 +258,7 @@ TEST_F(Filter, WritersAreKnownByTheirSource) {
   EXPECT_TRUE(passes(datagram));
 }
 
-// ---- who hears what
+// ---- which reader receives which writer
 
 TEST_F(Filter, WhatOneReaderHearsIsAddressedToIt) {
   filter.begin_to_address();

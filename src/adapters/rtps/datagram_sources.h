@@ -51,7 +51,7 @@ class DatagramSources {
 
   struct Origin {
     std::vector<UdpAddress> addresses;  // in the order of their first datagrams
-    bool is_complete = false;           // false: nothing was heard, or from more than these
+    bool is_complete = false;           // false: nothing came, or from more than these
     bool operator==(const Origin&) const = default;
   };
 
@@ -65,9 +65,9 @@ class DatagramSources {
   void forget(const GuidPrefix& participant);
 
   Origin of(const GuidPrefix& participant) const;
-  // False only of one that was discovered, and is known to have spoken from other addresses alone.
+  // False only for one that was discovered, and is known to have sent from other addresses alone.
   bool may_speak_from(const GuidPrefix& participant, const UdpAddress& from) const;
-  // When the last one came; kLongAgo: nothing was heard, or it is not kept any more.
+  // When the last one came; kLongAgo: nothing came, or it is not kept any more.
   Time last_of(const GuidPrefix& participant) const;
 
   // The participant that receives.

@@ -51,7 +51,7 @@
 
 namespace culprit::ros2 {
 
-// A source of datagrams in somebody else's name, or that tell of somebody else.
+// A source of datagrams in another participant's name, or about another participant.
 struct ForeignSource {
   UdpAddress from;               // of its first one
   std::optional<unsigned> user;  // of this machine, that made its socket, as far as that is known
@@ -66,10 +66,11 @@ class Origins {
   static constexpr Duration kFresh = std::chrono::milliseconds(20);
   static constexpr int kShareOfTime = 20;  // looks take no more than one part in so many
   static constexpr Duration kForeignFor = std::chrono::seconds(1);
-  // So long after the end of a process nobody speaks in its name: leases of participants run that long.
+  // For so long after the end of a process no other one may speak in its name: leases of
+  // participants run that long.
   static constexpr Duration kAfterEnd = std::chrono::seconds(30);
   static constexpr std::size_t kMostAddresses = 64;  // kept of one participant that are not its own
-  static constexpr std::size_t kMostSources = 64;    // told of
+  static constexpr std::size_t kMostSources = 64;    // that are reported
 
   // For a participant whose process is unknown (above).
   static constexpr Duration kAlone = std::chrono::seconds(5);
@@ -83,7 +84,8 @@ class Origins {
                    std::function<Time()> clock = {});
 
   // The participant is of this process of this machine, and spoke from these addresses so far. Gives whether all of
-  // them are of that process. If not, what was said in its name before may be false: it is to be discovered again.
+  // them are of that process. If not, earlier datagrams in its name may be false: it is to be
+  // discovered again.
   bool prove(const GuidPrefix& participant, int pid, std::span<const UdpAddress> spoke_from);
   bool is_proven(const GuidPrefix& participant) const;
   // One that is to be discovered again, once. It is forgotten meanwhile, but not where it speaks from.
@@ -96,12 +98,12 @@ class Origins {
   // It was discovered, or announced itself again: at these addresses.
   void discovered(const GuidPrefix& participant, std::span<const UdpAddress> announced, Time now);
 
-  // Whether nobody is known to be the sender who may not speak in the names that the datagram has.
+  // False if its source is known not to be that of the participants in whose names it speaks.
   bool counts(std::span<const std::uint8_t> datagram, const UdpAddress& from, Time now);
 
-  // Whether a datagram from there may tell something of another participant than its sender, in its sender's own name
-  // (claims.h): only from where that one speaks itself, too. `has_spoken`: one in that participant's name came from
-  // there, or that participant is not known.
+  // Whether a datagram from there may announce something of another participant than its sender, in
+  // its sender's own name (claims.h): only from where that one speaks itself, too. `has_spoken`:
+  // one in that participant's name came from there, or that participant is not known.
   bool may_tell_of(const GuidPrefix& other, const UdpAddress& from, bool has_spoken, Time now);
 
   // Looks whether the addresses that are known are still those of their processes. To be called about once a
@@ -110,7 +112,7 @@ class Origins {
 
   // How many datagrams were dropped.
   std::uint64_t dropped() const;
-  // The sources that were not told of yet, each once.
+  // The sources that were not reported yet, each once.
   std::vector<ForeignSource> new_sources();
 
  private:

@@ -71,7 +71,7 @@ struct ReceiveThread::Socket {
     std::vector<std::uint8_t> bytes;
   };
   std::deque<Kept> kept;
-  std::size_t kept_bytes = 0;  // with what each takes beside what it says: datagrams may be empty
+  std::size_t kept_bytes = 0;  // with the overhead of each datagram, which may be empty
 
   static std::size_t bytes_of(const Kept& each) { return sizeof(Kept) + each.bytes.size(); }
 

@@ -51,7 +51,8 @@ class ReceiveThread {
     UdpAddress from;
     SystemTime received;
   };
-  // Called on the thread that receives, one at a time. It may write into what came, which is gone when it returns.
+  // Called on the thread that receives, one at a time. It may write into the datagram, whose memory
+  // is invalid when it returns.
   using OnDatagram = std::function<void(const Datagram&)>;
   using HasTime = std::function<bool(std::span<const std::uint8_t> datagram)>;
   // For so long, announcements must have come and nothing else.
@@ -69,7 +70,7 @@ class ReceiveThread {
     std::uint32_t buffer = 0;  // bytes, which net.core.rmem_max caps; 0: the system's
     std::uint32_t largest = kLargest;  // bytes of a datagram; what is longer is cut
     Haste haste = Haste::kNow;
-    HasTime has_time{};  // empty: always as `haste` says
+    HasTime has_time{};  // empty: always as `haste` sets
   };
   // Errors: the place is taken, or the system refuses. The thread begins with the first socket.
   Expected<void> open(const Place& place, OnDatagram on_datagram);
@@ -98,7 +99,8 @@ class ReceiveThread {
   class Batch;
 
   void run();
-  // Hands on what came to one that waits for nobody, at most kBatch datagrams, and keeps the rest. Before that, all that came to the patient ones.
+  // Hands on the datagrams of a socket without time, at most kBatch, and keeps the rest. Before
+  // that, all that came to the patient ones.
   void take_urgent(Socket& socket, Batch& batch, const Sockets& patient, Batch& patient_batch);
   void take_patient(const Sockets& patient, Batch& batch);
   // Whether they wake the thread, and how often it looks otherwise, depends on how much comes to them.

@@ -155,7 +155,7 @@ TEST(ReceiveThread, OneHasTimeWhileNothingElseComesThere) {
     is_inside.release();
     may_go_on.acquire();
   }));
-  // Which of two that were said while the thread was busy is heard first.
+  // The one of two datagrams, both sent while the thread was busy, that arrives first.
   const auto heard_first = [&] {
     const std::size_t before = ears.heard.all().size();
     speaker.say(urgent, "wait");

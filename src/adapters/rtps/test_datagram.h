@@ -86,7 +86,7 @@ class TestDatagram {
     bytes_[start_ + 3] = static_cast<std::uint8_t>(length >> 8);
     return *this;
   }
-  TestDatagram& readers() { return u32(0); }  // all that hear the writer
+  TestDatagram& readers() { return u32(0); }  // all readers of the writer
   TestDatagram& entity(const Guid& guid) {
     bytes_.insert(bytes_.end(), guid.bytes.begin() + 12, guid.bytes.end());
     return *this;

@@ -1,5 +1,6 @@
-// The UDP sockets of this machine, as the kernel's tables tell them: /proc/thread-self/net/udp and udp6 (proc(5)).
-// They are those of the calling thread's network namespace; of all of its processes, whoever they run as.
+// The UDP sockets of this machine, from the kernel's tables: /proc/thread-self/net/udp and udp6
+// (proc(5)). They are those of the calling thread's network namespace; of all of its processes,
+// whichever user runs them.
 #pragma once
 
 #include <cstdint>

@@ -15,8 +15,8 @@ namespace culprit::rule_files {
 // share/culprit/rules beside the bin of the running program; it need not be there.
 const std::filesystem::path& installed();
 
-// For expand(): one file, as the name says it in an INCLUDE of `from`. Errors: there is none; the
-// message says where it was looked for, and what was probably meant.
+// For expand(): one file, by its name in an INCLUDE of `from`. Errors: there is none; the message
+// lists the folders that were searched, and a similar name.
 Expected<Source> load(const std::string& file, const std::string& from);
 
 // The rules of the file at `path`, put together. Errors: it cannot be read. Faults of an included

@@ -70,7 +70,7 @@ void ModeManager::aim(const modes::Entity& node, const modes::Target& target) {
     ask(node.name, [](Node& part) { part.change(Transition::kDeactivate); });
     return;
   }
-  // The state first, then the parameters. Activating what is active fails, and nobody minds.
+  // The state first, then the parameters. Activating an active node fails, and that does no harm.
   ask(node.name, [parameters = node.find(target.mode)->parameters](Node& part) {
     part.change(Transition::kActivate);
     part.post([&part, parameters] {
@@ -119,7 +119,7 @@ void ModeManager::hear_all_of(const Node& node) {
   });
 }
 
-// News come to the executor like everything else: one that hangs hears nothing.
+// News come to the executor like everything else: one that hangs receives none.
 void ModeManager::hear(const std::string& node, std::function<void(modes::Inference&)> news) {
   if (model_.find(node) == nullptr) return;
   post([this, news = std::move(news)] {

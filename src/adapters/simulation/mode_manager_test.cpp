@@ -108,7 +108,7 @@ TEST(ModeManager, SeesAPartThatBeganAnew) {
   plant.change("fast");
   plant.pump.kill();
   plant.run(1s);
-  EXPECT_EQ(plant.mode(), "fast");  // nobody told it otherwise
+  EXPECT_EQ(plant.mode(), "fast");  // no request changed it
   plant.pump.launch();
   plant.run(1s);
   EXPECT_EQ(plant.mode(), "off");
@@ -252,7 +252,8 @@ RULE NotSix
   EXPECT_EQ(plant.mode(), "slow");
 }
 
-// Killed at any moment of the change: the mode is reached all the same, by a manager begun anew.
+// Killed at any moment of the change: the mode is reached all the same, by a manager that was
+// started again.
 TEST(SimulatedSystem, ReachesItsModeThoughItsModeManagerDiesInBetween) {
   const std::string rules = std::string(kRules) + R"(
 RULE ModesDead
@@ -352,7 +353,7 @@ RULE Dirty
 
 TEST(SimulatedSystem, ThatAcceptsAModeAndDoesNothingIsSaidSo) {
   Plant plant;
-  plant.pump.stop();  // its mode manager tells it, and it never hears
+  plant.pump.stop();  // its mode manager's request never reaches it
   const auto lines = said(plant, R"(
 COMPONENT modes NODE /modes
 COMPONENT pump NODE /pump

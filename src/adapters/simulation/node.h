@@ -41,8 +41,8 @@ class Endpoint;
 
 class Node {
  public:
-  // A killed process says no good-bye: its node stays in the graph until its lease is over (the
-  // default of Fast DDS).
+  // A killed process does not announce its end: its node stays in the graph until its lease is over
+  // (the default of Fast DDS).
   static constexpr Duration kLease = std::chrono::seconds(20);
 
   // `name` is the full name, "/namespace/name". `world` must outlive the node.
@@ -61,9 +61,9 @@ class Node {
   ProcessState process() const { return body_.process; }
   int pid() const { return body_.pid; }
   bool is_in_graph() const { return body_.is_in_graph; }
-  // Starts the process if it is gone. The node comes into the graph after traits().start.
+  // Starts the process if it has exited. The node comes into the graph after traits().start.
   void launch();
-  // Asks the process to end. `done` is called when it is gone, at once if it was.
+  // Asks the process to end. `done` is called when it has exited, at once if it had.
   void terminate(Action done);
   void kill();    // SIGKILL
   void stop();    // SIGSTOP

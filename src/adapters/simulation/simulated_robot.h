@@ -26,7 +26,7 @@ namespace culprit::simulation {
 
 class SimulatedRobot : public Robot, private Watcher {
  public:
-  // Both must outlive the robot. Tells at once what is in the world already.
+  // Both must outlive the robot. Reports at once what is in the world already.
   SimulatedRobot(const RuleSet& rules, World& world);
   ~SimulatedRobot() override;
 

@@ -28,7 +28,7 @@ class Watcher {
   virtual void on_endpoint(const Node&, EndpointKind, const std::string& /*name*/,
                            bool /*is_there*/) {}
   virtual void on_sample(const TopicBase&) {}
-  // A field of a sample, right after it, if somebody wants it (TopicBase::watch_field).
+  // A field of a sample, right after it, if a watcher wants it (TopicBase::watch_field).
   virtual void on_field(const TopicBase&, const std::string& /*field*/, const Value&) {}
   virtual void on_diagnostic(std::string_view /*status*/, std::string_view /*key*/, const Value&) {}
   virtual void on_level(std::string_view /*status*/, std::uint8_t /*level*/) {}
@@ -45,8 +45,8 @@ class World {
 
   Time now() const { return now_; }
 
-  // A source of chance of its own for whatever `name` says, so that one more draw in one place
-  // changes nothing elsewhere.
+  // A separate source of random numbers for each `name`, so that one more draw in one place changes
+  // nothing elsewhere.
   Random random(std::string_view name) const;
 
   // Does `action` at `due`, or now if that is past.

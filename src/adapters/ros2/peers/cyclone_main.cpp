@@ -270,7 +270,7 @@ void announce(Peer& peer, const std::string& node, const std::vector<dds_entity_
           say("change " + std::to_string(id) + " " + std::to_string(response.success));
         });
   }
-  _exit(0);  // like a process that was killed: nobody is told
+  _exit(0);  // like a killed process: without a goodbye
 }
 
 int usage() {

@@ -24,7 +24,7 @@
 // live in it. It loads, unloads and lists as rclcpp_components' ComponentManager does: classes by
 // the ament index of its environment, numbers from 1, the same texts. Every class is one of these
 // nodes. It prints what it loads and unloads. While there is the FILE of --keeps-if it unloads
-// nothing, and says so.
+// nothing, and answers so.
 #include <charconv>
 #include <chrono>
 #include <cmath>
