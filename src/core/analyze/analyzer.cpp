@@ -399,7 +399,8 @@ void Analyzer::judge(RuleId id, Time now) {
   const Duration impact =
       std::max(duration_of(knowledge_.rules[attempt.strategy].impact, knowledge_.rules),
                knowledge_.latencies.lateness(id).most);
-  const Time given = std::max(later(attempt.effective, impact), shows_from(attempt));
+  const Time given = std::max({later(attempt.effective, impact), shows_from(attempt),
+                               knowledge_.signals.heard_again_by(id)});
   attempt.deadline = later(given, knowledge_.signals.latency(id));
   if (knowledge_.rules[id].policies.on_change || is_gone(id, now)) return succeed(id, now);
   const bool is_suspended = attempt.stage == Attempt::Stage::kSuspended;

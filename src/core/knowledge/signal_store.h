@@ -49,6 +49,10 @@ class SignalStore {
   Duration latency(RuleId id) const;
   void set_latency(InputId id, Duration latency) { latencies_[id.index] = latency; }
 
+  // After a gap of hearing: when the topics of a rule would have had a sample again. Before that its trigger
+  // proves nothing about the present.
+  Time heard_again_by(RuleId id) const;
+
   // When a signal was read last; kLongAgo for inputs that no reading brings.
   Time read_at(InputId id) const { return read_at_[id.index]; }
   void set_read_at(InputId id, Time at) { read_at_[id.index] = at; }
@@ -86,6 +90,7 @@ class SignalStore {
     // Since `last` there was a time in which it could not be received: since when it would be silent, had culprit
     // received all the time until now. May be a little ahead.
     Time resumed = kLongAgo;
+    Time heard_again_by = kLongAgo;  // after that time: when a sample would have come at the latest
 
     // Since when its silence counts. @pre last
     Time silent_since() const { return std::max(*last, resumed); }

@@ -241,6 +241,24 @@ TEST(Hearing, AStrategyUnderWayIsNotBlamedForWhatWasNotHeard) {
   EXPECT_EQ(after.beta, before.beta);
 }
 
+// The strategy helped, and culprit slept over the proof: until the camera would have been received
+// again, the silence from before proves nothing.
+TEST(Hearing, AVerdictWaitsUntilTheRobotWouldHaveBeenReceivedAgain) {
+  TestRobot robot = test::robot();
+  robot["camera"].fault = "redeploy";
+  while (!robot.works("camera")) robot.run_for(50ms);
+  robot.tell(HearingLost{"nothing came back"});
+  robot["camera"].fault = "deaf";  // as culprit sees it
+  robot.run_for(1s);
+  robot.tell(HearingRegained{});
+  robot.run_for(2100ms);  // later than the strategy's deadline, and in time for the first sample
+  EXPECT_EQ(robot.count("did not help"), 0u) << transcript(robot);
+  robot["camera"].fault = "";
+  robot.run_for(10s);
+  EXPECT_EQ(robot.count("did not help"), 0u) << transcript(robot);
+  EXPECT_EQ(robot.count("CameraSilent.redeploy"), 1u) << transcript(robot);
+}
+
 TEST(Hearing, NothingIsRunByHandWhileDeaf) {
   TestRobot robot = test::robot();
   robot.tell(HearingLost{"nothing came back"});

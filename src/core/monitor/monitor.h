@@ -128,9 +128,8 @@ class Monitor {
       Duration silence{};
     };
     std::optional<Resumes> resumes;
-    Time heard_again_by = kLongAgo;  // until then it had time for that
-    bool is_known_silent = false;    // no sample came since its publisher was known dead
-    std::optional<Time> listened;    // since when its publisher knows its subscriber
+    bool is_known_silent = false;  // no sample came since its publisher was known dead
+    std::optional<Time> listened;  // since when its publisher knows its subscriber
     // It is certain that no sample came since then, though `discovered` is still ahead; and the
     // component that would have published one.
     std::optional<Time> silent_since;

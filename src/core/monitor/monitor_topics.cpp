@@ -107,7 +107,8 @@ Time Monitor::rate_known_from(InputId id) const {
     return topic.resumes ? std::max(from, topic.resumes->at) : from;
   }
   Time since = heard_since(*topic.first);
-  const Time by = std::max(later(awake_, input.window), topic.heard_again_by);
+  const Time by =
+      std::max(later(awake_, input.window), knowledge_.signals.rhythm(input.topic).heard_again_by);
   if (since == awake_ && topic.regained && *topic.regained < by) since = *topic.regained;
   if (const auto& overflowed = derived_[id.index].overflowed) since = std::max(since, *overflowed);
   const Time from = later(since, input.window);
@@ -127,8 +128,8 @@ void Monitor::resume(TopicId id, Time since, Time now) {
   if (!topic.last && !topic.silent_since && !knowledge_.sightings.first(id)) return;
   SignalStore::Rhythm rhythm = knowledge_.signals.rhythm(id);
   const Duration silence = std::max(silence_of(id, since), Duration::zero());
-  topic.heard_again_by = later(now, rhythm.gap + kSpeaksAgain);
-  topic.resumes = Topic::Resumes{topic.heard_again_by, silence};
+  rhythm.heard_again_by = later(now, rhythm.gap + kSpeaksAgain);
+  topic.resumes = Topic::Resumes{rhythm.heard_again_by, silence};
   topic.phi.restart(topic.resumes->at, silence);
   rhythm.resumed = topic.resumes->at - silence;
   write_.signals.set_rhythm(id, rhythm);
