@@ -44,8 +44,9 @@ struct Fleet : testing::Test {
 
 using CountsByRun = std::map<std::string, Counts>;
 
-// A robot that everything happens to. `heard`: what the database has to know, of all robots. Copies
-// of a disk have the beginnings of the same runs, so the largest count of a run is that of all.
+// A robot that everything happens to. `heard`: the events that the database must hold, of all
+// robots. Copies of a disk have the beginnings of the same runs, so the largest count of a run is
+// that of all.
 class SimulatedRobot {
  public:
   SimulatedRobot(fs::path folder, std::string machine, std::mt19937& random, CountsByRun& heard)

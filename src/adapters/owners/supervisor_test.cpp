@@ -601,7 +601,7 @@ TEST(Supervisor, AnswersAllWhoWaitForOneEnd) {
   EXPECT_EQ(c.reply_to({3}).outcome, Outcome::kDone);
 }
 
-// As `ros2 run` starts a node: what works is a child.
+// As `ros2 run` starts a node: the child works.
 TEST(Supervisor, TellsThatWhatItStartedWorksUntilItsNodeIsThere) {
   Supervised c("sh -c 'while :; do :; done & wait'");
   const int pid = c.start();

@@ -341,7 +341,7 @@ TEST_F(Filter, NothingIsAddressedWhileReadersChange) {
   EXPECT_EQ(addressee(20), 1);
 }
 
-// A last submessage may have no length of its own: what is before it is passed on.
+// A last submessage may have no length of its own: the submessages before it are passed on.
 TEST_F(Filter, TheLastSubmessageCanBeForNobody) {
   filter.begin_to_address();
   Bytes bytes = from(kCamera).data(kCamera, 1).heartbeat(kCamera, 1, 1).bytes();

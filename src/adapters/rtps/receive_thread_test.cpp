@@ -140,7 +140,7 @@ TEST(ReceiveThread, WhatHasTimeComesByItself) {
   EXPECT_THAT(ears.heard.all(), SizeIs(100));
 }
 
-// It is as with those that always have time: what lies there is handed on first.
+// It is as with those that always have time: datagrams there are handed on first.
 TEST(ReceiveThread, OneHasTimeWhileNothingElseComesThere) {
   Listener ears;
   const Voice speaker;
