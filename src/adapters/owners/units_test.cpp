@@ -221,7 +221,7 @@ TEST_F(UnitsOnAStandInForSystemd, ThatCannotBeStartedSayWhatSystemdSays) {
   systemd.add("lidar.service", {.is_broken = true});
   running();
   const auto seen = wait_for<ProcessSeen>([](const auto&) { return true; });
-  ASSERT_TRUE(seen) << "what failed is dead, though its node was never seen";
+  ASSERT_TRUE(seen) << "a failed unit has exited, also without a discovered node";
   EXPECT_EQ(seen->state, ProcessState::kGone);
   EXPECT_EQ(seen->remark, "lidar.service failed: exit-code");
 }

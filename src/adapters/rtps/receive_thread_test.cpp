@@ -166,7 +166,7 @@ TEST(ReceiveThread, OneHasTimeWhileNothingElseComesThere) {
     EXPECT_TRUE(ears.heard.wait_for_count(before + 3));
     return ears.heard.all()[before + 1];
   };
-  EXPECT_EQ(heard_first(), "urgent") << "nobody knows yet what comes there";
+  EXPECT_EQ(heard_first(), "urgent") << "the kind of its datagrams is not known yet";
   std::this_thread::sleep_for(ReceiveThread::kCalm);
   (void)heard_first();
   EXPECT_EQ(heard_first(), "calm");
