@@ -1,9 +1,9 @@
 // Orders over DDS: services of culprit_msgs. They pass each request to the same call as HTTP and
 // the unix socket (web/order_routes.h), and return its answer.
 //
-// Each service has a thread of its own, for an order may wait for the disk or for the manager, and
-// a pause must not wait behind another order. While kMostWaiting wait, further orders are refused
-// at once.
+// Each service has a thread of its own: an order may wait for the disk or for the manager, and a
+// pause must not wait behind another order. While kMostWaiting wait, further orders are refused at
+// once.
 #pragma once
 
 #include <functional>

@@ -136,7 +136,8 @@ TEST(RosApi, TellsIncidentsAndDecisions) {
   OrderedCulprit culprit;
   auto& incidents = culprit.panel.hear("/culprit/incidents", "culprit_msgs/msg/Incident");
   auto& decisions = culprit.panel.hear("/culprit/decisions", "culprit_msgs/msg/Decision");
-  ASSERT_TRUE(culprit.panel.is_known_to("/culprit")) << "or it would miss what is told once";
+  ASSERT_TRUE(culprit.panel.is_known_to("/culprit"))
+      << "or it would miss messages that are sent once";
   culprit.step({{culprit.now, ProcessSeen{ComponentId(0), ProcessState::kRunning, 12, ""}}});
   culprit.step({{culprit.now, ProcessSeen{ComponentId(0), ProcessState::kGone, 12,
                                           "killed by signal 9", Cause::kFault}}});
@@ -166,7 +167,7 @@ TEST(RosApi, ObeysAPauseAndItsEnd) {
                                          {{"author", "ann"}, {"reason", "people on the floor"}});
   EXPECT_EQ(paused["success"], true) << paused;
   EXPECT_THAT(paused["message"].get<std::string>(), HasSubstr("not kept: this is a test"))
-      << "the manager's own word, and whether the next culprit will know";
+      << "the manager's answer, and whether the order outlives culprit";
   EXPECT_TRUE(culprit.manager->governor().is_paused());
   const auto orders = culprit.keeper.orders();
   ASSERT_TRUE(orders.pause);
@@ -284,7 +285,7 @@ TEST(RosApi, AForgedRequestIsAnsweredWithAnErrorAndDoesNothing) {
   }
   EXPECT_FALSE(culprit.manager->governor().is_paused());
   EXPECT_EQ(culprit.panel.call("/culprit/pause", kPause, {{"author", "ann"}})["success"], true)
-      << "and who comes next is heard";
+      << "and the next request is answered";
 }
 
 TEST(RosApi, APauseDoesNotWaitBehindAnotherOrder) {
@@ -335,7 +336,7 @@ TEST(RosApi, MoreOrdersThanItCanKeepAreRefusedAtOnce) {
     return each.find("too many orders wait") != std::string::npos;
   }));
   disk.set_value();
-  EXPECT_TRUE(answers.wait_for_count(count)) << "nobody is left without an answer";
+  EXPECT_TRUE(answers.wait_for_count(count)) << "every request gets an answer";
 }
 
 constexpr const char* kAction = "/culprit/wait_for_recovery/_action/";
@@ -405,7 +406,7 @@ TEST(RosApi, WhoWaitsForARecoveryIsAnsweredWhenItComes) {
   EXPECT_TRUE(states.wait_for_one([](const Json& each) {
     const Json& all = each["status_list"];
     return all.size() == 2 && all[0]["status"] == 4 && all[0]["goal_info"]["goal_id"] == goal_id(1);
-  })) << "and the topic says so";
+  })) << "and the topic shows it";
 }
 
 TEST(RosApi, WhoWaitsForARecoveryMayStopOrRunOutOfTime) {

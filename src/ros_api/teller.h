@@ -1,11 +1,11 @@
 // Reports a manager's findings and actions in messages of culprit_msgs. It knows no middleware:
 // its creator publishes the messages (ros_api.h).
 //
-// - Status: what is there now. When it has changed, at most every kPeriod.
+// - Status: the present state. When it has changed, at most every kPeriod.
 // - Incident: incident_watch.h.
 // - Decision: as they happen; beyond kMostDecisions in a second they are counted and left out.
 //
-// So it costs little whatever happens on the robot, and nothing while nothing does.
+// So it costs little however much happens on the robot, and nothing while nothing happens.
 #pragma once
 
 #include <functional>

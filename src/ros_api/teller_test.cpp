@@ -140,7 +140,7 @@ TEST(Teller, SaysNothingWhileNothingChanges) {
   told.clear();
   told.run_for(10min);
   EXPECT_THAT(told.statuses, IsEmpty());
-  EXPECT_EQ(told.teller.next_look(), kNever) << "and it wants no step of its own";
+  EXPECT_EQ(told.teller.next_look(), kNever) << "and it needs no step of its own";
 }
 
 TEST(Teller, TellsAnIncidentFromItsBeginningToItsEnd) {

@@ -44,8 +44,9 @@ struct Fleet : testing::Test {
 
 using CountsByRun = std::map<std::string, Counts>;
 
-// A robot that everything happens to. `heard`: what the database has to know, of all robots. Copies
-// of a disk have the beginnings of the same runs, so the largest count of a run is that of all.
+// A robot that everything happens to. `heard`: the events that the database must hold, of all
+// robots. Copies of a disk have the beginnings of the same runs, so the largest count of a run is
+// that of all.
 class SimulatedRobot {
  public:
   SimulatedRobot(fs::path folder, std::string machine, std::mt19937& random, CountsByRun& heard)
@@ -436,7 +437,7 @@ TEST_F(Fleet, ARobotReadsAndChangesNoRowsButItsOwn) {
     EXPECT_EQ(text_in((*rover.query("SELECT count(*) FROM " + name))[0][0]), "1") << table;
     EXPECT_EQ(text_in((*stranger.query("SELECT count(*) FROM " + name))[0][0]), "0") << table;
     EXPECT_FALSE(stranger.query("DELETE FROM " + name)) << table;
-    EXPECT_FALSE(rover.query("DELETE FROM " + name)) << "what was said stays said";
+    EXPECT_FALSE(rover.query("DELETE FROM " + name)) << "rows cannot be deleted";
   }
   // Forged rows, in the other's name.
   EXPECT_FALSE(
@@ -450,7 +451,7 @@ TEST_F(Fleet, ARobotReadsAndChangesNoRowsButItsOwn) {
   EXPECT_FALSE(
       stranger.query("INSERT INTO culprit.robot(robot, login, name, model, culprit, "
                      "rule_set, context) VALUES(gen_random_uuid(), 'rover', '', '', '', '', '')"))
-      << "of a login that is not its own";
+      << "the login of another robot";
   for (const char* change :
        {"UPDATE culprit.outcome SET helped = 1000", "UPDATE culprit.robot SET name = 'mine'",
         "UPDATE culprit.failure SET ended = now()"})
@@ -558,7 +559,7 @@ TEST_F(Fleet, ANewRobotBeginsWithWhatTheOthersLearned) {
     EXPECT_EQ(robot.priors[0].priors.size(), 2u);
     const PriorsTold& told = robot.priors[1];
     EXPECT_EQ(told.source, "8 robots of rover");
-    ASSERT_EQ(told.priors.size(), 1u) << "nobody tried the other strategy";
+    ASSERT_EQ(told.priors.size(), 1u) << "no robot tried the other strategy";
     EXPECT_LT(told.priors[0].alpha / (told.priors[0].alpha + told.priors[0].beta), 0.2);
     EXPECT_LE(told.priors[0].alpha + told.priors[0].beta, 12.1);
   }

@@ -40,7 +40,7 @@ Expected<void> JournalTail::follow(Outbox& outbox, const std::atomic<bool>& stop
 }
 
 // From the beginning of the newest run that is known, for what was counted of it is not known any
-// more. In another file, from its beginning: what was counted before counts once.
+// more. In another file, from its beginning: earlier outcomes count once.
 Expected<void> JournalTail::begin(const journal::Reader& reader, const Outbox& outbox) {
   tally_ = {};
   kept_.clear();

@@ -47,7 +47,7 @@ struct Member::State {
   Ears ears CULPRIT_GUARDED_BY(mutex);
   std::uint64_t session CULPRIT_GUARDED_BY(mutex) = 0;
 
-  // Of the thread.
+  // Used by the thread only.
   std::optional<Outbox> outbox;
   JournalTail tail;
   std::mt19937 random;
@@ -127,7 +127,7 @@ void Member::State::run() {
     try {
       work();
     } catch (const std::exception& error) {
-      // For example, there is no memory left: whatever it is, the robot is managed by others.
+      // For example, there is no memory left: the robot is managed all the same.
       fail_to_keep(error.what());
     }
     lock.lock();

@@ -49,7 +49,7 @@ class Member {
   };
 
   explicit Member(Options options);
-  // Comes back at once, whatever the database does.
+  // Returns at once, whatever the database does.
   ~Member();
   Member(const Member&) = delete;
 

@@ -37,7 +37,7 @@ struct Outcome {
   Counts counts;
 };
 
-// Of one run.
+// A failure of one run.
 struct RunFailure {
   std::string run;
   Failure failure;
@@ -81,7 +81,7 @@ class Outbox {
   Expected<News> news() const;
   // The unsent rows, oldest first: at most so many of each.
   Expected<Waiting> waiting(int most) const;
-  // It was sent as it is here; what changed since goes again.
+  // It was sent as it is here; later changes go again.
   Expected<void> sent(const Waiting& what);
   // How much was dropped without having been sent, in all.
   Expected<std::int64_t> dropped() const;

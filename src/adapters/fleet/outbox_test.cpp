@@ -23,7 +23,8 @@ TEST(Outbox, ARobotKeepsItsNumberOnItsComputer) {
   const Identity again = Outbox::open(folder / "o", "one")->identity();
   EXPECT_EQ(again.robot, robot);
   EXPECT_FALSE(again.is_copy);
-  EXPECT_EQ(Outbox::open(folder / "o", "")->identity().robot, robot) << "who cannot tell goes on";
+  EXPECT_EQ(Outbox::open(folder / "o", "")->identity().robot, robot)
+      << "an unknown computer keeps its number";
 }
 
 TEST(Outbox, OnAnotherComputerItIsAnotherRobotThatKnowsTheFirst) {

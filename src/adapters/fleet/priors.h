@@ -27,7 +27,7 @@ struct FleetKnowledge {
   std::map<StrategyName, StrategyKnowledge> strategies;
 };
 
-// As text, for the next start without a database, and back; what is damaged is nothing.
+// As text, for the next start without a database, and back; a damaged text gives nothing.
 std::string to_text(const FleetKnowledge& knowledge);
 FleetKnowledge knowledge_from_text(const std::string& text);
 

@@ -70,7 +70,7 @@ class Tally {
   void begin_at(std::int64_t row) { last_row_ = row - 1; }
   std::int64_t next_row() const { return last_row_ + 1; }
 
-  // Whether the row begins another run: what there is of this one has to be taken first.
+  // Whether the row begins another run: the results of this one must be taken first.
   static bool begins_run(const journal::Entry& entry);
 
  private:

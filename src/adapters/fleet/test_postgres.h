@@ -34,7 +34,7 @@ class TestPostgres {
   // The server's process, whose children are its other processes.
   pid_t pid() const { return pid_; }
 
-  // Of its socket.
+  // The folder of its socket.
   const std::filesystem::path& folder() const { return folder_.path(); }
   // As this login, which needs no password.
   Address address(const std::string& login = "postgres") const;

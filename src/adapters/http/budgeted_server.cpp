@@ -189,8 +189,8 @@ bool BudgetedServer::serve(socket_t socket) {
 }
 
 std::size_t affordable_connections(std::size_t wanted) {
-  // Processes that are started and watched, subscriptions, the journal: what a manager opens when
-  // it is needed most.
+  // Processes that are started and watched, subscriptions, the journal: the manager opens these
+  // when it needs them most.
   constexpr std::size_t kReserved = 32;
   rlimit limit{};
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return wanted;

@@ -39,7 +39,7 @@ class Hub {
   // Older events are forgotten beyond this many, or beyond this many bytes.
   static constexpr std::size_t kMostEvents = 4096;
   static constexpr std::size_t kMostBytes = 16 << 20;
-  // A batch holds at most so many messages: what a reader has to have sent before the next.
+  // A batch holds at most so many messages: a reader must have sent it before the next.
   static constexpr std::size_t kBatch = 256;
 
   // `wake` is called when a reader comes while there was none: a caller that publishes only for

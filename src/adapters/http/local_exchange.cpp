@@ -64,7 +64,7 @@ class Exchange {
   }
 
   bool is_over() const { return result_.has_value(); }
-  // At the end: what became of it. @pre is_over()
+  // At the end: the result. @pre is_over()
   Expected<LocalAnswer> result() { return std::move(*result_); }
   void fail(std::string why) { result_ = Error{std::move(why)}; }
 
@@ -75,8 +75,8 @@ class Exchange {
     if (is_connected_ && !is_over()) receive();
   }
 
-  // Connected: what is waited for. Not connected: the other's queue is full, and no event reports
-  // when it is not.
+  // Connected: the event that it waits for. Not connected: the other's queue is full, and no event
+  // reports when it is not.
   std::optional<pollfd> waits_for() const {
     if (!is_connected_) return std::nullopt;
     const bool sends = sent_ < request_.text.size();

@@ -29,7 +29,7 @@ struct Answer {
   std::optional<File> file{};  // likewise; it is sent piece by piece, however large it is
 };
 
-// {"error": "..."}: what is wrong and what to do about it.
+// {"error": "..."}: the fault and the remedy.
 Answer refuse(int status, const std::string& message);
 
 enum class Method : std::uint8_t { kGet, kPost, kPut, kDelete };

@@ -126,7 +126,7 @@ void send(const httplib::Request& request, httplib::Response& response, std::str
   response.set_content(content, type);
 }
 
-// As long as it is now: what comes behind that is of another time.
+// As long as it is now: bytes that are appended later are left out.
 void send_file(const httplib::Request& request, httplib::Response& response,
                const Answer::File& file) {
   constexpr std::size_t kPiece = 1 << 16;

@@ -39,7 +39,7 @@ struct WordOfOrder {
   const char* operator()(const EndStarted&) const { return "end_started"; }
 };
 
-// Writes, behind its type, what the event is about.
+// Writes the event's members, behind its type.
 class EventWriter {
  public:
   EventWriter(const RuleSet& rules, JsonWriter& json) : rules_(rules), json_(json) {}

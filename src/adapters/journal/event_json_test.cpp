@@ -140,7 +140,7 @@ TEST(EventJson, WhatIsReadBackIsWrittenAgainWithTheSameNames) {
           "launcher", "fell",      "after_ns", "components"})
       EXPECT_EQ(again.value(key, Json()), row.value(key, Json())) << key << " of " << text;
   }
-  EXPECT_EQ(read, 48u) << "all but those whose rows do not tell enough";
+  EXPECT_EQ(read, 48u) << "all but those whose rows hold too little";
 }
 
 TEST(EventJson, ReadsNothingThatTheRulesDoNotHaveOrThatIsDamaged) {

@@ -50,9 +50,9 @@ class Bequest {
 };
 std::string to_text(const Inheritance& inheritance, const RuleSet& rules, std::size_t most);
 
-// `shift`: what the clock shows here minus what it showed there; `now`: here. Leaves out what
-// `rules` does not have, and takes what would be of the future for what happened now. Errors: it is
-// of another version, or damaged.
+// `shift`: this machine's clock minus the other one's; `now`: here. Leaves out what `rules` does
+// not have, and takes what would be of the future for what happened now. Errors: it is of another
+// version, or damaged.
 Expected<Inheritance> inheritance_from_text(const std::string& text, const RuleSet& rules,
                                             Duration shift, Time now);
 

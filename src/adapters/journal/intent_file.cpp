@@ -42,7 +42,7 @@ bool may_stand_here(std::string_view kind) {
   return kind == kind::kEvent || kind == kind::kIntent || kind == kind::kOutcome;
 }
 
-// False: it is not what culprit writes, whatever its checksum.
+// False: culprit never writes that, even if the checksum fits.
 bool decode_part(std::string_view payload, SavedIntents& saved) {
   ByteReader in(payload);
   const Time step = Time(Duration(in.integer()));

@@ -14,7 +14,7 @@
 //
 // Sizes and numbers lowest byte first; the others as in bytes.h. The first part follows the hash of
 // the 56 bytes before it. Once all parts are in the journal, the next one is written over the
-// first, after a later row; what then remains behind the end was written before it.
+// first, after a later row; older bytes may remain behind its end.
 #pragma once
 
 #include <filesystem>

@@ -24,7 +24,7 @@ class Cursor {
   Expected<bool> next(Entry& entry);
   // The hash of the row that next() returned.
   std::string_view hash() const { return statement_.bytes(4); }
-  // Whether its hash fits its content and the row before: what is acted on has to be.
+  // Whether its hash fits its content and the row before: rows that cause an action must pass.
   bool is_as_written(const Entry& entry, Hasher& hasher) const;
 
  private:

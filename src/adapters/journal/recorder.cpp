@@ -154,7 +154,7 @@ void Recorder::hand_over(Pending& step, std::span<const Command> commands,
   if (has_to_wait) wait_until_written();
 }
 
-// All that is kept happened by now; what it came of has its rows.
+// All kept steps happened by now; their results have their own rows.
 void Recorder::date_kept() {
   if (kept_ == 0) return;
   const auto kept = std::span(places_).first(kept_);
@@ -492,7 +492,7 @@ void Recorder::begin_session_anew(const std::filesystem::path& rows) {
     if (auto recovery = recover(*reader, {}, rules_, {now_, wall, where_.domain}))
       known = std::move(*recovery);
   }
-  // Without them the strategies under way are unknown; what was at the beginning is not.
+  // Without them the strategies under way are unknown; those at the beginning are known.
   Json interrupted = Json::array();
   if (known) {
     for (const Interrupted& each : known->interrupted) interrupted.push_back(to_json(each, rules_));

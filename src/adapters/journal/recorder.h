@@ -181,7 +181,8 @@ class Recorder {
   std::uint64_t decisions_ = 0;
   std::optional<IntentFile> intents_;  // nothing: what is asked for waits for the journal
   std::uint64_t in_file_ = 0;          // the newest decision that it has
-  // The rows of decisions that are in no file yet, as far as is known: what an intent follows from.
+  // The rows of decisions that are in no file yet, as far as is known: an intent may follow from
+  // them.
   struct Recent {
     std::uint64_t decision;
     std::string rows;

@@ -179,7 +179,8 @@ class Trail {
   bool is_dry_run_ = false;
 };
 
-// The robot's clock counts from the start of the machine: what it showed then in what it shows now.
+// The robot's clock counts from the start of the machine: the difference between its present and
+// its former reading of the same time.
 Duration shift_of_clock(const Entry& begin, Time robot_then, const Moment& now) {
   return (now.robot - robot_then) - Duration(now.wall - begin.at);
 }

@@ -49,9 +49,9 @@ struct Moment {
   int domain = 0;
 };
 
-// `unwritten`: what comes after the rows of `journal`. `manager_before`: the process of the culprit
-// that has managed the robot until now, 0 for one on another machine; nothing: none was. Errors:
-// the file cannot be read.
+// `unwritten`: the rows after those of `journal`. `manager_before`: the process of the culprit that
+// has managed the robot until now, 0 for one on another machine; nothing: none was. Errors: the
+// file cannot be read.
 Expected<Recovery> recover(const Reader& journal, const Unwritten& unwritten, const RuleSet& rules,
                            const Moment& now, std::optional<int> manager_before = {});
 

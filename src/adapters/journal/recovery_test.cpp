@@ -82,7 +82,7 @@ TEST_F(JournalRecovery, NorFromTheBeginningOfARun) {
          "]')) WHERE id = 1");
   const Recovery recovery = recovered();
   EXPECT_TRUE(recovery.had_run);
-  EXPECT_TRUE(recovery.orders_kept) << "whether it was paused, it does not tell";
+  EXPECT_TRUE(recovery.orders_kept) << "it does not show whether it was paused";
   EXPECT_THAT(processes(recovery.past), IsEmpty());
   EXPECT_THAT(recovery.given_up, ElementsAre(HasSubstr("row 1 (session)")));
 }

@@ -55,7 +55,7 @@ enum class OrderTag : std::uint8_t {
   kEndStarted = 11
 };
 
-// Of a launcher; together.
+// Flags of a launcher; together.
 constexpr std::uint8_t kEnded = 1;
 constexpr std::uint8_t kCrashed = 2;
 constexpr std::uint8_t kRanOthers = 4;

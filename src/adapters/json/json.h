@@ -22,7 +22,7 @@ Json parse_json(std::string_view text);
 // which to_line() could not write.
 Json parse_strict_json(std::string_view text);
 
-// Neither throws: what is no UTF-8 is replaced, for robots name things as they like.
+// Neither throws: bytes that are no UTF-8 are replaced, for robots use any bytes in names.
 std::string to_line(const Json& json);      // on one line
 std::string to_indented(const Json& json);  // on several, without a newline at the end
 

@@ -1,8 +1,8 @@
 // Whether the system clock of this computer was stepped: set back, or ahead, by more than an adjustment.
 //
 // culprit measures by a clock that cannot be set, but nodes may not: after the system clock is set
-// back, timers of rclpy, and all code that waits until a time of day, stand still until it has
-// caught up.
+// back, timers of rclpy, and all code that waits for a time of day, stand still until it has caught
+// up.
 #pragma once
 
 #include <optional>

@@ -29,7 +29,7 @@ constexpr Duration kPublishPeriod = std::chrono::seconds(1);
 constexpr auto kLeavingAskedAgain = std::chrono::seconds(2);
 constexpr Duration kAskedForParameters = std::chrono::seconds(1);
 constexpr Duration kReminder = std::chrono::minutes(1);
-// So long after the robot changed, what that took of the memory is given back.
+// So long after the robot changed, the memory for that is given back.
 constexpr auto kGivesBack = std::chrono::seconds(10);
 // One that ends, or is ended, needs no person.
 constexpr Duration kSettles = std::chrono::seconds(2);

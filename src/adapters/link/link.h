@@ -50,7 +50,7 @@ struct Health {
   std::vector<std::pair<std::string, std::string>> values;
 };
 
-// execute(), publish() and log() may be called from any thread; what comes of commands goes to the
+// execute(), publish() and log() may be called from any thread; results of commands go to the
 // inbox.
 class Link {
  public:

@@ -210,7 +210,7 @@ TEST(Link, BelievesNoTransitionEventButTheNodesOwnAnswer) {
   EXPECT_FALSE(linked.has_seen<LifecycleRead>(
       [](const LifecycleRead& r) { return r.state == Lifecycle::kTransition; }));
   EXPECT_EQ(linked.ask(ChangeLifecycle{Transition::kConfigure}).outcome, Outcome::kDone);
-  EXPECT_TRUE(reads(Lifecycle::kInactive)) << "which an event told of, and the node confirmed";
+  EXPECT_TRUE(reads(Lifecycle::kInactive)) << "an event reported it, and the node confirmed it";
 }
 
 constexpr const char* kAliveRules =
@@ -440,9 +440,9 @@ TEST(Link, KnowsThatWhoIsSilentKnowsItsListener) {
   ASSERT_TRUE(begins_to_speak());
   linked.link->prove_listening(live_now() + kPatience);
   EXPECT_TRUE(linked.wait<ListenerKnown>(is_about("/silent")));
-  EXPECT_FALSE(linked.has_seen<ListenerKnown>(is_about("/speaking"))) << "nobody has to ask";
+  EXPECT_FALSE(linked.has_seen<ListenerKnown>(is_about("/speaking"))) << "no request is needed";
   silent.publish(msg::Float64{1});
-  EXPECT_TRUE(linked.wait<SampleArrived>(is_about("/silent"))) << "the first one is heard";
+  EXPECT_TRUE(linked.wait<SampleArrived>(is_about("/silent"))) << "the first one arrives";
 }
 
 TEST(Link, TakesTheListenerForKnownToNobodyWhoDoesNotAnswer) {
@@ -500,7 +500,7 @@ TEST(Link, PublishesWhatItIsToldAgainAndAgain) {
   ASSERT_TRUE(subscription);
   Linked linked(domain);
   linked.link->publish({{"culprit: R", 2, "a person must look", {{"attempts", "6"}}}});
-  ASSERT_TRUE(heard.wait_for_count(2)) << "a late listener must hear it too";
+  ASSERT_TRUE(heard.wait_for_count(2)) << "a late joiner must receive it too";
   const msg::DiagnosticStatus status = heard.all()[0].status.at(0);
   EXPECT_EQ(status.level, 2);
   EXPECT_EQ(status.name, "culprit: R");
@@ -541,7 +541,7 @@ TEST(Link, ReadsWhatWasLatchedBeforeItCame) {
   Linked linked(domain);
   EXPECT_EQ(linked.reads("visibility"), Value(3.5));
   EXPECT_FALSE(linked.has_seen<SampleArrived>([](const SampleArrived&) { return true; }))
-      << "what was published before is no beat of its rhythm";
+      << "earlier samples are no beats of its rhythm";
   (*publisher)->publish(encode(msg::Float64{4.5}));
   EXPECT_TRUE(linked.wait<SignalRead>([](const SignalRead& r) { return r.value == Value(4.5); }));
 }
@@ -597,7 +597,7 @@ TEST(Link, ReadsFieldsRhythmsAndDiagnostics) {
   EXPECT_TRUE(linked.wait<DiagnosticRead>([](const DiagnosticRead& d) { return d.level == 1; }));
   const auto trouble = linked.wait<LinkTrouble>(
       [](const LinkTrouble& t) { return t.text.find("signal wrong") != std::string::npos; });
-  EXPECT_TRUE(trouble) << "a field that is not there must be said";
+  EXPECT_TRUE(trouble) << "a missing field must be reported";
   EXPECT_FALSE(linked.has_seen<StatusHeard>([](const StatusHeard&) { return true; }))
       << "all that the rules name was found";
 }
@@ -619,7 +619,7 @@ TEST(Link, TellsWhichOfTwoNodesPublished) {
   };
   Timer timer(robot.context->executor(), 20ms, [&] { of_robot.publish(msg::Float64{1}); });
   EXPECT_TRUE(linked.wait<SampleArrived>(is_of(0)));
-  EXPECT_TRUE(linked.wait<SampleArrived>(is_of(2))) << "who listens to all hears it, too";
+  EXPECT_TRUE(linked.wait<SampleArrived>(is_of(2))) << "the signal of all publishers has it, too";
   EXPECT_FALSE(linked.has_seen<SampleArrived>(is_of(1)));
   Timer another(context->executor(), 20ms, [&] { of_other.publish(msg::Float64{1}); });
   EXPECT_TRUE(linked.wait<SampleArrived>(is_of(1)));

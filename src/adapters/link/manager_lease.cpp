@@ -201,8 +201,8 @@ std::vector<std::string> ManagerLease::state_parts(Time now) {
   return parts;
 }
 
-// `part`: what follows the proof. Its clock is of when it was written, so that the way here is all
-// that the shift is wrong by.
+// `part`: the text after the proof. Its clock is of when it was written, so that the way here is
+// all that the shift is wrong by.
 void ManagerLease::hear_state(const GuidPrefix& participant, std::string_view proof,
                               std::string_view part, Time now) {
   if (!are_same(proof, proof_of(kState, part, participant, own_.key))) return;

@@ -26,9 +26,9 @@
 // proof, and ignores them; so does this one with those of another version.
 //
 // Anybody in the domain could announce so. A claim or a beat counts if it carries a proof that its
-// participant knows the shared key (HMAC-SHA-256 over it and the participant's GUID prefix). Beats
-// are numbered, so that an old one is not taken for a new one. A claim without a proof is a
-// stranger's: it is reported, and culprit does not yield to it.
+// participant knows the shared key. The proof is an HMAC-SHA-256 over it and the participant's GUID
+// prefix. Beats are numbered, so that an old one is not taken for a new one. A claim without a
+// proof is a stranger's: it is reported, and culprit does not yield to it.
 #pragma once
 
 #include <cstdint>
@@ -83,7 +83,7 @@ class ManagerLease {
 
   // To be called every kPeriod. `hears`: messages of others arrive now. Gives the beat to be
   // written; nothing if no other culprit would believe it, or none should rely on this one now.
-  // `orders`: what people have ordered; sent only if it manages, and left out if it is too long.
+  // `orders`: people's orders; sent only if it manages, and left out if it is too long.
   std::optional<std::string> beat(Time now, bool hears, bool manages, const std::string& orders);
   // Sets the state for a successor; if it is longer than kLongestState, none is sent.
   void tell_state(std::string state);

@@ -253,14 +253,13 @@ TEST_F(TwoMachines, StandStillWhenTheyWereAwayUntilTheyKnowWhoManages) {
   // The other one took over meanwhile, as another participant.
   Machine successor{3, 200, second.lease.highest_term() + 1};
   first.ticks(now, &second);
-  EXPECT_LT(first.lease.sure_until(now), now - 1s)
-      << "whoever asked may have looked at the clock before";
+  EXPECT_LT(first.lease.sure_until(now), now - 1s) << "the caller may have read its clock before";
   first.lease.apply(successor.announcement(), now);
   successor.ticks(now, &first);
   EXPECT_EQ(first.lease.elder(now), successor.prefix);
   successor.lease.apply(first.announcement(), now);
   first.ticks(now, &successor);
-  EXPECT_FALSE(successor.lease.elder(now)) << "who was slow is no reason to step back";
+  EXPECT_FALSE(successor.lease.elder(now)) << "a slow culprit is no reason to step back";
   EXPECT_EQ(successor.lease.told_orders(), "none");
 }
 
@@ -288,7 +287,7 @@ TEST_F(TwoMachines, TakeOverAsTheSameParticipantAndGoBeforeTheOneThatWasSlow) {
   ASSERT_FALSE(is_led_by_first());
   second.lease.take_over(second.lease.highest_term() + 1);
   second.manages = true;
-  EXPECT_FALSE(second.lease.told_orders()) << "what the dead one was ordered is in force by now";
+  EXPECT_FALSE(second.lease.told_orders()) << "the orders to the exited one are in force by now";
   // Its new claim is added to the one that it had.
   EndpointInfo anew = second.announcement();
   anew.guid.bytes[14] = 7;
@@ -332,7 +331,7 @@ TEST_F(TwoMachines, LearnWhatASuccessorHasToKnowHoweverLongItIs) {
   EXPECT_EQ(second.lease.told_state()->shift, 40s);
   EXPECT_THAT(first.lease.state_parts(now), IsEmpty()) << "it was told";
   now += ManagerLease::kStatePeriod;
-  EXPECT_FALSE(first.lease.state_parts(now).empty()) << "who comes late has to hear it";
+  EXPECT_FALSE(first.lease.state_parts(now).empty()) << "a late joiner must receive it";
   EXPECT_THAT(second.lease.state_parts(now), IsEmpty()) << "it does not manage";
 }
 

@@ -1,7 +1,7 @@
 // The other computers in the domain, and which of them are unreachable.
 //
 // A computer counts as unreachable if nothing came from any of its participants for kPatience, and
-// it had two or more: a single silent participant may as well be one dead process. Its last
+// it had two or more: a single silent participant may as well be one exited process. Its last
 // participants count, also after their leases ran out; a participant that left in order does not.
 // While we ourselves may have missed messages (listens_from), no computer counts as unreachable.
 //

@@ -68,7 +68,7 @@ TEST(NeighbourHosts, AreNotSilentWhereOneParticipantOrNoneIsMissed) {
   EXPECT_FALSE(domain.is_silent()) << "it went by itself";
   domain.now += 1h;
   EXPECT_FALSE(domain.is_silent()) << "it may be that one process";
-  EXPECT_FALSE(domain.is_silent("rover3")) << "it was never heard";
+  EXPECT_FALSE(domain.is_silent("rover3")) << "no datagram came from it";
   EXPECT_FALSE(domain.is_silent(""));
 }
 

@@ -48,7 +48,7 @@ Expected<void> TopicListener::publisher_offers(const Qos& offered) {
   return {};
 }
 
-// Both receive until the first is removed; what is no news is passed over.
+// Both receive until the first is removed; repeated samples are passed over.
 Expected<void> TopicListener::hurry() {
   auto now = subscribe(reads_ ? PayloadUse::kWhole : PayloadUse::kBeginning);
   if (!now) return Error{now.error()};

@@ -38,7 +38,7 @@ class TopicListener {
                                                        PayloadUse use, Callbacks callbacks);
   Keys keys() const { return keys_; }
 
-  // A publisher offers this. If it latches, what it published before is read, too.
+  // A publisher offers this. If it is transient local, earlier samples are read, too.
   Expected<void> publisher_offers(const Qos& offered);
 
   // From now on samples come at once: kWhole where kWholeLater was asked for. For a topic whose samples prove large.

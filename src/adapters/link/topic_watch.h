@@ -45,8 +45,8 @@ class TopicWatch {
   bool has_heard() const { return has_heard_; }
 
   // A publisher of the topic was discovered: subscribes with its type, unless that is done already.
-  // `offered`: its quality of service. `library`: what has that type; not used where no field is
-  // read. On one thread.
+  // `offered`: its quality of service. `library`: a library with that type; not used where no field
+  // is read. On one thread.
   void publisher_seen(const std::string& type, const Qos& offered,
                       const Expected<MessageLibrary*>& library);
 

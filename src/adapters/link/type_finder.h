@@ -29,7 +29,7 @@ class TypeFinder {
  public:
   struct Options {
     std::vector<std::filesystem::path> message_path;  // where to find .msg and .srv files
-    // Where types that nodes described are kept, by hash; what is there proves itself by it. Empty:
+    // Where types that nodes described are kept, by hash; the hash proves each file. Empty:
     // nowhere.
     std::filesystem::path kept_types;
   };

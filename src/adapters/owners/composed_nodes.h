@@ -100,7 +100,7 @@ class ComposedNodes {
     std::vector<ComponentId> parts;        // that it loads, in order
     std::deque<Errand> errands{};
     bool has_news = false;  // somebody came to it since it was asked what it has
-    // Of its thread.
+    // Used by its thread only.
     std::map<ComponentId, int> unanswered{};        // loads, and the process that was asked
     std::set<ComponentId> barred{};                 // parts whose class or parameters are missing
     std::optional<std::set<std::string>> listed{};  // its last list

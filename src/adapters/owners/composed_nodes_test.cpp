@@ -43,7 +43,7 @@ class OneContainer : public ContainerServices {
  public:
   OneContainer() { ask_anew(); }
 
-  // As another run of culprit would: what was under way is not.
+  // As another run of culprit would: requests under way are lost.
   void ask_anew() {
     composed.reset();
     composed = std::make_unique<ComposedNodes>(
@@ -274,7 +274,7 @@ TEST(ComposedNodes, AContainerThatIsStoppedIsNotWaitedForAndReplaced) {
   OneContainer box;
   box.begin({"/detector", "/tracker"});
   box.what_was_done();
-  // It would report every request, and must not be asked: what is not asked cannot be waited for.
+  // It would report every request: so this shows that it is not asked, and not waited for.
   kill(box.pid, SIGSTOP);
   while (state_letter(box.pid) != 'T') std::this_thread::sleep_for(1ms);
   EXPECT_EQ(box.stop(kDetector).outcome, Outcome::kDone);

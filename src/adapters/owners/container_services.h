@@ -1,4 +1,5 @@
-// The port to component containers: what a process offers that loads nodes (composition_interfaces).
+// The port to component containers: the services of a process that loads nodes
+// (composition_interfaces).
 #pragma once
 
 #include <cstdint>

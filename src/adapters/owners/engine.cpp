@@ -29,8 +29,8 @@ std::string variable(const char* name) {
   return value == nullptr ? "" : value;
 }
 
-// Where the engine listens: what its own tools take it from, or where its packages put it. Errors:
-// the engine is set to be on another machine.
+// Where the engine listens: from the same place as its own tools, or where its packages put it.
+// Errors: the engine is set to be on another machine.
 Expected<std::string> socket_of(EngineContainer::Engine engine) {
   const bool is_docker = engine == EngineContainer::Engine::kDocker;
   const char* name = is_docker ? "DOCKER_HOST" : "CONTAINER_HOST";

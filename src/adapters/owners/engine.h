@@ -26,7 +26,7 @@ class Engine : public ServiceOwner {
 
   Expected<UnitState> state_of(const std::string& container) override;
   Expected<void> start(const std::string& container) override;
-  // The API has whole seconds: what has less gets none.
+  // The API has whole seconds: a shorter time becomes 0.
   Expected<void> stop(const std::string& container, Duration polite) override;
   Expected<void> restart(const std::string& container, Duration polite) override;
   Expected<void> kill(const std::string& container) override;
@@ -54,7 +54,7 @@ class Engine : public ServiceOwner {
   Expected<void> change(const std::string& container, const std::string& what, Duration patience);
   Error no_form(const std::string& what) const;
 
-  // Its program: what people know it as.
+  // Its program: the name that people know.
   std::string program() const;
 
   const EngineContainer::Engine which_;

@@ -1,5 +1,5 @@
-// A program on another computer, that is talked to over ssh: what it reads and what it prints are the
-// two directions of one socket here.
+// A program on another computer, that is talked to over ssh: its input and its output are the two
+// directions of one socket here.
 //
 // ssh never asks for input (BatchMode): a computer that needs a password, or whose key is not known
 // yet, is an error. The command consists of plain words from this program, never of text from a

@@ -53,7 +53,7 @@ class ServiceOwner {
   // Whether culprit has the right to start and to end it. Errors: it has not.
   virtual Expected<void> may_manage(const std::string& service) = 0;
 
-  // Whether there was anybody to answer the last call, whatever the answer was.
+  // Whether the owner answered the last call, whatever the answer was.
   virtual bool was_reached() const = 0;
 
   // For people: "systemd", "docker".

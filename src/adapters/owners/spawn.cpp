@@ -74,7 +74,8 @@ void reset_signals() {
   sigprocmask(SIG_SETMASK, &none, nullptr);
 }
 
-// Culprit's service is spared when memory runs out (OOMScoreAdjust=); what it starts is not for that reason.
+// Culprit's service is spared when memory runs out (OOMScoreAdjust=); the processes that it starts
+// are not.
 void be_spared_no_more() {
   const int file = open("/proc/self/oom_score_adj", O_RDWR | O_CLOEXEC);
   if (file < 0) return;
@@ -344,7 +345,7 @@ Launch::~Launch() {
     return;
   }
   kill(pid_, SIGKILL);
-  // One that hangs in a file system dies when that lets it go: the supervisor cannot wait for it.
+  // One that hangs in a file system exits when that lets it go: the supervisor cannot wait for it.
   waitpid(pid_, nullptr, WNOHANG);
 }
 

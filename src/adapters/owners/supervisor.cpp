@@ -528,7 +528,7 @@ std::set<std::uint64_t> Supervisor::started_members_of(ComponentId component) co
   return numbers;
 }
 
-// ---- one too many
+// ---- one process too many
 
 std::set<int> Supervisor::started(ComponentId component) const {
   const MutexLock lock(mutex_);

@@ -11,13 +11,13 @@
 // recognizes it by that, also if this process died the moment after: a component is never started
 // beside a process that runs already. A process is not marked until its program runs; until then it
 // holds a lock on the log, which outlives us, too. (The tools of ROS 2 leave a daemon behind, which
-// outlives whatever was launched with them.)
+// outlives the nodes that were launched with them.)
 //
 // Proof before harm. A process that was not started here, and carries no mark of ours, is ended
-// only if it still is what it was when the component's process was found first: the same program of
-// the same user. Before a process is ended to be started again, the start is tried, all but its
-// last step. The supervisor never waits for a program whose file system does not answer. A process
-// that a debugger holds is not replaced.
+// only if it still is what it was when it was found first: the same program of the same user.
+// Before a process is ended to be started again, the start is tried, all but its last step. The
+// supervisor never waits for a program whose file system does not answer. A process that a debugger
+// holds is not replaced.
 //
 // The launcher of a RESPAWNED component starts it: culprit ends the process, and its launcher
 // starts it again. culprit starts it only once that launcher is known and has exited.
@@ -117,11 +117,11 @@ class Supervisor {
   // its launcher starts it.
   void start(CommandId command, ComponentId component);
 
-  // Ends all processes of the component that are watched, and no others, whatever their numbers;
+  // Ends all processes of the component that are watched, and no others, whatever their PIDs;
   // replies when they are gone. Refuses if one of them is not proven to be the component's, or if
-  // it could not be started again: then none is ended. Where that is under way already, it only waits
-  // for its end, and hurries it if it is known to hang by now.
-  // `pid`: the process that is meant; 0: whichever runs. If it has ended and only its successor runs, replies at once.
+  // it could not be started again: then none is ended. Where that is under way already, it only
+  // waits for its end, and hurries it if it is known to hang by now. `pid`: the process that is
+  // meant; 0: whichever runs. If it has ended and only its successor runs, replies at once.
   void stop(CommandId command, ComponentId component, int pid, Ending ending,
             Hangs hangs = Hangs::kNo);
 
@@ -160,7 +160,7 @@ class Supervisor {
     ComponentId component;
     WatchedProcess process;
     ProcessState state = ProcessState::kRunning;
-    // While its program does not run yet: the start, what it answers, and the lock that it has.
+    // While its program does not run yet: the start, the command that it answers, and its lock.
     std::optional<Launch> launch{};
     CommandId command{};
     FileDescriptor lock{};

@@ -601,7 +601,7 @@ TEST(Supervisor, AnswersAllWhoWaitForOneEnd) {
   EXPECT_EQ(c.reply_to({3}).outcome, Outcome::kDone);
 }
 
-// As `ros2 run` starts a node: what works is a child.
+// As `ros2 run` starts a node: the child works.
 TEST(Supervisor, TellsThatWhatItStartedWorksUntilItsNodeIsThere) {
   Supervised c("sh -c 'while :; do :; done & wait'");
   const int pid = c.start();
@@ -616,7 +616,7 @@ TEST(Proc, WhoOnlyWaitsDoesNotWork) {
   using namespace std::chrono_literals;
   const Work before{1s, 10 << 20};
   EXPECT_FALSE((Work{1s + 49ms, 10 << 20}.is_more_than(before)));
-  EXPECT_FALSE((Work{900ms, 5 << 20}.is_more_than(before))) << "one of its processes has ended";
+  EXPECT_FALSE((Work{900ms, 5 << 20}.is_more_than(before))) << "one of its processes has exited";
   EXPECT_TRUE((Work{1s + 50ms, 10 << 20}.is_more_than(before)));
   EXPECT_TRUE((Work{1s, 11 << 20}.is_more_than(before)));
 }
@@ -960,7 +960,7 @@ TEST(Supervisor, AdoptsAProcessAgainOnlyIfItIsTheSameOne) {
   ASSERT_TRUE(foreign);
   c.supervisor->adopt_again(ComponentId(0), *foreign, before);
   const int started = c.start();
-  EXPECT_NE(started, *foreign) << "a number that was given out anew since is not adopted";
+  EXPECT_NE(started, *foreign) << "a reused PID is not adopted";
   c.stop();
   c.supervisor->adopt_again(ComponentId(0), *foreign, live_now());
   c.supervisor->start({3}, ComponentId(0));
@@ -975,9 +975,10 @@ TEST(Supervisor, AProcessThatBeganLaterIsAnother) {
   const auto stranger = spawn({{"sleep", "1000"}, {}, "/dev/null", {}});
   ASSERT_TRUE(stranger);
   c.supervisor->adopt(ComponentId(0), *stranger, live_now() - 1s);
-  EXPECT_EQ(c.state(ProcessState::kGone).pid, *stranger) << "what had its number is gone";
+  EXPECT_EQ(c.state(ProcessState::kGone).pid, *stranger)
+      << "the former process with its PID has exited";
   c.stop();
-  EXPECT_TRUE(exists(*stranger)) << "it is nobody's business";
+  EXPECT_TRUE(exists(*stranger)) << "it is not culprit's to end";
   kill(*stranger, SIGKILL);
   waitpid(*stranger, nullptr, 0);
 }
@@ -1138,7 +1139,7 @@ TEST(Supervisor, EndsTheGroupThatAnEarlierOneHadMade) {
   for (const Relative& each : started) {
     for (int tries = 0; tries < 3000 && is_alive(each.pid); ++tries)
       std::this_thread::sleep_for(10ms);
-    EXPECT_FALSE(is_alive(each.pid)) << "it would live on beside the successor";
+    EXPECT_FALSE(is_alive(each.pid)) << "it would go on beside the successor";
   }
 }
 

@@ -177,9 +177,9 @@ void Units::look_at_all() {
   if (!is_here()) note_reach(trouble);
 }
 
-// A failed unit is proven dead, also if its node was never discovered, and if it never had a main
-// process. An inactive one is proven dead only if it was active before: it may have been stopped on
-// purpose before culprit started.
+// A failed unit is proven to have exited, also if its node was never discovered, and if it never
+// had a main process. An inactive one is proven to have exited only if it was active before: it may
+// have been stopped on purpose before culprit started.
 void Units::look_at(ComponentId component, const UnitState& state) {
   if (!state.is_loaded) return;
   if (barred_.erase(component) > 0) inbox_.put(StartBarred{component, ""});

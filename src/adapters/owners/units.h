@@ -18,7 +18,7 @@
 // On another computer (HOST) there is no process of ours to look at, and its owner's reports are
 // the only evidence. The manager receives no PID, and never takes a process of this computer for
 // it. While that computer cannot be asked, its components are unreachable (HostReached), and none
-// of them is reported dead. Once it answers again, its nodes have kReturn to be discovered.
+// of them is reported as exited. Once it answers again, its nodes have kReturn to be discovered.
 //
 // All requests are made on a thread of their own, so no caller waits for a bus that does not
 // answer.
@@ -156,7 +156,7 @@ class Units {
   const std::string host_;
   std::vector<ComponentId> components_;  // those with such an owner
 
-  // Of the thread.
+  // Used by the thread only.
   SystemdBus system_{SystemdBus::Whose::kSystem, host_};
   SystemdBus user_{SystemdBus::Whose::kUser, host_};
   Engine docker_{EngineContainer::Engine::kDocker, host_};

@@ -69,7 +69,7 @@ RC_GTEST_PROP(McapWriter, IsReadBackAsItWasWritten, ()) {
     RC_ASSERT(read.messages[i] == std::pair(static_cast<std::int64_t>(i + 1), payloads[i]));
 }
 
-// Wherever the file is cut, what was flushed before is there.
+// Wherever the file is cut, earlier flushed messages are there.
 TEST(McapWriter, LosesNothingThatWasFlushedWhereverItIsCut) {
   std::vector<std::size_t> ends;  // of the file after each flush
   const std::string whole = as_written([&](McapWriter& writer, std::uint16_t channel) {

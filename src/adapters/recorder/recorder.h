@@ -60,7 +60,7 @@ class Recorder {
   ~Recorder();
   Recorder(const Recorder&) = delete;
 
-  // Of the memory: what large messages may have, and what latched ones may.
+  // The parts of the memory for large messages, and for latched ones.
   static std::size_t large_share(std::size_t memory) { return memory / 4; }
   static std::size_t latched_share(std::size_t memory) { return memory / 10; }
 
@@ -127,7 +127,7 @@ class Recorder {
   std::uint64_t answered_ CULPRIT_GUARDED_BY(mutex_) = 0;  // the last wish that was met, or not
   Expected<std::filesystem::path> answer_ CULPRIT_GUARDED_BY(mutex_) = Error{"it has not begun"};
 
-  // Of the thread.
+  // Used by the thread only.
   std::unique_ptr<RecordingFile> file_;  // null: none is on
   std::uint64_t written_ = 0;            // the last message that is in it
   Time since_{};                         // what it begins with

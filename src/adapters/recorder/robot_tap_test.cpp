@@ -83,7 +83,7 @@ TEST_F(RobotTaps, HearWhatWasLatchedBeforeTheyCame) {
   const Time end = live_now() + ros2::kPatience;
   std::size_t count = 0;
   while (count == 0 && live_now() < end) count = recorded("/map");
-  EXPECT_EQ(count, 1) << "it is heard once, by whichever of the two readers";
+  EXPECT_EQ(count, 1) << "one of the two readers receives it";
 }
 
 TEST_F(RobotTaps, GiveUpWhatIsTooLargeAndSayItOnce) {

@@ -201,7 +201,7 @@ void Context::on_server_left(const std::string& service) {
   }
 }
 
-// Robots are discovered in bursts of hundreds of endpoints: what came meanwhile is taken in
+// Robots are discovered in bursts of hundreds of endpoints: events that came meanwhile are taken in
 // together. Never later than a task that was posted after it, for a match's listener looks into the
 // graph.
 void Context::hear(Heard heard) {
@@ -235,8 +235,8 @@ void Context::discovered(const DiscoveryEvent& event) {
   if (discovery_listener_) discovery_listener_(event);
   const auto* endpoint = std::get_if<EndpointInfo>(&event);
   if (endpoint == nullptr || gid_size_) return;
-  // Iron and newer put the hash of the type into the user data of every endpoint. So does a culprit,
-  // whatever the robot is.
+  // Iron and newer put the hash of the type into the user data of every endpoint. So does a culprit
+  // on any robot.
   if (endpoint->user_data.find("typehash=") != std::string::npos &&
       !is_of_culprit(endpoint->user_data))
     return decide(GidSize::kIronAndNewer);

@@ -80,7 +80,7 @@ class Context {
   Expected<void> open(const ParticipantOptions& options);
   Expected<void> listen_to_infos();
 
-  // Of a participant: the announcement of its nodes, as it came.
+  // From a participant: the announcement of its nodes, as it came.
   struct RawInfo {
     Bytes payload;
     GuidPrefix sender;

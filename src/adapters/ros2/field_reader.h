@@ -1,9 +1,9 @@
 // Reads one value out of a message, without decoding the rest of it.
 //
 // A path such as `pose.pose.position.x`, `ranges[3]` or `status[0].level` is compiled once, against
-// the definition of the message type, into a flat plan: what to pass over, then what to read.
-// Reading allocates no memory, except for a string. Payloads are hostile: reading one takes time
-// proportional to its size, whatever it claims.
+// the definition of the message type, into a flat plan: the fields to pass over, then those to
+// read. Reading allocates no memory, except for a string. Payloads are hostile: reading one takes
+// time proportional to its size, whatever it claims.
 #pragma once
 
 #include <cstdint>

@@ -59,7 +59,7 @@ TEST(ForgedParticipant, DoesNotChooseWhichProcessANodeIs) {
     const ParticipantInfo* info = watcher->graph().participant(forger.prefix());
     ASSERT_NE(info, nullptr);
     EXPECT_THAT(info->metatraffic, Contains(UdpAddress{{127, 0, 0, 1}, victim.port()}))
-        << "it says that it listens there";
+        << "it announces that port";
     ASSERT_EQ(watcher->graph().nodes().size(), 1u);
     EXPECT_EQ(watcher->graph().nodes()[0].node.pid, 0) << "the victim is " << victim.pid();
   });

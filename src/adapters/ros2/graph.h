@@ -116,8 +116,8 @@ class Graph {
     std::size_t nodes = 10'000;
     std::size_t endpoints = 100'000;  // discovered, and as many again claimed
   };
-  // Asked for each node that a participant comes to hold: what speaks against it may have come
-  // since it was asked last.
+  // Asked for each node that a participant comes to hold: new evidence against it may have come
+  // since the last call.
   using FindProcess = std::function<FoundProcess(const ParticipantInfo&)>;
   using IsRunning = std::function<bool(int pid)>;
   // Whether somebody else ends what this node runs in: then nothing is missing without a proof.

@@ -315,7 +315,7 @@ TEST(Graph, ANamesakeIsForgottenWhenItsProcessHasEnded) {
   EXPECT_THAT(watched.told(), ElementsAre("=/a has 0 namesakes"));
   running.erase(20);
   watched.looks_for_ended_namesakes();
-  EXPECT_THAT(watched.told(), IsEmpty()) << "alone, it is told of by who watches its process";
+  EXPECT_THAT(watched.told(), IsEmpty()) << "for a single one, its process's watcher reports that";
 }
 
 TEST(Graph, AnUnprovenNamesakeIsForgottenWhenItsSocketsAreGone) {
@@ -349,7 +349,7 @@ TEST(Graph, TheProcessOfManyNodesIsLookedForOnce) {
   watched.joins(1, 10).says(1, {node("/", "a"), node("/", "b"), node("/", "c")});
   EXPECT_EQ(looks, 1);
   watched.says(1, {node("/", "a"), node("/", "b"), node("/", "c"), node("/", "d")});
-  EXPECT_EQ(looks, 2) << "it says something else";
+  EXPECT_EQ(looks, 2) << "its announcement changed";
 }
 
 TEST(Graph, TellsOnceWhatIsMissingForTheProofOfAProcess) {
@@ -434,7 +434,7 @@ TEST(Graph, ANodeThatIsAskedAboutStaysUntilItIsFoundToHaveLeft) {
   watched.says(1, {camera});
   EXPECT_FALSE(watched.graph().is_said_to_leave("/camera"));
   watched.is_found_to_have_left("/camera");
-  EXPECT_THAT(watched.told(), IsEmpty()) << "it said meanwhile that it is there";
+  EXPECT_THAT(watched.told(), IsEmpty()) << "meanwhile it announced itself";
 
   watched.says(1, {}).is_found_to_have_left("/camera");
   EXPECT_THAT(watched.told(), ElementsAre("?-/camera", "-/camera publishes /rgb", "-/camera"));

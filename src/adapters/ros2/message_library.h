@@ -20,8 +20,8 @@ class MessageLibrary {
   // In each directory, the first one first: <package>/msg/<Type>.msg, then
   // share/<package>/msg/<Type>.msg; of "package/srv/Type_Request" and "..._Response" the parts of
   // <package>/srv/<Type>.srv, and of "package/action/Type_Goal", "..._Result" and "..._Feedback" those of
-  // <package>/action/<Type>.action. `root`: what directories, and links below them, are meant to
-  // be below (/proc/PID/root for what a process in a container sees); nothing above it is read.
+  // <package>/action/<Type>.action. `root`: the folder that directories, and links below them, must
+  // be below (/proc/PID/root for paths of a process in a container); nothing above it is read.
   explicit MessageLibrary(std::vector<std::filesystem::path> directories = {},
                           std::filesystem::path root = "/");
 

@@ -1,5 +1,5 @@
-// A stranger that speaks in the name of a robot's node, on the same machine and for real: what
-// becomes of the node.
+// A stranger that speaks in the name of a robot's node, on the same machine and for real: the
+// effect on the node.
 #include <algorithm>
 #include <memory>
 #include <string>
@@ -109,7 +109,7 @@ TEST(Origin, FarewellsOfAStrangerDoNotRemoveANodeWhoseProcessIsProven) {
   ASSERT_EQ(sources.size(), 1u);
   EXPECT_EQ(sources[0].pid, robot.process.pid());
   EXPECT_EQ(sources[0].user, getuid());
-  // Its own good-bye counts.
+  // Its own goodbye counts.
   robot.process.end(SIGTERM);
   EXPECT_TRUE(watcher.sees_node_leave("/camera"));
 }

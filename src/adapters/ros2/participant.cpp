@@ -190,7 +190,7 @@ class Reader::Impl final : public dds::DataReaderListener {
     incoming_.use = options_.payload;
   }
 
-  // The destructor undoes whatever of this succeeded.
+  // The destructor undoes the part of this that succeeded.
   Expected<void> open(const std::string& likely_refusal) {
     const auto topic = topics_.acquire(options_.topic, options_.type, options_.qos.keys);
     if (!topic) return Error{topic.error()};

@@ -2,7 +2,7 @@
 // nothing of ROS but its quality of service. context.h makes a ROS 2 participant of it.
 //
 // Threads. Callbacks run on the thread that receives and on one of the middleware's, with its locks
-// held, one at a time for each reader, writer or participant. They copy what they need and leave:
+// held. Each reader, writer or participant gets one at a time. They copy what they need and leave:
 // they must not create or destroy readers and writers, write, or wait. Everything else here may be
 // called from any thread. Destroying a reader, writer or participant waits for its running
 // callback; so do not do it while holding a mutex which that callback takes, nor from the callback.

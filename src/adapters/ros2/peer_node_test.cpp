@@ -1,5 +1,5 @@
-// Our own nodes in processes of their own: what a manager sees and does across processes, and when
-// they are killed.
+// Our own nodes in processes of their own: a manager's observations and actions across processes,
+// and when they are killed.
 #include <algorithm>
 #include <memory>
 #include <signal.h>

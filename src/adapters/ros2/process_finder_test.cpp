@@ -73,7 +73,7 @@ TEST(ProcessFinder, KnowsNothingOfOtherMachines) {
   info.metatraffic.front().ip = kElsewhere;
   const FoundProcess found = ProcessFinder().find(info);
   EXPECT_EQ(found.pid, 0);
-  EXPECT_EQ(found.missing, "") << "it does not say that it is here";
+  EXPECT_EQ(found.missing, "") << "it does not claim to be here";
 }
 
 // Its bridge for containers has the address that ours has.

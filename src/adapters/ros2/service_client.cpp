@@ -33,7 +33,7 @@ Expected<std::unique_ptr<ServiceClient>> ServiceClient::create(NodeEntry& node,
                                                                const Qos& qos, Probe probe) {
   auto client = create(node, service, qos);
   if (!client) return client;
-  // Second: what the server learns later proves what it learned before.
+  // Second: data that the server discovers later prove that it discovered the earlier ones.
   if (auto opened = (*client)->open_probe(std::move(probe)); !opened) return Error{opened.error()};
   return client;
 }

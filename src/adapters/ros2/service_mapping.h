@@ -9,13 +9,12 @@
 //
 // The vendor of a node decides its way. One server can serve both kinds of client at once.
 //
-// Where Fast DDS meets Cyclone there is one more trap. As long as a sample of ours is not
-// acknowledged by all (a killed peer does not acknowledge until its lease ends), Fast DDS first
-// sends a new reader a heartbeat that announces its first sample. Cyclone takes what the first
-// heartbeat announces for history, in which a volatile reader has no interest, and drops the
-// sample. So a client drops its old requests when a new server comes. A server sends a reply that is
-// addressed to no client before its first one to a client on Cyclone, and waits until that was
-// acknowledged.
+// Where Fast DDS meets Cyclone there is one more trap. Some peer may not acknowledge a sample of
+// ours (a killed one does not until its lease ends). As long as that is so, Fast DDS first sends a
+// new reader a heartbeat that announces its first sample. Cyclone takes what the first heartbeat
+// announces for history, in which a volatile reader has no interest, and drops the sample. So a
+// client drops its old requests when a new server comes. A server first sends a client on Cyclone a
+// reply that is addressed to no client, and waits until that was acknowledged.
 #pragma once
 
 #include <cstdint>

@@ -207,7 +207,7 @@ TEST(Service, AnAnswerThatComesWhenItsServerIsGoneGoesNowhere) {
   server.reset();
   asked.all()[0](request("too late"));
   Echo next(robot.node);
-  ASSERT_TRUE(answers->wait_for_count(1)) << "who comes next answers";
+  ASSERT_TRUE(answers->wait_for_count(1)) << "the successor answers";
   EXPECT_EQ(answers->all()[0].reply, request("hello"));
 }
 

@@ -32,7 +32,7 @@ enum ParameterId : std::uint16_t {
 // As the middleware has it, whose strings have 255 bytes.
 constexpr std::size_t kLongestName = 255;
 
-// A value: what is read beyond its end is zero, and makes it not ok().
+// A value: a read beyond its end gives zero, and makes it not ok().
 class Announced {
  public:
   Announced(ByteView bytes, Endianness order) : bytes_(bytes), order_(order) {}

@@ -16,9 +16,9 @@
 // It passes on a datagram only if it comes from where its participant is (origins.h), and if the
 // filter admits it (datagram_filter.h).
 //
-// Readers that have time (Haste::kSoon) have a port of their own. Its number is taken from the
-// upper end of those that RTPS 2.3 §9.6.1 gives to the domain's participants, where only the last
-// of many on one machine would be.
+// Readers that have time (Haste::kSoon) have a port of their own. Its number is from the upper end
+// of those that RTPS 2.3 §9.6.1 gives to the domain's participants. Only the last of many
+// participants on one machine would have it.
 #pragma once
 
 #include <arpa/inet.h>

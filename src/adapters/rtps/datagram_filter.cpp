@@ -276,7 +276,8 @@ DatagramFilter::Announcement DatagramFilter::take(std::span<std::uint8_t> submes
     write(last.base, ++last.next, last.is_little);
     return Announcement::kInGapBefore;
   }
-  // Its reader and writer move to the front; then where the gap begins, what follows it, and an empty bitmap.
+  // Its reader and writer move to the front; then the beginning of the gap, the number that follows
+  // it, and an empty bitmap.
   std::copy_n(submessage.begin() + 8, 8, submessage.begin() + 4);
   submessage[0] = rtps::kGap;
   submessage[1] &= 1;
@@ -525,8 +526,8 @@ const char* DatagramFilter::objection_to_heartbeat(const Submessage& submessage,
   return nullptr;
 }
 
-// The first message of a writer to a new reader may be the gap for all earlier samples, so a gap
-// may be as far ahead as a heartbeat.
+// A new reader may first receive the gap for all earlier samples of a writer. So a gap may be as
+// far ahead as a heartbeat.
 const char* DatagramFilter::objection_to_gap(const Submessage& submessage, Clock::time_point now) {
   Submessage body = submessage;
   body.skip(4);

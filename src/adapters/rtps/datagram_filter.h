@@ -99,8 +99,8 @@ class DatagramFilter {
   // Best effort: `on_unheard` is called from pass(), without locks, for each further sample of
   // which a part arrived, once kUnheard others in a row were not delivered. It proves that the
   // writer is alive. `on_whole`, if set, is called in the same way for each newer sample that the
-  // middleware would hand to this reader alone, and does not get. Samples in fragments are
-  // delivered by the middleware.
+  // middleware would hand to this reader alone; the middleware does not get it. Samples in
+  // fragments are delivered by the middleware.
   void begin_hearing(const Guid& writer, const Guid& reader, Reading how, OnUnheard on_unheard = {},
                      OnWhole on_whole = {});
   void end_hearing(const Guid& writer, const Guid& reader);
@@ -229,7 +229,7 @@ class DatagramFilter {
   std::size_t reserved_reliable_ CULPRIT_GUARDED_BY(mutex_) = 0;
   std::size_t reserved_best_effort_ CULPRIT_GUARDED_BY(mutex_) = 0;
   Refused refused_ CULPRIT_GUARDED_BY(mutex_);
-  // Writers without a known reader: what was passed on of them in this second.
+  // Writers without a known reader: the samples that were passed on in this second.
   struct Stranger {
     Clock::time_point since;
     int tries = 0;

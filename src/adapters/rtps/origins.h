@@ -92,8 +92,8 @@ class Origins {
   std::optional<GuidPrefix> take_doubtful();
   void forget(const GuidPrefix& participant);
 
-  // Participants are bound to addresses, by what is acknowledged to `self`. Not in a secured domain, where the
-  // middleware has a better proof.
+  // Participants are bound to addresses, by their acknowledgements to `self`. Not in a secured
+  // domain, where the middleware has a better proof.
   void begin_to_bind(const GuidPrefix& self);
   // It was discovered, or announced itself again: at these addresses.
   void discovered(const GuidPrefix& participant, std::span<const UdpAddress> announced, Time now);

@@ -64,7 +64,7 @@ struct ReceiveThread::Socket {
   Clock::time_point busy = Clock::now();  // when something came last that has no time
   bool is_calm = false;                   // something came since, and has
 
-  // Taken, and not handed on yet. Of the thread.
+  // Taken, and not handed on yet. Used by the thread only.
   struct Kept {
     UdpAddress from;
     SystemTime received;

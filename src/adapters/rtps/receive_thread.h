@@ -10,10 +10,11 @@
 //
 // Waking the thread costs most. So some sockets have time (Haste::kSoon): they are read whenever
 // the thread is awake anyway. If so many datagrams come that this is cheaper, they are read every
-// kSoon instead of with each datagram, or sooner if more come, for a socket's buffer is small.
-// Their datagrams are always handed on before later ones of the other sockets: after a message
-// there, a reader has received all earlier ones. The kernel gives the time of arrival of each
-// datagram. A caller that waits for an answer there makes them hurry meanwhile (begin_hurry()).
+// kSoon instead of with each datagram. They are read sooner if more come, for a socket's buffer is
+// small. Their datagrams are always handed on before later ones of the other sockets: after a
+// message there, a reader has received all earlier ones. The kernel gives the time of arrival of
+// each datagram. A caller that waits for an answer there makes them hurry meanwhile
+// (begin_hurry()).
 //
 // A socket for announcements has time only while nothing else comes there (Place::has_time): in a
 // robot at rest each participant repeats again and again that it is there.
@@ -82,7 +83,7 @@ class ReceiveThread {
   // port, too. Once is enough; refusals are ignored: interfaces come and go.
   void join(std::uint16_t port, in_addr group, in_addr interface);
 
-  // Until each that began has ended, what comes to sockets that have time wakes the thread, too.
+  // Until each that began has ended, datagrams to sockets that have time wake the thread, too.
   void begin_hurry();
   void end_hurry();
 
@@ -120,7 +121,8 @@ class ReceiveThread {
   std::uint64_t rounds_ CULPRIT_GUARDED_BY(mutex_) = 0;  // odd: one is under way
   bool is_armed_ CULPRIT_GUARDED_BY(mutex_) = true;      // patient sockets wake the thread
   int hurried_ CULPRIT_GUARDED_BY(mutex_) = 0;           // how many wait for an answer
-  // Of the thread: how it looks at patient sockets, and what came to them since `watched_`.
+  // Used by the thread only: how it looks at patient sockets, and what came to them since
+  // `watched_`.
   std::chrono::milliseconds next_look_ = kSoonest;
   std::chrono::milliseconds often_ = kSoonest;
   Clock::time_point watched_{};

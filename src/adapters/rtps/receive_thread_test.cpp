@@ -140,7 +140,7 @@ TEST(ReceiveThread, WhatHasTimeComesByItself) {
   EXPECT_THAT(ears.heard.all(), SizeIs(100));
 }
 
-// It is as with those that always have time: what lies there is handed on first.
+// It is as with those that always have time: datagrams there are handed on first.
 TEST(ReceiveThread, OneHasTimeWhileNothingElseComesThere) {
   Listener ears;
   const Voice speaker;
@@ -166,7 +166,7 @@ TEST(ReceiveThread, OneHasTimeWhileNothingElseComesThere) {
     EXPECT_TRUE(ears.heard.wait_for_count(before + 3));
     return ears.heard.all()[before + 1];
   };
-  EXPECT_EQ(heard_first(), "urgent") << "nobody knows yet what comes there";
+  EXPECT_EQ(heard_first(), "urgent") << "the kind of its datagrams is not known yet";
   std::this_thread::sleep_for(ReceiveThread::kCalm);
   (void)heard_first();
   EXPECT_EQ(heard_first(), "calm");

@@ -24,7 +24,7 @@ class TestDatagram {
                           std::uint32_t count = 1) {
     return begin(0x07).readers().entity(writer).sequence(first).sequence(last).u32(count).end();
   }
-  // Of first ... base - 1.
+  // The gap from `first` to `base` - 1.
   TestDatagram& gap(const Guid& writer, std::int64_t first, std::int64_t base) {
     return begin(0x08).readers().entity(writer).sequence(first).sequence(base).u32(0).end();
   }

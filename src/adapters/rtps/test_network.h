@@ -1,7 +1,7 @@
 // For tests with a bad network: two computers and the cable between them.
 //
 // Each computer is a network namespace with a loopback and one Ethernet device; the cable is a
-// thread that carries the frames from one TAP device to the other, and can be set to lose, delay,
+// thread that carries the frames from one TAP device to the other. It can be set to lose, delay,
 // double and reorder them. (Linux's own netem is not in every kernel.) Needs the right to make
 // network namespaces, and /dev/net/tun.
 #pragma once

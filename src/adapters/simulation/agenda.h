@@ -1,7 +1,7 @@
 // The pending actions of a simulated world, in the order of time.
 //
-// Actions that are due at the same time are done in the order in which they were added, so that a
-// run is the same on every machine.
+// Actions that are due at the same time are done in the order in which they were added. So a run is
+// the same on every machine.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Faults of a simulated robot, as data: what goes wrong, where and when.
+// Faults of a simulated robot, as data: the fault, its place and its time.
 #pragma once
 
 #include <string>
