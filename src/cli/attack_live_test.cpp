@@ -373,7 +373,7 @@ TEST_F(Attack, ThatMakesItDeafStarvesItsWatchdogAndItBeginsAnewAndHeals) {
   std::this_thread::sleep_for(3s);
   EXPECT_EQ(systemd.feedings(), 0) << "of the second that it has";
   EXPECT_EQ(cameras().size(), 1u) << "nothing is judged";
-  ASSERT_TRUE(run.prints("culprit begins anew", 60s)) << run.output();
+  ASSERT_TRUE(run.prints("culprit restarts", 60s)) << run.output();
   ASSERT_TRUE(eventually([&] { return count_of(run.output(), "watching attacked") == 2; }, 60s))
       << run.output();
   EXPECT_TRUE(eventually([&] { return systemd.feedings() > 0; }));

@@ -188,7 +188,7 @@ TEST_F(Neighbours, OfTwoMachinesAgreeWhereTheyShareAKey) {
                                                   "--no-journal"});
   }
   EXPECT_TRUE(second->prints("another culprit manages this robot, on ")) << second->output();
-  EXPECT_TRUE(third->prints("says that it manages this robot or a node of it")) << third->output();
+  EXPECT_TRUE(third->prints("claims to manage this robot or a node of it")) << third->output();
   EXPECT_THAT(first->output(), Not(HasSubstr("another culprit manages")));
   first->signal(SIGINT);
   EXPECT_EQ(first->wait(), 0);

@@ -118,7 +118,7 @@ TEST(UnitSettings, WhatStartsNothingCanExecuteNothing) {
 TEST(UnitSettings, WhatEndsNothingNeedNotBeAnybody) {
   EXPECT_THAT(settings("restart", "restart"), HasSubstr("DynamicUser=yes"));
   EXPECT_THAT(settings("start", "restart"), Not(HasSubstr("DynamicUser")));
-  EXPECT_THAT(settings("stop", "restart"), HasSubstr("User= has to be whoever runs them: camera."));
+  EXPECT_THAT(settings("stop", "restart"), HasSubstr("User= must be their user: camera."));
 }
 
 TEST(UnitSettings, WhatSystemdStartsAndEndsTakesARightAndNothingElse) {

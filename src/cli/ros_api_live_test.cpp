@@ -88,7 +88,7 @@ TEST_F(RosApiLive, TellsWhatBreaksAndHowItIsHealed) {
 TEST_F(RosApiLive, ObeysAnyoneIfItIsToldTo) {
   const TestProgram camera(world, {"sunset-node", "camera"});
   auto culprit = run({"--orders-from-anyone"});
-  ASSERT_TRUE(culprit->prints("takes orders over DDS from whoever is on this domain"))
+  ASSERT_TRUE(culprit->prints("takes orders over DDS from any participant of this domain"))
       << culprit->output();
   ASSERT_TRUE(culprit->prints("camera is there")) << culprit->output();
   TestRosNode panel(options());

@@ -261,7 +261,7 @@ TEST_F(Start, WhatALaunchNeedsIsSetUpForIt) {
   std::filesystem::permissions(setup, std::filesystem::perms(0666));
   auto risky = culprit({"check", "--robot", world.write("risky.rules", text(setup))});
   EXPECT_EQ(risky.wait(), 0);
-  EXPECT_THAT(risky.output(), HasSubstr("somebody else could change it"));
+  EXPECT_THAT(risky.output(), HasSubstr("another user could change it"));
   kill(pid_in(run.output(), "lidar"), SIGKILL);
 }
 

@@ -103,7 +103,7 @@ TEST_F(Setups, OneThatOthersMayWriteIsNotRead) {
   const std::string clauses = "LAUNCH \"sleep 1\" SETUP " + setup.string();
   const auto found = trouble(clauses);
   ASSERT_TRUE(found);
-  EXPECT_THAT(found->why, HasSubstr("somebody else could change it"));
+  EXPECT_THAT(found->why, HasSubstr("another user could change it"));
   EXPECT_FALSE(environments_of(rules("COMPONENT c " + clauses + "\n"))[0]);
   EXPECT_FALSE(std::filesystem::exists(folder / "count"));
 }
