@@ -1,4 +1,4 @@
-// Who does not hear whom, and why.
+// Finds endpoints that do not connect, and the reason.
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -22,7 +22,7 @@ using namespace std::chrono_literals;
 
 enum class Medium : std::uint8_t { kTopic, kService };
 
-// What a receiver requests and a sender does not offer (DDS 1.4, 2.2.3: "requested versus offered").
+// A QoS policy that a receiver requests and a sender does not offer (DDS 1.4, 2.2.3: "requested versus offered").
 struct Mismatch {
   std::string policy, offered, requested;
 };
@@ -69,13 +69,14 @@ std::string in_words(const std::vector<Mismatch>& all) {
   return text;
 }
 
-// Why somebody is not heard: what was seen, and of quality of service the first that does not fit.
+// The reason why two endpoints do not connect: what was observed, and for quality of service the
+// first policy that does not fit.
 struct Break {
   std::string code, seen;
   std::string offered{}, requested{};
   auto operator<=>(const Break&) const = default;
 };
-// Who sends, why it is not heard, and who all do not hear it.
+// The sender, the reason, and all receivers that do not receive its messages.
 using Breaks = std::map<std::pair<std::string, Break>, std::set<std::string>>;
 
 bool have_one_in_common(std::vector<std::string> a, std::vector<std::string> b) {
@@ -180,7 +181,7 @@ void compare_all(Medium medium, const std::string& name, const Channel& channel,
 
 using Channels = std::map<std::string, Channel>;
 
-// What each node has, or what is part of something larger: nobody mistypes that.
+// Names that each node has, or that belong to a larger protocol: no person mistypes these.
 bool is_internal(const std::string& name) {
   constexpr std::array kOfEachNode = {
       "get_parameters",      "get_parameter_types",       "set_parameters",      "list_parameters",
@@ -193,7 +194,7 @@ bool has_type(const std::vector<End>& ends, const std::string& type) {
   return std::ranges::any_of(ends, [&](const End& end) { return end.endpoint.type == type; });
 }
 
-// Something that is offered and that nobody uses, of that type, with nearly that name.
+// An offered and unused name of that type that is nearly the same.
 std::string meant_by(const std::string& name, const std::string& type, Medium medium,
                      const Channels& channels) {
   std::vector<std::string_view> unused;
@@ -260,7 +261,7 @@ std::string in_any_namespace(const std::string& name) {
   return space.empty() ? "" : namespace_of(space) + "/*/" + own_name(name);
 }
 
-// Of several topics of one kind one lacks what all others have.
+// Among several topics of one kind, one lacks an endpoint that all others have.
 void look_for_odd_ones(const Channels& topics, Findings& all) {
   constexpr std::size_t kFewest = 3;
   std::map<std::pair<std::string, std::string>, std::vector<const Channels::value_type*>> kinds;
@@ -342,7 +343,7 @@ void look_for_missed(const Picture& picture, const std::string& name, const Chan
   }
 }
 
-// ---- what is said to be there, and did not come
+// ---- announced endpoints that did not come
 
 void look_for_undiscovered(const Picture& picture, Findings& all) {
   constexpr Duration kSettled = 3s;  // its discovery takes less

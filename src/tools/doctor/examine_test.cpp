@@ -64,7 +64,7 @@ TEST(Examine, FindsNothingWhereEverybodyHearsEverybody) {
       << "an input that nobody feeds, and nobody may mean";
 }
 
-// ---- who hears whom
+// ---- connections
 
 TEST(Examine, D001ReliabilityThatIsNotOffered) {
   const Finding finding = only_finding(robot_with(publishes("/scan", kBestEffort), reads("/scan")));
@@ -408,7 +408,7 @@ TEST(Examine, D021WhatIsNotReportedAnyMore) {
   EXPECT_THAT(examine(picture), IsEmpty()) << "a burst has no rhythm";
 }
 
-// ---- who can hear whom at all
+// ---- reach
 
 TEST(Examine, D030NobodyThere) {
   Picture nobody;
@@ -488,7 +488,7 @@ TEST(Examine, D035SharedMemoryThatIsNotShared) {
 
 // ---- messages and time
 
-// /scan, heard for so long with these pauses.
+// /scan, received for this long with these pauses.
 Picture robot_with_flow(Duration listened, std::vector<Duration> pauses, ros2::Qos requested = {}) {
   Picture picture = robot_with(publishes("/scan", {.deadline = 1ms}), reads("/scan", requested));
   Flow& flow = picture.flows["/scan"];

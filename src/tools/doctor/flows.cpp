@@ -78,7 +78,7 @@ bool is_active(const Picture& picture, const std::string& node) {
   return state == picture.lifecycles.end() || state->second.last == "active";
 }
 
-// Sensors speak all the time; of other topics nobody knows.
+// Sensors publish all the time; for other topics this is unknown.
 void look_at_silence(const Picture& picture, const std::string& name, const Channel& topic,
                      const Flow& flow, Findings& all) {
   constexpr Duration kLongEnough = 4s;
@@ -152,7 +152,7 @@ void look_at_stamps(const Picture& picture, const std::string& name, const Chann
   const auto latches = [](const End& from) {
     return from.endpoint.qos.durability == ros2::Durability::kTransientLocal;
   };
-  // What is latched was true then, and still is.
+  // A latched message was true when it was published, and still is.
   if (!flow.stamps || topic.senders.empty() || std::ranges::any_of(topic.senders, latches)) return;
   const Flow::Stamps& stamps = *flow.stamps;
   const std::vector<std::string> writers = names_of(topic.senders);
@@ -232,7 +232,7 @@ void look_at_clock(const Picture& picture, const Wiring& wiring, Findings& all) 
                    simulated, "/clock"});
     return;
   }
-  // Who publishes no time stamp, and looks at none, may have its own time.
+  // A node that publishes no time stamp, and reads none, may use another clock.
   std::erase_if(real, [&](const std::string& node) {
     const auto found = std::ranges::find(
         picture.nodes, node, [](const Node& each) -> const std::string& { return each.node.name; });

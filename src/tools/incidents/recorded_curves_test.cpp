@@ -1,4 +1,4 @@
-// What a recording shows of an incident: which curves, and of whatever bytes.
+// The curves from a recording of an incident: their selection, and arbitrary bytes.
 #include "incidents/recorded_curves.h"
 
 #include <fstream>

@@ -134,7 +134,7 @@ RULE CameraDead
       ADAPTATION camera redeploy 2
 )";
 
-// What a run that ended in the middle of a redeploy leaves to one that begins `later`.
+// The state that a run interrupted in a redeploy leaves to one that begins `later`.
 journal::Recovery left_behind(Duration later, std::optional<journal::Ending> ending,
                               std::optional<int> manager_before = {}) {
   const TestFolder folder;
