@@ -146,9 +146,9 @@ Gravity gravity_of(const std::string& code) {
 
 std::string consequence(const std::string& code, Medium medium, const std::string& from,
                         const std::string& to) {
-  if (code == "D005") return "what arrives is read wrongly, or refused as broken";
-  if (medium == Medium::kTopic) return to + " hears nothing of " + from;
-  return code == "D007" ? from + " waits for answers for ever, and nobody says why"
+  if (code == "D005") return "messages are misread, or refused as broken";
+  if (medium == Medium::kTopic) return to + " receives nothing from " + from;
+  return code == "D007" ? from + " waits for answers for ever, without an error"
                         : "calls of " + from + " do not reach " + to;
 }
 
@@ -225,8 +225,8 @@ void look_for_near_name(Medium medium, const std::string& name, const Channel& c
     all.push_back({"D003",
                    Gravity::kWarning,
                    name + ": nobody → " + reader.node,
-                   "nobody publishes " + name + ", and nobody reads " + meant + " of " + writer,
-                   reader.node + " hears nothing, if that is what it means",
+                   "no node publishes " + name + ", and no node reads " + meant + " of " + writer,
+                   reader.node + " receives nothing, if that is the intended name",
                    "remap one of them, or start both in the same namespace",
                    {reader.node, writer},
                    name});
@@ -234,7 +234,7 @@ void look_for_near_name(Medium medium, const std::string& name, const Channel& c
     all.push_back({"D003",
                    Gravity::kWarning,
                    name + ": " + reader.node + " → nobody",
-                   "nobody serves " + name + ", and nobody calls " + meant + " of " + writer,
+                   "no node serves " + name + ", and no node calls " + meant + " of " + writer,
                    reader.node + " waits for a service for ever, if that is what it means",
                    "remap one of them, or start both in the same namespace",
                    {reader.node, writer},
@@ -292,8 +292,8 @@ void look_for_odd_ones(const Channels& topics, Findings& all) {
         {"D004",
          Gravity::kWarning,
          name + ": " + (is_unread ? node + " → nobody" : "nobody → " + node),
-         is_unread ? "nobody subscribes to it, and somebody does to each of " + others
-                   : "nobody publishes it, and somebody does each of " + others,
+         is_unread ? "it has no subscription, unlike each of " + others
+                   : "it has no publisher, unlike each of " + others,
          is_unread ? "what " + node + " says of it is lost" : node + " waits for what never comes",
          is_unread ? "start what should read it, or see to which name that was remapped"
                    : "start what should publish it, or see to which name that was remapped",

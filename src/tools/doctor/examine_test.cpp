@@ -137,7 +137,7 @@ TEST(Examine, D003ANameThatIsOneLetterOffOrInAnotherNamespace) {
   const Finding slip = only_finding(robot_with(publishes("/scan"), reads("/scam")));
   EXPECT_EQ(slip.code, "D003");
   EXPECT_EQ(slip.gravity, Gravity::kWarning);
-  EXPECT_THAT(slip.seen, HasSubstr("nobody publishes /scam, and nobody reads /scan of /lidar"));
+  EXPECT_THAT(slip.seen, HasSubstr("no node publishes /scam, and no node reads /scan of /lidar"));
   EXPECT_EQ(only_finding(robot_with(publishes("/front/scan"), reads("/scan"))).code, "D003");
   EXPECT_EQ(only_finding(robot_with(serves("/robot/reset"), calls("/reset"))).code, "D003");
 
@@ -298,8 +298,7 @@ TEST(Examine, D015WhatNobodyDrivesOn) {
                         {"/slam", {"active", "active", 4s}}};
   EXPECT_EQ(only_finding(picture).code, "D015");
   EXPECT_EQ(only_finding(picture).seen,
-            "it is inactive, 1 of 2 managed nodes are active, and nobody is there who would change "
-            "that");
+            "it is inactive, 1 of 2 lifecycle nodes are active, and no manager would change that");
   EXPECT_EQ(only_finding(picture).matters, "/slam waits for what it publishes");
 
   Picture managed = picture;

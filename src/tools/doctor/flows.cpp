@@ -67,7 +67,7 @@ void look_at_deadline(const std::string& name, const Channel& topic, const Flow&
                                          std::ranges::count_if(
                                              flow.pauses, [&](Duration p) { return p > deadline; }),
                                          flow.pauses.size(), duration(deadline), duration(longest)),
-                 reader->node + " is told again and again that its deadline was missed",
+                 reader->node + " is notified again and again of a missed deadline",
                  "see what keeps " + writers.front() + ", or let the deadline be what it can keep",
                  {writers.front(), reader->node},
                  name});
@@ -181,7 +181,7 @@ void look_at_stamps(const Picture& picture, const std::string& name, const Chann
           fmt::format(
               "its node has use_sim_time, and its stamps are of the real clock, {} from /clock",
               duration(std::max(*stamps.simulated_lag, -*stamps.simulated_lag))),
-          "whoever uses simulated time takes them for far off, and tf refuses them",
+          "nodes with simulated time see them as far off, and tf refuses them",
           "let it stamp with its node's clock (node->now(), get_clock().now())");
     return;
   }
@@ -189,13 +189,13 @@ void look_at_stamps(const Picture& picture, const std::string& name, const Chann
   if (lag > kOld)
     add("D042", Gravity::kWarning,
         fmt::format("its stamps are {} old when they are sent", duration(lag)),
-        "whoever looks for a transform or waits for messages of one time comes too late",
+        "nodes that look up a transform or wait for messages of one time are too late",
         lag > 1h ? "set the clock of the device or computer that stamps them (chrony, PTP)"
                  : "see what delays them: a queue, a slow device, or a clock that is behind");
   if (lag < -kFuture)
     add("D043", Gravity::kError,
         fmt::format("its stamps are {} ahead when they are sent", duration(-lag)),
-        "tf has no transform for that time yet: whoever waits for it waits, or drops them",
+        "tf has no transform for that time yet: nodes wait for it, or drop them",
         "set the clock of the device or computer that stamps them (chrony, PTP)");
 }
 
@@ -225,7 +225,7 @@ void look_at_clock(const Picture& picture, const Wiring& wiring, Findings& all) 
     all.push_back({"D046", is_published ? Gravity::kWarning : Gravity::kError, listed(simulated),
                    is_published
                        ? "they use simulated time (use_sim_time), and /clock stands still"
-                       : "they use simulated time (use_sim_time), and nobody publishes /clock",
+                       : "they use simulated time (use_sim_time), and /clock has no publisher",
                    "for them no time passes: timers do not fire, and nothing has a time stamp",
                    is_published ? "let the simulation or the bag run"
                                 : "start the simulator, or set use_sim_time to false",

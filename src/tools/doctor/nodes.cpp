@@ -108,10 +108,9 @@ void examine_comings(const Picture& picture, Findings& all) {
            fmt::format("it was started again {} while the doctor looked{}",
                        returns == 1 ? "once" : count_of(returns, "time"),
                        last.pid == 0 ? "" : fmt::format(", last as process {}", last.pid)),
-           is_circle ? "whoever starts it again does not cure it, and each start costs all "
-                       "others discovery"
-                     : "whoever read its state or parameters has lost them",
-           "its log says why it ended; end who starts it again, and start it by hand",
+           is_circle ? "restarts do not repair it, and each one costs all others discovery"
+                     : "readers of its state or parameters have lost them",
+           "its log says why it ended; stop its launcher, and start it by hand",
            {name}});
     } else if (last.was_lost && !picture.unanswered.contains(name)) {
       all.push_back(
@@ -181,17 +180,18 @@ void examine_states(const Picture& picture, Findings& all) {
     const std::string waiting = who_waits_for(node, wiring);
     if (waiting.empty()) continue;
     const bool is_final = state.last == "finalized";
-    all.push_back({"D015",
-                   Gravity::kWarning,
-                   node,
-                   fmt::format("it is {}, {} of {} managed nodes are active, and nobody is there "
-                               "who would change that",
-                               state.last, active, picture.lifecycles.size()),
-                   waiting + " waits for what it publishes",
-                   is_final ? "start its process again: from there no way leads back"
-                            : "ros2 lifecycle set " + node +
-                                  (state.last == "inactive" ? " activate" : " configure"),
-                   {node, waiting}});
+    all.push_back(
+        {"D015",
+         Gravity::kWarning,
+         node,
+         fmt::format(
+             "it is {}, {} of {} lifecycle nodes are active, and no manager would change that",
+             state.last, active, picture.lifecycles.size()),
+         waiting + " waits for what it publishes",
+         is_final ? "start its process again: from there no way leads back"
+                  : "ros2 lifecycle set " + node +
+                        (state.last == "inactive" ? " activate" : " configure"),
+         {node, waiting}});
   }
 }
 
@@ -218,7 +218,7 @@ void examine_statuses(const Picture& picture, Findings& all) {
       all.push_back({"D020", is_stale ? Gravity::kWarning : Gravity::kError, who,
                      std::string("its diagnostic status is ") + (is_stale ? "STALE" : "ERROR") +
                          (report.message.empty() ? "" : ": " + printable(report.message)),
-                     is_stale ? "who reports it has stopped reporting" : "who reports it is ill",
+                     is_stale ? "its node has stopped reporting" : "its node reports a failure",
                      "look at its values: ros2 topic echo /diagnostics"});
     }
     if (status.count < 3 || status.last - status.first < kBurst) continue;
