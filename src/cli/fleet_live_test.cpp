@@ -98,7 +98,7 @@ TEST_F(FleetOfPrograms, ASecondRobotBeginsWithWhatTheFirstLearned) {
               HasSubstr("priors_adopted"));
 
   EXPECT_THAT(said_by({"fleet", "status", owner}),
-              AllOf(HasSubstr("one_camera"), HasSubstr("nobody")));
+              AllOf(HasSubstr("one_camera"), HasSubstr("none")));
   EXPECT_THAT(said_by({"fleet", "incidents", owner, "--robot", "first"}),
               AllOf(HasSubstr("CameraGone"), HasSubstr("camera_redeploy")));
   EXPECT_THAT(said_by({"fleet", "beliefs", owner, "--json"}), HasSubstr("\"helped\": 1"));

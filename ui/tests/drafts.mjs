@@ -140,7 +140,7 @@ async function aNewRule(page) {
 // Each kind of declaration by clicks alone: written, and read back as it was entered.
 async function declarations(page) {
   const form = formOf(page)
-  await form.getByText('What the rules are about').click()
+  await form.getByText('Declared components').click()
   const group = (name) => form.getByRole('group', { name, exact: true })
   const add = (title) => form.getByRole('button', { name: `+ ${title}`, exact: true }).click()
   const wrote = (line) => text(page).filter({ hasText: line }).waitFor()
@@ -182,7 +182,7 @@ async function template(page) {
   const fill = form.getByRole('region', { name: 'Template' })
   await fill.getByLabel('node /front/camera_driver is here').fill('/camera')
   await fill.getByLabel('topic /front/image_raw is here').fill('/rgb')
-  await fill.getByText('What is in it').click()
+  await fill.getByText('Text of the template').click()
   await isAccessible(page)
   await picture(page, 'template')
   await fill.getByRole('button', { name: 'Add it' }).click()

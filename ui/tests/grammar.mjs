@@ -113,7 +113,7 @@ export async function writesEveryRow() {
         if (value !== true) await enter(group(name), member, value)
       }
     }
-    await form.getByText('What the rules are about').click()
+    await form.getByText('Declared components').click()
 
     await add('Robot')
     await say('Robot my_robot', { name: 'rover' })
@@ -286,7 +286,7 @@ export async function writesEveryRow() {
     expect(withoutLayout(saved) === kWanted.trim(), `this was saved:\n${saved}`)
     await page.reload()
     await form.getByRole('group', { name: 'Strategy others' }).waitFor()
-    await form.getByText('What the rules are about').click()
+    await form.getByText('Declared components').click()
     await form.getByText('From other files and templates').click()
     const after = await fields()
     expect(JSON.stringify(after) === JSON.stringify(before), `opened again it says\n${after}\nand was\n${before}`)

@@ -14,7 +14,7 @@ await suite(() =>
     await page.getByRole('button', { name: 'Inject fault' }).click()
     // It may be well again before one has looked: what happened stays. On a machine that is too busy for the robot,
     // pictures are late and more happens; a dead camera is helped by nothing but a new process.
-    const log = page.getByRole('region', { name: 'What happened' })
+    const log = page.getByRole('region', { name: 'Event log' })
     await log.getByText(/^RGBDead resolved by rgb_redeploy/).first().waitFor()
     await well.waitFor()
 

@@ -22,7 +22,7 @@ const kArguments = ['run', path, '--web', '--approve', '--settle', '2', '--healt
 const cameras = (said) => [...said.matchAll(/camera is there \(process (\d+)/g)].map((m) => Number(m[1]))
 
 async function approve(page, program) {
-  const log = page.getByRole('region', { name: 'What happened' })
+  const log = page.getByRole('region', { name: 'Event log' })
   await log.getByText('camera is there').first().waitFor()
   process.kill(cameras(program.said()).at(-1), 'SIGKILL')
   const question = page.getByRole('alert', { name: 'Approve camera_redeploy?' })
@@ -47,7 +47,7 @@ async function reload(page) {
   await dialog.getByRole('button', { name: 'Save and reload' }).click()
   await page.getByText('Reloading the rules: done').waitFor()
   await page.getByRole('link', { name: 'Robot' }).click()
-  const log = page.getByRole('region', { name: 'What happened' })
+  const log = page.getByRole('region', { name: 'Event log' })
   await log.getByText(`${path} is reloaded, with 1 rules`).waitFor()
   expect(readFileSync(path, 'utf8').includes('camera_redeploy 70 10'), 'the file was not saved')
   await page.getByRole('region', { name: 'Explanation' }).getByText('All is well').waitFor()
@@ -85,7 +85,7 @@ async function lookBack(page, program) {
   await page.reload()
   expect(new URL(page.url()).hash === address, 'the link is another')
   await incident.getByText('camera is lost').waitFor()
-  await incident.getByText('What helped: camera_redeploy').waitFor()
+  await incident.getByText('Outcome: camera_redeploy').waitFor()
 }
 
 // One file for somebody who has neither the robot nor culprit, made by a process of its own from journal and recording.
@@ -155,7 +155,7 @@ async function isHarmless(page) {
   await page.getByRole('heading', { name: kEvil }).waitFor()
   const component = page.getByRole('button', { name: kEvil }).first()
   await component.click()
-  await page.getByRole('region', { name: 'What happened' }).getByText(kEvil).first().waitFor()
+  await page.getByRole('region', { name: 'Event log' }).getByText(kEvil).first().waitFor()
   expect((await page.locator('img').count()) === 0, 'a name became an element')
   expect(!(await page.evaluate('window.wasHarmed')), 'a name was run')
 }

@@ -7,8 +7,8 @@ import { kHealed, kIncidentEvents, kIncidents, kNow, kStates, kToday, play, stat
 import { expect, expectSoon, file, isAccessible, isUsableByKeyboard, stubbed, suite } from './session.mjs'
 
 const kFindings = [
-  { code: 'D001', severity: 'error', who: '/scan: /lidar → /slam', seen: 'reliability: offered is best effort, requested is reliable', matters: '/slam hears nothing of /lidar', remedy: 'let /lidar offer reliable, or /slam request best effort' },
-  { code: 'D020', severity: 'warning', who: 'battery', seen: 'its diagnostic status is STALE', matters: 'who reports it has stopped reporting', remedy: 'look at its values: ros2 topic echo /diagnostics' },
+  { code: 'D001', severity: 'error', who: '/scan: /lidar → /slam', seen: 'reliability: offered is best effort, requested is reliable', matters: '/slam receives nothing from /lidar', remedy: 'let /lidar offer reliable, or /slam request best effort' },
+  { code: 'D020', severity: 'warning', who: 'battery', seen: 'its diagnostic status is STALE', matters: 'its node has stopped reporting', remedy: 'look at its values: ros2 topic echo /diagnostics' },
 ]
 let findings = kFindings
 let rules = [] // in the form
@@ -102,7 +102,7 @@ async function keepsItsPlaces(page, server) {
     return new Map(await page.evaluate(() => JSON.parse(localStorage.getItem('culprit-places rover'))))
   }
   await page.evaluate(() => localStorage.clear())
-  await page.getByRole('button', { name: 'Lay out anew' }).click()
+  await page.getByRole('button', { name: 'New layout' }).click()
   await all.check()
   const before = await shown(7)
   await all.uncheck()
@@ -123,7 +123,7 @@ async function keepsItsPlaces(page, server) {
   await all.check()
   const own = await shown(7)
   expect(Math.min(...[...own.values()].map(({ x }) => x)) < Math.min(...[...after.values()].map(({ x }) => x)) - 400, 'where a node stood is forgotten')
-  await page.getByRole('button', { name: 'Lay out anew' }).click()
+  await page.getByRole('button', { name: 'New layout' }).click()
   await page.waitForFunction((was) => localStorage.getItem('culprit-places rover') !== was, JSON.stringify([...own]))
   await page.getByRole('status', { name: 'Notice' }).getByRole('button', { name: 'Undo' }).click()
   await page.waitForFunction((was) => localStorage.getItem('culprit-places rover') === was, JSON.stringify([...own]))
@@ -301,7 +301,7 @@ async function staysUsableWhenLarge(page, server, album) {
   server.tell('state', largeState(2, kToday / 1000))
   await page.evaluate(() => (location.hash = 'robot'))
   await page.getByText('and 440 more').waitFor()
-  await page.getByRole('button', { name: 'Lay out anew' }).click()
+  await page.getByRole('button', { name: 'New layout' }).click()
   await photograph(page, album, 'large')
   for (let i = 0; i < 7; ++i) await page.getByRole('button', { name: 'Larger' }).click()
   expect(await page.locator('.minimap').isVisible(), 'there is no map of what is not on the screen')

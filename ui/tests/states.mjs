@@ -55,7 +55,7 @@ async function looksRight(page, at, size, { cause, level, mode, also = [] }) {
 }
 
 const kAll = { ...kStates, forgotten: kForgotten }
-const kDisconnected = { cause: 'Disconnected since 14:03:34', level: 'Old', mode: 'was: Acting', also: ['What you see is old', 'It was: camera is dead'] }
+const kDisconnected = { cause: 'Disconnected since 14:03:34', level: 'Old', mode: 'was: Acting', also: ['This view is outdated', 'It was: camera is dead'] }
 
 async function inEverySize(page, steps) {
   for (const [size, viewport] of Object.entries(kSizes)) {
