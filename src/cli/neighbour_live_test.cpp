@@ -338,7 +338,7 @@ RULE CameraGone
   ASSERT_TRUE(second->prints("this one manages the robot from now on")) << second->output();
   EXPECT_THAT(second->output(), HasSubstr("what the culprit that managed before had learned of 1 "
                                           "strategies is known, and what it had tried"));
-  // It cannot be healed here either: whoever did not know would try it.
+  // It cannot be healed here either: a culprit without that knowledge would try it.
   EXPECT_TRUE(second->prints("CameraGone is exhausted")) << second->output();
   std::this_thread::sleep_for(3s);
   second->signal(SIGINT);

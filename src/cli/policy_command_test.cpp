@@ -84,7 +84,7 @@ TEST_F(PolicyCommand, ImprovisedRulesNeedMore) {
   EXPECT_THAT(written, HasSubstr("/camera/change_state"));
 }
 
-// The settings for rules about a camera and a base, of which each does what is said here.
+// The settings for rules about a camera and a base, each with its action.
 std::string settings(const std::string& camera, const std::string& base,
                      const UnitOptions& options = {"/etc/culprit/robot.rules"}) {
   const std::string rules =

@@ -81,7 +81,7 @@ TEST_F(Setups, AProgramIsLookedForBesideCulpritToo) {
   EXPECT_FALSE(trouble("LAUNCH \"" + self + " 1\""));
 }
 
-// A rule file that is checked may be somebody else's.
+// A checked rule file may be another user's.
 TEST_F(Setups, NothingIsRunToCheckThem) {
   EXPECT_FALSE(trouble("LAUNCH \"only_there 1\" SETUP " + setup.string()));
   EXPECT_FALSE(std::filesystem::exists(folder / "count"));

@@ -29,7 +29,7 @@ RULE Hot
       ADAPTATION motor redeploy 3
 )";
 
-// A manager that is told how hot the motor is, and who looks on.
+// A manager that receives the motor's temperature, and its observer.
 struct HotRobot {
   HotRobot() {
     snapshots.joined(node);

@@ -13,7 +13,7 @@
 namespace culprit::fleet {
 namespace {
 
-// Nine robots that are alike, and one that is not; the last one is ill.
+// Nine robots that are alike, and one that differs; the last one fails.
 struct FleetReports : testing::Test {
   void SetUp() override {
     if (const std::string why = TestPostgres::why_not(); !why.empty()) GTEST_SKIP() << why;
