@@ -245,7 +245,7 @@ export async function writesEveryRow() {
     await enter(form, 'name', 'others')
     await adaptations(strategy('others'), kAlone)
 
-    // What comes from elsewhere: a pack, a template of one's own with a rule and a use in it, and its use.
+    // Parts from elsewhere: a pack, a template of the user's own with a rule and a use in it, and its use.
     await form.getByText('From other files and templates').click()
     await add('Include')
     await say('Include packs/cameras.rules', { file: 'packs/driver.rules' })

@@ -40,7 +40,7 @@ await suite(() =>
 
     await page.getByRole('button', { name: 'Pause' }).click()
     await page.getByText('Paused: nothing is changed').waitFor()
-    // Also who is paused is told whose fault it is, and that nothing is done.
+    // While paused, the page still names the root cause, and says that nothing is done.
     await page.getByRole('button', { name: 'Inject fault' }).click()
     const bar = page.getByRole('region', { name: 'Status' })
     await bar.getByText('camera is dead').waitFor()

@@ -70,7 +70,7 @@ async function beliefs(page) {
   await row.getByText('nothing yet').waitFor()
 }
 
-// What went wrong is told from the journal: also by the next culprit, at the same address.
+// The incidents come from the journal: also from the next culprit, at the same address.
 async function lookBack(page, program) {
   await page.getByRole('link', { name: 'Incidents' }).click()
   const row = page.getByRole('row', { name: /camera.*camera_redeploy/ })
@@ -88,7 +88,7 @@ async function lookBack(page, program) {
   await incident.getByText('Outcome: camera_redeploy').waitFor()
 }
 
-// One file for somebody who has neither the robot nor culprit, made by a process of its own from journal and recording.
+// One file for readers without the robot or culprit, made by a process of its own from journal and recording.
 async function send(page) {
   const incident = page.getByRole('region', { name: 'Incident', exact: true })
   const saving = page.waitForEvent('download')
@@ -125,7 +125,7 @@ async function hindsight(page) {
   await picture(page, 'hindsight')
 }
 
-// The node is examined, and a component tells what it uses, by what runs.
+// The doctor examines the node, and a component's panel shows its usage.
 async function examine(page) {
   await page.getByRole('link', { name: 'Doctor' }).click()
   await page.getByLabel('look for').selectOption('4 s')

@@ -1,5 +1,5 @@
 // Every page while something is wrong: the status bar says so on each, each can be used by the keyboard alone and with a
-// screen reader, and looks as in the pictures beside this. What each page is for is tried on the stub.
+// screen reader, and looks as in the pictures beside this. Each page's purpose is tested on the stub.
 import { readFileSync } from 'node:fs'
 import { kLargeRobot, largeState } from './large_robot.mjs'
 import { kSchemes, kSizes, pictures } from './pictures.mjs'
@@ -74,7 +74,7 @@ async function everyPage(page, server, album) {
   expect((await page.locator('link[rel="icon"]').getAttribute('href')).startsWith('data:image/svg'), 'the icon does not follow')
 }
 
-// Whoever asks about a component is told all that is known of it.
+// A component's panel shows all that is known of it.
 async function tellsOfAComponent(page, server, album) {
   await become(page, server, kStates.ill, 'robot')
   await page.getByRole('region', { name: 'Components' }).getByRole('button', { name: 'camera' }).click()
@@ -156,7 +156,7 @@ async function hangsOnTheWall(page, server, album) {
   await page.getByRole('navigation').waitFor()
 }
 
-// A list and a timeline of a day; one of it with what was decided; a link that lasts; a file for somebody without culprit.
+// A list and a timeline of a day; one of them with its decisions; a link that lasts; a file for readers without culprit.
 async function tellsIncidents(page, server, album) {
   await become(page, server, kHealed, 'incidents')
   const row = page.getByRole('row', { name: /14:03:22.*camera.*FusionSilent, SegmentationBad.*3\.0 s.*rgb_redeploy/ })
@@ -202,7 +202,7 @@ async function tellsIncidents(page, server, album) {
   await page.evaluate((id) => (location.hash = `incidents/${id}`), Math.round(longAgo * 1000).toString(36))
   await expectSoon(() => server.received.some(([call, query]) => call === 'get /api/incidents' && Number(query.since) < longAgo), 'the journal was not asked for that time')
   await page.getByText('There is no incident of this address').waitFor()
-  // What the black box has of one.
+  // The black box's recordings of one.
   await page.evaluate((id) => (location.hash = `incidents/${id}`), kIncidents[0].id)
   await incident.getByText('/var/lib/culprit/recordings/rover_').waitFor()
   const keeping = page.waitForEvent('download')
@@ -213,7 +213,7 @@ async function tellsIncidents(page, server, album) {
   await page.evaluate(() => (location.hash = 'incidents/'))
 }
 
-// What is wrong without a rule; and what is new since the last time.
+// Findings without a rule; and which of them are new since the last time.
 async function examines(page, server, album) {
   await become(page, server, kStates.well, 'doctor')
   await page.getByRole('button', { name: 'Examine' }).click()
@@ -233,7 +233,7 @@ async function examines(page, server, album) {
   await report.getByRole('article').filter({ hasText: 'motor' }).getByText('new').waitFor()
 }
 
-// What a condition looks at is drawn with its threshold, which can be dragged, or moved by keys.
+// The input of a condition is drawn with its threshold, which can be dragged, or moved by keys.
 async function dragsAThreshold(page, server, album) {
   rules = [
     { statement: 'RULE', name: 'RGBDead' },
@@ -271,7 +271,7 @@ async function dragsAThreshold(page, server, album) {
   rules = []
 }
 
-// What one begins to imagine with is the robot as it is: with its dead camera.
+// The simulator begins with the robot's present state: with its dead camera.
 async function imaginesTheRobotAsItIs(page, server) {
   await become(page, server, kStates.ill, 'simulator')
   await page.getByRole('button', { name: 'As the robot is now' }).click()
@@ -289,7 +289,7 @@ async function theKeyPauses(page, server) {
   await page.getByRole('status', { name: 'Notice' }).getByText('Pausing: kept').waitFor()
   server.tell('control', { paused: true, dry_run: false, hears: true, silences: [], asked: [] })
   await page.getByRole('button', { name: 'Resume' }).waitFor()
-  await page.keyboard.press('Alt+KeyP') // whoever is in a hurry presses twice
+  await page.keyboard.press('Alt+KeyP') // a hurried user presses twice
   const orders = server.received.filter(([call]) => call === 'post /api/orders').map(([, body]) => body.order)
   expect(orders.join() === 'pause', `these were ordered: ${orders}`)
 }

@@ -88,7 +88,7 @@ async function result(page) {
   await page.getByText('does not say which campaign').waitFor() // of the one before, which stays
 }
 
-// A file that culprit study wrote: its runs can be played, too, of a manager that tells nothing as well.
+// A file that culprit study wrote: its runs can be played, too, also those of a manager that reports no events.
 async function opened(page) {
   await culprit(['study', 'suave', '--managers', 'bt,culprit', '--runs', '2', '--json', '-o', file('suave.json')])
   await page.getByLabel('or open a result').setInputFiles(file('suave.json'))
