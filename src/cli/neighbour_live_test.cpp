@@ -407,7 +407,7 @@ RULE DepthGone
   network->set({});
   ASSERT_TRUE(first->prints("another culprit manages this robot, on ", 60s)) << first->output();
   ASSERT_TRUE(second->prints("is reachable again")) << second->output();
-  ASSERT_TRUE(second->prints("CameraGone went away")) << second->output();
+  ASSERT_TRUE(second->prints("CameraGone cleared")) << second->output();
   std::this_thread::sleep_for(5s);
   const std::string since = second->output().substr(second->output().find("from now on"));
   EXPECT_THAT(since, Not(HasSubstr("another culprit manages this robot")));

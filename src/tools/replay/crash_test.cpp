@@ -193,9 +193,9 @@ TEST(Crash, WhatWasCutShortBeforeAnotherCulpritManagedIsNotTakenUpAgain) {
   for (const int manager : {kAnother, kOnAnotherMachine}) {
     const journal::Recovery found = left_behind(1s, {}, manager);
     EXPECT_TRUE(found.interrupted.empty());
-    EXPECT_THAT(found.given_up, testing::ElementsAre("redeploy for CameraDead: another culprit has "
-                                                     "managed the robot since, so it is not gone "
-                                                     "on with"));
+    EXPECT_THAT(found.given_up,
+                testing::ElementsAre("redeploy for CameraDead: another culprit has "
+                                     "managed the robot since, so it is not continued"));
   }
   EXPECT_EQ(left_behind(1s, {}, test::kProcess).interrupted.size(), 1u)
       << "whose journal that is managed until now";

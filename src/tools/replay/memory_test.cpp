@@ -103,7 +103,7 @@ TEST_F(Memory, OfAFailureThatIsGoneIsNone) {
   robot["camera"].fault = "";
   crash();
   robot.run_for(5s);
-  EXPECT_EQ(robot.count("Silent went away"), 1u) << "and that is said" << transcript();
+  EXPECT_EQ(robot.count("Silent cleared"), 1u) << "and that is said" << transcript();
   robot["camera"].fault = "a person";
   run_until_said("Silent detected");
   crash();
