@@ -31,8 +31,8 @@ export const causeOf = (incident: PastIncident) => listed(incident.causes) || in
 export function outcomeOf(incident: PastIncident): string {
   if (incident.given_up) return 'given up: a person must look'
   if (!incident.over) return 'not over'
-  if (incident.cut) return 'nobody saw: culprit ended before'
-  return listed(incident.helped) || 'went away by itself'
+  if (incident.cut) return 'unknown: culprit ended before'
+  return listed(incident.helped) || 'cleared without a repair'
 }
 
 // All of them as the failures of one timeline, by cause.

@@ -34,7 +34,7 @@ struct Incident {
   double seconds = 0;  // how long; so far, if it lasts
   bool is_over = false;
   bool is_cut =
-      false;  // culprit ended, or its rules were reloaded, before it was over: nobody saw how it ended
+      false;  // culprit ended, or its rules were reloaded, before it was over: its end is unknown
   bool is_given_up = false;
   Criticality worst = Criticality::kNonCritical;
   std::vector<std::string>

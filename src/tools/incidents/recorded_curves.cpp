@@ -129,7 +129,7 @@ std::vector<WantedTopic> topics_of(const CurveWish& wish, const Json& graph) {
     }
   };
   add("publishes", " publishes it", true);
-  add("subscribes", " hears it", false);
+  add("subscribes", " subscribes to it", false);
   return topics;
 }
 
