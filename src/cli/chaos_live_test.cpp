@@ -188,7 +188,7 @@ struct Chaos : testing::Test {
     std::this_thread::sleep_for(std::chrono::milliseconds(
         culprit.output().find("decided") != std::string::npos ? repairing(random) : any(random)));
   }
-  // For whoever looks into it: the processes that there are, the journal and the nodes' logs.
+  // Evidence for an investigation: the running processes, the journal and the nodes' logs.
   void keep_evidence(const lab::LiveSunset& robot) const {
     for (const sunset::Member member : sunset::kMembers) {
       for (const int pid : robot.processes(member))

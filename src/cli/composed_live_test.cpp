@@ -157,8 +157,8 @@ TEST_F(Composed, AContainerThatIsKilledComesBackOnceWithAllThatItHad) {
   ASSERT_NE(first, 0) << culprit.output();
   kill(first, SIGKILL);
   EXPECT_TRUE(culprit.prints("BoxGone resolved by box_redeploy")) << culprit.output();
-  EXPECT_TRUE(culprit.prints("DetectorGone went away")) << culprit.output();
-  EXPECT_TRUE(culprit.prints("TrackerGone went away")) << culprit.output();
+  EXPECT_TRUE(culprit.prints("DetectorGone cleared")) << culprit.output();
+  EXPECT_TRUE(culprit.prints("TrackerGone cleared")) << culprit.output();
   // One dead process is one fault.
   EXPECT_THAT(culprit.output(), HasSubstr("box is held responsible for BoxGone"));
   EXPECT_THAT(culprit.output(), Not(HasSubstr("detector is held responsible")));

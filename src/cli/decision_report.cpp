@@ -55,7 +55,7 @@ std::string evidence_line(const Json& piece) {
 std::string suspects_of(const Json& body) {
   const Json suspects = body.value("suspects", Json::array());
   if (!suspects.is_array() || suspects.empty()) return "";
-  std::string out = "\nWho may be responsible\n";
+  std::string out = "\nPossible causes\n";
   for (const Json& each : suspects) {
     out += fmt::format("  {:>3.0f} %  {}, by {}\n", 100 * journal::number_of(each, "probability"),
                        text_of(each, "component"), text_of(each, "failure"));
@@ -146,7 +146,7 @@ Expected<std::string> explain_decision(const journal::Reader& journal, std::int6
       fmt::format("Row {}, {}\n{}\n", entry.id, local_time(entry.at), text_of(body, "text"));
   if (!is_decision(entry, body)) return out + to_indented(body) + "\n";
   out += suspects_of(body) + candidates_of(body);
-  if (!sequel.empty()) out += "\nWhat came of it\n";
+  if (!sequel.empty()) out += "\nOutcome\n";
   for (const Entry& each : sequel) out += log_line(each) + "\n";
   return out;
 }

@@ -1,5 +1,5 @@
-// Culprit started a node, and somebody else starts it, too: a launch file that comes late, or one that
-// starts its nodes again. Two of one name are worse than either; culprit ends its own, and only that.
+// Culprit started a node, and another launcher starts it, too: a launch file that comes late, or one that restarts its nodes. Two nodes of one name are worse
+// than either; culprit ends its own, and only that.
 #include <csignal>
 #include <fstream>
 #include <thread>

@@ -89,7 +89,8 @@ TEST_F(ADriver, OfWhichNothingIsKnownIsWaitedFor) {
   EXPECT_EQ(journal.requests("lidar: activate"), 0u) << journal.all();
 }
 
-// It would crash if it were activated before its timer. Nothing is known at its first start, so culprit only watches; the next culprit knows how long it takes.
+// It would crash if it were activated before its timer. There is no history at its first start, so culprit only watches; the next culprit knows how long it
+// takes.
 TEST_F(ADriver, ThatComesLaterThanTheImpactIsLearned) {
   watch(" --activates-after 5");
   kill_and_await(1);

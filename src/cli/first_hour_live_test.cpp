@@ -234,8 +234,7 @@ TEST(FirstHour, EachNodeOfARobotThatNobodyKnows) {
   kill_each(world);
 }
 
-// Looks at a robot that is well, for as long as it is told, and finds nothing but, where the robot breaks something itself,
-// what is ill then.
+// Examines a healthy robot for the given time, and reports only failures that the robot causes itself.
 void look_at_the_healthy(const TestWorld& world, const std::string& breaks_itself = "") {
   const char* wanted = std::getenv("CULPRIT_HEALTHY_SECONDS");
   const auto time = std::chrono::seconds(wanted == nullptr ? 10 : std::atoi(wanted));

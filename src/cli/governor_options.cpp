@@ -72,7 +72,7 @@ void GovernorOptions::add_to(CLI::App& command) {
             "Limit of restarts of a component per time; beyond, a person must look");
   time("--backoff", backoff_seconds,
        "Back-off between restarts of a component, doubled each time; 0: none");
-  time("--backoff-most", backoff_most_seconds, "At most so long");
+  time("--backoff-most", backoff_most_seconds, "Upper limit of the back-off");
   time("--healthy", healthy_seconds,
        "Time without a failure that proves a recovery; then culprit learns from it, and resets the "
        "count of attempts");

@@ -206,7 +206,7 @@ TEST_F(HostileNeighbours, DoNotDelayOrFalsifyAPause) {
   EXPECT_LT(longest, Duration(std::chrono::seconds(10)))
       << "one silent socket alone cost 5 s, and they are 50";
 
-  // To all, as root may say: the real one is told at once, and the others change nothing about that.
+  // To all, as root may say: the real one receives it at once, and the others do not delay it.
   const Ended all = ended({"pause", "--all"});
   EXPECT_EQ(all.code, 1) << "some did not answer";
   EXPECT_THAT(all.said, HasSubstr("culprit of yard (process " + std::to_string(run.pid())));

@@ -152,7 +152,7 @@ TEST_F(AHungNode, IsNotOneThatAnswersLate) {
   watch("alive(lidar) == false || age(/lidar/value) > 400ms");
   stall("0.7");
   EXPECT_TRUE(run_->prints("culprit checks whether lidar still answers")) << run_->output();
-  EXPECT_TRUE(run_->prints("Silent went away")) << run_->output();
+  EXPECT_TRUE(run_->prints("Silent cleared")) << run_->output();
   expect_left_alone();
 }
 
@@ -165,7 +165,7 @@ TEST_F(AHungNode, IsNotOneThatADebuggerHolds) {
   EXPECT_EQ(owners::state_letter(pid_), 't');
   waitpid(pid_, nullptr, __WALL);
   ptrace(PTRACE_DETACH, pid_, nullptr, nullptr);
-  EXPECT_TRUE(run_->prints("Silent went away")) << run_->output();
+  EXPECT_TRUE(run_->prints("Silent cleared")) << run_->output();
   EXPECT_THAT(run_->output(), Not(HasSubstr("lidar is lost")));
   EXPECT_EQ(pid_in(run_->output(), "lidar"), pid_);
 }

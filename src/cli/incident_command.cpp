@@ -80,7 +80,7 @@ int list_incidents(const IncidentOptions& options) {
                                 {"oldest", found->oldest},
                                 {"incidents", std::move(list)}}));
   } else if (found->incidents.empty()) {
-    fmt::print("nothing went wrong{}, as far as {} tells\n",
+    fmt::print("no incidents{} in {}\n",
                options.since.empty() ? "" : " in the last " + options.since, path->string());
   }
   return kOk;

@@ -188,7 +188,7 @@ TEST_F(Neighbours, OfTwoMachinesAgreeWhereTheyShareAKey) {
                                                   "--no-journal"});
   }
   EXPECT_TRUE(second->prints("another culprit manages this robot, on ")) << second->output();
-  EXPECT_TRUE(third->prints("says that it manages this robot or a node of it")) << third->output();
+  EXPECT_TRUE(third->prints("claims to manage this robot or a node of it")) << third->output();
   EXPECT_THAT(first->output(), Not(HasSubstr("another culprit manages")));
   first->signal(SIGINT);
   EXPECT_EQ(first->wait(), 0);
@@ -338,7 +338,7 @@ RULE CameraGone
   ASSERT_TRUE(second->prints("this one manages the robot from now on")) << second->output();
   EXPECT_THAT(second->output(), HasSubstr("what the culprit that managed before had learned of 1 "
                                           "strategies is known, and what it had tried"));
-  // It cannot be healed here either: whoever did not know would try it.
+  // It cannot be healed here either: a culprit without that knowledge would try it.
   EXPECT_TRUE(second->prints("CameraGone is exhausted")) << second->output();
   std::this_thread::sleep_for(3s);
   second->signal(SIGINT);
@@ -407,7 +407,7 @@ RULE DepthGone
   network->set({});
   ASSERT_TRUE(first->prints("another culprit manages this robot, on ", 60s)) << first->output();
   ASSERT_TRUE(second->prints("is reachable again")) << second->output();
-  ASSERT_TRUE(second->prints("CameraGone went away")) << second->output();
+  ASSERT_TRUE(second->prints("CameraGone cleared")) << second->output();
   std::this_thread::sleep_for(5s);
   const std::string since = second->output().substr(second->output().find("from now on"));
   EXPECT_THAT(since, Not(HasSubstr("another culprit manages this robot")));

@@ -130,7 +130,7 @@ int order(const OrderOptions& options, const MakeOrder& make) {
   // The user may have meant one of these.
   for (const auto* others : {&here->others, &here->not_meant}) {
     for (const std::string& other : *others)
-      say(stderr, "culprit: not told: {}\n", escape_controls(other));
+      say(stderr, "culprit: not asked: {}\n", escape_controls(other));
   }
   return is_all_done && (here->others.empty() || !all) ? kOk : kFailed;
 }

@@ -23,7 +23,7 @@ class BagRun {
       : rules_(rules), start_(start), manager_(rules, planner.planner(), options(start)) {}
 
   void step(Time now, std::span<const Observation> observations) {
-    // A recording may have holes of hours; nobody waits in them for more than this.
+    // A recording may have gaps of hours; at most this many deadlines in one are stepped.
     constexpr int kMostDeadlines = 100'000;
     for (int i = 0; i < kMostDeadlines && manager_.next_deadline() < now; ++i) {
       manager_.step(manager_.next_deadline(), {});

@@ -1,4 +1,5 @@
-// A running culprit and the nodes of its user: what they are told, and the orders that they give.
+// A running culprit and the nodes of its user: the reports that they receive, and the orders that
+// they give.
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
@@ -88,7 +89,7 @@ TEST_F(RosApiLive, TellsWhatBreaksAndHowItIsHealed) {
 TEST_F(RosApiLive, ObeysAnyoneIfItIsToldTo) {
   const TestProgram camera(world, {"sunset-node", "camera"});
   auto culprit = run({"--orders-from-anyone"});
-  ASSERT_TRUE(culprit->prints("takes orders over DDS from whoever is on this domain"))
+  ASSERT_TRUE(culprit->prints("takes orders over DDS from any participant of this domain"))
       << culprit->output();
   ASSERT_TRUE(culprit->prints("camera is there")) << culprit->output();
   TestRosNode panel(options());
@@ -100,7 +101,7 @@ TEST_F(RosApiLive, ObeysAnyoneIfItIsToldTo) {
   EXPECT_TRUE(
       statuses.wait_for_one([](const Json& status) { return status["is_paused"] == true; }));
   EXPECT_TRUE(culprit->prints("people on the floor")) << culprit->output();
-  // The process that follows knows of it, and is told to go on.
+  // The next process knows of it, and receives the order to go on.
   culprit->signal(SIGKILL);
   culprit->wait();
   culprit = run({"--orders-from-anyone"});

@@ -115,7 +115,8 @@ ros_api::OrderServices::Give orders_over_dds(const RunOptions& options,
   if (!has_keys && !options.takes_orders_from_anyone) return {};
   if (!has_keys)
     say(remarks,
-        "culprit: takes orders over DDS from whoever is on this domain (--orders-from-anyone)\n");
+        "culprit: takes orders over DDS from any participant of this domain "
+        "(--orders-from-anyone)\n");
   return [&desk, &hub](const Json& order) { return web::give_order(desk, hub, order); };
 }
 

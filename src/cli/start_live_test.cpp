@@ -150,7 +150,7 @@ TEST_F(Start, ADemosNodesEndWithItAndARobotsNodesDoNotEndWithCulprit) {
   EXPECT_TRUE(eventually([&] { return nodes_on(demos).empty(); }));
 }
 
-// Lifecycle nodes that nobody drives, and rules that they must be active.
+// Lifecycle nodes without a manager, and rules that they must be active.
 TEST_F(Start, LaunchBringsUpWhatNobodyElseDrives) {
   std::string text = "ROBOT up\n";
   for (const char* name : {"planner", "map", "lidar", "wheels"}) {
@@ -178,7 +178,7 @@ TEST_F(Start, LaunchBringsUpWhatNobodyElseDrives) {
     kill(pid_in(run.output(), name), SIGKILL);
 }
 
-// It is a lifecycle node that nobody else brings up.
+// It is a lifecycle node without another manager.
 TEST_F(Start, WhatWasBeingLaunchedWhenCulpritWasKilledIsBroughtUpByTheNext) {
   const std::string text = "ROBOT half\nCOMPONENT lidar NODE /lidar LAUNCH \"ros2_peer_node " +
                            std::to_string(domain()) +
@@ -261,7 +261,7 @@ TEST_F(Start, WhatALaunchNeedsIsSetUpForIt) {
   std::filesystem::permissions(setup, std::filesystem::perms(0666));
   auto risky = culprit({"check", "--robot", world.write("risky.rules", text(setup))});
   EXPECT_EQ(risky.wait(), 0);
-  EXPECT_THAT(risky.output(), HasSubstr("somebody else could change it"));
+  EXPECT_THAT(risky.output(), HasSubstr("another user could change it"));
   kill(pid_in(run.output(), "lidar"), SIGKILL);
 }
 

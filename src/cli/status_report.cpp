@@ -199,7 +199,8 @@ void add_people(const WhatCulpritSays& said, Lines& lines) {
     lines.emplace_back("  Paused: nothing is changed on the robot until `culprit resume`.");
   if (control.is_object() && !is_set(control, "hears"))
     lines.emplace_back(
-        "  Deaf: the robot cannot be heard, so nothing is judged and nothing is done.");
+        "  Deaf: culprit does not receive the robot's messages, so it judges nothing and does "
+        "nothing.");
   if (is_set(control, "dry_run"))
     lines.emplace_back("  It only advises: a dry run, or another culprit manages this robot.");
   for (const Json& each : list_at(control, "asked")) {
@@ -287,8 +288,8 @@ std::string headline_from(const WhatCulpritSays& said, Colour colour) {
   if (!said.state.is_object()) return robot + ": nothing is known yet" + mode;
   const auto incidents = list_at(said.state, "incidents");
   if (incidents.empty() && !is_set(said.control, "hears"))
-    return robot + ": " + tinted("nobody knows", Tone::kWarning, colour) +
-           ", the robot cannot be heard" + mode;
+    return robot + ": " + tinted("unknown", Tone::kWarning, colour) +
+           ", culprit does not receive the robot's messages" + mode;
   if (incidents.empty() && is_watching_nothing(said))
     return robot + ": " + tinted("watching nothing", Tone::kWarning, colour) + ", no rule can see" +
            mode;

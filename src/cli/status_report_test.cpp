@@ -125,7 +125,7 @@ TEST(StatusReport, NeverSaysThatARobotIsWellThatCannotBeHeard) {
   WhatCulpritSays said = well();
   said.control["hears"] = false;
   EXPECT_EQ(verdict_of(said), Verdict::kNotWell);
-  EXPECT_THAT(all_of(said), HasSubstr("nobody knows, the robot cannot be heard"));
+  EXPECT_THAT(all_of(said), HasSubstr("unknown, culprit does not receive the robot's messages"));
   EXPECT_THAT(all_of(WhatCulpritSays{}), HasSubstr("nothing is known yet"));
 }
 

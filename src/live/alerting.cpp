@@ -156,7 +156,7 @@ std::vector<Alerting::Problem> Alerting::problems_of_the_whole() const {
     return problem;
   };
   if (const auto& storm = manager_->governor().storm())
-    add("storm in general", "much of the robot is ill at once",
+    add("storm in general", "much of the robot fails at once",
         "nothing more is done: " + storm->reason)
         .alert.needs_person = true;
   if (!manager_->hears())
@@ -241,7 +241,7 @@ void Alerting::look(Time now) {
       fault.alert.ended = wall_();
     }
     if (is_there && fault.looked_at != now)
-      fault.alert.doing = "it cannot be seen any more, and nobody knows whether it is gone";
+      fault.alert.doing = "it is not observable any more; it is unknown whether it has cleared";
     tell(fault, now);
   }
   std::erase_if(faults_, [&](Fault& fault) { return is_over(fault, now); });

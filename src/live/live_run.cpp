@@ -84,7 +84,7 @@ Expected<std::size_t> LiveRun::reload(const std::string& author) {
   if (entered_ == nullptr) return Error{"the rules are just being reloaded; ask again"};
   const std::string& robot = entered_->rules().robot;
   if (loaded->rules.robot != robot)
-    return Error{fmt::format("{} is now about the robot '{}' instead of '{}'; start culprit anew",
+    return Error{fmt::format("{} is now about the robot '{}' instead of '{}'; restart culprit",
                              path, loaded->rules.robot, robot)};
   next_ = Next{std::move(*loaded), author};
   entered_->leave();
@@ -171,8 +171,7 @@ bool LiveRun::take_over(const std::atomic<bool>& stopped) {
   const auto elsewhere = role_.managed_elsewhere(session_->adapted_nodes(), session_->lease());
   const auto taken = session_->take_over(frame_, elsewhere, stopped);
   frame_.manager_before.reset();
-  if (!taken)
-    frame_.listener.on_remark("culprit: it joins the domain anew: " + taken.error() + "\n");
+  if (!taken) frame_.listener.on_remark("culprit: it rejoins the domain: " + taken.error() + "\n");
   return taken.has_value();
 }
 
@@ -198,9 +197,8 @@ void LiveRun::watch_hearing(OrderTaker& desk) {
   const auto deaf_since = session_->deaf_since();
   if (!deaf_since) return systemd_.feed(session_->now());
   if (session_->now() < later(*deaf_since, kDeafAtMost)) return;
-  session_->announce(
-      announcements::kBeginsAnew,
-      "the robot was not heard for " + to_string(kDeafAtMost) + "; culprit begins anew");
+  session_->announce(announcements::kBeginsAnew, "no message of the robot arrived for " +
+                                                     to_string(kDeafAtMost) + "; culprit restarts");
   close(desk);
   session_->end();
   frame_.listener.on_trouble(begin_anew());

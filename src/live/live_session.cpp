@@ -259,7 +259,7 @@ void LiveSession::hold(RunBeginning& beginning) {
     beginning.orders = frame_.orders.begin_without(frame_.options.no_journal, beginning.orders);
   } else if (!frame_.records) {
     beginning.orders =
-        frame_.orders.begin_advising("another culprit manages this robot, and has to be told");
+        frame_.orders.begin_advising("another culprit manages this robot; give orders to that one");
   } else if (beginning.is_of_another) {
     beginning.orders =
         frame_.orders.begin_without("another culprit writes the journal", beginning.orders);

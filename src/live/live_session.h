@@ -121,7 +121,7 @@ class LiveSession {
   // The last word to other culprits, of who steps back or ends.
   void say_lease();
   Time now() const { return robot_->now(); }
-  // Since when the robot cannot be heard; nothing: it can. On the thread of run().
+  // Since when culprit is deaf; empty: it is not. On the thread of run().
   std::optional<Time> deaf_since() const { return robot_->deaf_since(); }
   // Whether a strategy is under way.
   bool is_adapting() const;

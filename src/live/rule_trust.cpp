@@ -83,7 +83,7 @@ std::vector<fs::path> files_of(const fs::path& journal) {
 Expected<void> trust_rules(const std::string& path) {
   if (const std::string why = weakness_of_all(path); !why.empty())
     return Error{fmt::format(
-        "{} says what is done to the robot, and somebody else could change it: {}", path, why)};
+        "{} decides what is done to the robot, and another user could change it: {}", path, why)};
   return {};
 }
 
@@ -92,7 +92,7 @@ Expected<void> trust_setup(const std::string& path) {
   if (why.starts_with("cannot find")) return Error{fmt::format("SETUP: {}", why)};
   if (!why.empty())
     return Error{fmt::format(
-        "SETUP {} is run before a LAUNCH, and somebody else could change it: {}", path, why)};
+        "SETUP {} is run before a LAUNCH, and another user could change it: {}", path, why)};
   return {};
 }
 
@@ -106,7 +106,7 @@ Expected<void> trust_state(const fs::path& folder, const fs::path& journal) {
     while (!fs::exists(each, error) && each != each.parent_path()) each = each.parent_path();
     if (const std::string why = weakness_of_all(each); !why.empty())
       return Error{
-          fmt::format("culprit does what it finds in {}, and somebody else could change it: {}",
+          fmt::format("culprit follows the content of {}, and another user could change it: {}",
                       folder.string(), why)};
   }
   return {};

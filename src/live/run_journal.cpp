@@ -17,7 +17,7 @@ void tell(const Recovery& recovery, const RuleSet& rules, std::vector<std::strin
     const std::string what = strategy.name + " for " + rules[strategy.rule].name;
     if (recovery.is_other_robot()) {
       findings.push_back("the last run ended in the middle of " + what + "; " +
-                         (recovery.was_other_boot ? "the machine was started anew since"
+                         (recovery.was_other_boot ? "the machine was rebooted since"
                                                   : "that was in another DDS domain") +
                          ", so nothing of it is left to do");
     } else {

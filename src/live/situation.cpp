@@ -101,7 +101,7 @@ std::string next_of(RuleId rule, const Knowledge& knowledge) {
     return "it is expected to go away with " + rules[state.settling->with].name + ", within " +
            time_until(state.settling->until, knowledge.now);
   if (state.search.retry_at > knowledge.now)
-    return "all strategies are tried anew in " + time_until(state.search.retry_at, knowledge.now);
+    return "all strategies are tried again in " + time_until(state.search.retry_at, knowledge.now);
   return "";
 }
 

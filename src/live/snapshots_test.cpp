@@ -29,7 +29,7 @@ RULE Hot
       ADAPTATION motor redeploy 3
 )";
 
-// A manager that is told how hot the motor is, and who looks on.
+// A manager that receives the motor's temperature, and its observer.
 struct HotRobot {
   HotRobot() {
     snapshots.joined(node);
@@ -110,7 +110,8 @@ TEST(Snapshots, OfARecorderThatIsNotThereAreMissedBeforeTheyAreNeeded) {
   robot.is(20, 9);
   EXPECT_THAT(robot.said.all(), IsEmpty()) << "it may still be discovered";
   robot.is(20, 3);
-  EXPECT_THAT(robot.said.all(), ElementsAre(HasSubstr("nobody offers /rosbag2_recorder/snapshot")));
+  EXPECT_THAT(robot.said.all(),
+              ElementsAre(HasSubstr("no node offers /rosbag2_recorder/snapshot")));
   // A recorder that is started in time gets the requests.
   robot.is(90);
   RecorderOfAnotherOne recorder(robot.domain);

@@ -139,7 +139,7 @@ Answer events(Hub& hub, const std::filesystem::path& path, const Json& query) {
   const auto first = number_of<std::int64_t>(query, "first");
   const auto last = number_of<std::int64_t>(query, "last");
   if (!first || !last)
-    return refuse(400, "say which, as GET /api/incidents tells them: ?first=17&last=42");
+    return refuse(400, "name one, as listed by GET /api/incidents: ?first=17&last=42");
   if (text_of(query, "from") == "stream")
     return {200, {{"events", Recent(hub).events(*first, *last)}}};
   if (path.empty()) return refuse(404, "no journal is written");
@@ -160,7 +160,7 @@ Answer as_page(std::string html) {
 }
 
 constexpr const char* kNoSuchIncident =
-    "there is no such incident any more; GET /api/incidents tells those that there are";
+    "there is no such incident any more; GET /api/incidents lists the existing ones";
 
 Answer page_of_stream(Hub& hub, const std::string& id) {
   constexpr double kNanosecond = 1e-9;
@@ -188,7 +188,7 @@ Answer page(Hub& hub, const std::filesystem::path& journal, const std::filesyste
   constexpr int kMostSecondsOfPage = 60;
   const auto id = text_of(query, "id");
   if (!id || !incidents::began_by_id(*id))
-    return refuse(400, "say which, as GET /api/incidents tells them: ?id=...");
+    return refuse(400, "name one, as listed by GET /api/incidents: ?id=...");
   if (journal.empty() || text_of(query, "from") == "stream") return page_of_stream(hub, *id);
   if (!making.try_lock()) return refuse(409, "another page is being made; ask again in a moment");
   const MutexLock lock(making, std::adopt_lock);
@@ -212,7 +212,7 @@ Answer page(Hub& hub, const std::filesystem::path& journal, const std::filesyste
 // The requested name is only compared with existing files, and never becomes part of a path.
 Answer recording(const std::filesystem::path& folder, const Json& query) {
   const auto name = text_of(query, "name");
-  if (!name) return refuse(400, "say which, as GET /api/incidents tells them: ?name=...");
+  if (!name) return refuse(400, "name one, as listed by GET /api/incidents: ?name=...");
   for (const recorder::StoredRecording& each : recorder::recordings_in(folder)) {
     if (each.path.filename() == *name)
       return {200, {}, {}, Answer::File{each.path.string(), "application/octet-stream", *name}};

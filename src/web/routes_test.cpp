@@ -255,7 +255,7 @@ TEST_F(Routes, DoNotSaveRulesThatArePartOfTheProgram) {
   EXPECT_EQ(routes[1].answer({{"text", ""}, {"version", ""}}).status, 403);
 }
 
-// Somebody who may change a threshold may not for that reason run programs on the robot.
+// A client that may change a threshold may not for that reason run programs on the robot.
 TEST(RuleDesk, LetsAPageChangeWhatIsExecutedOnlyIfThatWasAllowed) {
   const test::TestFolder folder;
   const std::string file = folder / "robot.rules";
@@ -306,7 +306,7 @@ RULE CameraSilent
     RuleDesk free(file, RuleDesk::Commands::kMayChange);
     EXPECT_EQ(refusal(free, text), "") << to;
   }
-  // A detour by a text that nobody can read.
+  // A detour by an unreadable text.
   EXPECT_THAT(refusal(desk, "COMPONENT"), HasSubstr("could change what is executed"));
   std::ofstream(file) << "COMPONENT";
   const auto outcome = desk.save(before, desk.read()->version);
@@ -387,7 +387,7 @@ TEST_F(Routes, SayWhetherAnOrderIsKept) {
   EXPECT_TRUE(orders.empty());
 }
 
-// As HubObserver tells the manager's word.
+// The manager's reply, as HubObserver publishes it.
 Json word(const char* type, std::uint64_t number) {
   return {
       {"type", type}, {"number", number}, {"text", "ada: pause"}, {"refused_because", "so it is"}};

@@ -103,8 +103,9 @@ std::variant<std::string, RuleDesk::Refusal> RuleDesk::save(const std::string& t
   const auto now = read();
   if (!now) return Refusal{Problem::kNotWritten, now.error()};
   if (now->version != version)
-    return Refusal{Problem::kChangedMeanwhile,
-                   path_ + " was changed by somebody else since you opened it; nothing is written"};
+    return Refusal{
+        Problem::kChangedMeanwhile,
+        path_ + " was changed by another program since you opened it; nothing is written"};
   const std::string command = commands_ == Commands::kStay ? changed_command(text) : "";
   if (!command.empty())
     return Refusal{Problem::kChangesCommands,

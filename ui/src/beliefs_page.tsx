@@ -100,7 +100,7 @@ function Outcomes({ entry }: { entry: Entry }) {
   const list = events.value.filter(mine).slice(-kMostOutcomes).reverse()
   return (
     <section aria-label="Outcomes">
-      <h3>What came of it</h3>
+      <h3>Outcomes</h3>
       {list.length === 0 && <p class="muted">It was not tried since culprit began to watch.</p>}
       <ol>
         {list.map((e) => (

@@ -26,7 +26,7 @@ export interface Declaration {
 }
 
 const kOwners: Way[] = [
-  { words: 'nobody that culprit can ask', members: {} },
+  { words: 'no owner that culprit can ask', members: {} },
   { words: 'culprit, by a command', members: { launch: 'ros2 run my_package my_node' } },
   { words: 'systemd', members: { unit: 'my_node.service' } },
   { words: 'docker or podman', members: { container: ['docker', 'my_node'] } },

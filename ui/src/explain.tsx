@@ -46,7 +46,7 @@ export function Suspects({ decision, rule }: { decision: ManagerEvent; rule: str
   if (suspects.length === 0) return null
   return (
     <table class="suspects">
-      <caption>Who may be responsible</caption>
+      <caption>Possible causes</caption>
       <tbody>
         {suspects.slice(0, 5).map((s) => (
           <tr>
@@ -74,7 +74,7 @@ export function Candidates({ list, chosen }: { list: Candidate[]; chosen?: strin
   if (list.length === 0) return null
   return (
     <table class="candidates">
-      <caption>What could be done</caption>
+      <caption>Possible repairs</caption>
       <thead>
         <tr>
           <th scope="col">strategy</th>
@@ -126,7 +126,7 @@ function Next({ failure, incident }: { failure: Failure; incident: Incident }) {
         Now: it is expected to go away with {rule.settling.with}, within {left(rule.settling.until)} s.
       </p>
     )
-  if (rule.retry_at) return <p class="next">Next: tried anew in {left(rule.retry_at)} s.</p>
+  if (rule.retry_at) return <p class="next">Next: another round in {left(rule.retry_at)} s.</p>
   if (failure.phase === 'exhausted') return <p class="next">Nothing more will be tried: a person must look.</p>
   return <p class="next">Now: {doingOf(incident)}.</p>
 }
@@ -145,7 +145,7 @@ function Why({ failure, isOpen }: { failure: Failure; isOpen: boolean }) {
   if (!decision?.suspects?.length && !decision?.candidates?.length) return null
   return (
     <details class="why" open={isOpen}>
-      <summary>Who may be responsible, what could be done</summary>
+      <summary>Possible causes and repairs</summary>
       <Suspects decision={decision} rule={failure.rule} />
       <Candidates
         list={decision.candidates ?? []}

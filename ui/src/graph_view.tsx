@@ -51,7 +51,7 @@ export function GraphView() {
   }, [])
   const layOutAnew = () => {
     const undo = held.current?.layOutAnew()
-    tell({ text: 'Laid out anew.', undo })
+    tell({ text: 'New layout.', undo })
   }
   return (
     <section class="graph" aria-label="Dependency graph">
@@ -89,7 +89,7 @@ export function GraphView() {
           <button type="button" aria-label="Show all of the graph" title="Show all of it" onClick={() => held.current?.fit(true)}>
             ⤢
           </button>
-          <button type="button" aria-label="Lay out anew" title="Lay out anew: nodes keep their places otherwise" onClick={layOutAnew}>
+          <button type="button" aria-label="New layout" title="New layout: nodes keep their places otherwise" onClick={layOutAnew}>
             ⟲
           </button>
         </span>

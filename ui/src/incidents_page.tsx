@@ -31,8 +31,8 @@ export const causeOf = (incident: PastIncident) => listed(incident.causes) || in
 export function outcomeOf(incident: PastIncident): string {
   if (incident.given_up) return 'given up: a person must look'
   if (!incident.over) return 'not over'
-  if (incident.cut) return 'nobody saw: culprit ended before'
-  return listed(incident.helped) || 'went away by itself'
+  if (incident.cut) return 'unknown: culprit ended before'
+  return listed(incident.helped) || 'cleared without a repair'
 }
 
 // All of them as the failures of one timeline, by cause.
@@ -99,8 +99,8 @@ function Decisions() {
   const decisions = told.value.events.filter((e) => (e.candidates?.length ?? 0) > 0)
   return (
     <section aria-label="Decisions">
-      <h2>What was decided</h2>
-      {decisions.length === 0 && <p class="muted">Nothing was decided.</p>}
+      <h2>Decisions</h2>
+      {decisions.length === 0 && <p class="muted">No decisions.</p>}
       {decisions.map((event) => (
         <details key={event.number} class="why">
           <summary>
@@ -171,7 +171,7 @@ function Details({ incident }: { incident: PastIncident }) {
       <p>
         {incident.over ? 'It lasted' : 'It has lasted for'} {lasting(lastingOf(incident))}.{' '}
         {incident.consequences.length > 0 && `${listed(incident.consequences)} suffered. `}
-        {incident.over && `What helped: ${outcomeOf(incident)}.`}
+        {incident.over && `Outcome: ${outcomeOf(incident)}.`}
       </p>
       <Recordings incident={incident} />
       <Timeline view={view} />
@@ -187,7 +187,7 @@ function Head() {
   const { remark, oldest } = answer.value ?? {}
   return (
     <div class="bar">
-      <h2>What went wrong</h2>
+      <h2>Incidents</h2>
       <label>
         in the last{' '}
         <select value={String(period.value)} onChange={(e) => (period.value = Number(e.currentTarget.value))}>

@@ -46,7 +46,7 @@ export const modes = computed((): Mode[] => {
   const asked = listed(now.asked.map((a) => a.strategy))
   const silenced = listed(now.silences.map((s) => s.component ?? s.rule ?? ''))
   if (now.paused) add('paused', 'Ⅱ Paused', 'Nothing is changed on the robot until you resume.')
-  if (now.hears === false) add('deaf', '⚠ Deaf', 'The robot cannot be heard: nothing is judged, nothing is done.')
+  if (now.hears === false) add('deaf', '⚠ Deaf', "culprit does not receive the robot's messages: it judges nothing and does nothing.")
   if (asked) add('approval', '? Approval', `Waits for your word: ${asked}.`)
   if (now.dry_run) add('dry-run', '◌ Dry run', 'Culprit only says what it would do.')
   if (silenced) add('silenced', '∅ Silenced', `Left alone: ${silenced}.`)
@@ -89,13 +89,13 @@ function ofIncidents(incidents: Incident[]): Told {
 
 function ofRobot(): Told {
   if (!state.value)
-    return told('unknown', kSigns.unknown, 'Asking', 'Nothing is known yet', 'culprit has not told of the robot so far')
+    return told('unknown', kSigns.unknown, 'Asking', 'Nothing is known yet', 'culprit has not sent the robot\'s state so far')
   const { incidents } = present.value
   if (incidents.length > 0) return ofIncidents(incidents)
   const count = robot.value?.rules.length ?? 0
   const detail = `no failure is seen by ${count} ${count === 1 ? 'rule' : 'rules'}`
   if (control.value?.hears === false)
-    return told('unknown', '?', 'Unknown', 'The robot cannot be heard', 'nothing is judged until it is')
+    return told('unknown', '?', 'Unknown', "culprit does not receive the robot's messages", 'nothing is judged until it does')
   const blind = blindRules.value
   if (isNothingWatched.value)
     return told('unknown', '?', 'Unknown', 'Watching nothing', blind.length > 0 ? `no rule can see: ${blind[0].text}` : 'there is no rule')
@@ -120,7 +120,7 @@ export const status = computed((): Status => {
     const why = fresh.kind === 'lost' ? 'Disconnected' : 'Nothing new from culprit'
     const wasMode = (m: Mode): Mode => ({ ...m, name: 'bygone', word: `was: ${m.word.replace(/^\S /, '')}` })
     return {
-      ...told('lost', kSigns.lost, 'Old', `${why} since ${when(fresh.since)}`, `What you see is old.${was}`),
+      ...told('lost', kSigns.lost, 'Old', `${why} since ${when(fresh.since)}`, `This view is outdated.${was}`),
       modes: modes.value.filter((m) => m.word).map(wasMode),
     }
   }

@@ -41,7 +41,7 @@ function Fill({ template, change, close }: { template: Template; change: Props['
         {topics.map((name) => field(name, 'topic', 'topics'))}
       </div>
       <details>
-        <summary>What is in it</summary>
+        <summary>Text of the template</summary>
         <pre class="diff" tabIndex={0}>
           {template.text}
         </pre>

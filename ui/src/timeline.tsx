@@ -202,7 +202,7 @@ function Moment({ view }: { view: View }) {
       >
         {isOver ? 'End' : '● Live'}
       </button>
-      <output class="moment">{isNewest.value ? `${isOver ? 'the end' : isOld.value ? 'the last told' : 'now'}, ${words}` : `at ${words}`}</output>
+      <output class="moment">{isNewest.value ? `${isOver ? 'the end' : isOld.value ? 'the last state' : 'now'}, ${words}` : `at ${words}`}</output>
     </>
   )
 }
@@ -367,8 +367,8 @@ export function EventLog({ view }: { view: View }) {
   const list = events.value.filter((e) => e.t <= upTo).slice(-200)
   list.reverse()
   return (
-    <section class="log" aria-label="What happened">
-      <h2>What happened</h2>
+    <section class="log" aria-label="Event log">
+      <h2>Event log</h2>
       {list.length === 0 && <p class="muted">Nothing yet.</p>}
       <ol>{list.map(lineOf)}</ol>
     </section>

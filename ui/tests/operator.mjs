@@ -22,7 +22,7 @@ const kArguments = ['run', path, '--web', '--approve', '--settle', '2', '--healt
 const cameras = (said) => [...said.matchAll(/camera is there \(process (\d+)/g)].map((m) => Number(m[1]))
 
 async function approve(page, program) {
-  const log = page.getByRole('region', { name: 'What happened' })
+  const log = page.getByRole('region', { name: 'Event log' })
   await log.getByText('camera is there').first().waitFor()
   process.kill(cameras(program.said()).at(-1), 'SIGKILL')
   const question = page.getByRole('alert', { name: 'Approve camera_redeploy?' })
@@ -47,7 +47,7 @@ async function reload(page) {
   await dialog.getByRole('button', { name: 'Save and reload' }).click()
   await page.getByText('Reloading the rules: done').waitFor()
   await page.getByRole('link', { name: 'Robot' }).click()
-  const log = page.getByRole('region', { name: 'What happened' })
+  const log = page.getByRole('region', { name: 'Event log' })
   await log.getByText(`${path} is reloaded, with 1 rules`).waitFor()
   expect(readFileSync(path, 'utf8').includes('camera_redeploy 70 10'), 'the file was not saved')
   await page.getByRole('region', { name: 'Explanation' }).getByText('All is well').waitFor()
@@ -70,7 +70,7 @@ async function beliefs(page) {
   await row.getByText('nothing yet').waitFor()
 }
 
-// What went wrong is told from the journal: also by the next culprit, at the same address.
+// The incidents come from the journal: also from the next culprit, at the same address.
 async function lookBack(page, program) {
   await page.getByRole('link', { name: 'Incidents' }).click()
   const row = page.getByRole('row', { name: /camera.*camera_redeploy/ })
@@ -85,10 +85,10 @@ async function lookBack(page, program) {
   await page.reload()
   expect(new URL(page.url()).hash === address, 'the link is another')
   await incident.getByText('camera is lost').waitFor()
-  await incident.getByText('What helped: camera_redeploy').waitFor()
+  await incident.getByText('Outcome: camera_redeploy').waitFor()
 }
 
-// One file for somebody who has neither the robot nor culprit, made by a process of its own from journal and recording.
+// One file for readers without the robot or culprit, made by a process of its own from journal and recording.
 async function send(page) {
   const incident = page.getByRole('region', { name: 'Incident', exact: true })
   const saving = page.waitForEvent('download')
@@ -125,7 +125,7 @@ async function hindsight(page) {
   await picture(page, 'hindsight')
 }
 
-// The node is examined, and a component tells what it uses, by what runs.
+// The doctor examines the node, and a component's panel shows its usage.
 async function examine(page) {
   await page.getByRole('link', { name: 'Doctor' }).click()
   await page.getByLabel('look for').selectOption('4 s')
@@ -155,7 +155,7 @@ async function isHarmless(page) {
   await page.getByRole('heading', { name: kEvil }).waitFor()
   const component = page.getByRole('button', { name: kEvil }).first()
   await component.click()
-  await page.getByRole('region', { name: 'What happened' }).getByText(kEvil).first().waitFor()
+  await page.getByRole('region', { name: 'Event log' }).getByText(kEvil).first().waitFor()
   expect((await page.locator('img').count()) === 0, 'a name became an element')
   expect(!(await page.evaluate('window.wasHarmed')), 'a name was run')
 }

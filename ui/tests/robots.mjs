@@ -71,7 +71,7 @@ const failing = { phase: 'failing', since: kBroken + 0.01, attempts: 1 }
 const kSuffering = { dead: 'camera', FusionSilent: { phase: 'failing', since: kBroken + 0.4, attempts: 0 }, SegmentationBad: { phase: 'failing', since: kBroken + 0.9, attempts: 0 } }
 const kAttempting = { phase: 'attempting', since: kBroken + 0.01, attempts: 1, attempt: { strategy: 'rgb_redeploy', stage: 'adapting', chosen: kBroken + 0.02, deadline: kBroken + 9 } }
 
-// What each is told by, and what an operator must read at once: cause, level, mode.
+// The messages of each state, and the words that an operator must read at once: cause, level, mode.
 export const kStates = {
   well: { events: [], control: {}, state: {}, cause: 'All is well', level: 'Well', mode: 'Acting' },
   ill: { events: [...kCameraDead, chosen(false)], control: {}, state: { ...kSuffering, RGBDead: kAttempting },
@@ -89,13 +89,13 @@ export const kStates = {
     cause: 'SegmentationBad fails', level: 'Warning', mode: 'Acting', also: ['since 14:03:22'] },
   exhausted: { events: [...kCameraDead, chosen(false), event(kBroken + 5, 'rule_exhausted', 'exhausted', 'error', 'alarm', 'RGBDead is given up', { rule: 'RGBDead' })], control: {}, state: { ...kSuffering, RGBDead: { ...failing, phase: 'exhausted' } },
     cause: 'camera is dead', level: 'Gave up', mode: 'Acting', also: ['a person must look'] },
-  deaf: { events: [], control: { hears: false }, state: {}, cause: 'The robot cannot be heard', level: 'Unknown', mode: 'Deaf' },
+  deaf: { events: [], control: { hears: false }, state: {}, cause: "culprit does not receive the robot's messages", level: 'Unknown', mode: 'Deaf' },
 }
 // It is over: 3 s later all of it was well. Names are only text.
 const kHealing = [...kCameraDead, chosen(false), ...kRules.map(({ name }) => event(kBroken + 3.01, 'failure_resolved', 'resolved', 'info', 'relief', `${name} resolved <b>rover</b>`, { rule: name, strategy: name === 'RGBDead' ? 'rgb_redeploy' : null, reaction_s: 3 }))]
 export const kHealed = { events: kHealing, control: {}, state: {} }
 
-// What the journal tells of it, and of a day before.
+// The journal's incidents of it, and of a day before.
 const idOf = (clock) => Math.round(clock * 1000).toString(36)
 const incident = (clock, more) => ({ id: idOf(clock), first: 10, last: 20, clock, seconds: 3, over: true, cut: false, given_up: false, worst: 'ERROR',
   causes: ['camera'], rules: ['RGBDead', 'FusionSilent', 'SegmentationBad'], consequences: ['FusionSilent', 'SegmentationBad'], helped: ['rgb_redeploy'], ...more })

@@ -188,7 +188,7 @@ TEST(Blind, AFailureWhoseTriggerBecomesUnknownIsNotResolved) {
   robot.run_for(120s);
   EXPECT_EQ(robot.count("Low is blind: no new value of battery comes"), 1u) << transcript(robot);
   EXPECT_EQ(robot.count("resolved"), 0u) << transcript(robot);
-  EXPECT_EQ(robot.count("went away"), 0u) << transcript(robot);
+  EXPECT_EQ(robot.count("cleared without a repair"), 0u) << transcript(robot);
   EXPECT_EQ(robot.count("Low can no longer be evaluated"), 1u) << transcript(robot);
   EXPECT_TRUE(blind(robot)) << "it reads as blind, not as quiet";
   robot.order({2, "Ann", "", LiftSilence{RuleId(0)}});

@@ -79,8 +79,8 @@ TEST(AContainer, ThatIsKilledIsOneFaultAndOneRepair) {
         EXPECT_FALSE(robot.was_asked("tracker: stop")) << transcript(robot);
         EXPECT_EQ(robot.count("is held responsible"), 1u) << transcript(robot);
         EXPECT_EQ(robot.count("box is held responsible"), 1u) << transcript(robot);
-        EXPECT_EQ(robot.count("ADetectorGone went away"), 1u) << transcript(robot);
-        EXPECT_EQ(robot.count("ZTrackerGone went away"), 1u) << transcript(robot);
+        EXPECT_EQ(robot.count("ADetectorGone cleared"), 1u) << transcript(robot);
+        EXPECT_EQ(robot.count("ZTrackerGone cleared"), 1u) << transcript(robot);
       }
     }
   }

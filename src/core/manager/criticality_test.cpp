@@ -215,8 +215,7 @@ RULE Dead
   EXPECT_EQ(robot.count("fusion is held responsible for Bad"), 1u) << transcript(robot);
   robot.signal("silence", Value(1.0));  // so the entropy is not received any longer
   robot.run_for(3s);
-  EXPECT_EQ(robot.count("recalibrate did not resolve Bad: nobody can see"), 1u)
-      << transcript(robot);
+  EXPECT_EQ(robot.count("recalibrate did not resolve Bad: it is unknown"), 1u) << transcript(robot);
   EXPECT_EQ(robot.count("fusion is held responsible for Dead"), 1u) << transcript(robot);
 }
 

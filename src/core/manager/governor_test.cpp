@@ -397,8 +397,8 @@ TEST(Evidence, WhatRunsAndPublishesIsNotEndedBecauseSomethingElseIsSilent) {
   robot["fusion"].fault = "a person";
   robot.run_for(20s);
   EXPECT_FALSE(robot.was_asked("camera: ")) << transcript(robot);
-  EXPECT_EQ(robot.count("Fused.redeploy is held back: camera runs and publishes /rgb; what is "
-                        "silent is not its"),
+  EXPECT_EQ(robot.count("Fused.redeploy is held back: camera runs and publishes /rgb; it does "
+                        "not publish the silent topic"),
             1u)
       << transcript(robot);
   robot.order({1, "Ann", "", RunStrategy{StrategyId(0)}});

@@ -98,7 +98,7 @@ TEST(Hearing, NothingThatIsDeadIsFoundToWorkByASleep) {
   }
   EXPECT_EQ(robot.count("resolved"), 0u) << transcript(robot);
   for (const std::string rule : {"CameraSilent", "LidarSlow"}) {
-    EXPECT_EQ(robot.count(rule + " went away"), 0u) << transcript(robot);
+    EXPECT_EQ(robot.count(rule + " cleared"), 0u) << transcript(robot);
     EXPECT_EQ(robot.count(rule + " detected"), 1u) << transcript(robot);
   }
 }

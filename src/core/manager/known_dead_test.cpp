@@ -191,7 +191,7 @@ TEST(KnownDead, IsResolvedWhenItIsHeardAgain) {
   robot.run_for(1s);
   EXPECT_EQ(robot.count("redeploy camera: done"), 1u) << transcript(robot);
   EXPECT_EQ(robot.count("CameraSilent resolved"), 0u) << transcript(robot);
-  EXPECT_EQ(robot.count("CameraSilent went away"), 0u) << transcript(robot);
+  EXPECT_EQ(robot.count("CameraSilent cleared"), 0u) << transcript(robot);
   robot["camera"].fault = "";
   robot.run_for(2s);
   EXPECT_EQ(robot.count("CameraSilent resolved by redeploy"), 1u) << transcript(robot);

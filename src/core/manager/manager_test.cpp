@@ -199,8 +199,7 @@ TEST_P(ManagerWith, GivesUpAfterItsAttempts) {
   EXPECT_EQ(robot.count_asked("camera:"), asked) << "nothing is tried after exhaustion";
   robot["camera"].fault.clear();
   robot.run_for(2s);
-  EXPECT_EQ(robot.count("CameraDead went away"), 1u)
-      << "an exhausted failure that heals is reported";
+  EXPECT_EQ(robot.count("CameraDead cleared"), 1u) << "an exhausted failure that heals is reported";
 }
 
 TEST_P(ManagerWith, LearnsFromVerdicts) {
@@ -680,7 +679,7 @@ RULE FusionDead
   robot.run_for(100ms);
   robot.signal("blur", Value(0.0));
   robot.run_for(1s);
-  EXPECT_EQ(robot.count("Focus went away"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("Focus cleared"), 1u) << transcript(robot);
   robot.signal("silent", Value(1.0));
   robot.run_for(2s);
   EXPECT_FALSE(robot.was_asked("fusion:")) << "the camera is still sick" << transcript(robot);

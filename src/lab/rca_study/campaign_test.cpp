@@ -111,7 +111,7 @@ TEST(RcaCampaign, HasFaultsThatAllComeAndGo) {
     EXPECT_EQ(fault.kind, FaultKind::kFlapping);
 }
 
-// A chain with a fault at its head: whoever looks at the graph repairs the head alone.
+// A chain with a fault at its head: a planner that uses the graph repairs the head alone.
 TEST(RcaEpisode, TellsTheCauseFromItsEffects) {
   RcaScenario scenario = generate({4, 1, 0, false}, 1);
   scenario.topics.clear();

@@ -208,9 +208,9 @@ void Invariants::on(const Manager& manager, const StrategyChosen& chosen, const 
   }
   for (const ComponentId component : strategy.components) {
     if (is_seen_true_ && truth.is_leaving[component.index] && !strategy.is_last_resort)
-      fail(at, name + " is begun though somebody ends the launch of " + rules_[component].name);
+      fail(at, name + " is begun though a person ends the launch of " + rules_[component].name);
   }
-  if (!manager.hears()) fail(at, name + " is begun though the robot cannot be heard");
+  if (!manager.hears()) fail(at, name + " is begun though culprit is deaf");
   if (is_paused_) fail(at, name + " is begun while paused");
   if (truth.is_moving && !strategy.is_last_resort)
     fail(at, name + " is begun though the robot moves");

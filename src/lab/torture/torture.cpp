@@ -294,7 +294,7 @@ class Run {
     if (governor.is_paused() || governor.storm()) return;
     for (std::size_t i = 0; i < scenario_.parts.size(); ++i) {
       if (!robot_.works(i) && !is_excused(i))
-        return fail("c" + std::to_string(i) + " is not cured, and nobody says why");
+        return fail("c" + std::to_string(i) + " is not repaired, and no report says why");
     }
   }
 

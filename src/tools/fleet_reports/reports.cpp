@@ -80,14 +80,14 @@ std::vector<TableQuery> status_queries(const Scope& scope) {
             {"robots", "robots", Kind::kCount},
             {"ill", "ill", Kind::kCount},
             {"exhausted", "wait for a person", Kind::kCount},
-            {"silent", "not heard for 1 h", Kind::kCount},
+            {"silent", "unreachable for 1 h", Kind::kCount},
             {"versions", "versions", Kind::kCount},
             {"rule_sets", "rule files", Kind::kCount},
             {"dropped", "dropped", Kind::kCount}}},
           scope),
       in_scope(
-          {"Ill now",
-           "nobody",
+          {"Failing now",
+           "none",
            "SELECT r.name, r.model, f.rule, f.criticality, f.component, extract(epoch FROM "
            "f.began), f.strategies, CASE WHEN f.exhausted THEN 'waits for a person' ELSE '' END, " +
                std::string(kHeard) +
@@ -105,8 +105,8 @@ std::vector<TableQuery> status_queries(const Scope& scope) {
             {"remark", ""},
             {"seen", "heard last", Kind::kTime}}},
           scope),
-      in_scope({"Not heard of for an hour",
-                "all were heard of",
+      in_scope({"Unreachable for an hour",
+                "all are reachable",
                 "SELECT r.name, r.model, " + std::string(kHeard) +
                     ", r.culprit, r.robot\nFROM culprit.robot r" +
                     where("r.seen < now() - interval '1 hour' AND " + kNoDays) +

@@ -1,5 +1,5 @@
 // Curves of a recording as pictures (SVG), one below the other on the same time axis: seconds since the incident was
-// detected. What culprit found and did is marked in each.
+// detected. culprit's findings and actions are marked in each.
 #pragma once
 
 #include <string>
@@ -26,8 +26,8 @@ struct PlotFrame {
   std::vector<Mark> marks;
 };
 
-// A <figure>. `number` tells it from others in the same document. Colours are those of the document's style: the classes
-// "curve", "limit", "mark", and of marks "detected", "decided", "no-help", "resolved", "given-up".
+// A <figure>. `number` distinguishes it from others in the same document. Colours are those of the document's style: the classes "curve", "limit", "mark", and
+// of marks "detected", "decided", "no-help", "resolved", "given-up".
 std::string plot_of(const Curve& curve, const PlotFrame& frame, std::size_t number);
 
 }  // namespace culprit::incidents

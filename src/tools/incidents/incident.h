@@ -19,7 +19,7 @@
 
 namespace culprit::incidents {
 
-// One event, and when it was told.
+// One event, and when it was reported.
 struct Told {
   std::int64_t row = 0;  // ascending: of the journal, or wherever it is found again
   double wall = 0;       // seconds since 1970
@@ -34,7 +34,7 @@ struct Incident {
   double seconds = 0;  // how long; so far, if it lasts
   bool is_over = false;
   bool is_cut =
-      false;  // culprit ended, or its rules were reloaded, before it was over: nobody saw how it ended
+      false;  // culprit ended, or its rules were reloaded, before it was over: its end is unknown
   bool is_given_up = false;
   Criticality worst = Criticality::kNonCritical;
   std::vector<std::string>
@@ -43,24 +43,23 @@ struct Incident {
   std::vector<std::string> consequences;  // those of them that are about none of the causes
   std::vector<std::string> helped;        // strategies
 
-  // Of its beginning, in a few letters: the same after a restart.
+  // A few letters made from its beginning: the same after a restart.
   std::string id() const;
 };
 
-// Those that a strategy adapts, or all that a rule is about if `strategy` is empty. By the rules that the event was told
-// with.
+// Those that a strategy adapts, or all that a rule is about if `strategy` is empty. By the rules of the session that reported the event.
 using ComponentsOf =
     std::function<std::vector<std::string>(const std::string& rule, const std::string& strategy)>;
 
 class IncidentBuilder {
  public:
   void add(const Told& told, const ComponentsOf& components_of);
-  // From here on another manager tells: what is still wrong, it finds anew.
+  // From here on another manager reports: it finds existing failures again.
   void cut();
 
   // In the order of their beginnings; the last may last.
   const std::vector<Incident>& incidents() const { return all_; }
-  // Rules of which something was told while it was not known that they fail: their failures began before the first event.
+  // Rules with events although their failure was not reported yet: their failures began before the first event.
   const std::set<std::string>& begun_before() const { return begun_before_; }
   // Rules that see a failure at the end.
   const std::set<std::string>& failing() const { return failing_; }

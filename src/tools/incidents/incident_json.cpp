@@ -8,7 +8,7 @@
 namespace culprit::incidents {
 namespace {
 
-// Candidates as the stream tells them: the journal has a word and a sentence.
+// Candidates as in the stream: the journal has a word and a sentence.
 void tell_exclusions(Json& event) {
   const auto candidates = event.find("candidates");
   if (candidates == event.end() || !candidates->is_array()) return;

@@ -1,5 +1,4 @@
-// Incidents as JSON: what the page and programs are told of them (docs/web.md, GET /api/incidents), and what
-// `culprit incident --json` prints.
+// Incidents as JSON, for the page and programs (docs/web.md, GET /api/incidents), and for `culprit incident --json`.
 #pragma once
 
 #include <vector>
@@ -16,9 +15,9 @@ std::vector<recorder::StoredRecording> recordings_of(
 
 // {"id", "first", "last", "clock", "seconds", …, "recordings": [{"name", "path", "bytes"}]}
 Json to_json(const Incident& incident, const std::vector<recorder::StoredRecording>& recordings);
-// What people are told beside an event: {"type": ..., "label": ..., "severity": ..., "tone": ...}
+// The wording of an event for people: {"type": ..., "label": ..., "severity": ..., "tone": ...}
 Json to_json(const EventWords& words);
-// As the stream tells it (web/event_json.h); `t` is `clock`.
+// As in the stream (web/event_json.h); `t` is `clock`.
 Json to_json(ToldEvent told);
 
 }  // namespace culprit::incidents

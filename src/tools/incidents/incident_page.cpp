@@ -214,12 +214,12 @@ std::string decisions(const std::vector<Json>& events) {
                   fmt::format(" {:.0f} %", 100 * journal::number_of(each, "probability"));
     out += "<h3><time>" + on_clock(clock_of(event)) + "</time> " + safe_text(event, "text") +
            "</h3>\n";
-    if (!suspects.empty()) out += "<p>Who may be responsible: " + suspects + "</p>\n";
+    if (!suspects.empty()) out += "<p>Possible causes: " + suspects + "</p>\n";
     std::string rows;
     for (const Json& each : candidates) rows += candidate_row(event, each);
     out += table_of({"strategy", "cost", "why, or why not"}, rows);
   }
-  return out.empty() ? "<p>Nothing was decided.</p>\n" : out;
+  return out.empty() ? "<p>No decisions.</p>\n" : out;
 }
 
 std::string comma_separated(const std::vector<std::string>& names) {
@@ -251,8 +251,8 @@ std::string incident_page(const PageContent& content) {
          "content=\"width=device-width, initial-scale=1\"><title>" +
          title + "</title><style>" + std::string(kStyle) + "</style></head><body><main>\n<h1>" +
          title + "</h1>\n<table><tbody>" + facts + "</tbody></table>\n<h2>When</h2>\n" +
-         CourseOfRules(content).drawn() + recorded(content) + "<h2>What was decided</h2>\n" +
-         decisions(content.events) + "<h2>What happened</h2>\n" +
+         CourseOfRules(content).drawn() + recorded(content) + "<h2>Decisions</h2>\n" +
+         decisions(content.events) + "<h2>Event log</h2>\n" +
          table_of({"time", "what", "in words"}, log) +
          fmt::format(
              "<p class=\"note\">Written by culprit, {} {}. Times are those of the clock of the "

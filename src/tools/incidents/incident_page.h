@@ -1,5 +1,5 @@
-// An incident as one HTML file without a script, which needs nothing else: for a colleague who has neither the robot nor
-// culprit. Who was held responsible, what was decided and why, what happened, and what the robot's topics said meanwhile.
+// An incident as one HTML file without a script or other files: for a colleague without the robot or culprit. It shows the blamed component, the decisions with
+// their reasons, the events, and the robot's topics meanwhile.
 #pragma once
 
 #include <optional>
@@ -21,8 +21,7 @@ struct PageContent {
   double written_at = 0;                 // seconds since 1970
 };
 
-// Times are those of this machine's clock, in its time zone, which is said. Names, texts and numbers are taken for what they
-// are, whoever made them.
+// Times are those of this machine's clock, in its time zone, which the page names. Names, texts and numbers are escaped, whatever their origin.
 std::string incident_page(const PageContent& content);
 
 }  // namespace culprit::incidents

@@ -184,7 +184,7 @@ TEST(IncidentWords, TellHowItEndedAndHowLongItTook) {
   EXPECT_EQ(cause_of(incident), "R");
   EXPECT_EQ(outcome_of(incident), "not over");
   incident.is_over = true;
-  EXPECT_EQ(outcome_of(incident), "went away by itself");
+  EXPECT_EQ(outcome_of(incident), "cleared without a repair");
   incident.causes = {"a", "b", "c"};
   EXPECT_EQ(cause_of(incident), "a, b and c");
   incident.is_given_up = true;

@@ -27,7 +27,7 @@ Expected<std::optional<Incident>> incident_named(const journal::Reader& journal,
   return std::optional<Incident>();
 }
 
-// Of all who may have to do with it: who was blamed, and whom the failed rules are about.
+// All components that may be involved: the blamed ones, and those that the failed rules are about.
 std::vector<std::string> concerned(const Incident& incident, const RuleSet& rules) {
   std::vector<std::string> components = incident.causes;
   for (const Rule& rule : rules.rules) {
@@ -40,7 +40,7 @@ std::vector<std::string> concerned(const Incident& incident, const RuleSet& rule
   return components;
 }
 
-// That which has its beginning: the last that was begun until then. What begins a recording is told a moment before it.
+// The recording with the incident's beginning: the last that was begun until then. The event that starts a recording is reported a moment before it.
 const recorder::StoredRecording& main_recording(const std::vector<recorder::StoredRecording>& own,
                                                 const Incident& incident) {
   constexpr double kMoment = 2;  // s

@@ -1,4 +1,4 @@
-// What journal and recordings tell of one incident, for its page and for programs.
+// The journal's and the recordings' data on one incident, for its page and for programs.
 #pragma once
 
 #include <filesystem>

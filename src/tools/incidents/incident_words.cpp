@@ -17,8 +17,8 @@ std::string cause_of(const Incident& incident) {
 std::string outcome_of(const Incident& incident) {
   if (incident.is_given_up) return "given up: a person must look";
   if (!incident.is_over) return "not over";
-  if (incident.is_cut) return "nobody saw: culprit ended before";
-  return incident.helped.empty() ? "went away by itself" : listed(incident.helped);
+  if (incident.is_cut) return "unknown: culprit ended before";
+  return incident.helped.empty() ? "cleared without a repair" : listed(incident.helped);
 }
 
 std::string lasting_text(double seconds) {

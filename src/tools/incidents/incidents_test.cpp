@@ -1,4 +1,4 @@
-// What a list of incidents says of a journal: of events that stand in it, and of a day of them.
+// Lists of incidents from a journal: from events in it, and from a day of them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ RULE FusionSilent
 constexpr double kNoon = 1'800'000'000;  // s since 1970
 constexpr std::int64_t kSecond = 1'000'000'000;
 
-// A journal that tells what happened so many seconds after noon. The robot's clock was at 100 s then.
+// A journal with events at so many seconds after noon. The robot's clock was at 100 s then.
 struct JournalIncidents : testing::Test {
   void tell(double after, Json event) {
     event["text"] = "something";
@@ -174,7 +174,7 @@ TEST(Incident, HasAnIdOfItsBeginning) {
   EXPECT_EQ(incident.id(), "0");
 }
 
-// With the rules of its time, and what is said where nothing was recorded.
+// With the rules of its time, and with the text for incidents without a recording.
 TEST_F(JournalIncidents, AreReportedByTheirIds) {
   session(0);
   detected(1, "FusionSilent", "WARNING");
@@ -198,7 +198,7 @@ TEST_F(JournalIncidents, AreReportedByTheirIds) {
     EXPECT_FALSE(value_of(report_of(reader, other, folder / "recordings", kNoon))) << other;
 }
 
-// What is not over has lasted as long as the journal tells, and not until somebody looks a week later.
+// An incident that is not over has lasted as long as the journal goes, not until a reader looks a week later.
 TEST_F(JournalIncidents, ThatAreNotOverHaveLastedAsLongAsTheJournalTells) {
   session(0);
   detected(10, "CameraDead");

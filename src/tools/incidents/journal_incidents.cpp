@@ -15,7 +15,7 @@ using journal::Reader;
 
 constexpr double kNanosecond = 1e-9;  // s
 
-// What an incident is made of. Most rows are something else, and are not parsed.
+// The events that make up an incident. Most rows are something else, and are not parsed.
 constexpr std::array<std::string_view, 10> kTelling = {
     "failure_detected", "failure_resolved", "failure_lost",   "strategy_chosen", "approval_asked",
     "action_held_back", "strategy_failed",  "rule_exhausted", "round_spent",     "component_lost"};
@@ -30,7 +30,7 @@ bool is_telling(std::string_view body) {
   });
 }
 
-// Who is about whom, by the rules of the session that tells.
+// The components of rules and strategies, by the rules of the reporting session.
 class Names {
  public:
   void begin(const std::string& session) {
@@ -39,7 +39,7 @@ class Names {
     rules_.reset();
     is_checked_ = false;
   }
-  // What its rules no longer have, or cannot be read, is about nobody.
+  // A rule that is missing, or in unreadable rules, has no components.
   std::vector<std::string> components_of(const std::string& rule, const std::string& strategy) {
     const RuleSet* rules = checked();
     if (rules == nullptr) return {};
@@ -59,7 +59,7 @@ class Names {
   static void add(const auto& ids, const RuleSet& rules, std::vector<std::string>& names) {
     for (const ComponentId id : ids) names.push_back(rules[id].name);
   }
-  // Only once somebody asks: many sessions tell of no incident.
+  // Only on request: many sessions have no incident.
   const RuleSet* checked() {
     if (!is_checked_) {
       is_checked_ = true;
@@ -74,7 +74,7 @@ class Names {
   std::optional<RuleSet> rules_;
 };
 
-// The newest session row before row `row`: what was told there was told by it.
+// The names of the newest session row before row `row`, which reported it.
 Expected<Names> names_at(const Reader& journal, std::int64_t row) {
   Names names;
   const auto session = journal.newest(journal::kind::kSession, row);
@@ -109,7 +109,7 @@ Expected<IncidentBuilder> build(const Reader& journal, std::int64_t from) {
   return builder;
 }
 
-// The row at which the failure of `rule` that was there at row `before` was told of; `before` if it is told nowhere.
+// The row that reported the failure of `rule` that existed at row `before`; `before` if there is none.
 Expected<std::int64_t> detection_before(const Reader& journal, const std::string& rule,
                                         std::int64_t before) {
   auto found = journal.database().prepare(
@@ -145,7 +145,7 @@ Expected<Found> incidents_of(const Reader& journal, double since,
   if (!newest) return Error{newest.error()};
   auto from = first_row_after(journal, since);
   if (!from) return Error{from.error()};
-  // What began before and ended after `since` is told from its beginning. Before that something else may have begun.
+  // An incident that began before and ended after `since` is reported from its beginning. Before that, an earlier one may have begun.
   constexpr int kMostSteps = 8;
   for (int i = 0;; ++i) {
     const auto builder = build(journal, *from);

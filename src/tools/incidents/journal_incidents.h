@@ -1,4 +1,4 @@
-// The incidents that a journal tells of, also while it is being written.
+// The incidents of a journal, also while it is being written.
 #pragma once
 
 #include <optional>
@@ -23,11 +23,11 @@ struct Found {
 Expected<Found> incidents_of(const journal::Reader& journal, double since,
                              const std::set<std::string>& failing_now = {});
 
-// The run of culprit that tells row `row`; nothing: the journal does not say. Errors: the journal cannot be read.
+// The run of culprit that wrote row `row`; empty: the journal does not say. Errors: the journal cannot be read.
 Expected<std::optional<journal::Session>> session_at(const journal::Reader& journal,
                                                      std::int64_t row);
 
-// One event of a journal as people are to be told it.
+// One event of a journal, in the form for people.
 struct ToldEvent {
   std::int64_t row = 0;
   double wall =
@@ -38,7 +38,7 @@ struct ToldEvent {
 
 inline constexpr std::size_t kMostTold = 5000;  // of one incident
 
-// What rows `first` to `last` tell, the first kMostTold of them.
+// The events of rows `first` to `last`, the first kMostTold of them.
 Expected<std::vector<ToldEvent>> events_of(const journal::Reader& journal, std::int64_t first,
                                            std::int64_t last);
 

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A message that nobody named a field of is looked into if it is no picture, no map and no cloud.
+// A message without a named field is read if it is no picture, no map and no cloud.
 constexpr std::size_t kSmallMessage = std::size_t{16} << 10;  // bytes
 constexpr std::size_t kMostFields = 32;                       // of a type, of which some may change
 constexpr std::size_t kMostTracked = 256;                     // curves, of which some are chosen
@@ -79,7 +79,8 @@ Json first_graph(const fs::path& path, const CurveLimits& limits) {
   return nullptr;
 }
 
-// What culprit or every node says of itself, which is told elsewhere or by no number.
+// Topics on which culprit or every node reports on itself: the page shows these elsewhere, or they
+// have no numbers.
 bool is_of_everybody(const std::string& topic) {
   constexpr std::array<std::string_view, 6> kOfEverybody = {
       "/rosout", "/parameter_events", "/diagnostics", "/clock", "/tf", "/tf_static"};
@@ -128,7 +129,7 @@ std::vector<WantedTopic> topics_of(const CurveWish& wish, const Json& graph) {
     }
   };
   add("publishes", " publishes it", true);
-  add("subscribes", " hears it", false);
+  add("subscribes", " subscribes to it", false);
   return topics;
 }
 
@@ -317,7 +318,7 @@ class CurveReader {
     rhythm.last = at;
     ++rhythm.count;
   }
-  // Who fell silent, and still was at the end, is seen to be silent.
+  // A topic that fell silent, and still was at the end, is shown as silent.
   void end_rhythms() {
     for (auto& [topic, rhythm] : rhythms_) {
       if (rhythm.count == 0) continue;
@@ -329,7 +330,7 @@ class CurveReader {
     }
   }
 
-  // What is looked at of a topic of the recording, if a component has to do with it, or a rule with its rhythm.
+  // The plan for a topic of the recording, if it concerns a component, or a rule its rhythm.
   TopicPlan plan_for(std::size_t place) {
     const bag::BagTopic& topic = contents_.topics()[place];
     TopicPlan plan;
@@ -363,8 +364,7 @@ class CurveReader {
     return fields;
   }
 
-  // The numbers that change: what stays the same all the time tells nothing that is worth its place. If there are none (a
-  // camera's pictures), and no rule reads one, when the messages came.
+  // The numbers that change: a constant is not worth its place. If there are none (a camera's pictures), and no rule reads one, when the messages came.
   void add_of_topic(const std::string& topic, RecordedCurves& shown) {
     std::size_t count = 0;
     const Tracked* rhythm = nullptr;

@@ -1,4 +1,4 @@
-// What a recording shows of an incident: curves of numbers over time, those first that the failed rules read.
+// The curves of numbers in a recording of an incident, those first that the failed rules read.
 //
 //     const auto shown = recorded_curves("rover_….mcap", {rules, {"LidarDead"}, {"lidar"}});
 //     for (const Curve& curve : shown->curves) draw(curve);

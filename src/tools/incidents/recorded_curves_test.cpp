@@ -1,4 +1,4 @@
-// What a recording shows of an incident: which curves, and of whatever bytes.
+// The curves from a recording of an incident: their selection, and arbitrary bytes.
 #include "incidents/recorded_curves.h"
 
 #include <fstream>
@@ -125,7 +125,7 @@ TEST_F(RecordedIncident, ShowsWhatTheFailedRuleReadsAndThenWhatTheComponentSaysA
   EXPECT_THAT(speed.points,
               Contains(bag::ThinnedCurve::Point{kStart + 77 * kSecondInNanoseconds / 10, 9}));
   EXPECT_EQ(shown.curves[2].about, "drive publishes it");
-  EXPECT_EQ(shown.curves[3].about, "drive hears it");
+  EXPECT_EQ(shown.curves[3].about, "drive subscribes to it");
   EXPECT_THAT(shown.remarks,
               ElementsAre("The recording has nothing of what these rules read: load."));
 }

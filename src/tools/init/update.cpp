@@ -347,7 +347,7 @@ class Updating {
       const std::string node = each.node.empty() ? seen_.robot.node_of(each) : each.node;
       if (!seen_.robot.nodes.contains(node))
         update_.notes.push_back(
-            fmt::format("{} is not there now; what the file says of it stays", each.name));
+            fmt::format("{} is not there now; its lines in the file stay", each.name));
     }
   }
 

@@ -12,7 +12,7 @@ using namespace std::chrono_literals;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-// A mission on which somebody acts at given times, in the mission's time.
+// A mission with actions at given times, in the mission's time.
 struct Sea {
   explicit Sea(const char* plan = "standard", const char* generation = "era",
                Leader leader = Leader::kMission, std::uint64_t seed = 1)
