@@ -47,6 +47,7 @@ void add_all(CLI::App& app, const std::string& version, int& exit_code) {
   add_policy(app, exit_code);
   add_web(app, exit_code);
   add_lsp(app, version, exit_code);
+  add_mcp(app, version, exit_code);
   add_log(app, exit_code);
   add_incident(app, exit_code);
   add_audit(app, exit_code);

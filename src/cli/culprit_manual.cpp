@@ -53,9 +53,10 @@ void group_commands(CLI::App& app) {
   const Group groups[] = {
       {"On a robot", {"run", "doctor", "init", "graph", "plan", "modes"}},
       {"A culprit that runs",
-       {"status", "top", "pause", "resume", "silence", "approve", "refuse", "run-strategy",
-        "revive", "end-started", "record", "alerts"}},
-      {"Rules", {"check", "explain", "fmt", "test", "import", "export", "policy", "web", "lsp"}},
+       {"status", "top", "pause", "resume", "silence", "approve", "refuse", "propose",
+        "run-strategy", "revive", "end-started", "record", "alerts"}},
+      {"Rules",
+       {"check", "explain", "fmt", "test", "import", "export", "policy", "web", "lsp", "mcp"}},
       {"What was", {"log", "incident", "audit", "beliefs", "replay"}},
 #ifdef CULPRIT_FLEET
       {"A fleet", {"fleet"}},

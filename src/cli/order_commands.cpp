@@ -1,4 +1,4 @@
-// People's orders to a running culprit from a terminal: pause, resume, silence, approve, refuse,
+// Orders to a running culprit from a terminal: pause, resume, silence, approve, refuse, propose,
 // run-strategy.
 #include <algorithm>
 #include <functional>
@@ -221,6 +221,9 @@ void add_orders(CLI::App& app, int& exit_code) {
                    "Approve the strategy that a running culprit proposes (run --approve)"),
         std::tuple("refuse", "refuse",
                    "Reject the proposed strategy; culprit proposes the next one"),
+        std::tuple("propose", "propose",
+                   "Propose a strategy for a present failure. It begins once a person approves it "
+                   "(run --approve)"),
         std::tuple("run-strategy", "run", "Have a running culprit carry out a strategy now")}) {
     options = make();
     add_order(app, exit_code, word, description, about_strategy(call), options)

@@ -85,6 +85,7 @@ Expected<What> about_strategy(const std::string& word, const Json& body, const R
   if (!strategy) return unknown_strategy(body, rules);
   if (word == "approve") return What(Approve{*strategy});
   if (word == "refuse") return What(Refuse{*strategy});
+  if (word == "propose") return What(Propose{*strategy});
   return What(RunStrategy{*strategy});
 }
 
@@ -116,16 +117,15 @@ Expected<What> read(const Json& body, const RuleSet& rules) {
     if (on == body.end() || !on->is_boolean()) return Error{"say whether it is 'on'"};
     return What(SetDryRun{on->get<bool>()});
   }
-  if (word == "approve" || word == "refuse" || word == "run")
+  if (word == "approve" || word == "refuse" || word == "propose" || word == "run")
     return about_strategy(word, body, rules);
   if (word == "silence" || word == "lift") return about_silence(word, body, rules);
   if (word == "forget") return about_learning(body, rules);
   if (word == "revive") return What(Revive{});
   if (word == "end_started") return What(EndStarted{});
   return Error{
-      "'order' has to be pause, resume, dry_run, approve, refuse, silence, lift, run, forget, "
-      "revive "
-      "or end_started"};
+      "'order' has to be pause, resume, dry_run, approve, refuse, propose, silence, lift, run, "
+      "forget, revive or end_started"};
 }
 
 Expected<Order> read_order(const Json& body, const RuleSet& rules, std::uint64_t number) {

@@ -31,6 +31,7 @@ struct WordOfOrder {
   const char* operator()(const SetDryRun& o) const { return o.is_on ? "dry_run" : "act"; }
   const char* operator()(const Approve&) const { return "approve"; }
   const char* operator()(const Refuse&) const { return "refuse"; }
+  const char* operator()(const Propose&) const { return "propose"; }
   const char* operator()(const Silence&) const { return "silence"; }
   const char* operator()(const LiftSilence&) const { return "lift_silence"; }
   const char* operator()(const RunStrategy&) const { return "run_strategy"; }

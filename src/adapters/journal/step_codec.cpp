@@ -52,7 +52,8 @@ enum class OrderTag : std::uint8_t {
   kRunStrategy = 8,
   kForget = 9,
   kRevive = 10,
-  kEndStarted = 11
+  kEndStarted = 11,
+  kPropose = 12
 };
 
 // Flags of a launcher; together.
@@ -303,6 +304,10 @@ class Encoder {
   }
   void write_order(const Refuse& o) {
     word(OrderTag::kRefuse);
+    out_.natural(o.strategy.index);
+  }
+  void write_order(const Propose& o) {
+    word(OrderTag::kPropose);
     out_.natural(o.strategy.index);
   }
   void write_order(const Silence& o) {
@@ -557,6 +562,8 @@ class Decoder {
         return Approve{id<StrategyId>(rules_.strategies.size())};
       case OrderTag::kRefuse:
         return Refuse{id<StrategyId>(rules_.strategies.size())};
+      case OrderTag::kPropose:
+        return Propose{id<StrategyId>(rules_.strategies.size())};
       case OrderTag::kSilence: {
         Silence silence{silenced(), {}};
         if (in_.byte() != 0) silence.lasts = Duration(in_.integer());

@@ -72,6 +72,10 @@ class Governor {
   bool is_paused() const { return is_paused_; }
   const std::optional<StormWatch::Storm>& storm() const { return storm_.storm(); }
   const std::vector<ActiveSilence>& silences() const { return silences_; }
+  // The strategy that the order begins at once: one that a person runs, or approves after a program
+  // proposed it; empty: none.
+  std::optional<StrategyId> begun_by(const Order& order) const;
+
   // The strategies that wait for approval.
   std::vector<StrategyId> asked() const;
 
@@ -113,8 +117,10 @@ class Governor {
     StrategyId strategy;
     Time failing_since = kNever;
     bool is_approved = false;
+    bool is_proposed = false;  // by a program, not by the planner
   };
 
+  std::optional<std::string> objection_to_propose(StrategyId id) const;
   std::optional<std::string> objection_to_run(StrategyId id, Autonomy autonomy) const;
   std::optional<Held> restraint_on(StrategyId strategy, Time now) const;
   std::optional<Held> restraint_on_last_resort(StrategyId strategy, Time now) const;

@@ -253,6 +253,7 @@ class Describer {
   }
   std::string operator()(const Approve& o) const { return with_rule(o.strategy) + " is approved"; }
   std::string operator()(const Refuse& o) const { return with_rule(o.strategy) + " is refused"; }
+  std::string operator()(const Propose& o) const { return "propose " + with_rule(o.strategy); }
   std::string operator()(const Silence& o) const {
     return name_of(o.what) + " is silenced" + (o.lasts ? " for " + to_string(*o.lasts) : "");
   }

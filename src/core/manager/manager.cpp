@@ -196,9 +196,9 @@ void Manager::react(std::vector<Command>& commands) {
 }
 
 void Manager::obey(const Order& order, Time now) {
-  if (const auto* run = std::get_if<RunStrategy>(&order.what))
-    refresh_conditions(run->strategy, now);
-  if (!hears_ && std::holds_alternative<RunStrategy>(order.what))
+  const auto begun = governor_.begun_by(order);
+  if (begun) refresh_conditions(*begun, now);
+  if (!hears_ && begun)
     return knowledge_.events.tell(now, OrderRefused{order, "the robot cannot be heard"});
   if (auto reason = governor_.objection(order, autonomy_))
     return knowledge_.events.tell(now, OrderRefused{order, std::move(*reason)});
@@ -209,11 +209,11 @@ void Manager::obey(const Order& order, Time now) {
   } else if (const auto* dry_run = std::get_if<SetDryRun>(&order.what)) {
     autonomy_ = dry_run->is_on ? Autonomy::kAdvise : Autonomy::kAct;
     knowledge_.states.advise_anew();
-  } else if (const auto* run = std::get_if<RunStrategy>(&order.what)) {
-    for (const ComponentId component : knowledge_.rules[run->strategy].components)
+  } else if (begun) {
+    for (const ComponentId component : knowledge_.rules[*begun].components)
       knowledge_.departures.revive(component);
-    if (knowledge_.rules[run->strategy].is_last_resort) go_before_others(run->strategy, now);
-    begin(run->strategy, now);
+    if (knowledge_.rules[*begun].is_last_resort) go_before_others(*begun, now);
+    begin(*begun, now);
   } else if (const auto* forgotten = std::get_if<Forget>(&order.what)) {
     forget(forgotten->rule);
   } else if (std::holds_alternative<Revive>(order.what)) {

@@ -35,6 +35,12 @@ struct Refuse {
   StrategyId strategy;
 };
 
+// A program proposes a strategy for a failure that is present (culprit propose, culprit mcp). It waits for
+// a person's approval like one that culprit chose, and begins only with that.
+struct Propose {
+  StrategyId strategy;
+};
+
 // No strategy begins that adapts the component, or that belongs to the rule. culprit goes on
 // watching it.
 using Silenceable = std::variant<ComponentId, RuleId>;
@@ -67,8 +73,8 @@ struct Order {
   std::uint64_t number = 0;  // of the sender's choosing, for it to know the answer by
   std::string author;        // who says so, for the record
   std::string reason;        // may be empty
-  std::variant<Pause, Resume, SetDryRun, Approve, Refuse, Silence, LiftSilence, RunStrategy, Forget,
-               Revive, EndStarted>
+  std::variant<Pause, Resume, SetDryRun, Approve, Refuse, Propose, Silence, LiftSilence, RunStrategy,
+               Forget, Revive, EndStarted>
       what;
 };
 
