@@ -236,6 +236,56 @@ RULE Blind
   EXPECT_TRUE(r.manager().governor().asked().empty()) << "no restart of it" << transcript(r);
 }
 
+TEST(Orders, AProposedStrategyBeginsOnlyOnceAPersonApprovesIt) {
+  TestRobot r = robot(Approval::kEach);
+  r["camera"].fault = "redeploy";
+  r.run_for(1s);
+  r.order(order(Propose{kRedeploy}));  // the planner asks for the restart
+  r.run_for(30s);
+  EXPECT_TRUE(r.asked.empty()) << transcript(r);
+  r.order(order(Approve{kRedeploy}));
+  r.run_for(5s);
+  EXPECT_FALSE(r.was_asked("camera: deactivate")) << transcript(r);
+  EXPECT_TRUE(r.works("camera")) << transcript(r);
+}
+
+TEST(Orders, AProposalIsRefusedWhereItMakesNoSense) {
+  TestRobot alone = robot();
+  alone["camera"].fault = "never";
+  alone.run_for(500ms);
+  alone.order(order(Propose{kLight}));
+  EXPECT_EQ(alone.count("it has to run with --approve"), 1u) << transcript(alone);
+
+  TestRobot r = robot(Approval::kEach);
+  r.order(order(Propose{kRedeploy}));
+  EXPECT_EQ(r.count("CameraDead needs no strategy now"), 1u) << transcript(r);
+  r.order(order(Propose{StrategyId(99)}));
+  EXPECT_EQ(r.count("there is no such strategy"), 1u) << transcript(r);
+  r["camera"].fault = "redeploy";
+  r.run_for(1s);
+  r.order(order(Propose{kRedeploy}));
+  r.order(order(Propose{kRedeploy}));
+  EXPECT_EQ(r.count("waits for approval already"), 1u) << transcript(r);
+  r.order(order(Refuse{kRedeploy}));
+  r.order(order(Propose{kRedeploy}));
+  EXPECT_EQ(r.count("a person refused redeploy for this failure"), 1u) << transcript(r);
+  r.run_for(30s);
+  EXPECT_TRUE(r.asked.empty()) << transcript(r);
+}
+
+// A pause, and a dry run, hold what a person approves, too.
+TEST(Orders, AnApprovedProposalIsHeldByAPause) {
+  TestRobot r = robot(Approval::kEach);
+  r["camera"].fault = "redeploy";
+  r.run_for(1s);
+  r.order(order(Propose{kRedeploy}));
+  r.order(order(Pause{}));
+  r.order(order(Approve{kRedeploy}));
+  r.run_for(5s);
+  EXPECT_TRUE(r.asked.empty()) << transcript(r);
+  EXPECT_EQ(r.count("it is paused; resume first"), 1u) << transcript(r);
+}
+
 TEST(Orders, AQuestionLapsesWithItsFailure) {
   TestRobot r = robot(Approval::kEach);
   r.signal("brightness", Value(0.2));
