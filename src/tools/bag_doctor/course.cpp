@@ -6,6 +6,7 @@
 #include <cstring>
 #include <functional>
 #include <optional>
+#include <unordered_map>
 
 #include "bag/bag_file.h"
 #include "bag/number_fields.h"
@@ -127,6 +128,7 @@ enum class Use : std::uint8_t {
 
 class TopicLook {
  public:
+  TopicLook() = default;
   TopicLook(const bag::BagTopic& topic, const bag::BagContents& contents,
             ros2::MessageLibrary& library, const CourseLimits& limits, TopicCourse& course)
       : type_(topic.type) {
@@ -214,10 +216,14 @@ class Reading {
 
   void read(const bag::BagMessage& message) {
     notice_topics();
-    if (course_.messages++ == 0) course_.begin = message.at;
+    if (course_.messages++ == 0) {
+      course_.begin = message.at;
+      course_.begin_clock = message.recorded_at;
+    }
+    if (message.is_after_hole) course_.holes.push_back({course_.end, message.at});
     course_.end = message.at;
     if (course_.messages > limits_.most_times) return;
-    TopicCourse& topic = course_.topics[message.topic];
+    TopicCourse& topic = course_.topics[places_[message.topic]];
     topic.times.push_back(message.at);
     TopicLook& look = looks_[message.topic];
     look.look(message, message.at, topic);
@@ -263,8 +269,16 @@ class Reading {
   void notice_topics() {
     while (looks_.size() < contents_.topics().size()) {
       const bag::BagTopic& topic = contents_.topics()[looks_.size()];
-      course_.topics.push_back({.name = topic.name, .type = topic.type});
-      looks_.emplace_back(topic, contents_, library_, limits_, course_.topics.back());
+      const auto [place, is_new] = by_name_.try_emplace(topic.name, course_.topics.size());
+      places_.push_back(place->second);
+      if (is_new) {
+        course_.topics.push_back({.name = topic.name, .type = topic.type});
+        course_.offers[topic.name] = parse_offered_qos(topic.offered_qos);
+        looks_.emplace_back(topic, contents_, library_, limits_, course_.topics.back());
+      } else {
+        course_.topics[place->second].other_types.push_back(topic.type);
+        looks_.emplace_back();  // the numbers of one type say nothing of those of another
+      }
     }
   }
   void notice_node(const std::string& node) {
@@ -359,7 +373,10 @@ class Reading {
   ros2::MessageLibrary& library_;
   const CourseLimits limits_;
   BagCourse course_;
-  std::vector<TopicLook> looks_;  // by topic of the bag
+  // By topic of the bag: one name may have several types.
+  std::vector<TopicLook> looks_;
+  std::vector<std::size_t> places_;  // in course_.topics
+  std::unordered_map<std::string, std::size_t> by_name_;
   std::map<std::tuple<std::string, std::string, bool>, std::size_t> transforms_;
 };
 
@@ -375,11 +392,13 @@ Expected<BagCourse> read_course(const std::filesystem::path& path, ros2::Message
   if (course.messages == 0) return Error{"the bag '" + path.string() + "' has no message"};
   course.path = path.string();
   course.losses = bag->contents().losses();
-  course.offers = offered_qos(path);
+  course.remarks = bag->contents().remarks();
+  for (const bag::ClockJump& jump : bag->contents().jumps())
+    course.jumps.push_back({jump.at, jump.by});
   for (TopicCourse& topic : course.topics) {
     const auto offers = course.offers.find(topic.name);
     topic.is_latched = topic.name.ends_with("tf_static") ||
-                       (offers != course.offers.end() &&
+                       (offers != course.offers.end() && !offers->second.empty() &&
                         std::ranges::all_of(offers->second, [](const OfferedQos& each) {
                           return each.durability == "transient_local";
                         }));

@@ -21,7 +21,7 @@
 
 namespace culprit::bag_doctor {
 
-// Nanoseconds since 1970, as recorded.
+// Nanoseconds since 1970, as recorded but without jumps of the clock (bag::BagMessage::at).
 using Nanoseconds = std::int64_t;
 
 // Messages in a row of which a value did not change.
@@ -45,6 +45,8 @@ struct FieldCourse {
 struct TopicCourse {
   std::string name;
   std::string type;
+  std::vector<std::string>
+      other_types{};  // that messages of this name have, too; only their times count
   std::vector<Nanoseconds> times{};
   std::vector<Nanoseconds> stamps{};  // by message; empty: its messages have no header
   std::vector<FieldCourse> fields{};
@@ -91,8 +93,18 @@ struct Transition {
 };
 
 struct BagCourse {
+  // The clock was set while it was recorded.
+  struct Jump {
+    Nanoseconds at = 0;
+    Nanoseconds by = 0;  // negative: back
+  };
+  // The copy lacks messages there, which says nothing about the robot.
+  struct Hole {
+    Nanoseconds from = 0, to = 0;
+  };
   std::string path;
   Nanoseconds begin = 0, end = 0;
+  Nanoseconds begin_clock = 0;  // nanoseconds since 1970, as recorded
   std::uint64_t messages = 0;
   std::vector<TopicCourse> topics{};
   std::vector<TransformCourse> transforms{};
@@ -102,8 +114,11 @@ struct BagCourse {
   std::set<std::string> nodes{};  // that show themselves: parameters, transitions, logs
   RobotGraph graph{};             // that was recorded; may be empty
   std::map<std::string, std::vector<OfferedQos>> offers{};  // by topic
-  std::vector<std::string> losses{};                        // what could not be read
-  std::vector<std::string> left_out{};                      // what was not looked at, in sentences
+  std::vector<Jump> jumps{};
+  std::vector<Hole> holes{};
+  std::vector<std::string> losses{};    // what could not be read
+  std::vector<std::string> remarks{};   // files that are no part of it
+  std::vector<std::string> left_out{};  // what was not looked at, in sentences
 };
 
 struct CourseLimits {

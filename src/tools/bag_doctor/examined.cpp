@@ -74,10 +74,13 @@ void find_other_clock(Examined& bag) {
 }  // namespace
 
 bool Examined::is_hole(const Stretch& gap, const Habit& habit) const {
-  return std::ranges::any_of(holes, [&](const Stretch& hole) {
-    return gap.from <= hole.from && hole.to <= gap.to &&
-           gap.length() - hole.length() < 3 * habit.usual + kShortestGap;
+  const bool is_of_copy = std::ranges::any_of(course.holes, [&](const BagCourse::Hole& hole) {
+    return gap.from < hole.to && hole.from < gap.to;
   });
+  return is_of_copy || std::ranges::any_of(holes, [&](const Stretch& hole) {
+           return gap.from <= hole.from && hole.to <= gap.to &&
+                  gap.length() - hole.length() < 3 * habit.usual + kShortestGap;
+         });
 }
 
 Examined examined(const BagCourse& course) {

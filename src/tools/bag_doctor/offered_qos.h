@@ -1,8 +1,6 @@
-// What publishers of recorded topics offered, as the recorder wrote it down: metadata.yaml, or the table of a .db3.
+// What the publishers of a recorded topic offered, as the recorder wrote it down.
 #pragma once
 
-#include <filesystem>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -15,10 +13,7 @@ struct OfferedQos {
   bool operator==(const OfferedQos&) const = default;
 };
 
-// By topic; one for each publisher that the recorder saw. Empty where the recorder did not write it down.
-std::map<std::string, std::vector<OfferedQos>> offered_qos(const std::filesystem::path& bag);
-
-// The text of one topic's `offered_qos_profiles`.
+// The text of a topic's `offered_qos_profiles`: one offer for each publisher that the recorder saw. Empty: it says nothing.
 std::vector<OfferedQos> parse_offered_qos(const std::string& yaml);
 
 }  // namespace culprit::bag_doctor

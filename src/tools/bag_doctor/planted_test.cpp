@@ -27,9 +27,9 @@ struct Part {
 const std::vector<Part>& parts() {
   static const std::vector<Part> all = {
       {"/lidar", "/scan", "sensor_msgs/msg/LaserScan", 10, test::scan, {}},
-      {"/imu_driver", "/imu", "sensor_msgs/msg/Imu", 50, test::imu, {}},
-      {"/wheels", "/wheel_speed", "std_msgs/msg/Float64", 50, test::number, {}},
-      {"/base", "/odom", "nav_msgs/msg/Odometry", 50, test::odometry, {"/wheels"}},
+      {"/imu_driver", "/imu", "sensor_msgs/msg/Imu", 25, test::imu, {}},
+      {"/wheels", "/wheel_speed", "std_msgs/msg/Float64", 20, test::number, {}},
+      {"/base", "/odom", "nav_msgs/msg/Odometry", 20, test::odometry, {"/wheels"}},
       {"/ekf",
        "/odometry/filtered",
        "nav_msgs/msg/Odometry",

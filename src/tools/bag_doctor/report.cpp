@@ -23,7 +23,7 @@ class Writer {
         owners_(owners_of(symptoms_, graph)) {}
 
   BagReport write() {
-    BagReport report{course_.path, course_.begin, Duration(course_.end - course_.begin),
+    BagReport report{course_.path, course_.begin_clock, Duration(course_.end - course_.begin),
                      course_.messages, course_.topics.size()};
     for (const BagIncident& each :
          incidents_of(symptoms_, healthy_topics(course_, symptoms_), graph_))
@@ -31,6 +31,7 @@ class Writer {
     for (const std::string& each : course_.left_out) report.left_out.push_back(each);
     for (const std::string& each : course_.losses)
       report.left_out.push_back("the bag is not whole: " + each);
+    report.left_out.insert(report.left_out.end(), course_.remarks.begin(), course_.remarks.end());
     say_missing_evidence(report);
     return report;
   }
@@ -40,7 +41,15 @@ class Writer {
     const Time begin = time_of(course_.begin), end = time_of(course_.end);
     const Time from = std::clamp(onset.earliest == kLongAgo ? begin : onset.earliest, begin, end);
     const Time to = std::clamp(until, from, end);
-    return {seconds(from - begin), seconds(to - begin), from.time_since_epoch().count()};
+    return {seconds(from - begin), seconds(to - begin), clock_at(from)};
+  }
+
+  // As the recorder's clock showed it.
+  std::int64_t clock_at(Time time) const {
+    std::int64_t clock = time.time_since_epoch().count() + course_.begin_clock - course_.begin;
+    for (const BagCourse::Jump& jump : course_.jumps)
+      clock += time_of(jump.at) <= time ? jump.by : 0;
+    return clock;
   }
 
   // "/scan" is known to be of /lidar: "/scan: /lidar".

@@ -41,6 +41,21 @@ void report_hole(const Stretch& hole, Symptoms& all) {
        .until = time_of(hole.to)});
 }
 
+void report_jump(const BagCourse::Jump& jump, Symptoms& all) {
+  const Duration by(std::abs(jump.by));
+  all.push_back(
+      {.kind = Kind::kWords,
+       .finding =
+           {"D209", Gravity::kWarning, "the clock",
+            fmt::format("it was set {} by {} while the robot was recorded; times here go on as if "
+                        "it were not",
+                        jump.by < 0 ? "back" : "forward", duration(by)),
+            "ages, rates and transforms of the robot were wrong by as much at that time",
+            "set the clock before the robot starts, and let chrony or PTP slew it afterwards"},
+       .onset = {time_of(jump.at), time_of(jump.at)},
+       .until = time_of(jump.at)});
+}
+
 void look_at_absence(const TopicCourse& topic, const BagCourse& course, Symptoms& all) {
   // Goals, commands and plans come on demand; plugins of image_transport fit few images.
   if (!is_continuous(topic)) return;
@@ -148,6 +163,7 @@ void look_at_start(const JudgedTopic& judged, const BagCourse& course, Symptoms&
 }  // namespace
 
 void look_at_rhythm(const Examined& bag, Symptoms& all) {
+  for (const BagCourse::Jump& jump : bag.course.jumps) report_jump(jump, all);
   for (const Stretch& hole : bag.holes) report_hole(hole, all);
   for (const JudgedTopic& each : bag.topics) {
     if (each.topic->times.empty()) {

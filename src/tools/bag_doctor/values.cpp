@@ -168,14 +168,18 @@ void look_at_frozen(const TopicCourse& topic, const BagCourse& course, Symptoms&
 }
 
 void look_at_decoding(const TopicCourse& topic, const BagCourse& course, Symptoms& all) {
-  if (topic.undecoded == 0) return;
+  if (topic.undecoded == 0 && topic.other_types.empty()) return;
+  const std::string seen = topic.undecoded > 0
+                               ? fmt::format("{} of {} messages do not fit its type {}",
+                                             topic.undecoded, topic.times.size(), topic.type)
+                               : fmt::format("its type is {}, and later {}", topic.type,
+                                             doctor::listed(topic.other_types));
   all.push_back(
       {.kind = Kind::kValue,
        .finding = {"D216",
                    Gravity::kWarning,
                    topic.name,
-                   fmt::format("{} of {} messages do not fit its type {}", topic.undecoded,
-                               topic.times.size(), topic.type),
+                   seen,
                    "their values are unknown, and a reader may refuse them",
                    "see whether all publishers were built with one version of the message package",
                    {},
