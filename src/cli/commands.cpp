@@ -52,6 +52,7 @@ void add_all(CLI::App& app, const std::string& version, int& exit_code) {
   add_audit(app, exit_code);
   add_beliefs(app, exit_code);
   add_replay(app, exit_code);
+  add_info(app, exit_code);
 #ifdef CULPRIT_FLEET
   add_fleet(app, exit_code);
 #endif

@@ -39,6 +39,7 @@ void add_incident(CLI::App& app, int& exit_code);
 void add_audit(CLI::App& app, int& exit_code);
 void add_beliefs(CLI::App& app, int& exit_code);
 void add_replay(CLI::App& app, int& exit_code);
+void add_info(CLI::App& app, int& exit_code);
 void add_modes(CLI::App& app, int& exit_code);
 void add_export(CLI::App& app, int& exit_code);
 void add_policy(CLI::App& app, int& exit_code);

@@ -58,7 +58,7 @@ void group_commands(CLI::App& app) {
        {"status", "top", "pause", "resume", "silence", "approve", "refuse", "run-strategy",
         "revive", "end-started", "record", "alerts"}},
       {"Rules", {"check", "explain", "fmt", "test", "import", "export", "policy", "web", "lsp"}},
-      {"What was", {"log", "incident", "audit", "beliefs", "replay"}},
+      {"What was", {"log", "incident", "audit", "beliefs", "replay", "info"}},
 #ifdef CULPRIT_FLEET
       {"A fleet", {"fleet"}},
 #endif

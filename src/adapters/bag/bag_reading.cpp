@@ -309,6 +309,11 @@ std::string BagReading::why_no_parameter(ParameterId parameter) const {
          " was recorded";
 }
 
+bool BagReading::is_compared_with_text(SignalId signal) const {
+  const SignalSeen& seen = signals_[signal.index];
+  return seen.was_usable && seen.is_number && rules_[signal].type == Type::kString;
+}
+
 std::string BagReading::why_no_signal(SignalId signal) const {
   const Signal& declared = rules_[signal];
   const SignalSeen& seen = signals_[signal.index];
@@ -318,7 +323,7 @@ std::string BagReading::why_no_signal(SignalId signal) const {
   if (field != nullptr) {
     if (std::string why = why_no_topic(field->topic); !why.empty()) return why;
     if (!seen.was_read && !seen.why_unreadable.empty()) return seen.why_unreadable;
-    if (seen.was_usable && declared.type == Type::kString && seen.is_number)
+    if (is_compared_with_text(signal))
       return declared.name + " is a number in the bag, and the rule compares it with a text";
   }
   if (seen.was_usable) return "";
@@ -374,6 +379,12 @@ std::string BagReading::why_unknown(InputId id) const {
     default:
       return why_no_signal(input.signal);
   }
+}
+
+bool BagReading::is_misread(InputId id) const {
+  const Input& input = rules_[id];
+  return input.kind == Input::Kind::kLoss ||
+         (input.kind == Input::Kind::kSignal && is_compared_with_text(input.signal));
 }
 
 std::vector<std::string> BagReading::missing() const {

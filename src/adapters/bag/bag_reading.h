@@ -36,6 +36,10 @@ class BagReading {
   // message of /scan was recorded". Empty: it had one, or its window was never covered.
   std::string why_unknown(InputId input) const;
 
+  // Whether the input has a value that says nothing about the robot: what it is about is not recorded,
+  // or the rule compares a number with a text. why_unknown() says why.
+  bool is_misread(InputId input) const;
+
   // What the rules read and the bag, as far as it was read, does not have: one line each.
   std::vector<std::string> missing() const;
 
@@ -83,6 +87,7 @@ class BagReading {
 
   std::uint64_t messages_of(const std::string& topic) const;
   std::string why_no_topic(TopicId topic) const;
+  bool is_compared_with_text(SignalId signal) const;
   std::string why_no_signal(SignalId signal) const;
   std::string why_no_status(const std::string& status) const;
   std::string why_no_component(ComponentId component) const;
