@@ -1,7 +1,7 @@
 // Header stamps that lag behind, lead, go back or repeat, each beside the topic's own habit.
 //
-// The lag of a message is the recorder's time less its stamp. `base` is its 20th percentile, `spread` the distance from the
-// second to it: a lag that begins in the recording moves neither.
+// The lag of a message is the recorder's time less its stamp. Its habit is between the 20th and the 80th percentile; what
+// lies beyond the other ends (the second and the 98th) by five times as much as these do is none of it.
 #include <algorithm>
 #include <optional>
 
@@ -55,10 +55,9 @@ class StampLook {
     look_back();
     const bool repeats = look_at_repeats();
     const Duration base = lag_at(all_.lags, 0.2);
-    const Duration spread = base - lag_at(all_.lags, 0.02);
     if (base > kOld) return report_old(base);
     if (base < -kAhead) return report_ahead(base);
-    if (!repeats) look_at_stretches(base, spread);
+    if (!repeats) look_at_stretches(base, lag_at(all_.lags, 0.8));
   }
 
  private:
@@ -145,8 +144,12 @@ class StampLook {
         "stamped too late on ");
   }
 
-  void look_at_stretches(Duration base, Duration spread) {
-    const Duration limit = std::max<Duration>(500ms, 5 * spread);
+  // A lag that begins in the recording raises the upper percentiles only, and a lead lowers the lower ones.
+  void look_at_stretches(Duration low, Duration high) {
+    const Duration behind_limit =
+        low + std::max<Duration>(500ms, 5 * (low - lag_at(all_.lags, 0.02)));
+    const Duration ahead_limit =
+        high - std::max<Duration>(kAhead, 5 * (lag_at(all_.lags, 0.98) - high));
     Run behind{}, ahead{};
     Duration most_behind{}, most_ahead{};
     const auto extend = [](Run& longest, Run& row, bool is_off, Nanoseconds at) {
@@ -160,11 +163,11 @@ class StampLook {
     };
     Run behind_now{}, ahead_now{};
     for (std::size_t i = 0; i < all_.lags.size(); ++i) {
-      const Duration off = all_.lags[i] - base;
-      extend(behind, behind_now, off > limit, all_.times[i]);
-      extend(ahead, ahead_now, -off > std::max(limit, kAhead), all_.times[i]);
-      most_behind = std::max(most_behind, off);
-      most_ahead = std::max(most_ahead, -off);
+      const Duration lag = all_.lags[i];
+      extend(behind, behind_now, lag > behind_limit, all_.times[i]);
+      extend(ahead, ahead_now, lag < ahead_limit, all_.times[i]);
+      most_behind = std::max(most_behind, lag - low);
+      most_ahead = std::max(most_ahead, high - lag);
     }
     report_stretch(behind, "D042", Gravity::kWarning,
                    fmt::format("its stamps fell {} further behind", duration(most_behind)),

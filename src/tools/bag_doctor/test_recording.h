@@ -151,6 +151,10 @@ inline std::string transform(double stamp, const std::string& parent, const std:
 
 class Recording {
  public:
+  // The text of a type that is no standard one.
+  void define(const std::string& type, const std::string& text) { definitions_[type] = text; }
+  // What the publishers of a topic offered, as the recorder writes it down.
+  void offer(const std::string& topic, const std::string& yaml) { offers_[topic] = yaml; }
   void announce(const std::string& topic, const std::string& type) {
     topics_.try_emplace(topic, type);
   }
@@ -168,9 +172,18 @@ class Recording {
       const auto id = static_cast<std::uint16_t>(channels.size() + 1);
       channels[topic] = id;
       // Without a definition, as where the recorder had none: the standard types are known.
-      data += record(0x03, little(id, 2) + bag::test::text(type) + bag::test::text("") +
-                               bag::test::text("")) +
-              channel(id, id, topic);
+      const auto text = definitions_.find(type);
+      const bool is_defined = text != definitions_.end();
+      data += record(0x03, little(id, 2) + bag::test::text(type) +
+                               bag::test::text(is_defined ? "ros2msg" : "") +
+                               bag::test::text(is_defined ? text->second : ""));
+      const auto offer = offers_.find(topic);
+      const std::string metadata =
+          offer == offers_.end()
+              ? ""
+              : bag::test::text("offered_qos_profiles") + bag::test::text(offer->second);
+      data += record(0x04, little(id, 2) + little(id, 2) + bag::test::text(topic) +
+                               bag::test::text("cdr") + bag::test::text(metadata));
     }
     std::vector<const Message*> sorted;
     for (const Message& each : messages_) sorted.push_back(&each);
@@ -188,7 +201,7 @@ class Recording {
     std::string topic;
     std::string payload;
   };
-  std::map<std::string, std::string> topics_;
+  std::map<std::string, std::string> topics_, definitions_, offers_;
   std::vector<Message> messages_;
 };
 
