@@ -192,6 +192,7 @@ CLI::Option* add_bag_options(CLI::App& command, BagExamination& options) {
       .add_option("--message-path", options.message_path,
                   "Where message definitions are, beside AMENT_PREFIX_PATH")
       ->type_name("FOLDER")
+      ->allow_extra_args(false)
       ->needs(bags);
   return bags;
 }
