@@ -408,7 +408,7 @@ class Checker {
     if (written.attempts) {
       if (written.attempts->count < 1 || written.attempts->count > kMaxCount) {
         report(Code::kPolicyRange, written.attempts->span, "ATTEMPTS is a number from 1 to 1000",
-               "");
+               "leave it out for the default: three rounds");
       } else {
         policies.attempts = static_cast<int>(written.attempts->count);
       }
@@ -438,13 +438,14 @@ class Checker {
     if (!in_percent(written.probability)) {
       report(Code::kProbabilityRange, written.probability.span,
              "a success probability is above 0 and at most 100 percent",
-             written.probability.value == 0 ? "a strategy that never helps need not be written down"
-                                            : "");
+             written.probability.value == 0
+                 ? "a strategy that never helps need not be written down"
+                 : "write how often it helps, in percent, for example 80");
     }
     if (written.probability.value > 0 && written.probability.value < 1) {
       diagnostics_.push_back({Code::kProbabilityRange, Severity::kWarning, written.probability.span,
                               "this success probability is less than one percent",
-                              "probabilities are in percent: write 90 for 0.9",
+                              percent_remedy(written.probability),
                               in_percent_fix(written.probability)});
     }
     if (!in_percent(written.confidence)) {
@@ -495,6 +496,11 @@ class Checker {
   }
 
   // Empty if a hundred times the fraction is no whole percentage either.
+  static std::string percent_remedy(const syntax::Number& fraction) {
+    const auto fix = in_percent_fix(fraction);
+    return "probabilities are in percent" + (fix ? ": write " + fix->text : "");
+  }
+
   static std::optional<Edit> in_percent_fix(const syntax::Number& fraction) {
     if (fraction.value < 0.01) return std::nullopt;
     char text[32];

@@ -41,10 +41,9 @@ std::vector<Explanation> syntax_explanations() {
        "COMPONENT camera LAUNCH \"camera_driver --fps 30\n",
        "COMPONENT camera LAUNCH \"camera_driver --fps 30\"\n"},
       {Code::kExtraText, "the line goes on after its statement has ended",
-       "culprit would ignore the rest of the line, which may have been meant to do something: && "
-       "for "
-       "'and', == to compare, or a comment that lacks its #.",
-       rule_with("entropy > 0.5 and exposure < 3"), rule_with("entropy > 0.5 && exposure < 3")},
+       "culprit would ignore the rest of the line, which may have been meant to do something: an "
+       "operator is missing, or a comment lacks its #.",
+       rule_with("entropy > 0.5 exposure < 3"), rule_with("entropy > 0.5 && exposure < 3")},
       {Code::kOutOfPlace, "this line is not inside what it belongs to",
        "POLICIES, TRIGGER and STRATEGY belong to the RULE line before them, one POLICIES and one "
        "TRIGGER each; an ADAPTATION belongs to the STRATEGY line before it. INCLUDE, TEMPLATE, END "
