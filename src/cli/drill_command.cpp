@@ -14,6 +14,7 @@
 #include "cli/drill_session.h"
 #include "cli/unified_diff.h"
 #include "drill/drill_record.h"
+#include "drill/exported_tests.h"
 #include "drill/report.h"
 #include "drill/write_back.h"
 #include "language/parser.h"
@@ -41,6 +42,7 @@ struct DrillOptions {
   std::string record{};
   std::string state_folder{};
   std::string html{};
+  std::string exports{};
   bool is_agreed = false;
   bool launches = false;
   bool writes = false;
@@ -191,7 +193,7 @@ int show_results(const DrillOptions& options, const std::string& text, const Rul
                  const drill::DrillRecord& record) {
   const auto& trials = record.trials();
   const auto at = static_cast<std::time_t>(trials.empty() ? 0 : trials.back().injected);
-  Results results = drill::results_of(trials, rules, drill::paths_over(record.head().edges),
+  Results results = drill::results_of(trials, rules, drill::paths_over(record.head().healthy.edges),
                                       date_of(at, "%Y-%m-%d"));
   auto thresholds = thresholds_of(record.file("robot.journal"), text, trials);
   if (!thresholds) say(stderr, "culprit: no thresholds are measured: {}\n", thresholds.error());
@@ -206,6 +208,12 @@ int show_results(const DrillOptions& options, const std::string& text, const Rul
   if (!options.html.empty()) {
     if (auto written = write_text(options.html, drill::report_page(results)); !written)
       return fail(written.error());
+  }
+  if (!options.exports.empty()) {
+    const auto whole = std::filesystem::absolute(options.rules);
+    const auto exported = drill::export_tests(options.exports, whole.string(), results.date, trials,
+                                              record.head().healthy);
+    if (!exported) return fail(exported.error());
   }
   return show_changes(options, text, results);
 }
@@ -299,7 +307,7 @@ int run_drill(DrillOptions options) {
     if (monitors) {
       (*session)->watch(from_seconds(options.monitor_seconds));
     } else {
-      if (auto kept = record->keep_edges((*session)->edges()); !kept) return fail(kept.error());
+      if (auto kept = record->keep((*session)->healthy()); !kept) return fail(kept.error());
       const auto done = inject_all(options, rules, *plan, **session, *record);
       if (!done) trouble = done.error();
     }
@@ -351,6 +359,10 @@ void add_drill(CLI::App& app, int& exit_code) {
   command->add_flag("--write", options->writes, "Write measured numbers into the rule file");
   command->add_flag("--json", options->json, "Print the results as a JSON document");
   command->add_option("--html", options->html, "Write the results as a page")->type_name("FILE");
+  command
+      ->add_option("--export", options->exports,
+                   "Write each fault as a test of the rules (culprit test)")
+      ->type_name("FOLDER");
   add_seconds(*command, "--monitor", options->monitor_seconds,
               "Inject nothing: watch the healthy robot and propose thresholds", 1, 7 * 86400)
       ->default_str("");

@@ -42,8 +42,8 @@ class DrillSession {
   // full, an ABORT condition is true, or `stop`. What was injected is undone then.
   Expected<drill::Trial> run(const drill::Step& step);
 
-  std::vector<std::pair<std::string, std::string>> edges() const { return healthy_->edges(); }
-  const drill::RobotView& healthy() const { return *healthy_; }
+  // As it was before the first fault.
+  drill::HealthyRobot healthy() const { return healthy_->healthy(); }
   // Watches for so long and injects nothing. False: stopped.
   bool watch(Duration time);
 

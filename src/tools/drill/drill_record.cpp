@@ -71,12 +71,7 @@ Expected<DrillRecord> DrillRecord::open(const std::filesystem::path& folder,
       !known.contains("plan") || texts_in(known["plan"]) != head.plan)
     return Error{"'" + folder.string() +
                  "' holds a drill of other rules or another plan; choose another --record"};
-  if (known.contains("edges")) {
-    for (const Json& edge : known["edges"]) {
-      const auto names = texts_in(edge);
-      if (names.size() == 2) record.head_.edges.emplace_back(names[0], names[1]);
-    }
-  }
+  if (known.contains("healthy")) record.head_.healthy = healthy_from(known["healthy"]);
   if (std::filesystem::exists(record.file(kTrials), error)) {
     const auto trials = read_text(record.file(kTrials).string());
     if (!trials) return Error{trials.error()};
@@ -90,17 +85,15 @@ bool DrillRecord::has(const std::string& id) const {
 }
 
 Expected<void> DrillRecord::write_head() const {
-  Json json{{"format", "culprit-drill"},
-            {"plan", head_.plan},
-            {"edges", Json::array()},
-            {"rules", head_.rules}};
-  for (const auto& [consumer, producer] : head_.edges)
-    json["edges"].push_back(Json::array({consumer, producer}));
+  const Json json{{"format", "culprit-drill"},
+                  {"plan", head_.plan},
+                  {"healthy", to_json(head_.healthy)},
+                  {"rules", head_.rules}};
   return write_text(file(kHead).string(), to_indented(json) + "\n");
 }
 
-Expected<void> DrillRecord::keep_edges(std::vector<std::pair<std::string, std::string>> edges) {
-  head_.edges = std::move(edges);
+Expected<void> DrillRecord::keep(HealthyRobot healthy) {
+  head_.healthy = std::move(healthy);
   return write_head();
 }
 

@@ -1,6 +1,6 @@
 // The folder of a drill: from it a drill is resumed, reported on, and replayed.
 //
-//     drill.json       the rules, the plan, and which component needs which
+//     drill.json       the rules, the plan, and the healthy robot
 //     trials.jsonl     a line for each fault, appended when it is over
 //     robot.journal    of the culprit that healed (culprit replay plays it)
 //     culprit.log      what it printed
@@ -11,14 +11,14 @@
 #include <vector>
 
 #include "base/expected.h"
-#include "drill/trial.h"
+#include "drill/robot_view.h"
 
 namespace culprit::drill {
 
 struct DrillHead {
-  std::string rules;                                         // their text
-  std::vector<std::string> plan;                             // the ids of its steps, in order
-  std::vector<std::pair<std::string, std::string>> edges{};  // consumer, producer
+  std::string rules;              // their text
+  std::vector<std::string> plan;  // the ids of its steps, in order
+  HealthyRobot healthy{};
 };
 
 class DrillRecord {
@@ -32,7 +32,7 @@ class DrillRecord {
   const DrillHead& head() const { return head_; }
   std::filesystem::path file(const char* name) const { return folder_ / name; }
 
-  Expected<void> keep_edges(std::vector<std::pair<std::string, std::string>> edges);
+  Expected<void> keep(HealthyRobot healthy);
   // On the disk when this returns.
   Expected<void> add(const Trial& trial);
 

@@ -91,6 +91,11 @@ class Comparisons {
 };
 
 std::optional<double> number_in(const Value& value) {
+  // Diagnostics tell all values as texts.
+  if (const auto* text = std::get_if<std::string>(&value)) {
+    const Value read = value_from_text(*text);
+    return std::holds_alternative<std::string>(read) ? std::nullopt : number_in(read);
+  }
   if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
   if (const auto* real = std::get_if<double>(&value)) return *real;
   return std::nullopt;

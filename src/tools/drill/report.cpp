@@ -169,7 +169,9 @@ std::string line_of(const Trial& trial) {
               : "not noticed";
   if (!finding.wrongly.empty()) text += ", WRONGLY BLAMED " + joined(finding.wrongly);
   if (!finding.helped.empty()) text += ", helped by " + joined(finding.helped);
-  if (trial.undone) text += ", undone after " + in_seconds(*trial.undone - trial.injected);
+  const bool heals_itself = trial.faults.front().kind == FaultKind::kRestart;
+  if (trial.undone && !heals_itself)
+    text += ", undone after " + in_seconds(*trial.undone - trial.injected);
   text += finding.well_after ? ", well after " + in_seconds(*finding.well_after) : ", NOT WELL";
   if (!finding.silent.empty()) text += "; also silent: " + joined(finding.silent);
   return text;

@@ -24,6 +24,13 @@ std::vector<StrategyResult> strategies_in(const RuleSet& rules) {
   return all;
 }
 
+// The robot was well again by itself before any rule could have noticed.
+bool is_harmless(const FaultResult& result) {
+  constexpr double kAtOnce = 1;  // s
+  return result.fault.starts_with(word_of(FaultKind::kRestart)) && result.well == result.times &&
+         *std::ranges::max_element(result.well_after) < kAtOnce;
+}
+
 std::string first_wrong_choice(const Trial& trial, const Finding& finding) {
   for (const Json& event : trial.events) {
     if (journal::text_of(event, "type") != "strategy_chosen") continue;
@@ -152,8 +159,9 @@ Spread spread_of(std::vector<double> numbers) {
 }
 
 std::int64_t impact_of(const std::vector<double>& effects, Duration cycle) {
+  // The next one may be later than all of a few.
   const double most = *std::ranges::max_element(effects);
-  return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(most / seconds(cycle))));
+  return 1 + std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(most / seconds(cycle))));
 }
 
 Results results_of(const std::vector<Trial>& trials, const RuleSet& rules, const Paths& paths,
@@ -186,7 +194,7 @@ Results results_of(const std::vector<Trial>& trials, const RuleSet& rules, const
   }
   for (auto& [name, result] : faults) {
     result.fault = name;
-    if (result.noticed == 0) out.unnoticed.push_back(name);
+    if (result.noticed == 0 && !is_harmless(result)) out.unnoticed.push_back(name);
     out.faults.push_back(std::move(result));
   }
   for (const Rule& rule : rules.rules) {

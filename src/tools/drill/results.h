@@ -82,7 +82,7 @@ Results results_of(const std::vector<Trial>& trials, const RuleSet& rules, const
 // Only what repeated and never happened without: at least this often.
 inline constexpr int kRepeats = 3;
 
-// Cycles that cover all measured effects. @pre !effects.empty()
+// One cycle more than the longest measured effect took. @pre !effects.empty()
 std::int64_t impact_of(const std::vector<double>& effects, Duration cycle);
 
 }  // namespace culprit::drill

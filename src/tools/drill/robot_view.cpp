@@ -106,16 +106,27 @@ std::vector<std::pair<std::string, std::string>> RobotView::edges() const {
   return out;
 }
 
-std::map<std::string, std::string> RobotView::publishers() const {
+HealthyRobot RobotView::healthy() const {
+  HealthyRobot out;
+  out.edges = edges();
   std::map<std::string, std::string> names;
-  for (const auto& [name, component] : components())
+  for (const auto& [name, component] : components()) {
+    out.lifecycles[name] = component.lifecycle;
     if (!component.node.empty()) names[component.node] = name;
-  std::map<std::string, std::string> out;
+  }
+  const Json& topics = member(robot_, "topics");
+  const Json& states = member(state_, "topics");
+  for (std::size_t i = 0; i < std::min(topics.size(), states.size()); ++i)
+    if (topics[i].is_string())
+      out.topics[topics[i].get<std::string>()].rate = number_of(states[i], "rate");
   for (const Json& edge : member(graph_, "edges")) {
-    if (!edge.is_array() || edge.size() < 3 || !edge[1].is_string() || !edge[2].is_string())
-      continue;
-    const auto producer = names.find(edge[1].get<std::string>());
-    if (producer != names.end()) out[edge[2].get<std::string>()] = producer->second;
+    if (!edge.is_array() || edge.size() < 3 || !edge[2].is_string()) continue;
+    const auto topic = out.topics.find(edge[2].get<std::string>());
+    if (topic == out.topics.end()) continue;
+    if (const auto consumer = names.find(edge[0].get<std::string>()); consumer != names.end())
+      topic->second.subscribers.insert(consumer->second);
+    if (const auto producer = names.find(edge[1].get<std::string>()); producer != names.end())
+      topic->second.publisher = producer->second;
   }
   return out;
 }
@@ -123,18 +134,51 @@ std::map<std::string, std::string> RobotView::publishers() const {
 std::set<std::string> RobotView::silent() const {
   constexpr double kShortest = 0.5;  // seconds
   constexpr double kPauses = 5;
-  const auto publisher = publishers();
+  const HealthyRobot now = healthy();
   const Json& topics = member(robot_, "topics");
   const Json& states = member(state_, "topics");
   std::set<std::string> out;
   for (std::size_t i = 0; i < std::min(topics.size(), states.size()); ++i) {
-    const double rate = number_of(states[i], "rate");
-    const auto found =
-        topics[i].is_string() ? publisher.find(topics[i].get<std::string>()) : publisher.end();
-    if (found != publisher.end() && rate > 0 &&
-        number_of(states[i], "age") > std::max(kShortest, kPauses / rate))
-      out.insert(found->second);
+    if (!topics[i].is_string()) continue;
+    const HealthyRobot::Topic& topic = now.topics.at(topics[i].get<std::string>());
+    if (!topic.publisher.empty() && topic.rate > 0 &&
+        number_of(states[i], "age") > std::max(kShortest, kPauses / topic.rate))
+      out.insert(topic.publisher);
   }
+  return out;
+}
+
+Json to_json(const HealthyRobot& robot) {
+  Json json{{"edges", Json::array()}, {"lifecycles", Json::object()}, {"topics", Json::object()}};
+  for (const auto& [consumer, producer] : robot.edges)
+    json["edges"].push_back(Json::array({consumer, producer}));
+  for (const auto& [component, state] : robot.lifecycles) json["lifecycles"][component] = state;
+  for (const auto& [name, topic] : robot.topics)
+    json["topics"][name] = {
+        {"rate", topic.rate}, {"publisher", topic.publisher}, {"subscribers", topic.subscribers}};
+  return json;
+}
+
+HealthyRobot healthy_from(const Json& json) {
+  HealthyRobot out;
+  for (const Json& edge : member(json, "edges")) {
+    if (edge.is_array() && edge.size() == 2 && edge[0].is_string() && edge[1].is_string())
+      out.edges.emplace_back(edge[0].get<std::string>(), edge[1].get<std::string>());
+  }
+  const auto each_of = [&](const char* key, const auto& each) {
+    if (!json.is_object() || !json.contains(key) || !json[key].is_object()) return;
+    for (const auto& [name, value] : json[key].items()) each(name, value);
+  };
+  each_of("lifecycles", [&](const std::string& name, const Json& state) {
+    out.lifecycles[name] = state.is_string() ? state.get<std::string>() : "";
+  });
+  each_of("topics", [&](const std::string& name, const Json& value) {
+    if (!value.is_object()) return;
+    HealthyRobot::Topic& topic = out.topics[name];
+    topic = {number_of(value, "rate"), text_of(value, "publisher"), {}};
+    for (const Json& each : member(value, "subscribers"))
+      if (each.is_string()) topic.subscribers.insert(each.get<std::string>());
+  });
   return out;
 }
 

@@ -15,6 +15,20 @@ namespace culprit::drill {
 // Rules that the drill adds to those of the file begin so.
 inline constexpr std::string_view kOwnRules = "drill_";
 
+// The robot while it was well, for a record that outlives it.
+struct HealthyRobot {
+  struct Topic {
+    double rate = 0;          // Hz
+    std::string publisher{};  // components
+    std::set<std::string> subscribers{};
+  };
+  std::vector<std::pair<std::string, std::string>> edges{};  // consumer, producer
+  std::map<std::string, std::string> lifecycles{};           // of each component; may be empty
+  std::map<std::string, Topic> topics{};                     // that rules watch
+};
+Json to_json(const HealthyRobot& robot);
+HealthyRobot healthy_from(const Json& json);
+
 class RobotView {
  public:
   // Documents of any form; what they do not say is unknown.
@@ -35,14 +49,13 @@ class RobotView {
   // Whether its trigger has a value, and is false or true.
   std::optional<bool> trigger(const std::string& rule) const;
 
-  // Which component needs which, by the live graph.
-  std::vector<std::pair<std::string, std::string>> edges() const;
+  HealthyRobot healthy() const;
 
   // Components that publish a watched topic which is silent for longer than usual.
   std::set<std::string> silent() const;
 
  private:
-  std::map<std::string, std::string> publishers() const;  // component, by topic
+  std::vector<std::pair<std::string, std::string>> edges() const;
 
   Json robot_;
   Json graph_;
