@@ -192,7 +192,9 @@ int show_changes(const DrillOptions& options, const std::string& text, const Res
 int show_results(const DrillOptions& options, const std::string& text, const RuleSet& rules,
                  const drill::DrillRecord& record) {
   const auto& trials = record.trials();
-  const auto at = static_cast<std::time_t>(trials.empty() ? 0 : trials.back().injected);
+  const bool monitors = options.monitor_seconds > 0;
+  const auto at =
+      trials.empty() ? std::time(nullptr) : static_cast<std::time_t>(trials.back().injected);
   Results results = drill::results_of(trials, rules, drill::paths_over(record.head().healthy.edges),
                                       date_of(at, "%Y-%m-%d"));
   auto thresholds = thresholds_of(record.file("robot.journal"), text, trials);
@@ -202,7 +204,8 @@ int show_results(const DrillOptions& options, const std::string& text, const Rul
     say(stdout, "{}\n", to_line(drill::report_json(results)));
   } else {
     say(stdout, "\n");
-    for (const std::string& line : drill::report_lines(results))
+    for (const std::string& line :
+         monitors ? drill::threshold_lines(results.thresholds) : drill::report_lines(results))
       say(stdout, "{}\n", escape_controls(line));
   }
   if (!options.html.empty()) {

@@ -225,6 +225,7 @@ Expected<Trial> DrillSession::run(const drill::Step& step) {
   if (auto noted = note(*injected); !noted) return Error{"nothing is injected: " + noted.error()};
   trial.injected = drill_clock();
   for (const Injected& each : *injected) {
+    say_("injects " + to_string(each.fault));
     if (auto done = injector_->inject(each, options_.hang); !done) trial.trouble = done.error();
     if (each.fault.kind == FaultKind::kRestart) trial.undone = drill_clock();
   }

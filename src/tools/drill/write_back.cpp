@@ -130,7 +130,9 @@ class WriteBack {
       std::size_t values = 0;
       bool are_all_measured = true;
       for (const ThresholdMeasure* each : measures) {
-        const auto proposed = each->proposed();
+        // How far beyond its healthy values a signal is a failure, only a fault shows.
+        const bool is_proven = each->of.what != Comparison::What::kSignal || each->faulty;
+        const auto proposed = is_proven ? each->proposed() : std::nullopt;
         are_all_measured &= proposed.has_value() && each->of.is_above == measures[0]->of.is_above;
         if (!proposed) continue;
         value = !value              ? *proposed
