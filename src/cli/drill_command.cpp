@@ -91,6 +91,7 @@ Expected<DrillRules> rules_for(const DrillOptions& options, const RuleSet& rules
   };
   for (const Interlock& each : rules.interlocks)
     add(out.interlocks, "interlock", "!(" + each.text + ")");
+  for (const std::string& condition : rules.aborts) add(out.aborts, "abort", condition);
   if (!options.abort.empty()) add(out.aborts, "abort", options.abort);
   if (more.empty()) return out;
   std::error_code error;

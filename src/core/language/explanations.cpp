@@ -26,8 +26,8 @@ std::vector<Explanation> syntax_explanations() {
   return {
       {Code::kUnknownStatement, "a line begins with a word that is no statement",
        "Every line is one statement, and its first word says which: ROBOT, CYCLE, CONST, "
-       "COMPONENT, DEPENDENCY, IGNORE, INTERLOCK, SIGNAL, RULE, POLICIES, TRIGGER, STRATEGY, "
-       "ADAPTATION, INCLUDE, TEMPLATE, END or USE, in upper case. The line counts for nothing "
+       "COMPONENT, DEPENDENCY, IGNORE, INTERLOCK, ABORT, DRILL, SIGNAL, RULE, POLICIES, TRIGGER, "
+       "STRATEGY, ADAPTATION, INCLUDE, TEMPLATE, END or USE, in upper case. The line counts for nothing "
        "until the word is right.",
        "robot sunset\n", "ROBOT sunset\n"},
       {Code::kSyntax, "something else is expected at this place",

@@ -1,6 +1,7 @@
 #include "drill/drill_plan.h"
 
 #include <algorithm>
+#include <limits>
 #include <random>
 
 #include <fmt/format.h>
@@ -11,17 +12,36 @@
 namespace culprit::drill {
 namespace {
 
+// How often the rules let a component be broken in one drill.
+std::int64_t limit_of(const std::string& component, const RuleSet& rules) {
+  std::int64_t least = std::numeric_limits<std::int64_t>::max();
+  for (const DrillLine& line : rules.drills) {
+    if (line.what == DrillLine::What::kLimit && rules[line.component].name == component)
+      least = std::min(least, line.times);
+  }
+  return least;
+}
+
 // Why a component must not be broken. Empty: it may.
 std::string why_spared(ComponentId id, const RuleSet& rules) {
   const Component& component = rules[id];
+  if (limit_of(component.name, rules) == 0)
+    return "the rules say DRILL " + component.name + " limit 0";
   if (!component.host().empty()) return "it runs on another computer";
   if (component.composed) return "it shares a process with the other nodes of its container";
   if (!component.can_start_again()) return "no owner can start it again (LAUNCH, UNIT, CONTAINER)";
   return "";
 }
 
-bool is_wanted(FaultKind kind, const PlanOptions& options) {
-  return options.kinds.empty() || std::ranges::find(options.kinds, kind) != options.kinds.end();
+bool is_wanted(FaultKind kind, const std::string& component, const RuleSet& rules,
+               const PlanOptions& options) {
+  const auto excludes = [&](const DrillLine& line) {
+    return line.what == DrillLine::What::kWithout && line.subject == word_of(kind) &&
+           rules[line.component].name == component;
+  };
+  const bool is_chosen =
+      options.kinds.empty() || std::ranges::find(options.kinds, kind) != options.kinds.end();
+  return is_chosen && std::ranges::none_of(rules.drills, excludes);
 }
 
 // std::shuffle differs between standard libraries.
@@ -84,14 +104,16 @@ Expected<DrillPlan> plan(const RuleSet& rules, const PlanOptions& options) {
     }
     breakable.push_back(name);
     for (const FaultKind kind : kFaultKinds) {
-      if (kind != FaultKind::kSetParameter && is_wanted(kind, options))
+      if (kind != FaultKind::kSetParameter && is_wanted(kind, name, rules, options))
         singles.push_back({Fault{kind, name}});
     }
   }
-  for (const Fault& fault : options.added) {
-    if (auto found = known(fault.component, rules); !found) return Error{found.error()};
-    if (std::ranges::find(breakable, fault.component) != breakable.end())
-      singles.push_back({fault});
+  for (const DrillLine& line : rules.drills) {
+    const std::string& name = rules[line.component].name;
+    if (line.what == DrillLine::What::kSetParameter &&
+        std::ranges::find(breakable, name) != breakable.end() &&
+        is_wanted(FaultKind::kSetParameter, name, rules, options))
+      singles.push_back({Fault{FaultKind::kSetParameter, name, line.subject, line.value}});
   }
   if (options.pairs) {
     for (std::size_t a = 0; a < breakable.size(); ++a) {
@@ -100,10 +122,15 @@ Expected<DrillPlan> plan(const RuleSet& rules, const PlanOptions& options) {
             {Fault{FaultKind::kKill, breakable[a]}, Fault{FaultKind::kKill, breakable[b]}});
     }
   }
+  std::map<std::string, std::int64_t> broken;  // how often
+  const auto is_at_limit = [&](const Fault& fault) {
+    return broken[fault.component] >= limit_of(fault.component, rules);
+  };
   std::mt19937_64 random(options.seed);
   for (int round = 1; round <= options.times; ++round) {
     shuffle(singles, random);
     for (const auto& faults : singles) {
+      if (std::ranges::any_of(faults, is_at_limit)) continue;
       const Step step{faults, round};
       const Duration with_it = out.estimate + estimate(step, rules, options);
       if (out.beyond_budget > 0 || (options.budget && with_it > *options.budget)) {
@@ -111,6 +138,7 @@ Expected<DrillPlan> plan(const RuleSet& rules, const PlanOptions& options) {
         continue;
       }
       out.estimate = with_it;
+      for (const Fault& fault : faults) ++broken[fault.component];
       out.steps.push_back(step);
     }
   }

@@ -3,7 +3,7 @@
 // The plan is made from the rules alone, before anything is asked of the robot, so that a person can read it first.
 //   - Each round has every fault once, in an order drawn from the seed; so a budget cuts all faults alike.
 //   - A component is broken only if culprit can start it again on this computer (an owner of the rules), and never if
-//     the rules exclude it.
+//     the rules exclude it (DRILL lines).
 #pragma once
 
 #include <map>
@@ -19,7 +19,6 @@ namespace culprit::drill {
 struct PlanOptions {
   std::vector<std::string> only{};   // components; empty: all
   std::vector<FaultKind> kinds{};    // empty: all
-  std::vector<Fault> added{};        // parameters to set
   int times = 1;                     // rounds
   bool pairs = false;                // also two components killed at once
   std::optional<Duration> budget{};  // the plan ends with the last fault that fits
@@ -41,7 +40,7 @@ struct DrillPlan {
   Duration estimate{};
 };
 
-// Errors: `only` or `added` names a component that the rules do not have.
+// Errors: `only` names a component that the rules do not have.
 Expected<DrillPlan> plan(const RuleSet& rules, const PlanOptions& options);
 
 // How long one step takes: health before, the reaction, health after.

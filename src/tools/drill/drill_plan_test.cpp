@@ -66,6 +66,29 @@ TEST(DrillPlan, PairsAreKilledAtOnce) {
   EXPECT_THAT(ids_of(*made), testing::Contains("kill camera + kill fusion #1"));
 }
 
+TEST(DrillPlan, DrillLinesAddExcludeAndLimit) {
+  const RuleSet rules = *check(Source("r", R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+COMPONENT fusion NODE /fusion LAUNCH "fusion"
+COMPONENT motor NODE /motor LAUNCH "motor"
+DRILL camera set_parameter exposure -0.5
+DRILL camera without hang
+DRILL camera without slow
+DRILL fusion limit 2
+DRILL motor limit 0
+)"))
+                             .rules;
+  const auto made = plan(rules, {.times = 2});
+  ASSERT_TRUE(made);
+  std::map<std::string, int> times;
+  for (const Step& step : made->steps) ++times[step.faults[0].component];
+  EXPECT_THAT(times, ElementsAre(testing::Pair("camera", 8), testing::Pair("fusion", 2)));
+  EXPECT_THAT(ids_of(*made), testing::IsSupersetOf({"set_parameter camera exposure -0.5 #1",
+                                                    "kill camera #2", "deactivate camera #1"}));
+  EXPECT_THAT(made->left_out,
+              ElementsAre(testing::Pair("motor", "the rules say DRILL motor limit 0")));
+}
+
 TEST(DrillPlan, NamesThatTheRulesDoNotHaveAreErrors) {
   const auto made = plan(planned_rules(), {.only = {"camra"}});
   ASSERT_FALSE(made);
