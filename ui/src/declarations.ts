@@ -110,6 +110,12 @@ export const kDeclarations: Record<string, Declaration> = {
   },
   IGNORE: { title: 'Topics to ignore', members: { topics: { kind: 'list', wide: true } }, fresh: () => ({ topics: ['/rosout'] }) },
   INTERLOCK: { title: 'Interlock', members: { expression: { wide: true } }, fresh: () => ({ expression: 'false' }) },
+  ABORT: { title: 'End of a drill', members: { expression: { wide: true } }, fresh: () => ({ expression: 'false' }) },
+  DRILL: {
+    title: 'Drill',
+    members: { component: { list: 'components' }, type: {}, parameter: {}, value: {}, fault: {}, times: {} },
+    fresh: (document) => ({ component: namesOf(document, 'COMPONENT')[0] ?? 'my_node', type: 'limit', times: 0 }),
+  },
 }
 
 // At most one of each, in front of all else.

@@ -56,6 +56,7 @@ class Checker {
     infer();
     for (std::size_t s = 0; s < rules_.signals.size(); ++s) declare_signal_type(SignalId(s));
     interlocks();
+    drills();
     forget_other_cycle();
     for (const syntax::Rule& rule : file_.rules) {
       if (rule.name.text.empty()) continue;  // its line was broken
@@ -185,7 +186,38 @@ class Checker {
     }
   }
 
+  void drills() {
+    for (const syntax::Interlock& written : file_.aborts) {
+      if (boolean(written.condition, "an ABORT")) rules_.aborts.push_back(written.text);
+    }
+    for (const syntax::Drill& written : file_.drills) {
+      DrillLine line{symbols_.component(written.component),
+                     written.what,
+                     written.subject.text,
+                     {},
+                     written.times};
+      if (written.value) {
+        const auto value = constant_value({written.subject, *written.value});
+        if (!value) continue;
+        if (std::holds_alternative<Duration>(*value)) {
+          report(Code::kTypeMismatch, written.value->span, "a parameter is no duration",
+                 "write a number, a text, true or false");
+          continue;
+        }
+        std::visit(
+            [&](const auto& each) {
+              if constexpr (!std::is_same_v<std::decay_t<decltype(each)>, Duration>)
+                line.value = each;
+            },
+            *value);
+      }
+      rules_.drills.push_back(std::move(line));
+    }
+  }
+
   void infer() {
+    for (const syntax::Interlock& abort : file_.aborts)
+      infer_types(abort.condition, Type::kBool, symbols_);
     for (const syntax::Interlock& interlock : file_.interlocks)
       infer_types(interlock.condition, Type::kBool, symbols_);
     for (const syntax::Rule& rule : file_.rules) {

@@ -26,7 +26,8 @@ std::vector<Explanation> syntax_explanations() {
   return {
       {Code::kUnknownStatement, "a line begins with a word that is no statement",
        "Every line is one statement, and its first word says which: ROBOT, CYCLE, CONST, "
-       "COMPONENT, DEPENDENCY, GROUP, IGNORE, INTERLOCK, SIGNAL, RULE, POLICIES, TRIGGER, "
+       "COMPONENT, DEPENDENCY, GROUP, IGNORE, INTERLOCK, ABORT, DRILL, SIGNAL, RULE, POLICIES, "
+       "TRIGGER, "
        "STRATEGY, "
        "ADAPTATION, INCLUDE, TEMPLATE, END or USE, in upper case. The line counts for nothing "
        "until the word is right.",

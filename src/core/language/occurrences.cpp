@@ -51,6 +51,11 @@ class Collector {
     }
     for (const syntax::Name& topic : file_.ignored_topics) add(OccurrenceKind::kTopic, topic);
     for (const syntax::Interlock& i : file_.interlocks) expression(i.condition);
+    for (const syntax::Interlock& a : file_.aborts) expression(a.condition);
+    for (const syntax::Drill& d : file_.drills) {
+      add(OccurrenceKind::kComponent, d.component);
+      if (d.value) expression(*d.value);
+    }
     for (const syntax::Signal& s : file_.signals) signal(s);
     for (const syntax::Rule& r : file_.rules) rule(r);
     for (const syntax::Include& i : file_.includes) add(OccurrenceKind::kFile, i.file);

@@ -63,6 +63,8 @@ class Parser {
         Statement{"GROUP", &Parser::group},
         Statement{"IGNORE", &Parser::ignore},
         Statement{"INTERLOCK", &Parser::interlock},
+        Statement{"ABORT", &Parser::abort},
+        Statement{"DRILL", &Parser::drill},
         Statement{"SIGNAL", &Parser::signal},
         Statement{"RULE", &Parser::rule},
         Statement{"POLICIES", &Parser::policies},
@@ -123,10 +125,11 @@ class Parser {
   void unknown_statement(const Token& head, const std::string& near) {
     const std::string word(source_.text(head.span));
     read_.fail(Code::kUnknownStatement, head.span, "no statement begins with '" + word + "'",
-               !near.empty() ? "did you mean " + near + "?"
-                             : "a line begins with one of ROBOT CYCLE CONST COMPONENT DEPENDENCY "
-                               "GROUP IGNORE INTERLOCK SIGNAL RULE POLICIES TRIGGER STRATEGY "
-                               "ADAPTATION THEN INCLUDE TEMPLATE END USE",
+               !near.empty()
+                   ? "did you mean " + near + "?"
+                   : "a line begins with one of ROBOT CYCLE CONST COMPONENT DEPENDENCY "
+                     "GROUP IGNORE INTERLOCK ABORT DRILL SIGNAL RULE POLICIES TRIGGER STRATEGY "
+                     "ADAPTATION THEN INCLUDE TEMPLATE END USE",
                replacement(head.span, near));
   }
 
@@ -428,11 +431,45 @@ class Parser {
     return true;
   }
 
-  bool interlock(Scanner& s) {
+  bool interlock(Scanner& s) { return condition(s, into_->interlocks); }
+  bool abort(Scanner& s) { return condition(s, into_->aborts); }
+
+  bool condition(Scanner& s, std::vector<syntax::Interlock>& all) {
     auto condition = read_.expression(s);
     if (!condition || !read_.line_ends(s)) return false;
     std::string text(source_.text(condition->span));
-    into_->interlocks.push_back({std::move(*condition), std::move(text)});
+    all.push_back({std::move(*condition), std::move(text)});
+    return true;
+  }
+
+  bool drill(Scanner& s) {
+    using What = syntax::Drill::What;
+    auto component = read_.component_reference(s);
+    if (!component) return false;
+    syntax::Drill drill{.component = std::move(*component)};
+    const Token word = s.next();
+    if (word.text == "set_parameter") {
+      drill.what = What::kSetParameter;
+      auto parameter = read_.name_or_text(s, "the parameter");
+      if (!parameter) return false;
+      drill.subject = std::move(*parameter);
+      drill.value = read_.expression(s);
+      if (!drill.value || !read_.line_ends(s)) return false;
+    } else if (word.text == "without") {
+      drill.what = What::kWithout;
+      const Token fault = s.next();
+      const auto known = syntax::drill_faults();
+      if (std::ranges::find(known, fault.text) == known.end())
+        return read_.unexpected_clause(fault, known);
+      drill.subject = {std::string(fault.text), fault.span};
+    } else if (word.text == "limit") {
+      const auto times = read_.whole_number(s, "how often it is broken at most");
+      if (!times) return false;
+      drill.times = *times;
+    } else {
+      return read_.unexpected_clause(word, {"set_parameter", "without", "limit"});
+    }
+    into_->drills.push_back(std::move(drill));
     return true;
   }
 

@@ -124,6 +124,12 @@ class Mover {
     auto& [condition, text] = i;
     move(condition);
   }
+  void move(syntax::Drill& d) const {
+    auto& [component, what, subject, value, times] = d;
+    move(component);
+    move(subject);
+    move(value);
+  }
   void move(syntax::BrokenDeclaration& b) const { move(b.name); }
   void move(syntax::Include& i) const {
     auto& [file, span] = i;
@@ -152,7 +158,7 @@ class Mover {
   }
   void move(syntax::File& f) const {
     auto& [robot, cycle, constants, components, dependencies, groups, ignored_topics, interlocks,
-           signals, rules, broken_declarations, includes, templates, uses] = f;
+           aborts, drills, signals, rules, broken_declarations, includes, templates, uses] = f;
     move(robot);
     move(cycle);
     move(constants);
@@ -161,6 +167,8 @@ class Mover {
     move(groups);
     move(ignored_topics);
     move(interlocks);
+    move(aborts);
+    move(drills);
     move(signals);
     move(rules);
     move(broken_declarations);
@@ -192,6 +200,7 @@ std::uint32_t place_of(const syntax::Name& name) { return name.span.begin; }
 std::uint32_t place_of(const syntax::File::Cycle& cycle) { return cycle.span.begin; }
 std::uint32_t place_of(const syntax::Dependency& d) { return place_of(d.consumer); }
 std::uint32_t place_of(const syntax::Interlock& i) { return i.condition.span.begin; }
+std::uint32_t place_of(const syntax::Drill& d) { return place_of(d.component); }
 std::uint32_t place_of(const syntax::Rule& r) { return r.begin; }
 std::uint32_t place_of(const syntax::Include& i) { return i.span.begin; }
 std::uint32_t place_of(const syntax::Template& t) { return t.span.begin; }
@@ -216,7 +225,7 @@ void cut(std::optional<T>& from, std::uint32_t place, std::optional<T>& to) {
 }
 void cut(syntax::File& from, std::uint32_t place, syntax::File& to) {
   auto& [robot, cycle, constants, components, dependencies, groups, ignored_topics, interlocks,
-         signals, rules, broken_declarations, includes, templates, uses] = from;
+         aborts, drills, signals, rules, broken_declarations, includes, templates, uses] = from;
   cut(robot, place, to.robot);
   cut(cycle, place, to.cycle);
   cut(constants, place, to.constants);
@@ -225,6 +234,8 @@ void cut(syntax::File& from, std::uint32_t place, syntax::File& to) {
   cut(groups, place, to.groups);
   cut(ignored_topics, place, to.ignored_topics);
   cut(interlocks, place, to.interlocks);
+  cut(aborts, place, to.aborts);
+  cut(drills, place, to.drills);
   cut(signals, place, to.signals);
   cut(rules, place, to.rules);
   cut(broken_declarations, place, to.broken_declarations);

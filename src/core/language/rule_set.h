@@ -15,6 +15,7 @@
 #include "base/ids.h"
 #include "base/seldom.h"
 #include "base/units.h"
+#include "base/value.h"
 #include "language/program.h"
 #include "language/syntax.h"
 
@@ -254,6 +255,16 @@ struct Interlock {
   std::string text;  // as written
 };
 
+// What a drill may do to a component.
+struct DrillLine {
+  using What = syntax::Drill::What;
+  ComponentId component;
+  What what = What::kLimit;
+  std::string subject{};  // parameter, or fault
+  Value value{};          // kSetParameter
+  std::int64_t times = 0;
+};
+
 struct Dependency {
   ComponentId consumer;
   ComponentId producer;
@@ -274,6 +285,8 @@ struct RuleSet {
   std::vector<Dependency> dependencies;
   std::vector<std::string> ignored_topics;
   std::vector<Interlock> interlocks;
+  std::vector<DrillLine> drills;
+  std::vector<std::string> aborts;  // conditions that end a drill, as written
 
   Cycles heaviest;  // paper: i_max, the highest impact of any strategy
 

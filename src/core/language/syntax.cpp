@@ -3,6 +3,10 @@
 #include <array>
 
 namespace culprit::syntax {
+
+std::vector<std::string_view> drill_faults() {
+  return {"kill", "hang", "slow", "deactivate", "restart"};
+}
 namespace {
 
 struct AdaptationKeyword {

@@ -224,6 +224,22 @@ struct Interlock {
   std::string text;
 };
 
+// What a drill (docs/drill.md) may do to a component.
+struct Drill {
+  enum class What : std::uint8_t {
+    kSetParameter,  // also injects this value: subject, value
+    kWithout,       // never injects this fault: subject
+    kLimit          // breaks it so often at most: times
+  };
+  Name component;
+  What what = What::kLimit;
+  Name subject{};
+  Seldom<Expression> value{};
+  std::int64_t times = 0;
+};
+// Faults that WITHOUT may name.
+std::vector<std::string_view> drill_faults();
+
 // A line that declares something and does not parse: what uses the name is not at fault.
 struct BrokenDeclaration {
   enum class Kind : std::uint8_t { kConstant, kComponent, kSignal };
@@ -265,6 +281,8 @@ struct File {
   std::vector<Group> groups;
   std::vector<Name> ignored_topics;
   std::vector<Interlock> interlocks;
+  std::vector<Interlock> aborts;  // conditions that end a drill
+  std::vector<Drill> drills;
   std::vector<Signal> signals;
   std::vector<Rule> rules;
   std::vector<BrokenDeclaration> broken_declarations;

@@ -72,6 +72,9 @@ class Writer {
         s.has_broken_adaptation);
   }
   void put(const syntax::Interlock& i) { put(i.condition); }  // its text is how it is written
+  void put(const syntax::Drill& d) {
+    all(d.component, static_cast<std::int64_t>(d.what), d.subject, d.value, d.times);
+  }
   void put(const syntax::Policies::Hold& h) { all(h.needed, h.window, h.span); }
   void put(const syntax::Policies::Attempts& a) { all(a.count, a.span); }
   void put(const syntax::Policies& p) {
@@ -89,7 +92,7 @@ class Writer {
   void put(const Template& t) { all(t.name, t.parameters, t.body, t.span, t.lines); }
   void put(const File& f) {
     all(f.robot, f.cycle, f.constants, f.components, f.dependencies, f.groups, f.ignored_topics,
-        f.interlocks, f.signals, f.rules, f.includes, f.templates, f.uses);
+        f.interlocks, f.aborts, f.drills, f.signals, f.rules, f.includes, f.templates, f.uses);
     if (places_ == Places::kShown) put(f.broken_declarations);
   }
 
