@@ -96,10 +96,13 @@ Expected<Seen> replayed(const RuleSet& rules, const std::filesystem::path& path)
     const Duration at = event.at - begin.value_or(event.at);
     if (const auto* detected = std::get_if<FailureDetected>(&event.what))
       seen.detected.try_emplace(rules[detected->rule].name, at);
-    if (const auto* chosen = std::get_if<StrategyChosen>(&event.what)) {
-      for (const ComponentId component : rules[chosen->strategy].components)
-        seen.blamed.try_emplace(rules[component].name, at);
-    }
+    // As a test of a bag is judged (rule_test/bag_run.h).
+    const auto* chosen = std::get_if<StrategyChosen>(&event.what);
+    const auto* held = std::get_if<ActionHeldBack>(&event.what);
+    if (chosen == nullptr && held == nullptr) return;
+    for (const ComponentId component :
+         rules[chosen != nullptr ? chosen->strategy : held->strategy].components)
+      seen.blamed.try_emplace(rules[component].name, at);
   };
   replay::BagReplay replay(rules, std::make_unique<BayesPlanner>(), reading, {.on_event = take});
   for (bag::BagMessage message; bag->next(message);) {
