@@ -130,7 +130,7 @@ std::vector<std::string> manager_arguments(const DrillOptions& options, const st
   return all;
 }
 
-// Of the rules of the file in the run that was recorded last.
+// Measures the comparisons of the file in the latest recorded run.
 Expected<std::vector<drill::ThresholdMeasure>> thresholds_of(const std::filesystem::path& file,
                                                              const std::string& text,
                                                              const std::vector<Trial>& trials) {

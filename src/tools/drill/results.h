@@ -1,4 +1,4 @@
-// What a drill found: each fault, what no rule and no fault covers, and the numbers that were measured.
+// The results of a drill: each fault, the coverage of rules and faults, and the measured numbers.
 #pragma once
 
 #include <map>

@@ -35,7 +35,8 @@ class RobotView {
   RobotView(Json robot, Json graph, Json state)
       : robot_(std::move(robot)), graph_(std::move(graph)), state_(std::move(state)) {}
 
-  // "RGBDead is failing", "camera is gone". Empty: it is well. What was blind, or gone, in `healthy` may be so.
+  // "RGBDead is failing", "camera is gone". Empty: it is well. A rule that was blind in `healthy`, or a
+  // component that was gone there, is no complaint.
   std::vector<std::string> complaints(const RobotView* healthy = nullptr) const;
 
   struct Component {

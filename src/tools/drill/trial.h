@@ -46,7 +46,7 @@ struct Finding {
 };
 Finding finding_of(const Trial& trial);
 
-// What a strategy came to in a trial, as far as it can have been the cause of that.
+// The outcome of a strategy in a trial, if the strategy can have caused it.
 struct Attempted {
   std::string rule;
   std::string strategy;
