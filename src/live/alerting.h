@@ -1,7 +1,7 @@
 // Turns what a manager finds into alerts for people: one fault, one alert, and one more when it is over.
 //
-// - A fault is what situation.h calls an incident: a cause, and all that fails because of it. While it lasts it
-//   may turn out to have another cause, or to be part of another fault; it is told as one.
+// - An incident (incidents/incidents.h) is a fault, and the alert has its id. What comes back within kStaysAway is the
+//   same fault, under the id of its first incident.
 // - It is told after a while (`wait`). What is over by then was healed: one message says both. At once it is told
 //   if a person is needed, also where it was told before.
 // - That it is over is told when it stayed away for kStaysAway. What comes back before is the same fault.
@@ -17,7 +17,6 @@
 
 #include "alerts/alert.h"
 #include "live/observer.h"
-#include "live/situation.h"
 
 namespace culprit::live {
 
@@ -80,8 +79,7 @@ class Alerting : public Observer {
   const Options options_;
   const Post post_;
   const WallClock wall_;
-  const Manager* manager_ = nullptr;  // null: none has begun
-  Situation situation_;
+  const Manager* manager_ = nullptr;             // null: none has begun
   std::set<std::string> lost_sight_;             // rules that failed and cannot be judged now
   std::set<std::string> flapping_;               // rules
   std::map<std::string, std::string> resolved_;  // rules, and how their failure went away last

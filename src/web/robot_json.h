@@ -1,7 +1,6 @@
 // What the manager knows, as JSON (docs/web.md): what never changes, the graph, the present state.
 #pragma once
 
-#include "live/situation.h"
 #include "manager/manager.h"
 #include "web/event_json.h"
 
@@ -21,8 +20,10 @@ Json state_to_json(const Knowledge& knowledge, Time start);
 // that wait for approval.
 Json control_to_json(const Manager& manager, Time start);
 
-// Who is ill and who is blamed: part of the present state.
-Json incidents_to_json(const std::vector<live::Incident>& incidents, const RuleSet& rules,
-                       Time start);
+// The open incidents, in the order of all views: part of the present state.
+Json incidents_to_json(const Manager& manager, Time start);
+
+// How the robot and each component look (web/overview.h): likewise. @pre `state` is of this manager
+void add_looks(const Manager& manager, Json& state);
 
 }  // namespace culprit::web

@@ -106,6 +106,7 @@ async function everyState(page, server) {
   })
   expect((await page.title()).startsWith('⚠ Disconnected'), `the title is ${await page.title()}`)
   expect((await page.locator('main').evaluate((e) => getComputedStyle(e).filter)).includes('grayscale'), 'what is old is in colour')
+  expect(await page.getByRole('region', { name: 'Status' }).getByRole('button', { name: 'Pause' }).isDisabled(), 'one can press Pause while nobody would be told')
   await isAccessible(page)
   await album.end()
 }

@@ -35,7 +35,7 @@
 namespace culprit::journal {
 
 // What identifies the decisions of a step (StepReader gives it back). Nothing: it decided nothing.
-// Which rules are blind is left out.
+// Blind rules and incidents are left out.
 std::optional<Digest> digest_of(std::span<const Command> commands, std::span<const Event> events,
                                 const RuleSet& rules, Hasher& hasher);
 

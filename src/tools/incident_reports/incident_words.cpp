@@ -1,4 +1,4 @@
-#include "incidents/incident_words.h"
+#include "incident_reports/incident_words.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "knowledge/describe.h"
 
-namespace culprit::incidents {
+namespace culprit::incident_reports {
 
 std::string cause_of(const Incident& incident) {
   if (!incident.causes.empty()) return listed(incident.causes);
@@ -17,6 +17,8 @@ std::string cause_of(const Incident& incident) {
 std::string outcome_of(const Incident& incident) {
   if (incident.is_given_up) return "given up: a person must look";
   if (!incident.is_over) return "not over";
+  if (!incident.merged_into.empty()) return "part of " + incident.merged_into;
+  if (incident.is_lost) return "cannot be seen any more";
   if (incident.is_cut) return "nobody saw: culprit ended before";
   return incident.helped.empty() ? "went away by itself" : listed(incident.helped);
 }
@@ -33,4 +35,4 @@ std::string lasting_text(double seconds) {
   return fmt::format("{} d {} h", whole / 86'400, whole % 86'400 / 3600);
 }
 
-}  // namespace culprit::incidents
+}  // namespace culprit::incident_reports

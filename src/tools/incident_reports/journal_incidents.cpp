@@ -1,13 +1,15 @@
-#include "incidents/journal_incidents.h"
+#include "incident_reports/journal_incidents.h"
 
 #include <algorithm>
 #include <array>
 #include <string_view>
 
+#include "incident_reports/incident_reader.h"
+#include "incident_reports/older_incidents.h"
 #include "journal/session.h"
 #include "language/checker.h"
 
-namespace culprit::incidents {
+namespace culprit::incident_reports {
 namespace {
 
 using journal::Entry;
@@ -16,9 +18,10 @@ using journal::Reader;
 constexpr double kNanosecond = 1e-9;  // s
 
 // What an incident is made of. Most rows are something else, and are not parsed.
-constexpr std::array<std::string_view, 10> kTelling = {
+constexpr std::array<std::string_view, 13> kTelling = {
     "failure_detected", "failure_resolved", "failure_lost",   "strategy_chosen", "approval_asked",
-    "action_held_back", "strategy_failed",  "rule_exhausted", "round_spent",     "component_lost"};
+    "action_held_back", "strategy_failed",  "rule_exhausted", "round_spent",     "component_lost",
+    "incident_opened",  "incident_changed", "incident_closed"};
 
 // Rows begin with their type (journal/event_json.h); the few that do not are about no incident.
 bool is_telling(std::string_view body) {
@@ -38,7 +41,14 @@ class Names {
     text_ = session;
     rules_.reset();
     is_checked_ = false;
+    const Json json = parse_json(session);
+    tells_incidents_ = journal::integer_of(json, "wall") > 0;
+    goes_on_ = journal::flag_of(json, "continued");
   }
+  // Its manager does.
+  bool tells_incidents() const { return tells_incidents_; }
+  // It goes on with the manager of the session before.
+  bool goes_on() const { return goes_on_; }
   // What its rules no longer have, or cannot be read, is about nobody.
   std::vector<std::string> components_of(const std::string& rule, const std::string& strategy) {
     const RuleSet* rules = checked();
@@ -71,6 +81,8 @@ class Names {
 
   std::string text_;
   bool is_checked_ = false;
+  bool tells_incidents_ = false;
+  bool goes_on_ = false;
   std::optional<RuleSet> rules_;
 };
 
@@ -83,7 +95,12 @@ Expected<Names> names_at(const Reader& journal, std::int64_t row) {
   return names;
 }
 
-Expected<IncidentBuilder> build(const Reader& journal, std::int64_t from) {
+struct Built {
+  IncidentReader told;
+  OlderIncidents older;
+};
+
+Expected<Built> build(const Reader& journal, std::int64_t from) {
   auto names = names_at(journal, from);
   if (!names) return Error{names.error()};
   auto rows = journal.entries(journal::Which::kReadable, from);
@@ -91,36 +108,47 @@ Expected<IncidentBuilder> build(const Reader& journal, std::int64_t from) {
   const ComponentsOf components_of = [&](const std::string& rule, const std::string& strategy) {
     return names->components_of(rule, strategy);
   };
-  IncidentBuilder builder;
+  Built built;
   Entry entry;
   auto more = rows->next(entry);
   for (; more && *more; more = rows->next(entry)) {
     if (entry.kind == journal::kind::kSession) {
-      builder.cut();
       names->begin(entry.body);
+      built.older.cut();
+      if (!names->goes_on()) built.told.cut();
     }
     if (entry.kind != journal::kind::kEvent || !is_telling(entry.body)) continue;
     const Json event = parse_json(entry.body);
     const double robot = kNanosecond * static_cast<double>(journal::integer_of(event, "time"));
-    builder.add({entry.id, kNanosecond * static_cast<double>(entry.at), robot, event},
-                components_of);
+    const Told told{entry.id, kNanosecond * static_cast<double>(entry.at), robot, event};
+    if (names->tells_incidents()) {
+      built.told.add(told);
+    } else {
+      built.older.add(told, components_of);
+    }
   }
   if (!more) return Error{more.error()};
-  return builder;
+  return built;
 }
 
-// The row at which the failure of `rule` that was there at row `before` was told of; `before` if it is told nowhere.
-Expected<std::int64_t> detection_before(const Reader& journal, const std::string& rule,
-                                        std::int64_t before) {
+// The last row before `before` that begins like this; `before` if there is none.
+Expected<std::int64_t> row_that_begins(const Reader& journal, const std::string& begin,
+                                       std::int64_t before) {
   auto found = journal.database().prepare(
       "SELECT id FROM entry WHERE kind <> 'steps' AND kind = 'event' AND id < ?1 AND "
       "substr(body, 1, length(?2)) = ?2 ORDER BY id DESC LIMIT 1");
   if (!found) return Error{found.error()};
-  const std::string begin = R"({"type":"failure_detected","rule":")" + rule + '"';
   found->bind(1, before).bind(2, std::string_view(begin));
   const auto row = found->step();
   if (!row) return Error{row.error()};
   return *row ? found->integer(0) : before;
+}
+
+// What is told between an opening and the failure that it is about: nothing but the same step.
+constexpr std::int64_t kRowsOfStep = 64;
+
+std::string opening_of(const std::string& id) {
+  return R"({"type":"incident_opened","incident":")" + id + '"';
 }
 
 Expected<std::int64_t> first_row_after(const Reader& journal, double since) {
@@ -136,7 +164,7 @@ Expected<std::int64_t> first_row_after(const Reader& journal, double since) {
 }  // namespace
 
 Expected<Found> incidents_of(const Reader& journal, double since,
-                             const std::set<std::string>& failing_now) {
+                             const std::set<std::string>& open_now) {
   const auto oldest = journal.database().number(
       "SELECT coalesce(min(at), 0) FROM (SELECT at FROM entry ORDER BY id LIMIT 1)");
   if (!oldest) return Error{oldest.error()};
@@ -148,23 +176,49 @@ Expected<Found> incidents_of(const Reader& journal, double since,
   // What began before and ended after `since` is told from its beginning. Before that something else may have begun.
   constexpr int kMostSteps = 8;
   for (int i = 0;; ++i) {
-    const auto builder = build(journal, *from);
-    if (!builder) return Error{builder.error()};
-    std::set<std::string> begun_before = builder->begun_before();
-    for (const std::string& rule : failing_now) {
-      if (!builder->failing().contains(rule)) begun_before.insert(rule);
-    }
+    const auto built = build(journal, *from);
+    if (!built) return Error{built.error()};
     std::int64_t earlier = *from;
-    for (const std::string& rule : begun_before) {
-      const auto row = detection_before(journal, rule, *from);
+    for (const std::string& rule : built->older.begun_before()) {
+      const auto row =
+          row_that_begins(journal, R"({"type":"failure_detected","rule":")" + rule + '"', *from);
       if (!row) return Error{row.error()};
       earlier = std::min(earlier, *row);
     }
-    if (earlier == *from || i == kMostSteps)
-      return Found{builder->incidents(), kNanosecond * static_cast<double>(*oldest),
+    std::set<std::string> opened_before = built->told.begun_before();
+    for (const std::string& id : open_now) {
+      if (!built->told.has(id)) opened_before.insert(id);
+    }
+    for (const std::string& id : opened_before) {
+      const auto row = row_that_begins(journal, opening_of(id), *from);
+      if (!row) return Error{row.error()};
+      if (*row < *from) earlier = std::min(earlier, std::max<std::int64_t>(1, *row - kRowsOfStep));
+    }
+    if (earlier == *from || i == kMostSteps) {
+      std::vector<Incident> all = built->older.incidents();
+      all.insert(all.end(), built->told.incidents().begin(), built->told.incidents().end());
+      std::erase_if(all, [since](const Incident& each) {
+        return each.is_over && each.began + each.seconds < since;
+      });
+      std::ranges::stable_sort(all, comes_before);
+      return Found{std::move(all), kNanosecond * static_cast<double>(*oldest),
                    kNanosecond * static_cast<double>(*newest)};
+    }
     from = earlier;
   }
+}
+
+Expected<std::optional<double>> opened_at(const Reader& journal, const std::string& id) {
+  auto found = journal.database().prepare(
+      "SELECT at FROM entry WHERE kind <> 'steps' AND kind = 'event' AND "
+      "substr(body, 1, length(?1)) = ?1 ORDER BY id LIMIT 1");
+  if (!found) return Error{found.error()};
+  const std::string begin = opening_of(id);
+  found->bind(1, std::string_view(begin));
+  const auto row = found->step();
+  if (!row) return Error{row.error()};
+  if (!*row) return std::optional<double>();
+  return std::optional(kNanosecond * static_cast<double>(found->integer(0)));
 }
 
 Expected<std::optional<journal::Session>> session_at(const Reader& journal, std::int64_t row) {
@@ -202,4 +256,4 @@ Expected<std::vector<ToldEvent>> events_of(const Reader& journal, std::int64_t f
   return told;
 }
 
-}  // namespace culprit::incidents
+}  // namespace culprit::incident_reports

@@ -16,7 +16,7 @@
 #include "base/expected.h"
 #include "language/rule_set.h"
 
-namespace culprit::incidents {
+namespace culprit::incident_reports {
 
 struct Curve {
   std::string name{};            // "/odom twist.linear.x"; what it is, for people
@@ -57,4 +57,4 @@ struct CurveLimits {
 Expected<RecordedCurves> recorded_curves(const std::filesystem::path& recording,
                                          const CurveWish& wish, const CurveLimits& limits = {});
 
-}  // namespace culprit::incidents
+}  // namespace culprit::incident_reports

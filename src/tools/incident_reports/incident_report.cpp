@@ -1,24 +1,29 @@
-#include "incidents/incident_report.h"
+#include "incident_reports/incident_report.h"
 
 #include <algorithm>
 #include <charconv>
 
-#include "incidents/incident_json.h"
-#include "incidents/journal_incidents.h"
+#include "incident_reports/incident_json.h"
+#include "incident_reports/journal_incidents.h"
 #include "language/checker.h"
 
-namespace culprit::incidents {
+namespace culprit::incident_reports {
 namespace {
+
+bool is_digit_of_id(char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z'); }
 
 Expected<std::optional<Incident>> incident_named(const journal::Reader& journal,
                                                  const std::string& id) {
   constexpr double kBefore = 60;  // s: what led to it is told before it
   const auto began = began_by_id(id);
   if (!began) return std::optional<Incident>();
-  const auto found = incidents_of(journal, std::max(0.0, *began - kBefore));
+  const auto told = opened_at(journal, id);
+  if (!told) return Error{told.error()};
+  const double since = std::min(*began, told->value_or(*began));  // the clock on the wall may jump
+  const auto found = incidents_of(journal, std::max(0.0, since - kBefore));
   if (!found) return Error{found.error()};
   for (const Incident& each : found->incidents) {
-    if (each.id() != id) continue;
+    if (each.id != id) continue;
     Incident incident = each;
     if (!incident.is_over)
       incident.seconds = std::max(incident.seconds, found->newest - incident.began);
@@ -77,8 +82,15 @@ void add_recording(const std::filesystem::path& folder, const RuleSet& rules,
 
 std::optional<double> began_by_id(const std::string& id) {
   std::uint64_t milliseconds = 0;
-  const char* end = id.data() + id.size();
-  constexpr int kBase = 36;  // Incident::id()
+  constexpr std::size_t kSuffix =
+      4;  // "-0k7", of those that a manager told (incidents/incidents.h)
+  const std::size_t dash = id.find('-');
+  const bool has_suffix = dash != std::string::npos;
+  if (has_suffix &&
+      (id.size() != dash + kSuffix || !std::ranges::all_of(id.substr(dash + 1), is_digit_of_id)))
+    return std::nullopt;
+  const char* end = id.data() + (has_suffix ? dash : id.size());
+  constexpr int kBase = 36;
   const auto read = std::from_chars(id.data(), end, milliseconds, kBase);
   constexpr std::uint64_t kYear2100 = 4'102'444'800'000;  // ms
   if (read.ec != std::errc() || read.ptr != end || milliseconds >= kYear2100) return std::nullopt;
@@ -109,4 +121,4 @@ Expected<std::optional<PageContent>> report_of(const journal::Reader& journal,
   return std::optional(std::move(content));
 }
 
-}  // namespace culprit::incidents
+}  // namespace culprit::incident_reports

@@ -1,4 +1,4 @@
-#include "incidents/curve_plot.h"
+#include "incident_reports/curve_plot.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 #include "base/xml.h"
 
-namespace culprit::incidents {
+namespace culprit::incident_reports {
 namespace {
 
 // In units of the picture.
@@ -223,4 +223,4 @@ std::string plot_of(const Curve& curve, const PlotFrame& frame, std::size_t numb
   return Plot(curve, frame).drawn(number);
 }
 
-}  // namespace culprit::incidents
+}  // namespace culprit::incident_reports

@@ -1,4 +1,4 @@
-#include "incidents/recorded_curves.h"
+#include "incident_reports/recorded_curves.h"
 
 #include <algorithm>
 #include <array>
@@ -16,7 +16,7 @@
 #include "robot/component_binding.h"
 #include "ros2/messages.h"
 
-namespace culprit::incidents {
+namespace culprit::incident_reports {
 namespace {
 
 namespace fs = std::filesystem;
@@ -440,4 +440,4 @@ Expected<RecordedCurves> recorded_curves(const fs::path& recording, const CurveW
   return shown;
 }
 
-}  // namespace culprit::incidents
+}  // namespace culprit::incident_reports

@@ -4,11 +4,11 @@
 
 #include <vector>
 
-#include "incidents/journal_incidents.h"
+#include "incident_reports/journal_incidents.h"
 #include "knowledge/event_words.h"
 #include "recorder/recording_folder.h"
 
-namespace culprit::incidents {
+namespace culprit::incident_reports {
 
 // Those of `all` that were written while it lasted, or were begun then.
 std::vector<recorder::StoredRecording> recordings_of(
@@ -21,4 +21,4 @@ Json to_json(const EventWords& words);
 // As the stream tells it (web/event_json.h); `t` is `clock`.
 Json to_json(ToldEvent told);
 
-}  // namespace culprit::incidents
+}  // namespace culprit::incident_reports

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "incidents/recorded_curves.h"
+#include "incident_reports/recorded_curves.h"
 
-namespace culprit::incidents {
+namespace culprit::incident_reports {
 
 struct Mark {
   enum class Kind : std::uint8_t { kDetected, kDecided, kNoHelp, kResolved, kGivenUp };
@@ -30,4 +30,4 @@ struct PlotFrame {
 // "curve", "limit", "mark", and of marks "detected", "decided", "no-help", "resolved", "given-up".
 std::string plot_of(const Curve& curve, const PlotFrame& frame, std::size_t number);
 
-}  // namespace culprit::incidents
+}  // namespace culprit::incident_reports

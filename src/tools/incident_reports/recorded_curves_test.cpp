@@ -1,5 +1,5 @@
 // What a recording shows of an incident: which curves, and of whatever bytes.
-#include "incidents/recorded_curves.h"
+#include "incident_reports/recorded_curves.h"
 
 #include <fstream>
 #include <random>
@@ -14,7 +14,7 @@
 #include "language/checker.h"
 #include "ros2/messages.h"
 
-namespace culprit::incidents {
+namespace culprit::incident_reports {
 namespace {
 
 using bag::test::channel;
@@ -231,4 +231,4 @@ TEST_F(RecordedIncident, OfUnknownRulesIsNothing) {
 }
 
 }  // namespace
-}  // namespace culprit::incidents
+}  // namespace culprit::incident_reports

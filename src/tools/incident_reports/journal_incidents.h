@@ -6,22 +6,26 @@
 #include <string>
 #include <vector>
 
-#include "incidents/incident.h"
+#include "incident_reports/incident.h"
 #include "journal/reader.h"
 #include "journal/session.h"
 
-namespace culprit::incidents {
+namespace culprit::incident_reports {
 
 struct Found {
-  std::vector<Incident> incidents;  // in the order of their beginnings
+  std::vector<Incident> incidents;  // in the order of comes_before()
   double oldest = 0;                // seconds since 1970: from when on the journal tells
   double newest = 0;                // until when; so long what is not over has lasted at least
 };
 
-// Those that were not over at `since`, in seconds since 1970, or began after it. `failing_now`: rules that see a failure,
-// which may have said nothing for days. Errors: the journal cannot be read.
+// Those that were not over at `since`, in seconds since 1970, or began after it. `open_now`: ids of incidents that are
+// open, of which nothing may have been told for days. Errors: the journal cannot be read.
 Expected<Found> incidents_of(const journal::Reader& journal, double since,
-                             const std::set<std::string>& failing_now = {});
+                             const std::set<std::string>& open_now = {});
+
+// When the opening of this incident was written, in seconds since 1970; nothing: the journal does not tell it. Errors:
+// the journal cannot be read.
+Expected<std::optional<double>> opened_at(const journal::Reader& journal, const std::string& id);
 
 // The run of culprit that tells row `row`; nothing: the journal does not say. Errors: the journal cannot be read.
 Expected<std::optional<journal::Session>> session_at(const journal::Reader& journal,
@@ -42,4 +46,4 @@ inline constexpr std::size_t kMostTold = 5000;  // of one incident
 Expected<std::vector<ToldEvent>> events_of(const journal::Reader& journal, std::int64_t first,
                                            std::int64_t last);
 
-}  // namespace culprit::incidents
+}  // namespace culprit::incident_reports

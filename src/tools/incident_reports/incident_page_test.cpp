@@ -1,5 +1,5 @@
 // The file of an incident: what is in it, that it needs nothing else, and that names of strangers stay names.
-#include "incidents/incident_page.h"
+#include "incident_reports/incident_page.h"
 
 #include <cstdlib>
 #include <ctime>
@@ -9,10 +9,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "incidents/curve_plot.h"
-#include "incidents/incident_words.h"
+#include "incident_reports/curve_plot.h"
+#include "incident_reports/incident_words.h"
 
-namespace culprit::incidents {
+namespace culprit::incident_reports {
 namespace {
 
 using testing::AllOf;
@@ -140,7 +140,7 @@ TEST_F(IncidentPage, TakesNamesAndTextsForNothingElse) {
 }
 
 TEST(CurvePlot, IsAsItWas) {
-  const std::string golden = "src/tools/incidents/golden/speed_plot.html";
+  const std::string golden = "src/tools/incident_reports/golden/speed_plot.html";
   const PlotFrame frame{kDetectedAt - 4,
                         kDetectedAt + 4,
                         kDetectedAt,
@@ -200,4 +200,4 @@ TEST(IncidentWords, TellHowItEndedAndHowLongItTook) {
 }
 
 }  // namespace
-}  // namespace culprit::incidents
+}  // namespace culprit::incident_reports

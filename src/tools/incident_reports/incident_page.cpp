@@ -1,4 +1,4 @@
-#include "incidents/incident_page.h"
+#include "incident_reports/incident_page.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,11 +8,11 @@
 #include <fmt/core.h>
 
 #include "base/xml.h"
-#include "incidents/curve_plot.h"
-#include "incidents/incident_words.h"
+#include "incident_reports/curve_plot.h"
+#include "incident_reports/incident_words.h"
 #include "journal/json.h"
 
-namespace culprit::incidents {
+namespace culprit::incident_reports {
 namespace {
 
 // The colours are those of the page (ui/src/app.css).
@@ -261,4 +261,4 @@ std::string incident_page(const PageContent& content) {
              time_zone(incident.began));
 }
 
-}  // namespace culprit::incidents
+}  // namespace culprit::incident_reports

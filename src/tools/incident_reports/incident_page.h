@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "incidents/incident.h"
-#include "incidents/recorded_curves.h"
+#include "incident_reports/incident.h"
+#include "incident_reports/recorded_curves.h"
 
-namespace culprit::incidents {
+namespace culprit::incident_reports {
 
 struct PageContent {
   Incident incident;
@@ -25,4 +25,4 @@ struct PageContent {
 // are, whoever made them.
 std::string incident_page(const PageContent& content);
 
-}  // namespace culprit::incidents
+}  // namespace culprit::incident_reports

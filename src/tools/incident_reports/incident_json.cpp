@@ -1,11 +1,11 @@
-#include "incidents/incident_json.h"
+#include "incident_reports/incident_json.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "knowledge/describe.h"
 
-namespace culprit::incidents {
+namespace culprit::incident_reports {
 namespace {
 
 // Candidates as the stream tells them: the journal has a word and a sentence.
@@ -41,14 +41,17 @@ std::vector<recorder::StoredRecording> recordings_of(
 }
 
 Json to_json(const Incident& incident, const std::vector<recorder::StoredRecording>& recordings) {
-  Json json{{"id", incident.id()},
+  Json json{{"id", incident.id},
             {"first", incident.first_row},
             {"last", incident.last_row},
             {"clock", std::round(incident.began * 1000) / 1000},
             {"seconds", std::round(incident.seconds * 1000) / 1000},
             {"over", incident.is_over},
             {"cut", incident.is_cut},
+            {"lost", incident.is_lost},
+            {"merged_into", incident.merged_into.empty() ? Json() : Json(incident.merged_into)},
             {"given_up", incident.is_given_up},
+            {"needs_person", incident.needs_person},
             {"worst", culprit::to_string(incident.worst)},
             {"causes", incident.causes},
             {"rules", incident.rules},
@@ -82,4 +85,4 @@ Json to_json(ToldEvent told) {
   return json;
 }
 
-}  // namespace culprit::incidents
+}  // namespace culprit::incident_reports

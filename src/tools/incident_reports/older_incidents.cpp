@@ -1,29 +1,15 @@
-#include "incidents/incident.h"
+#include "incident_reports/older_incidents.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "journal/json.h"
-#include "knowledge/describe.h"
 
-namespace culprit::incidents {
+namespace culprit::incident_reports {
 namespace {
 
 constexpr double kShortly =
     2;  // s, from the loss of a component to the failure that it is a part of
 constexpr std::size_t kMostLosses = 16;
-
-void add_to(std::vector<std::string>& names, const std::string& name) {
-  if (std::ranges::find(names, name) == names.end()) names.push_back(name);
-}
-
-Criticality criticality_of(const Json& event) {
-  const std::string word = journal::text_of(event, "criticality");
-  for (const Criticality each : {Criticality::kError, Criticality::kWarning}) {
-    if (word == to_string(each)) return each;
-  }
-  return Criticality::kNonCritical;
-}
 
 bool is_any_of(const std::string& type, std::initializer_list<std::string_view> all) {
   return std::ranges::find(all, type) != all.end();
@@ -31,19 +17,11 @@ bool is_any_of(const std::string& type, std::initializer_list<std::string_view> 
 
 }  // namespace
 
-std::string Incident::id() const {
-  constexpr std::string_view kDigits = "0123456789abcdefghijklmnopqrstuvwxyz";
-  std::string id;
-  for (auto rest = static_cast<std::uint64_t>(std::max(0.0, std::round(began * 1000)));
-       rest > 0 || id.empty(); rest /= kDigits.size())
-    id.insert(id.begin(), kDigits[rest % kDigits.size()]);
-  return id;
-}
-
-void IncidentBuilder::begin(const Told& told) {
+void OlderIncidents::begin(const Told& told) {
   Incident incident;
   incident.first_row = told.row;
   incident.began = told.wall;
+  incident.id = id_of_beginning(told.wall);
   robot_began_ = told.robot;
   is_blamed_ = false;
   for (const Loss& loss : losses_) {
@@ -55,7 +33,7 @@ void IncidentBuilder::begin(const Told& told) {
   all_.push_back(std::move(incident));
 }
 
-void IncidentBuilder::add(const Told& told, const ComponentsOf& components_of) {
+void OlderIncidents::add(const Told& told, const ComponentsOf& components_of) {
   const std::string type = journal::text_of(told.event, "type");
   const std::string rule = journal::text_of(told.event, "rule");
   if (type == "failure_detected") {
@@ -76,8 +54,8 @@ void IncidentBuilder::add(const Told& told, const ComponentsOf& components_of) {
   if (failing_.empty()) end();
 }
 
-void IncidentBuilder::learn(const Told& told, const std::string& type,
-                            const ComponentsOf& components_of) {
+void OlderIncidents::learn(const Told& told, const std::string& type,
+                           const ComponentsOf& components_of) {
   Incident& incident = all_.back();
   const std::string rule = journal::text_of(told.event, "rule");
   const std::string strategy = journal::text_of(told.event, "strategy");
@@ -86,6 +64,7 @@ void IncidentBuilder::learn(const Told& told, const std::string& type,
   if (type == "failure_detected") {
     add_to(incident.rules, rule);
     incident.worst = std::max(incident.worst, criticality_of(told.event));
+    incident.criticality = incident.worst;
   } else if (is_any_of(type, {"strategy_chosen", "approval_asked", "action_held_back"})) {
     if (!is_blamed_) incident.causes.clear();
     is_blamed_ = true;
@@ -96,7 +75,7 @@ void IncidentBuilder::learn(const Told& told, const std::string& type,
   } else if (type == "failure_resolved" && !strategy.empty()) {
     add_to(incident.helped, strategy);
   } else if (type == "rule_exhausted") {
-    incident.is_given_up = true;
+    incident.is_given_up = incident.needs_person = true;
   } else {
     return;
   }
@@ -111,15 +90,15 @@ void IncidentBuilder::learn(const Told& told, const std::string& type,
   }
 }
 
-void IncidentBuilder::end() {
+void OlderIncidents::end() {
   all_.back().is_over = true;
   losses_.clear();
 }
 
-void IncidentBuilder::cut() {
+void OlderIncidents::cut() {
   if (!failing_.empty()) all_.back().is_cut = all_.back().is_over = true;
   failing_.clear();
   losses_.clear();
 }
 
-}  // namespace culprit::incidents
+}  // namespace culprit::incident_reports

@@ -5,10 +5,10 @@
 #include <optional>
 #include <string>
 
-#include "incidents/incident_page.h"
+#include "incident_reports/incident_page.h"
 #include "journal/reader.h"
 
-namespace culprit::incidents {
+namespace culprit::incident_reports {
 
 // When an incident of this id began, seconds since 1970. Nothing: no incident is called so.
 std::optional<double> began_by_id(const std::string& id);
@@ -20,4 +20,4 @@ Expected<std::optional<PageContent>> report_of(const journal::Reader& journal,
                                                const std::string& id,
                                                const std::filesystem::path& recordings, double now);
 
-}  // namespace culprit::incidents
+}  // namespace culprit::incident_reports

@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "incidents/incident.h"
+#include "incident_reports/incident.h"
 
-namespace culprit::incidents {
+namespace culprit::incident_reports {
 
 // "camera and fusion": who caused it; the first rule that failed where nobody is known.
 std::string cause_of(const Incident& incident);
@@ -15,4 +15,4 @@ std::string outcome_of(const Incident& incident);
 // "40 ms", "0.4 s", "12 s", "3 min 5 s", "2 h 10 min", "1 d 3 h": two figures are enough to act on.
 std::string lasting_text(double seconds);
 
-}  // namespace culprit::incidents
+}  // namespace culprit::incident_reports
