@@ -139,7 +139,7 @@ class TwoFaults {
   const TestFolder folder_;
   const std::filesystem::path path_ = folder_ / "a.journal";
   journal::Batch rows_;
-  std::optional<TestRobot> robot_;
+  mutable std::optional<TestRobot> robot_;
   web::Hub hub_;
   const web::Hub::Reader watching_{hub_};
   web::Metrics metrics_;

@@ -88,9 +88,9 @@ Overview overview_of(const Manager& manager) {
   }
   std::string detail = "no failure is seen by " + of_rules(knowledge.rules.rules.size());
   if (unseen > 0)
-    detail += fmt::format("; {} never seen",
-                          unseen == 1 ? "one component was"
-                                      : fmt::format("{} components were", unseen));
+    detail +=
+        fmt::format("; {} never seen",
+                    unseen == 1 ? "one component was" : fmt::format("{} components were", unseen));
   if (!dead.empty()) detail += "; not running: " + listed(dead);
   return {"OK", "all is well", std::move(detail)};
 }

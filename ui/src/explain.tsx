@@ -63,6 +63,42 @@ export function Suspects({ decision, rule }: { decision: ManagerEvent; rule: str
 
 export const kCostUnit = 'Expected effort, relative to the slowest strategy of the rules: no unit. Of the paper’s planner: 0 to 2.'
 
+const kNanosecond = 1e-9 // s
+
+// Causes begin before their effects: what began when, of all suspects on one axis that ends with the decision.
+function Onsets({ decision }: { decision: ManagerEvent }) {
+  const onsets = (decision.suspects ?? [])
+    .flatMap(({ component, evidence }) =>
+      (evidence ?? []).flatMap(({ text, age_ns, log_odds }) => (age_ns === undefined ? [] : [{ component, text, age: age_ns * kNanosecond, isFor: log_odds >= 0 }]))
+    )
+    .sort((a, b) => b.age - a.age)
+  if (onsets.length < 2) return null
+  const longest = Math.max(onsets[0].age, kNanosecond)
+  const at = (age: number) => `${2 + 96 * (1 - age / longest)}%`
+  return (
+    <details class="why">
+      <summary>What began first, until the decision at {byTheClock(decision.clock ?? clockAt(decision.t), 2)}</summary>
+      <table class="onsets">
+        <tbody>
+          {onsets.map(({ component, text, age, isFor }) => (
+            <tr>
+              <th scope="row">{component}</th>
+              <td class="axis">
+                <svg width="100%" height="16" aria-hidden="true">
+                  <line x1={at(age)} x2={at(0)} y1="8" y2="8" />
+                  <circle cx={at(age)} cy="8" r="4" class={isFor ? 'for' : 'against'} />
+                </svg>
+              </td>
+              <td class="number">{lasting(age)} before</td>
+              <td>{text}</td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+    </details>
+  )
+}
+
 // An excluded candidate has no cost.
 export const costOf = ({ cost, excluded }: { cost: number; excluded: unknown }) =>
   excluded && cost === 0 ? '–' : cost.toFixed(2)
@@ -121,6 +157,7 @@ function Why({ failure, isOpen }: { failure: Failure; isOpen: boolean }) {
     <details class="why" open={isOpen}>
       <summary>Who may be responsible, what could be done</summary>
       <Suspects decision={decision} rule={failure.rule} />
+      <Onsets decision={decision} />
       <Candidates
         list={decision.candidates ?? []}
         chosen={decision.type === 'strategy_chosen' ? decision.strategy : null}

@@ -41,25 +41,29 @@ const healthOf = (name, rules) => {
   const rule = kRules.find((r) => r.components.includes(name) && (rules[r.name]?.phase ?? 'quiet') !== 'quiet')
   return rule ? (rules[rule.name].phase === 'exhausted' ? 'EXHAUSTED' : rule.criticality) : 'OK'
 }
-function lookOf(name, dead, rules) {
+function lookOf(name, dead, rules, isDeaf) {
   const about = kRules.filter((r) => r.components.includes(name))
   const health = healthOf(name, rules)
   if (health !== 'OK') return { health, look: health, condition: name === dead ? 'dead' : '' }
   if (about.length === 0) return { health, look: 'UNWATCHED', condition: 'no rule' }
-  return about.every((r) => rules[r.name]?.blind) ? { health, look: 'BLIND', condition: 'blind' } : { health, look: 'OK', condition: '' }
+  return isDeaf || about.every((r) => rules[r.name]?.blind) ? { health, look: 'BLIND', condition: 'blind' } : { health, look: 'OK', condition: '' }
 }
 export const state = (t, { dead = null, incidents = [], overview = null, ...rules } = {}) => ({
   t, clock: kBegan + t, incidents,
   overview: overview ?? (incidents.length > 0 ? { look: incidents[0].health, headline: incidents[0].headline, detail: incidents[0].doing } : kWell),
   rules: kRules.map(({ name }) => ({ phase: 'quiet', trigger: false, ...rules[name] })),
   components: kComponents.map((name) => ({
-    ...lookOf(name, dead, rules), present: name !== dead, alive: name !== dead, process: name === dead ? 'gone' : 'running', lifecycle: 'active' })),
+    ...lookOf(name, dead, rules, overview?.look === 'DEAF'), present: name !== dead, alive: name !== dead, process: name === dead ? 'gone' : 'running', lifecycle: 'active' })),
   topics: kTopics.map((_, i) => ({ rate: 10 + i, age: dead && i !== 1 ? t - kBroken : 0.05 })),
   inputs: [!dead, 0.1, 0.04], beliefs: kRules.flatMap((r) => r.strategies.map((s) => s.prior)), priors: kRules.flatMap((r) => r.strategies.map((s) => s.prior)), couplings: [], latencies: [],
 })
 
 const event = (t, type, label, severity, tone, text, more) => ({ t, clock: kBegan + t, type, label, severity, tone, text, ...more })
-const kSuspects = [{ component: 'camera', failure: 'RGBDead', probability: 0.97 }, { component: 'fusion', failure: 'FusionSilent', probability: 0.03 }]
+const evidence = (source, text, age, log_odds) => ({ source, text, age_ns: age * 1e9, log_odds })
+const kSuspects = [
+  { component: 'camera', failure: 'RGBDead', probability: 0.97, evidence: [evidence('kernel', 'camera exited', 0.02, 5.1), evidence('alarm', 'RGBDead fires', 0.01, 1.2)] },
+  { component: 'fusion', failure: 'FusionSilent', probability: 0.03, evidence: [evidence('measured', 'fusion answered', 0.004, -2.3)] },
+]
 const because = (failure) => ({ condition: 'dependency', component: 'camera', failure, text: `camera may be the cause, by ${failure}` })
 const candidate = (name, excluded = null) => ({ strategy: name, impact: 5, cost: excluded ? 0 : 0.55, value: 0.9, resolves: 0.9, excluded })
 const kAll = [candidate('rgb_restart', { condition: 'tried', text: 'it was tried already' }), candidate('rgb_redeploy')]

@@ -91,7 +91,7 @@ async function everyState(page, server) {
     play(server, each)
     await looksRight(page, name, 'desktop', each)
     const explanation = page.getByRole('region', { name: 'Explanation' })
-    await explanation.getByText('SegmentationBad is blind').waitFor()
+    await explanation.getByRole('heading', { name: 'SegmentationBad is blind' }).waitFor()
     expect((await explanation.getByText('All is well').count()) === 0, `it says that all is well (${name})`)
     await isAccessible(page)
   }
