@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "cli/check_bag.h"
 #include "cli/commands.h"
 #include "cli/diagnostic_report.h"
 #include "cli/heap_room.h"
@@ -31,6 +32,7 @@ struct CheckOptions {
   std::string format = "text";
   bool strict = false;
   bool robot = false;
+  BagCheck recorded;
   double wait_seconds = 3;
 };
 
@@ -116,6 +118,10 @@ int check_all(std::vector<Expansion> all, int exit_code, const CheckOptions& opt
     if (options.format == "text") {
       if (robot && checked.rules) print_findings(*checked.rules, *robot);
       print_text(file, checked);
+      if (!options.recorded.bags.empty() && checked.rules) {
+        const int judged = check_against_bags(file.source.name(), *checked.rules, options.recorded);
+        if (exit_code == kOk || judged == kFailed) exit_code = judged;
+      }
     } else {
       files.push_back({std::move(file.source), std::move(checked.diagnostics)});
     }
@@ -176,6 +182,19 @@ void add_check(CLI::App& app, int& exit_code) {
       "Also report nodes, topics, parameters, diagnostics and services that the live robot lacks");
   add_seconds(*command, "--wait", options->wait_seconds, "How long to look at the robot", 0.1, 600)
       ->needs(robot);
+  CLI::Option* bags =
+      command
+          ->add_option("--bag", options->recorded.bags,
+                       "Say for each rule whether this recording can judge it; may be given again")
+          ->type_name("FILE")
+          ->allow_extra_args(false)
+          ->excludes(robot);
+  command
+      ->add_option("--message-path", options->recorded.message_path,
+                   "Where message definitions are, beside AMENT_PREFIX_PATH")
+      ->type_name("FOLDER")
+      ->allow_extra_args(false)
+      ->needs(bags);
   command
       ->add_option("--format", options->format,
                    "text for people; json or sarif (2.1.0) for programs, on stdout")
@@ -183,6 +202,7 @@ void add_check(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_flag_function(
       "--json", [options](std::int64_t) { options->format = "json"; }, "The same as --format json");
+  bags->excludes(command->get_option("--format"))->excludes(command->get_option("--json"));
   command->callback([options, &exit_code] { exit_code = check_files(*options); });
 }
 

@@ -30,6 +30,7 @@ void add_all(CLI::App& app, const std::string& version, int& exit_code) {
   add_run(app, version, exit_code);
   add_doctor(app, exit_code);
   add_init(app, exit_code);
+  add_drill(app, exit_code);
   add_graph(app, exit_code);
   add_plan(app, exit_code);
   add_modes(app, exit_code);
@@ -53,6 +54,7 @@ void add_all(CLI::App& app, const std::string& version, int& exit_code) {
   add_audit(app, exit_code);
   add_beliefs(app, exit_code);
   add_replay(app, exit_code);
+  add_info(app, exit_code);
 #ifdef CULPRIT_FLEET
   add_fleet(app, exit_code);
 #endif

@@ -51,13 +51,13 @@ void group_commands(CLI::App& app) {
     std::vector<const char*> commands;
   };
   const Group groups[] = {
-      {"On a robot", {"run", "doctor", "init", "graph", "plan", "modes"}},
+      {"On a robot", {"run", "doctor", "init", "drill", "graph", "plan", "modes"}},
       {"A culprit that runs",
        {"status", "top", "pause", "resume", "silence", "approve", "refuse", "propose",
         "run-strategy", "revive", "end-started", "record", "alerts"}},
       {"Rules",
        {"check", "explain", "fmt", "test", "import", "export", "policy", "web", "lsp", "mcp"}},
-      {"What was", {"log", "incident", "audit", "beliefs", "replay"}},
+      {"What was", {"log", "incident", "audit", "beliefs", "replay", "info"}},
 #ifdef CULPRIT_FLEET
       {"A fleet", {"fleet"}},
 #endif

@@ -10,6 +10,8 @@
 #include "base/units.h"
 #include "cli/commands.h"
 #include "cli/diagnostic_report.h"
+#include "cli/doctor_bag.h"
+#include "cli/finding_text.h"
 #include "doctor/examine.h"
 #include "doctor/look.h"
 #include "doctor/report.h"
@@ -32,19 +34,8 @@ struct DoctorOptions {
   bool watch = false;
   std::string save;
   std::string against;
+  BagExamination recorded;
 };
-
-std::string coloured(Gravity gravity, Colour colour) {
-  const std::string text = label(gravity);
-  if (colour == Colour::kOff) return text;
-  return (gravity == Gravity::kError ? "\033[31m" : "\033[33m") + text + "\033[0m";
-}
-
-void print_finding(const Finding& finding, Colour colour) {
-  say(stdout, "{}[{}]: {}\n  seen:    {}\n  matters: {}\n  do:      {}\n",
-      coloured(finding.gravity, colour), finding.code, finding.who, finding.seen, finding.matters,
-      finding.remedy);
-}
 
 void print_summary(const Report& report) {
   for (const std::string& each : report.left_out) say(stdout, "{}\n", each);
@@ -170,27 +161,72 @@ int examine_robot(const DoctorOptions& options) {
   return exit_code_of(report);
 }
 
+// Gives the bags, without which the others mean nothing.
+CLI::Option* add_bag_options(CLI::App& command, BagExamination& options) {
+  CLI::Option* bags = command
+                          .add_option("BAG", options.bags,
+                                      "Recordings of rosbag2 to examine instead of the live robot")
+                          ->type_name("FILE");
+  command
+      .add_option("--graph", options.graph,
+                  "The robot's graph, as culprit graph --json writes it: names the cause")
+      ->type_name("FILE")
+      ->needs(bags);
+  command
+      .add_option("--rules", options.rules,
+                  "A rule file whose DEPENDENCY and FROM say who depends on whom")
+      ->type_name("FILE")
+      ->needs(bags);
+  command
+      .add_option("--policy", options.policy,
+                  "Required topics, rates, gaps, coverage and pairs, one a line")
+      ->type_name("FILE")
+      ->needs(bags);
+  command
+      .add_option("--fail-on", options.fail_on,
+                  "Exit with 1 from this severity on, else with 0 (default: 1 for errors, 3 for "
+                  "warnings)")
+      ->check(CLI::IsMember({"error", "warning", "never"}))
+      ->needs(bags);
+  command
+      .add_option("--message-path", options.message_path,
+                  "Where message definitions are, beside AMENT_PREFIX_PATH")
+      ->type_name("FOLDER")
+      ->allow_extra_args(false)
+      ->needs(bags);
+  return bags;
+}
+
 }  // namespace
 
 void add_doctor(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<DoctorOptions>();
   CLI::App* command = app.add_subcommand(
       "doctor",
-      "Find problems of the robot, without rules: observes it for some seconds, changes nothing. "
-      "Exits with 0 if there are none, with 3 if there are only warnings");
-  add_seconds(*command, "--for", options->seconds, "How long to look", 0.1, 3600);
+      "Find problems of the robot, or in recordings of it, without rules: observes it for some "
+      "seconds, changes nothing. Exits with 0 if there are none, with 3 if there are only warnings");
+  CLI::Option* bags = add_bag_options(*command, options->recorded);
+  add_seconds(*command, "--for", options->seconds, "How long to look", 0.1, 3600)->excludes(bags);
   auto* json = command->add_flag("--json", options->json, "For programs");
   command->add_flag("--sarif", options->sarif, "For programs that read SARIF 2.1.0")
       ->excludes(json);
-  auto* watch = command->add_flag("--watch", options->watch,
-                                  "Look again and again, and report new and cleared findings");
+  auto* watch = command
+                    ->add_flag("--watch", options->watch,
+                               "Look again and again, and report new and cleared findings")
+                    ->excludes(bags);
   auto* save = command->add_option("--save", options->save, "Save the healthy robot as a baseline")
                    ->type_name("FILE");
   command->add_option("--against", options->against, "Compare with a saved baseline")
       ->type_name("FILE")
-      ->excludes(save);
-  save->excludes(watch);
-  command->callback([options, &exit_code] { exit_code = examine_robot(*options); });
+      ->excludes(save)
+      ->excludes(bags);
+  save->excludes(watch)->excludes(bags);
+  command->callback([options, &exit_code] {
+    options->recorded.json = options->json;
+    options->recorded.sarif = options->sarif;
+    exit_code =
+        options->recorded.bags.empty() ? examine_robot(*options) : examine_bags(options->recorded);
+  });
 }
 
 }  // namespace culprit::cli

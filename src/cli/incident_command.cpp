@@ -11,6 +11,7 @@
 #include "incidents/incident_json.h"
 #include "incidents/incident_report.h"
 #include "incidents/incident_words.h"
+#include "incidents/regression.h"
 #include "terminal/console.h"
 
 namespace culprit::cli {
@@ -25,7 +26,8 @@ struct IncidentOptions {
   std::string id;
   std::string output;
   std::string since;
-  std::string recordings;  // the folder; empty: that beside the journal
+  std::string recordings;   // the folder; empty: that beside the journal
+  std::string export_test;  // the folder; empty: none is made
   bool json = false;
 };
 
@@ -143,6 +145,19 @@ int write_incident(const IncidentOptions& options) {
   return kOk;
 }
 
+int make_test(const IncidentOptions& options) {
+  const auto path = options.journal.file();
+  if (!path) return fail(path.error());
+  const auto journal = journal::Reader::open(*path);
+  if (!journal) return fail(journal.error());
+  const auto made = incidents::export_test(*journal, options.id, recordings_beside(options, *path),
+                                           options.export_test);
+  if (!made) return fail(made.error());
+  say(stderr, "culprit: {0} expects {1}; run it: culprit test {0}\n", made->test.string(),
+      made->expectations == 1 ? "one thing" : fmt::format("{} things", made->expectations));
+  return kOk;
+}
+
 }  // namespace
 
 void add_incident(CLI::App& app, int& exit_code) {
@@ -166,8 +181,17 @@ void add_incident(CLI::App& app, int& exit_code) {
       ->excludes(id);
   command->add_flag("--json", options->json,
                     "The list, or the incident with its events and recordings, as JSON");
+  command
+      ->add_option("--export-test", options->export_test,
+                   "Cut its recording, and write it with its rules and a test below this folder")
+      ->type_name("FOLDER")
+      ->needs(id)
+      ->excludes(command->get_option("--output"))
+      ->excludes(command->get_option("--json"));
   command->callback([options, &exit_code] {
-    exit_code = options->id.empty() ? list_incidents(*options) : write_incident(*options);
+    exit_code = options->id.empty()            ? list_incidents(*options)
+                : options->export_test.empty() ? write_incident(*options)
+                                               : make_test(*options);
   });
 }
 

@@ -7,11 +7,13 @@
 
 #include <fmt/core.h>
 
+#include "base/environment.h"
 #include "base/text_file.h"
 #include "base/units.h"
 #include "cli/commands.h"
 #include "cli/load_rules.h"
 #include "cli/unified_diff.h"
+#include "init/bag_draft.h"
 #include "init/draft.h"
 #include "init/lasting.h"
 #include "init/look.h"
@@ -35,6 +37,8 @@ struct InitOptions {
   std::string launch_dump;
   std::string update;  // the rule file that is brought up to the robot; empty: a new draft
   bool packs = false;
+  std::vector<std::string> bags;
+  std::vector<std::filesystem::path> message_path;  // of bags
 
   init::Packs wanted_packs() const { return packs ? init::Packs::kChosen : init::Packs::kNone; }
 };
@@ -130,6 +134,36 @@ int draft_rules(const InitOptions& options) {
   if (const auto written = write_text(options.output, *text); !written)
     return fail(written.error());
   if (has_file) advise(options.output, *checked.rules);
+  return kOk;
+}
+
+// From recordings instead of the live robot.
+int draft_from_bags(const InitOptions& options) {
+  const bool has_file = !options.output.empty();
+  if (has_file && std::filesystem::exists(options.output))
+    return fail(options.output + " is there already; name another file, or move it away", kUsage);
+  std::vector<bag_doctor::BagCourse> courses;
+  for (const std::string& bag : options.bags) {
+    ros2::MessageLibrary library(
+        ros2::message_directories(options.message_path, environment("AMENT_PREFIX_PATH")));
+    auto course = bag_doctor::read_course(bag, library);
+    if (!course) return fail(course.error());
+    courses.push_back(std::move(*course));
+  }
+  const auto text = format({"the draft", init::draft_of_bags(courses)});
+  if (!text) return fail(text.error());
+  const Source source(has_file ? options.output : "the draft", *text);
+  const Checked checked = check(source);
+  if (!checked.rules) return fail(render(checked.diagnostics, source));
+  if (checked.rules->rules.empty())
+    return fail("the recordings have no topic with a steady rhythm, so there is no rule to draft");
+  if (const auto written = write_text(options.output, *text); !written)
+    return fail(written.error());
+  if (has_file)
+    say(stderr,
+        "culprit: {0} has {1} rules. Read it, then try it on a recording that is not among these:\n"
+        "  culprit check --bag BAG {0}\n  culprit replay BAG --rules {0}\n",
+        options.output, checked.rules->rules.size());
   return kOk;
 }
 
@@ -313,8 +347,23 @@ void add_init(CLI::App& app, int& exit_code) {
           "are added, unchanged drafted parts are replaced if they no longer fit, and lines "
           "written by people stay. Writes only with -o, which may name the same file")
       ->type_name("FILE");
+  CLI::Option* bags =
+      command
+          ->add_option("--bag", options->bags,
+                       "Draft rules that report from these recordings of a healthy robot instead; "
+                       "several give better limits")
+          ->type_name("FILE");
+  for (const char* other : {"--for", "--launch", "--pack", "--update"})
+    bags->excludes(command->get_option(other));
+  command
+      ->add_option("--message-path", options->message_path,
+                   "Where message definitions are, beside AMENT_PREFIX_PATH")
+      ->type_name("FOLDER")
+      ->needs(bags);
   command->callback([options, &exit_code] {
-    exit_code = options->update.empty() ? draft_rules(*options) : update_rules(*options);
+    exit_code = !options->bags.empty()    ? draft_from_bags(*options)
+                : options->update.empty() ? draft_rules(*options)
+                                          : update_rules(*options);
   });
 }
 

@@ -64,9 +64,11 @@ std::string written(std::int64_t at, std::tm* (*split)(const std::time_t*, std::
 
 std::string local_time(std::int64_t at) { return written(at, localtime_r, ' ', ""); }
 
+std::string utc_time(std::int64_t at) { return written(at, gmtime_r, 'T', "Z"); }
+
 Json log_document(const journal::Entry& entry) {
   return {{"id", entry.id},
-          {"at", written(entry.at, gmtime_r, 'T', "Z")},
+          {"at", utc_time(entry.at)},
           {"kind", entry.kind},
           {"body", parse_json(entry.body)}};
 }

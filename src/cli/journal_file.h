@@ -23,6 +23,8 @@ struct JournalOption {
 
 // "2026-11-21 18:36:01.123", by the clock of this machine. `at`: nanoseconds since 1970.
 std::string local_time(std::int64_t at);
+// "2026-11-21T17:36:01.123Z"
+std::string utc_time(std::int64_t at);
 
 // "   123  2026-11-21 18:36:01.123  strategy chosen    camera is held responsible …"
 std::string log_line(const journal::Entry& entry);

@@ -1,94 +1,221 @@
 #include "cli/replay_bag.h"
 
+#include <algorithm>
+#include <cmath>
 #include <unistd.h>
 
 #include <fmt/core.h>
 
 #include "bag/bag_file.h"
-#include "bag/bag_reading.h"
 #include "base/environment.h"
+#include "base/name_grammar.h"
+#include "base/units.h"
+#include "cli/bag_words.h"
 #include "cli/commands.h"
-#include "cli/journal_file.h"
 #include "cli/load_rules.h"
-#include "manager/manager.h"
+#include "knowledge/describe.h"
+#include "replay/bag_replay.h"
 #include "terminal/console.h"
 
 namespace culprit::cli {
 namespace {
 
-// Steps a manager that only advises through the messages of a bag.
-class BagRun {
- public:
-  BagRun(const RuleSet& rules, const PlannerOptions& planner, Time start)
-      : rules_(rules), start_(start), manager_(rules, planner.planner(), options(start)) {}
+using replay::BagReplay;
+using replay::RuleOutcome;
 
-  void step(Time now, std::span<const Observation> observations) {
-    // A recording may have gaps of hours; at most this many deadlines in one are stepped.
-    constexpr int kMostDeadlines = 100'000;
-    for (int i = 0; i < kMostDeadlines && manager_.next_deadline() < now; ++i) {
-      manager_.step(manager_.next_deadline(), {});
-      print();
-    }
-    manager_.step(now, observations);
-    print();
+double milliseconds_of(Duration duration) { return std::round(seconds(duration) * 1000) / 1000; }
+
+std::string joined(const std::vector<std::string>& parts) {
+  std::string all;
+  for (const std::string& each : parts) all += (all.empty() ? "" : "; ") + each;
+  return all;
+}
+
+// How often and how long, in words.
+std::string firing(const RuleOutcome& outcome, const BagReplay& replay) {
+  const std::string first =
+      outcome.first ? fmt::format("at {:.3f} s ({})", seconds(*outcome.first - *replay.start()),
+                                  clock_text(*outcome.first_clock))
+                    : "";
+  const std::string end = outcome.is_on ? ", still there at the end" : "";
+  if (outcome.times == 1)
+    return fmt::format("fired once: {}, for {:.3f} s{}", first, seconds(outcome.total), end);
+  return fmt::format("fired {} times: first {}, longest {:.3f} s, {:.3f} s in all{}", outcome.times,
+                     first, seconds(outcome.longest), seconds(outcome.total), end);
+}
+
+std::string verdict(const RuleOutcome& outcome, const BagReplay& replay) {
+  if (outcome.times > 0) return firing(outcome, replay);
+  if (outcome.is_on) return fmt::format("was there before, for {:.3f} s", seconds(outcome.total));
+  if (!outcome.was_known) {
+    return "could not be judged: " +
+           (outcome.why_unknown.empty()
+                ? "its values never covered the windows that it reads, or had no result"
+                : joined(outcome.why_unknown));
   }
+  constexpr double kNearlyAll = 0.99;
+  const double known = seconds(outcome.known);
+  const double all = replay.start() ? seconds(replay.end() - *replay.start()) : 0;
+  std::string text = "never true";
+  if (known < kNearlyAll * all)
+    text += fmt::format("; it could be judged for {:.3f} of {:.3f} s", known, all);
+  if (!outcome.why_unknown.empty()) text += "; " + joined(outcome.why_unknown);
+  return text;
+}
 
-  int decisions() const { return decisions_; }
+const char* state_of(const RuleOutcome& outcome) {
+  if (outcome.times > 0 || outcome.is_on) return "fired";
+  return outcome.was_known ? "never_true" : "not_judged";
+}
+
+class BagOutput {
+ public:
+  BagOutput(const BagReplayOptions& options, const RuleSet& rules)
+      : options_(options), rules_(rules) {}
+
+  BagReplay::Listener listener() {
+    return {[this](const Event& event, std::int64_t clock) { tell(event, clock); },
+            [this](Time from, Time until, std::int64_t clock) { tell_hole(from, until, clock); }};
+  }
+  void begin_at(Time start) { start_ = start; }
+
+  void finish(const BagReplay& replay, const bag::BagFile& bag, const bag::BagReading& reading) {
+    if (options_.json) return print_document(replay, bag, reading);
+    print_bag_troubles(bag, replay.start() ? replay.start()->time_since_epoch().count() : 0);
+    for (const std::string& each : reading.undecoded()) fmt::print(stderr, "culprit: {}\n", each);
+    std::size_t widest = 0;
+    for (const Rule& rule : rules_.rules) widest = std::max(widest, rule.name.size());
+    const auto outcomes = replay.outcomes();
+    if (!outcomes.empty()) fmt::print("\n");
+    for (const RuleOutcome& each : outcomes)
+      fmt::print("{:<{}}  {}\n", rules_[each.rule].name, widest,
+                 escape_controls(verdict(each, replay)));
+    const std::string late =
+        bag.out_of_order() > 0 ? fmt::format(" ({} out of order)", bag.out_of_order()) : "";
+    fmt::print("{} messages{} in {:.3f} s, {} decisions\n", replay.messages(), late,
+               replay.start() ? seconds(replay.end() - *replay.start()) : 0.0, replay.decisions());
+  }
 
  private:
-  static Manager::Options options(Time start) {
-    Manager::Options options;
-    options.autonomy = Autonomy::kAdvise;
-    options.start = start;
-    // A bag does not show nodes: none is absent because it was not seen.
-    options.discovery = std::chrono::hours(24 * 365);
-    return options;
-  }
-
-  void print() {
-    for (const Event& event : manager_.events()) {
-      decisions_ += std::holds_alternative<StrategyChosen>(event.what) ? 1 : 0;
-      const std::string text = line(event, rules_, start_, colour_of(STDOUT_FILENO));
-      if (!text.empty()) fmt::print("{}\n", text);
+  void tell(const Event& event, std::int64_t clock) {
+    const std::string text = describe(event, rules_);
+    if (text.empty()) return;
+    const double at = seconds(event.at - start_);
+    if (options_.json) {
+      events_.push_back({{"at_s", std::round(at * 1000) / 1000},
+                         {"clock", clock_document(clock)},
+                         {"type", words_of(event).name},
+                         {"text", text}});
+      return;
     }
+    fmt::print("{:10.3f}  {}  {}  {}\n", at, clock_text(clock),
+               label_of(words_of(event), colour_of(STDOUT_FILENO)), escape_controls(text));
   }
 
+  void tell_hole(Time from, Time until, std::int64_t clock) {
+    if (options_.json) {
+      holes_.push_back({{"at_s", milliseconds_of(from - start_)},
+                        {"clock", clock_document(clock)},
+                        {"for_s", milliseconds_of(until - from)}});
+      return;
+    }
+    fmt::print("{:10.3f}  {}  {:<10}  the copy lacks messages for {:.3f} s; nothing is judged\n",
+               seconds(from - start_), clock_text(clock), "hole", seconds(until - from));
+  }
+
+  void print_document(const BagReplay& replay, const bag::BagFile& bag,
+                      const bag::BagReading& reading) const {
+    Json rules = Json::array();
+    for (const RuleOutcome& each : replay.outcomes()) {
+      Json rule{{"rule", rules_[each.rule].name},
+                {"criticality", to_string(rules_[each.rule].policies.criticality)},
+                {"state", state_of(each)},
+                {"times", each.times},
+                {"longest_s", milliseconds_of(each.longest)},
+                {"total_s", milliseconds_of(each.total)},
+                {"judged_s", milliseconds_of(each.known)},
+                {"is_on", each.is_on},
+                {"why_unknown", each.why_unknown}};
+      if (each.first) {
+        rule["first_s"] = milliseconds_of(*each.first - *replay.start());
+        rule["first_clock"] = clock_document(*each.first_clock);
+      }
+      rules.push_back(std::move(rule));
+    }
+    Json document{{"bag", options_.bag},
+                  {"messages", replay.messages()},
+                  {"out_of_order", bag.out_of_order()},
+                  {"decisions", replay.decisions()},
+                  {"rules", std::move(rules)},
+                  {"events", events_},
+                  {"holes", holes_},
+                  {"undecoded", reading.undecoded()}};
+    if (replay.start()) {
+      document["start"] = clock_document(replay.start_clock());
+      document["duration_s"] = milliseconds_of(replay.end() - *replay.start());
+    }
+    add_bag_troubles(document, bag,
+                     replay.start() ? replay.start()->time_since_epoch().count() : 0);
+    fmt::print("{}\n", to_line(document));
+  }
+
+  const BagReplayOptions& options_;
   const RuleSet& rules_;
-  Time start_;
-  Manager manager_;
-  int decisions_ = 0;
+  Time start_{};
+  Json events_ = Json::array();
+  Json holes_ = Json::array();
 };
+
+int bag_exit_code(const BagReplayOptions& options, const std::vector<RuleOutcome>& outcomes,
+                  const RuleSet& rules, bool is_whole) {
+  if (options.fail_on == "never") return kOk;
+  if (!is_whole) return kFailed;
+  const auto any = [&](const auto& is_it) { return std::ranges::any_of(outcomes, is_it); };
+  const auto has_fired = [&](Criticality least) {
+    return any([&](const RuleOutcome& each) {
+      return (each.times > 0 || each.is_on) && rules[each.rule].policies.criticality >= least;
+    });
+  };
+  const bool has_unjudged =
+      any([](const RuleOutcome& each) { return each.times == 0 && !each.was_known; });
+  if (options.fail_on == "error") return has_fired(Criticality::kError) ? kFailed : kOk;
+  if (options.fail_on == "warning") return has_fired(Criticality::kWarning) ? kFailed : kOk;
+  if (options.fail_on == "unjudged")
+    return has_unjudged || has_fired(Criticality::kWarning) ? kFailed : kOk;
+  return has_unjudged ? kWarnings : kOk;
+}
 
 }  // namespace
 
-int replay_bag(const BagReplay& options) {
+int replay_bag(const BagReplayOptions& options) {
   const auto rules = load_rules(options.rules);
   if (rules == nullptr) return kFailed;
-  auto bag = bag::BagFile::open(options.bag);
+  std::optional<Duration> since;
+  if (!options.since.empty()) {
+    const auto parsed = parse_duration(options.since);
+    if (!parsed) return fail("--since: " + parsed.error(), kUsage);
+    since = *parsed;
+  }
+  auto bag = bag::BagFile::open(std::filesystem::path(options.bag));
   if (!bag) return fail(bag.error());
   ros2::MessageLibrary library(
       ros2::message_directories(options.message_path, environment("AMENT_PREFIX_PATH")));
   bag::BagReading reading(*rules, bag->contents(), library);
-
-  std::optional<BagRun> run;
-  std::vector<Observation> observations;
-  std::uint64_t messages = 0;
-  for (bag::BagMessage message; bag->next(message); ++messages) {
-    const Time now{Duration(message.at)};
-    if (!run) run.emplace(*rules, options.planner, now);
-    observations.clear();
-    reading.read(message, observations);
-    run->step(now, observations);
+  replay::BagStretch stretch;
+  if (since) {
+    std::int64_t end = 0;
+    for (const bag::BagFile::Part& each : bag->parts()) end = std::max(end, each.last);
+    stretch.from = Time(Duration(end) - *since);
   }
-  for (const std::string& each : reading.missing())
-    fmt::print(stderr, "culprit: the bag does not have what the rules read: {}\n", each);
-  const std::vector<std::string> losses = bag->contents().losses();
-  for (const std::string& each : losses)
-    fmt::print(stderr, "culprit: the bag is not whole: {}\n", each);
-  const std::string late =
-      bag->out_of_order() > 0 ? fmt::format(" ({} out of order)", bag->out_of_order()) : "";
-  fmt::print("{} messages{}, {} decisions\n", messages, late, run ? run->decisions() : 0);
-  return losses.empty() ? kOk : kFailed;
+  BagOutput output(options, *rules);
+  BagReplay replay(*rules, options.planner.planner(), reading, output.listener(), stretch);
+  for (bag::BagMessage message; bag->next(message);) {
+    if (!replay.start()) output.begin_at(Time(Duration(message.at)));
+    replay.step(message);
+  }
+  output.finish(replay, *bag, reading);
+  const bool is_whole = bag->contents().losses().empty() && reading.undecoded().empty();
+  return bag_exit_code(options, replay.outcomes(), *rules, is_whole);
 }
 
 }  // namespace culprit::cli

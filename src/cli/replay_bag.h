@@ -9,14 +9,17 @@
 
 namespace culprit::cli {
 
-struct BagReplay {
+struct BagReplayOptions {
   std::string bag;
   std::string rules;
   std::vector<std::filesystem::path> message_path;
+  std::string since;    // a duration before the end; empty: all
+  bool json = false;    // one document
+  std::string fail_on;  // "error", "warning", "unjudged", "never"; empty: what cannot be read
   PlannerOptions planner;
 };
 
-// Prints the decisions; gives the exit code.
-int replay_bag(const BagReplay& options);
+// Prints what happens, and a line for each rule; gives the exit code.
+int replay_bag(const BagReplayOptions& options);
 
 }  // namespace culprit::cli

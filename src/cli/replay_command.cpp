@@ -29,6 +29,7 @@ struct ReplayOptions {
   bool events = false;
   std::string since;
   bool json = false;
+  std::string fail_on;
   std::vector<std::filesystem::path> message_path;
   PlannerOptions planner;
 };
@@ -258,14 +259,19 @@ int look_back(const ReplayOptions& options, const journal::Reader& journal, bool
   return kOk;
 }
 
+int replay_recording(const ReplayOptions& options) {
+  if (options.session != 0) return fail("--session is for a journal; a bag is one run", kUsage);
+  if (options.rules.empty()) return fail("a bag has no rules: add --rules", kUsage);
+  return replay_bag({options.journal, options.rules, options.message_path, options.since,
+                     options.json, options.fail_on, options.planner});
+}
+
 int replay_any(const ReplayOptions& options, bool other_planner) {
-  const bool is_bag = bag::is_bag(options.journal);
-  if (options.json && (is_bag || options.events))
-    return fail("--json is neither for a bag nor with --events", kUsage);
-  if (is_bag) {
-    if (options.rules.empty()) return fail("a bag has no rules: add --rules"), kUsage;
-    return replay_bag({options.journal, options.rules, options.message_path, options.planner});
-  }
+  if (options.json && options.events)
+    return fail("--json has the events already; leave --events out", kUsage);
+  if (bag::is_bag(options.journal)) return replay_recording(options);
+  if (!options.message_path.empty()) return fail("--message-path is for a bag", kUsage);
+  if (!options.fail_on.empty()) return fail("--fail-on is for a bag", kUsage);
   const auto journal = journal::Reader::open(options.journal);
   if (!journal) return fail(journal.error());
   if (!options.since.empty()) return look_back(options, *journal, other_planner);
@@ -289,16 +295,20 @@ void add_replay(CLI::App& app, int& exit_code) {
   command->add_option("--session", options->session,
                       "The run that begins with this row (default: the latest)");
   command->add_option("--rules", options->rules, "Other rules")->type_name("FILE");
-  command->add_flag("--events", options->events, "Print what happens");
-  command->add_option(
-      "--since", options->since,
-      "With --rules: what they would have said of so long ago until now, over all runs: 10min, 1h");
+  command->add_flag("--events", options->events, "Print what happens (a bag's replay always does)");
+  command->add_option("--since", options->since,
+                      "With --rules: only the last 10min, 1h ... until now over all runs, or until "
+                      "the end of a bag");
   command
       ->add_option("--message-path", options->message_path,
                    "For a bag: folders with .msg files: <folder>/<package>/msg/<Type>.msg")
       ->type_name("FOLDER");
-  command->add_flag("--json", options->json,
-                    "As one JSON document; not of a bag, nor with --events");
+  command->add_flag("--json", options->json, "As one JSON document; not with --events");
+  command
+      ->add_option("--fail-on", options->fail_on,
+                   "For a bag: exit with 1 if such a rule fired, or any could not be judged "
+                   "(default: only if the bag is damaged)")
+      ->check(CLI::IsMember({"error", "warning", "unjudged", "never"}));
   options->planner.add_to(*command);
   const CLI::Option* planner = command->get_option("--planner");
   const CLI::Option* objective = command->get_option("--objective");

@@ -3,9 +3,16 @@
 #include <algorithm>
 
 namespace culprit::bag {
+namespace {
+
+constexpr std::size_t kMostLines = 20;
+
+}  // namespace
 
 std::size_t BagContents::place_of(BagTopic topic) {
-  const auto [place, is_new] = places_.try_emplace(topic.name, topics_.size());
+  // ros2 bag play publishes a relative name below the root, too.
+  if (!topic.name.starts_with('/')) topic.name.insert(0, 1, '/');
+  const auto [place, is_new] = places_.try_emplace({topic.name, topic.type}, topics_.size());
   if (is_new) topics_.push_back(std::move(topic));
   return place->second;
 }
@@ -18,17 +25,33 @@ void BagContents::define(std::string_view type, std::string_view text) {
 }
 
 const std::string* BagContents::definition_of(const std::string& type) const {
-  const auto found = definitions_.find(type);
-  return found == definitions_.end() ? nullptr : &found->second;
+  const bool is_message = type.find("/msg/") != std::string::npos;
+  // The text of a service or an action may stand under its own name: of X_SendGoal_Event under X.
+  for (std::size_t end = type.size(); end != std::string::npos && end > 0;
+       end = type.rfind('_', end - 1)) {
+    const auto found = definitions_.find(type.substr(0, end));
+    if (found != definitions_.end()) return &found->second;
+    if (is_message) break;
+  }
+  return nullptr;
 }
 
 void BagContents::lose(std::string what) {
-  constexpr std::size_t kMostLines = 20;
+  if (std::ranges::find(losses_, what) != losses_.end()) return;
   if (losses_.size() < kMostLines) {
     losses_.push_back(std::move(what));
   } else {
     ++more_losses_;
   }
+}
+
+void BagContents::remark(std::string what) {
+  if (remarks_.size() < kMostLines) remarks_.push_back(std::move(what));
+}
+
+void BagContents::note_jump(ClockJump jump) {
+  constexpr std::size_t kMostJumps = 1000;
+  if (jumps_.size() < kMostJumps) jumps_.push_back(jump);
 }
 
 std::vector<std::string> BagContents::losses() const {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "bag/byte_source.h"
 #include "bag/mcap_file.h"
 #include "bag/sqlite_file.h"
 
@@ -11,86 +10,152 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path uncompressed_name(fs::path path) {
-  return is_compressed(path) ? path.replace_extension() : path;
+constexpr std::size_t kMostKeptOpen = 64;  // files, of which a process may have 1,024
+
+std::int64_t usual_gap(const TimeLine& line) {
+  constexpr std::int64_t kUnknown = 1'000'000;
+  if (line.messages < 2) return kUnknown;
+  const std::int64_t gap = (line.last - line.first) / static_cast<std::int64_t>(line.messages - 1);
+  return std::clamp(gap, kUnknown, PieceFinder::kSlack);
 }
 
-bool is_part(const fs::path& path) {
-  const std::string extension = uncompressed_name(path).extension();
-  return extension == ".db3" || extension == ".mcap";
-}
-
-// name_0.db3, name_1.db3 ... name_10.db3
-bool is_earlier(const fs::path& a, const fs::path& b) {
-  const std::string left = uncompressed_name(a).string();
-  const std::string right = uncompressed_name(b).string();
-  if (left != right) return left.size() != right.size() ? left.size() < right.size() : left < right;
-  return !is_compressed(a) && is_compressed(b);
-}
-
-Expected<std::vector<fs::path>> parts_of(const fs::path& path) {
-  std::error_code error;
-  if (!fs::exists(path, error)) return Error{"there is no such bag"};
-  if (!fs::is_directory(path, error)) {
-    if (!is_part(path)) return Error{"it ends neither in .db3 nor in .mcap, or that with .zstd"};
-    return std::vector{path};
-  }
-  std::vector<fs::path> parts;
-  for (const auto& entry : fs::directory_iterator(path, error)) {
-    if (is_part(entry.path())) parts.push_back(entry.path());
-  }
-  if (error) return Error{error.message()};
-  if (parts.empty()) return Error{"there is no .db3 or .mcap file in it, nor one with .zstd"};
-  std::sort(parts.begin(), parts.end(), is_earlier);
-  // ros2 bag play leaves a part that it decompressed beside the compressed one.
-  const auto is_same = [](const fs::path& a, const fs::path& b) {
-    return uncompressed_name(a) == uncompressed_name(b);
-  };
-  parts.erase(std::unique(parts.begin(), parts.end(), is_same), parts.end());
-  return parts;
+// Whether all of `part` is so long before `begin` that no file of another order explains it.
+bool is_set_back(const TimeLine& part, std::int64_t begin) {
+  constexpr std::int64_t kUsualGaps = 10;
+  return begin - part.last > std::max(PieceFinder::kSlack, kUsualGaps * usual_gap(part));
 }
 
 }  // namespace
 
 bool is_bag(const fs::path& path) {
   std::error_code error;
-  return fs::is_directory(path, error) || is_part(path);
+  return fs::is_directory(path, error) || has_name_of_bag(path);
 }
 
 Expected<BagFile> BagFile::open(const fs::path& path, Limits limits) {
-  const auto failure = [&](const std::string& why) {
-    return Error{"cannot read the bag '" + path.string() + "': " + why};
-  };
-  auto parts = parts_of(path);
-  if (!parts) return failure(parts.error());
+  return open(std::span(&path, 1), limits);
+}
+
+Expected<BagFile> BagFile::open(std::span<const fs::path> paths, Limits limits) {
   BagFile bag;
   bag.limits_ = limits;
-  bag.parts_ = std::move(*parts);
-  std::string why;
-  while (bag.part_ == nullptr) {
-    if (bag.next_part_ == bag.parts_.size()) return failure(why);
-    if (const auto opened = bag.open_next_part(); !opened) why = opened.error();
+  bag.expected_count_ = 0;
+  for (const fs::path& path : paths) {
+    if (const auto added = bag.add(path); !added)
+      return Error{"cannot read the bag '" + path.string() + "': " + added.error()};
+  }
+  std::stable_sort(bag.parts_.begin(), bag.parts_.end(),
+                   [](const Open& a, const Open& b) { return a.line.first < b.line.first; });
+  if (paths.size() > 1) bag.straighten_parts(bag.parts_, false);
+  for (const Open& each : bag.parts_) {
+    for (const TimeLine::Jump& jump : each.line.jumps)
+      bag.contents_->note_jump({jump.at, jump.by, jump.recorded_at});
   }
   return bag;
 }
 
-Expected<void> BagFile::open_next_part() {
-  const fs::path& path = parts_[next_part_++];
-  const bool is_mcap = uncompressed_name(path).extension() == ".mcap";
-  auto part = is_mcap ? McapFile::open(path, *contents_, limits_.most_memory)
-                      : SqliteFile::open(path, *contents_);
-  if (part) {
-    part_ = std::move(*part);
-    return {};
+Expected<std::unique_ptr<Storage>> BagFile::open_part(const BagPart& part) {
+  if (const std::string why = why_no_part(part.path); !why.empty()) return Error{why};
+  return part.format == PartFormat::kMcap
+             ? McapFile::open(part.path, *contents_, limits_.most_memory)
+             : SqliteFile::open(part.path, *contents_);
+}
+
+// One recording.
+Expected<void> BagFile::add(const fs::path& path) {
+  auto found = find_parts(path);
+  if (!found) return Error{found.error()};
+  for (std::string& each : found->missing) contents_->lose(std::move(each));
+  for (std::string& each : found->foreign) contents_->remark(std::move(each));
+  std::vector<Open> recording;
+  std::string why;
+  bool is_after_lost = false;
+  for (BagPart& part : found->parts) {
+    auto storage = open_part(part);
+    if (!storage) {
+      why = part.path.filename().string() + ": " + storage.error();
+      contents_->lose(why + "; it is left out");
+      is_after_lost = true;
+      continue;
+    }
+    PieceFinder finder;
+    (*storage)->survey(finder);
+    late_ += finder.late();
+    part.is_after_missing |= is_after_lost;
+    is_after_lost = false;
+    Open open{std::move(part), straighten(finder.pieces()), std::move(*storage)};
+    if (recording.size() + parts_.size() >= kMostKeptOpen) open.storage.reset();
+    recording.push_back(std::move(open));
   }
-  const std::string why = path.filename().string() + ": " + part.error();
-  contents_->lose(why + "; it is left out");
-  return Error{why};
+  if (recording.empty()) return Error{why};
+  for (BagTopic& each : found->topics) contents_->place_of(std::move(each));
+  const bool is_whole = found->missing.empty() && found->messages;
+  expected_count_ = is_whole && expected_count_ ? std::optional(*expected_count_ + *found->messages)
+                                                : std::nullopt;
+  if (!found->is_ordered)
+    std::stable_sort(recording.begin(), recording.end(),
+                     [](const Open& a, const Open& b) { return a.line.first < b.line.first; });
+  straighten_parts(recording, found->is_ordered);
+  for (Open& each : recording) parts_.push_back(std::move(each));
+  return {};
+}
+
+// The clock may have been set at the end of a part, too. Parts that overlap were recorded at the same
+// time.
+void BagFile::straighten_parts(std::vector<Open>& recording, bool is_ordered) {
+  std::int64_t begin = 0;
+  std::int64_t end = 0;
+  std::int64_t carried = 0;
+  bool is_first = true;
+  for (Open& each : recording) {
+    TimeLine& line = each.line;
+    if (line.stretches.empty()) continue;
+    const std::int64_t as_before = line.first + carried;
+    const bool continues =
+        carried != 0 && as_before >= end - PieceFinder::kSlack && as_before <= end + kLongestHole;
+    if (continues) {
+      line.move(carried);
+    } else if (!is_first) {
+      const bool is_forward = line.first > end + kLongestHole && !each.part.is_after_missing;
+      const bool is_backward = is_ordered && line.last < begin && is_set_back(line, begin);
+      if (is_forward || is_backward) {
+        const std::int64_t by = line.first - end - usual_gap(line);
+        const std::int64_t recorded_at = line.first - line.stretches.front().offset;
+        line.move(-by);
+        line.jumps.insert(line.jumps.begin(), {line.first, by, recorded_at});
+      }
+    }
+    carried = line.stretches.back().offset;
+    begin = is_first ? line.first : std::min(begin, line.first);
+    end = is_first ? line.last : std::max(end, line.last);
+    is_first = false;
+  }
+}
+
+std::vector<BagFile::Part> BagFile::parts() const {
+  std::vector<Part> all;
+  for (const Open& each : parts_) {
+    std::error_code error;
+    const std::uintmax_t bytes = fs::file_size(each.part.path, error);
+    all.push_back(
+        {each.part.path, each.part.format, error ? 0 : bytes, each.line.first, each.line.last});
+  }
+  return all;
+}
+
+std::uint64_t BagFile::late() const {
+  std::uint64_t late = late_;
+  for (const Open& each : parts_) late += each.storage != nullptr ? each.storage->late() : 0;
+  return late;
 }
 
 bool BagFile::next(BagMessage& message) {
-  while (next_of_part(message)) {
+  while (next_of_parts(message)) {
+    ++count_;
+    is_after_hole_ |= message.is_after_hole;
     if (!is_usable(message)) continue;
+    message.is_after_hole = is_after_hole_;
+    is_after_hole_ = false;
     if (message.at < last_) {
       message.at = last_;
       ++out_of_order_;
@@ -98,22 +163,60 @@ bool BagFile::next(BagMessage& message) {
     last_ = message.at;
     return true;
   }
+  count_what_is_missing();
   return false;
 }
 
-bool BagFile::next_of_part(BagMessage& message) {
+void BagFile::count_what_is_missing() {
+  if (expected_count_ && count_ < *expected_count_ && contents_->losses().empty())
+    contents_->lose("metadata.yaml counts " + std::to_string(*expected_count_) +
+                    " messages, of which " + std::to_string(*expected_count_ - count_) +
+                    " are missing");
+  expected_count_.reset();
+}
+
+bool BagFile::next_of_parts(BagMessage& message) {
+  if (given_ != nullptr) take_head(*given_);
+  given_ = nullptr;
   while (true) {
-    if (part_ != nullptr && part_->next(message)) return true;
-    part_.reset();
-    if (next_part_ == parts_.size()) return false;
-    (void)open_next_part();  // says itself what cannot be opened
+    for (std::size_t p = 0; p < next_part_; ++p) {
+      Open& each = parts_[p];
+      if (each.has_head && (given_ == nullptr || each.head.at < given_->head.at)) given_ = &each;
+    }
+    const bool is_due = next_part_ < parts_.size() &&
+                        (given_ == nullptr || parts_[next_part_].line.first <= given_->head.at);
+    if (!is_due) break;
+    begin(parts_[next_part_++]);
+    given_ = nullptr;
   }
+  if (given_ == nullptr) return false;
+  message = given_->head;
+  return true;
+}
+
+void BagFile::begin(Open& part) {
+  if (part.storage == nullptr) {
+    auto storage = open_part(part.part);
+    if (!storage)
+      return contents_->lose(part.part.path.filename().string() + ": " + storage.error());
+    part.storage = std::move(*storage);
+    PieceFinder ignored;
+    part.storage->survey(ignored);
+  }
+  part.storage->follow(part.line);
+  take_head(part);
+  part.head.is_after_hole |= part.part.is_after_missing;
+}
+
+void BagFile::take_head(Open& part) {
+  part.has_head = part.storage->next(part.head);
+  if (part.has_head) return;
+  late_ += part.storage->late();
+  part.storage.reset();
 }
 
 bool BagFile::is_usable(BagMessage& message) {
-  // Times that no recorder writes are damage, with which nobody should calculate.
-  constexpr std::int64_t kYear2100 = 4'102'444'800'000'000'000;
-  if (message.at < 0 || message.at >= kYear2100) {
+  if (!is_time(message.recorded_at)) {  // with which nobody should calculate
     contents_->lose_message("with a time that cannot be");
     return false;
   }

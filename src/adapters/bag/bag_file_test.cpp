@@ -2,6 +2,8 @@
 // broken ones.
 #include "bag/bag_file.h"
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -98,12 +100,12 @@ TEST_F(BagTest, ReadsBagsThatAreCompressedAsAWholeOrMessageByMessage) {
   EXPECT_THAT(all.losses, IsEmpty());
 }
 
-TEST_F(BagTest, TimeNeverGoesBack) {
+TEST_F(BagTest, MessagesThatWereWrittenLateAreReadByTheirTimes) {
   write("bag_0.mcap", mcap(two_topics() + said(1, 50, "x") + said(1, 40, "y"), 2));
   write("bag_1.mcap", mcap(two_topics() + said(1, 45, "z") + said(1, 60, "u"), 2));
   const Read all = read(folder_);
-  EXPECT_THAT(all.messages, ElementsAre("/a@50=x", "/a@50=y", "/a@50=z", "/a@60=u"));
-  EXPECT_EQ(all.out_of_order, 2);
+  EXPECT_THAT(all.messages, ElementsAre("/a@40=y", "/a@45=z", "/a@50=x", "/a@60=u"));
+  EXPECT_EQ(all.out_of_order, 0);
   EXPECT_THAT(all.losses, IsEmpty());
 }
 
@@ -200,7 +202,7 @@ TEST_F(BagTest, APartThatCannotBeReadDoesNotHideTheOthers) {
   write("bag_2.mcap", mcap(two_topics() + said(1, 1000, "u"), 1));
   const Read all = read(folder_);
   EXPECT_THAT(all.losses, ElementsAre(HasSubstr("bag_0.db3: it is no"),
-                                      HasSubstr("bag_1.db3: what follows its first")));
+                                      HasSubstr("bag_1.db3: the database is damaged")));
   EXPECT_EQ(all.messages.back(), "/a@1000=u");
 }
 
@@ -218,6 +220,177 @@ TEST_F(BagTest, SaysWhyABagCannotBeRead) {
   (void)value_of(journal::Database::open(folder_ / "b.db3", journal::Database::Mode::kWrite))
       .run("CREATE TABLE t(a)");
   EXPECT_THAT(why(folder_ / "b.db3"), HasSubstr("it is no bag"));
+}
+
+std::vector<double> times_of(const fs::path& path) {
+  std::vector<double> times;
+  BagFile bag = value_of(BagFile::open(path));
+  for (BagMessage message; bag.next(message);)
+    times.push_back(static_cast<double>(message.at - test::kBagStart) / 1e9);
+  return times;
+}
+
+double longest_gap(const std::vector<double>& times) {
+  double longest = 0;
+  for (std::size_t i = 1; i < times.size(); ++i)
+    longest = std::max(longest, times[i] - times[i - 1]);
+  return longest;
+}
+
+// The same messages in both formats; MCAP with a chunk for 25 and for 40, so that the clock is set
+// between two chunks and within one.
+void write_all(const fs::path& folder, const test::TestRecording& recording) {
+  test::write_db3(folder / "a.db3", recording);
+  test::write_mcap(folder / "b.mcap", recording, 25);
+  test::write_mcap(folder / "c.mcap", recording, 40);
+}
+constexpr const char* kAllFormats[] = {"a.db3", "b.mcap", "c.mcap"};
+
+TEST_F(BagTest, TimeGoesOnWhereTheClockWasSetInEveryFormat) {
+  for (const std::int64_t by : {std::int64_t{-3600}, std::int64_t{7200}}) {
+    const culprit::test::TestFolder own;
+    test::TestRecording recording = test::regular_recording();
+    for (std::size_t m = 150; m < 300; ++m) recording.messages[m].at += by * 1'000'000'000;
+    write_all(own.path(), recording);
+    for (const char* name : kAllFormats) {
+      BagFile bag = value_of(BagFile::open(own.path() / name));
+      ASSERT_EQ(bag.contents().jumps().size(), 1u) << name;
+      const ClockJump& jump = bag.contents().jumps()[0];
+      EXPECT_NEAR(static_cast<double>(jump.by) / 1e9, static_cast<double>(by), 0.01) << name;
+      EXPECT_NEAR(static_cast<double>(jump.at - test::kBagStart) / 1e9, 15.0, 0.01) << name;
+      const std::vector<double> times = times_of(own.path() / name);
+      EXPECT_EQ(times.size(), 300u) << name;
+      EXPECT_NEAR(longest_gap(times), 0.1, 0.01) << name;
+    }
+  }
+}
+
+TEST_F(BagTest, AFileThatWasWrittenInAnotherOrderIsReadByItsTimes) {
+  test::TestRecording recording = test::regular_recording();
+  std::rotate(recording.messages.begin(), recording.messages.begin() + 150,
+              recording.messages.end());
+  write_all(folder_, recording);
+  for (const char* name : kAllFormats) {
+    const std::vector<double> times = times_of(folder_ / name);
+    EXPECT_EQ(times.size(), 300u) << name;
+    EXPECT_NEAR(longest_gap(times), 0.1, 1e-6) << name;
+    EXPECT_TRUE(value_of(BagFile::open(folder_ / name)).contents().jumps().empty()) << name;
+  }
+}
+
+TEST_F(BagTest, CountsMessagesThatWereWrittenAfterLaterOnes) {
+  test::TestRecording recording = test::regular_recording();
+  for (const std::size_t m : {10, 100, 200}) recording.messages[m].at -= 250 * test::kMillisecond;
+  write_all(folder_, recording);
+  for (const char* name : kAllFormats) {
+    BagFile bag = value_of(BagFile::open(folder_ / name));
+    for (BagMessage message; bag.next(message);) {
+    }
+    EXPECT_EQ(bag.late(), 3u) << name;
+  }
+}
+
+TEST_F(BagTest, RecordersThatRanAtTheSameTimeAreMerged) {
+  test::write_db3(folder_ / "left.db3", test::regular_recording("/a"));
+  test::write_mcap(folder_ / "right.mcap", test::regular_recording("/a"), 25);
+  const std::vector<double> times = times_of(folder_);
+  EXPECT_EQ(times.size(), 600u);
+  EXPECT_NEAR(longest_gap(times), 0.1, 1e-6);
+  EXPECT_TRUE(std::is_sorted(times.begin(), times.end()));
+}
+
+TEST_F(BagTest, MetadataSaysWhichPartsBelong) {
+  const test::TestRecording whole = test::regular_recording();
+  const auto part = [&](std::size_t from, std::size_t until) {
+    test::TestRecording some = whole;
+    some.messages.assign(whole.messages.begin() + static_cast<std::ptrdiff_t>(from),
+                         whole.messages.begin() + static_cast<std::ptrdiff_t>(until));
+    return some;
+  };
+  test::write_db3(folder_ / "z_first.db3", part(0, 100));
+  test::write_db3(folder_ / "a_last.db3", part(200, 300));
+  test::write_db3(folder_ / "old.db3", part(0, 300));
+  test::write_metadata(folder_, {"z_first.db3", "middle.db3", "a_last.db3"}, 300);
+  BagFile bag = value_of(BagFile::open(folder_));
+  std::vector<std::int64_t> after_holes;
+  std::size_t count = 0;
+  for (BagMessage message; bag.next(message); ++count) {
+    if (message.is_after_hole) after_holes.push_back((message.at - test::kBagStart) / 1'000'000);
+  }
+  EXPECT_EQ(count, 200u);
+  EXPECT_THAT(after_holes, ElementsAre(20'000));
+  EXPECT_THAT(bag.contents().losses(), ElementsAre(HasSubstr("middle.db3: metadata.yaml names")));
+  EXPECT_THAT(bag.contents().remarks(), ElementsAre(HasSubstr("old.db3: metadata.yaml does not")));
+}
+
+TEST_F(BagTest, MetadataCountsWhatIsMissing) {
+  test::write_db3(folder_ / "a_0.db3", test::regular_recording());
+  test::write_metadata(folder_, {"a_0.db3"}, 310);
+  const Read all = read(folder_);
+  EXPECT_THAT(all.losses, ElementsAre(HasSubstr("310 messages, of which 10 are missing")));
+}
+
+TEST_F(BagTest, NamesGetTheirLeadingSlash) {
+  test::write_db3(folder_ / "a.db3", test::regular_recording("x"));
+  const BagFile bag = value_of(BagFile::open(folder_ / "a.db3"));
+  EXPECT_EQ(bag.contents().topics()[0].name, "/x");
+}
+
+TEST_F(BagTest, ATopicMayChangeItsType) {
+  const std::string data = schema(1, "std_msgs/msg/Float64", "") + channel(1, 1, "/x") +
+                           schema(2, "std_msgs/msg/Float32", "") + channel(2, 2, "/x");
+  const Read all = read(write("a.mcap", mcap(data + said(1, 1, "u") + said(2, 2, "v"), 2)));
+  EXPECT_THAT(all.messages, ElementsAre("/x@1=u", "/x@2=v"));
+  const BagFile bag = value_of(BagFile::open(folder_ / "a.mcap"));
+  EXPECT_EQ(bag.contents().topics().size(), 2u);
+}
+
+TEST_F(BagTest, ADatabaseThatWasCutOffIsReadAsFarAsItGoes) {
+  test::TestRecording recording{{{"/x", "std_msgs/msg/Float64"}}, {}};
+  for (int i = 0; i < 3000; ++i)
+    recording.messages.push_back({test::kBagStart + i * 10 * test::kMillisecond, "/x",
+                                  std::string(test::text_of(test::number(i)))});
+  test::write_db3(folder_ / "a.db3", recording);
+  const std::string whole = bytes_of("a.db3");
+  for (const double share : {0.9, 0.5}) {
+    const auto size = static_cast<std::size_t>(static_cast<double>(whole.size()) * share);
+    const Read all = read(write("cut.db3", whole.substr(0, size)));
+    EXPECT_GT(static_cast<double>(all.messages.size()), 3000 * share * 0.8) << share;
+    EXPECT_THAT(all.losses, ElementsAre(HasSubstr(".recover"))) << share;
+  }
+}
+
+TEST_F(BagTest, ADamagedPageOfADatabaseIsPassed) {
+  test::TestRecording recording = test::regular_recording();
+  for (auto& each : recording.messages) each.bytes += std::string(300, 'x');
+  test::write_db3(folder_ / "a.db3", recording);
+  std::string bytes = bytes_of("a.db3");
+  const auto page = static_cast<std::ptrdiff_t>(bytes.size() / 4096 / 2 * 4096);
+  std::fill(bytes.begin() + page, bytes.begin() + page + 4096, '\xff');
+  write("a.db3", bytes);
+  BagFile bag = value_of(BagFile::open(folder_ / "a.db3"));
+  std::size_t count = 0;
+  std::size_t holes = 0;
+  for (BagMessage message; bag.next(message); ++count) holes += message.is_after_hole ? 1 : 0;
+  EXPECT_GT(count, 250u);
+  EXPECT_LT(count, 300u);
+  EXPECT_EQ(holes, 1u);
+}
+
+TEST_F(BagTest, SaysWhatElseAFileIs) {
+  const auto why = [](const fs::path& path) {
+    const auto opened = BagFile::open(path);
+    return opened ? "" : opened.error();
+  };
+  EXPECT_THAT(why(write("a.bag", "#ROSBAG V2.0\n")), HasSubstr("ROS 1 bag"));
+  EXPECT_THAT(why(write("b.db3", "#ROSBAG V2.0\n")), HasSubstr("ROS 1 bag"));
+  EXPECT_THAT(why(write("c.mcap", "version https://git-lfs.github.com/spec/v1\noid sha256:1\n")),
+              HasSubstr("git lfs pull"));
+  EXPECT_THAT(why(write("d.mcap", "")), HasSubstr("empty"));
+  const fs::path folder = folder_ / "ros1";
+  fs::create_directory(folder);
+  std::ofstream(folder / "a.bag") << "#ROSBAG V2.0\n";
+  EXPECT_THAT(why(folder), HasSubstr("ROS 1 bag"));
 }
 
 // Whatever is cut off or changed, reading ends, and what it gives was written.

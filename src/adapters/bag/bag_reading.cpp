@@ -1,8 +1,15 @@
 #include "bag/bag_reading.h"
 
 #include <algorithm>
+#include <set>
 
+#include "base/closest.h"
+#include "base/ros_names.h"
 #include "knowledge/component_states.h"
+#include "knowledge/describe.h"
+#include "knowledge/signal_store.h"
+#include "link/goals.h"
+#include "robot/unreadable.h"
 #include "ros2/parameter_store.h"
 
 namespace culprit::bag {
@@ -30,18 +37,41 @@ Lifecycle lifecycle_from(const std::string& label) {
   return Lifecycle::kTransition;
 }
 
+// The kinds of encapsulation that XCDR2 has (DDS-XTypes 1.3, 7.6.3.1.2, and as Cyclone DDS and Fast DDS count them).
+bool is_xcdr2(ros2::ByteView payload) {
+  return payload.size() >= 2 && payload[0] == 0 && payload[1] >= 0x06;
+}
+
+std::string counted(std::uint64_t count, const char* what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
 }  // namespace
 
 BagReading::BagReading(const RuleSet& rules, const BagContents& contents,
                        ros2::MessageLibrary& library)
-    : rules_(rules), contents_(contents), library_(library), diagnostics_(rules), binding_(rules) {
+    : rules_(rules),
+      contents_(contents),
+      library_(library),
+      diagnostics_(rules),
+      binding_(rules),
+      signals_(rules.signals.size()),
+      levels_(rules.diagnostics.size()),
+      components_(rules.components.size()),
+      lifecycles_(rules.components.size()),
+      parameters_(rules.parameters.size()) {
   diagnostics_.on_level = [this](DiagnosticId id, std::uint8_t level) {
+    levels_[id.index] = true;
     put(DiagnosticRead{id, level});
   };
   diagnostics_.on_signal = [this](SignalId id, const std::string& text) {
-    put(SignalRead{id, Value(text)});
+    read_signal(id, Value(text));
   };
-  diagnostics_.on_status = [this](StatusHeard heard) { put(std::move(heard)); };
+  diagnostics_.on_status = [this](StatusHeard heard) {
+    statuses_.insert(heard.name);
+    statuses_.insert(heard.hardware_id);
+    put(std::move(heard));
+  };
   for (std::size_t c = 0; c < rules.components.size(); ++c) {
     const std::string& declared = binding_.node_of(ComponentId(c));
     const std::string node = declared.empty() ? "/" + rules.components[c].name : declared;
@@ -54,12 +84,12 @@ BagReading::Plan BagReading::plan_for(const BagTopic& topic) {
   for (std::size_t t = 0; t < rules_.topics.size(); ++t) {
     if (rules_.topics[t].name == topic.name && !rules_.topics[t].publisher) plan.topic = TopicId(t);
   }
-  plan_fields(topic, plan);
-  if (topic.encoding != "cdr") return plan;
+  if (plan.topic) plan_fields(topic, plan);
   if (topic.type == ros2::msg::DiagnosticArray::kType && diagnostics_.is_wanted())
     plan.use = Use::kDiagnostics;
   if (topic.type == ros2::msg::Log::kType) plan.use = Use::kLog;
   if (topic.type == ros2::msg::ParameterEvent::kType) plan.use = Use::kParameters;
+  if (topic.type == ros2::msg::GoalStatusArray::kType && plan.topic) plan.use = Use::kGoals;
   if (topic.type == ros2::msg::TransitionEvent::kType && topic.name.ends_with(kTransitions)) {
     plan.use = Use::kTransition;
     plan.node = topic.name.substr(0, topic.name.size() - kTransitions.size());
@@ -71,99 +101,139 @@ void BagReading::plan_fields(const BagTopic& topic, Plan& plan) {
   for (std::size_t s = 0; s < rules_.signals.size(); ++s) {
     const auto* field = std::get_if<TopicField>(&rules_.signals[s].source);
     if (field == nullptr || plan.topic != field->topic) continue;
-    const std::string& name = rules_.signals[s].name;
+    SignalSeen& seen = signals_[s];
     if (topic.encoding != "cdr") {
-      unreadable_.push_back("signal " + name + ": its messages are in '" + topic.encoding +
-                            "', not in CDR");
+      seen.why_unreadable =
+          "the messages of " + topic.name + " are in '" + topic.encoding + "', not in CDR";
       continue;
     }
     if (const std::string* definition = contents_.definition_of(topic.type))
       library_.learn(topic.type, *definition);
     auto reader = ros2::FieldReader::compile(library_, topic.type, field->field);
-    if (reader) {
-      plan.fields.push_back({SignalId(s), std::move(*reader)});
-    } else {
-      unreadable_.push_back("signal " + name + ": " + reader.error());
+    if (!reader) {
+      seen.why_unreadable = reader.error();
+      continue;
     }
+    seen.is_number = reader->reads_number();
+    plan.fields.push_back({SignalId(s), std::move(*reader)});
   }
-}
-
-std::vector<std::string> BagReading::missing() const {
-  const auto has = [&](const auto& is_it) {
-    return std::any_of(contents_.topics().begin(), contents_.topics().end(), is_it);
-  };
-  std::vector<std::string> missing = unreadable_;
-  for (std::size_t t = 0; t < rules_.topics.size(); ++t) {
-    const Topic& topic = rules_.topics[t];
-    if (topic.publisher)
-      missing.push_back("topic " + rules_.label(TopicId(t)) +
-                        ": a recording does not say who published a message");
-    else if (!has([&](const BagTopic& each) { return each.name == topic.name; }))
-      missing.push_back("topic " + topic.name);
-  }
-  if (diagnostics_.is_wanted() &&
-      !has([](const BagTopic& each) { return each.type == ros2::msg::DiagnosticArray::kType; }))
-    missing.emplace_back("/diagnostics");
-  return missing;
+  if (plan.fields.empty()) return;
+  if (auto whole = ros2::FieldReader::compile_whole(library_, topic.type))
+    plan.whole = std::move(*whole);
 }
 
 void BagReading::read(const BagMessage& message, std::vector<Observation>& observations) {
   while (plans_.size() <= message.topic)  // The bag tells of its topics as it comes to them.
     plans_.push_back(plan_for(contents_.topics()[plans_.size()]));
-  const Plan& plan = plans_[message.topic];
+  Plan& plan = plans_[message.topic];
+  const BagTopic& topic = contents_.topics()[message.topic];
   const ros2::ByteView payload = view(message.bytes);
+  ++plan.messages;
   now_ = Time(Duration(message.at));
   out_ = &observations;
   if (plan.topic) put(SampleArrived{*plan.topic, 1});
-  for (const Field& field : plan.fields) {
-    Value value;
-    if (field.reader.read(payload, value) == ros2::FieldStatus::kRead)
-      put(SignalRead{field.signal, std::move(value)});
-  }
-  if (plan.use == Use::kDiagnostics) {
-    if (const auto array = ros2::decode<ros2::msg::DiagnosticArray>(payload))
-      diagnostics_.read(*array);
-  } else if (plan.use == Use::kParameters) {
-    read_parameters(payload);
-  } else if (plan.use == Use::kTransition) {
-    read_transition(plan.node, payload);
-  } else if (plan.use == Use::kLog) {
-    read_log(payload);
+  if (!plan.fields.empty()) read_fields(plan, payload, decodes(plan, topic, payload));
+  switch (plan.use) {
+    case Use::kNone:
+      break;
+    case Use::kDiagnostics:
+      if (const auto array = decoded<ros2::msg::DiagnosticArray>(plan, topic, payload))
+        diagnostics_.read(*array);
+      break;
+    case Use::kParameters:
+      if (const auto event = decoded<ros2::msg::ParameterEvent>(plan, topic, payload))
+        read_parameters(*event);
+      break;
+    case Use::kTransition:
+      if (const auto event = decoded<ros2::msg::TransitionEvent>(plan, topic, payload))
+        read_transition(plan.node, *event);
+      break;
+    case Use::kLog:
+      if (const auto log = decoded<ros2::msg::Log>(plan, topic, payload)) read_log(*log);
+      break;
+    case Use::kGoals:
+      if (auto goals = ros2::goals_in(*plan.topic, payload)) put(std::move(*goals));
+      break;
   }
 }
 
-void BagReading::read_parameters(ros2::ByteView payload) {
-  const auto event = ros2::decode<ros2::msg::ParameterEvent>(payload);
-  if (!event) return;
-  const auto component = node_seen(event->node);
+bool BagReading::decodes(Plan& plan, const BagTopic& topic, ros2::ByteView payload) {
+  const ros2::PayloadFit fit = plan.whole ? plan.whole->fit(payload) : ros2::PayloadFit::kFits;
+  if (fit == ros2::PayloadFit::kFits) return true;
+  note_undecoded(plan, topic, payload, fit == ros2::PayloadFit::kTooLong);
+  return false;
+}
+
+template <class Message>
+std::optional<Message> BagReading::decoded(Plan& plan, const BagTopic& topic,
+                                           ros2::ByteView payload) {
+  auto message = ros2::decode<Message>(payload);
+  if (!message && plan.fields.empty()) note_undecoded(plan, topic, payload, false);
+  return message;
+}
+
+void BagReading::note_undecoded(Plan& plan, const BagTopic& topic, ros2::ByteView payload,
+                                bool is_longer) {
+  if (++plan.undecoded > 1) return;
+  const bool is_described = contents_.definition_of(topic.type) != nullptr;
+  plan.why_undecoded =
+      is_xcdr2(payload) ? "they are in XCDR2, not in XCDR1"
+      : is_longer       ? "they do not fit the definition of " + topic.type +
+                        (is_described ? " in the bag" : "; give theirs with --message-path")
+                  : "they are cut short, or are not of " + topic.type;
+}
+
+void BagReading::read_fields(const Plan& plan, ros2::ByteView payload, bool is_decoded) {
+  for (const Field& field : plan.fields) {
+    Value value;
+    const bool is_read =
+        is_decoded && field.reader.read(payload, value) == ros2::FieldStatus::kRead;
+    read_signal(field.signal, is_read ? std::move(value) : unreadable_value());
+  }
+}
+
+void BagReading::read_signal(SignalId signal, Value value) {
+  SignalSeen& seen = signals_[signal.index];
+  if (!seen.was_usable && !is_unreadable(value)) {
+    seen.was_read = true;
+    std::string text;
+    seen.was_usable = as_type(value, rules_[signal].type, text).known;
+    if (!seen.was_usable) seen.example = to_string(value);
+  }
+  put(SignalRead{signal, std::move(value)});
+}
+
+void BagReading::read_parameters(const ros2::msg::ParameterEvent& event) {
+  const auto component = node_seen(event.node);
   if (!component) return;
-  for (const auto* changes : {&event->new_parameters, &event->changed_parameters}) {
+  for (const auto* changes : {&event.new_parameters, &event.changed_parameters}) {
     for (const ros2::msg::Parameter& changed : *changes) {
       for (std::size_t p = 0; p < rules_.parameters.size(); ++p) {
         const Parameter& wanted = rules_.parameters[p];
         if (wanted.component != *component || wanted.name != changed.name) continue;
-        if (auto value = ros2::to_value(changed.value))
-          put(ParameterRead{ParameterId(p), std::move(*value)});
+        auto value = ros2::to_value(changed.value);
+        if (!value) continue;
+        parameters_[p] = true;
+        put(ParameterRead{ParameterId(p), std::move(*value)});
       }
     }
   }
 }
 
-void BagReading::read_transition(const std::string& node, ros2::ByteView payload) {
-  const auto event = ros2::decode<ros2::msg::TransitionEvent>(payload);
-  if (!event) return;
-  if (const auto component = node_seen(node))
-    put(LifecycleRead{*component, lifecycle_from(event->goal_state.label)});
+void BagReading::read_transition(const std::string& node, const ros2::msg::TransitionEvent& event) {
+  const auto component = node_seen(node);
+  if (!component) return;
+  lifecycles_[component->index] = true;
+  put(LifecycleRead{*component, lifecycle_from(event.goal_state.label)});
 }
 
 // Also what a part of a node says: "arm.gripper.planner" is of "/arm/gripper".
-void BagReading::read_log(ros2::ByteView payload) {
-  const auto log = ros2::decode<ros2::msg::Log>(payload);
+void BagReading::read_log(const ros2::msg::Log& log) {
   constexpr std::size_t kLongestName = 1024;
-  if (!log || log->name.size() > kLongestName) return;
-  for (std::size_t end = log->name.size(); end != std::string::npos && end > 0;
-       end = log->name.rfind('.', end - 1)) {
-    const auto logger = loggers_.find(log->name.substr(0, end));
+  if (log.name.size() > kLongestName) return;
+  for (std::size_t end = log.name.size(); end != std::string::npos && end > 0;
+       end = log.name.rfind('.', end - 1)) {
+    const auto logger = loggers_.find(log.name.substr(0, end));
     if (logger == loggers_.end()) continue;
     (void)node_seen(logger->second);
     return;
@@ -176,9 +246,165 @@ std::optional<ComponentId> BagReading::node_seen(const std::string& node) {
   if (known != nodes_.end()) return known->second;
   if (nodes_.size() >= kMaxNodes) return std::nullopt;
   put(NodeAppeared{node, 0});
-  return nodes_[node] = binding_.bind(node);
+  const auto component = binding_.bind(node);
+  if (component) components_[component->index] = true;
+  return nodes_[node] = component;
 }
 
 void BagReading::put(ObservationWhat what) { out_->push_back({now_, std::move(what)}); }
+
+std::uint64_t BagReading::messages_of(const std::string& topic) const {
+  std::uint64_t count = 0;
+  for (std::size_t t = 0; t < plans_.size(); ++t) {
+    if (contents_.topics()[t].name == topic) count += plans_[t].messages;
+  }
+  return count;
+}
+
+bool BagReading::has_type(std::string_view type) const {
+  for (std::size_t t = 0; t < plans_.size(); ++t) {
+    if (contents_.topics()[t].type == type && plans_[t].messages > 0) return true;
+  }
+  return false;
+}
+
+std::string BagReading::why_no_topic(TopicId topic) const {
+  if (rules_[topic].publisher)
+    return "topic " + rules_.label(topic) +
+           ": a recording does not say which node published a "
+           "message";
+  const std::string& name = rules_[topic].name;
+  if (messages_of(name) > 0) return "";
+  std::vector<std::string_view> known;
+  for (const BagTopic& each : contents_.topics()) {
+    if (each.name == name)
+      return "topic " + name + " was announced, but no message of it was recorded";
+    known.push_back(each.name);
+  }
+  const std::string near = closest_full_name(name, known);
+  return "topic " + name + " is not in the bag" +
+         (near.empty() ? "" : "; did you mean " + near + "?");
+}
+
+std::string BagReading::why_no_status(const std::string& status) const {
+  if (!has_type(ros2::msg::DiagnosticArray::kType)) return "no diagnostics were recorded";
+  if (statuses_.contains(status)) return "";
+  const std::string near = closest(status, {statuses_.begin(), statuses_.end()});
+  return "the diagnostics have no status '" + status + "'" +
+         (near.empty() ? "" : "; did you mean '" + near + "'?");
+}
+
+std::string BagReading::why_no_component(ComponentId component) const {
+  if (components_[component.index]) return "";
+  const std::string& node = binding_.node_of(component);
+  return "nothing was recorded of " + (node.empty() ? rules_[component].name : "node " + node) +
+         ": no parameter event, transition or log";
+}
+
+std::string BagReading::why_no_parameter(ParameterId parameter) const {
+  if (parameters_[parameter.index]) return "";
+  const Parameter& wanted = rules_[parameter];
+  if (std::string why = why_no_component(wanted.component); !why.empty()) return why;
+  return "no value of parameter " + wanted.name + " of " + rules_[wanted.component].name +
+         " was recorded";
+}
+
+bool BagReading::is_compared_with_text(SignalId signal) const {
+  const SignalSeen& seen = signals_[signal.index];
+  return seen.was_usable && seen.is_number && rules_[signal].type == Type::kString;
+}
+
+std::string BagReading::why_no_signal(SignalId signal) const {
+  const Signal& declared = rules_[signal];
+  const SignalSeen& seen = signals_[signal.index];
+  if (const auto* parameter = std::get_if<ParameterId>(&declared.source))
+    return why_no_parameter(*parameter);
+  const auto* field = std::get_if<TopicField>(&declared.source);
+  if (field != nullptr) {
+    if (std::string why = why_no_topic(field->topic); !why.empty()) return why;
+    if (!seen.was_read && !seen.why_unreadable.empty()) return seen.why_unreadable;
+    if (is_compared_with_text(signal))
+      return declared.name + " is a number in the bag, and the rule compares it with a text";
+  }
+  if (seen.was_usable) return "";
+  if (seen.was_read)
+    return declared.name + " has values such as " + seen.example +
+           ", which the rule cannot compare";
+  if (field != nullptr) {
+    for (std::size_t t = 0; t < plans_.size(); ++t) {
+      const bool is_it = contents_.topics()[t].name == rules_[field->topic].name;
+      if (is_it && plans_[t].undecoded > 0)
+        return "the messages of " + rules_[field->topic].name +
+               " cannot be decoded: " + plans_[t].why_undecoded;
+    }
+    return "no message of " + rules_[field->topic].name + " has " + field->field;
+  }
+  if (const auto* key = std::get_if<DiagnosticKey>(&declared.source)) {
+    const bool is_any = key->status == "*";
+    if (std::string why = is_any ? "" : why_no_status(key->status); !why.empty()) return why;
+    return "the diagnostics have no key '" + key->key + "'" +
+           (is_any ? "" : " in status '" + key->status + "'");
+  }
+  if (!has_type(ros2::msg::DiagnosticArray::kType)) return "no diagnostics were recorded";
+  return "the diagnostics have no key '" + declared.name + "'";
+}
+
+std::string BagReading::why_unknown(InputId id) const {
+  const Input& input = rules_[id];
+  switch (input.kind) {
+    case Input::Kind::kRate:
+    case Input::Kind::kAge:
+    case Input::Kind::kPhi:
+    case Input::Kind::kGoals:
+    case Input::Kind::kGoalAge:
+      return why_no_topic(input.topic);
+    case Input::Kind::kLoss:
+      return describe(input, rules_) + ": a recording does not say which messages were lost";
+    case Input::Kind::kCpu:
+    case Input::Kind::kMemory:
+      return describe(input, rules_) + ": a recording does not say what processes use";
+    case Input::Kind::kAlive:
+      return why_no_component(input.component);
+    case Input::Kind::kLifecycle:
+      if (std::string why = why_no_component(input.component); !why.empty()) return why;
+      return lifecycles_[input.component.index]
+                 ? ""
+                 : "no transition of " + rules_[input.component].name + " was recorded";
+    case Input::Kind::kParameter:
+      return why_no_parameter(input.parameter);
+    case Input::Kind::kLevel:
+      return levels_[input.diagnostic.index]
+                 ? ""
+                 : why_no_status(rules_.diagnostics[input.diagnostic.index].name);
+    default:
+      return why_no_signal(input.signal);
+  }
+}
+
+bool BagReading::is_misread(InputId id) const {
+  const Input& input = rules_[id];
+  return input.kind == Input::Kind::kLoss ||
+         (input.kind == Input::Kind::kSignal && is_compared_with_text(input.signal));
+}
+
+std::vector<std::string> BagReading::missing() const {
+  std::set<std::string> lines;
+  for (std::size_t i = 0; i < rules_.inputs.size(); ++i) {
+    if (std::string why = why_unknown(InputId(i)); !why.empty()) lines.insert(std::move(why));
+  }
+  return {lines.begin(), lines.end()};
+}
+
+std::vector<std::string> BagReading::undecoded() const {
+  std::vector<std::string> lines;
+  for (std::size_t t = 0; t < plans_.size(); ++t) {
+    const Plan& plan = plans_[t];
+    if (plan.undecoded == 0) continue;
+    lines.push_back(std::to_string(plan.undecoded) + " of " + counted(plan.messages, "message") +
+                    " of " + contents_.topics()[t].name + " cannot be decoded (" +
+                    plan.why_undecoded + "); their values are unknown");
+  }
+  return lines;
+}
 
 }  // namespace culprit::bag

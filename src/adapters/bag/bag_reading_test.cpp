@@ -76,7 +76,7 @@ TEST_F(BagTest, ShowsTopicsFieldsDiagnosticsAndLifecyclesInTheOrderOfTime) {
     add(first, 3, 250, "garbage");          // nor that
   }
   const Seen seen = read(folder_, kRules);
-  EXPECT_THAT(seen.missing, testing::ElementsAre("topic /lidar"));
+  EXPECT_THAT(seen.missing, testing::ElementsAre("topic /lidar is not in the bag"));
   const std::vector<std::pair<std::int64_t, std::string>> expected = {
       {100, "2.5"}, {200, "\"0.25\""}, {300, "node /camera"}, {300, "active"}, {400, "0.5"}};
   EXPECT_EQ(seen.said, expected);
@@ -105,8 +105,7 @@ RULE R
       ADAPTATION sonar restart 2
 )");
   EXPECT_THAT(seen.said, testing::ElementsAre(testing::Pair(10, "1.5")));
-  EXPECT_THAT(seen.missing,
-              testing::ElementsAre("signal size: its messages are in 'json', not in CDR"));
+  EXPECT_THAT(seen.missing, testing::ElementsAre("the messages of /map are in 'json', not in CDR"));
 }
 
 TEST_F(BagTest, KnowsNodesByWhatTheyLog) {

@@ -1,5 +1,7 @@
 #include "bag/byte_source.h"
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <zstd.h>
@@ -16,8 +18,38 @@ Expected<ByteSource> ByteSource::open(const std::filesystem::path& path) {
   ByteSource source;
   source.file_.reset(std::fopen(path.c_str(), "rbe"));
   if (source.file_ == nullptr) return Error{std::strerror(errno)};
+  std::error_code error;
+  source.size_ = std::filesystem::file_size(path, error);
+  if (error) return Error{error.message()};
   if (is_compressed(path)) source.zstd_.reset(ZSTD_createDCtx());
   return source;
+}
+
+bool ByteSource::move_to(std::uint64_t place) {
+  if (place == position_) return true;
+  if (zstd_ == nullptr) {
+    if (place > size_ || fseeko(file_.get(), static_cast<off_t>(place), SEEK_SET) != 0)
+      return false;
+    position_ = place;
+    return true;
+  }
+  if (place < position_ && !begin_anew()) return false;
+  std::array<char, std::size_t{64} << 10> block{};
+  while (position_ < place) {
+    const std::size_t wanted = std::min<std::uint64_t>(place - position_, block.size());
+    if (read(block.data(), wanted) < wanted) return false;
+  }
+  return true;
+}
+
+bool ByteSource::begin_anew() {
+  if (fseeko(file_.get(), 0, SEEK_SET) != 0) return false;
+  ZSTD_DCtx_reset(zstd_.get(), ZSTD_reset_session_only);
+  compressed_.clear();
+  used_ = position_ = 0;
+  is_in_frame_ = false;
+  trouble_.clear();
+  return true;
 }
 
 std::size_t ByteSource::read(char* to, std::size_t size) {

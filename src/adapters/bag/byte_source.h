@@ -22,9 +22,13 @@ class ByteSource {
  public:
   static Expected<ByteSource> open(const std::filesystem::path& path);
 
+  // Goes on reading at this byte. False if there are fewer. Going back in a compressed file reads it
+  // anew.
+  bool move_to(std::uint64_t place);
+
   // How many bytes it could read: fewer than `size` at the end only.
   std::size_t read(char* to, std::size_t size);
-  // That were read.
+  // Of the next byte.
   std::uint64_t position() const { return position_; }
   // Why it ended too early, for people; empty if it did not.
   const std::string& trouble() const { return trouble_; }
@@ -37,12 +41,14 @@ class ByteSource {
   ByteSource() = default;
   std::size_t read_file(char* to, std::size_t size);
   std::size_t decompress(char* to, std::size_t size);
+  bool begin_anew();
 
   std::unique_ptr<std::FILE, Close> file_;
   std::unique_ptr<ZSTD_DCtx_s, Close> zstd_;  // of a compressed file
   std::vector<char> compressed_;              // read and not decompressed yet: from used_ on
   std::size_t used_ = 0;
   bool is_in_frame_ = false;
+  std::uint64_t size_ = 0;  // of the file
   std::uint64_t position_ = 0;
   std::string trouble_;
 };

@@ -1,5 +1,6 @@
 #include "bag/sqlite_file.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -68,68 +69,183 @@ SqliteFile::SqliteFile(journal::Database database, std::string name, BagContents
     : database_(std::move(database)), name_(std::move(name)), contents_(contents) {}
 
 Expected<std::unique_ptr<Storage>> SqliteFile::open(const fs::path& path, BagContents& contents) {
+  using Mode = journal::Database::Mode;
   TemporaryCopy copy;  // may go as soon as SQLite has it open
   if (is_compressed(path)) {
     if (const auto done = copy.fill(path); !done) return Error{done.error()};
   }
-  auto database = journal::Database::open(copy.path().empty() ? path : fs::path(copy.path()),
-                                          journal::Database::Mode::kRead);
-  if (!database) return Error{database.error()};
-  std::unique_ptr<SqliteFile> file(new SqliteFile(std::move(*database), path.filename(), contents));
-  if (const auto begun = file->begin(); !begun)
-    return Error{"it is no bag (" + begun.error() + ")"};
-  return std::unique_ptr<Storage>(std::move(file));
+  const fs::path file = copy.path().empty() ? path : fs::path(copy.path());
+  std::string why;
+  for (const Mode mode : {Mode::kRead, Mode::kSalvage}) {
+    auto database = journal::Database::open(file, mode);
+    if (!database) {
+      if (why.empty()) why = database.error();
+      continue;
+    }
+    std::unique_ptr<SqliteFile> storage(
+        new SqliteFile(std::move(*database), path.filename(), contents));
+    if (mode == Mode::kSalvage) storage->damage_ = why;
+    const auto begun = storage->begin();
+    if (begun) return std::unique_ptr<Storage>(std::move(storage));
+    if (why.empty()) why = "it is no bag (" + begun.error() + ")";
+  }
+  return Error{why};
 }
 
 Expected<void> SqliteFile::begin() {
   if (const auto read = read_topics(); !read) return read;
-  auto rows =
-      database_.prepare("SELECT timestamp, topic_id, data FROM messages ORDER BY timestamp, id");
-  if (!rows) return Error{rows.error()};
-  rows_ = std::move(*rows);
-  // Recorders before Iron did not keep definitions.
-  if (auto known = database_.prepare("SELECT topic_type, encoded_message_definition FROM "
-                                     "message_definitions WHERE encoding = 'ros2msg'")) {
-    while (true) {
-      const auto more = known->step();
-      if (!more || !*more) break;
-      contents_.define(known->bytes(0), known->bytes(1));
-    }
-  }
+  if (auto rows = database_.prepare("SELECT id, timestamp, topic_id, data FROM messages"); !rows)
+    return Error{rows.error()};
+  read_definitions();
   return {};
 }
 
+// Recorders before Iron did not keep definitions.
+void SqliteFile::read_definitions() {
+  auto known = database_.prepare(
+      "SELECT topic_type, encoded_message_definition FROM message_definitions WHERE encoding = "
+      "'ros2msg'");
+  while (known) {
+    const auto more = known->step();
+    if (!more || !*more) return;
+    contents_.define(known->bytes(0), known->bytes(1));
+  }
+}
+
 Expected<void> SqliteFile::read_topics() {
-  auto rows = database_.prepare("SELECT id, name, type, serialization_format FROM topics");
+  auto rows = database_.prepare(
+      "SELECT id, name, type, serialization_format, offered_qos_profiles FROM topics");
+  if (!rows)  // recorders before Foxy kept no QoS
+    rows = database_.prepare("SELECT id, name, type, serialization_format, '' FROM topics");
   if (!rows) return Error{rows.error()};
   while (true) {
     const auto more = rows->step();
     if (!more) return Error{more.error()};
     if (!*more) return {};
-    topics_[rows->integer(0)] = contents_.place_of(
-        {std::string(rows->bytes(1)), std::string(rows->bytes(2)), std::string(rows->bytes(3))});
+    topics_[rows->integer(0)] =
+        contents_.place_of({std::string(rows->bytes(1)), std::string(rows->bytes(2)),
+                            std::string(rows->bytes(3)), std::string(rows->bytes(4))});
   }
 }
 
-bool SqliteFile::next(BagMessage& message) {
+void SqliteFile::survey(PieceFinder& finder) {
+  auto rows =
+      database_.prepare("SELECT id, timestamp, topic_id FROM messages NOT INDEXED ORDER BY id");
+  while (rows) {
+    const auto more = rows->step();
+    if (!more && damage_.empty()) damage_ = more.error();
+    if (!more || !*more) return;
+    const std::int64_t at = rows->integer(1);
+    if (is_time(at)) finder.add(rows->integer(0), static_cast<std::size_t>(rows->integer(2)), at);
+  }
+}
+
+void SqliteFile::follow(TimeLine line) {
+  line_ = std::move(line);
+  if (!damage_.empty()) return begin_salvage();
+  if (line_.is_in_file_order) {
+    (void)begin_next_stretch();
+    return;
+  }
+  auto rows = database_.prepare(
+      "SELECT id, timestamp, topic_id, data FROM messages ORDER BY timestamp, id");
+  if (rows) rows_ = std::move(*rows);
+}
+
+// Where the clock was set, what was recorded before it stands before it.
+bool SqliteFile::begin_next_stretch() {
+  if (!line_.is_in_file_order || stretch_ == line_.stretches.size()) return false;
+  auto rows = database_.prepare(
+      "SELECT id, timestamp, topic_id, data FROM messages WHERE id >= ? AND id < ? "
+      "ORDER BY timestamp, id");
+  if (!rows) return false;
+  constexpr auto kLowest = std::numeric_limits<std::int64_t>::min();
+  constexpr auto kHighest = std::numeric_limits<std::int64_t>::max();
+  const std::size_t next = stretch_ + 1;
+  rows->bind(1, stretch_ == 0 ? kLowest : line_.stretches[stretch_].ordinal)
+      .bind(2, next == line_.stretches.size() ? kHighest : line_.stretches[next].ordinal);
+  stretch_ = next;
+  rows_ = std::move(*rows);
+  return true;
+}
+
+// In the order of the rows, since an index may be damaged, too.
+void SqliteFile::begin_salvage() {
+  is_salvaging_ = true;
+  rows_.reset();
+  auto rows = database_.prepare(
+      "SELECT id, timestamp, topic_id, data FROM messages NOT INDEXED WHERE id > ? ORDER BY id");
+  if (!rows) return;
+  rows->bind(1, last_row_);
+  rows_ = std::move(*rows);
+}
+
+bool SqliteFile::is_readable_after(std::int64_t row) const {
+  auto rows = database_.prepare(
+      "SELECT id, data FROM messages NOT INDEXED WHERE id > ? ORDER BY id LIMIT 1");
+  if (!rows) return false;
+  rows->bind(1, row);
+  const auto more = rows->step();
+  return more && *more;
+}
+
+// Goes on with the first row behind what cannot be read; false if there is none.
+bool SqliteFile::pass_damage() {
+  constexpr std::int64_t kFarthest = std::int64_t{1} << 32;
+  last_row_ = std::max<std::int64_t>(last_row_, 0);
+  std::int64_t high = 1;
+  while (high < kFarthest && !is_readable_after(last_row_ + high)) high *= 2;
+  if (high >= kFarthest) return false;
+  std::int64_t low = high / 2;  // cannot be read
+  while (low + 1 < high) {
+    const std::int64_t middle = low + (high - low) / 2;
+    (is_readable_after(last_row_ + middle) ? high : low) = middle;
+  }
+  last_row_ += high;
+  is_after_hole_ = true;
+  begin_salvage();
+  return true;
+}
+
+bool SqliteFile::next_row() {
   while (rows_) {
     const auto more = rows_->step();
-    if (!more)
-      contents_.lose(name_ + ": what follows its first " + std::to_string(read_) +
-                     " messages is lost: " + more.error());
-    if (!more || !*more) {
-      rows_.reset();
+    if (more && *more) return true;
+    if (more) {
+      if (!is_salvaging_ && begin_next_stretch()) continue;
       break;
     }
+    if (!is_salvaging_) {
+      if (damage_.empty()) damage_ = more.error();
+      begin_salvage();
+    } else if (!pass_damage()) {
+      break;
+    }
+  }
+  rows_.reset();
+  return false;
+}
+
+bool SqliteFile::next(BagMessage& message) {
+  while (next_row()) {
     ++read_;
-    const auto topic = topics_.find(rows_->integer(1));
+    last_row_ = rows_->integer(0);
+    const auto topic = topics_.find(rows_->integer(2));
     if (topic == topics_.end()) {
       contents_.lose_message("of a topic that the file does not describe");
       continue;
     }
-    message = {rows_->integer(0), topic->second, rows_->bytes(2)};
+    const std::int64_t at = rows_->integer(1);
+    message = {is_time(at) ? at + line_.offset_of(last_row_) : at, topic->second, rows_->bytes(3),
+               at, is_after_hole_};
+    is_after_hole_ = false;
     return true;
   }
+  if (!damage_.empty())
+    contents_.lose(name_ + ": the database is damaged (" + damage_ + "): only " +
+                   std::to_string(read_) + " messages were read; try sqlite3 " + name_ +
+                   " .recover, or record it again");
+  damage_.clear();
   return false;
 }
 

@@ -1,6 +1,7 @@
 // For tests: writes MCAP as a recorder does (mcap.dev/spec), and as none should.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -8,6 +9,8 @@
 #include <zstd.h>
 
 #include <lz4frame.h>
+
+#include "bag/test_bag.h"
 
 namespace culprit::bag::test {
 
@@ -72,6 +75,35 @@ inline std::string mcap(const std::string& data, std::uint64_t messages) {
   return before + record(0x0f, little(checksum(before), 4)) +
          record(0x0b, little(messages, 8) + std::string(46, '\0')) +
          record(0x02, std::string(20, '\0')) + std::string("\x89MCAP0\r\n", 8);
+}
+
+// With `most` messages in a chunk that says when they were recorded, as rosbag2 does.
+inline void write_mcap(const std::filesystem::path& path, const TestRecording& recording,
+                       std::size_t most) {
+  std::string data;
+  std::map<std::string, std::uint16_t> ids;
+  for (const auto& [topic, type] : recording.types) {
+    const auto id = static_cast<std::uint16_t>(ids.size() + 1);
+    ids[topic] = id;
+    data += schema(id, type, "") + channel(id, id, topic);
+  }
+  for (std::size_t begin = 0; begin < recording.messages.size(); begin += most) {
+    std::string records;
+    std::uint64_t first = ~std::uint64_t{0};
+    std::uint64_t last = 0;
+    const std::size_t end = std::min(begin + most, recording.messages.size());
+    for (std::size_t m = begin; m < end; ++m) {
+      const TestMessage& each = recording.messages[m];
+      const auto at = static_cast<std::uint64_t>(each.at);
+      first = std::min(first, at);
+      last = std::max(last, at);
+      records += message(ids[each.topic], at, each.bytes);
+    }
+    data += record(0x06, little(first, 8) + little(last, 8) + little(records.size(), 8) +
+                             little(checksum(records), 4) + text("") + little(records.size(), 8) +
+                             records);
+  }
+  std::ofstream(path, std::ios::binary) << mcap(data, recording.messages.size());
 }
 
 }  // namespace culprit::bag::test

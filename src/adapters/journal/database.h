@@ -52,10 +52,11 @@ class Statement {
 
 class Database {
  public:
-  enum class Mode : std::uint8_t { kRead, kWrite };
+  enum class Mode : std::uint8_t { kRead, kWrite, kSalvage };
 
   // kWrite makes the file if it is not there. kRead also reads where nothing may be written (the
-  // folder of a file in WAL mode), unless another process is writing.
+  // folder of a file in WAL mode), unless another process is writing. kSalvage reads a file whose
+  // schema names tables or indexes that are damaged, of which then only the others can be read.
   static Expected<Database> open(const std::filesystem::path& path, Mode mode);
 
   Expected<void> run(const std::string& sql);

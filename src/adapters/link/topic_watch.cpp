@@ -5,6 +5,7 @@
 
 #include "base/live_clock.h"
 #include "link/goals.h"
+#include "robot/unreadable.h"
 #include "ros2/messages.h"
 #include "rtps/receive_thread.h"
 
@@ -155,7 +156,7 @@ void TopicWatch::on_message(const Sample& sample) {
   }
   for (Field& field : fields_) {
     Value value;
-    if (field.reader.read(sample.payload, value) != FieldStatus::kRead) continue;
+    if (field.reader.read(sample.payload, value) != FieldStatus::kRead) value = unreadable_value();
     // The same value again changes no trigger; it only proves that the signal is not stale.
     const Urgency urgency = field.last == value ? Urgency::kSoon : Urgency::kNow;
     field.last = value;

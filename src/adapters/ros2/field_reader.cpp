@@ -118,6 +118,12 @@ class FieldReader::Compiler {
  public:
   explicit Compiler(MessageLibrary& library) : library_(library) {}
 
+  Expected<std::vector<Step>> compile_whole(const std::string& type) {
+    const FieldDefinition whole{"", type};
+    if (auto skipped = skip_element(whole, 0); !skipped) return Error{skipped.error()};
+    return std::move(plan_);
+  }
+
   Expected<std::vector<Step>> compile(std::string_view type, std::string_view path) {
     std::string_view rest = path;
     std::string current(type);
@@ -250,6 +256,29 @@ Expected<FieldReader> FieldReader::compile(MessageLibrary& library, std::string_
   FieldReader reader;
   reader.plan_ = std::move(*plan);
   return reader;
+}
+
+Expected<FieldReader> FieldReader::compile_whole(MessageLibrary& library, std::string_view type) {
+  auto plan = Compiler(library).compile_whole(std::string(type));
+  if (!plan) return Error{plan.error()};
+  FieldReader reader;
+  reader.plan_ = std::move(*plan);
+  return reader;
+}
+
+PayloadFit FieldReader::fit(ByteView payload) const {
+  constexpr std::size_t kPadding = 3;  // bytes at most: some writers fill up to a multiple of four
+  CdrReader reader(payload);
+  Value none;
+  const FieldStatus status = run(reader, 0, plan_.size(), none);
+  if (status != FieldStatus::kRead || !reader.ok()) return PayloadFit::kMalformed;
+  return reader.left() <= kPadding ? PayloadFit::kFits : PayloadFit::kTooLong;
+}
+
+bool FieldReader::reads_number() const {
+  const Primitive primitive = plan_.back().primitive;
+  return primitive != Primitive::kBool && primitive != Primitive::kString &&
+         primitive != Primitive::kWString;
 }
 
 FieldStatus FieldReader::read(ByteView payload, Value& value) const {

@@ -23,11 +23,26 @@ enum class FieldStatus : std::uint8_t {
   kMalformed  // the payload is not a message of that type
 };
 
+enum class PayloadFit : std::uint8_t {
+  kFits,
+  kMalformed,  // it ends too early, or is not in XCDR1
+  kTooLong     // bytes follow the last field
+};
+
 class FieldReader {
  public:
   // A path ends at a primitive or a string. Errors list the existing fields.
   static Expected<FieldReader> compile(MessageLibrary& library, std::string_view type,
                                        std::string_view path);
+
+  // Goes through all of a message, for fit(). Errors as above.
+  static Expected<FieldReader> compile_whole(MessageLibrary& library, std::string_view type);
+
+  // How the payload compares with the type. @pre compile_whole()
+  PayloadFit fit(ByteView payload) const;
+
+  // Whether read() gives numbers. @pre compile()
+  bool reads_number() const;
 
   // Sets `value` if and only if kRead. Every integer type becomes int64 (uint64 saturates), both
   // floating-point types double.

@@ -210,7 +210,7 @@ class Describer {
       case StaysDown::Why::kPerson:
         return who + "a person ended the launch of " + launcher + remedy;
       case StaysDown::Why::kDoubt:
-        return who + "the launch of " + launcher + " ended " + to_string(e.after) + " after " +
+        return who + "the launch of " + launcher + " ended " + in_words(e.after) + " after " +
                (e.fell ? rules_[*e.fell].name : "a component") +
                " crashed; a person may have ended it, or its on_exit=Shutdown()" + remedy +
                ". To start it again at once next time: culprit run --revive";
@@ -255,7 +255,7 @@ class Describer {
   std::string operator()(const Refuse& o) const { return with_rule(o.strategy) + " is refused"; }
   std::string operator()(const Propose& o) const { return "propose " + with_rule(o.strategy); }
   std::string operator()(const Silence& o) const {
-    return name_of(o.what) + " is silenced" + (o.lasts ? " for " + to_string(*o.lasts) : "");
+    return name_of(o.what) + " is silenced" + (o.lasts ? " for " + in_words(*o.lasts) : "");
   }
   std::string operator()(const LiftSilence& o) const {
     return "the silence of " + name_of(o.what) + " is lifted";
@@ -303,6 +303,8 @@ class Describer {
   }
   std::string unseen(SignalId id) const {
     const Signal& signal = rules_[id];
+    if (std::holds_alternative<GroupId>(signal.source))
+      return "group " + signal.name + " was never whole: of some component in it no state was read";
     const auto* key = std::get_if<DiagnosticKey>(&signal.source);
     const std::string source = key == nullptr || key->status == "*"
                                    ? "it"

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "robot/unreadable.h"
+
 namespace culprit {
 
 SignalStore::SignalStore(const RuleSet& rules)
@@ -115,6 +117,7 @@ bool same(const Slot& a, const Slot& b, Type type) {
 }
 
 Slot as_type(const Value& value, Type type, std::string& text) {
+  if (is_unreadable(value)) return {};
   if (type == Type::kString) {
     const auto* already = std::get_if<std::string>(&value);
     text = already != nullptr ? *already : to_string(value);

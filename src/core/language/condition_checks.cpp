@@ -84,6 +84,10 @@ std::string known_of(InputId id, const RuleSet& rules) {
       return ": loss is a share from 0 to 1";
     case Input::Kind::kLevel:
       return ": a level is 0, 1, 2 or 3";
+    case Input::Kind::kSignal:
+      return std::holds_alternative<GroupId>(rules[rules[id].signal].source)
+                 ? ": a group is active, half_up, inactive, down or changing"
+                 : "";
     case Input::Kind::kLifecycle:
       return ": the states are unconfigured, inactive, active and finalized";
     default:

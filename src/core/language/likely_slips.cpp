@@ -28,6 +28,14 @@ bool sets_variable(std::string_view word) {
              "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_0123456789") == equals;
 }
 
+// $NAME, anywhere in it
+bool names_variable(std::string_view word) {
+  const auto dollar = word.find('$');
+  if (dollar == std::string_view::npos || dollar + 1 == word.size()) return false;
+  const char first = word[dollar + 1];
+  return (first >= 'A' && first <= 'Z') || (first >= 'a' && first <= 'z') || first == '_';
+}
+
 struct ShellWord {
   std::string word;  // that only a shell understands; empty: there is none
   std::string remedy;
@@ -47,6 +55,12 @@ ShellWord shell_word(const std::vector<std::string>& command) {
     if (is_one_of(word, {"&&", "||", ";", "|", "&", ">", ">>", "<", "2>&1"}) ||
         word.starts_with("$(") || word.starts_with("${"))
       return {word, "leave it out, or ask for a shell: LAUNCH \"bash -c '...'\""};
+    if (word == "~" || word.starts_with("~/"))
+      return {word, "write the full path of the home folder: /home/robot" + word.substr(1)};
+    if (names_variable(word))
+      return {word, "write its value, or ask for a shell: LAUNCH \"bash -c '...'\""};
+    if (word.find('*') != std::string::npos && word.find(':') == std::string::npos)
+      return {word, "name each file, or ask for a shell: LAUNCH \"bash -c '...'\""};
   }
   return {};
 }
@@ -116,6 +130,10 @@ void check_unused(const syntax::File& file, const RuleSet& rules,
   for (const Topic& topic : rules.topics) {
     if (topic.publisher) use(*topic.publisher);
   }
+  for (const Group& group : rules.groups) {
+    for (const ComponentId member : group.members) use(member);
+    use(group.manager);
+  }
   for (const Parameter& parameter : rules.parameters) use(parameter.component);
   for (const Dependency& dependency : rules.dependencies) {
     use(dependency.consumer);
@@ -127,9 +145,9 @@ void check_unused(const syntax::File& file, const RuleSet& rules,
     if (is_used[i] || component.is_required) continue;
     diagnostics.push_back(
         {Code::kUnused, Severity::kWarning, file.components[i].name.span,
-         "nothing in these rules is about component '" + component.name + "'",
-         "write a rule about it, or add REQUIRED, so that a person is notified if it "
-         "is not there"});
+         "no rule uses component '" + component.name + "'",
+         "write a rule for it, remove this line, or add REQUIRED: culprit then reports if it is "
+         "missing"});
   }
 }
 

@@ -61,9 +61,15 @@ static_assert(std::is_trivially_copyable_v<Token>);
 struct Complaint {
   std::string cause;
   std::optional<Edit> fix = std::nullopt;  // that makes the token a good one
+  std::string remedy = "";                 // empty where it depends on the place
 };
 // @pre it is a kBad
 Complaint complaint_about(const Token& bad);
+
+// The unit of the language that people mean by `word`, as "s" by "seconds"; empty if none.
+std::string_view duration_unit(std::string_view word);
+// Whether it names hertz, in which rates are counted without a unit.
+bool is_hertz(std::string_view word);
 
 // A piece of a line as its reader took it, for those who care how the text was written.
 struct Lexeme {
@@ -104,6 +110,9 @@ class Scanner {
   // topic, node, parameter or mode name. A quoted string is taken as a name too. Empty at the end
   // of the line.
   syntax::Name next_name();
+
+  // Takes `symbol`, one character that no expression has, as a brace is. False: another one is next.
+  bool take(char symbol);
 
   bool allows_holes() const { return holes_ == Holes::kAllowed; }
   bool at_end() const;

@@ -111,6 +111,13 @@ struct Dependency {
   std::vector<Name> producers;
 };
 
+// Components that one lifecycle manager takes through their lifecycles, in this order.
+struct Group {
+  Name name;
+  std::vector<Name> members;
+  Name manager;
+};
+
 struct DiagnosticSource {
   Name status;
   Name key;
@@ -148,7 +155,8 @@ enum class AdaptationType : std::uint8_t {
   kStart,
   kStop,
   kChangeMode,
-  kCall
+  kCall,
+  kStartGroup  // of a group, which stands in the place of the component
 };
 std::string_view keyword(AdaptationType type);
 std::optional<AdaptationType> adaptation_type(std::string_view keyword);
@@ -216,6 +224,22 @@ struct Interlock {
   std::string text;
 };
 
+// What a drill (docs/drill.md) may do to a component.
+struct Drill {
+  enum class What : std::uint8_t {
+    kSetParameter,  // also injects this value: subject, value
+    kWithout,       // never injects this fault: subject
+    kLimit          // breaks it so often at most: times
+  };
+  Name component;
+  What what = What::kLimit;
+  Name subject{};
+  Seldom<Expression> value{};
+  std::int64_t times = 0;
+};
+// Faults that WITHOUT may name.
+std::vector<std::string_view> drill_faults();
+
 // A line that declares something and does not parse: what uses the name is not at fault.
 struct BrokenDeclaration {
   enum class Kind : std::uint8_t { kConstant, kComponent, kSignal };
@@ -254,8 +278,11 @@ struct File {
   std::vector<Constant> constants;
   std::vector<Component> components;
   std::vector<Dependency> dependencies;
+  std::vector<Group> groups;
   std::vector<Name> ignored_topics;
   std::vector<Interlock> interlocks;
+  std::vector<Interlock> aborts;  // conditions that end a drill
+  std::vector<Drill> drills;
   std::vector<Signal> signals;
   std::vector<Rule> rules;
   std::vector<BrokenDeclaration> broken_declarations;

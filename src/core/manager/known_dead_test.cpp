@@ -349,7 +349,7 @@ TEST(ALaunch, ThatEndsSoonAfterACrashStaysDownAndSaysWhy) {
   robot.run_for(200ms);
   end_launcher(robot);
   robot.run_for(100ms);
-  EXPECT_EQ(robot.count("stay down: the launch of process 50 ended 500ms after a crashed"), 1u)
+  EXPECT_EQ(robot.count("stay down: the launch of process 50 ended 500 ms after a crashed"), 1u)
       << transcript(robot);
   EXPECT_TRUE(robot.manager().knowledge().departures.stays_down(robot.id("a")));
   const std::size_t asked = robot.asked.size();

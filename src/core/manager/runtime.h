@@ -7,6 +7,23 @@
 //     Runtime runtime(manager, robot);
 //     runtime.on_events = [&](std::span<const Event> events) { print(events); };
 //     runtime.run(stop);    // elsewhere: stop = true; robot.interrupt();
+// A host that drives the managing system by itself (examples/t02_robot_behind_the_port) has the same
+// duties:
+//
+//  1. Time does not go back. `now` of a step is at least that of the step before, and at least the
+//     time of each observation in it.
+//  2. Step at once when something was observed, when an order came, and when next_deadline() has passed.
+//  3. Carry out the commands of a step in their order, each exactly once, and none of an earlier process
+//     of the manager. Reads may be repeated on the wire.
+//  4. Give each command one Reply with its number, kTimedOut after its timeout at the latest.
+//  5. Write what has to survive before the commands go out (before_commands): after a crash the journal
+//     must not know less than the robot has seen.
+//  6. Say when nothing could be heard: Overslept after a step that came more than kLate after its time,
+//     HearingLost and HearingRegained around deafness. Else silence counts as the robot's.
+//  7. Report the end of a process only with proof, by the operating system or by the whole time of a
+//     lease.
+//  8. Never drop an observation of a process or of the graph. Samples may be thinned; the newest stays.
+//  9. One thread at a time calls the managing system.
 #pragma once
 
 #include <atomic>

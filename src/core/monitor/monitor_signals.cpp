@@ -4,6 +4,7 @@
 
 #include "monitor/interval.h"
 #include "monitor/monitor.h"
+#include "robot/unreadable.h"
 
 namespace culprit {
 
@@ -189,8 +190,9 @@ void Monitor::note_overflow(InputId id, Time at) {
 // The first reading after a gap is no change: the values in between are unknown.
 void Monitor::note_change(InputId id, const Value& value, Time at, bool is_after_gap) {
   Derived& derived = derived_[id.index];
-  if (is_after_gap || is_nan(value)) derived.known_since.reset();
-  if (is_nan(value)) return;
+  const bool is_unknown = is_nan(value) || is_unreadable(value);
+  if (is_after_gap || is_unknown) derived.known_since.reset();
+  if (is_unknown) return;
   if (!derived.known_since) {
     derived.known_since = at;
     derived.changed.reset();

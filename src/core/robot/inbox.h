@@ -21,8 +21,9 @@ class Inbox {
   // Observations that are not urgent are handed over no more often than this.
   static constexpr Duration kSoon = std::chrono::milliseconds(20);
 
-  // Observations beyond this many that were not taken are dropped, oldest first: a flood must not
-  // eat the memory. Replies are never dropped.
+  // If so many observations wait, the older half of the samples is dropped: a flood must not eat the
+  // memory. take() then reports how many. Observations of processes, of the graph, replies and orders are
+  // never dropped; the adapters limit how many a source can cause.
   static constexpr std::size_t kMaxWaiting = 1 << 16;
 
   // Stamps what was observed with the present time.
@@ -43,16 +44,15 @@ class Inbox {
   // Lets the present or the next take() return at once.
   void interrupt();
 
-  // How many observations were dropped so far.
-  std::size_t dropped() const;
-
  private:
-  mutable Mutex mutex_;
+  void drop_samples() CULPRIT_REQUIRES(mutex_);
+
+  Mutex mutex_;
   ConditionVariable something_came_;
   std::vector<Observation> waiting_ CULPRIT_GUARDED_BY(mutex_);
   bool is_due_ CULPRIT_GUARDED_BY(mutex_) = false;  // something of it
   Time handed_over_ CULPRIT_GUARDED_BY(mutex_) = kLongAgo;
-  std::size_t dropped_ CULPRIT_GUARDED_BY(mutex_) = 0;
+  std::size_t dropped_ CULPRIT_GUARDED_BY(mutex_) = 0;  // and not reported
   bool is_interrupted_ CULPRIT_GUARDED_BY(mutex_) = false;
 };
 

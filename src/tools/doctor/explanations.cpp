@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "doctor/recording_explanations.h"
+
 namespace culprit::doctor {
 namespace {
 
@@ -351,8 +353,8 @@ std::vector<Explanation> of_baselines() {
 
 std::vector<Explanation> all_explanations() {
   std::vector<Explanation> all;
-  for (auto part :
-       {of_connections(), of_nodes(), of_diagnostics(), of_reach(), of_data(), of_baselines()})
+  for (auto part : {of_connections(), of_nodes(), of_diagnostics(), of_reach(), of_data(),
+                    of_baselines(), recording_explanations()})
     all.insert(all.end(), part.begin(), part.end());
   return all;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,14 @@ enum class Gravity : std::uint8_t {
 // "warning", "error".
 std::string label(Gravity gravity);
 
+// When it was there, in a recording.
+struct When {
+  double from = 0;         // seconds since the recording's beginning
+  double until = 0;        // likewise
+  std::int64_t clock = 0;  // of `from`, nanoseconds since 1970
+  bool operator==(const When&) const = default;
+};
+
 struct Finding {
   std::string code;  // "D001": explanations.h has a page for each
   Gravity gravity = Gravity::kError;
@@ -25,7 +34,11 @@ struct Finding {
   std::string remedy;                // what to do
   std::vector<std::string> nodes{};  // concerned, by their full names
   std::string topic{};               // or service, concerned; empty: none
+  std::optional<When> when{};        // of recordings only
   bool operator==(const Finding&) const = default;
 };
+
+// "at 12.4 s (2026-11-28 16:50:22.400 UTC), for 3.2 s".
+std::string to_string(const When& when);
 
 }  // namespace culprit::doctor

@@ -13,13 +13,6 @@
 namespace culprit::doctor {
 namespace {
 
-Json finding_json(const Finding& finding) {
-  return {{"code", finding.code},       {"severity", label(finding.gravity)},
-          {"who", finding.who},         {"nodes", finding.nodes},
-          {"topic", finding.topic},     {"seen", finding.seen},
-          {"matters", finding.matters}, {"remedy", finding.remedy}};
-}
-
 Json logical_location(const std::string& name, const char* kind) {
   return {{"fullyQualifiedName", name}, {"kind", kind}};
 }
@@ -54,6 +47,18 @@ void leave_out_doubtful(const Picture& picture, Report& report) {
 
 }  // namespace
 
+Json to_json(const Finding& finding) {
+  Json json{{"code", finding.code},       {"severity", label(finding.gravity)},
+            {"who", finding.who},         {"nodes", finding.nodes},
+            {"topic", finding.topic},     {"seen", finding.seen},
+            {"matters", finding.matters}, {"remedy", finding.remedy}};
+  if (!finding.when) return json;
+  json["from_s"] = finding.when->from;
+  json["until_s"] = finding.when->until;
+  json["clock"] = static_cast<double>(finding.when->clock) / 1e9;
+  return json;
+}
+
 Report report_of(const Picture& picture, const Baseline* healthy) {
   Report report{picture.domain,   picture.nodes.size(), picture.looked,
                 examine(picture), picture.left_out,     {}};
@@ -68,7 +73,7 @@ Report report_of(const Picture& picture, const Baseline* healthy) {
 
 Json to_json(const Report& report) {
   Json findings = Json::array();
-  for (const Finding& finding : report.findings) findings.push_back(finding_json(finding));
+  for (const Finding& finding : report.findings) findings.push_back(to_json(finding));
   return {{"domain", report.domain},
           {"nodes", report.nodes},
           {"looked_s", seconds(report.looked)},

@@ -31,6 +31,10 @@ struct Report {
 // `healthy`: what the robot is compared with, too; null: nothing.
 Report report_of(const Picture& picture, const Baseline* healthy = nullptr);
 
+// {code, severity, who, nodes, topic, seen, matters, remedy}; of a recording also from_s, until_s (seconds since its
+// beginning) and clock (seconds since 1970).
+Json to_json(const Finding& finding);
+
 // {domain, nodes, looked_s, findings: [{code, severity, who, nodes, topic, seen, matters, remedy}],
 // left_out}.
 Json to_json(const Report& report);

@@ -63,8 +63,15 @@ class ExpectationReader {
 
   bool sentence() {
     e_.wanted = !took("NOT");
+    if (took("BLAME")) {
+      e_.kind = Kind::kBlamed;
+      return names_clause(About::kComponent, "a component");
+    }
     const auto subject = read_.name_or_text(s_, "a rule, a strategy or a component");
     if (!subject) return false;
+    // "NOT RGBDead": it is never detected.
+    if (!e_.wanted && fits(subject->text, About::kRule) && (s_.at_end() || is_time(s_.peek().text)))
+      return resolve(*subject, About::kRule);
     const Token word = s_.next();
     for (const Verb& verb : kVerbs) {
       if (word.text == verb.word) {
@@ -84,6 +91,8 @@ class ExpectationReader {
     }
     return read_.unexpected_clause(word, fitting);
   }
+
+  static bool is_time(std::string_view word) { return word == "BY" || word == "AFTER"; }
 
   bool knows(const std::string& name) const {
     return fits(name, About::kRule) || fits(name, About::kStrategy) ||

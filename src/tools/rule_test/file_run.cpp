@@ -67,7 +67,11 @@ FileRun run_file(const std::string& path, const std::string& filter, const Plann
   for (const syntax::Name& file : files) {
     const std::string rules_path = (folder / file.text).lexically_normal().string();
     auto part = read_part(*source, rules_path, colour, run.complaints);
-    if (part) parts.push_back(std::move(*part));
+    if (!part) continue;
+    for (Test& test : part->suite.tests) {
+      if (!test.bag.empty()) test.bag = (folder / test.bag).lexically_normal().string();
+    }
+    parts.push_back(std::move(*part));
   }
   run.is_usable = parts.size() == files.size();
   if (!run.is_usable) return run;

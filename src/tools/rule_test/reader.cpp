@@ -42,7 +42,7 @@ class Reader {
     std::string_view keyword;
     bool (Reader::*read)(Scanner&);
   };
-  static constexpr std::size_t kStatementCount = 6;
+  static constexpr std::size_t kStatementCount = 7;
   static const std::array<Statement, kStatementCount> kStatements;
 
   void statement(Scanner& s) {
@@ -61,7 +61,9 @@ class Reader {
   // Empty if no statement begins with `keyword`.
   std::optional<bool> read_statement(std::string_view keyword, Scanner& s) {
     for (const std::string_view known : SetupReader::keywords()) {
-      if (keyword == known) return setup_.read(keyword, s, scenario());
+      if (keyword != known) continue;
+      has_scenario_ = !suite_.tests.empty();
+      return setup_.read(keyword, s, scenario());
     }
     for (const Statement& known : kStatements) {
       if (keyword == known.keyword) return (this->*known.read)(s);
@@ -102,6 +104,7 @@ class Reader {
     suite_.tests.emplace_back();
     suite_.tests.back().span = keyword_;
     is_broken_ = false;
+    has_scenario_ = false;
     if (!name) return false;
     if (!test_names_.insert(name->text).second)
       return read_.fail(Code::kDuplicateName, name->span,
@@ -115,9 +118,13 @@ class Reader {
   void end_test() {
     if (suite_.tests.empty() || is_broken_) return;
     const Test& test = suite_.tests.back();
-    if (test.length == Duration::zero())
+    if (test.length == Duration::zero() && test.bag.empty())
       read_.fail(Code::kIncomplete, test.span, "this test does not say how long it runs",
                  "add for example RUN 10s");
+    if (!test.bag.empty() && has_scenario_)
+      read_.fail(Code::kOutOfPlace, test.span,
+                 "a test of a BAG has no script: the recording says what happens",
+                 "keep RUN and EXPECT, and write another test for the script");
     if (test.expectations.empty())
       read_.fail(Code::kIncomplete, test.span, "this test expects nothing",
                  "add for example EXPECT SomeRule RESOLVED BY 5s");
@@ -144,6 +151,18 @@ class Reader {
     return true;
   }
 
+  bool bag(Scanner& s) {
+    if (!inside_test("BAG")) return false;
+    auto path = read_.name_or_text(s, "the path of a recording, in quotes");
+    if (!path) return false;
+    Test& test = suite_.tests.back();
+    if (!test.bag.empty())
+      return read_.fail(Code::kDuplicateName, keyword_, "this test has a recording already",
+                        "keep one BAG line");
+    test.bag = std::move(path->text);
+    return true;
+  }
+
   bool expect(Scanner& s) {
     if (!inside_test("EXPECT")) return false;
     auto expectation = read_expectation(s, read_, names_);
@@ -157,9 +176,11 @@ class Reader {
   // ---- how the robot answers
 
   bool adaptation(Scanner& s) {
+    has_scenario_ = !suite_.tests.empty();
     return read_answers_of_adaptation(s, read_, names_, rules_, scenario());
   }
   bool strategy(Scanner& s) {
+    has_scenario_ = !suite_.tests.empty();
     return read_answers_of_strategy(s, read_, names_, rules_, scenario());
   }
 
@@ -171,7 +192,8 @@ class Reader {
   std::vector<Diagnostic>& diagnostics_;
   Suite suite_;
   std::unordered_set<std::string> test_names_;
-  bool is_broken_ = false;  // a line of the test under way; what follows from it is not reported
+  bool has_scenario_ = false;  // the test under way says what happens
+  bool is_broken_ = false;     // a line of the test under way; what follows from it is not reported
   Span keyword_;
 };
 
@@ -182,6 +204,7 @@ const std::array<Reader::Statement, Reader::kStatementCount> Reader::kStatements
     {"TEST", &Reader::test},
     {"EXPECT", &Reader::expect},
     {"RUN", &Reader::run},
+    {"BAG", &Reader::bag},
 }};
 
 }  // namespace

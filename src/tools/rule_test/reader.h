@@ -22,7 +22,8 @@ struct Test {
   Span span;
   Scenario scenario;  // beyond what all tests of the file share
   std::vector<Expectation> expectations;
-  Duration length{};
+  Duration length{};  // zero: to the end of the bag
+  std::string bag{};  // that is played instead of a scenario, as written; empty: none
 };
 
 struct Suite {

@@ -4,13 +4,15 @@
 
 #include "manager/manager.h"
 #include "manager/runtime.h"
+#include "rule_test/bag_run.h"
 #include "rule_test/restraint.h"
 #include "rule_test/scripted_robot.h"
 
 namespace culprit::rule_test {
+namespace {
 
-Result run_test(const RuleSet& rules, const Suite& suite, const Test& test,
-                std::unique_ptr<const Planner> planner) {
+Result run_script(const RuleSet& rules, const Suite& suite, const Test& test,
+                  std::unique_ptr<const Planner> planner) {
   Scenario scenario = suite.shared;
   scenario.append(test.scenario);
   ScriptedRobot robot(rules, scenario);
@@ -29,7 +31,16 @@ Result run_test(const RuleSet& rules, const Suite& suite, const Test& test,
   };
   const std::atomic<bool> never = false;
   runtime.run(never, Time{test.length});
+  return result;
+}
 
+}  // namespace
+
+Result run_test(const RuleSet& rules, const Suite& suite, const Test& test,
+                std::unique_ptr<const Planner> planner) {
+  Result result = test.bag.empty() ? run_script(rules, suite, test, std::move(planner))
+                                   : run_bag_test(rules, test, std::move(planner));
+  if (!result.is_ok()) return result;
   for (const Expectation& expectation : test.expectations) {
     if (auto instead = disappointment(expectation, result.events, rules))
       result.disappointments.push_back({expectation.span, std::move(*instead)});

@@ -1,0 +1,47 @@
+// A recording as the parts of the doctor look at it: each topic with its habit, and where the recording itself has holes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bag_doctor/course.h"
+#include "bag_doctor/habit.h"
+#include "bag_doctor/symptom.h"
+
+namespace culprit::bag_doctor {
+
+struct JudgedTopic {
+  const TopicCourse* topic;
+  Habit habit;  // unknown for what is latched or ROS's own
+};
+
+struct Examined {
+  const BagCourse& course;
+  std::vector<JudgedTopic> topics{};
+  // When the robot was shut down, or the recording ended. When a launch ends, its nodes end one after the other, and the
+  // recorder last: so it is the time from which fewer than half of the steady topics go on, if that is within the last
+  // seconds.
+  Nanoseconds end = 0;
+  // No topic at all was recorded although several come all the time: the recorder, its disk or the machine stood still.
+  std::vector<Stretch> holes{};
+  // By how much the stamps of most topics are behind the recorder's clock: simulated time, or a bag that was played.
+  Duration other_clock{};
+
+  bool is_hole(const Stretch& gap, const Habit& habit) const;
+};
+
+Examined examined(const BagCourse& course);
+
+// Its driver publishes it all the time: sensors, joint states, odometry.
+bool is_continuous(const TopicCourse& topic);
+
+using Symptoms = std::vector<Symptom>;
+void look_at_rhythm(const Examined& bag, Symptoms& all);  // D201 to D204, D210, D215
+void look_at_values(const Examined& bag, Symptoms& all);  // D205, D206, D216
+void look_at_stamps(const Examined& bag, Symptoms& all);  // D042 to D044, D208
+void look_at_frames(const Examined& bag, Symptoms& all);  // D051, D052
+void look_at_states(const Examined& bag, Symptoms& all);  // D020, D021, D211 to D213
+
+inline Time time_of(Nanoseconds at) { return Time(Duration(at)); }
+
+}  // namespace culprit::bag_doctor

@@ -1,0 +1,173 @@
+// What the doctor finds in recordings with one fault each, and when.
+#include <cmath>
+#include <limits>
+
+#include <fmt/core.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "bag_doctor/report.h"
+#include "bag_doctor/test_recording.h"
+#include "base/test_expected.h"
+#include "base/test_folder.h"
+
+namespace culprit::bag_doctor {
+namespace {
+
+using culprit::test::value_of;
+using doctor::Finding;
+using testing::AllOf;
+using testing::Contains;
+using testing::DoubleNear;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class SymptomTest : public testing::Test {
+ protected:
+  // 60 s of a sensor, so that something moves; `edit` may change or drop a message by its time.
+  template <class Edit>
+  void sensor(const std::string& topic, double rate, Edit edit) {
+    for (int i = 0; i / rate < 60; ++i) {
+      double time = i / rate, stamp = time - 0.01, value = test::noise(++count_);
+      if (edit(time, stamp, value))
+        recording_.add(topic, "sensor_msgs/msg/Imu", time, test::imu(stamp, value));
+    }
+  }
+  void sensor(const std::string& topic, double rate = 20) {
+    sensor(topic, rate, [](double&, double&, double&) { return true; });
+  }
+
+  std::vector<Finding> found() {
+    ros2::MessageLibrary library;
+    return report_of(value_of(read_course(recording_.write(folder_.path() / "bag.mcap"), library)),
+                     {})
+        .findings;
+  }
+  // "D201 error /imu at 19.9".
+  static std::string short_of(const Finding& finding) {
+    return fmt::format("{} {} {} at {:.1f}", finding.code, label(finding.gravity), finding.who,
+                       finding.when->from);
+  }
+  std::vector<std::string> shorts() {
+    std::vector<std::string> all;
+    for (const Finding& each : found()) all.push_back(short_of(each));
+    return all;
+  }
+
+  const culprit::test::TestFolder folder_;
+  test::Recording recording_;
+  std::uint64_t count_ = 0;
+};
+
+TEST_F(SymptomTest, AGapOfASensor) {
+  sensor("/imu", 20, [](double time, double, double) { return time < 20 || time > 26; });
+  sensor("/other");
+  const auto all = found();
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(short_of(all[0]), "D201 error /imu at 19.9");
+  EXPECT_NEAR(all[0].when->until, 26, 0.1);
+  EXPECT_EQ(to_string(*all[0].when), "at 19.950 s (2023-11-14 22:13:39.950 UTC), for 6.1 s");
+}
+
+TEST_F(SymptomTest, ASensorThatEndsEarly) {
+  sensor("/imu", 20, [](double time, double, double) { return time < 20; });
+  sensor("/other");
+  EXPECT_THAT(shorts(), ElementsAre("D202 error /imu at 19.9"));
+}
+
+TEST_F(SymptomTest, ASensorThatNeverCame) {
+  sensor("/other");
+  recording_.announce("/odometry/filtered", "nav_msgs/msg/Odometry");
+  EXPECT_THAT(shorts(), ElementsAre("D203 warning /odometry/filtered at 0.0"));
+}
+
+TEST_F(SymptomTest, ARateThatFalls) {
+  int n = 0;
+  sensor("/imu", 20, [&](double time, double, double) { return time < 30 || ++n % 2 == 0; });
+  sensor("/other");
+  const auto all = found();
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(all[0].code, "D204");
+  EXPECT_THAT(all[0].seen, HasSubstr("from 20 Hz to 10 Hz"));
+  EXPECT_NEAR(all[0].when->from, 30, 1.5);
+}
+
+TEST_F(SymptomTest, NumbersThatBecomeNaN) {
+  sensor("/imu", 20, [](double time, double, double& value) {
+    if (time > 40 && time < 45) value = std::nan("");
+    return true;
+  });
+  sensor("/other");
+  const auto all = found();
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(short_of(all[0]), "D205 error /imu at 40.0");
+  EXPECT_NEAR(all[0].when->until, 45, 0.1);
+}
+
+TEST_F(SymptomTest, ASensorThatFreezes) {
+  sensor("/imu", 20, [](double time, double, double& value) {
+    if (time > 30 && time < 40) value = 0.25;
+    return true;
+  });
+  sensor("/other");
+  EXPECT_THAT(shorts(), ElementsAre("D206 error /imu at 30.1"));
+}
+
+TEST_F(SymptomTest, StampsThatLagRepeatOrGoBack) {
+  sensor("/lags", 20,
+         [](double time, double& stamp, double) { return stamp -= time > 30 ? 1.5 : 0, true; });
+  sensor("/repeats", 20,
+         [](double time, double& stamp, double) { return stamp = time > 50 ? 50 : stamp, true; });
+  sensor("/back", 20, [](double time, double& stamp, double) {
+    return stamp -= time > 30 && time < 30.1 ? 0.7 : 0, true;
+  });
+  sensor("/ahead", 20, [](double time, double& stamp, double) {
+    return stamp += time > 30 && time < 40 ? 5 : 0, true;
+  });
+  EXPECT_THAT(
+      shorts(),
+      AllOf(Contains("D042 warning /lags at 30.1"), Contains("D208 warning /repeats at 50.0"),
+            Contains("D044 error /back at 30.1"), Contains("D043 error /ahead at 30.1")));
+}
+
+TEST_F(SymptomTest, AFrameWithTwoParentsAndATransformThatStops) {
+  sensor("/other");
+  for (int i = 0; i < 1200; ++i) {
+    const double time = i * 0.05;
+    recording_.add("/tf", "tf2_msgs/msg/TFMessage", time, test::transform(time, "odom", "base"));
+    if (time > 10)
+      recording_.add("/tf", "tf2_msgs/msg/TFMessage", time, test::transform(time, "map", "base"));
+    if (time < 30)
+      recording_.add("/tf", "tf2_msgs/msg/TFMessage", time, test::transform(time, "base", "arm"));
+  }
+  EXPECT_THAT(shorts(), AllOf(Contains("D052 error tf: base at 10.1"),
+                              Contains(HasSubstr("D051 error tf: base"))));
+}
+
+TEST_F(SymptomTest, WhatNodesSayOfThemselves) {
+  sensor("/other");
+  for (int i = 0; i < 60; ++i)
+    recording_.add("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", i,
+                   test::diagnostic(i, i < 30 ? 0 : 2, "camera: frames", "no frame"));
+  recording_.add("/rosout", "rcl_interfaces/msg/Log", 29,
+                 test::log(29, 50, "camera", "usb is gone"));
+  recording_.add("/rosout", "rcl_interfaces/msg/Log", 28, test::log(28, 30, "camera", "a warning"));
+  recording_.add("/lidar/transition_event", "lifecycle_msgs/msg/TransitionEvent", 20,
+                 test::transition("activating", "inactive"));
+  const auto all = shorts();
+  EXPECT_THAT(all, Contains("D020 error diagnostics: camera: frames: /camera at 29.0"));
+  EXPECT_THAT(all, Contains("D212 error log of /camera: /camera at 29.0"));
+  EXPECT_THAT(all, Contains("D211 error /lidar at 20.0"));
+}
+
+TEST_F(SymptomTest, OffersThatDoNotFitTogether) {
+  sensor("/imu");
+  recording_.offer("/imu",
+                   "- reliability: 1\n  durability: 2\n- reliability: 2\n  durability: 2\n");
+  recording_.add("/tf_static", "tf2_msgs/msg/TFMessage", 1, test::transform(1, "a", "b"));
+  recording_.offer("/tf_static", "- reliability: reliable\n  durability: volatile\n");
+  EXPECT_THAT(shorts(), ElementsAre("D213 warning /imu at 0.0", "D213 warning /tf_static at 0.0"));
+}
+
+}  // namespace
+}  // namespace culprit::bag_doctor

@@ -1,0 +1,14 @@
+// Plays a recording to the rules of a test instead of a scripted robot.
+#pragma once
+
+#include <memory>
+
+#include "rule_test/runner.h"
+
+namespace culprit::rule_test {
+
+// `test` has a bag, at a path that can be opened as it is. Times of events count from its first message. The manager only
+// advises, since nothing can be done in a recording. If the bag cannot be read, that is a disappointment.
+Result run_bag_test(const RuleSet& rules, const Test& test, std::unique_ptr<const Planner> planner);
+
+}  // namespace culprit::rule_test
