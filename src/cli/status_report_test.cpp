@@ -126,9 +126,11 @@ TEST(StatusReport, SaysThatNothingIsWatchedIfNoRuleCanSee) {
 TEST(StatusReport, NeverSaysThatARobotIsWellThatCannotBeHeard) {
   WhatCulpritSays said = well();
   said.control["hears"] = false;
-  said.state["overview"] = {{"look", "DEAF"}, {"headline", "the robot cannot be heard"}};
+  said.state["overview"] = {{"look", "DEAF"},
+                            {"headline", "culprit does not receive the robot's messages"}};
   EXPECT_EQ(verdict_of(said), Verdict::kNotWell);
-  EXPECT_THAT(all_of(said), HasSubstr("rover: the robot cannot be heard  [deaf]"));
+  EXPECT_THAT(all_of(said),
+              HasSubstr("rover: culprit does not receive the robot's messages  [deaf]"));
   EXPECT_THAT(all_of(WhatCulpritSays{}), HasSubstr("nothing is known yet"));
 }
 

@@ -71,7 +71,8 @@ Overview overview_of(const Manager& manager) {
   const Knowledge& knowledge = manager.knowledge();
   if (!manager.incidents().open().empty()) return of_incidents(manager);
   if (!manager.hears())
-    return {"DEAF", "the robot cannot be heard", "nothing is judged, and nothing is done"};
+    return {"DEAF", "culprit does not receive the robot's messages",
+            "nothing is judged, and nothing is done"};
   if (const auto missing = missing_of(manager); !missing.empty())
     return {"MISSING",
             listed(missing) + (missing.size() == 1 ? " is REQUIRED and is not there"

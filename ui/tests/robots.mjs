@@ -115,7 +115,7 @@ export const kStates = {
     cause: 'SegmentationBad fails', level: 'Warning', mode: 'Acting', also: ['since 14:03:22'] },
   exhausted: { events: [...kCameraDead, chosen(false), event(kBroken + 5, 'rule_exhausted', 'exhausted', 'error', 'alarm', 'RGBDead is given up', { rule: 'RGBDead' })], control: {}, state: { ...kSuffering, RGBDead: { ...failing, phase: 'exhausted' }, incidents: cause('nothing helped', 'nothing more is tried: a person must look', { health: 'EXHAUSTED', needs_person: true }) },
     cause: 'camera is dead', level: 'Gave up', mode: 'Acting', also: ['nothing helped'] },
-  deaf: { events: [], control: { hears: false }, state: { overview: { look: 'DEAF', headline: 'the robot cannot be heard', detail: 'nothing is judged, and nothing is done' } }, cause: 'The robot cannot be heard', level: 'Unknown', mode: 'Deaf' },
+  deaf: { events: [], control: { hears: false }, state: { overview: { look: 'DEAF', headline: "culprit does not receive the robot's messages", detail: 'nothing is judged, and nothing is done' } }, cause: "Culprit does not receive the robot's messages", level: 'Unknown', mode: 'Deaf' },
 }
 // It is over: 3 s later all of it was well. Names are only text.
 const kHealing = [...kCameraDead, chosen(false), ...kRules.map(({ name }) => event(kBroken + 3.01, 'failure_resolved', 'resolved', 'info', 'relief', `${name} resolved <b>rover</b>`, { rule: name, strategy: name === 'RGBDead' ? 'rgb_redeploy' : null, reaction_s: 3 })), event(kBroken + 3.01, 'incident_closed', 'incident', 'info', 'aside', '', { incident: kCause.id, rule: 'RGBDead', how: 'resolved' })]

@@ -39,7 +39,7 @@ std::string_view condition_of(const ComponentState& state) {
   return state.hangs() ? "hung" : "dead";
 }
 
-// Of all of them; empty: they work, or differ.
+// Their common condition; empty: they work, or differ.
 std::string_view condition_of(const std::vector<ComponentId>& components,
                               const Knowledge& knowledge) {
   std::string_view all;
@@ -51,14 +51,13 @@ std::string_view condition_of(const std::vector<ComponentId>& components,
   return all;
 }
 
-// "camera is dead", "fusion hangs", "camera and fusion are held responsible", "nothing is heard of
-// rover2, where camera and lidar ran".
+// "camera is dead", "fusion hangs", "camera and fusion are held responsible", "rover2, where
+// camera and lidar ran, is unreachable".
 std::string headline_of(const Incident& incident, const Knowledge& knowledge) {
   const std::string who = names_of_components(incident.components, knowledge.rules);
   const bool are_many = incident.components.size() > 1;
   const std::string are = are_many ? " are " : " is ";
-  if (!incident.host.empty())
-    return "nothing is heard of " + incident.host + ", where " + who + " ran";
+  if (!incident.host.empty()) return incident.host + ", where " + who + " ran, is unreachable";
   if (incident.condition == "hung") return who + (are_many ? " hang" : " hangs");
   if (!incident.condition.empty()) return who + are + incident.condition;
   if (incident.is_certain) return who + are + "held responsible";
@@ -72,7 +71,7 @@ std::string time_until(Time at, Time now) {
   return to_string(Duration(std::chrono::ceil<Tenths>(std::max(at - now, Duration::zero()))));
 }
 
-// What comes next, and when, of a failure that something is being done about.
+// The next step for a failure that is being repaired, and its time.
 std::string next_of_exhausted(RuleId rule, const Knowledge& knowledge) {
   const auto& strategies = knowledge.rules[rule].strategies;
   const bool goes_on = std::any_of(strategies.begin(), strategies.end(), [&](StrategyId id) {
@@ -105,7 +104,7 @@ std::string next_of(RuleId rule, const Knowledge& knowledge) {
     return "it is expected to go away with " + rules[state.settling->with].name + ", within " +
            time_until(state.settling->until, knowledge.now);
   if (state.search.retry_at > knowledge.now)
-    return "all strategies are tried anew in " + time_until(state.search.retry_at, knowledge.now);
+    return "all strategies are tried again in " + time_until(state.search.retry_at, knowledge.now);
   return "";
 }
 
@@ -167,7 +166,7 @@ void Incidents::note(const Event& event, const RuleSet& rules) {
     of(rules[asked->strategy].rule, rules) = {
         .candidates = asked->candidates, .suspects = asked->suspects, .blamed = asked->strategy};
   } else if (const auto* held = std::get_if<ActionHeldBack>(&event.what)) {
-    // Whose fault it is is known nevertheless.
+    // The failure is known to be its own cause all the same.
     Failure& failure = of(rules[held->strategy].rule, rules);
     failure.held_back = held->reason;
     failure.is_paused = held->restraint == Restraint::kPaused;
@@ -258,7 +257,7 @@ Incidents::Course Incidents::course_of(const Incident& incident, const Knowledge
                                        Halt halt) const {
   const RuleSet& rules = knowledge.rules;
   if (!incident.host.empty())
-    return {"nothing is started in their place until it is heard again",
+    return {"culprit starts nothing in their place until it is reachable again",
             "a person must look: is it on, and connected? Then it goes on by itself"};
   const Failure& root = of(incident.root);
   const RulePhase phase = knowledge.states[incident.root].phase;
@@ -267,7 +266,7 @@ Incidents::Course Incidents::course_of(const Incident& incident, const Knowledge
   if (phase == RulePhase::kExhausted) {
     doing = "nothing helped";
   } else if (halt == Halt::kDeaf) {
-    return {"nothing is judged or done while the robot cannot be heard", ""};
+    return {"nothing is judged or done: culprit does not receive the robot's messages", ""};
   } else if (halt == Halt::kPaused) {
     doing = "nothing is done: culprit is paused";
   } else if (incident.awaits_approval && root.blamed) {

@@ -99,7 +99,7 @@ TEST(Incidents, IsOneIncidentForAPersonWhereAComputerIsNotHeard) {
   watched.robot->run_for(60s);
   const auto incidents = watched.incidents();
   ASSERT_EQ(incidents.size(), 1u) << transcript(*watched.robot);
-  EXPECT_EQ(incidents[0].headline, "nothing is heard of rover2, where camera ran");
+  EXPECT_EQ(incidents[0].headline, "rover2, where camera ran, is unreachable");
   EXPECT_EQ(incidents[0].host, "rover2");
   EXPECT_EQ(incidents[0].components, std::vector{ComponentId(0)});
   EXPECT_EQ(incidents[0].consequences.size(), 1u);
@@ -151,7 +151,7 @@ TEST(Incidents, DoNotBlameAPauseThatIsOver) {
   watched.robot->tell(HearingLost{"a test"});
   watched.robot->order({2, "Ann", "", Resume{}});
   watched.robot->run_for(1s);
-  EXPECT_THAT(watched.course().doing, HasSubstr("cannot be heard")) << transcript(*watched.robot);
+  EXPECT_THAT(watched.course().doing, HasSubstr("does not receive")) << transcript(*watched.robot);
   EXPECT_THAT(watched.course().doing, testing::Not(HasSubstr("paused")));
 }
 

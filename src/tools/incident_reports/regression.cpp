@@ -117,7 +117,7 @@ std::string test_text(const Incident& incident, const Seen& seen, const std::str
   std::string text = fmt::format(
       "# Made by culprit incident {0} --export-test.\nRULES {1}.rules\n\nTEST \"incident {0}\"\n  "
       "BAG {1}.mcap\n",
-      incident.id(), name);
+      incident.id, name);
   constexpr Duration kSlack = 500ms;
   const auto expect = [&](const std::string& what, Duration at) {
     text += fmt::format("  EXPECT {} BY {}\n", what,
@@ -193,7 +193,7 @@ Expected<ExportedTest> export_test(const journal::Reader& journal, const std::st
                  "'; culprit run --record makes one of each incident"};
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  const std::string name = "incident_" + incident.id();
+  const std::string name = "incident_" + incident.id;
   ExportedTest exported{folder / (name + ".test"), folder / (name + ".mcap"),
                         folder / (name + ".rules")};
   for (const auto& each : {exported.test, exported.bag, exported.rules}) {

@@ -81,7 +81,7 @@ class RegressionTest : public testing::Test {
     const auto journal = value_of(journal::Reader::open(folder_.path() / "a.journal"));
     const auto found = value_of(incidents_of(journal, 0));
     EXPECT_EQ(found.incidents.size(), 1u);
-    return export_test(journal, found.incidents.front().id(), folder_.path() / "recordings",
+    return export_test(journal, found.incidents.front().id, folder_.path() / "recordings",
                        folder_.path() / "made");
   }
   static rule_test::FileRun run(const std::filesystem::path& file) {
