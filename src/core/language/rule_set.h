@@ -244,7 +244,7 @@ struct Rule {
   std::vector<StrategyId> strategies;   // in file order
   std::vector<ComponentId> components;  // that its strategies adapt, each once, ascending
   std::vector<InputId> inputs;          // that its trigger reads
-  // Of what it is about. Its failure is resolved only while each of them is active.
+  // Groups that it is about: its failure is resolved only while each of them is active.
   std::vector<GroupId> groups{};
   syntax::Name declaration;  // where it stands
 };
