@@ -100,6 +100,14 @@ export const kDeclarations: Record<string, Declaration> = {
       return { consumer, producers: [producer] }
     },
   },
+  GROUP: {
+    title: 'Group with a lifecycle manager',
+    members: { name: {}, members: { kind: 'list', wide: true }, manager: { list: 'components' } },
+    fresh: (document) => {
+      const [member = 'my_node', manager = 'my_manager'] = namesOf(document, 'COMPONENT')
+      return { name: freeName(document, 'GROUP', 'my_group'), members: [member], manager }
+    },
+  },
   IGNORE: { title: 'Topics to ignore', members: { topics: { kind: 'list', wide: true } }, fresh: () => ({ topics: ['/rosout'] }) },
   INTERLOCK: { title: 'Interlock', members: { expression: { wide: true } }, fresh: () => ({ expression: 'false' }) },
 }

@@ -76,6 +76,7 @@ export const kAdaptations: Record<string, string[]> = {
   redeploy: [],
   start: [],
   stop: [],
+  start_group: [],
   change_mode: ['mode'],
   call: ['service', 'request'],
 }
@@ -83,7 +84,7 @@ export const kAdaptations: Record<string, string[]> = {
 export const kOptional = ['request']
 
 // In cycles, as the rules of the examples have it: a parameter is light, a new process is not.
-const kImpacts: Record<string, number> = { activate: 5, deactivate: 5, restart: 5, redeploy: 10, start: 10, stop: 10 }
+const kImpacts: Record<string, number> = { activate: 5, deactivate: 5, restart: 5, redeploy: 10, start: 10, stop: 10, start_group: 50 }
 const kLightImpact = 2
 const kDefaults: Record<string, string> = {
   parameter: 'parameter', value: 'true', topic: 'topic', mode: 'mode', service: 'service',

@@ -810,6 +810,12 @@ void Link::probe() {
     if (input.kind != Input::Kind::kLifecycle || are_probed.contains(input.component)) continue;
     if (ComponentLink* link = link_of(input.component)) link->check_lifecycle();
   }
+  for (const Group& group : rules_.groups) {
+    for (const ComponentId member : group.members) {
+      ComponentLink* link = are_probed.contains(member) ? nullptr : link_of(member);
+      if (link != nullptr) link->check_lifecycle();
+    }
+  }
 }
 
 // Reports only a process on this machine that is proven to be the node's.

@@ -6,6 +6,7 @@
 
 #include "diagnose/timing.h"
 #include "knowledge/ambiguity.h"
+#include "knowledge/group_health.h"
 #include "knowledge/undoes.h"
 #include "language/evaluate.h"
 
@@ -230,7 +231,9 @@ void Analyzer::evaluate_trigger(RuleId id, Time now) {
     state.detection.trigger_since = now;
   }
   if (!is_true(value)) state.detection.armed = true;
-  if (is_false(value) && state.left_off && !state.left_off->gone) forget_left_off(id, now);
+  if (is_true(value)) state.cleared_by.reset();
+  if (is_false(value) && state.left_off && !state.left_off->gone && !missing_group(id, now))
+    forget_left_off(id, now);
   if (!state.detection.history.empty()) sample_history(id, now);
   blind_.evaluated(id, now);
 }
@@ -284,10 +287,43 @@ Duration Analyzer::clearing_time(RuleId id) const {
   return std::max(policies.hold_for, knowledge_.rules.cycle * held);
 }
 
-bool Analyzer::is_gone(RuleId id, Time now) const {
+// The trigger has stayed false.
+bool Analyzer::is_cleared(RuleId id, Time now) const {
   const RuleState& state = knowledge_.states[id];
   return is_false(state.detection.trigger) &&
          now >= later(state.detection.trigger_since, clearing_time(id));
+}
+
+// And its function is there again: a component of a group is of no use while the group is not active.
+bool Analyzer::is_gone(RuleId id, Time now) const {
+  return is_cleared(id, now) && !missing_group(id, now);
+}
+
+std::optional<GroupId> Analyzer::missing_group(RuleId id, Time now) const {
+  for (const GroupId group : knowledge_.rules[id].groups) {
+    if (health_of(knowledge_.rules[group], knowledge_.components, now) != GroupHealth::kActive)
+      return group;
+  }
+  return std::nullopt;
+}
+
+// It brings up a group, or its rule reads the health of one: a member that works proves nothing.
+bool Analyzer::is_about_whole_group(StrategyId id) const {
+  const Strategy& strategy = knowledge_.rules[id];
+  const auto reads_group = [&](InputId input) {
+    const Input& read = knowledge_.rules[input];
+    return read.kind == Input::Kind::kSignal &&
+           std::holds_alternative<GroupId>(knowledge_.rules[read.signal].source);
+  };
+  return std::ranges::any_of(strategy.adaptations,
+                             [](const Adaptation& a) { return a.group.has_value(); }) ||
+         std::ranges::any_of(knowledge_.rules[strategy.rule].inputs, reads_group);
+}
+
+bool Analyzer::is_left_down(GroupId group, const Attempt& attempt, Time now) const {
+  const GroupHealth health = health_of(knowledge_.rules[group], knowledge_.components, now);
+  if (health == GroupHealth::kChanging) return false;
+  return health != GroupHealth::kUnknown || now >= later(attempt.deadline, kLostAfter);
 }
 
 void Analyzer::detect(RuleId id, Time now) {
@@ -309,6 +345,7 @@ void Analyzer::detect(RuleId id, Time now) {
   state.is_advised = state.is_last_resort_advised = false;
   state.tried_alone.reset();
   state.settling.reset();
+  state.cleared_by.reset();
   // It is due anew, also if the failure is the same one.
   state.search.is_at_last_resort = false;
   state.search.last_resort_at = kLongAgo;
@@ -346,7 +383,10 @@ void Analyzer::watch_failing(RuleId id, Time now) {
   if (is_gone(id, now)) {
     if (const auto tried = std::exchange(write_.states.state(id).tried_alone, std::nullopt))
       note_latency(id, *tried);
-    if (const auto helped = last_resort_that_helped(id)) {
+    if (const auto cleared_by = std::exchange(write_.states.state(id).cleared_by, std::nullopt)) {
+      resolve(id, {id, FailureResolved::How::kByStrategy, cleared_by->strategy, {}}, now);
+      outcomes_.judged(*cleared_by, true, now);
+    } else if (const auto helped = last_resort_that_helped(id)) {
       resolve(id, {id, FailureResolved::How::kByStrategy, *helped, {}}, now);
     } else {
       resolve(id, {id, FailureResolved::How::kWithoutStrategy, {}, {}}, now);
@@ -402,9 +442,14 @@ void Analyzer::judge(RuleId id, Time now) {
   const Time given = std::max({later(attempt.effective, impact), shows_from(attempt),
                                knowledge_.signals.heard_again_by(id)});
   attempt.deadline = later(given, knowledge_.signals.latency(id));
-  if (knowledge_.rules[id].policies.on_change || is_gone(id, now)) return succeed(id, now);
+  const auto awaited =
+      is_about_whole_group(attempt.strategy) ? missing_group(id, now) : std::nullopt;
+  if (knowledge_.rules[id].policies.on_change || (is_cleared(id, now) && !awaited))
+    return succeed(id, now);
   const bool is_suspended = attempt.stage == Attempt::Stage::kSuspended;
-  if (is_suspended || now < attempt.deadline || is_false(state.detection.trigger)) return;
+  const bool is_clearing =
+      is_false(state.detection.trigger) && !(awaited && is_left_down(*awaited, attempt, now));
+  if (is_suspended || now < attempt.deadline || is_clearing) return;
   if (state.detection.trigger.known || now >= later(attempt.deadline, kLostAfter) ||
       holds_up_more_critical(attempt.strategy))
     fail(id, now);
@@ -495,6 +540,13 @@ void Analyzer::succeed(RuleId id, Time now) {
   // It helped after all, and its rule showed that late.
   if (!caused && !is_suspended && state.tried_alone) note_latency(id, *state.tried_alone);
   state.tried_alone.reset();
+  // Its components are free for what brings up the group.
+  if (!knowledge_.rules[id].policies.on_change && missing_group(id, now)) {
+    ++state.search.attempts;
+    write_.states.set_tried(attempt.strategy, true);
+    if (caused) state.cleared_by = attempt;
+    return write_.states.enter(id, RulePhase::kFailing);
+  }
   if (caused) {
     resolve(id, {id, FailureResolved::How::kByStrategy, attempt.strategy, {}}, now);
   } else {
@@ -606,7 +658,9 @@ void Analyzer::fail(RuleId id, Time now) {
     state.tried_alone.reset();
     if (!attempt.is_ambiguous && attempt.effective != kNever) state.tried_alone = attempt.effective;
   }
+  const auto group = is_false(state.detection.trigger) ? missing_group(id, now) : std::nullopt;
   const std::string reason = !attempt.obstacle.empty() ? attempt.obstacle
+                             : group ? "group " + knowledge_.rules[*group].name + " is not active"
                              : state.detection.trigger.known
                                  ? "the failure is still there"
                                  : "it is unknown whether the failure is still there";
@@ -800,6 +854,7 @@ void Analyzer::schedule(RuleId id, Time now) {
              : later(state.failing_since, knowledge_.rules[*last].within));
   if (state.attempt && state.attempt->stage == Attempt::Stage::kWaiting) {
     want(state.attempt->deadline);
+    want(later(state.attempt->deadline, kLostAfter));
     // Until the wait ends; a more critical failure may come before.
     if (!state.detection.trigger.known || shows_from(*state.attempt) > now)
       want(later(now, knowledge_.rules.cycle));

@@ -152,7 +152,13 @@ class Analyzer {
   void forget_left_off(RuleId id, Time now);
   void sample_history(RuleId id, Time now);
   bool detects(RuleId id, Time now) const;
+  bool is_cleared(RuleId id, Time now) const;
   bool is_gone(RuleId id, Time now) const;
+  // A group that the rule is about and that is not active; nothing: there is none.
+  std::optional<GroupId> missing_group(RuleId id, Time now) const;
+  bool is_about_whole_group(StrategyId strategy) const;
+  // The group stays as it is, and that is not active: no member is changing.
+  bool is_left_down(GroupId group, const Attempt& attempt, Time now) const;
   Duration clearing_time(RuleId id) const;
 
   void remember(const Event& event);

@@ -196,7 +196,16 @@ bool Executor::next_goal(Run& run, Time now) {
   while (run.adaptation < adaptations.size()) {
     const Adaptation& adaptation = adaptations[run.adaptation];
     if (run.goals.empty()) {
-      auto goals = execute::goals_of(adaptation, knowledge_);
+      if (const auto other = deactivated_meanwhile(run)) {
+        write_.attempts.make_ambiguous(run.strategy);
+        const std::string reason = knowledge_.rules[*other].name +
+                                   " was deactivated meanwhile, by something else: a person, or "
+                                   "the manager";
+        obstruct(run, reason, reason, now);
+        return false;
+      }
+      auto goals =
+          is_managed_still(run) ? std::vector<Goal>() : execute::goals_of(adaptation, knowledge_);
       if (!goals) {
         obstruct(run, goals.error(), goals.error(), now);
         return false;
@@ -220,6 +229,7 @@ bool Executor::next_goal(Run& run, Time now) {
     }
     write_.events.tell(now, AdaptationDone{run.strategy, run.adaptation, run.remark});
     note_begun_anew(run, now);
+    if (adaptation.group) run.brought_up.push_back({adaptation.component, now});
     run.goals.clear();
     run.remark.clear();
     ++run.adaptation;
@@ -227,6 +237,28 @@ bool Executor::next_goal(Run& run, Time now) {
   write_.attempts.took_effect(run.strategy, now);
   write_.signals.touch(run.rule);
   return false;
+}
+
+// A member of a group that was brought up, and is not up any more though its process lives: to bring it up
+// again would be a fight with whoever did that.
+std::optional<ComponentId> Executor::deactivated_meanwhile(const Run& run) const {
+  for (const Run::BroughtUp& each : run.brought_up) {
+    const ComponentState& state = knowledge_.components[each.component];
+    const bool is_down =
+        state.lifecycle == Lifecycle::kInactive || state.lifecycle == Lifecycle::kUnconfigured;
+    if (is_down && state.alive == true && state.lifecycle_since > each.at &&
+        state.node_seen <= each.at)
+      return each.component;
+  }
+  return std::nullopt;
+}
+
+// The manager of a group in which nothing had to be changed: it has brought up all of them by itself.
+bool Executor::is_managed_still(const Run& run) const {
+  const Adaptation& adaptation = knowledge_.rules[run.strategy].adaptations[run.adaptation];
+  return adaptation.group && adaptation.type == AdaptationType::kRedeploy &&
+         knowledge_.components[adaptation.component].alive == true &&
+         attempt_of(run)->first_change == kNever;
 }
 
 // Consumers may show the gap of a restart after it is over.
@@ -274,7 +306,8 @@ void Executor::finish_goal(Run& run, Time now) {
   const Adaptation& adaptation = knowledge_.rules[run.strategy].adaptations[run.adaptation];
   // A last resort is to last, even after its failure has cleared.
   const bool is_to_last = knowledge_.rules[run.strategy].is_last_resort;
-  if (!is_to_last && pursuit.has_changed_anything()) note_undo(run);
+  // Members that are up stay up: a part of the group is better than nothing.
+  if (!is_to_last && !adaptation.group && pursuit.has_changed_anything()) note_undo(run);
   if (pursuit.is_reached()) {
     // Where it was brought last counts; a restart takes it through another state.
     const auto rest = run.goals.begin() + static_cast<std::ptrdiff_t>(run.goal) + 1;
@@ -284,7 +317,9 @@ void Executor::finish_goal(Run& run, Time now) {
     if (is_last) note_lifecycle(pursuit, now);
     if (const auto* parameter = std::get_if<execute::ParameterGoal>(&pursuit.goal()))
       forget_owed(pursuit.component(), parameter->name);
-    if (launches(adaptation) || is_first_rise(pursuit)) note_coming_up(pursuit, now);
+    // The manager of a group goes on being the driver of its members.
+    if (launches(adaptation) || (!adaptation.group && is_first_rise(pursuit)))
+      note_coming_up(pursuit, now);
     if (!pursuit.remark().empty()) run.remark = pursuit.remark();
     note_mode(pursuit, now);
     ++run.goal;

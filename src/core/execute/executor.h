@@ -79,6 +79,11 @@ class Executor {
     std::vector<execute::Undo> undo;
     Time started = kNever;  // the first process that it started
     int starts = 0;         // that its process ended after it had been there
+    struct BroughtUp {
+      ComponentId component;
+      Time at{};
+    };
+    std::vector<BroughtUp> brought_up{};  // of a group
     // For a resumed run, until the robot had the time to show itself.
     std::optional<Interrupted> interrupted;
     Time from = kLongAgo;
@@ -96,6 +101,8 @@ class Executor {
   bool next_goal(Run& run, Time now);
   bool start_again(Run& run, Time now);
   bool is_first_rise(const execute::Pursuit& pursuit) const;
+  std::optional<ComponentId> deactivated_meanwhile(const Run& run) const;
+  bool is_managed_still(const Run& run) const;
   void note_begun_anew(const Run& run, Time now);
   void note_undo(Run& run);
   bool next_undo(Run& run, Time now);

@@ -131,8 +131,58 @@ LifecycleGoal bringing_up(const Adaptation& adaptation, Lifecycle target,
   return goal;
 }
 
+// The manager of its group brings it up, or else start_group does: whoever waits here for that would keep it
+// from start_group.
+bool is_left_to_group(ComponentId component, const Knowledge& knowledge) {
+  const LifecycleDriver driver = knowledge.rules[component].lifecycle;
+  return (driver == LifecycleDriver::kLauncher || driver == LifecycleDriver::kUndeclared) &&
+         std::ranges::any_of(knowledge.rules.groups, [&](const Group& group) {
+           return std::ranges::find(group.members, component) != group.members.end();
+         });
+}
+
+namespace {
+
+// The process is ended, and another one is there.
+std::vector<Goal> replacing(const Adaptation& adaptation, const Knowledge& knowledge) {
+  const ComponentState& state = knowledge.components[adaptation.component];
+  GoneGoal gone;
+  PresentGoal back = present(adaptation, knowledge);
+  // A process that took its place meanwhile is not ended. systemd may be faster than the news of the
+  // end; and a container may be replaced for one of those that it loads.
+  const Component& component = knowledge.rules[adaptation.component];
+  if (component.has_owner() || component.composed || state.known_pid() != 0 ||
+      is_container(adaptation.component, knowledge.rules)) {
+    gone.pid = state.known_pid();
+    back.instead_of = gone.pid;
+    if (!component.host().empty()) back.instead_of_seen = state.node_seen;
+  }
+  return {gone, back};
+}
+
+// A member of a group is brought up past the manager, whoever does that when it starts.
+Expected<std::vector<Goal>> bringing_up_member(const Adaptation& adaptation,
+                                               const Knowledge& knowledge) {
+  const ComponentState& state = knowledge.components[adaptation.component];
+  std::vector<Goal> goals;
+  if (state.alive == false) {
+    if (!knowledge.rules[adaptation.component].can_start_again())
+      return Error{"it is not alive, and has no LAUNCH command"};
+    goals = replacing(adaptation, knowledge);
+  }
+  LifecycleGoal up{Lifecycle::kActive, {}};
+  up.patience = std::max(longest_transition({}), longest_transition(state.coming_up));
+  up.loading = loading_of(state.coming_up, knowledge);
+  goals.emplace_back(up);
+  return goals;
+}
+
+}  // namespace
+
 Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowledge& knowledge) {
   const ComponentState& state = knowledge.components[adaptation.component];
+  const bool is_member = adaptation.group && adaptation.type == AdaptationType::kActivate;
+  if (is_member) return bringing_up_member(adaptation, knowledge);
   switch (adaptation.type) {
     case AdaptationType::kSetParameter:
     case AdaptationType::kIncreaseParameter:
@@ -160,21 +210,12 @@ Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowled
       return std::vector<Goal>{LifecycleGoal{Lifecycle::kInactive, {}},
                                LifecycleGoal{Lifecycle::kActive, {}}};
     case AdaptationType::kRedeploy: {
-      GoneGoal gone;
-      PresentGoal back = present(adaptation, knowledge);
-      // A process that took its place meanwhile is not ended. systemd may be faster than the news of the
-      // end; and a container may be replaced for one of those that it loads.
-      const Component& component = knowledge.rules[adaptation.component];
-      if (component.has_owner() || component.composed || state.known_pid() != 0 ||
-          is_container(adaptation.component, knowledge.rules)) {
-        gone.pid = state.known_pid();
-        back.instead_of = gone.pid;
-        if (!component.host().empty()) back.instead_of_seen = state.node_seen;
-      }
-      std::vector<Goal> goals{gone, back};
+      std::vector<Goal> goals = replacing(adaptation, knowledge);
       // A managed node comes back unconfigured unless it brings itself up: it is brought to where
       // it was, or to where a rule says that it must be.
-      if (state.intended_lifecycle == Lifecycle::kUnknown) return goals;
+      if (state.intended_lifecycle == Lifecycle::kUnknown ||
+          is_left_to_group(adaptation.component, knowledge))
+        return goals;
       const Lifecycle target =
           demanded(adaptation.component, knowledge).value_or(state.intended_lifecycle);
       if (target == Lifecycle::kActive || target == Lifecycle::kInactive)
@@ -184,7 +225,8 @@ Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowled
     case AdaptationType::kStart: {
       if (state.alive == true) return std::vector<Goal>{};  // somebody else was there first
       std::vector<Goal> goals{present(adaptation, knowledge)};
-      if (state.intended_lifecycle != Lifecycle::kUnknown)
+      if (state.intended_lifecycle != Lifecycle::kUnknown &&
+          !is_left_to_group(adaptation.component, knowledge))
         goals.push_back(bringing_up(adaptation, Lifecycle::kActive, knowledge));
       return goals;
     }
@@ -193,6 +235,8 @@ Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowled
       return std::vector<Goal>{GoneGoal{}};
     case AdaptationType::kChangeMode:
       return std::vector<Goal>{ModeGoal{adaptation.subject}};
+    case AdaptationType::kStartGroup:  // a rule set holds its parts instead
+      return std::vector<Goal>{};
     case AdaptationType::kCall:
       return std::vector<Goal>{ServiceGoal{
           service_of(adaptation.subject, knowledge.graph.node_name(adaptation.component)),

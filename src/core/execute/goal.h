@@ -82,6 +82,9 @@ Duration patience(const Goal& goal);
 LifecycleGoal bringing_up(const Adaptation& adaptation, Lifecycle target,
                           const Knowledge& knowledge);
 
+// Whether a member of a GROUP that is started is not waited for beyond its process.
+bool is_left_to_group(ComponentId component, const Knowledge& knowledge);
+
 // The goals of an adaptation, in order. An error if they cannot be computed: the new value of a
 // parameter is unknown now.
 Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowledge& knowledge);

@@ -331,8 +331,9 @@ std::optional<Governor::Held> Governor::restraint_on_last_resort(StrategyId id, 
     return Held{Restraint::kIdentity, std::move(*doubt), kNever};
   if (auto reason = launch_of_the_unseen(strategy, knowledge_))
     return Held{Restraint::kNeverSeen, std::move(*reason), kNever};
-  return std::ranges::any_of(strategy.adaptations, launches) ? departure(strategy, now)
-                                                             : std::nullopt;
+  const auto may_launch = [](const Adaptation& a) { return launches(a) || a.group; };
+  return std::ranges::any_of(strategy.adaptations, may_launch) ? departure(strategy, now)
+                                                               : std::nullopt;
 }
 
 std::vector<StrategyId> Governor::last_resorts_behind(const Order& order) const {

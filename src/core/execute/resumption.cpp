@@ -43,6 +43,11 @@ std::vector<Goal> goals_of_process(const Sent& sent, const Adaptation& adaptatio
   PresentGoal back{old_pid};
   if (is_elsewhere) back.instead_of_seen = kLongAgo;
   goals.push_back(back);
+  if (adaptation.group && adaptation.type == AdaptationType::kActivate) {
+    goals.push_back(LifecycleGoal{Lifecycle::kActive, {}});
+    return goals;
+  }
+  if (is_left_to_group(adaptation.component, knowledge)) return goals;
   const auto* was = std::get_if<Lifecycle>(&sent.front()->command.purpose.before);
   if (was != nullptr && (*was == Lifecycle::kActive || *was == Lifecycle::kInactive))
     goals.push_back(bringing_up(adaptation, *was, knowledge));
@@ -95,6 +100,7 @@ std::vector<Undo> undo_of(const Interrupted& interrupted, const Knowledge& knowl
     const Command& command = request.command;
     if (command.purpose.undoes) continue;
     const Adaptation& adaptation = adaptations[command.purpose.adaptation];
+    if (adaptation.group) continue;
     if (std::holds_alternative<StopProcess>(command.what) &&
         is_started_again(command.purpose.adaptation, adaptations)) {
       const auto* was = std::get_if<Lifecycle>(&command.purpose.before);

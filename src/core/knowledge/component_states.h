@@ -53,6 +53,8 @@ struct ComponentState {
   Lifecycle lifecycle = Lifecycle::kUnknown;
   Time lifecycle_since = kLongAgo;  // when it was read first in that state
   bool was_active = false;          // it was read as active once
+  // Its group was inactive as a whole, which is a pause, and no member was active since.
+  bool is_paused = false;
   Time changes_until = kNever;     // when a transition under way hangs; kNever: none is known to be
   Duration transition_patience{};  // that culprit has with each, if more than it needed before
   // The lifecycle state where it should be: the last one while no strategy adapted it, or the one

@@ -303,6 +303,8 @@ class Describer {
   }
   std::string unseen(SignalId id) const {
     const Signal& signal = rules_[id];
+    if (std::holds_alternative<GroupId>(signal.source))
+      return "group " + signal.name + " was never whole: of some component in it no state was read";
     const auto* key = std::get_if<DiagnosticKey>(&signal.source);
     const std::string source = key == nullptr || key->status == "*"
                                    ? "it"

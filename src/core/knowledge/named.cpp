@@ -121,6 +121,7 @@ std::string nearest_source(const Signal& signal, const Knowledge& knowledge) {
     return nearest_parameter(rules[*parameter], knowledge.heard_names);
   if (const auto* key = std::get_if<DiagnosticKey>(&signal.source))
     return nearest_key(key->status, key->key, knowledge.heard_names);
+  if (std::holds_alternative<GroupId>(signal.source)) return "";
   return nearest_key("*", signal.name, knowledge.heard_names);
 }
 

@@ -103,6 +103,8 @@ struct RuleState {
   std::vector<Standing> standing;
   // When the last attempt that failed took effect, if nothing else can have helped since.
   std::optional<Time> tried_alone;
+  // The attempt that made the trigger false, while a group that the rule is about is not active yet.
+  std::optional<Attempt> cleared_by;
   bool is_advised = false;              // dry run: the decision was reported
   bool is_last_resort_advised = false;  // the same for the last resort
   std::optional<Settling> settling;

@@ -466,11 +466,20 @@ class Checker {
     }
     strategy.adaptations.reserve(written.adaptations.size());
     strategy.components.reserve(written.adaptations.size());
-    for (const syntax::Adaptation& adaptation : written.adaptations)
-      add_adaptation(adaptation, strategy);
+    for (const syntax::Adaptation& adaptation : written.adaptations) {
+      const auto first = strategy.adaptations.size();
+      adaptation.type == AdaptationType::kStartGroup ? add_group(adaptation, strategy)
+                                                     : add_adaptation(adaptation, strategy);
+      for (auto i = first; i < strategy.adaptations.size(); ++i)
+        strategy.adaptations[i].written =
+            static_cast<std::uint32_t>(&adaptation - written.adaptations.data());
+    }
     const auto begins_step = steps_of(written);
-    for (std::size_t i = 0; i < begins_step.size(); ++i)
-      strategy.adaptations[i].begins_step = begins_step[i];
+    for (std::size_t i = 0; i < strategy.adaptations.size(); ++i) {
+      Adaptation& each = strategy.adaptations[i];
+      const bool is_next_of_group = i > 0 && strategy.adaptations[i - 1].written == each.written;
+      each.begins_step = is_next_of_group || begins_step[each.written];
+    }
     strategy.impact = impact_of(strategy.adaptations);
     check_contradictions(written, diagnostics_);
 
@@ -511,13 +520,7 @@ class Checker {
     if (written.request) adaptation.request = written.request->text;
     if (syntax::names_parameter(written.type))
       adaptation.parameter = symbols_.parameter(adaptation.component, adaptation.subject);
-    if (!written.impact.whole || written.impact.value < 1 || written.impact.value > kMaxImpact) {
-      report(Code::kImpactRange, written.impact.span,
-             "an impact is a whole number of cycles, at least 1",
-             "count how many cycles it takes until the failure is gone");
-    } else {
-      adaptation.impact = {static_cast<std::int64_t>(written.impact.value)};
-    }
+    adaptation.impact = impact_of(written);
     if (written.value) {
       if (auto typed = type_expression(*written.value, symbols_, diagnostics_)) {
         adaptation_value(written, std::move(*typed), adaptation);
@@ -525,6 +528,36 @@ class Checker {
     }
     strategy.components.push_back(adaptation.component);
     strategy.adaptations.push_back(std::move(adaptation));
+  }
+
+  // Zero: it was reported.
+  Cycles impact_of(const syntax::Adaptation& written) {
+    if (written.impact.whole && written.impact.value >= 1 && written.impact.value <= kMaxImpact)
+      return {static_cast<std::int64_t>(written.impact.value)};
+    report(Code::kImpactRange, written.impact.span,
+           "an impact is a whole number of cycles, at least 1",
+           "count how many cycles it takes until the failure is gone");
+    return {};
+  }
+
+  // start_group: each member in its order, as steps; then its manager, where somebody can start that.
+  // The last one has the impact.
+  void add_group(const syntax::Adaptation& written, Strategy& strategy) {
+    const Cycles impact = impact_of(written);
+    const auto id = symbols_.group(written.component);
+    if (!id || rules_[*id].members.empty()) return;
+    const Group& group = rules_[*id];
+    const auto add = [&](ComponentId component, AdaptationType type) {
+      Adaptation adaptation;
+      adaptation.component = component;
+      adaptation.type = type;
+      adaptation.group = *id;
+      strategy.components.push_back(component);
+      strategy.adaptations.push_back(std::move(adaptation));
+    };
+    for (const ComponentId member : group.members) add(member, AdaptationType::kActivate);
+    if (rules_[group.manager].can_start_again()) add(group.manager, AdaptationType::kRedeploy);
+    strategy.adaptations.back().impact = impact;
   }
 
   void adaptation_value(const syntax::Adaptation& written, Typed typed, Adaptation& adaptation) {
@@ -570,6 +603,38 @@ class Checker {
     }
     sort_unique(rule.inputs);
     for (const InputId input : rule.inputs) rules_.inputs[input.index].readers.push_back(id);
+    link_groups(id);
+  }
+
+  // It is about a group if it reads the group, or a member, or adapts one.
+  void link_groups(RuleId id) {
+    Rule& rule = rules_.rules[id.index];
+    rule.groups.clear();
+    for (std::size_t g = 0; g < rules_.groups.size(); ++g) {
+      const Group& group = rules_.groups[g];
+      const auto is_member = [&](ComponentId component) {
+        return std::ranges::find(group.members, component) != group.members.end();
+      };
+      const auto is_of_group = [&](InputId input_id) {
+        const Input& input = rules_[input_id];
+        const bool is_of_component =
+            input.kind == Input::Kind::kAlive || input.kind == Input::Kind::kLifecycle;
+        const auto* source = input.kind == Input::Kind::kSignal
+                                 ? std::get_if<GroupId>(&rules_[input.signal].source)
+                                 : nullptr;
+        return (is_of_component && is_member(input.component)) ||
+               (source != nullptr && *source == GroupId(g));
+      };
+      if (std::ranges::none_of(rule.components, is_member) &&
+          std::ranges::none_of(rule.inputs, is_of_group))
+        continue;
+      rule.groups.emplace_back(g);
+      Input health;
+      health.type = Type::kString;
+      health.signal = group.health;
+      auto& readers = rules_.inputs[symbols_.input(health).index].readers;
+      if (std::ranges::find(readers, id) == readers.end()) readers.push_back(id);
+    }
   }
 
   template <class T>

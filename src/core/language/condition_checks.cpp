@@ -84,6 +84,10 @@ std::string known_of(InputId id, const RuleSet& rules) {
       return ": loss is a share from 0 to 1";
     case Input::Kind::kLevel:
       return ": a level is 0, 1, 2 or 3";
+    case Input::Kind::kSignal:
+      return std::holds_alternative<GroupId>(rules[rules[id].signal].source)
+                 ? ": a group is active, half_up, inactive, down or changing"
+                 : "";
     case Input::Kind::kLifecycle:
       return ": the states are unconfigured, inactive, active and finalized";
     default:
@@ -286,7 +290,7 @@ void check_last_resort(const RuleConditions& rule, const RuleSet& rules,
   const Rule& checked = rules[rule.rule];
   const auto can_be_launched = [&](ComponentId c) { return rules[c].can_start_again(); };
   const auto launches = [&](const Adaptation& a) {
-    return a.type == AdaptationType::kRedeploy || a.type == AdaptationType::kStart;
+    return a.type == AdaptationType::kRedeploy || a.type == AdaptationType::kStart || a.group;
   };
   const auto helps_a_hung_process = [&](StrategyId s) {
     const auto& adaptations = rules[s].adaptations;

@@ -127,7 +127,7 @@ std::vector<Doing> doings_of(const RuleConditions& rule, const RuleSet& rules) {
       std::erase_if(doings, [&](const Doing& earlier) {
         return earlier.strategy == strategy && earlier.effect.thing == effect->thing;
       });
-      const Span span = rule.strategies[s]->adaptations[i].span;
+      const Span span = rule.strategies[s]->adaptations[adaptations[i].written].span;
       doings.push_back({&rule, strategy, adaptations[i].component, span, std::move(*effect)});
     }
   }
@@ -273,7 +273,8 @@ void check_interlocks(const std::vector<RuleConditions>& conditions, const RuleS
         });
         if (interlock == rules.interlocks.end()) continue;
         diagnostics.push_back(
-            {Code::kMovesInterlock, Severity::kWarning, rule.strategies[s]->adaptations[a].span,
+            {Code::kMovesInterlock, Severity::kWarning,
+             rule.strategies[s]->adaptations[changed.written].span,
              "last resort '" + strategy.name + "' changes what INTERLOCK " + interlock->text +
                  " reads: it then shows the setting of culprit, not the state of the robot",
              "let the INTERLOCK read a measurement, such as a speed"});

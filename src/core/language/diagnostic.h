@@ -55,6 +55,7 @@ enum class Code : std::uint16_t {
   kTwoOwners = 44,
   kTrueWhenWell = 45,
   kNoShell = 46,
+  kBadGroup = 47,
   kMovesInterlock = 49,
   kAlwaysTrue = 50,
   kNeverTrue = 51,

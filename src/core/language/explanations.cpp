@@ -26,7 +26,8 @@ std::vector<Explanation> syntax_explanations() {
   return {
       {Code::kUnknownStatement, "a line begins with a word that is no statement",
        "Every line is one statement, and its first word says which: ROBOT, CYCLE, CONST, "
-       "COMPONENT, DEPENDENCY, IGNORE, INTERLOCK, SIGNAL, RULE, POLICIES, TRIGGER, STRATEGY, "
+       "COMPONENT, DEPENDENCY, GROUP, IGNORE, INTERLOCK, SIGNAL, RULE, POLICIES, TRIGGER, "
+       "STRATEGY, "
        "ADAPTATION, INCLUDE, TEMPLATE, END or USE, in upper case. The line counts for nothing "
        "until the word is right.",
        "robot sunset\n", "ROBOT sunset\n"},
@@ -104,8 +105,8 @@ std::vector<Explanation> name_explanations() {
       {Code::kUnknownAdaptation, "there is no adaptation of this name",
        "An adaptation is one of the things that culprit can do to a component: set_parameter, "
        "increase_parameter, decrease_parameter, change_communication, activate, deactivate, "
-       "restart, redeploy, start, stop, change_mode and call. For a routine of the component's "
-       "own, use call.",
+       "restart, redeploy, start, stop, change_mode and call, or start_group for a GROUP. For a "
+       "routine of the component's own, use call.",
        rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY reboot 50 10",
                  "ADAPTATION camera reboot 5"),
        rule_with("rate(/robot/image) < 1")},
@@ -275,6 +276,17 @@ std::vector<Explanation> rule_explanations() {
        "cameras driver\"\n",
        "COMPONENT camera NODE /robot/camera LAUNCH \"ros2 run cameras driver\" SETUP "
        "/opt/ros/humble/setup.bash\n"},
+      {Code::kBadGroup, "a group cannot be what its line says",
+       "GROUP names components that one lifecycle manager starts, in the order in which it starts "
+       "them, and that manager. Each is declared by a COMPONENT line and named once, and the "
+       "manager "
+       "is none of them. start_group takes the name of such a group.",
+       "COMPONENT planner NODE /planner_server\nCOMPONENT manager NODE /lifecycle_manager\n"
+       "GROUP navigation { planner, controler } MANAGER manager\n"
+       "COMPONENT controller NODE /controller_server\n",
+       "COMPONENT planner NODE /planner_server\nCOMPONENT manager NODE /lifecycle_manager\n"
+       "GROUP navigation { planner, controller } MANAGER manager\n"
+       "COMPONENT controller NODE /controller_server\n"},
       {Code::kMovesInterlock, "a last resort changes what an INTERLOCK reads",
        "A last resort does not wait for an interlock, and often opens it: the robot stands, and "
        "the repair can begin. That is safe only if the interlock reads the state of the robot. If "

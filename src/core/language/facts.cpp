@@ -70,8 +70,15 @@ Interval first_interval(const Input& input, const RuleSet& rules) {
 
 bool is_number(Type type) { return type != Type::kBool && type != Type::kString; }
 
+bool is_group(const Input& input, const RuleSet& rules) {
+  return input.kind == Input::Kind::kSignal &&
+         std::holds_alternative<GroupId>(rules[input.signal].source);
+}
+
 ValueSet first_values(const Input& input, const RuleSet& rules) {
   if (is_number(input.type)) return first_interval(input, rules);
+  if (is_group(input, rules))
+    return TextSet{{"active", "half_up", "inactive", "down", "changing"}, false};
   if (input.kind != Input::Kind::kLifecycle) return all_values(input.type);
   return TextSet{{"unconfigured", "inactive", "active", "finalized", "unknown", "in transition"},
                  false};

@@ -116,6 +116,10 @@ void check_unused(const syntax::File& file, const RuleSet& rules,
   for (const Topic& topic : rules.topics) {
     if (topic.publisher) use(*topic.publisher);
   }
+  for (const Group& group : rules.groups) {
+    for (const ComponentId member : group.members) use(member);
+    use(group.manager);
+  }
   for (const Parameter& parameter : rules.parameters) use(parameter.component);
   for (const Dependency& dependency : rules.dependencies) {
     use(dependency.consumer);

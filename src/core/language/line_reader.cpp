@@ -10,14 +10,14 @@ namespace {
 
 using syntax::Name;
 
-constexpr std::array<std::string_view, 47> kReservedWords = {
+constexpr std::array<std::string_view, 49> kReservedWords = {
     "ROBOT",     "CYCLE",      "CONST",    "COMPONENT", "DEPENDENCY", "IGNORE",  "SIGNAL",
     "RULE",      "POLICIES",   "TRIGGER",  "STRATEGY",  "NODE",       "LAUNCH",  "ON",
     "TOPIC",     "FIELD",      "STALE",    "RANGE",     "KEY",        "FOR",     "DIAGNOSTIC",
     "PARAMETER", "HOLD",       "COOLDOWN", "ATTEMPTS",  "ON_CHANGE",  "WHEN",    "ADAPTATION",
     "INTERLOCK", "LASTRESORT", "REQUIRED", "LIFECYCLE", "RESPAWNED",  "UNIT",    "USER",
     "ENV",       "SETUP",      "CWD",      "IN",        "PLUGIN",     "PACKAGE", "PARAMETERS",
-    "REMAP",     "CONTAINER",  "HOST",     "WITHIN",    "READY"};
+    "REMAP",     "CONTAINER",  "HOST",     "WITHIN",    "READY",      "GROUP",   "MANAGER"};
 
 bool is_reserved(std::string_view word) {
   // Most names have something else in them.

@@ -74,10 +74,9 @@ class LiveChecks {
       for (std::size_t i = 0; i < file_.rules[r].strategies.size(); ++i) {
         const syntax::Strategy& written = file_.rules[r].strategies[i];
         const Strategy& strategy = rules_[rules_.rules[r].strategies[i]];
-        for (std::size_t a = 0; a < written.adaptations.size(); ++a) {
-          services(written.adaptations[a]);
-          type_of_parameter(written.adaptations[a], strategy.adaptations[a]);
-        }
+        for (const syntax::Adaptation& each : written.adaptations) services(each);
+        for (const Adaptation& each : strategy.adaptations)
+          type_of_parameter(written.adaptations[each.written], each);
       }
     }
     return std::move(found_);

@@ -15,8 +15,8 @@ namespace culprit {
 
 struct LiveInventory {
   struct Node {
-    // By name; without a value where it is an array or not set. Empty while the node has not listed
-    // them.
+    // By name; lists are texts (base/value_list.h), and unset ones have no value. Empty while the node has
+    // not listed them.
     std::optional<std::map<std::string, std::optional<Value>>> parameters;
     std::string lifecycle;  // "active"; empty where it is not managed, or has not told
     int pid = 0;            // on this machine; 0: it is not proven which

@@ -52,6 +52,7 @@ class Parser {
         Statement{"CONST", &Parser::constant},
         Statement{"COMPONENT", &Parser::component},
         Statement{"DEPENDENCY", &Parser::dependency},
+        Statement{"GROUP", &Parser::group},
         Statement{"IGNORE", &Parser::ignore},
         Statement{"INTERLOCK", &Parser::interlock},
         Statement{"SIGNAL", &Parser::signal},
@@ -96,8 +97,8 @@ class Parser {
     read_.fail(Code::kUnknownStatement, head.span, "no statement begins with '" + word + "'",
                !near.empty() ? "did you mean " + near + "?"
                              : "a line begins with one of ROBOT CYCLE CONST COMPONENT DEPENDENCY "
-                               "IGNORE INTERLOCK SIGNAL RULE POLICIES TRIGGER STRATEGY ADAPTATION "
-                               "THEN INCLUDE TEMPLATE END USE",
+                               "GROUP IGNORE INTERLOCK SIGNAL RULE POLICIES TRIGGER STRATEGY "
+                               "ADAPTATION THEN INCLUDE TEMPLATE END USE",
                replacement(head.span, near));
     broken();
     broken_declaration(near, s);
@@ -138,7 +139,7 @@ class Parser {
     if (keyword == "COMPONENT")
       into_->broken_declarations.push_back(
           {Broken::kComponent, {std::string(name.text), name.span}});
-    if (keyword == "SIGNAL")
+    if (keyword == "SIGNAL" || keyword == "GROUP")
       into_->broken_declarations.push_back({Broken::kSignal, {std::string(name.text), name.span}});
   }
 
@@ -326,6 +327,29 @@ class Parser {
       dependency.producers.push_back(std::move(*producer));
     } while (!s.at_end());
     into_->dependencies.push_back(std::move(dependency));
+    return true;
+  }
+
+  bool group(Scanner& s) {
+    auto name = read_.declared_name(s, "the group's name");
+    if (!name) return false;
+    syntax::Group group{std::move(*name), {}, {}};
+    if (!s.take('{'))
+      return read_.fail_token(s.next(), "'{'",
+                              "write the components in braces: GROUP navigation { planner, "
+                              "controller } MANAGER lifecycle_manager");
+    do {
+      auto member = read_.identifier(s, "a component of the group");
+      if (!member) return false;
+      group.members.push_back(std::move(*member));
+    } while (s.take(','));
+    if (!s.take('}'))
+      return read_.fail_token(s.next(), "',' or '}'", "commas stand between the components");
+    if (!read_.expect_word(s, "MANAGER")) return false;
+    auto manager = read_.identifier(s, "the component that manages the group");
+    if (!manager) return false;
+    group.manager = std::move(*manager);
+    into_->groups.push_back(std::move(group));
     return true;
   }
 
@@ -678,6 +702,7 @@ class Parser {
       case kRedeploy:
       case kStart:
       case kStop:
+      case kStartGroup:
         return true;
     }
     return false;
@@ -705,7 +730,7 @@ class Parser {
         "there is no adaptation '" + std::string(word.text) + "'",
         near.empty()
             ? "known: set_parameter increase_parameter decrease_parameter change_communication "
-              "activate deactivate restart redeploy start stop change_mode call"
+              "activate deactivate restart redeploy start stop change_mode call start_group"
             : "did you mean '" + near + "'?",
         replacement(word.span, near));
   }

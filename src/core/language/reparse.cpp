@@ -58,6 +58,12 @@ class Mover {
     move(consumer);
     move(producers);
   }
+  void move(syntax::Group& g) const {
+    auto& [name, members, manager] = g;
+    move(name);
+    move(members);
+    move(manager);
+  }
   void move(syntax::DiagnosticSource& s) const {
     auto& [status, key] = s;
     move(status);
@@ -145,13 +151,14 @@ class Mover {
     move(lines);
   }
   void move(syntax::File& f) const {
-    auto& [robot, cycle, constants, components, dependencies, ignored_topics, interlocks, signals,
-           rules, broken_declarations, includes, templates, uses] = f;
+    auto& [robot, cycle, constants, components, dependencies, groups, ignored_topics, interlocks,
+           signals, rules, broken_declarations, includes, templates, uses] = f;
     move(robot);
     move(cycle);
     move(constants);
     move(components);
     move(dependencies);
+    move(groups);
     move(ignored_topics);
     move(interlocks);
     move(signals);
@@ -208,13 +215,14 @@ void cut(std::optional<T>& from, std::uint32_t place, std::optional<T>& to) {
   if (from && place_of(*from) >= place) to = std::exchange(from, std::nullopt);
 }
 void cut(syntax::File& from, std::uint32_t place, syntax::File& to) {
-  auto& [robot, cycle, constants, components, dependencies, ignored_topics, interlocks, signals,
-         rules, broken_declarations, includes, templates, uses] = from;
+  auto& [robot, cycle, constants, components, dependencies, groups, ignored_topics, interlocks,
+         signals, rules, broken_declarations, includes, templates, uses] = from;
   cut(robot, place, to.robot);
   cut(cycle, place, to.cycle);
   cut(constants, place, to.constants);
   cut(components, place, to.components);
   cut(dependencies, place, to.dependencies);
+  cut(groups, place, to.groups);
   cut(ignored_topics, place, to.ignored_topics);
   cut(interlocks, place, to.interlocks);
   cut(signals, place, to.signals);

@@ -119,7 +119,7 @@ class Done {
 
  private:
   Presence presence_;
-  std::array<const Adaptation*, static_cast<std::size_t>(kCall) + 1> of_type_{};
+  std::array<const Adaptation*, static_cast<std::size_t>(kStartGroup) + 1> of_type_{};
   std::map<std::string_view, const Adaptation*> by_parameter_;
 };
 
@@ -255,9 +255,9 @@ void check_launches(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
     const auto missing = std::find_if(strategy.adaptations.begin(), strategy.adaptations.end(),
                                       [&](const auto& a) { return lacks_launch(a, rules); });
     if (missing == strategy.adaptations.end()) continue;
-    const auto place = static_cast<std::size_t>(missing - strategy.adaptations.begin());
     const bool is_ended = missing->type == kRedeploy;
-    impossible.push_back({Code::kNoLaunch, Severity::kWarning, written->adaptations[place].span,
+    impossible.push_back({Code::kNoLaunch, Severity::kWarning,
+                          written->adaptations[missing->written].span,
                           "strategy '" + strategy.name + "' can never run: component '" +
                               rules[missing->component].name + "' has no LAUNCH command",
                           std::string("add LAUNCH \"program arguments\" to its COMPONENT line, "
@@ -291,9 +291,8 @@ void check_required(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
         return later.type == kStart && later.component == stop->component;
       });
       if (is_back) continue;
-      const auto place = static_cast<std::size_t>(stop - all.begin());
       diagnostics.push_back({Code::kStopsRequired, Severity::kWarning,
-                             written->adaptations[place].span,
+                             written->adaptations[stop->written].span,
                              "strategy '" + strategy.name + "' stops '" +
                                  rules[stop->component].name + "', which is REQUIRED",
                              "redeploy it, make the strategy a LASTRESORT, or take REQUIRED from "

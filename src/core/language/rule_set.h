@@ -108,6 +108,15 @@ struct Parameter {
   std::string name;
 };
 
+// Components that one lifecycle manager takes through their lifecycles. Its health is a signal that has
+// its name (knowledge/group_health.h).
+struct Group {
+  std::string name;
+  std::vector<ComponentId> members;  // in the order in which they are started
+  ComponentId manager;
+  SignalId health;
+};
+
 // A diagnostic status whose level the rules read; `name` is its name or its hardware id.
 struct StatusLevel {
   std::string name;
@@ -126,7 +135,7 @@ struct LookedUp {};
 
 struct Signal {
   std::string name;
-  std::variant<DiagnosticKey, TopicField, ParameterId, LookedUp> source;
+  std::variant<DiagnosticKey, TopicField, ParameterId, LookedUp, GroupId> source;
   Type type = Type::kDouble;
   std::optional<Duration> stale;  // older values are unknown
   struct Range {
@@ -186,13 +195,16 @@ struct Input {
 struct Adaptation {
   ComponentId component;
   AdaptationType type = AdaptationType::kSetParameter;
-  std::string subject;       // parameter, mode or service (absolute, or relative to the node)
-  ParameterId parameter;     // the same parameter; where there is one
-  Program value;             // set, increase and decrease parameter
-  std::string topic;         // change_communication
-  std::string request{};     // call: what the service is asked, "data: true"; empty: nothing
-  Cycles impact;             // paper: i_exec,a
-  bool begins_step = false;  // THEN, or it takes back what was done for the one above
+  std::string subject;        // parameter, mode or service (absolute, or relative to the node)
+  ParameterId parameter;      // the same parameter; where there is one
+  Program value;              // set, increase and decrease parameter
+  std::string topic;          // change_communication
+  std::string request{};      // call: what the service is asked, "data: true"; empty: nothing
+  Cycles impact;              // paper: i_exec,a
+  bool begins_step = false;   // THEN, or it takes back what was done for the one above
+  std::uint32_t written = 0;  // the place of its line among those of the strategy
+  // start_group: this one brings up a member (activate), or begins the manager anew (redeploy).
+  std::optional<GroupId> group{};
 };
 
 struct Strategy {
@@ -231,7 +243,9 @@ struct Rule {
   std::vector<StrategyId> strategies;   // in file order
   std::vector<ComponentId> components;  // that its strategies adapt, each once, ascending
   std::vector<InputId> inputs;          // that its trigger reads
-  syntax::Name declaration;             // where it stands
+  // Groups that it is about: its failure is resolved only while each of them is active.
+  std::vector<GroupId> groups{};
+  syntax::Name declaration;  // where it stands
 };
 
 // No strategy begins while the condition is not true.
@@ -252,6 +266,7 @@ struct RuleSet {
   std::vector<Topic> topics;  // that rules watch
   std::vector<Parameter> parameters;
   std::vector<StatusLevel> diagnostics;
+  std::vector<Group> groups;
   std::vector<Signal> signals;
   std::vector<Input> inputs;
   std::vector<Rule> rules;
@@ -271,6 +286,7 @@ struct RuleSet {
 
   const Component& operator[](ComponentId id) const { return components[id.index]; }
   const Topic& operator[](TopicId id) const { return topics[id.index]; }
+  const Group& operator[](GroupId id) const { return groups[id.index]; }
   const Parameter& operator[](ParameterId id) const { return parameters[id.index]; }
   const Signal& operator[](SignalId id) const { return signals[id.index]; }
   const Input& operator[](InputId id) const { return inputs[id.index]; }

@@ -315,6 +315,15 @@ Token Scanner::symbol(std::uint32_t at) const {
   return bad({at, end}, Token::Flaw::kMeaningless);
 }
 
+bool Scanner::take(char symbol) {
+  const std::uint32_t at = skip_blanks();
+  if (at == end_ || text_[at] != symbol) return false;
+  peeked_.reset();
+  at_ = at + 1;
+  enter(Lexeme::Kind::kSymbol, {at, at_});
+  return true;
+}
+
 syntax::Name Scanner::next_name() {
   peeked_.reset();
   const std::uint32_t begin = skip_blanks();

@@ -105,6 +105,9 @@ class Scanner {
   // of the line.
   syntax::Name next_name();
 
+  // Takes `symbol`, one character that no expression has, as a brace is. False: another one is next.
+  bool take(char symbol);
+
   bool allows_holes() const { return holes_ == Holes::kAllowed; }
   bool at_end() const;
   // The word of letters that begins the rest of the line; empty if none does.

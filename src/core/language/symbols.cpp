@@ -129,6 +129,9 @@ void Symbols::declare(const syntax::File& file) {
     if (first_declaration(s.name, "signal")) declare_signal(s);
   }
   for (const syntax::BrokenDeclaration& broken : file.broken_declarations) declare_broken(broken);
+  for (const syntax::Group& g : file.groups) {
+    if (first_declaration(g.name, "group")) declare_group(g);
+  }
   for (const auto& [constant, value] : constants_) declared_values_.push_back(constant);
 }
 
@@ -445,6 +448,69 @@ void Symbols::declare_signal(const syntax::Signal& s) {
   add_signal(std::move(signal), s.range ? std::optional(Type::kDouble) : std::nullopt);
 }
 
+// Nothing: the file does not declare it, which is an error here. A group is started in an order, so what
+// belongs to it has to be certain.
+std::optional<ComponentId> Symbols::declared_part(const syntax::Name& name,
+                                                  const std::string& what) {
+  const auto known = known_component(name.text);
+  if (known && rules_[*known].declared) return known;
+  const std::string near = near_name(name.text, declared_components_);
+  diagnostics_.push_back(
+      {Code::kBadGroup, Severity::kError, name.span, what + " '" + name.text + "' is not declared",
+       near.empty() ? "declare it: COMPONENT " + name.text + " NODE /" + name.text
+                    : "did you mean '" + near + "'?",
+       replacement(name.span, near)});
+  return std::nullopt;
+}
+
+void Symbols::declare_group(const syntax::Group& written) {
+  const auto report = [&](const syntax::Name& where, std::string cause, std::string remedy) {
+    diagnostics_.push_back(
+        {Code::kBadGroup, Severity::kError, where.span, std::move(cause), std::move(remedy)});
+  };
+  Group group{written.name.text, {}, {}, {}};
+  for (const syntax::Name& name : written.members) {
+    const auto member = declared_part(name, "component");
+    if (!member) continue;
+    if (std::ranges::find(group.members, *member) != group.members.end()) {
+      report(name, "'" + name.text + "' is twice in group '" + group.name + "'",
+             "name each component once, in the order in which the manager starts them");
+      continue;
+    }
+    group.members.push_back(*member);
+  }
+  if (const auto manager = declared_part(written.manager, "the manager")) {
+    group.manager = *manager;
+    if (std::ranges::find(group.members, *manager) != group.members.end())
+      report(written.manager,
+             "'" + written.manager.text + "' manages group '" + group.name + "' and is in it",
+             "take it out of the braces");
+  }
+  declared_values_.push_back(written.name.text);
+  group.health =
+      add_signal({group.name, GroupId(rules_.groups.size()), Type::kString, {}, {}}, Type::kString);
+  rules_.groups.push_back(std::move(group));
+}
+
+std::optional<GroupId> Symbols::group(const syntax::Name& name) {
+  if (uses_ != nullptr) uses_->has_report = true;  // what a group is made of is not remembered
+  std::vector<std::string_view> groups;
+  for (std::size_t g = 0; g < rules_.groups.size(); ++g) {
+    if (rules_.groups[g].name == name.text) return GroupId(g);
+    groups.push_back(rules_.groups[g].name);
+  }
+  if (broken_signals_.contains(name.text)) return std::nullopt;  // it may have been declared as one
+  const std::string near = near_name(name.text, groups);
+  diagnostics_.push_back(
+      {Code::kBadGroup, Severity::kError, name.span, "'" + name.text + "' is no group",
+       !near.empty() ? "did you mean '" + near + "'?"
+       : known_component(name.text)
+           ? "it is a component: name the group that it belongs to, or activate it"
+           : "declare it: GROUP " + name.text + " { planner, controller } MANAGER manager",
+       replacement(name.span, near)});
+  return std::nullopt;
+}
+
 // There is an error, so the rule set will not be used; only the names have to be there.
 void Symbols::declare_broken(const syntax::BrokenDeclaration& broken) {
   using Broken = syntax::BrokenDeclaration::Kind;
@@ -460,6 +526,7 @@ void Symbols::declare_broken(const syntax::BrokenDeclaration& broken) {
       add_component({name, "", {""}, true});
       return;
     case Broken::kSignal:
+      broken_signals_.insert(name);
       if (!known_signal(name)) add_signal({name, LookedUp{}, Type::kDouble, {}, {}});
       return;
   }

@@ -121,6 +121,8 @@ class Symbols {
   void define_constant(const syntax::Name& name, Constant value);
 
   ComponentId component(const syntax::Name& name);
+  // The group that start_group is for; nothing: it was reported.
+  std::optional<GroupId> group(const syntax::Name& name);
   SignalId signal(const syntax::Name& name);
   // A signal that the file uses and does not declare, in a lenient check; a strict one has said so.
   bool is_looked_up(const std::string& signal);
@@ -155,6 +157,8 @@ class Symbols {
   void declare_composition(const syntax::Component& written, Component& component);
   SystemdUnit declared_unit(const syntax::Component& written);
   void declare_signal(const syntax::Signal& signal);
+  void declare_group(const syntax::Group& group);
+  std::optional<ComponentId> declared_part(const syntax::Name& name, const std::string& what);
   void report_undeclared(const syntax::Name& name, const char* what,
                          const std::vector<std::string_view>& declared);
   const std::vector<std::string_view>& sorted_values();
@@ -173,6 +177,7 @@ class Symbols {
   Strictness strictness_;
   std::vector<Diagnostic>& diagnostics_;
   std::unordered_map<std::string, Constant> constants_;
+  std::set<std::string> broken_signals_;  // and groups
   // Indexes into the tables of rules_.
   PlaceIndex components_, signals_, topics_, level_names_;  // by name
   PlaceIndex components_by_node_;                           // of those that are declared, the first

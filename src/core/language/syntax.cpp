@@ -22,6 +22,7 @@ constexpr std::array kAdaptations = {
     AdaptationKeyword{AdaptationType::kStop, "stop"},
     AdaptationKeyword{AdaptationType::kChangeMode, "change_mode"},
     AdaptationKeyword{AdaptationType::kCall, "call"},
+    AdaptationKeyword{AdaptationType::kStartGroup, "start_group"},
 };
 
 }  // namespace

@@ -111,6 +111,13 @@ struct Dependency {
   std::vector<Name> producers;
 };
 
+// Components that one lifecycle manager takes through their lifecycles, in this order.
+struct Group {
+  Name name;
+  std::vector<Name> members;
+  Name manager;
+};
+
 struct DiagnosticSource {
   Name status;
   Name key;
@@ -148,7 +155,8 @@ enum class AdaptationType : std::uint8_t {
   kStart,
   kStop,
   kChangeMode,
-  kCall
+  kCall,
+  kStartGroup  // of a group, which stands in the place of the component
 };
 std::string_view keyword(AdaptationType type);
 std::optional<AdaptationType> adaptation_type(std::string_view keyword);
@@ -254,6 +262,7 @@ struct File {
   std::vector<Constant> constants;
   std::vector<Component> components;
   std::vector<Dependency> dependencies;
+  std::vector<Group> groups;
   std::vector<Name> ignored_topics;
   std::vector<Interlock> interlocks;
   std::vector<Signal> signals;

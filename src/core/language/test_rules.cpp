@@ -186,7 +186,12 @@ std::string signal_line() {
 }
 
 std::string declaration() {
-  switch (below(6)) {
+  switch (below(7)) {
+    case 6:
+      return words({"GROUP", identifier(),
+                    "{" + maybe_blanks() + identifier() + maybe_blanks() +
+                        maybe("," + maybe_blanks() + identifier() + maybe_blanks()) + "}",
+                    "MANAGER", identifier()});
     case 0:
       return words({"CONST", identifier() + maybe_blanks() + "=" + maybe_blanks() + expression(2)});
     case 1:

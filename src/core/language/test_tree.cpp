@@ -53,6 +53,7 @@ class Writer {
         c.other_nodes);
   }
   void put(const syntax::Dependency& d) { all(d.consumer, d.producers); }
+  void put(const syntax::Group& g) { all(g.name, g.members, g.manager); }
   void put(const DiagnosticSource& s) { all(s.status, s.key); }
   void put(const TopicSource& s) { all(s.topic, s.field); }
   void put(const ParameterSource& s) { all(s.component, s.parameter); }
@@ -87,8 +88,8 @@ class Writer {
   void put(const Use& u) { all(u.pattern, u.arguments, u.in, u.span); }
   void put(const Template& t) { all(t.name, t.parameters, t.body, t.span, t.lines); }
   void put(const File& f) {
-    all(f.robot, f.cycle, f.constants, f.components, f.dependencies, f.ignored_topics, f.interlocks,
-        f.signals, f.rules, f.includes, f.templates, f.uses);
+    all(f.robot, f.cycle, f.constants, f.components, f.dependencies, f.groups, f.ignored_topics,
+        f.interlocks, f.signals, f.rules, f.includes, f.templates, f.uses);
     if (places_ == Places::kShown) put(f.broken_declarations);
   }
 

@@ -52,7 +52,8 @@ Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time dis
       parameter_inputs_(knowledge.rules.parameters.size()),
       parameter_signals_(knowledge.rules.parameters.size()),
       diagnostic_inputs_(knowledge.rules.diagnostics.size()),
-      deadlines_(knowledge.rules.inputs.size() + 3 + 3 * knowledge.rules.components.size()) {
+      deadlines_(knowledge.rules.inputs.size() + 3 + 3 * knowledge.rules.components.size() +
+                 knowledge.rules.groups.size()) {
   const RuleSet& rules = knowledge.rules;
   for (std::size_t i = 0; i < rules.inputs.size(); ++i) {
     const Input& input = rules.inputs[i];
@@ -151,6 +152,10 @@ void Monitor::advance(Time now) {
     }
     if (*due == look_at_expected_slot()) {
       look_at_expected(now);
+      continue;
+    }
+    if (*due > look_at_expected_slot()) {
+      update_group(GroupId(*due - look_at_expected_slot() - 1), now);
       continue;
     }
     if (*due >= return_of(ComponentId(0))) {

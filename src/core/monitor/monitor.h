@@ -275,7 +275,10 @@ class Monitor {
   bool is_silent(ComponentId component, Time now) const;
   void note_silent(const std::string& host, Time at);
   void update_alive(ComponentId component, Time at, const std::string& remark);
-  void update_alive_inputs(ComponentId component, const Slot& value);
+  void update_alive_inputs(ComponentId component, Time now, const Slot& value);
+  void update_groups_of(ComponentId component, Time now);
+  void note_pause(const Group& group, Time now);
+  void update_group(GroupId group, Time now);
 
   const Knowledge& knowledge_;
   Writes write_;
@@ -331,7 +334,7 @@ class Monitor {
   // By InputId; then `discovered_`, then `graced_`; then ComponentState::awaits_ends_until by
   // component; then, by component, until when its farewell may still come; then, by component,
   // until when it may have to be discovered again after its computer was unreachable; then when to
-  // look at `expected_`.
+  // look at `expected_`; then when the health of a group may change, by GroupId.
   Deadlines deadlines_;
 };
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "knowledge/group_health.h"
 #include "monitor/monitor.h"
 
 namespace culprit {
@@ -208,6 +209,38 @@ void Monitor::update_lifecycle_inputs(ComponentId component, Time now) {
     if (knowledge_.rules[id].kind == Kind::kLifecycle)
       write_.signals.set(id, is_unknown ? Slot() : Slot::of(to_string(state)));
   }
+  update_groups_of(component, now);
+}
+
+void Monitor::update_groups_of(ComponentId component, Time now) {
+  for (std::size_t g = 0; g < knowledge_.rules.groups.size(); ++g) {
+    const auto& members = knowledge_.rules.groups[g].members;
+    if (std::ranges::find(members, component) != members.end()) update_group(GroupId(g), now);
+  }
+}
+
+// A manager that stops half-way leaves no group inactive as a whole: one server is down, or still active.
+void Monitor::note_pause(const Group& group, Time now) {
+  const bool is_up = std::ranges::any_of(group.members, [&](ComponentId member) {
+    return knowledge_.components[member].lifecycle == Lifecycle::kActive;
+  });
+  if (!is_up && health_of(group, knowledge_.components, now) != GroupHealth::kInactive) return;
+  for (const ComponentId member : group.members) write_.components[member].is_paused = !is_up;
+}
+
+void Monitor::update_group(GroupId id, Time now) {
+  const Group& group = knowledge_.rules[id];
+  note_pause(group, now);
+  const GroupHealth health = health_of(group, knowledge_.components, now);
+  const bool is_known = health != GroupHealth::kUnknown;
+  if (is_known) write_.sightings.read(group.health);
+  for (const InputId input : signals_[group.health.index].inputs) {
+    if (knowledge_.rules[input].kind != Kind::kSignal) continue;
+    write_.signals.set(input, is_known ? Slot::of(to_string(health)) : Slot());
+    if (is_known) write_.signals.set_read_at(input, now);
+  }
+  deadlines_.set(look_at_expected_slot() + 1 + id.index,
+                 settles_at(group, knowledge_.components, now));
 }
 
 // A driver other than culprit brought it up: itself, its launcher, a lifecycle manager.
@@ -478,7 +511,7 @@ void Monitor::update_alive(ComponentId component, Time at, const std::string& re
   const bool may_be_unheard = is_deaf_ || at < graced_ || state.is_out_of_reach;
   if (!is_alive && may_be_unheard && state.process == ProcessState::kRunning) {
     state.alive.reset();
-    return update_alive_inputs(component, Slot());
+    return update_alive_inputs(component, at, Slot());
   }
   if (state.alive == is_alive) return;
   state.alive = is_alive;
@@ -491,13 +524,14 @@ void Monitor::update_alive(ComponentId component, Time at, const std::string& re
     write_.events.tell(
         at, ComponentLost{component, is_host ? "it " + knowledge_.why_unheard(component) : remark});
   }
-  update_alive_inputs(component, Slot::of(is_alive));
+  update_alive_inputs(component, at, Slot::of(is_alive));
 }
 
-void Monitor::update_alive_inputs(ComponentId component, const Slot& value) {
+void Monitor::update_alive_inputs(ComponentId component, Time now, const Slot& value) {
   for (const InputId id : component_inputs_[component.index]) {
     if (knowledge_.rules[id].kind == Kind::kAlive) write_.signals.set(id, value);
   }
+  update_groups_of(component, now);
 }
 
 }  // namespace culprit

@@ -121,7 +121,9 @@ bool Monitor::is_there(InputId id) const {
   if (input.kind == Kind::kLifecycle || input.kind == Kind::kParameter ||
       input.kind == Kind::kLevel)
     return knowledge_.signals[id].known;
-  const auto* field = std::get_if<TopicField>(&knowledge_.rules[input.signal].source);
+  const auto& source = knowledge_.rules[input.signal].source;
+  if (std::holds_alternative<GroupId>(source)) return knowledge_.signals[id].known;
+  const auto* field = std::get_if<TopicField>(&source);
   return signals_[input.signal.index].last || (field != nullptr && certainly_silent(field->topic));
 }
 

@@ -94,8 +94,8 @@ class Completion {
     if (words_.empty() && is_step_) return keywords({"ADAPTATION"});
     if (words_.empty()) {
       return keywords({"RULE", "POLICIES", "TRIGGER", "STRATEGY", "ADAPTATION", "THEN", "COMPONENT",
-                       "SIGNAL", "CONST", "DEPENDENCY", "IGNORE", "INTERLOCK", "ROBOT", "CYCLE",
-                       "INCLUDE", "USE", "TEMPLATE", "END"});
+                       "SIGNAL", "CONST", "DEPENDENCY", "GROUP", "IGNORE", "INTERLOCK", "ROBOT",
+                       "CYCLE", "INCLUDE", "USE", "TEMPLATE", "END"});
     }
     if (words_.front() == "INCLUDE") return includable();
     if (words_.front() == "USE") return use();
@@ -132,6 +132,12 @@ class Completion {
     if (statement == "DEPENDENCY") {
       if (words_.size() == 2) return keywords({"ON"});
       return components();
+    }
+    if (statement == "GROUP") {
+      if (words_.size() == 1) return {};
+      return before_.find('}') != std::string_view::npos && words_.back() != "MANAGER"
+                 ? keywords({"MANAGER"})
+                 : components();
     }
     const bool has_expression = statement == "TRIGGER" || statement == "CONST" ||
                                 statement == "STRATEGY" || statement == "INTERLOCK";

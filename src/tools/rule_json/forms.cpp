@@ -38,6 +38,7 @@ std::vector<Form> table() {
         {"LIFECYCLE", "lifecycle", kWord}},
        {}},
       {"DEPENDENCY", {{"", "consumer", kName}, {"ON", "producers", kNames}}, {}, {}},
+      {"GROUP", {name, {"", "members", kBraced}, {"MANAGER", "manager", kWord}}, {}, {}},
       {"IGNORE", {{"TOPIC", "topics", kNames}}, {}, {}},
       {"INTERLOCK", {{"", "expression", kExpression}}, {}, {}},
       {"SIGNAL", {name, {"DIAGNOSTIC", "diagnostic", kName}, {"KEY", "key", kName}}, bounds, {}},
@@ -81,7 +82,7 @@ std::vector<Form> table() {
       {"ADAPTATION",
        {component, type, impact},
        {},
-       {"activate", "deactivate", "restart", "redeploy", "start", "stop"}},
+       {"activate", "deactivate", "restart", "redeploy", "start", "stop", "start_group"}},
   };
 }
 

@@ -115,6 +115,15 @@ class StatementReader {
         for_each_in_parentheses([&] { arguments.push_back(name_to_json(take())); });
         return arguments;
       }
+      case Part::kBraced: {
+        Json members = Json::array();
+        while (text(next_) != "}") {
+          take();  // the brace, or a comma
+          members.push_back(take());
+        }
+        take();
+        return members;
+      }
       case Part::kFlag:
         return true;
     }
