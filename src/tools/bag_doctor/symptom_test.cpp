@@ -138,8 +138,9 @@ TEST_F(SymptomTest, AFrameWithTwoParentsAndATransformThatStops) {
     recording_.add("/tf", "tf2_msgs/msg/TFMessage", time, test::transform(time, "odom", "base"));
     if (time > 10)
       recording_.add("/tf", "tf2_msgs/msg/TFMessage", time, test::transform(time, "map", "base"));
-    if (time < 30)
-      recording_.add("/tf", "tf2_msgs/msg/TFMessage", time, test::transform(time, "base", "arm"));
+    if (time > 30) continue;
+    recording_.add("/tf", "tf2_msgs/msg/TFMessage", time, test::transform(time, "base", "arm"));
+    recording_.add("/tf", "tf2_msgs/msg/TFMessage", time, test::transform(time, "arm", "hand"));
   }
   EXPECT_THAT(shorts(), AllOf(Contains("D052 error tf: base at 10.1"),
                               Contains(HasSubstr("D051 error tf: base"))));
