@@ -255,7 +255,7 @@ struct Interlock {
   std::string text;  // as written
 };
 
-// What a drill may do to a component.
+// A checked DRILL line.
 struct DrillLine {
   using What = syntax::Drill::What;
   ComponentId component;

@@ -73,7 +73,8 @@ struct Results {
   std::map<std::string, int> touched;     // healthy components
   std::vector<HiddenDependency> hidden;
   std::vector<ThresholdMeasure> thresholds;
-  std::vector<std::string> spoilt;  // trials that prove nothing, and why
+  std::map<std::string, std::vector<double>> starts;  // components; seconds until the node was up
+  std::vector<std::string> spoilt;                    // trials that prove nothing, and why
 };
 
 Results results_of(const std::vector<Trial>& trials, const RuleSet& rules, const Paths& paths,

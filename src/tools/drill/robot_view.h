@@ -12,9 +12,6 @@
 
 namespace culprit::drill {
 
-// Rules that the drill adds to those of the file begin so.
-inline constexpr std::string_view kOwnRules = "drill_";
-
 // The robot while it was well, for a record that outlives it.
 struct HealthyRobot {
   struct Topic {
