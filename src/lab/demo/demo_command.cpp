@@ -166,6 +166,15 @@ std::vector<web::Route> web_routes(SunsetDemo& demo, web::Hub& hub, const web::M
   return routes;
 }
 
+void print_how_to_break(const std::string& address, std::uint32_t domain) {
+  say(stdout,
+      "  in the browser             {}\n"
+      "  a crash                    pkill -f 'sunset-node camera'\n"
+      "  a hang                     pkill -STOP -f 'sunset-node segmentation'\n"
+      "  and see what culprit does  culprit status --domain {}\n",
+      address, domain);
+}
+
 int demo_sunset(const DemoOptions& options) {
   const auto plays = plays_for(options);
   if (!plays) {
@@ -219,6 +228,7 @@ int demo_sunset(const DemoOptions& options) {
                                         std::move(local), hub);
   if (options.stay) {
     say(stdout, "Break it in the browser, and see what becomes of it; Ctrl-C ends it.\n");
+    print_how_to_break((*server)->address(), (*demo)->domain());
     signals.wait_until_stopped();
     return kOk;
   }
@@ -249,8 +259,8 @@ int demo_sunset(const DemoOptions& options) {
   }
   const bool is_watched = isatty(STDIN_FILENO) != 0 && isatty(STDOUT_FILENO) != 0;
   if (is_watched && !options.ends) {
-    say(stdout, "\nThe robot flies on: break it in the browser ({}). Ctrl-C ends it.\n",
-        (*server)->address());
+    say(stdout, "\nThe robot flies on; Ctrl-C ends it. Break it yourself:\n");
+    print_how_to_break((*server)->address(), (*demo)->domain());
     signals.wait_until_stopped();
   }
   return all_healed ? kOk : kFailed;
