@@ -1,5 +1,8 @@
 #include "cli/run_options.h"
 
+#include <algorithm>
+#include <cctype>
+
 #include "base/environment.h"
 #include "base/name_grammar.h"
 #include "live/robot_survey.h"
@@ -44,6 +47,19 @@ Expected<live::LiveSession::Options> RunOptions::session(const RuleSet& rule_set
   if (no_journal) out.no_journal = "of --no-journal";
   return out;
 }
+
+namespace {
+
+// "dry-run": "CULPRIT_DRY_RUN"
+std::string variable_of(const std::string& option) {
+  std::string name = "CULPRIT_" + option;
+  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) {
+    return c == '-' ? '_' : static_cast<char>(std::toupper(c));
+  });
+  return name;
+}
+
+}  // namespace
 
 void RunOptions::add_to(CLI::App& command) {
   command.add_option("RULES", rules, "The rule file")->type_name("FILE")->required();
@@ -106,6 +122,21 @@ void RunOptions::add_to(CLI::App& command) {
   web.add_to(command);
   recording.add_to(command);
   governor.add_to(command);
+  // Before the variables are named: CULPRIT_CONFIG names the file.
+  command.add_option("--config", config, "Options in a file, as --print-config prints them")
+      ->type_name("FILE")
+      ->envname("CULPRIT_CONFIG")
+      ->configurable(false);
+  command
+      .add_flag("--print-config", prints_config,
+                "Print all options and their values as culprit.toml, and end")
+      ->configurable(false);
+  for (CLI::Option* option : command.get_options([](const CLI::Option* each) {
+         return each->get_configurable() && !each->get_lnames().empty();
+       })) {
+    if (option != command.get_help_ptr())
+      option->envname(variable_of(option->get_lnames().front()));
+  }
 }
 
 }  // namespace culprit::cli
