@@ -84,7 +84,12 @@ Expected<Source> load(const std::string& file, const std::string& from) {
 
 Expected<Expansion> read(const std::string& path) {
   auto source = Source::read(path);
-  if (!source) return Error{source.error()};
+  if (!source) {
+    std::error_code error;
+    const bool is_there = fs::exists(path, error);
+    const std::string near = is_there ? "" : near_file(path, {fs::absolute(path, error)});
+    return Error{source.error() + (near.empty() ? "" : "; did you mean '" + near + "'?")};
+  }
   return expand(std::move(*source), load);
 }
 
