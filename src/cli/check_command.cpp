@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "base/text_file.h"
 #include "cli/check_bag.h"
 #include "cli/commands.h"
 #include "cli/diagnostic_report.h"
@@ -33,6 +34,8 @@ struct CheckOptions {
   bool strict = false;
   bool robot = false;
   BagCheck recorded;
+  bool fixes = false;
+  std::string fail_on = "error";
   double wait_seconds = 3;
 };
 
@@ -115,6 +118,7 @@ int check_all(std::vector<Expansion> all, int exit_code, const CheckOptions& opt
     checked = robot ? check_against(*robot, file, strictness) : check(file, strictness);
     if (!checked.rules) exit_code = kFailed;
     if (!robot && checked.rules) check_launches(file, checked);
+    if (options.fail_on == "warning" && !checked.diagnostics.empty()) exit_code = kFailed;
     if (options.format == "text") {
       if (robot && checked.rules) print_findings(*checked.rules, *robot);
       print_text(file, checked);
@@ -146,6 +150,51 @@ void make_room(const std::vector<std::string>& files) {
                    static_cast<std::size_t>(std::min<std::uintmax_t>(largest, Source::kMaxSize)));
 }
 
+// The edits that the diagnostics of `file` offer, none of which touches another, the last one first.
+std::vector<Edit> edits_of(const Expansion& file, Strictness strictness) {
+  std::vector<Edit> edits;
+  for (const Diagnostic& d : check(file, strictness).diagnostics) {
+    const LocatedDiagnostic here = located(d, file.source);
+    if (here.fix && here.place.file == 0) edits.push_back(*here.fix);
+  }
+  std::stable_sort(edits.begin(), edits.end(),
+                   [](const Edit& a, const Edit& b) { return a.span.begin < b.span.begin; });
+  std::uint32_t end = 0;
+  bool is_first = true;
+  std::erase_if(edits, [&](const Edit& edit) {
+    const bool touches = !is_first && edit.span.begin <= end;
+    if (!touches) end = edit.span.end;
+    is_first = false;
+    return touches;
+  });
+  std::reverse(edits.begin(), edits.end());
+  return edits;
+}
+
+// Applies the fixes of the language server until there are none. Errors: the file cannot be read or
+// written.
+Expected<Expansion> fixed(const std::string& path, Expansion rules, const CheckOptions& options) {
+  constexpr int kMostRounds = 20;  // a fix may make room for the next
+  const Strictness strictness = options.strict ? Strictness::kStrict : Strictness::kLenient;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const auto edits = edits_of(rules, strictness);
+    if (edits.empty()) break;
+    const Source& written = rules.source.file(0);
+    std::string text(written.text());
+    for (const Edit& edit : edits)
+      text.replace(edit.span.begin, edit.span.end - edit.span.begin, edit.text);
+    for (auto edit = edits.rbegin(); edit != edits.rend(); ++edit) {
+      const Position at = written.position(edit->span.begin);
+      fmt::print("{}:{}:{}: {}\n", path, at.line, at.column, title_of(*edit, written));
+    }
+    if (const auto done = write_text(path, text); !done) return Error{done.error()};
+    auto again = rule_files::read(path);
+    if (!again) return again;
+    rules = std::move(*again);
+  }
+  return rules;
+}
+
 int check_files(const CheckOptions& options) {
   const auto robot = ros2::options_from_environment();
   if (options.robot && !robot) return fail(robot.error(), kUsage);
@@ -157,6 +206,7 @@ int check_files(const CheckOptions& options) {
     if (files) make_room(*files);
     for (const std::string& file : files ? *files : std::vector<std::string>{}) {
       auto rules = rule_files::read(file);
+      if (rules && options.fixes) rules = fixed(file, std::move(*rules), options);
       if (rules) {
         all.push_back(std::move(*rules));
       } else {
@@ -195,6 +245,13 @@ void add_check(CLI::App& app, int& exit_code) {
       ->type_name("FOLDER")
       ->allow_extra_args(false)
       ->needs(bags);
+  command
+      ->add_flag("--fix", options->fixes, "Apply the fixes that editors offer, and write the files")
+      ->excludes(robot);
+  command
+      ->add_option("--fail-on", options->fail_on, "What makes the command fail: error or warning")
+      ->check(CLI::IsMember({"error", "warning"}))
+      ->capture_default_str();
   command
       ->add_option("--format", options->format,
                    "text for people; json or sarif (2.1.0) for programs, on stdout")

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "cli/culprit_manual.h"
+#include "terminal/help.h"
 
 namespace culprit::cli {
 namespace {
@@ -37,6 +38,7 @@ void add_all(CLI::App& app, const std::string& version, int& exit_code) {
   add_status(app, exit_code);
   add_top(app, exit_code);
   add_orders(app, exit_code);
+  add_names(app, exit_code);
   add_record(app, exit_code);
   add_alerts(app, exit_code);
   add_check(app, exit_code);
@@ -59,6 +61,7 @@ void add_all(CLI::App& app, const std::string& version, int& exit_code) {
   add_fleet(app, exit_code);
 #endif
   for (const OfLaboratory& each : kOfLaboratory) app.add_subcommand(each.name, each.description);
+  add_help(app, exit_code);
   group_commands(app);
   add_manual(app, culprit_manual(), exit_code);
 }

@@ -21,6 +21,7 @@ void add_status(CLI::App& app, int& exit_code);
 void add_top(CLI::App& app, int& exit_code);
 // pause, resume, silence, approve, refuse, propose, run-strategy
 void add_orders(CLI::App& app, int& exit_code);
+void add_names(CLI::App& app, int& exit_code);
 void add_record(CLI::App& app, int& exit_code);
 void add_alerts(CLI::App& app, int& exit_code);
 void add_check(CLI::App& app, int& exit_code);

@@ -32,6 +32,9 @@ const Manual& culprit_manual() {
            {"ROS_SECURITY_ENABLE, ROS_SECURITY_STRATEGY, ROS_SECURITY_KEYSTORE, "
             "ROS_SECURITY_ENCLAVE_OVERRIDE",
             "The domain's security, as for any ROS 2 program."},
+           {"CULPRIT_CONFIG", "The configuration file of culprit run, as --config."},
+           {"CULPRIT_DRY_RUN, CULPRIT_WEB, ...",
+            "Each option of culprit run, if it is not on the command line."},
            {"NO_COLOR", "If it is set, nothing is coloured."}},
       .examples = {{"culprit demo", "A first look: culprit heals a robot that it brings along."},
                    {"culprit doctor", "Find what is wrong with your robot, without a rule."},
@@ -61,7 +64,8 @@ void group_commands(CLI::App& app) {
 #ifdef CULPRIT_FLEET
       {"A fleet", {"fleet"}},
 #endif
-      {kLaboratory, {"demo", "study", "torture"}}};
+      {kLaboratory, {"demo", "study", "torture"}},
+      {"Help", {"help"}}};
   for (const Group& group : groups) {
     for (const char* command : group.commands) app.get_subcommand(command)->group(group.title);
   }

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <stop_token>
+#include <thread>
 #include <unistd.h>
 
 #include <fmt/chrono.h>
@@ -18,6 +20,7 @@
 #include "json/json.h"
 #include "ros2/options.h"
 #include "terminal/console.h"
+#include "terminal/progress.h"
 #include "terminal/seconds_option.h"
 
 namespace culprit::cli {
@@ -136,6 +139,26 @@ int save_robot(const doctor::Picture& picture, const Report& report, const std::
   return exit_code_of(report);
 }
 
+// Shows on a terminal how much of the look is over.
+class LookProgress {
+ public:
+  explicit LookProgress(double time_seconds) {
+    if (isatty(STDERR_FILENO) != 1) return;
+    drawing_ = std::jthread([time_seconds](std::stop_token stop) {
+      constexpr auto kTick = std::chrono::milliseconds(100);
+      const auto ticks = static_cast<std::uint64_t>(std::max(time_seconds * 10, 1.0));
+      Progress progress(0, ticks);
+      for (std::uint64_t done = 0; done < ticks && !stop.stop_requested(); ++done) {
+        progress.show(done);
+        std::this_thread::sleep_for(kTick);
+      }
+    });
+  }
+
+ private:
+  std::jthread drawing_;  // stopped, and joined, at the end
+};
+
 int examine_robot(const DoctorOptions& options) {
   const auto participant = ros2::options_from_environment();
   if (!participant) return fail(participant.error(), kUsage);
@@ -153,7 +176,10 @@ int examine_robot(const DoctorOptions& options) {
       .time = from_seconds(options.seconds),
       .extent = needs_all ? doctor::Extent::kEverything : doctor::Extent::kFindings};
   if (options.watch) return watch_robot(how, healthy ? &*healthy : nullptr, options);
-  const auto picture = doctor::look(how);
+  const auto picture = [&] {
+    const LookProgress progress(options.seconds);
+    return doctor::look(how);
+  }();
   if (!picture) return fail(picture.error());
   const Report report = report_of(*picture, healthy ? &*healthy : nullptr);
   print(report, options);

@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "base/closest.h"
+#include "base/duration_words.h"
 #include "base/live_clock.h"
 #include "base/name_grammar.h"
 #include "cli/commands.h"
@@ -135,6 +136,45 @@ int order(const OrderOptions& options, const MakeOrder& make) {
   return is_all_done && (here->others.empty() || !all) ? kOk : kFailed;
 }
 
+// "rule Slow until 12 min from now, by ada: maintenance"
+std::string silence_line(const Json& silence, double now) {
+  const bool is_rule = silence.contains("rule");
+  std::string line = (is_rule ? "rule " : "component ") +
+                     web::text_of(silence, is_rule ? "rule" : "component").value_or("");
+  if (silence.contains("until") && silence["until"].is_number())
+    line += ", for another " +
+            in_words(from_seconds(std::max(silence["until"].get<double>() - now, 0.0)));
+  const std::string author = web::text_of(silence, "author").value_or("");
+  const std::string reason = web::text_of(silence, "reason").value_or("");
+  if (!author.empty()) line += ", by " + author;
+  return reason.empty() ? line : line + ": " + reason;
+}
+
+// What the culprits leave alone.
+int list_silences(const OrderOptions& options) {
+  auto here = culprits_here(options.which);
+  if (!here) return fail(here.error(), kUsage);
+  if (here->answering.empty()) return fail(none_to_ask(*here));
+  Json list = Json::array();
+  for (const RunningCulprit& culprit : here->answering) {
+    const auto control = culprit.client.get("/api/control", web::LocalClient::kLargeAnswer);
+    const auto state = culprit.client.get("/api/state", web::LocalClient::kLargeAnswer);
+    if (!control || !state)
+      return fail(culprit.name() +
+                  " does not answer: " + (control ? state.error() : control.error()));
+    const Json silences = control->value("silences", Json::array());
+    list.push_back({{"process", culprit.process}, {"silences", silences}});
+    if (options.json) continue;
+    const double now = state->is_object() ? state->value("t", 0.0) : 0.0;
+    say(stdout, "{}: {}\n", culprit.name(),
+        silences.empty() ? "nothing is silenced" : "these are left alone");
+    for (const Json& silence : silences)
+      say(stdout, "  {}\n", escape_controls(silence_line(silence, now)));
+  }
+  if (options.json) say(stdout, "{}\n", to_line(list));
+  return kOk;
+}
+
 CLI::App* add_order(CLI::App& app, int& exit_code, const char* name, const char* description,
                     MakeOrder make, const std::shared_ptr<OrderOptions>& options) {
   CLI::App* command = app.add_subcommand(name, description);
@@ -210,11 +250,17 @@ void add_orders(CLI::App& app, int& exit_code) {
       add_order(app, exit_code, "silence",
                 "Have a running culprit leave a component or a rule alone. It is still watched",
                 silence_of, options);
-  silence->add_option("NAME", options->name, "A component or a rule")->required();
+  silence->add_option("NAME", options->name, "A component or a rule; list: what is left alone now")
+      ->type_name("NAME")
+      ->required();
   auto* lasts = add_seconds(*silence, "--for", options->seconds,
                             "Duration (default: until it is lifted)", 1, 7 * 24 * 3600)
                     ->default_str("");
   silence->add_flag("--lift", options->lifts, "Lift the silence")->excludes(lasts);
+  silence->callback([options, &exit_code] {
+    const bool is_list = options->name == "list" && !options->lifts;
+    exit_code = is_list ? list_silences(*options) : order(*options, silence_of);
+  });
 
   for (const auto& [word, call, description] :
        {std::tuple("approve", "approve",
@@ -228,6 +274,7 @@ void add_orders(CLI::App& app, int& exit_code) {
     options = make();
     add_order(app, exit_code, word, description, about_strategy(call), options)
         ->add_option("STRATEGY", options->name, "As culprit status names it: Rule.strategy")
+        ->type_name("STRATEGY")
         ->required();
   }
 }

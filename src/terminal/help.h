@@ -19,4 +19,8 @@ std::string wrapped(const std::string& text, std::size_t columns);
 
 std::shared_ptr<CLI::FormatterBase> help_formatter();
 
+// Adds the command `help`, which prints the help of the command that it is given, or the program's.
+// `app` must outlive the call of the command.
+void add_help(CLI::App& app, int& exit_code);
+
 }  // namespace culprit

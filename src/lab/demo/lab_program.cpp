@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "terminal/help.h"
 #include "terminal/manual.h"
 #include "terminal/program.h"
 
@@ -34,6 +35,7 @@ int run_culprit_lab(const std::string& version,
   app.set_version_flag("--version", "culprit-lab " + version);
   const auto add = [&](int& exit_code) {
     add_commands(app, exit_code);
+    add_help(app, exit_code);
     for (CLI::App* command : app.get_subcommands({})) {
       // The page of culprit calls that one.
       command->group(command->get_name() == "play-again" ? "" : "Commands");
