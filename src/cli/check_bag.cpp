@@ -44,7 +44,7 @@ Expected<void> judge(const std::string& path, const RuleSet& rules, const BagChe
   return {};
 }
 
-std::string verdict(const Judged& rule, Duration length) {
+std::string judgement(const Judged& rule, Duration length) {
   if (!rule.was_known) {
     const std::string why = rule.why_unknown.empty()
                                 ? "its windows were never covered"
@@ -70,7 +70,7 @@ int check_against_bags(const std::string& name, const RuleSet& rules, const BagC
   }
   say(stdout, "{}, with {:.1f} s of recordings:\n", name, seconds(length));
   for (std::size_t r = 0; r < judged.size(); ++r)
-    say(stdout, "  {}: {}\n", rules.rules[r].name, verdict(judged[r], length));
+    say(stdout, "  {}: {}\n", rules.rules[r].name, judgement(judged[r], length));
   const bool are_all_known = std::ranges::all_of(judged, &Judged::was_known);
   return are_all_known ? kOk : kWarnings;
 }

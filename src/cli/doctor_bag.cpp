@@ -20,7 +20,7 @@ using bag_doctor::BagReport;
 using doctor::Finding;
 using doctor::Gravity;
 
-Expected<bag_doctor::RobotGraph> graph_of(const BagExamination& options) {
+Expected<bag_doctor::RobotGraph> given_graph(const BagExamination& options) {
   bag_doctor::RobotGraph graph;
   if (!options.graph.empty()) {
     const auto text = read_text(options.graph);
@@ -37,7 +37,7 @@ Expected<bag_doctor::RobotGraph> graph_of(const BagExamination& options) {
   return graph;
 }
 
-Expected<bag_doctor::Policy> policy_of(const BagExamination& options) {
+Expected<bag_doctor::Policy> given_policy(const BagExamination& options) {
   if (options.policy.empty()) return bag_doctor::Policy{};
   const auto text = read_text(options.policy);
   if (!text) return Error{text.error()};
@@ -46,7 +46,7 @@ Expected<bag_doctor::Policy> policy_of(const BagExamination& options) {
   return policy;
 }
 
-int exit_code_of(const std::vector<BagReport>& reports, const std::string& fail_on) {
+int exit_code_of_bags(const std::vector<BagReport>& reports, const std::string& fail_on) {
   bool has_error = false, has_any = false;
   for (const BagReport& report : reports) {
     has_any = has_any || !report.findings.empty();
@@ -60,7 +60,7 @@ int exit_code_of(const std::vector<BagReport>& reports, const std::string& fail_
   return has_error ? kFailed : has_any ? kWarnings : kOk;
 }
 
-void print(const std::vector<BagReport>& reports, const BagExamination& options) {
+void print_bags(const std::vector<BagReport>& reports, const BagExamination& options) {
   if (options.sarif) {
     doctor::Report all;
     for (const BagReport& report : reports)
@@ -82,9 +82,9 @@ void print(const std::vector<BagReport>& reports, const BagExamination& options)
 }  // namespace
 
 int examine_bags(const BagExamination& options) {
-  const auto graph = graph_of(options);
+  const auto graph = given_graph(options);
   if (!graph) return fail(graph.error(), kUsage);
-  const auto policy = policy_of(options);
+  const auto policy = given_policy(options);
   if (!policy) return fail(policy.error(), kUsage);
   std::vector<BagReport> reports;
   for (const std::string& bag : options.bags) {
@@ -97,8 +97,8 @@ int examine_bags(const BagExamination& options) {
     report.findings.insert(report.findings.end(), breaches.begin(), breaches.end());
     reports.push_back(std::move(report));
   }
-  print(reports, options);
-  return exit_code_of(reports, options.fail_on);
+  print_bags(reports, options);
+  return exit_code_of_bags(reports, options.fail_on);
 }
 
 }  // namespace culprit::cli

@@ -12,7 +12,7 @@
 namespace culprit::incident_reports {
 namespace {
 
-namespace test = bag_doctor::test;
+namespace recorded = bag_doctor::test;
 using culprit::test::value_of;
 using testing::AllOf;
 using testing::HasSubstr;
@@ -36,11 +36,11 @@ RULE NoMap
 
 TEST(BagPage, ShowsWhatFailedWhenWithCurvesAndWhatCouldNotBeJudged) {
   const culprit::test::TestFolder folder;
-  test::Recording recording;
+  recorded::Recording recording;
   for (int i = 0; i < 300; ++i) {
     if (i < 100)
-      recording.add("/scan", "sensor_msgs/msg/LaserScan", i * 0.1, test::scan(i * 0.1, i));
-    recording.add("/speed", "std_msgs/msg/Float64", i * 0.1, test::number(0, i * 0.03));
+      recording.add("/scan", "sensor_msgs/msg/LaserScan", i * 0.1, recorded::scan(i * 0.1, i));
+    recording.add("/speed", "std_msgs/msg/Float64", i * 0.1, recorded::number(0, i * 0.03));
   }
   const auto checked = check(Source("rover.rules", kPageRules));
   ASSERT_TRUE(checked.rules);

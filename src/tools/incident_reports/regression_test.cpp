@@ -21,7 +21,7 @@
 namespace culprit::incident_reports {
 namespace {
 
-namespace test = bag_doctor::test;
+namespace recorded = bag_doctor::test;
 using culprit::test::value_of;
 using testing::AllOf;
 using testing::HasSubstr;
@@ -43,18 +43,19 @@ class RegressionTest : public testing::Test {
  protected:
   // 100 s of scans at 10 Hz, with a pause from 50 s to 55 s that culprit saw on the robot.
   void happen() {
-    test::Recording recording;
+    recorded::Recording recording;
     for (int i = 0; i < 1000; ++i) {
       const double time = i * 0.1;
       if (time < 50 || time > 55)
         recording.add("/scan", "sensor_msgs/msg/LaserScan", time,
-                      test::scan(time, test::noise(static_cast<std::uint64_t>(i))));
-      recording.add("/other", "std_msgs/msg/Float64", time, test::number(time, i));
+                      recorded::scan(time, recorded::noise(static_cast<std::uint64_t>(i))));
+      recording.add("/other", "std_msgs/msg/Float64", time, recorded::number(time, i));
     }
-    recording.add("/tf_static", "tf2_msgs/msg/TFMessage", 0.5, test::transform(0, "base", "laser"));
+    recording.add("/tf_static", "tf2_msgs/msg/TFMessage", 0.5,
+                  recorded::transform(0, "base", "laser"));
     std::filesystem::create_directories(folder_.path() / "recordings");
     recording.write(folder_.path() / "recordings" /
-                    recorder::recording_name("rover", test::at(51), "LidarDead"));
+                    recorder::recording_name("rover", recorded::at(51), "LidarDead"));
     journal::Session session;
     session.rules_path = "lidar.rules";
     session.rules_text = kLidarRules;
@@ -68,15 +69,15 @@ class RegressionTest : public testing::Test {
   }
   void tell(double after, Json event) {
     event["text"] = "something";
-    event["time"] = test::at(after) - test::kBegin;
+    event["time"] = recorded::at(after) - recorded::kBegin;
     add(journal::kind::kEvent, after, event);
   }
   void add(std::string_view kind, double after, const Json& body) {
-    rows_.entries.push_back({0, test::at(after), std::string(kind), to_line(body)});
+    rows_.entries.push_back({0, recorded::at(after), std::string(kind), to_line(body)});
   }
   Expected<ExportedTest> exported() {
     auto writer = value_of(journal::Writer::open(folder_.path() / "a.journal", {}));
-    EXPECT_TRUE(writer.append(rows_, test::kBegin, journal::Durability::kProcessEnd));
+    EXPECT_TRUE(writer.append(rows_, recorded::kBegin, journal::Durability::kProcessEnd));
     rows_ = {};
     const auto journal = value_of(journal::Reader::open(folder_.path() / "a.journal"));
     const auto found = value_of(incidents_of(journal, 0));
@@ -123,9 +124,9 @@ TEST_F(RegressionTest, HasOnlyThatPartOfTheRecordingAndWhatIsLatched) {
   EXPECT_EQ(bag.contents().topics()[message.topic].name, "/tf_static");
   std::int64_t last = 0;
   for (; bag.next(message); last = message.recorded_at)
-    EXPECT_GE(message.recorded_at, test::at(31));
-  EXPECT_LE(last, test::at(65.01));
-  EXPECT_GE(last, test::at(64.8));
+    EXPECT_GE(message.recorded_at, recorded::at(31));
+  EXPECT_LE(last, recorded::at(65.01));
+  EXPECT_GE(last, recorded::at(64.8));
 }
 
 TEST_F(RegressionTest, IsNotMadeWithoutARecordingOrOverAnother) {

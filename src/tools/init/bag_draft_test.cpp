@@ -20,7 +20,7 @@
 namespace culprit::init {
 namespace {
 
-namespace test = bag_doctor::test;
+namespace recorded = bag_doctor::test;
 using culprit::test::value_of;
 using testing::Contains;
 using testing::HasSubstr;
@@ -30,29 +30,29 @@ using testing::Not;
 enum class Planted { kNothing, kSilence, kNaN, kFrozen, kError };
 
 // Its sensors come in another rhythm in each recording, a little, and end one after the other.
-test::Recording recording_of(std::uint64_t seed, Planted planted = Planted::kNothing) {
-  test::Recording recording;
+recorded::Recording recording_of(std::uint64_t seed, Planted planted = Planted::kNothing) {
+  recorded::Recording recording;
   const double length = 40;
   double last = 0;
-  for (double time = 0.3; time < length; time += 0.1 * (1 + 0.4 * test::noise(++seed))) {
+  for (double time = 0.3; time < length; time += 0.1 * (1 + 0.4 * recorded::noise(++seed))) {
     if (planted == Planted::kSilence && time > 20) break;
     recording.add("/scan", "sensor_msgs/msg/LaserScan", time,
-                  test::scan(time, test::noise(++seed)));
+                  recorded::scan(time, recorded::noise(++seed)));
   }
-  for (double time = 0.1; time < length + 0.2; time += 0.02 * (1 + 0.3 * test::noise(++seed))) {
-    double value = test::noise(++seed);
+  for (double time = 0.1; time < length + 0.2; time += 0.02 * (1 + 0.3 * recorded::noise(++seed))) {
+    double value = recorded::noise(++seed);
     if (planted == Planted::kNaN && time > 20) value = std::nan("");
     if (planted == Planted::kFrozen && time > 20) value = last;
     last = value;
-    recording.add("/imu", "sensor_msgs/msg/Imu", time, test::imu(time, value));
+    recording.add("/imu", "sensor_msgs/msg/Imu", time, recorded::imu(time, value));
   }
   for (double time = 1; time < length; time += 1) {
     const bool is_bad = planted == Planted::kError && time > 20;
     recording.add(
         "/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", time,
-        test::diagnostic(time, is_bad ? 2 : 0, "imu: temperature", is_bad ? "too hot" : "ok"));
+        recorded::diagnostic(time, is_bad ? 2 : 0, "imu: temperature", is_bad ? "too hot" : "ok"));
   }
-  recording.add("/rosout", "rcl_interfaces/msg/Log", 1, test::log(1, 20, "imu", "ready"));
+  recording.add("/rosout", "rcl_interfaces/msg/Log", 1, recorded::log(1, 20, "imu", "ready"));
   return recording;
 }
 
@@ -84,7 +84,7 @@ class BagDraftTest : public testing::Test {
     bag::BagReading reading(rules, bag.contents(), library);
     Manager::Options options;
     options.autonomy = Autonomy::kAdvise;
-    options.start = Time(Duration(test::kBegin));
+    options.start = Time(Duration(recorded::kBegin));
     options.discovery = std::chrono::hours(24);
     Manager manager(rules, std::make_unique<PaperPlanner>(), options);
     std::set<std::string> fired;

@@ -12,7 +12,7 @@
 namespace culprit::rule_test {
 namespace {
 
-namespace test = bag_doctor::test;
+namespace recorded = bag_doctor::test;
 using testing::AllOf;
 using testing::HasSubstr;
 
@@ -28,11 +28,11 @@ class BagTests : public testing::Test {
            "RULE CameraDead\n  POLICIES ERROR\n  TRIGGER age(/image) > 1s\n    STRATEGY again 50 "
            "10\n"
            "      ADAPTATION camera redeploy 3\n";
-    test::Recording recording;  // the lidar is silent from 10 s on
+    recorded::Recording recording;  // the lidar is silent from 10 s on
     for (int i = 0; i < 200; ++i) {
       if (i < 100)
-        recording.add("/scan", "sensor_msgs/msg/LaserScan", i * 0.1, test::scan(i * 0.1, i));
-      recording.add("/image", "std_msgs/msg/Float64", i * 0.1 + 0.01, test::number(0, i));
+        recording.add("/scan", "sensor_msgs/msg/LaserScan", i * 0.1, recorded::scan(i * 0.1, i));
+      recording.add("/image", "std_msgs/msg/Float64", i * 0.1 + 0.01, recorded::number(0, i));
     }
     recording.write(folder_.path() / "drive.mcap");
   }
