@@ -44,7 +44,7 @@ await suite(() =>
     await page.getByRole('button', { name: 'Inject fault' }).click()
     const bar = page.getByRole('region', { name: 'Status' })
     await bar.getByText('camera is dead').waitFor()
-    await bar.getByText('paused: nothing is done').waitFor()
+    await bar.getByText('nothing is done: culprit is paused').waitFor()
     await explanation.getByRole('heading', { name: 'camera is dead' }).waitFor()
     await picture(page, 'paused')
     await page.getByRole('button', { name: 'Resume' }).click()
