@@ -9,8 +9,8 @@
 #include "base/environment.h"
 #include "plan/paper_planner.h"
 #include "replay/bag_replay.h"
+#include "terminal/command.h"
 #include "terminal/console.h"
-#include "terminal/program.h"
 
 namespace culprit::cli {
 namespace {

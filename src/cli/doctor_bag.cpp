@@ -10,6 +10,7 @@
 #include "cli/finding_text.h"
 #include "cli/load_rules.h"
 #include "doctor/report.h"
+#include "terminal/command.h"
 #include "terminal/console.h"
 
 namespace culprit::cli {

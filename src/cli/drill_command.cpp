@@ -17,6 +17,7 @@
 #include "drill/exported_tests.h"
 #include "drill/report.h"
 #include "drill/write_back.h"
+#include "journal/json.h"
 #include "language/parser.h"
 #include "live/rule_file.h"
 #include "live/rule_trust.h"
@@ -130,7 +131,7 @@ std::vector<std::string> manager_arguments(const DrillOptions& options, const st
   return all;
 }
 
-// Of the rules of the file in the run that was recorded last.
+// Measures the comparisons of the file in the latest recorded run.
 Expected<std::vector<drill::ThresholdMeasure>> thresholds_of(const std::filesystem::path& file,
                                                              const std::string& text,
                                                              const std::vector<Trial>& trials) {
@@ -149,6 +150,23 @@ Expected<std::vector<drill::ThresholdMeasure>> thresholds_of(const std::filesyst
         {trial.injected, trial.well.value_or(trial.end), {fired.begin(), fired.end()}});
   }
   return drill::measure(*recording, static_cast<double>((*row)->at) / 1e9, comparisons, faulty);
+}
+
+// How long each component took from its start until it was up, by the journal.
+std::map<std::string, std::vector<double>> starts_in(const std::filesystem::path& file) {
+  std::map<std::string, std::vector<double>> starts;
+  const auto reader = journal::Reader::open(file);
+  if (!reader) return starts;
+  auto rows = reader->entries(journal::Which::kReadable);
+  if (!rows) return starts;
+  journal::Entry row;
+  for (auto more = rows->next(row); more && *more; more = rows->next(row)) {
+    const Json event = row.kind == journal::kind::kEvent ? parse_json(row.body) : Json();
+    if (!event.is_object() || journal::text_of(event, "type") != "came_up") continue;
+    starts[journal::text_of(event, "component")].push_back(
+        (journal::number_of(event, "joining_ns") + journal::number_of(event, "rising_ns")) / 1e9);
+  }
+  return starts;
 }
 
 std::string diff_of(const std::string& name, const std::string& before, const std::string& after) {
@@ -201,6 +219,7 @@ int show_results(const DrillOptions& options, const std::string& text, const Rul
   auto thresholds = thresholds_of(record.file("robot.journal"), text, trials);
   if (!thresholds) say(stderr, "culprit: no thresholds are measured: {}\n", thresholds.error());
   if (thresholds) results.thresholds = std::move(*thresholds);
+  results.starts = starts_in(record.file("robot.journal"));
   if (options.json) {
     say(stdout, "{}\n", to_line(drill::report_json(results)));
   } else {

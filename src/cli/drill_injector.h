@@ -14,7 +14,7 @@
 
 namespace culprit::cli {
 
-// What a node is asked, each answered within 3 s or not at all.
+// Requests to nodes. Each returns within 3 s.
 class DrillNode {
  public:
   // Joins the domain of the environment. Errors: it cannot.
@@ -46,7 +46,7 @@ class DrillInjector {
   explicit DrillInjector(DrillNode& node) : node_(node) {}
   ~DrillInjector() { release(); }
 
-  // What undoing it needs, read before. Errors: it cannot be injected, or not be undone.
+  // Reads the state that undoing it needs. Errors: it cannot be injected, or not be undone.
   Expected<drill::Injected> prepare(const drill::Fault& fault, const std::string& node, int pid);
   // `lasts`: of a fault that ends by itself.
   Expected<void> inject(const drill::Injected& fault, Duration lasts);

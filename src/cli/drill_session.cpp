@@ -55,7 +55,7 @@ std::vector<std::string> complaints_of(const RobotView& view, const RobotView& b
 
 bool is_noticed(const std::vector<Json>& events) {
   return std::ranges::any_of(events, [](const Json& event) {
-    return journal::text_of(event, "type") == "failure_detected";
+    return journal::text_of(event, "type") == "failure_detected" && !drill::is_of_own_rule(event);
   });
 }
 

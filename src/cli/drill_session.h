@@ -39,7 +39,7 @@ class DrillSession {
   ~DrillSession();
 
   // One fault. Errors end the drill: the robot is not well before or after it, an interlock does not hold, the disk is
-  // full, an ABORT condition is true, or `stop`. What was injected is undone then.
+  // full, an ABORT condition is true, or `stop`. The fault is undone then.
   Expected<drill::Trial> run(const drill::Step& step);
 
   // As it was before the first fault.

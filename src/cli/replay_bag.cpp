@@ -8,11 +8,14 @@
 
 #include "bag/bag_file.h"
 #include "base/environment.h"
+#include "base/live_clock.h"
 #include "base/name_grammar.h"
+#include "base/text_file.h"
 #include "base/units.h"
 #include "cli/bag_words.h"
 #include "cli/commands.h"
 #include "cli/load_rules.h"
+#include "incident_reports/bag_page.h"
 #include "knowledge/describe.h"
 #include "replay/bag_replay.h"
 #include "terminal/console.h"
@@ -166,6 +169,16 @@ class BagOutput {
   Json holes_ = Json::array();
 };
 
+Expected<void> write_page(const BagReplayOptions& options, const RuleSet& rules) {
+  const auto page = incident_reports::bag_page(
+      rules, options.planner.planner(),
+      {options.bag,
+       ros2::message_directories(options.message_path, environment("AMENT_PREFIX_PATH")),
+       static_cast<double>(wall_now()) * 1e-9});
+  if (!page) return Error{page.error()};
+  return write_text(options.html, *page);
+}
+
 int bag_exit_code(const BagReplayOptions& options, const std::vector<RuleOutcome>& outcomes,
                   const RuleSet& rules, bool is_whole) {
   if (options.fail_on == "never") return kOk;
@@ -214,6 +227,9 @@ int replay_bag(const BagReplayOptions& options) {
     replay.step(message);
   }
   output.finish(replay, *bag, reading);
+  if (!options.html.empty()) {
+    if (const auto written = write_page(options, *rules); !written) return fail(written.error());
+  }
   const bool is_whole = bag->contents().losses().empty() && reading.undecoded().empty();
   return bag_exit_code(options, replay.outcomes(), *rules, is_whole);
 }

@@ -17,6 +17,7 @@ struct BagReplayOptions {
   bool json = false;    // one document
   std::string fail_on;  // "error", "warning", "unjudged", "never"; empty: what cannot be read
   PlannerOptions planner;
+  std::string html{};  // also as a page, in this file; empty: none
 };
 
 // Prints what happens, and a line for each rule; gives the exit code.

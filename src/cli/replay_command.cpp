@@ -30,6 +30,7 @@ struct ReplayOptions {
   std::string since;
   bool json = false;
   std::string fail_on;
+  std::string html;  // of a bag: the file of its page
   std::vector<std::filesystem::path> message_path;
   PlannerOptions planner;
 };
@@ -263,7 +264,7 @@ int replay_recording(const ReplayOptions& options) {
   if (options.session != 0) return fail("--session is for a journal; a bag is one run", kUsage);
   if (options.rules.empty()) return fail("a bag has no rules: add --rules", kUsage);
   return replay_bag({options.journal, options.rules, options.message_path, options.since,
-                     options.json, options.fail_on, options.planner});
+                     options.json, options.fail_on, options.planner, options.html});
 }
 
 int replay_any(const ReplayOptions& options, bool other_planner) {
@@ -271,6 +272,8 @@ int replay_any(const ReplayOptions& options, bool other_planner) {
     return fail("--json has the events already; leave --events out", kUsage);
   if (bag::is_bag(options.journal)) return replay_recording(options);
   if (!options.message_path.empty()) return fail("--message-path is for a bag", kUsage);
+  if (!options.html.empty())
+    return fail("--html is for a bag; culprit incident ID -o FILE writes one of a journal", kUsage);
   if (!options.fail_on.empty()) return fail("--fail-on is for a bag", kUsage);
   const auto journal = journal::Reader::open(options.journal);
   if (!journal) return fail(journal.error());
@@ -304,6 +307,10 @@ void add_replay(CLI::App& app, int& exit_code) {
                    "For a bag: folders with .msg files: <folder>/<package>/msg/<Type>.msg")
       ->type_name("FOLDER");
   command->add_flag("--json", options->json, "As one JSON document; not with --events");
+  command
+      ->add_option("--html", options->html,
+                   "For a bag: also write a page of its incidents and curves to this file")
+      ->type_name("FILE");
   command
       ->add_option("--fail-on", options->fail_on,
                    "For a bag: exit with 1 if such a rule fired, or any could not be judged "

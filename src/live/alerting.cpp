@@ -36,7 +36,6 @@ bool is_about(const alerts::Alert& alert, const std::string& component) {
 void Alerting::begins(const Manager& manager, std::function<Remarks()> /*remarks*/,
                       Time /*start*/) {
   manager_ = &manager;
-  situation_.forget();
 }
 
 void Alerting::stepped(const Runtime::Step& step) {
@@ -47,7 +46,6 @@ void Alerting::stepped(const Runtime::Step& step) {
 
 void Alerting::note(std::span<const Event> events) {
   const RuleSet& rules = manager_->knowledge().rules;
-  situation_.take(events, rules);
   for (const Event& event : events) {
     if (const auto* resolved = std::get_if<FailureResolved>(&event.what)) {
       resolved_[rules[resolved->rule].name] = describe(event, rules);
@@ -74,9 +72,11 @@ void Alerting::forget_what_is_seen_again() {
 std::vector<Alerting::Problem> Alerting::problems() const {
   const RuleSet& rules = manager_->knowledge().rules;
   std::vector<Problem> all;
-  for (const Incident& each : situation_.incidents(*manager_)) {
+  for (const Incident& each : manager_->incidents().open()) {
+    Incidents::Course course = manager_->course_of(each);
     Problem problem;
     alerts::Alert& alert = problem.alert;
+    alert.id = each.id;
     alert.needs_person = each.needs_person();
     alert.headline = each.headline;
     problem.tells_condition = !each.condition.empty();
@@ -84,9 +84,9 @@ std::vector<Alerting::Problem> Alerting::problems() const {
     alert.rule = rules[each.root].name;
     for (const ComponentId c : each.components) alert.components.push_back(rules[c].name);
     alert.consequences = names_of_rules(each.consequences, rules);
-    alert.doing = each.doing;
+    alert.doing = std::move(course.doing);
     // Any other next step has passed before a person reads the alert.
-    if (each.needs_person()) alert.next = each.next;
+    if (each.needs_person()) alert.next = std::move(course.next);
     problem.keys = {alert.consequences.begin(), alert.consequences.end()};
     problem.keys.insert(alert.rule);
     for (const std::string& name : alert.components) problem.keys.insert(key_of_component(name));
@@ -184,8 +184,10 @@ Alerting::Fault& Alerting::fault_of(const Problem& problem, Time now) {
     Fault fault;
     fault.began = now;
     fault.alert.began = wall_();
-    fault.alert.id = fmt::format("{:x}-{}", std::llround(1000 * fault.alert.began),
-                                 problem.alert.rule.empty() ? "robot" : problem.alert.rule);
+    fault.alert.id = problem.alert.id;
+    if (fault.alert.id.empty())  // no incident, but what keeps culprit from finding any
+      fault.alert.id = fmt::format("{:x}-{}", std::llround(1000 * fault.alert.began),
+                                   problem.alert.rule.empty() ? "robot" : problem.alert.rule);
     faults_.push_back(std::move(fault));
     return faults_.back();
   }

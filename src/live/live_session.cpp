@@ -61,6 +61,7 @@ journal::Session session_of(const LiveSession::Frame& frame, const std::string& 
   session.process = getpid();
   session.boot = journal::boot_id();
   session.start = start;
+  session.wall = wall_now();
   session.watched_since = watched_since;
   session.discovery = options.discovery;
   session.forgetting = options.forgetting;

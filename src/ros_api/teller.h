@@ -55,7 +55,6 @@ class Teller : public live::Observer {
   const WallClock wall_;
   const Manager* manager_ = nullptr;  // null: none has begun
   std::function<Remarks()> remarks_;
-  live::Situation situation_;
   IncidentWatch incidents_;
 
   bool is_new_manager_ = false;

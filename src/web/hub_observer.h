@@ -10,7 +10,6 @@
 
 #include "http/hub.h"
 #include "live/observer.h"
-#include "live/situation.h"
 #include "web/event_json.h"
 #include "web/metrics.h"
 
@@ -49,7 +48,6 @@ class HubObserver : public live::Observer {
   const WallClock wall_;
   const Manager* manager_ = nullptr;  // null: none has begun
   std::function<Remarks()> remarks_;
-  live::Situation situation_;
   Time start_{};
   Time told_ = kLongAgo;       // when the state was told last
   Time next_tell_ = kLongAgo;  // when it may be told again

@@ -1,7 +1,6 @@
 // The manager's knowledge as JSON (docs/web.md): the constant part, the graph, the present state.
 #pragma once
 
-#include "live/situation.h"
 #include "manager/manager.h"
 #include "web/event_json.h"
 
@@ -21,8 +20,11 @@ Json state_to_json(const Knowledge& knowledge, Time start);
 // approval.
 Json control_to_json(const Manager& manager, Time start);
 
-// The failed and the blamed components: part of the present state.
-Json incidents_to_json(const std::vector<live::Incident>& incidents, const RuleSet& rules,
-                       Time start);
+// The open incidents, in the order of all views: part of the present state.
+Json incidents_to_json(const Manager& manager, Time start);
+
+// The state of the robot and of each component in one word (web/overview.h): part of it, too. @pre `state` is of
+// this manager
+void add_looks(const Manager& manager, Json& state);
 
 }  // namespace culprit::web

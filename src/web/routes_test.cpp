@@ -495,13 +495,26 @@ Json incident_event(const char* type, double t, Json more = Json::object()) {
   return event;
 }
 
+Json incident_told(const char* type, double t) {
+  return incident_event(type, t,
+                        {{"text", ""},
+                         {"incident", "mywpiwzf-0k7"},
+                         {"rule", "R"},
+                         {"components", {"camera"}},
+                         {"certain", true},
+                         {"criticality", "ERROR"},
+                         {"how", "resolved"}});
+}
+
 TEST_F(Routes, TellIncidentsOfTheStreamWhereThereIsNoJournal) {
   hub.publish(Kind::kRobot, R"({"rules": [{"name": "R", "components": ["camera"], "strategies": [
       {"name": "s", "components": ["camera"]}]}]})");
   for (const Json& event :
        {incident_event("failure_detected", 10, {{"rule", "R"}, {"criticality", "ERROR"}}),
+        incident_told("incident_opened", 10),
         incident_event("strategy_chosen", 10.1, {{"rule", "R"}, {"strategy", "s"}}),
-        incident_event("failure_resolved", 12, {{"rule", "R"}, {"strategy", "s"}})})
+        incident_event("failure_resolved", 12, {{"rule", "R"}, {"strategy", "s"}}),
+        incident_told("incident_closed", 12)})
     hub.publish(Kind::kEvent, to_line(event));
   const Answer answer = ask("get /api/incidents", {{"since", "0"}});
   ASSERT_EQ(answer.status, 200);
@@ -584,24 +597,21 @@ TEST_F(Routes, TakeOnlyNumbersBehindTheQuestionMark) {
 
 TEST_F(Routes, TellWhichRecordingsAnIncidentHasAndGiveThemAndNoOtherFile) {
   const double now = static_cast<double>(wall_now()) * 1e-9;
-  const auto tell = [&](const char* type, double when) {
-    hub.publish(Kind::kEvent, to_line({{"type", type},
-                                       {"rule", "CameraDead"},
-                                       {"clock", when},
-                                       {"t", when},
-                                       {"criticality", "ERROR"}}));
-  };
   for (const double began : {now - 1000, now - 1}) {
-    tell("failure_detected", began);
-    tell("failure_resolved", began + 0.5);
+    for (const char* type : {"incident_opened", "incident_closed"}) {
+      Json event = incident_told(type, 0);
+      event["incident"] = began < now - 500 ? "mywpiwzf-0k7" : "mywpiwzf-0k8";
+      event["t"] = event["clock"] = began + (type == std::string("incident_opened") ? 0 : 0.5);
+      hub.publish(Kind::kEvent, to_line(event));
+    }
   }
   const Json made = ask("post /api/recordings", {{"reason", "Dead"}}).body;
   std::ofstream(recordings / "secret") << "not for everybody";
   const Json incidents = ask("get /api/incidents", {{"since", "0"}}).body["incidents"];
   ASSERT_EQ(incidents.size(), 2u) << incidents;
-  EXPECT_EQ(incidents[0]["recordings"], Json::array()) << "it was long before";
-  ASSERT_EQ(incidents[1]["recordings"].size(), 1u) << incidents;
-  const Json& recording = incidents[1]["recordings"][0];
+  EXPECT_EQ(incidents[1]["recordings"], Json::array()) << "it was long before";
+  ASSERT_EQ(incidents[0]["recordings"].size(), 1u) << incidents;
+  const Json& recording = incidents[0]["recordings"][0];
   EXPECT_EQ(recording["path"], made["recording"]);
   EXPECT_EQ(recording["bytes"], 14);
   const Answer given = ask("get /api/incidents/recording", {{"name", recording["name"]}});

@@ -141,7 +141,7 @@ export function ComponentPanel({ name }: { name: string }) {
   const now = stateOfComponent(name)
   const rules = rulesByComponent.value.get(name) ?? []
   const strategies = rules.flatMap((r) => r.strategies.filter((s) => s.components.includes(name)).map((s) => ({ name: `${r.name}.${s.name}`, actions: s.actions })))
-  const done = events.value.filter((e) => e.component === name || e.components?.includes(name)).slice(-kMostDone).reverse()
+  const done = events.value.filter((e) => e.text && (e.component === name || e.components?.includes(name))).slice(-kMostDone).reverse()
   const known: [string, string | undefined][] = [
     ['node', node ?? 'not seen'],
     ['process', state.value ? (now?.process ?? 'not seen yet') : 'unknown'],

@@ -60,6 +60,9 @@ export const freshness = computed((): Freshness => {
 })
 export const isOld = computed(() => freshness.value.kind === 'lost' || freshness.value.kind === 'stuck')
 
+// culprit answers: its manager may be stuck, and receives a pause all the same.
+export const isReachable = computed(() => freshness.value.kind === 'fresh' || freshness.value.kind === 'stuck')
+
 // By the robot's clock, which stands still on a page that receives nothing.
 export const nowByTheClock = (): number =>
   freshness.value.kind === 'lost' || freshness.value.kind === 'stuck' ? freshness.value.since : onTheWall(tick.value)

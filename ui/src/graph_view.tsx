@@ -6,7 +6,7 @@ import { Drawing, isUpright, kDiscovery } from './graph_drawing'
 import { cascade, search, shown, showsAll } from './graph_model'
 import { effective, groupBy, type Grouping, grouping, kGroupings } from './grouping'
 import { tell } from './notices'
-import { culprits, health, isLive, robot, selected, situation, state } from './store'
+import { culprits, isLive, looks, robot, selected, situation, state } from './store'
 import { isDark } from './theme'
 
 // A large graph takes a while to paint; changes at a shorter period would not be visible.
@@ -14,7 +14,7 @@ const kPeriod = 66 // ms
 
 // The inputs of a drawing.
 const readAll = () =>
-  [shown, cascade, effective, health, culprits, situation, robot, state, selected, isLive].map((each) => each.value)
+  [shown, cascade, effective, looks, culprits, situation, robot, state, selected, isLive].map((each) => each.value)
 
 export function GraphView() {
   const place = useRef<HTMLDivElement>(null)

@@ -307,7 +307,7 @@ export function RulesPage() {
       <Restored write={(next) => editor.current?.setText(next)} />
       {unreadable.value && (
         <pre class="sick unreadable" role="alert">
-          The form waits until the text can be read: {unreadable.value}
+          The form waits until the text can be read{errors > 0 ? '; the mistakes are listed below the text.' : `: ${unreadable.value}`}
         </pre>
       )}
       <div class="sides">

@@ -364,7 +364,7 @@ export function EventLog({ view }: { view: View }) {
     return line
   }
   const upTo = view.moment.value ?? Infinity
-  const list = events.value.filter((e) => e.t <= upTo).slice(-200)
+  const list = events.value.filter((e) => e.text && e.t <= upTo).slice(-200)
   list.reverse()
   return (
     <section class="log" aria-label="Event log">

@@ -16,7 +16,7 @@ let pageTrouble = '' // why a page to send cannot be made
 const kCalls = {
   'get /api/stream': () => [200, {}],
   'post /api/orders': () => [202, { number: 1, text: 'kept' }],
-  'get /api/incidents': () => [200, { journal: '/var/lib/culprit/rover.journal', oldest: kIncidents[0].clock - 3600, incidents: kIncidents }],
+  'get /api/incidents': () => [200, { journal: '/var/lib/culprit/rover.journal', oldest: kIncidents.at(-1).clock - 3600, incidents: kIncidents }],
   'get /api/incidents/events': ({ first }) => [200, { events: first === '10' ? kIncidentEvents : [] }],
   'get /api/incidents/page': ({ id }) => (pageTrouble ? [409, { error: pageTrouble }] : [200, { what: `page of ${id}` }]),
   'get /api/incidents/recording': ({ name }) => [200, { name }],
@@ -191,25 +191,25 @@ async function tellsIncidents(page, server, album) {
   const send = incident.getByRole('button', { name: 'Save as a page to send …' })
   await send.click()
   const saved = await saving
-  expect(saved.suggestedFilename() === `incident-${kIncidents.at(-1).id}.html`, 'the file to send has another name')
-  expect(readFileSync(await saved.path(), 'utf8').includes(`page of ${kIncidents.at(-1).id}`), 'another file is sent')
+  expect(saved.suggestedFilename() === `incident-${kIncidents[0].id}.html`, 'the file to send has another name')
+  expect(readFileSync(await saved.path(), 'utf8').includes(`page of ${kIncidents[0].id}`), 'another file is sent')
   pageTrouble = 'another page is being made; ask again in a moment'
   await send.click()
   await page.getByRole('alert').getByText(pageTrouble).waitFor()
   pageTrouble = ''
   // One that is older than what the list shows is looked for where it must be.
-  const longAgo = kIncidents[0].clock - 10 * 86_400
+  const longAgo = kIncidents.at(-1).clock - 10 * 86_400
   await page.evaluate((id) => (location.hash = `incidents/${id}`), Math.round(longAgo * 1000).toString(36))
   await expectSoon(() => server.received.some(([call, query]) => call === 'get /api/incidents' && Number(query.since) < longAgo), 'the journal was not asked for that time')
   await page.getByText('There is no incident of this address').waitFor()
   // The black box's recordings of one.
-  await page.evaluate((id) => (location.hash = `incidents/${id}`), kIncidents[0].id)
+  await page.evaluate((id) => (location.hash = `incidents/${id}`), kIncidents.at(-1).id)
   await incident.getByText('/var/lib/culprit/recordings/rover_').waitFor()
   const keeping = page.waitForEvent('download')
   await incident.getByRole('button', { name: "Save the robot's topics (MCAP, 1.2 MB)" }).click()
   const recording = await keeping
-  expect(recording.suggestedFilename() === kIncidents[0].recordings[0].name, 'the recording has another name')
-  expect(readFileSync(await recording.path(), 'utf8').includes(kIncidents[0].recordings[0].name), 'it is another recording')
+  expect(recording.suggestedFilename() === kIncidents.at(-1).recordings[0].name, 'the recording has another name')
+  expect(readFileSync(await recording.path(), 'utf8').includes(kIncidents.at(-1).recordings[0].name), 'it is another recording')
   await page.evaluate(() => (location.hash = 'incidents/'))
 }
 

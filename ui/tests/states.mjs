@@ -91,7 +91,7 @@ async function everyState(page, server) {
     play(server, each)
     await looksRight(page, name, 'desktop', each)
     const explanation = page.getByRole('region', { name: 'Explanation' })
-    await explanation.getByText('SegmentationBad is blind').waitFor()
+    await explanation.getByRole('heading', { name: 'SegmentationBad is blind' }).waitFor()
     expect((await explanation.getByText('All is well').count()) === 0, `it says that all is well (${name})`)
     await isAccessible(page)
   }
@@ -106,6 +106,7 @@ async function everyState(page, server) {
   })
   expect((await page.title()).startsWith('⚠ Disconnected'), `the title is ${await page.title()}`)
   expect((await page.locator('main').evaluate((e) => getComputedStyle(e).filter)).includes('grayscale'), 'what is old is in colour')
+  expect(await page.getByRole('region', { name: 'Status' }).getByRole('button', { name: 'Pause' }).isDisabled(), 'one can press Pause while nobody would be told')
   await isAccessible(page)
   await album.end()
 }

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "journal/entry.h"
+#include "json/json.h"
 
 namespace culprit::fleet {
 
@@ -40,8 +41,9 @@ struct StrategyName {
 };
 
 struct Failure {
-  std::int64_t row = 0;       // where it was detected
-  std::int64_t incident = 0;  // the row of the first failure since all was well
+  std::int64_t row = 0;  // where it was detected
+  std::int64_t incident =
+      0;  // incident_number.h; of an older culprit: the row of the first failure since all was well
   std::string rule;
   std::string criticality;
   std::string component;        // the blamed one; empty: unknown
@@ -64,7 +66,8 @@ class Tally {
   const std::optional<Run>& run() const { return run_; }
   const std::string& rules_text() const { return rules_text_; }
   const std::map<StrategyName, Counts>& counts() const { return counts_; }
-  // Failures that began or changed since they were last taken, and those of a run that is over.
+  // Failures that began or changed since they were last taken, and those of a run that is over. A failure without an
+  // incident is not taken yet: a later row of the same step names it.
   std::vector<Failure> take_failures();
   // Begins with this row, or what comes after it.
   void begin_at(std::int64_t row) { last_row_ = row - 1; }
@@ -76,6 +79,7 @@ class Tally {
  private:
   void begin(const journal::Entry& entry, std::string_view hash);
   void event(const journal::Entry& entry);
+  void take_incident(const Json& body);
   Failure* open_failure(const std::string& rule);
   void close(Failure& failure, std::int64_t at, const char* how);
 
@@ -85,7 +89,8 @@ class Tally {
   std::map<std::string, Failure> open_;  // by rule
   std::vector<Failure> changed_;         // that are over
   std::map<std::string, bool> is_new_;   // of open ones: changed since they were taken
-  std::int64_t incident_ = 0;
+  bool tells_incidents_ = false;         // the culprit of this run does
+  std::int64_t incident_ = 0;            // else
   std::int64_t last_row_ = 0;
   std::int64_t last_at_ = 0;
 };

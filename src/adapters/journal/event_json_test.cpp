@@ -96,7 +96,25 @@ std::vector<EventWhat> samples() {
           StaysDown{{c}, StaysDown::Why::kDoubt, 50, c, 700ms},
           StaysDown{{c}, StaysDown::Why::kOwner},
           OrderAccepted{{1, "ada", "", Revive{}}},
-          OrderAccepted{{1, "ada", "", EndStarted{}}}};
+          OrderAccepted{{1, "ada", "", EndStarted{}}},
+          IncidentOpened{{.id = "mywpiwzf-0k7",
+                          .root = r,
+                          .consequences = {r},
+                          .components = {c},
+                          .is_certain = true,
+                          .since = Time(3ns),
+                          .criticality = Criticality::kError,
+                          .condition = "dead",
+                          .headline = "camera is dead"}},
+          IncidentChanged{{.id = "mywpiwzf-0k7",
+                           .root = r,
+                           .components = {c},
+                           .host = "rover2",
+                           .since = Time(3ns),
+                           .is_exhausted = true,
+                           .headline = "nothing is heard of rover2, where camera ran"}},
+          IncidentClosed{"mywpiwzf-0k7", r},
+          IncidentClosed{"mywpiwzf-0k7", r, IncidentEnd::kMerged, "mywpiwzf-0k8"}};
 }
 
 std::vector<std::string> golden_rows() {

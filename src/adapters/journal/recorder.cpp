@@ -34,10 +34,13 @@ void replace(Learned& learned, const Learned& news) {
   }
 }
 
-// Journals from before rules could be blind have no such rows, and no decision depends on them.
-bool is_about_sight(const Event& event) {
+// Older journals have no such rows, and no decision depends on them.
+bool is_no_decision(const Event& event) {
   return std::holds_alternative<RuleBlind>(event.what) ||
-         std::holds_alternative<RuleSees>(event.what);
+         std::holds_alternative<RuleSees>(event.what) ||
+         std::holds_alternative<IncidentOpened>(event.what) ||
+         std::holds_alternative<IncidentChanged>(event.what) ||
+         std::holds_alternative<IncidentClosed>(event.what);
 }
 
 }  // namespace
@@ -49,7 +52,7 @@ std::optional<Digest> digest_of(std::span<const Command> commands, std::span<con
     all += std::to_string(command.id.number) + " " + rules[command.component].name + " " +
            culprit::to_string(command) + "\n";
   for (const Event& event : events) {
-    if (!is_about_sight(event)) all += line_of(event, rules) + "\n";
+    if (!is_no_decision(event)) all += line_of(event, rules) + "\n";
   }
   if (all.empty()) return std::nullopt;
   const Hash hash = hasher.of(all);

@@ -34,8 +34,8 @@
 
 namespace culprit::journal {
 
-// The digest of a step's decisions (StepReader gives it back). Nothing: it decided nothing. Which
-// rules are blind is left out.
+// The digest of a step's decisions (StepReader gives it back). Nothing: it decided nothing. Blind
+// rules and incidents are left out.
 std::optional<Digest> digest_of(std::span<const Command> commands, std::span<const Event> events,
                                 const RuleSet& rules, Hasher& hasher);
 

@@ -92,6 +92,7 @@ Json to_json(const Session& session) {
       {"process", session.process},
       {"boot", session.boot},
       {"start", session.start.time_since_epoch().count()},
+      {"wall", session.wall},
       {"settling", session.discovery.count()},
       {"forgetting", session.forgetting},
       {"advises", session.advises},
@@ -134,6 +135,7 @@ Expected<Session> session_from_json(const Json& json) {
   session.process = static_cast<int>(integer_of(json, "process"));
   session.boot = text_of(json, "boot");
   session.start = Time(Duration(integer_of(json, "start")));
+  session.wall = std::max<std::int64_t>(0, integer_of(json, "wall"));
   if (json.contains("watched_since"))
     session.watched_since = Time(Duration(integer_of(json, "watched_since")));
   session.discovery = Duration(integer_of(json, "settling"));

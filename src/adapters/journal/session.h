@@ -26,6 +26,8 @@ struct Session {
   int process = 0;         // culprit's, on its machine; 0: an older culprit left it out
   std::string boot;        // which start of the machine: the robot's clock counts from there
   Time start{};
+  std::int64_t wall =
+      0;  // nanoseconds since 1970 at `start`; 0: an older culprit, which told no incidents
   // The manager began with what this process had seen while another culprit managed, and so as if it
   // had watched since then; nothing: since `start`.
   std::optional<Time> watched_since;

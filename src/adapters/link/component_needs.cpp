@@ -30,7 +30,7 @@ void add(const Adaptation& adaptation, ComponentNeeds& needs) {
       needs.routines.push_back(adaptation.subject);
       return;
     case AdaptationType::kStop:
-    case AdaptationType::kStartGroup:  // rule sets have what it is made of
+    case AdaptationType::kStartGroup:  // a rule set holds its parts instead
       return;
   }
 }

@@ -235,7 +235,7 @@ Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowled
       return std::vector<Goal>{GoneGoal{}};
     case AdaptationType::kChangeMode:
       return std::vector<Goal>{ModeGoal{adaptation.subject}};
-    case AdaptationType::kStartGroup:  // rule sets have what it is made of
+    case AdaptationType::kStartGroup:  // a rule set holds its parts instead
       return std::vector<Goal>{};
     case AdaptationType::kCall:
       return std::vector<Goal>{ServiceGoal{

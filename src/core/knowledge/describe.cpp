@@ -140,6 +140,9 @@ class Describer {
   }
   std::string operator()(const LifecycleIntended&) const { return ""; }
   std::string operator()(const CameUp&) const { return ""; }
+  std::string operator()(const IncidentOpened&) const { return ""; }
+  std::string operator()(const IncidentChanged&) const { return ""; }
+  std::string operator()(const IncidentClosed&) const { return ""; }
   std::string operator()(const RivalSeen& e) const {
     return "something else sets the mode of " + rules_[e.component].name +
            " back; it is left alone";

@@ -9,6 +9,7 @@
 
 #include "knowledge/blindness.h"
 #include "knowledge/coming_up.h"
+#include "knowledge/incident.h"
 #include "knowledge/stays_down.h"
 #include "knowledge/why_unknown.h"
 #include "language/rule_set.h"
@@ -363,6 +364,21 @@ struct PriorsAdopted {
   std::string source;
 };
 
+// Incidents (incidents/incidents.h). Without a sentence: the events above tell people what happened.
+struct IncidentOpened {
+  Incident incident;
+};
+// Something about it is different now, but for times that pass.
+struct IncidentChanged {
+  Incident incident;
+};
+struct IncidentClosed {
+  std::string id;
+  RuleId root;
+  IncidentEnd how = IncidentEnd::kResolved;
+  std::string into{};  // kMerged: the id of the other one
+};
+
 // One of these happened. To copy and to destroy a variant of so many is compiled once (event.cpp), not into every file that
 // touches an event.
 class EventWhat
@@ -374,7 +390,8 @@ class EventWhat
           OrderCarriedOut, SilenceEnded, StormBegan, StormEnded, LastResortReached,
           LifecycleIntended, CameUp, OutcomePending, OutcomeCounted, FailureFlaps,
           JudgementSuspended, JudgementResumed, SleepNoticed, NeverSeen, PriorsAdopted, HostSilent,
-          HostBack, ValueUnknown, LastResortDone, RuleBlind, RuleSees, StaysDown> {
+          HostBack, ValueUnknown, LastResortDone, RuleBlind, RuleSees, StaysDown, IncidentOpened,
+          IncidentChanged, IncidentClosed> {
  public:
   using Variant = variant;
   using variant::variant;

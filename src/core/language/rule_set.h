@@ -244,7 +244,7 @@ struct Rule {
   std::vector<StrategyId> strategies;   // in file order
   std::vector<ComponentId> components;  // that its strategies adapt, each once, ascending
   std::vector<InputId> inputs;          // that its trigger reads
-  // Of what it is about. Its failure is resolved only while each of them is active.
+  // Groups that it is about: its failure is resolved only while each of them is active.
   std::vector<GroupId> groups{};
   syntax::Name declaration;  // where it stands
 };
@@ -255,7 +255,7 @@ struct Interlock {
   std::string text;  // as written
 };
 
-// What a drill may do to a component.
+// A checked DRILL line.
 struct DrillLine {
   using What = syntax::Drill::What;
   ComponentId component;

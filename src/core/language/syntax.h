@@ -224,7 +224,7 @@ struct Interlock {
   std::string text;
 };
 
-// What a drill (docs/drill.md) may do to a component.
+// A DRILL line: a limit on what a drill does to a component (docs/drill.md).
 struct Drill {
   enum class What : std::uint8_t {
     kSetParameter,  // also injects this value: subject, value

@@ -235,7 +235,7 @@ TEST(Groups, AMemberIsWellOnceItsGroupIs) {
   EXPECT_GE(robot.count("resolved"), 2u) << transcript(robot);
 }
 
-// Whoever manages it brings it up in time.
+// Its manager brings it up in time.
 TEST(Groups, AMemberWhoseManagerBringsItUpNeedsNoMore) {
   TestRobot robot = robot_with_group(rules_of_group(gone_rule("planner")));
   robot.kill("planner");

@@ -70,6 +70,7 @@ Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, O
                              knowledge_.outcomes, knowledge_.rivals, knowledge_.events}),
       governor_(knowledge_, {knowledge_.withheld, knowledge_.events}, options.governor,
                 options.start),
+      incidents_(std::move(options.incidents)),
       autonomy_(options.autonomy),
       discovered_(later(options.start, options.discovery)),
       now_(options.start),
@@ -114,6 +115,7 @@ std::vector<Command> Manager::step(Time now, std::span<const Observation> observ
   }
   if (hears_) analyzer_.look_for_blind(now_);
   governor_.note(knowledge_.events);
+  follow_incidents();
   check(commands);
   return commands;
 }
@@ -126,6 +128,12 @@ void Manager::check(std::span<const Command> commands) const {
     CULPRIT_ASSERT(is_read(command) || !governor_.is_paused());
     CULPRIT_ASSERT(command.timeout > Duration::zero());
   }
+}
+
+void Manager::follow_incidents() {
+  const bool is_due = std::exchange(is_incident_due_, false) && incidents_.is_any_open();
+  if (!is_due && knowledge_.events.empty()) return;
+  incidents_.advance(knowledge_, {governor_.is_paused(), governor_.asked()}, knowledge_.events);
 }
 
 void Manager::take_in(Time now, std::span<const Observation> observations) {
@@ -151,7 +159,9 @@ void Manager::take_in(Time now, std::span<const Observation> observations) {
     if (const auto* reply = std::get_if<Reply>(&observation.what)) answered(*reply, now_);
     if (const auto* order = std::get_if<Order>(&observation.what)) obey(*order, now_);
     if (const auto* told = std::get_if<PriorsTold>(&observation.what)) adopt(*told, now_);
-    news_ |= is_news(observation);
+    const bool is_new = is_news(observation);
+    news_ |= is_new;
+    is_incident_due_ |= is_new;
     if (hears_) analyzer_.advance(now_);
   }
   now_ = std::max(now_, now);
@@ -524,6 +534,13 @@ void Manager::hold_back(const Decision& decision, Time now) {
   said = {since, decision.candidates};
   knowledge_.events.tell(now,
                          FailureHeldBack{decision.rule, decision.candidates, decision.suspects});
+}
+
+Incidents::Course Manager::course_of(const Incident& incident) const {
+  const auto halt = !hears_                 ? Incidents::Halt::kDeaf
+                    : governor_.is_paused() ? Incidents::Halt::kPaused
+                                            : Incidents::Halt::kNone;
+  return incidents_.course_of(incident, knowledge_, halt);
 }
 
 std::optional<std::string> Manager::held_back() const {

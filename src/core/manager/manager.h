@@ -21,6 +21,7 @@
 #include "analyze/analyzer.h"
 #include "execute/executor.h"
 #include "execute/governor.h"
+#include "incidents/incidents.h"
 #include "knowledge/knowledge.h"
 #include "manager/managing_system.h"
 #include "monitor/monitor.h"
@@ -40,6 +41,7 @@ class Manager : public ManagingSystem {
     // Discount factor per outcome (1 = never forget).
     double forgetting = 1;
     Governor::Options governor{};
+    IncidentIds incidents{};
   };
 
   // `rules` must outlive the manager and keep its address.
@@ -63,6 +65,10 @@ class Manager : public ManagingSystem {
 
   // Why nothing at all is begun now, whatever was planned; nothing if it is.
   std::optional<std::string> held_back() const;
+
+  // The open incidents, as after the last step.
+  const Incidents& incidents() const { return incidents_; }
+  Incidents::Course course_of(const Incident& incident) const;
 
   // For what was learned in an earlier run.
   void set_belief(StrategyId id, Belief belief) { knowledge_.beliefs.set(id, belief); }
@@ -109,6 +115,7 @@ class Manager : public ManagingSystem {
   void begin(StrategyId strategy, Time now);
   void carry_out(const Decision& decision, Time now);
   void hold_back(const Decision& decision, Time now);
+  void follow_incidents();
   Time next_planning(Time now) const;
 
   Knowledge knowledge_;
@@ -117,13 +124,15 @@ class Manager : public ManagingSystem {
   std::unique_ptr<const Planner> planner_;
   Executor executor_;
   Governor governor_;
+  Incidents incidents_;
   Autonomy autonomy_;
   Time discovered_;  // until then nothing is called absent
   Time now_;
   bool hears_ = true;
   Time deaf_since_ = kLongAgo;
-  bool news_ = false;        // something a plan depends on changed since the last plan
-  Time next_plan_ = kNever;  // while failures are held back
+  bool is_incident_due_ = false;  // something that incidents are made of may have changed
+  bool news_ = false;             // something a plan depends on changed since the last plan
+  Time next_plan_ = kNever;       // while failures are held back
   struct Said {
     Time failing_since = kNever;
     std::vector<Candidate> candidates;

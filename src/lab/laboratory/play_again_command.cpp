@@ -31,7 +31,8 @@ Json to_json(const study::SingleRun& run) {
   for (const study::TimelineEntry& incident : run.incidents) events.push_back(to_json(incident));
   for (const Event& event : run.events) {
     Json json = web::to_json(event, run.rules, Time{});
-    if (!json["text"].get_ref<const std::string&>().empty()) events.push_back(std::move(json));
+    const bool is_told = !json["text"].get_ref<const std::string&>().empty();
+    if (is_told || json.contains("incident")) events.push_back(std::move(json));
   }
   std::stable_sort(events.begin(), events.end(), [](const Json& a, const Json& b) {
     return a["t"].get<double>() < b["t"].get<double>();

@@ -15,6 +15,7 @@ constexpr std::size_t kFewestTopics = 3;  // that say something of all
 
 void find_shutdown(Examined& bag) {
   constexpr Duration kLongest = 5s;
+  constexpr Duration kLongestAlone = 15s;
   bag.end = bag.course.end;
   std::vector<Nanoseconds> last;
   for (const JudgedTopic& each : bag.topics) {
@@ -22,6 +23,8 @@ void find_shutdown(Examined& bag) {
   }
   if (last.size() < kFewestTopics) return;
   std::ranges::sort(last);
+  // The recorder was stopped after all the others.
+  if (last.back() > bag.end - kLongestAlone.count()) bag.end = std::min(bag.end, last.back());
   const Nanoseconds half = last[(last.size() - 1) / 2];
   if (half < bag.end && half > bag.end - kLongest.count()) bag.end = half;
 }

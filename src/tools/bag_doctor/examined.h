@@ -20,7 +20,7 @@ struct Examined {
   std::vector<JudgedTopic> topics{};
   // When the robot was shut down, or the recording ended. When a launch ends, its nodes end one after the other, and the
   // recorder last: so it is the time from which fewer than half of the steady topics go on, if that is within the last
-  // seconds.
+  // seconds; and not later than the last of all steady topics.
   Nanoseconds end = 0;
   // No topic at all was recorded although several come all the time: the recorder, its disk or the machine stood still.
   std::vector<Stretch> holes{};

@@ -53,6 +53,7 @@ void look_for_two_parents(const BagCourse& course, Symptoms& all) {
 // Transforms of one publisher stop together: one finding for all of them.
 struct Stopped {
   std::vector<std::string> edges;
+  bool carries_others = false;  // other frames hang below one of them
   Nanoseconds last = 0;
   Habit habit;
 };
@@ -70,10 +71,15 @@ void look_for_stopped(const Examined& bag, Symptoms& all) {
     const auto same = std::ranges::find_if(stopped, [&](const Stopped& each) {
       return std::chrono::abs(Duration(each.last - last)) < each.habit.usual;
     });
+    // A frame without others below may be that of a marker or an object, which is in sight now and then.
+    const bool carries_others = std::ranges::any_of(
+        bag.course.transforms,
+        [&](const TransformCourse& other) { return other.parent == edge.child; });
     if (same == stopped.end()) {
-      stopped.push_back({{edge_of(edge)}, last, habit});
+      stopped.push_back({{edge_of(edge)}, carries_others, last, habit});
     } else {
       same->edges.push_back(edge_of(edge));
+      same->carries_others = same->carries_others || carries_others;
     }
   }
   for (const Stopped& each : stopped)
@@ -81,7 +87,7 @@ void look_for_stopped(const Examined& bag, Symptoms& all) {
         {.kind = Kind::kOutage,
          .finding =
              {"D051",
-              Gravity::kError,
+              each.carries_others ? Gravity::kError : Gravity::kWarning,
               "tf: " + doctor::listed(each.edges),
               fmt::format(
                   "the last one came {} before the recording ended; until then one came every {}",

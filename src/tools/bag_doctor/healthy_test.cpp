@@ -121,6 +121,22 @@ TEST_F(HealthyRecording, ThatEndsWithTheLaunch) {
   expect_no_error();
 }
 
+// The recorder was stopped some seconds after the robot.
+TEST_F(HealthyRecording, ThatEndsAfterTheRobot) {
+  for (int i = 0; i < 5; ++i) sensor("/imu" + std::to_string(i), 20, 0.1, 0, 50 + 0.5 * i);
+  recording_.add("/rosout", "rcl_interfaces/msg/Log", 60, test::log(60, 20, "recorder", "stopped"));
+  expect_no_error();
+}
+
+// A marker is in sight for a while.
+TEST_F(HealthyRecording, OfATransformThatIsThereForAWhile) {
+  for (int i = 0; i < 5; ++i) sensor("/imu" + std::to_string(i), 20);
+  for (int i = 100; i < 500; ++i)
+    recording_.add("/tf", "tf2_msgs/msg/TFMessage", i * 0.05,
+                   test::transform(i * 0.05, "camera", "marker_3"));
+  expect_no_error();
+}
+
 // The recorder finds publishers one after the other.
 TEST_F(HealthyRecording, WhoseTopicsAreFoundWithinSeconds) {
   for (int i = 0; i < 5; ++i) sensor("/imu" + std::to_string(i), 20, 0.1, 0.8 * i);

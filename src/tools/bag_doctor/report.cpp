@@ -123,6 +123,15 @@ class Writer {
   }
 
   void say_missing_evidence(BagReport& report) const {
+    std::vector<std::string> silent;
+    for (const TopicCourse& topic : course_.topics) {
+      const bool is_told = std::ranges::any_of(
+          symptoms_, [&](const Symptom& symptom) { return symptom.topic == topic.name; });
+      if (topic.times.empty() && !is_told) silent.push_back(topic.name);
+    }
+    if (!silent.empty())
+      report.left_out.push_back(fmt::format(
+          "announced without a message, which may be by design: {}", doctor::listed(silent, 8)));
     if (symptoms_.empty()) return;
     const std::vector<std::string> unknown = without_publisher(symptoms_, graph_);
     const char* remedy =

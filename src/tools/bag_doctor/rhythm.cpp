@@ -82,7 +82,7 @@ void look_at_gap(const JudgedTopic& judged, const Stretch& gap, Symptoms& all) {
   if (!habit.is_steady && !stands_out) return;
   const bool is_failure = habit.is_steady && is_continuous(topic) && habit.gaps.size() == 1 &&
                           stands_out &&
-                          gap.length() > std::max<Duration>(1s, 2 * kGap * habit.usual);
+                          gap.length() > std::max<Duration>(2s, 4 * kGap * habit.usual);
   all.push_back(
       {.kind = Kind::kOutage,
        .finding = about(

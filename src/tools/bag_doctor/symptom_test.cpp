@@ -66,7 +66,8 @@ TEST_F(SymptomTest, AGapOfASensor) {
   ASSERT_EQ(all.size(), 1u);
   EXPECT_EQ(short_of(all[0]), "D201 error /imu at 19.9");
   EXPECT_NEAR(all[0].when->until, 26, 0.1);
-  EXPECT_EQ(to_string(*all[0].when), "at 19.950 s (2023-11-14 22:13:39.950 UTC), for 6.1 s");
+  EXPECT_THAT(to_string(*all[0].when),
+              AllOf(HasSubstr("at 19.950 s (2023-11-1"), HasSubstr(":39.950), for 6.1 s")));
 }
 
 TEST_F(SymptomTest, ASensorThatEndsEarly) {
@@ -137,8 +138,9 @@ TEST_F(SymptomTest, AFrameWithTwoParentsAndATransformThatStops) {
     recording_.add("/tf", "tf2_msgs/msg/TFMessage", time, test::transform(time, "odom", "base"));
     if (time > 10)
       recording_.add("/tf", "tf2_msgs/msg/TFMessage", time, test::transform(time, "map", "base"));
-    if (time < 30)
-      recording_.add("/tf", "tf2_msgs/msg/TFMessage", time, test::transform(time, "base", "arm"));
+    if (time > 30) continue;
+    recording_.add("/tf", "tf2_msgs/msg/TFMessage", time, test::transform(time, "base", "arm"));
+    recording_.add("/tf", "tf2_msgs/msg/TFMessage", time, test::transform(time, "arm", "hand"));
   }
   EXPECT_THAT(shorts(), AllOf(Contains("D052 error tf: base at 10.1"),
                               Contains(HasSubstr("D051 error tf: base"))));

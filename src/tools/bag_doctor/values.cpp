@@ -146,7 +146,9 @@ void look_at_frozen(const TopicCourse& topic, const BagCourse& course, Symptoms&
   const bool others_measure = does_another_move(is_noisy);
   if (is_of_motion(topic) && !robot_moves && names.size() == changing) return;  // it stands still
   if (!does_another_move([](const TopicCourse&) { return true; })) return;
-  const bool is_failure = is_noisy(topic) && (robot_moves || others_measure);
+  // A number may stay while others of the topic change: a position that is rounded, or an axis at rest.
+  const bool is_whole = topic.content.count > 0 || names.size() == changing;
+  const bool is_failure = is_noisy(topic) && is_whole && (robot_moves || others_measure);
   all.push_back(
       {.kind = Kind::kValue,
        .finding =

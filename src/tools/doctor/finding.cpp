@@ -13,7 +13,7 @@ std::string label(Gravity gravity) { return gravity == Gravity::kError ? "error"
 std::string to_string(const When& when) {
   constexpr std::int64_t kSecond = 1'000'000'000;
   const std::time_t whole = when.clock / kSecond;
-  const std::string clock = fmt::format("{:%Y-%m-%d %H:%M:%S}.{:03} UTC", fmt::gmtime(whole),
+  const std::string clock = fmt::format("{:%Y-%m-%d %H:%M:%S}.{:03}", fmt::localtime(whole),
                                         when.clock % kSecond / 1'000'000);
   const std::string text = fmt::format("at {:.3f} s ({})", when.from, clock);
   if (when.until <= when.from) return text;

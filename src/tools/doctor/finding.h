@@ -38,7 +38,7 @@ struct Finding {
   bool operator==(const Finding&) const = default;
 };
 
-// "at 12.4 s (2026-11-28 16:50:22.400 UTC), for 3.2 s".
+// "at 12.4 s (2026-11-28 16:50:22.400), for 3.2 s", in the time zone of this machine.
 std::string to_string(const When& when);
 
 }  // namespace culprit::doctor

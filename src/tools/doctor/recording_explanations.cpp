@@ -18,7 +18,7 @@ std::vector<Explanation> recording_explanations() {
        "Its readers had no data meanwhile, or worked with old data.",
        "A pause of five usual pauses and 300 ms that is 2.5 times as long as all but the three "
        "longest. It is an error "
-       "for a sensor that comes steadily, after ten usual pauses and a second, if it is the only "
+       "for a sensor that comes steadily, after 20 usual pauses and two seconds, if it is the only "
        "such pause. Three pauses of "
        "one length are the rhythm of bursts. Transient local topics and those of ROS itself are "
        "not examined.",

@@ -79,7 +79,7 @@ std::string test_of(const std::vector<const Trial*>& trials, const std::string& 
     injected += fmt::format("  AT {:g}s {} {}\n", kInjected, fault.component, what);
     broken.insert(fault.component);
   }
-  // What held in each trial.
+  // Expected is only the result that each trial had.
   std::vector<Finding> findings;
   for (const Trial* trial : trials) findings.push_back(finding_of(*trial));
   const auto in_all = [&](const auto& holds) { return std::ranges::all_of(findings, holds); };

@@ -17,7 +17,7 @@ using syntax::Operator;
 constexpr std::size_t kFewestValues = 10;
 constexpr double kPauses = 3;  // silence is so many times the longest healthy pause
 
-// What a comparison is about; nothing: it cannot be measured.
+// The measured side of a comparison; nothing: it cannot be measured.
 std::optional<Comparison> subject_in(const Expression& side) {
   Comparison out;
   if (side.kind == Expression::Kind::kName) {
@@ -175,7 +175,7 @@ class Meter {
   std::map<double, double> extremes_;  // by the beginning of the stretch
 };
 
-// Of rate(topic), as the rules have it.
+// The window of rate(topic) in the rules.
 Duration window_of(const Comparison& comparison, const RuleSet& rules) {
   for (const Input& input : rules.inputs) {
     if (input.kind == Input::Kind::kRate && rules[input.topic].name == comparison.subject)

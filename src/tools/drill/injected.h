@@ -1,10 +1,10 @@
-// What a drill has injected and not undone yet, in a file that outlives it.
+// The faults that a drill has injected and not undone yet, in a file that outlives it.
 //
 // A fault is written here, on the disk, before it is injected. The next drill of the robot undoes what it finds: it
 // continues a stopped process and sets a parameter back. If the file cannot be written (a full disk), nothing is
 // injected. The file is sealed and only its user may write it; still nothing in it is believed more than needed:
-//   - a process counts only if its number, its start and the boot of the machine are those of the file,
-//   - a parameter is set back only if it still has the value that the drill set.
+//   - A process counts only if its number, its start and the boot of the machine are those of the file.
+//   - A parameter is set back only if it still has the value that the drill set.
 #pragma once
 
 #include <filesystem>

@@ -1,6 +1,7 @@
 #include "drill/report.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -107,6 +108,14 @@ Section thresholds_section(const std::vector<ThresholdMeasure>& thresholds) {
   return out;
 }
 
+Section starts_section(const Results& results) {
+  Section out{"Starts", {"component", "starts", "until it was up", "READY at least"}, {}};
+  for (const auto& [component, times] : results.starts)
+    out.rows.push_back({component, std::to_string(times.size()), spread_text(times),
+                        fmt::format("{:.0f}s", std::ceil(spread_of(times).most))});
+  return out;
+}
+
 Section coverage_section(const Results& results) {
   Section out{"Coverage", {"what", "which"}, {}};
   const auto add = [&](const char* what, const std::string& which) {
@@ -131,6 +140,7 @@ std::vector<Section> sections_of(const Results& results) {
   std::vector<Section> all{faults_section(results), coverage_section(results),
                            strategies_section(results)};
   if (!results.thresholds.empty()) all.push_back(thresholds_section(results.thresholds));
+  if (!results.starts.empty()) all.push_back(starts_section(results));
   return all;
 }
 
@@ -228,6 +238,7 @@ Json report_json(const Results& results) {
               {"untripped", results.untripped},
               {"never_helped", results.never_helped},
               {"touched", results.touched}}},
+            {"starts", Json::object()},
             {"hidden_dependencies", Json::array()},
             {"spoilt", results.spoilt}};
   for (const FaultResult& each : results.faults)
@@ -269,6 +280,8 @@ Json report_json(const Results& results) {
                                   {"proposed", maybe(each.proposed())},
                                   {"most_an_hour", each.most_an_hour()},
                                   {"longest_beyond_s", each.longest_beyond}});
+  for (const auto& [component, times] : results.starts)
+    json["starts"][component] = spread_json(times);
   for (const HiddenDependency& each : results.hidden)
     json["hidden_dependencies"].push_back(
         {{"consumer", each.consumer}, {"producer", each.producer}, {"times", each.times}});

@@ -172,13 +172,15 @@ Results results_of(const std::vector<Trial>& trials, const RuleSet& rules, const
   out.cycle = rules.cycle;
   out.strategies = strategies_in(rules);
   std::map<std::string, FaultResult> faults;
+  std::set<std::string> names;
+  for (const Rule& rule : rules.rules) names.insert(rule.name);
   std::set<std::string> fired;
   for (const Trial& trial : trials) {
     if (!trial.trouble.empty()) {
       out.spoilt.push_back(trial.id() + ": " + trial.trouble);
       continue;
     }
-    const Finding finding = finding_of(trial);
+    const Finding finding = finding_of(trial, names);
     add(trial, finding, faults[to_string(trial.faults)]);
     fired.insert(finding.fired.begin(), finding.fired.end());
     for (const std::string& component : finding.wrongly) ++out.touched[component];

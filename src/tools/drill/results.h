@@ -1,4 +1,4 @@
-// What a drill found: each fault, what no rule and no fault covers, and the numbers that were measured.
+// The results of a drill: each fault, the coverage of rules and faults, and the measured numbers.
 #pragma once
 
 #include <map>
@@ -73,7 +73,8 @@ struct Results {
   std::map<std::string, int> touched;     // healthy components
   std::vector<HiddenDependency> hidden;
   std::vector<ThresholdMeasure> thresholds;
-  std::vector<std::string> spoilt;  // trials that prove nothing, and why
+  std::map<std::string, std::vector<double>> starts;  // components; seconds until the node was up
+  std::vector<std::string> spoilt;                    // trials that prove nothing, and why
 };
 
 Results results_of(const std::vector<Trial>& trials, const RuleSet& rules, const Paths& paths,

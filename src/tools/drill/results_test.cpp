@@ -188,6 +188,32 @@ RULE CameraDead
   EXPECT_THAT(again->text, HasSubstr("100 3  # as a last try; drill 2026-12-24, 3 times\n"));
 }
 
+TEST(DrillWriteBack, ADurationSeparatesWhatNoThresholdDoes) {
+  constexpr const char* kOverlap =
+      "COMPONENT camera NODE /camera LAUNCH \"camera\"\n"
+      "SIGNAL entropy DIAGNOSTIC camera KEY entropy\n"
+      "RULE Bad\n  POLICIES WARNING FOR 100ms\n  TRIGGER entropy > 0.5\n"
+      "    STRATEGY s 50 2\n      ADAPTATION camera redeploy 5\n";
+  const Source source("r", kOverlap);
+  Results results = results_of({}, *check(source).rules, {}, "2026-12-01");
+  results.thresholds = {{.of = comparisons_in(check(source).file).at(0),
+                         .values = 50,
+                         .least = 0.1,
+                         .most = 0.9,
+                         .longest_beyond = 0.2,
+                         .faulty = 0.8}};
+  EXPECT_THAT(write_back("r", kOverlap, results)->text,
+              HasSubstr("POLICIES WARNING FOR 400ms    # drill 2026-12-01, 50 values\n"));
+}
+
+TEST(DrillResults, CountOnlyWhatRulesOfTheFileNoticed) {
+  Trial trial{{Fault{FaultKind::kKill, "fusion"}}, 1, 100, {}, 102, 105};
+  for (const char* rule : {"fusion_failed", "drill_interlock_1"})
+    trial.events.push_back({{"clock", 100.2}, {"type", "failure_detected"}, {"rule", rule}});
+  EXPECT_EQ(finding_of(trial).rule, "fusion_failed");
+  EXPECT_EQ(results_with({trial}).faults[0].noticed, 0);
+}
+
 TEST(DrillWriteBack, WritesNothingWithoutEnoughOutcomes) {
   const auto written = write_back("r", kDrilled, results_with({killed(1), killed(2)}));
   EXPECT_EQ(written->text, kDrilled);

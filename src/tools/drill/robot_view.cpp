@@ -25,7 +25,7 @@ void for_both(const Json& names, const Json& states, const auto& each) {
 }
 
 std::optional<bool> trigger_of(const Json& state) {
-  // What fails has a trigger that was true.
+  // A failing rule has no "trigger": it was true.
   if (!state.contains("trigger")) return true;
   if (!state["trigger"].is_boolean()) return std::nullopt;
   return state["trigger"].get<bool>();

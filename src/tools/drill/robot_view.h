@@ -12,9 +12,6 @@
 
 namespace culprit::drill {
 
-// Rules that the drill adds to those of the file begin so.
-inline constexpr std::string_view kOwnRules = "drill_";
-
 // The robot while it was well, for a record that outlives it.
 struct HealthyRobot {
   struct Topic {
@@ -35,7 +32,8 @@ class RobotView {
   RobotView(Json robot, Json graph, Json state)
       : robot_(std::move(robot)), graph_(std::move(graph)), state_(std::move(state)) {}
 
-  // "RGBDead is failing", "camera is gone". Empty: it is well. What was blind, or gone, in `healthy` may be so.
+  // "RGBDead is failing", "camera is gone". Empty: it is well. A rule that was blind in `healthy`, or a
+  // component that was gone there, is no complaint.
   std::vector<std::string> complaints(const RobotView* healthy = nullptr) const;
 
   struct Component {

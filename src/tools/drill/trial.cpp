@@ -88,7 +88,9 @@ Paths paths_over(const std::vector<std::pair<std::string, std::string>>& edges) 
   return paths;
 }
 
-Finding finding_of(const Trial& trial) {
+bool is_of_own_rule(const Json& event) { return text_of(event, "rule").starts_with(kOwnRules); }
+
+Finding finding_of(const Trial& trial, const std::set<std::string>& rules) {
   Finding out;
   const auto is_broken = [&](const std::string& component) {
     return std::ranges::any_of(trial.faults,
@@ -97,7 +99,9 @@ Finding finding_of(const Trial& trial) {
   for (const Json& event : trial.events) {
     const std::string type = text_of(event, "type");
     const double after = number_of(event, "clock") - trial.injected;
+    if (is_of_own_rule(event)) continue;
     if (type == "failure_detected") {
+      if (!rules.empty() && !rules.contains(text_of(event, "rule"))) continue;
       if (!out.noticed_after) {
         out.noticed_after = after;
         out.rule = text_of(event, "rule");

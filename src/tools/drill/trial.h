@@ -30,6 +30,10 @@ struct Trial {
 Json to_json(const Trial& trial);
 std::optional<Trial> trial_from(const Json& json);
 
+// Rules that the drill adds to those of the file begin so. Their events are no findings.
+inline constexpr std::string_view kOwnRules = "drill_";
+bool is_of_own_rule(const Json& event);
+
 // Which component needs which, by name, over any number of edges.
 using Paths = std::set<std::pair<std::string, std::string>>;  // consumer, producer
 Paths paths_over(const std::vector<std::pair<std::string, std::string>>& edges);
@@ -44,9 +48,10 @@ struct Finding {
   std::optional<double> well_after;
   std::set<std::string> silent;  // components beside the broken ones
 };
-Finding finding_of(const Trial& trial);
+// Counts as noticed what one of `rules` detected; empty: any rule.
+Finding finding_of(const Trial& trial, const std::set<std::string>& rules = {});
 
-// What a strategy came to in a trial, as far as it can have been the cause of that.
+// The outcome of a strategy in a trial, if the strategy can have caused it.
 struct Attempted {
   std::string rule;
   std::string strategy;

@@ -25,6 +25,21 @@ class Edits {
     notes_[end_of_line(span.begin)] = why;
   }
 
+  // The value behind a word of the statement; the word is added where it is missing.
+  void set_clause(Span statement, const std::string& word, const std::string& value,
+                  const std::string& why) {
+    const std::string_view text = text_.substr(statement.begin, statement.end - statement.begin);
+    const std::size_t at = text.find(" " + word + " ");
+    if (at == std::string_view::npos)
+      return replace({statement.end, statement.end}, " " + word + " " + value, why);
+    const std::size_t from = text.find_first_not_of(' ', at + word.size() + 2);
+    if (from == std::string_view::npos) return;
+    const std::size_t end = std::min(text.find(' ', from), text.size());
+    replace({statement.begin + static_cast<std::uint32_t>(from),
+             statement.begin + static_cast<std::uint32_t>(end)},
+            value, why);
+  }
+
   std::string done() const {
     std::map<std::uint32_t, std::pair<Span, std::string>> all = edits_;
     for (const auto& [end, why] : notes_) {
@@ -75,6 +90,7 @@ class WriteBack {
   WrittenBack done() {
     for (const StrategyResult& each : results_.strategies) strategy(each);
     thresholds();
+    for (const ThresholdMeasure& each : results_.thresholds) hold(each);
     return {dependencies(edits_.done()), std::move(unwritten_)};
   }
 
@@ -144,6 +160,19 @@ class WriteBack {
       edits_.replace(measures[0]->of.span, in_unit(*measures[0], *value),
                      fmt::format("{}{}, {} values", kMark, results_.date, values));
     }
+  }
+
+  // Where no threshold separates healthy values from faulty ones, their duration may.
+  void hold(const ThresholdMeasure& measure) {
+    if (measure.longest_beyond <= 0 || !measure.faulty || measure.proposed()) return;
+    const auto written = std::ranges::find_if(
+        file_.rules, [&](const syntax::Rule& r) { return r.name.text == measure.of.rule; });
+    if (written == file_.rules.end() || !written->policies) return;
+    const auto milliseconds = std::chrono::milliseconds(
+        static_cast<std::int64_t>(std::ceil(2 * 1000 * measure.longest_beyond)));
+    if (written->policies->hold_for && *written->policies->hold_for >= milliseconds) return;
+    edits_.set_clause(written->policies->span, "FOR", culprit::to_string(milliseconds),
+                      fmt::format("{}{}, {} values", kMark, results_.date, measure.values));
   }
 
   // Behind the last COMPONENT or DEPENDENCY line; at the end if there is none.

@@ -15,7 +15,8 @@ struct Column {
     kNumber,   // two digits of it
     kSeconds,  // of a duration
     kPercent,  // a share, 0..1
-    kTime      // when: seconds since 1970
+    kTime,     // when: seconds since 1970
+    kIncident  // its id (fleet/incident_number.h)
   };
   std::string key;    // in JSON
   std::string title;  // for people

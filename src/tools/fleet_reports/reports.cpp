@@ -123,7 +123,8 @@ std::vector<TableQuery> incident_queries(const Scope& scope) {
   std::vector<TableQuery> queries = {in_scope(
       {"Incidents",
        "none",
-       "SELECT r.name, r.model, extract(epoch FROM min(f.began)), CASE WHEN bool_and(f.ended IS "
+       "SELECT f.incident, r.name, r.model, extract(epoch FROM min(f.began)), CASE WHEN "
+       "bool_and(f.ended IS "
        "NOT "
        "NULL) THEN extract(epoch FROM max(f.ended) - min(f.began)) END, (array_agg(f.rule ORDER BY "
        "f.row))[1], (array_agg(f.component ORDER BY f.row))[1], count(*), sum(f.strategies), "
@@ -131,7 +132,8 @@ std::vector<TableQuery> incident_queries(const Scope& scope) {
        "'exhausted' WHEN bool_or(f.how = 'left') THEN 'culprit ended' ELSE '' END" +
            kFailures + where(kRecently) +
            "\nGROUP BY r.name, r.model, f.run, f.incident\nORDER BY min(f.began) DESC\nLIMIT 50",
-       {{"robot", "robot"},
+       {{"incident", "incident", Kind::kIncident},
+        {"robot", "robot"},
         {"model", "model"},
         {"began", "began", Kind::kTime},
         {"lasted_s", "lasted", Kind::kSeconds},

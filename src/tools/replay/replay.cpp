@@ -105,6 +105,9 @@ std::unique_ptr<Manager> manager_for(const journal::Session& session, const Rule
   options.start = session.watched_since.value_or(session.start);
   options.discovery = session.discovery;
   options.forgetting = session.forgetting;
+  const std::int64_t start = session.start.time_since_epoch().count();
+  options.incidents = {session.wall - start, session.boot + " " + std::to_string(session.process) +
+                                                 " " + std::to_string(start)};
   auto manager = std::make_unique<Manager>(rules, std::move(planner), options);
   restore(*manager, session.learned, rules,
           session.fleet_context ? Priors::kAsLearned : Priors::kOfRules);

@@ -33,4 +33,16 @@ Result run_bag_test(const RuleSet& rules, const Test& test,
   return result;
 }
 
+std::vector<Event> with_preferred(const std::vector<Event>& events) {
+  std::vector<Event> all = events;
+  for (Event& event : all) {
+    if (const auto* held = std::get_if<ActionHeldBack>(&event.what)) {
+      StrategyChosen chosen;
+      chosen.strategy = held->strategy;
+      event.what = std::move(chosen);
+    }
+  }
+  return all;
+}
+
 }  // namespace culprit::rule_test

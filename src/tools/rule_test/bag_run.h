@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "rule_test/runner.h"
 
@@ -10,5 +11,9 @@ namespace culprit::rule_test {
 // `test` has a bag, at a path that can be opened as it is. Times of events count from its first message. The manager only
 // advises, since nothing can be done in a recording. If the bag cannot be read, that is a disappointment.
 Result run_bag_test(const RuleSet& rules, const Test& test, std::unique_ptr<const Planner> planner);
+
+// What a test of a bag is judged by if it expects that a component is blamed: a strategy that was preferred and could not
+// be begun counts as chosen, for a recording seldom shows that its component was there.
+std::vector<Event> with_preferred(const std::vector<Event>& events);
 
 }  // namespace culprit::rule_test

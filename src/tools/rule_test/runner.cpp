@@ -41,8 +41,11 @@ Result run_test(const RuleSet& rules, const Suite& suite, const Test& test,
   Result result = test.bag.empty() ? run_script(rules, suite, test, std::move(planner))
                                    : run_bag_test(rules, test, std::move(planner));
   if (!result.is_ok()) return result;
+  const std::vector<Event> preferred =
+      test.bag.empty() ? std::vector<Event>() : with_preferred(result.events);
   for (const Expectation& expectation : test.expectations) {
-    if (auto instead = disappointment(expectation, result.events, rules))
+    const bool is_blame = expectation.kind == Expectation::Kind::kBlamed && !test.bag.empty();
+    if (auto instead = disappointment(expectation, is_blame ? preferred : result.events, rules))
       result.disappointments.push_back({expectation.span, std::move(*instead)});
   }
   return result;
