@@ -306,8 +306,7 @@ void add_cases(CLI::App& command, RcaOptions& options) {
   auto* output =
       command
           .add_option("--export-cases", options.cases_output,
-                      "Write cases that others can score there, and play nothing; --components, "
-                      "--faults and the factors default to those of docs/study-rca.md")
+                      "Write cases for other methods there, and play nothing (docs/study-rca.md)")
           ->type_name("DIR");
   for (const std::string other :
        {"--scenario", "--write-scenario", "--explain", "--planner", "--faults-before"})
@@ -452,7 +451,8 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
       ->capture_default_str();
   command->add_option("--episodes", options->episodes, "Episodes of each setting and planner")
       ->check(CLI::Range(1U, 1'000'000U))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->excludes("--export-cases");
   command->add_option("--seed", options->seed, "Seed of all random numbers")->capture_default_str();
   command->add_option("--jobs", options->jobs, "Threads; the results do not depend on it")
       ->check(CLI::Range(1U, 1024U));

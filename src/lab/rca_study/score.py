@@ -357,20 +357,26 @@ def log_likelihood(ones, n):
     return ones * math.log(ones / n) + (n - ones) * math.log(1 - ones / n)
 
 
+def rise(signal):
+    """The reading at which the signal rises to another rate (maximum likelihood); None if there is none."""
+    n, total = len(signal), sum(signal)
+    best, split, before = math.log(n), None, 0  # by the Bayesian information criterion
+    for at in range(1, n):
+        before += signal[at - 1]
+        gain = log_likelihood(before, at) + log_likelihood(total - before, n - at) - log_likelihood(total, n)
+        if gain > best and before / at < (total - before) / (n - at):
+            best, split = gain, at
+    return split
+
+
 def change_point(case):
-    """As BARO does: one change point for all signals, then the signals that differ most after it.
+    """As BARO does: find when the anomaly began, then rank by how far each signal departs from before.
 
     Signals here are 0 and 1, so the likelihood is Bernoulli's, and means stand for medians."""
-    n = len(case.times)
-    best, split = 0.0, n - 1
-    for at in range(1, n):
-        gain = 0.0
-        for signal in case.signals.values():
-            before, after = sum(signal[:at]), sum(signal[at:])
-            gain += log_likelihood(before, at) + log_likelihood(after, n - at)
-            gain -= log_likelihood(before + after, n)
-        if gain > best:
-            best, split = gain, at
+    rises = [at for at in map(rise, case.signals.values()) if at is not None]
+    if not rises:
+        return []
+    split, n = min(rises), len(case.times)
 
     def departure(c):
         signal = case.signals[c]
@@ -417,7 +423,7 @@ COLUMNS = (
 )
 
 
-def table(scores, is_markdown):
+def table(scores):
     rows = [["answers", *(title for _, title, _ in COLUMNS)]]
     for name, result in scores.items():
         digits = {100: 0, 1: 2}
@@ -426,10 +432,6 @@ def table(scores, is_markdown):
             for key, _, factor in COLUMNS
         ]
         rows.append([name, *values])
-    if is_markdown:
-        rows = [[cell.replace("[", "\\[").replace("]", "\\]") for cell in row] for row in rows]
-        rows.insert(1, [":--", *["--:"] * len(COLUMNS)])
-        return "\n".join(f"| {' | '.join(row)} |" for row in rows)
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     return "\n".join(
         "  ".join([row[0].ljust(widths[0]), *(cell.rjust(w) for cell, w in zip(row[1:], widths[1:]))]).rstrip()
@@ -452,7 +454,7 @@ def run(arguments):
     if arguments.json:
         print(json.dumps(scores, indent=1))
     else:
-        print(table(scores, arguments.markdown))
+        print(table(scores))
 
 
 def main():
@@ -464,7 +466,6 @@ def main():
         "--baseline", action="append", default=[], choices=[*BASELINES, "all"], help="also a simple method of this script"
     )
     parser.add_argument("--json", action="store_true", help="print JSON, with the scores of each case")
-    parser.add_argument("--markdown", action="store_true", help="print a Markdown table")
     try:
         run(parser.parse_args())
     except Problem as problem:
