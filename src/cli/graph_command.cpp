@@ -1,4 +1,5 @@
 #include <map>
+#include <set>
 #include <unistd.h>
 
 #include <fmt/core.h>
@@ -33,9 +34,20 @@ struct Place {
   std::string host;  // another computer; empty: this one, or not known
 };
 
+// Topics of nodes, also those without another end, which make no dependency.
+struct TopicEnds {
+  std::map<std::string, std::set<std::string>> published, subscribed;  // by node
+
+  std::set<std::string>* of(const std::string& node, EndpointKind kind) {
+    if (kind == EndpointKind::kPublisher) return &published[node];
+    return kind == EndpointKind::kSubscriber ? &subscribed[node] : nullptr;
+  }
+};
+
 struct Picture {
   std::map<std::string, Place> nodes;  // by name
   Edges edges;
+  TopicEnds ends;
 };
 
 Expected<Picture> look(Duration wait) {
@@ -50,6 +62,7 @@ Expected<Picture> look(Duration wait) {
 
   DependencyGraph graph(no_rules);
   std::map<std::string, int> processes;
+  TopicEnds ends;
   const Time end = live_now() + wait;
   while (live_now() < end) {
     std::vector<Observation> observations;
@@ -62,8 +75,10 @@ Expected<Picture> look(Duration wait) {
         graph.node_vanished(gone->node);
       } else if (const auto* endpoint = std::get_if<EndpointAppeared>(&o.what)) {
         graph.endpoint_appeared(endpoint->node, endpoint->kind, endpoint->name);
+        if (auto* topics = ends.of(endpoint->node, endpoint->kind)) topics->insert(endpoint->name);
       } else if (const auto* lost = std::get_if<EndpointVanished>(&o.what)) {
         graph.endpoint_vanished(lost->node, lost->kind, lost->name);
+        if (auto* topics = ends.of(lost->node, lost->kind)) topics->erase(lost->name);
       } else if (const auto* trouble = std::get_if<LinkTrouble>(&o.what)) {
         fmt::print(stderr, "culprit: {}\n", trouble->text);
       }
@@ -76,6 +91,7 @@ Expected<Picture> look(Duration wait) {
     picture.nodes[node] = {processes[node], host == elsewhere.end() ? "" : host->second};
   }
   picture.edges = graph.edges();
+  picture.ends = std::move(ends);
   return picture;
 }
 
@@ -109,6 +125,11 @@ void print_json(const Picture& picture) {
     Json entry{{"name", node}};
     if (place.pid != 0) entry["pid"] = place.pid;
     if (!place.host.empty()) entry["host"] = place.host;
+    for (const auto& [member, ends] : {std::pair("publishes", &picture.ends.published),
+                                       {"subscribes", &picture.ends.subscribed}}) {
+      if (const auto topics = ends->find(node); topics != ends->end() && !topics->second.empty())
+        entry[member] = topics->second;
+    }
     document["nodes"].push_back(std::move(entry));
   }
   for (const auto& edge : picture.edges) {
