@@ -38,8 +38,9 @@ class BagCourseOfEvents {
            rules_[chosen != nullptr ? chosen->strategy : held->strategy].components)
         add_new(incident_.causes, rules_[each].name);
     }
-    if (events_.size() < kMostTold)
-      events_.push_back(to_json(ToldEvent{0, clock, journal::to_json(event, rules_), {}}));
+    Json json = journal::to_json(event, rules_);
+    if (events_.size() < kMostTold && !journal::text_of(json, "text").empty())
+      events_.push_back(to_json(ToldEvent{0, clock, std::move(json), {}}));
   }
 
   PageContent content(double begin, double end) {
