@@ -19,13 +19,12 @@
 namespace culprit::web {
 namespace {
 
-using incident_reports::Incident;
-
-Json to_json(const std::vector<Incident>& all, const std::filesystem::path& folder) {
+Json to_json(const std::vector<incident_reports::Incident>& all,
+             const std::filesystem::path& folder) {
   const auto recordings =
       folder.empty() ? std::vector<recorder::StoredRecording>() : recorder::recordings_in(folder);
   Json list = Json::array();
-  for (const Incident& incident : all)
+  for (const incident_reports::Incident& incident : all)
     list.push_back(
         incident_reports::to_json(incident, incident_reports::recordings_of(incident, recordings)));
   return list;
@@ -58,14 +57,14 @@ class Recent {
       }
     }
   }
-  std::vector<Incident> incidents() const {
+  std::vector<incident_reports::Incident> incidents() const {
     incident_reports::IncidentReader reader;
     for (const auto& [number, event] : events_) {
       if (text_of(event, "type") == "reloaded") reader.cut();
       reader.add({static_cast<std::int64_t>(number), event.value("clock", 0.0),
                   event.value("t", 0.0), event});
     }
-    std::vector<Incident> all = reader.incidents();
+    std::vector<incident_reports::Incident> all = reader.incidents();
     std::ranges::stable_sort(all, incident_reports::comes_before);
     return all;
   }
@@ -151,7 +150,7 @@ constexpr const char* kNoSuchIncident =
 Answer page_of_stream(Hub& hub, const std::string& id) {
   constexpr double kNanosecond = 1e-9;
   const Recent recent(hub);
-  for (const Incident& incident : recent.incidents()) {
+  for (const incident_reports::Incident& incident : recent.incidents()) {
     if (incident.id != id) continue;
     incident_reports::PageContent content;
     content.incident = incident;
