@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "link/list_parameter.h"
 #include "ros2/lifecycle.h"
 
 namespace culprit::ros2 {
@@ -51,7 +52,7 @@ void NodeReading::get_parameters(std::vector<std::string> names) {
                const auto& values = answer.response->values;
                const MutexLock lock(mutex_);
                for (std::size_t i = 0; i < std::min(names.size(), values.size()); ++i)
-                 (*told_.parameters)[names[i]] = to_value(values[i]);
+                 (*told_.parameters)[names[i]] = value_or_list(values[i]);
              });
 }
 
@@ -62,7 +63,7 @@ void NodeReading::parameters_changed(const msg::ParameterEvent& event) {
     for (const msg::Parameter& changed : *changes) {
       const bool has_room = told_.parameters->size() < kMaxParameters;
       if (has_room || told_.parameters->contains(changed.name))
-        (*told_.parameters)[changed.name] = to_value(changed.value);
+        (*told_.parameters)[changed.name] = value_or_list(changed.value);
     }
   }
   for (const msg::Parameter& deleted : event.deleted_parameters)

@@ -8,7 +8,6 @@ namespace culprit {
 namespace {
 
 using namespace std::chrono_literals;
-using enum Lifecycle;
 
 constexpr Time kLongBefore{};
 constexpr Time kNow{60s};
@@ -48,23 +47,31 @@ class Servers {
 
 TEST(GroupHealth, IsUnknownUntilEachMemberIsKnown) {
   EXPECT_EQ(Servers().health(), GroupHealth::kUnknown);
-  EXPECT_EQ(Servers().put(0, kActive).health(), GroupHealth::kUnknown);
-  EXPECT_EQ(Servers().put(0, kActive).put(1, Lifecycle::kUnknown).health(), GroupHealth::kUnknown);
+  EXPECT_EQ(Servers().put(0, Lifecycle::kActive).health(), GroupHealth::kUnknown);
+  EXPECT_EQ(Servers().put(0, Lifecycle::kActive).put(1, Lifecycle::kUnknown).health(),
+            GroupHealth::kUnknown);
 }
 
 TEST(GroupHealth, FollowsFromItsMembers) {
-  EXPECT_EQ(Servers().put(0, kActive).put(1, kActive).health(), GroupHealth::kActive);
-  EXPECT_EQ(Servers().put(0, kInactive).put(1, kInactive).health(), GroupHealth::kInactive);
-  EXPECT_EQ(Servers().put(0, kUnconfigured).put(1, kUnconfigured).health(), GroupHealth::kDown);
-  EXPECT_EQ(Servers().put(0, kUnconfigured).put(1, kActive).kill(1).health(), GroupHealth::kDown);
-  EXPECT_EQ(Servers().put(0, kActive).put(1, kInactive).health(), GroupHealth::kHalfUp);
-  EXPECT_EQ(Servers().put(0, kInactive).put(1, kUnconfigured).health(), GroupHealth::kHalfUp);
-  EXPECT_EQ(Servers().put(0, kActive).put(1, kActive).kill(1).health(), GroupHealth::kHalfUp);
+  EXPECT_EQ(Servers().put(0, Lifecycle::kActive).put(1, Lifecycle::kActive).health(),
+            GroupHealth::kActive);
+  EXPECT_EQ(Servers().put(0, Lifecycle::kInactive).put(1, Lifecycle::kInactive).health(),
+            GroupHealth::kInactive);
+  EXPECT_EQ(Servers().put(0, Lifecycle::kUnconfigured).put(1, Lifecycle::kUnconfigured).health(),
+            GroupHealth::kDown);
+  EXPECT_EQ(Servers().put(0, Lifecycle::kUnconfigured).put(1, Lifecycle::kActive).kill(1).health(),
+            GroupHealth::kDown);
+  EXPECT_EQ(Servers().put(0, Lifecycle::kActive).put(1, Lifecycle::kInactive).health(),
+            GroupHealth::kHalfUp);
+  EXPECT_EQ(Servers().put(0, Lifecycle::kInactive).put(1, Lifecycle::kUnconfigured).health(),
+            GroupHealth::kHalfUp);
+  EXPECT_EQ(Servers().put(0, Lifecycle::kActive).put(1, Lifecycle::kActive).kill(1).health(),
+            GroupHealth::kHalfUp);
 }
 
 TEST(GroupHealth, ChangesWhileAMemberIsInATransitionThatDoesNotHang) {
   Servers servers;
-  servers.put(0, kActive).put(1, kTransition)[1].changes_until = kNow + 3s;
+  servers.put(0, Lifecycle::kActive).put(1, Lifecycle::kTransition)[1].changes_until = kNow + 3s;
   EXPECT_EQ(servers.health(), GroupHealth::kChanging);
   EXPECT_EQ(servers.settles(), kNow + 3s);
   EXPECT_EQ(servers.health(kNow + 3s), GroupHealth::kHalfUp);
@@ -72,16 +79,18 @@ TEST(GroupHealth, ChangesWhileAMemberIsInATransitionThatDoesNotHang) {
 
 TEST(GroupHealth, ChangesForAWhileAfterTheLastChange) {
   Servers servers;
-  servers.put(0, kActive).put(1, kInactive, kNow - 1s);
+  servers.put(0, Lifecycle::kActive).put(1, Lifecycle::kInactive, kNow - 1s);
   EXPECT_EQ(servers.health(), GroupHealth::kChanging);
   EXPECT_EQ(servers.settles(), kNow - 1s + kGroupSettles);
   EXPECT_EQ(servers.health(servers.settles()), GroupHealth::kHalfUp);
-  EXPECT_EQ(Servers().put(0, kActive).put(1, kActive).kill(1, kNow - 1s).health(),
-            GroupHealth::kChanging);
+  EXPECT_EQ(
+      Servers().put(0, Lifecycle::kActive).put(1, Lifecycle::kActive).kill(1, kNow - 1s).health(),
+      GroupHealth::kChanging);
 }
 
 TEST(GroupHealth, IsActiveAtOnce) {
-  EXPECT_EQ(Servers().put(0, kActive).put(1, kActive, kNow).health(), GroupHealth::kActive);
+  EXPECT_EQ(Servers().put(0, Lifecycle::kActive).put(1, Lifecycle::kActive, kNow).health(),
+            GroupHealth::kActive);
 }
 
 }  // namespace

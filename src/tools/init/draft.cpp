@@ -251,8 +251,8 @@ class Draft {
     const std::string about =
         node.empty() ? pack.call : pack.call.substr(0, pack.call.find('(')) + " " + node;
     add(pack.is_proposal ? Part::Kind::kComment : Part::Kind::kUse, about,
-        fmt::format("# {}: {}.\n{}USE {}\n", pack.is_proposal ? "proposal" : "guess", pack.evidence,
-                    pack.is_proposal ? "#   " : "", pack.call));
+        fmt::format("# {}: {}.\n{}{}USE {}\n", pack.is_proposal ? "proposal" : "guess",
+                    pack.evidence, pack.group, pack.is_proposal ? "#   " : "", pack.call));
     parts_.back().pack = pack.pack;
     parts_.back().node = node;
   }

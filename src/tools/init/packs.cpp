@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <optional>
 #include <string_view>
 
@@ -10,6 +11,7 @@
 #include "base/name_grammar.h"
 #include "base/ros_names.h"
 #include "base/units.h"
+#include "base/value_list.h"
 #include "init/measures.h"
 #include "init/package_of.h"
 #include "init/silence.h"
@@ -267,18 +269,58 @@ class PackChoice {
       const std::string space = namespace_of(node);
       const std::string in = space.empty() ? "" : " IN " + space;
       const std::string evidence = node + " offers manage_nodes, and its servers are active";
+      const bool has_group = use_group(node, space);
       if (node == space + std::string(kNavigation) &&
           are_active(space, {"controller_server", "planner_server", "bt_navigator"})) {
-        use("nav2", "nav2_navigation" + in, {}, evidence);
+        if (!has_group) use("nav2", "nav2_navigation" + in, {}, evidence);
         costmap(space, in, "local", "controller_server");
         costmap(space, in, "global", "planner_server");
       }
       if (node == space + std::string(kLocalization) && are_active(space, {"map_server", "amcl"})) {
-        use("nav2", "nav2_localization" + in, {}, evidence);
+        if (!has_group) use("nav2", "nav2_localization" + in, {}, evidence);
         amcl(space, in);
       }
       servers(space);
     }
+  }
+
+  // Uses the pack for the group that the manager names in its parameter, if all members are declared and active.
+  bool use_group(const std::string& manager, const std::string& space) {
+    const auto& told = seen_.robot.nodes.at(manager).parameters;
+    if (!told || !components_.contains(manager)) return false;
+    const auto names = told->find("node_names");
+    const auto* text =
+        names != told->end() && names->second ? std::get_if<std::string>(&*names->second) : nullptr;
+    const auto list = text != nullptr ? list_from_text(*text) : std::nullopt;
+    if (!list || list->empty()) return false;
+    std::string members;
+    for (const Value& each : *list) {
+      const auto* own = std::get_if<std::string>(&each);
+      const std::string node = own == nullptr          ? ""
+                               : own->starts_with('/') ? *own
+                                                       : space + "/" + *own;
+      if (!components_.contains(node) || state_of(node) != "active") return false;
+      members += (members.empty() ? "" : ", ") + name(node);
+    }
+    constexpr std::string_view kPrefix = "lifecycle_manager_";
+    std::string group = name(manager);
+    const auto prefix = group.find(kPrefix);
+    if (prefix == std::string::npos || prefix + kPrefix.size() == group.size()) {
+      group += "_group";
+    } else {
+      group.erase(prefix, kPrefix.size());
+    }
+    if (is_taken(group)) group += "_group";
+    std::string title = group;
+    title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+    use("nav2", fmt::format("nav2_group({}, {}, {})", group, name(manager), title), {},
+        manager + " names these servers in its node_names, and all are active")
+        .group = fmt::format("GROUP {} {{ {} }} MANAGER {}\n", group, members, name(manager));
+    return true;
+  }
+
+  bool is_taken(const std::string& word) const {
+    return std::ranges::any_of(components_, [&](const auto& each) { return each.second == word; });
   }
 
   bool are_active(const std::string& space, std::initializer_list<const char*> nodes) const {

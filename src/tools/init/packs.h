@@ -17,6 +17,7 @@ struct PackUse {
   std::string pack;      // "lidars": of "packs/lidars.rules"
   std::string call;      // "sick_scan_xd(lidar, /scan, 15)": what stands behind USE
   std::string evidence;  // "/scan came 15 times a second": what it was chosen by
+  std::string group{};   // a GROUP statement that it is about; may be empty
   // Nodes whose loss and silence it sees, so that no other rule has to.
   std::set<std::string> nodes{};
   bool has_launcher = false;  // whoever starts them takes them through their lifecycle

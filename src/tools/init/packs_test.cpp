@@ -120,6 +120,24 @@ TEST(Packs, OfNavigationAreChosenWhereAllOfItIsActive) {
                                      Not(HasSubstr("USE nav2_server(bt_navigator)"))));
 }
 
+TEST(Packs, OfAManagerThatNamesItsServersAreForTheGroupOfThese) {
+  Robot robot = navigating("");
+  robot.node("/collision_monitor", "nav2_collision_monitor", "active");
+  robot.seen.robot.nodes["/lifecycle_manager_navigation"].parameters = {
+      {"node_names",
+       Value(R"(["controller_server", "planner_server", "bt_navigator", "collision_monitor"])")}};
+  const std::string text = robot.draft();
+  EXPECT_THAT(
+      text,
+      AllOf(HasSubstr("GROUP navigation { controller_server, planner_server, bt_navigator, "
+                      "collision_monitor } MANAGER lifecycle_manager_navigation\n"
+                      "USE nav2_group(navigation, lifecycle_manager_navigation, Navigation)\n"),
+            Not(HasSubstr("USE nav2_navigation")), HasSubstr("USE nav2_localization\n")));
+  // One of them is not up.
+  robot.seen.robot.nodes["/collision_monitor"].lifecycle = "inactive";
+  EXPECT_THAT(robot.draft(), Not(HasSubstr("GROUP navigation")));
+}
+
 TEST(Packs, OfNavigationInANamespaceAreUsedInIt) {
   Robot robot = navigating("/r1");
   robot.node("/r1/lidar", "my_lidar").topic("/r1/scan", kScan, "/r1/lidar");
