@@ -48,9 +48,8 @@ Json info_document(const std::string& path, const bag::BagFile& file, bag::BagIn
                      {"until_s", info_seconds(each.last - info.first())}});
   Json topics = Json::array();
   for (const bag::TopicInfo& each : info.topics()) {
-    Json topic{{"topic", each.name},         {"type", each.type},   {"encoding", each.encoding},
-               {"messages", each.messages},  {"bytes", each.bytes}, {"late", each.late},
-               {"undecoded", each.undecoded}};
+    Json topic{{"topic", each.name},        {"type", each.type},   {"encoding", each.encoding},
+               {"messages", each.messages}, {"bytes", each.bytes}, {"undecoded", each.undecoded}};
     if (each.messages > 0) {
       topic["rate_hz"] = std::round(each.rate() * 1000) / 1000;
       topic["first_s"] = info_seconds(each.first - info.first());
@@ -64,7 +63,7 @@ Json info_document(const std::string& path, const bag::BagFile& file, bag::BagIn
   }
   Json document{{"bag", path},
                 {"messages", info.messages()},
-                {"out_of_order", file.out_of_order()},
+                {"late", file.late()},
                 {"parts", std::move(parts)},
                 {"topics", std::move(topics)}};
   if (info.messages() > 0) {
@@ -85,7 +84,8 @@ void print_info(const std::string& path, const bag::BagFile& file, bag::BagInfo&
     fmt::print("  start      {}\n  end        {}\n  duration   {:.3f} s\n",
                clock_text(info.first_clock()), clock_text(info.last_clock()),
                info_seconds(info.last() - info.first()));
-  fmt::print("  messages   {}\n", info.messages());
+  fmt::print("  messages   {}{}\n", info.messages(),
+             file.late() > 0 ? fmt::format(" ({} written after later ones)", file.late()) : "");
   const auto topics = info.topics();
   std::size_t widest = 5;
   std::size_t widest_type = 4;
@@ -101,10 +101,9 @@ void print_info(const std::string& path, const bag::BagFile& file, bag::BagInfo&
             ? "announced, but no message was recorded"
             : fmt::format("{:.3f} s at {:.3f} s ({})", info_seconds(each.longest_gap),
                           info_seconds(each.gap_at - info.first()), clock_text(each.gap_clock));
-    const std::string late = each.late > 0 ? fmt::format("; {} late", each.late) : "";
-    fmt::print("  {:<{}}  {:<{}}  {:>9}  {:>9}  {}{}\n", escape_controls(each.name), widest,
+    fmt::print("  {:<{}}  {:<{}}  {:>9}  {:>9}  {}\n", escape_controls(each.name), widest,
                escape_controls(each.type), widest_type, each.messages,
-               each.rate() > 0 ? fmt::format("{:.2f} Hz", each.rate()) : "-", gap, late);
+               each.rate() > 0 ? fmt::format("{:.2f} Hz", each.rate()) : "-", gap);
   }
   for (const bag::TopicInfo& each : topics) {
     if (each.why_undecoded.empty()) continue;

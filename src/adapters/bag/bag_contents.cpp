@@ -25,8 +25,15 @@ void BagContents::define(std::string_view type, std::string_view text) {
 }
 
 const std::string* BagContents::definition_of(const std::string& type) const {
-  const auto found = definitions_.find(type);
-  return found == definitions_.end() ? nullptr : &found->second;
+  const bool is_message = type.find("/msg/") != std::string::npos;
+  // The text of a service or an action may stand under its own name: of X_SendGoal_Event under X.
+  for (std::size_t end = type.size(); end != std::string::npos && end > 0;
+       end = type.rfind('_', end - 1)) {
+    const auto found = definitions_.find(type.substr(0, end));
+    if (found != definitions_.end()) return &found->second;
+    if (is_message) break;
+  }
+  return nullptr;
 }
 
 void BagContents::lose(std::string what) {

@@ -80,6 +80,7 @@ Expected<void> BagFile::add(const fs::path& path) {
     }
     PieceFinder finder;
     (*storage)->survey(finder);
+    late_ += finder.late();
     part.is_after_missing |= is_after_lost;
     is_after_lost = false;
     Open open{std::move(part), straighten(finder.pieces()), std::move(*storage)};
@@ -140,6 +141,12 @@ std::vector<BagFile::Part> BagFile::parts() const {
         {each.part.path, each.part.format, error ? 0 : bytes, each.line.first, each.line.last});
   }
   return all;
+}
+
+std::uint64_t BagFile::late() const {
+  std::uint64_t late = late_;
+  for (const Open& each : parts_) late += each.storage != nullptr ? each.storage->late() : 0;
+  return late;
 }
 
 bool BagFile::next(BagMessage& message) {
@@ -203,7 +210,9 @@ void BagFile::begin(Open& part) {
 
 void BagFile::take_head(Open& part) {
   part.has_head = part.storage->next(part.head);
-  if (!part.has_head) part.storage.reset();
+  if (part.has_head) return;
+  late_ += part.storage->late();
+  part.storage.reset();
 }
 
 bool BagFile::is_usable(BagMessage& message) {

@@ -45,6 +45,9 @@ class BagFile {
   // Messages whose time was earlier than that of one before them, and could not be sorted.
   std::uint64_t out_of_order() const { return out_of_order_; }
 
+  // Messages so far that were written after one of a later time.
+  std::uint64_t late() const;
+
   struct Part {
     std::filesystem::path path;
     PartFormat format = PartFormat::kSqlite;
@@ -86,6 +89,7 @@ class BagFile {
   std::int64_t last_ = 0;
   bool is_after_hole_ = false;
   std::uint64_t out_of_order_ = 0;
+  std::uint64_t late_ = 0;  // of surveys, and of parts that are done
 };
 
 }  // namespace culprit::bag

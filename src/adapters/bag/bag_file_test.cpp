@@ -278,6 +278,18 @@ TEST_F(BagTest, AFileThatWasWrittenInAnotherOrderIsReadByItsTimes) {
   }
 }
 
+TEST_F(BagTest, CountsMessagesThatWereWrittenAfterLaterOnes) {
+  test::TestRecording recording = test::regular_recording();
+  for (const std::size_t m : {10, 100, 200}) recording.messages[m].at -= 250 * test::kMillisecond;
+  write_all(folder_, recording);
+  for (const char* name : kAllFormats) {
+    BagFile bag = value_of(BagFile::open(folder_ / name));
+    for (BagMessage message; bag.next(message);) {
+    }
+    EXPECT_EQ(bag.late(), 3u) << name;
+  }
+}
+
 TEST_F(BagTest, RecordersThatRanAtTheSameTimeAreMerged) {
   test::write_db3(folder_ / "left.db3", test::regular_recording("/a"));
   test::write_mcap(folder_ / "right.mcap", test::regular_recording("/a"), 25);

@@ -53,8 +53,6 @@ void BagInfo::add(const BagMessage& message) {
     topic.heard_clock = first_clock_;
   }
   note_gap(topic, message.at);
-  if (info.messages > 0 && message.recorded_at < topic.last_recorded) ++info.late;
-  topic.last_recorded = message.recorded_at;
   topic.heard_since = info.last = message.at;
   topic.heard_clock = message.recorded_at;
   ++info.messages;

@@ -25,7 +25,6 @@ struct TopicInfo {
   std::int64_t longest_gap = 0;
   std::int64_t gap_at = 0;
   std::int64_t gap_clock = 0;  // as recorded
-  std::uint64_t late = 0;      // recorded at an earlier time than the message of the topic before
   // Why messages cannot be decoded: the type is not known, or their bytes do not fit it. Empty: they can.
   std::string why_undecoded{};
   std::uint64_t undecoded = 0;  // messages whose bytes do not fit
@@ -61,7 +60,6 @@ class BagInfo {
     TopicInfo info;
     bool is_planned = false;
     std::optional<ros2::FieldReader> whole;
-    std::int64_t last_recorded = 0;
     std::int64_t heard_since = 0;  // the last message, or the end of a hole after it
     std::int64_t heard_clock = 0;
   };

@@ -70,6 +70,7 @@ void McapFile::survey(PieceFinder& finder) {
       finder.add_stretch(ordinal_of(b), blocks_[b].first, blocks_[b].last, blocks_[b].messages);
     return;
   }
+  was_looked_into_ = true;
   for (std::size_t b = 0; b < blocks_.size(); ++b) look_into(b, finder);
 }
 
@@ -263,6 +264,10 @@ void McapFile::open_next() {
   }
   opened.is_after_hole = is_after_hole_;
   is_after_hole_ = false;
+  for (const Located& each : opened.messages) {
+    if (!was_looked_into_ && each.at < newest_) ++late_;
+    newest_ = std::max(newest_, each.at);
+  }
   std::stable_sort(opened.messages.begin(), opened.messages.end(),
                    [](const Located& a, const Located& b) { return a.at < b.at; });
   open_bytes_ += opened.bytes.size();

@@ -30,6 +30,7 @@ class McapFile : public Storage {
   void survey(PieceFinder& finder) override;
   void follow(TimeLine line) override;
   bool next(BagMessage& message) override;
+  std::uint64_t late() const override { return late_; }
 
  private:
   struct RecordHead {
@@ -110,6 +111,9 @@ class McapFile : public Storage {
   std::vector<std::string> spare_;  // buffers
   std::string body_;
   bool is_after_hole_ = false;
+  bool was_looked_into_ = false;  // the survey read all messages
+  std::int64_t newest_ = 0;
+  std::uint64_t late_ = 0;
   std::uint64_t message_count_ = 0;
   std::uint64_t expected_count_ = 0;  // by the statistics of the recorder; 0: it has none
   bool has_data_end_ = false;

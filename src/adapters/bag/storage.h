@@ -26,6 +26,8 @@ class Storage {
   // The next message by its time with the offset of the line. False at the end. What cannot be read
   // is told to the contents and left out. Of a time that is_time() refuses, `at` is that time.
   virtual bool next(BagMessage& message) = 0;
+  // Messages so far that were written after one of a later time, and that the survey did not count.
+  virtual std::uint64_t late() const { return 0; }
 };
 
 }  // namespace culprit::bag

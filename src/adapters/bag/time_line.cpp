@@ -76,6 +76,7 @@ void PieceFinder::add(std::int64_t ordinal, std::size_t topic, std::int64_t at) 
     newest_[topic] = at;
     return;
   }
+  if (step < 0) ++late_;
   newest->second = std::max(newest->second, at);
   extend(piece, at);
 }

@@ -42,6 +42,8 @@ class PieceFinder {
   void add_stretch(std::int64_t ordinal, std::int64_t first, std::int64_t last,
                    std::uint64_t messages);
   const std::vector<TimePiece>& pieces() const { return pieces_; }
+  // Messages that were written after one of a later time, of those that were added one by one.
+  std::uint64_t late() const { return late_; }
 
   // Messages that a recorder held at the same time may be written in any order.
   static constexpr std::int64_t kSlack = 1'000'000'000;
@@ -56,6 +58,7 @@ class PieceFinder {
   std::vector<TimePiece> pieces_;
   std::unordered_map<std::size_t, std::int64_t> newest_;  // by topic, in the last piece
   std::optional<Turn> turn_;
+  std::uint64_t late_ = 0;
 };
 
 // If nothing at all was recorded for longer, the clock was set, or the recorder paused.

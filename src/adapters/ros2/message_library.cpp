@@ -111,6 +111,20 @@ std::optional<std::string> action_text(std::string_view type) {
   return std::nullopt;
 }
 
+// The service or action that `type` is made for: of "package/srv/Type_Event" that without "_Event". Or `type`, if it is one.
+std::string_view interface_of(std::string_view type) {
+  constexpr auto kSuffixes =
+      std::to_array<std::string_view>({"_Event", "_Request", "_Response", "_SendGoal", "_GetResult",
+                                       "_FeedbackMessage", "_Goal", "_Result", "_Feedback"});
+  const auto suffix = [&] {
+    return std::ranges::find_if(kSuffixes,
+                                [&](std::string_view each) { return type.ends_with(each); });
+  };
+  for (auto found = suffix(); found != kSuffixes.end(); found = suffix())
+    type.remove_suffix(found->size());
+  return type;
+}
+
 // A line of three hyphens stands between two parts.
 std::string part_of(std::string_view text, std::optional<std::size_t> part) {
   if (!part) return std::string(text);
@@ -136,21 +150,36 @@ MessageLibrary::MessageLibrary(std::vector<std::filesystem::path> directories,
 
 void MessageLibrary::learn(std::string_view type, std::string_view text) {
   static const std::string kSeparator = '\n' + std::string(80, '=') + '\n';
-  constexpr std::string_view kName = "MSG: ";
+  constexpr auto kNames = std::to_array<std::string_view>({"MSG: ", "SRV: ", "ACTION: "});
   std::string name(type);
   while (true) {
     const std::size_t end = std::min(text.find(kSeparator), text.size());
-    learned_.try_emplace(std::move(name), text.substr(0, end));
+    learn_one(name, text.substr(0, end));
     if (end == text.size()) return;
     text.remove_prefix(end + kSeparator.size());
     const std::size_t line = text.find('\n');
-    if (!text.starts_with(kName) || line == std::string_view::npos) return;
-    name = text.substr(kName.size(), line - kName.size());
+    const auto kind =
+        std::ranges::find_if(kNames, [&](std::string_view each) { return text.starts_with(each); });
+    if (kind == kNames.end() || line == std::string_view::npos) return;
+    name = text.substr(kind->size(), line - kind->size());
     const std::size_t slash = name.find('/');
     if (slash != std::string::npos && name.find('/', slash + 1) == std::string::npos)
       name.insert(slash, "/msg");
     text.remove_prefix(line);  // The end of the line may begin the next separator.
   }
+}
+
+// The text of a .srv or .action file is that of all its parts. What is made of them is known then.
+void MessageLibrary::learn_one(std::string_view type, std::string_view text) {
+  const bool has_parts = text.starts_with("---") || text.find("\n---") != std::string_view::npos;
+  const std::string interface(interface_of(type));
+  bool is_interface = false;
+  for (const PartSuffix& each : kPartSuffixes) {
+    if (!has_parts || !is_of_kind(type, each.kind)) continue;
+    learned_.try_emplace(interface + std::string(each.suffix), part_of(text, each.part));
+    is_interface = true;
+  }
+  if (!is_interface) learned_.try_emplace(std::string(type), text);
 }
 
 Expected<const MessageDefinition*> MessageLibrary::find(std::string_view type) {

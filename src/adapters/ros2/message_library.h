@@ -28,6 +28,8 @@ class MessageLibrary {
   // What a recorder or another program keeps of `type`: the text of its .msg file, then those of
   // the types in it, each after a line of 80 '=' and one "MSG: package/Type"
   // (mcap.dev/spec/registry, ros2msg). Goes before the directories; the first one of a type counts.
+  // Of what is made for a service or an action, as "package/srv/Type_Event", it may be the text of the
+  // .srv or .action file, as rosbag2 stores it.
   void learn(std::string_view type, std::string_view text);
 
   // `type` is "package/msg/Type" or a part as above. What is made of parts is known whether they are or not:
@@ -43,6 +45,7 @@ class MessageLibrary {
   void define(const MessageDefinitions& definitions);
 
  private:
+  void learn_one(std::string_view type, std::string_view text);
   Expected<MessageDefinition> load(std::string_view type) const;
   std::optional<std::string> read(const std::filesystem::path& path) const;
 

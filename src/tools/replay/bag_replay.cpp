@@ -105,6 +105,10 @@ Duration BagReplay::counted(Time from, Time until) const {
 void BagReplay::end_failure(RuleId rule, Time at) {
   State& state = states_[rule.index];
   if (!state.since) return;
+  // It is told a little after the trigger stopped being true.
+  const Detection& detection = manager_->knowledge().states[rule].detection;
+  const bool is_over = !detection.trigger.known || !detection.trigger.b;
+  if (is_over && detection.trigger_since > *state.since) at = std::min(at, detection.trigger_since);
   const Duration lasted = counted(*state.since, at);
   state.outcome.longest = std::max(state.outcome.longest, lasted);
   state.outcome.total += lasted;
