@@ -20,11 +20,12 @@ package:
 	@scripts/install-dependencies --packages
 	scripts/package
 
+# At a terminal the robot flies on until Ctrl-C, so that its page can be opened; in a pipe it ends by itself.
 demo:
 	@scripts/install-dependencies
 	cmake --preset demo
 	cmake --build --preset demo --parallel $(JOBS)
-	build/demo/bin/culprit-lab demo --end
+	build/demo/bin/culprit-lab demo
 
 test:
 	@scripts/install-dependencies --test-builds

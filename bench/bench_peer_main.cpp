@@ -75,7 +75,7 @@ void fleet(int index, int nodes, int topics) {
   peer.executor.run();
 }
 
-// A message of this type as far as anybody here reads it.
+// The part of a message of this type that the benchmark reads.
 struct Imu {
   static constexpr std::string_view kType = "sensor_msgs/msg/Imu";
   ros2::msg::Header header;

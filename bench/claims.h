@@ -1,5 +1,4 @@
-// What the project promises about speed, beside what was measured: the table that `make bench` ends
-// with.
+// The project's claims about speed, beside the measurements: the table at the end of `make bench`.
 #pragma once
 
 #include <string>

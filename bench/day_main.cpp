@@ -1,4 +1,4 @@
-// Writes the journal of a day: what a page is opened on that shall tell of one (ui/tests/speed.mjs).
+// Writes the journal of a day, for a page that opens it (ui/tests/speed.mjs).
 //
 //     culprit-bench-day RULES FILE [SECONDS]
 //

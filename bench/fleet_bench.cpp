@@ -1,5 +1,4 @@
-// What a fleet of 10,000 robots costs the one PostgreSQL that all of them report to, each with a connection of its own and
-// behind pgbouncer, which keeps some.
+// The cost of a fleet of 10,000 robots for the one PostgreSQL that all of them report to. Each has a connection of its own, or they share those of pgbouncer.
 #include <chrono>
 #include <fstream>
 #include <functional>
@@ -32,7 +31,7 @@ using namespace fleet;
 
 constexpr int kRobots = 10'000;
 constexpr int kDecisions = 20;  // of a robot in a day
-// A failure, its end and what that proves are told together (member.h); one in four takes longer than they are gathered.
+// A failure, its end and its outcomes are sent together (member.h); one in four lasts longer than they are gathered.
 constexpr double kVisitsPerDecision = 1.25;
 constexpr int kBeats = 36;   // a day; the fleet's priors are asked for then, too
 constexpr int kPools = 144;  // a day: the sums are made anew
@@ -97,7 +96,7 @@ struct Member {
   std::optional<Outbox> outbox;
 };
 
-// What a visit takes of the processors, in seconds.
+// The processor time of a visit, in seconds.
 struct Costs {
   double news = 0;
   double beat = 0;
@@ -122,7 +121,7 @@ Server tell(const Place& place, Member& member) {
   return std::move(*server);
 }
 
-// Of each of the members, three times.
+// The mean over all members, three visits each.
 double cost_of(const Place& place, std::vector<std::unique_ptr<Member>>& members,
                const std::function<void(Member&)>& visit) {
   constexpr int kTimes = 3;

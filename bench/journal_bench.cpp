@@ -1,4 +1,4 @@
-// What writing everything down costs, and how fast it is read again.
+// The cost of keeping the journal, and the speed of reading it again.
 #include <array>
 #include <chrono>
 #include <filesystem>
@@ -85,8 +85,8 @@ journal::Recorder::Options options_for(const File& file) {
   return options;
 }
 
-// Of steps that came first after a pause, with cold caches, and of those that came second. A median
-// of both together would lie anywhere between the two.
+// Times of steps that came first after a pause, with cold caches, and of those that came second. A
+// median of both together would lie anywhere between the two.
 struct Steps {
   std::array<std::vector<double>, 2> ns;
   double typical() const { return (quantile(ns[0], 0.5) + quantile(ns[1], 0.5)) / 2; }

@@ -23,7 +23,7 @@ double processor_milliseconds() {
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-// Of several runs the fastest, which the caches of others disturbed least; in milliseconds.
+// The fastest of several runs, in milliseconds: other programs' caches disturbed it least.
 template <class Work>
 double fastest(int runs, Work work) {
   double best = std::numeric_limits<double>::infinity();
@@ -91,7 +91,7 @@ std::string crowded_robot(int rules) {
   return text;
 }
 
-// Signals that are not declared, and of which only the last rule tells the type.
+// Undeclared signals, whose type only the last rule reveals.
 std::string chain(int rules) {
   std::string text;
   for (int i = rules; i > 1; --i)
@@ -164,7 +164,7 @@ void check_command(benchmark::State& state) {
 }
 BENCHMARK(check_command)->Iterations(1)->Unit(benchmark::kSecond);
 
-// What somebody types in a file of 1,000 rules: after which text, and what.
+// A keystroke in a file of 1,000 rules: the text before it, and the typed text.
 struct Keystroke {
   const char* where;
   const char* behind;

@@ -1,4 +1,5 @@
-// What the live benchmarks share: a world of its own, and programs in it as processes of their own.
+// Shared parts of the live benchmarks: a world of its own, and programs in it as processes of their
+// own.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +14,7 @@
 
 namespace culprit::bench {
 
-// What a process has used so far, as /proc says.
+// The resource usage of a process so far, from /proc.
 struct Usage {
   double cpu_seconds = 0;
   double resident_mib = 0;  // now
@@ -52,7 +53,7 @@ class Child {
     double cpu_seconds;  // that it used in all
   };
   Ended wait();
-  // What it has printed.
+  // Its printed output.
   std::string output() const;
 
  private:

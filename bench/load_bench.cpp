@@ -1,4 +1,4 @@
-// What culprit costs a robot, as a process beside it.
+// The load that culprit puts on a robot, as a process beside it.
 #include <benchmark/benchmark.h>
 
 #include "claims.h"

@@ -1,5 +1,5 @@
-// What a planning step of the bayes planner costs: many failures at once on a large robot, and a
-// few on a usual one. The processor's time: other programs on this machine do not count.
+// The cost of a planning step of the bayes planner: many failures at once on a large robot, and a
+// few on a usual one. Processor time is measured, so other programs on this machine do not count.
 #include <algorithm>
 #include <chrono>
 #include <ctime>
@@ -16,7 +16,7 @@
 namespace culprit::bench {
 namespace {
 
-// That this thread has had.
+// The processor time of this thread.
 double processor_seconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -59,7 +59,8 @@ void connect(Knowledge& knowledge, std::size_t components, std::size_t inputs) {
   }
 }
 
-// What it costs to know again who depends on whom, through circles too, once an edge has changed.
+// The cost of updating the graph's condensation (feedback loops included) after an edge has
+// changed.
 double seconds_of_condensing(DependencyGraph& graph) {
   constexpr int kTimes = 100;
   double least = 1;

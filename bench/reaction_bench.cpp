@@ -26,7 +26,7 @@ class Target {
     if (!node_->parameters().declare("reset", Value(0.0))) std::abort();
     value_ =
         ros2::RawPublisher::create(node_->entry(), "/bench/value", ros2::msg::Float64::kType, {});
-    // What goes over the wire, by the time that its writer put on it.
+    // The request is timed by the time stamp that its writer put on the wire.
     requests_ = side_.context().participant().create_reader(
         {.topic = ros2::mangle_topic(ros2::Channel::kRequest, "/target/set_parameters"),
          .type = ros2::mangle_type(ros2::Channel::kRequest, "rcl_interfaces/srv/SetParameters"),
@@ -97,8 +97,8 @@ RULE High
       ADAPTATION target set_parameter reset value 1
 )";
 
-// What is timed happens more often than a robot is given to bear, and each time is one of its own. The
-// journal is this run's own, too: another one remembers what was tried.
+// The timed repair happens more often than the governor allows, so the limits are off and each repair counts alone. The journal is this run's own, too: another
+// one would remember earlier attempts.
 std::vector<std::string> run_ungoverned(const std::filesystem::path& rules) {
   return {"run",
           rules.string(),

@@ -17,7 +17,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Of this process, in MiB.
+// The memory of this process, in MiB.
 double resident() {
   std::ifstream in("/proc/self/statm");
   double pages = 0;

@@ -1,4 +1,4 @@
-// What it costs the manager that people look on: nothing but the telling, however many they are.
+// The manager's cost of being watched by web clients: only the publishing, however many they are.
 #include <chrono>
 #include <filesystem>
 #include <httplib.h>
@@ -95,8 +95,8 @@ class Watched {
   std::size_t next_ = 0;
 };
 
-// Two managers take turns, one that 50 pages look at and one that nobody does. Both begin after the
-// same pause, so that neither has the caches to itself.
+// Two managers take turns, one with 50 pages and one with none. Both begin after the same pause, so
+// that neither has the caches to itself.
 void step_with_pages(benchmark::State& state) {
   constexpr int kPages = 50;
   const RuleSet rules = large_robot();
@@ -108,7 +108,7 @@ void step_with_pages(benchmark::State& state) {
   const Pages reading((*server)->port(), kPages, [] {});
   while (!seen.hub().has_readers()) std::this_thread::yield();
 
-  // A state is told each 200 ms of the robot's time, which is one step in 200.
+  // A state is published each 200 ms of the robot's time, which is one step in 200.
   std::vector<double> alone_us;
   std::vector<double> seen_us;
   const auto pause = [] { std::this_thread::sleep_for(std::chrono::microseconds(100)); };

@@ -5,6 +5,8 @@
 # src/CMakeLists.txt does not draw does not compile.
 
 add_library(culprit_options INTERFACE)
+# Fused multiplications would make decisions differ between kinds of processors.
+target_compile_options(culprit_options INTERFACE -ffp-contract=off)
 target_compile_options(culprit_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
                                                  -Wold-style-cast -Wcast-qual)
 if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")

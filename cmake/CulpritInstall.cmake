@@ -22,7 +22,7 @@ install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION share/doc/culprit COMPON
 install(FILES ${PROJECT_SOURCE_DIR}/package.xml DESTINATION share/culprit COMPONENT plain)
 install(FILES ${PROJECT_SOURCE_DIR}/packaging/culprit.service DESTINATION /lib/systemd/system COMPONENT culprit EXCLUDE_FROM_ALL)
 
-# Completion, made by the programs of their own options whenever they are linked. What cannot run here prints none: there is none then.
+# Completion and a manual page for each command, made by the programs of their own options whenever they are linked. What cannot run here prints none: there is none then.
 set(can_run ON)
 if(CMAKE_CROSSCOMPILING AND NOT CMAKE_CROSSCOMPILING_EMULATOR OR CULPRIT_SANITIZE)
   set(can_run OFF)
@@ -42,7 +42,9 @@ foreach(part "culprit:culprit" "culprit-lab:lab")
     add_custom_command(TARGET ${program} POST_BUILD VERBATIM
       COMMAND ${program} manual --format bash > ${completion}/bash/${program}
       COMMAND ${program} manual --format zsh > ${completion}/zsh/_${program}
-      COMMAND ${program} manual --format fish > ${completion}/fish/${program}.fish)
+      COMMAND ${program} manual --format fish > ${completion}/fish/${program}.fish
+      COMMAND ${program} manual --pages ${PROJECT_BINARY_DIR}/man/${program})
+    install(DIRECTORY ${PROJECT_BINARY_DIR}/man/${program}/ DESTINATION share/man/man1 COMPONENT ${component})
     install(FILES ${completion}/bash/${program} DESTINATION share/bash-completion/completions COMPONENT ${component})
     install(FILES ${completion}/zsh/_${program} DESTINATION ${zsh_folder} COMPONENT ${component})
     install(FILES ${completion}/fish/${program}.fish DESTINATION share/fish/vendor_completions.d COMPONENT ${component})

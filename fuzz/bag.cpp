@@ -13,7 +13,7 @@
 
 #include "bag/bag_file.h"
 #include "bag/bag_reading.h"
-#include "incidents/recorded_curves.h"
+#include "incident_reports/recorded_curves.h"
 #include "language/checker.h"
 
 namespace {
@@ -37,15 +37,15 @@ RULE R
   return set;
 }
 
-// What is drawn of it is bounded, too.
+// The curves of it must be bounded, too.
 void check_curves(const std::string& path) {
-  incidents::CurveLimits limits;
+  incident_reports::CurveLimits limits;
   limits.most_memory = std::size_t{1} << 20;
   const auto shown =
-      incidents::recorded_curves(path, {rules(), {"R"}, {"camera", "gripper"}}, limits);
+      incident_reports::recorded_curves(path, {rules(), {"R"}, {"camera", "gripper"}}, limits);
   if (!shown) return;
   if (shown->curves.size() > limits.most_curves || shown->end < shown->begin) std::abort();
-  for (const incidents::Curve& each : shown->curves) {
+  for (const incident_reports::Curve& each : shown->curves) {
     if (each.points.size() > 2 * bag::ThinnedCurve::kMostBuckets) std::abort();
   }
 }

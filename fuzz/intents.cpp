@@ -1,6 +1,5 @@
 // Files of intents (journal/intent_file.h): whatever their bytes, they are read to their end or to the
-// first that is not what culprit writes. What was read can be written and is the same then; the
-// first part of the file can be followed by the next run.
+// first row that culprit did not write. The intents can be written again unchanged; the next run can append to the valid part of the file.
 //
 // So that the fuzzer comes behind the checksums, input that does not begin as such a file does is one
 // payload in an otherwise good one.

@@ -1,9 +1,9 @@
-// Journal files: whatever their rows say, they are read to their end or refused. What is read as
-// steps can be written and is the same then, and the manager can be stepped with it.
+// Journal files: whatever their rows say, they are read to their end or refused. Steps that are
+// read can be written again unchanged, and the manager can be stepped with them.
 //
 // The first line of the input is the kind of a row, the rest its body, which is read as the row
-// would be. If it is `file`, the rest is the whole database; if it is `inheritance`, what another
-// culprit tells.
+// would be. If it is `file`, the rest is the whole database; if it is `inheritance`, the state that
+// another culprit hands over.
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -71,8 +71,8 @@ void read_row(const std::string& body) {
   }
 }
 
-// What another culprit tells who takes over. What is read can be told on, and a manager can begin
-// with it.
+// The state that a manager hands over to its successor. It can be handed over again, and a manager
+// can begin with it.
 void read_inheritance(const std::string& body) {
   const Time now(std::chrono::hours(1));
   const auto told = journal::inheritance_from_text(body, rules(), std::chrono::minutes(1), now);

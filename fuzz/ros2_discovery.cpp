@@ -1,9 +1,9 @@
-// What other participants say of themselves: their messages on ros_discovery_info, and any sequence
-// of discovery events.
+// Discovery data of other participants: their messages on ros_discovery_info, and any sequence of
+// discovery events.
 //
 // The input is a list of events, each a kind, a participant, an endpoint, a length and so many
-// bytes. What the graph tells, added up, must be what it shows; and nothing may grow beyond its
-// limits.
+// bytes. The sum of the graph's notifications must equal its state, and its size must stay within
+// its limits.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -34,7 +34,7 @@ Guid guid_of(std::uint8_t participant, std::uint8_t entity) {
   return guid;
 }
 
-// Keeps the books on what is told.
+// Keeps the books on the graph's notifications.
 class Books {
  public:
   void enter(const GraphChange& change) {

@@ -22,7 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (nested != nullptr && !is_valid_type_name(*nested)) std::abort();
     if (field.count == 0 && field.shape != Shape::kSequence) std::abort();
   }
-  // What is written is what was read.
+  // The written definition must equal the one that was read.
   const std::string written = to_text("a/msg/B", {{"a/msg/B", *definition}});
   const auto again = parse_message_definition(written, "a/msg/B", "B.msg");
   if (!again || *again != *definition) std::abort();

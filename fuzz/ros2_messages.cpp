@@ -1,8 +1,8 @@
 // Payloads of every message type that the ROS 2 link speaks. The first byte says which type; the
 // rest is the payload.
 //
-// What is read must survive being written and read again. Bytes are not compared with the input: it
-// may be padded, and big-endian.
+// A message that was read must survive being written and read again. Bytes are not compared with
+// the input: it may be padded, and big-endian.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

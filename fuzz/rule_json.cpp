@@ -1,5 +1,5 @@
-// JSON forms of rule sets: what is imported parses, is canonical, and comes back from its own
-// export. What is not JSON is taken for a rule file, and comes back from its export too.
+// JSON forms of rule sets: an imported document parses, is canonical, and comes back from its own
+// export. Other input is taken for a rule file, and comes back from its export, too.
 #include <cstddef>
 #include <cstdint>
 #include <string>

@@ -1,5 +1,5 @@
-// Shard files of studies: whatever the bytes are, they are read to their end or refused. What is
-// read can be written and is the same then. To reach what stands behind a checksum, lines are also
+// Shard files of studies: whatever the bytes are, they are read to their end or refused. Runs that
+// are read can be written again unchanged. To reach what stands behind a checksum, lines are also
 // read as if they had been sealed properly.
 #include <cstddef>
 #include <cstdint>

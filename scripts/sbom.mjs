@@ -1,6 +1,6 @@
 // Writes the bill of materials of the Debian packages in a folder, as SPDX 2.3: node scripts/sbom.mjs FOLDER > sbom.spdx.json
 //
-// What the packages depend on is what they say themselves (Depends), with the versions that they were built with. What they contain of others is what is
+// The dependencies are the packages' own (Depends), with the versions that they were built with. The contained parts of others are those that are
 // compiled into the programs: headers of Debian's -dev packages, and what the web page is bundled from (ui/package-lock.json).
 import { execFileSync } from 'node:child_process'
 import { createHash } from 'node:crypto'

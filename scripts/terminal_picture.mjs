@@ -1,4 +1,4 @@
-// What a terminal shows, as an SVG: small, sharp at any size, its words can be copied.
+// A terminal's screen as an SVG: small, sharp at any size, its words can be copied.
 //
 //     import { terminalPicture } from "./terminal_picture.mjs";
 //     terminalPicture("$ culprit status\n" + bytes, { columns: 100 })

@@ -9,7 +9,7 @@ const kPackage = /^(.*node_modules[\\/](?:@[^\\/]+[\\/])?[^\\/]+)[\\/]/
 
 const section = (title, text) => `\n${'='.repeat(80)}\n${title}\n\n${text}\n`
 
-// `metafile` is esbuild's, with paths from this process's folder. What nothing of is left in the bundle is not in it. Fails for a package without a text.
+// `metafile` is esbuild's, with paths from this process's folder. A package that left no code in the bundle is not in it. Fails for a package without a text.
 // `comments`: what esbuild took out of the code.
 export function noticesOf(metafile, comments) {
   const folders = new Set()

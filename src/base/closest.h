@@ -1,4 +1,4 @@
-// What was probably meant by a name that is not known.
+// Suggests the known name that was probably meant by an unknown one.
 #pragma once
 
 #include <string>

@@ -19,17 +19,17 @@ std::filesystem::path own_folder();
 // running program, or in PATH. Errors: it is in neither.
 Expected<std::filesystem::path> find_laboratory();
 
-// What this machine is called.
+// The name of this machine (its host name).
 std::string host_name();
 
 // A variable of the environment; empty if it is not set.
 std::string environment(const char* name);
 
-// A variable of the environment that the process `pid` was started with. Nothing: it was started
+// A variable of the environment that the process `pid` was started with. Empty: it was started
 // without, there is no such process, or it may not be seen.
 std::optional<std::string> environment_of(int pid, const std::string& name);
 
-// "lines" in this variable: progress is told where there is no terminal, too.
+// "lines" in this variable: progress is printed where there is no terminal, too.
 inline constexpr const char* kProgressVariable = "CULPRIT_PROGRESS";
 
 }  // namespace culprit

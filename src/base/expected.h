@@ -5,10 +5,11 @@
 // what happened, where, what to do next.
 #pragma once
 
-#include <cassert>
 #include <string>
 #include <utility>
 #include <variant>
+
+#include "base/invariant.h"
 
 namespace culprit {
 
@@ -50,7 +51,7 @@ class [[nodiscard]] Expected<void> {
 
   // @pre !has_value()
   const std::string& error() const {
-    assert(failed_);
+    CULPRIT_ASSERT(failed_);
     return error_;
   }
 

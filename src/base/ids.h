@@ -26,6 +26,7 @@ using DiagnosticId = Id<struct DiagnosticTag>;  // RuleSet::diagnostics
 using InputId = Id<struct InputTag>;            // RuleSet::inputs
 using RuleId = Id<struct RuleTag>;              // RuleSet::rules
 using StrategyId = Id<struct StrategyTag>;      // RuleSet::strategies
+using GroupId = Id<struct GroupTag>;            // RuleSet::groups
 
 }  // namespace culprit
 

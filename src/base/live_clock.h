@@ -11,7 +11,7 @@ namespace culprit {
 // like a silence.
 Time live_now();
 
-// What the wall clock shows, in nanoseconds since 1970 (UTC).
+// The wall clock's time, in nanoseconds since 1970 (UTC).
 std::int64_t wall_now();
 
 }  // namespace culprit

@@ -13,7 +13,7 @@ bool is_valid_node_name(std::string_view name);  // one token
 bool is_valid_namespace(std::string_view name);  // "/" or like a topic
 bool is_valid_type_name(std::string_view type);  // "package/msg/Type", also srv and action
 
-// What a stranger said, made safe for a message to people: printable ASCII only, cut at 80
+// Makes text from an untrusted peer safe for a message to people: printable ASCII only, cut at 80
 // characters.
 std::string printable(std::string_view text);
 

@@ -1,4 +1,4 @@
-// What names of nodes, topics and services mean in rule files.
+// Resolves the names of nodes, topics and services in rule files.
 #pragma once
 
 #include <string>
@@ -12,7 +12,8 @@ std::string own_name(const std::string& full_name);
 // "/robot/camera" -> "/robot"; empty for "/camera".
 std::string namespace_of(const std::string& full_name);
 
-// What the node means by a topic: "/x" as it is, "x" in the node's namespace, "~/x" below the node.
+// The absolute name of a topic that the node uses: "/x" as it is, "x" in the node's namespace,
+// "~/x" below the node.
 std::string topic_of(const std::string& topic, const std::string& node);
 // "~/recalibrate" and "recalibrate" are the node's own; "/x" stays.
 std::string service_of(const std::string& service, const std::string& node);

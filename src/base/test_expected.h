@@ -1,4 +1,4 @@
-// What tests take for granted.
+// Unwraps results that tests expect to succeed.
 #pragma once
 
 #include <stdexcept>

@@ -30,7 +30,7 @@ Expected<std::string> read_all(std::istream& in, const std::string& path) {
   return text;
 }
 
-// umask(2) tells the mask only by setting another one, and other threads make files meanwhile.
+// umask(2) returns the mask only by setting another one, and other threads make files meanwhile.
 mode_t mode_of_new_files() {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {

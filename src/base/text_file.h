@@ -16,8 +16,9 @@ inline constexpr std::size_t kMaxTextSize = 64u << 20;
 Expected<std::string> read_text(const std::string& path);
 
 // Makes `text` the content of the file at `path`, which may be new, or writes it to the standard
-// output if `path` is empty. Of a file, other processes see the old content or the new one, whole;
-// its permissions are kept; behind a symbolic link it is the file that is replaced.
+// output if `path` is empty. Other processes see the whole old content of the file or the whole new
+// one. The file keeps its permissions; if `path` is a symbolic link, the file behind it is
+// replaced.
 Expected<void> write_text(const std::string& path, const std::string& text);
 
 }  // namespace culprit

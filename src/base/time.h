@@ -1,7 +1,7 @@
 // The one clock of a managed robot: wall time for a live robot, virtual time for a simulated one,
 // recorded time for a bag.
 //
-// The core never asks what time it is. It is told, by Observation::at and by the `now` of a step.
+// The core never reads a clock. It gets the time from Observation::at and from the `now` of a step.
 #pragma once
 
 #include <chrono>

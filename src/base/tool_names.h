@@ -5,7 +5,7 @@
 
 namespace culprit {
 
-// What ROS 2 itself publishes, or a tool: "/rosout".
+// Is this a topic that ROS 2 itself or a tool publishes: "/rosout"?
 bool is_topic_of_ros(const std::string& topic);
 
 // culprit's own: "/culprit", "/culprit_2".
@@ -17,8 +17,8 @@ inline constexpr const char* kCulpritsHardwareId = "culprit";
 // A diagnostic status that culprit says of itself, by its name and hardware id.
 bool is_culprits_status(const std::string& name, const std::string& hardware_id);
 
-// What people look with, and what only holds other nodes together: "/rviz", "/launch_ros_4711",
-// hidden nodes, and culprit's.
+// Is this a node for inspection, or one that only holds other nodes together: "/rviz",
+// "/launch_ros_4711", hidden nodes, and culprit's?
 bool is_tool_node(const std::string& node);
 
 }  // namespace culprit

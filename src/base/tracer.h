@@ -3,8 +3,8 @@
 
 namespace culprit {
 
-// A process that another one traces stands still when that one wants it to: it is neither hung nor
-// stopped. False where it cannot be told.
+// A debugger can halt a process that it traces: the process is neither hung nor stopped. False
+// where this cannot be determined.
 bool is_traced(int pid);
 
 }  // namespace culprit

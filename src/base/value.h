@@ -1,4 +1,4 @@
-// What a signal, a parameter or a constant holds.
+// The value of a signal, a parameter or a constant.
 #pragma once
 
 #include <cstdint>

@@ -13,7 +13,7 @@
 
 namespace culprit {
 
-// Words without quotes are texts unless they are true, false or numbers. Nothing: this is no list, or
+// Words without quotes are texts unless they are true, false or numbers. Empty: this is no list, or
 // one of lists.
 std::optional<std::vector<Value>> list_from_text(std::string_view text);
 

@@ -57,12 +57,11 @@ int try_alerts(const AlertsOptions& options) {
 void add_alerts(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<AlertsOptions>();
   CLI::App* command = app.add_subcommand(
-      "alerts",
-      "Try out where alerts go, by sending one to each (run --alerts sends the real ones)");
-  command->add_option("FILE", options->file, "Where alerts go (docs/alerts.md)")
+      "alerts", "Send a test alert to each receiver (run --alerts sends the real ones)");
+  command->add_option("FILE", options->file, "File with the receivers of alerts (docs/alerts.md)")
       ->type_name("FILE")
       ->required();
-  command->add_flag("--json", options->json, "What became of each, as a JSON document");
+  command->add_flag("--json", options->json, "Print the result of each as a JSON document");
   command->callback([options, &exit_code] { exit_code = try_alerts(*options); });
 }
 

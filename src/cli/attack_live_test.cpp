@@ -1,5 +1,5 @@
 // The whole program under attack: whatever strangers send, culprit stays small, can be ended, and
-// goes on healing what it is there for; and it ends nobody whom a stranger points at.
+// goes on healing its robot. It also ends no process that a stranger points at.
 #include <arpa/inet.h>
 #include <atomic>
 #include <csignal>
@@ -101,7 +101,7 @@ class Connections {
   std::vector<int> sockets_;
 };
 
-// What systemd would be told.
+// Receives culprit's notifications in place of systemd.
 class Notifications {
  public:
   explicit Notifications(const std::string& path) {
@@ -134,7 +134,7 @@ class Notifications {
 };
 
 // Holds the threads of a process on which datagrams arrive: it is deaf then, and its middleware
-// hangs. A thread of our own holds them, for whoever traces has to be one and the same.
+// hangs. A thread of our own holds them, for the tracer must stay the same thread.
 class Deafness {
  public:
   explicit Deafness(int pid) : holder_([this, pid] { hold_all(pid); }) { wait_for_holder(); }
@@ -178,7 +178,7 @@ class Deafness {
   void keep(const std::vector<int>& threads) {
     held_ = threads.size();
     is_holding_ = true;
-    // Who is traced and dies has to be waited for, or its process cannot become another program.
+    // A traced thread that exits must be waited for, or its process cannot execute another program.
     while (!is_over_) {
       for (const int thread : threads) waitpid(thread, nullptr, __WALL | WNOHANG);
       std::this_thread::sleep_for(10ms);
@@ -264,7 +264,7 @@ TEST_F(Attack, WithHostileDatagramsLeavesItSmallAndHealing) {
   const TestProgram camera(world, {"sunset-node", "camera"});
   const TestProgram run = culprit();
   ASSERT_TRUE(run.prints("camera is there")) << run.output();
-  // Anybody in the domain knows who listens where, and who writes.
+  // Any participant of the domain knows the locators of all participants, and the writers.
   std::mutex mutex;
   std::set<int> ports;  // of each participant that it has: it looks at the robot with another one
   std::vector<ros2::Guid> writers;
@@ -343,7 +343,7 @@ TEST_F(Attack, ThatMakesItDeafDoesNotKeepItFromEnding) {
   EXPECT_EQ(cameras().size(), 1u);
 }
 
-// One thread receives all: discovery, what is said to this process about endpoints, and samples.
+// One thread receives all: discovery, endpoint announcements to this process, and samples.
 TEST_F(Attack, ThatHoldsTheThreadThatReceivesIsNoticedAndItsEndToo) {
   const TestProgram camera(world, {"sunset-node", "camera"});
   const TestProgram run = culprit();
@@ -373,7 +373,7 @@ TEST_F(Attack, ThatMakesItDeafStarvesItsWatchdogAndItBeginsAnewAndHeals) {
   std::this_thread::sleep_for(3s);
   EXPECT_EQ(systemd.feedings(), 0) << "of the second that it has";
   EXPECT_EQ(cameras().size(), 1u) << "nothing is judged";
-  ASSERT_TRUE(run.prints("culprit begins anew", 60s)) << run.output();
+  ASSERT_TRUE(run.prints("culprit restarts", 60s)) << run.output();
   ASSERT_TRUE(eventually([&] { return count_of(run.output(), "watching attacked") == 2; }, 60s))
       << run.output();
   EXPECT_TRUE(eventually([&] { return systemd.feedings() > 0; }));

@@ -71,14 +71,14 @@ int verify(const VerifyOptions& options) {
 }  // namespace
 
 void add_audit(CLI::App& app, int& exit_code) {
-  CLI::App* audit = app.add_subcommand("audit", "Whether the journal can be trusted");
+  CLI::App* audit = app.add_subcommand("audit", "Verify the integrity of the journal");
   audit->require_subcommand(1);
   auto options = std::make_shared<VerifyOptions>();
   CLI::App* command =
       audit->add_subcommand("verify", "Check every row against the chain of hashes");
   options->journal.add_to(*command);
   command->add_option("--noted", options->noted,
-                      "<row>:<hash> as it was printed earlier: it must still be in the chain");
+                      "<row>:<hash> of an earlier run; it must still be in the chain");
   command->add_flag("--json", options->json, "As one JSON document");
   command->callback([options, &exit_code] { exit_code = verify(*options); });
 }

@@ -23,7 +23,7 @@ struct BeliefsOptions {
   bool json = false;
 };
 
-// What export writes and import reads.
+// The document that export writes and import reads.
 Json document_of(const journal::Learned& learned) {
   Json document = {{"format", kFormat}, {"format_version", 1}};
   document.update(journal::to_json(learned));
@@ -139,16 +139,16 @@ void add_beliefs(CLI::App& app, int& exit_code) {
     return std::pair(command, options);
   };
   const auto shown =
-      add("show", "Each strategy's success rate: as the rules have it, and now", show);
+      add("show", "Each strategy's success rate: the rules' guess, and the learned one", show);
   shown.first->add_flag("--json", shown.second->json, "As export writes it");
-  const auto out = add("export", "Write what was learned as JSON", write_out);
-  out.first->add_option("-o,--output", out.second->output, "Where to (default: stdout)")
+  const auto out = add("export", "Write the learned rates as JSON", write_out);
+  out.first->add_option("-o,--output", out.second->output, "Output file (default: stdout)")
       ->type_name("FILE");
-  const auto in = add("import", "Add what other robots learned", read_in);
-  in.first->add_option("FILE", in.second->files, "What culprit beliefs export wrote")
+  const auto in = add("import", "Add the outcomes of other robots", read_in);
+  in.first->add_option("FILE", in.second->files, "A file that culprit beliefs export wrote")
       ->type_name("FILE")
       ->required();
-  const auto forget = add("reset", "Forget what was learned", reset);
+  const auto forget = add("reset", "Forget the learned rates", reset);
   forget.first->add_option("RULE", forget.second->rule, "Of this rule");
   forget.first->add_flag("--all", forget.second->all, "Of all rules");
 }

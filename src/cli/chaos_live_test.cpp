@@ -39,8 +39,7 @@ int setting(const char* name, int otherwise) {
   return value == nullptr ? otherwise : std::atoi(value);
 }
 
-// What the robot's nodes are set to, and how old the pictures are that they send: for whoever has to
-// find out why it does not get well.
+// The settings of the robot's nodes and the age of their pictures: shows why the robot does not get well.
 std::string state_of_the_robot() {
   auto survey = live::open_survey();
   if (!survey) return survey.error();
@@ -174,7 +173,7 @@ struct Chaos : testing::Test {
     TestProgram culprit = run();
     for (const char* component : {"camera", "depth", "image_enhancement", "fusion", "segmentation"})
       EXPECT_TRUE(culprit.prints(std::string(component) + " is there")) << culprit.output();
-    // What was never published is unknown to whoever comes later.
+    // A topic that was never published is unknown to a late joiner.
     EXPECT_TRUE(culprit.prints("/managed_subsystem/sensors_fused")) << culprit.output();
     const Holdings holdings = holdings_of(culprit.pid());
     culprit.signal(SIGINT);
@@ -189,7 +188,7 @@ struct Chaos : testing::Test {
     std::this_thread::sleep_for(std::chrono::milliseconds(
         culprit.output().find("decided") != std::string::npos ? repairing(random) : any(random)));
   }
-  // For whoever looks into it: the processes that there are, the journal and the nodes' logs.
+  // Evidence for an investigation: the running processes, the journal and the nodes' logs.
   void keep_evidence(const lab::LiveSunset& robot) const {
     for (const sunset::Member member : sunset::kMembers) {
       for (const int pid : robot.processes(member))

@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "base/text_file.h"
 #include "cli/check_bag.h"
 #include "cli/commands.h"
 #include "cli/diagnostic_report.h"
@@ -33,10 +34,12 @@ struct CheckOptions {
   bool strict = false;
   bool robot = false;
   BagCheck recorded;
+  bool fixes = false;
+  std::string fail_on = "error";
   double wait_seconds = 3;
 };
 
-// For people: what is wrong goes to stderr, a line for each good file to stdout.
+// For people: mistakes go to stderr, a line for each good file to stdout.
 void print_text(const Expansion& file, const Checked& checked) {
   fmt::print(stderr, "{}", render(checked.diagnostics, file.source, colour_of(STDERR_FILENO)));
   if (!checked.rules) {
@@ -55,7 +58,7 @@ void print_findings(const RuleSet& rules, const LiveInventory& robot) {
   for (const std::string& line : findings(rules, robot)) fmt::print("  {}\n", line);
 }
 
-// What the robot has, of what the files name.
+// Looks up the robot's names that the files refer to.
 Expected<LiveInventory> look(const std::vector<Expansion>& files, Duration wait) {
   std::vector<Checked> checked;
   for (const Expansion& file : files) checked.push_back(check(file));
@@ -72,8 +75,8 @@ Expected<LiveInventory> look(const std::vector<Expansion>& files, Duration wait)
   return robot;
 }
 
-// Launch commands that could not run on this computer. Where it has none of their programs, it is
-// most likely not the robot's: then one of them is told.
+// Launch commands that could not run on this computer. If it has none of their programs, it is most
+// likely not the robot's: then only one of them is reported.
 void check_launches(const Expansion& file, Checked& checked) {
   const RuleSet& rules = *checked.rules;
   const auto troubles = live::launch_troubles(rules);
@@ -115,6 +118,7 @@ int check_all(std::vector<Expansion> all, int exit_code, const CheckOptions& opt
     checked = robot ? check_against(*robot, file, strictness) : check(file, strictness);
     if (!checked.rules) exit_code = kFailed;
     if (!robot && checked.rules) check_launches(file, checked);
+    if (options.fail_on == "warning" && !checked.diagnostics.empty()) exit_code = kFailed;
     if (options.format == "text") {
       if (robot && checked.rules) print_findings(*checked.rules, *robot);
       print_text(file, checked);
@@ -146,6 +150,51 @@ void make_room(const std::vector<std::string>& files) {
                    static_cast<std::size_t>(std::min<std::uintmax_t>(largest, Source::kMaxSize)));
 }
 
+// The edits that the diagnostics of `file` offer, none of which touches another, the last one first.
+std::vector<Edit> edits_of(const Expansion& file, Strictness strictness) {
+  std::vector<Edit> edits;
+  for (const Diagnostic& d : check(file, strictness).diagnostics) {
+    const LocatedDiagnostic here = located(d, file.source);
+    if (here.fix && here.place.file == 0) edits.push_back(*here.fix);
+  }
+  std::stable_sort(edits.begin(), edits.end(),
+                   [](const Edit& a, const Edit& b) { return a.span.begin < b.span.begin; });
+  std::uint32_t end = 0;
+  bool is_first = true;
+  std::erase_if(edits, [&](const Edit& edit) {
+    const bool touches = !is_first && edit.span.begin <= end;
+    if (!touches) end = edit.span.end;
+    is_first = false;
+    return touches;
+  });
+  std::reverse(edits.begin(), edits.end());
+  return edits;
+}
+
+// Applies the fixes of the language server until there are none. Errors: the file cannot be read or
+// written.
+Expected<Expansion> fixed(const std::string& path, Expansion rules, const CheckOptions& options) {
+  constexpr int kMostRounds = 20;  // a fix may make room for the next
+  const Strictness strictness = options.strict ? Strictness::kStrict : Strictness::kLenient;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const auto edits = edits_of(rules, strictness);
+    if (edits.empty()) break;
+    const Source& written = rules.source.file(0);
+    std::string text(written.text());
+    for (const Edit& edit : edits)
+      text.replace(edit.span.begin, edit.span.end - edit.span.begin, edit.text);
+    for (auto edit = edits.rbegin(); edit != edits.rend(); ++edit) {
+      const Position at = written.position(edit->span.begin);
+      fmt::print("{}:{}:{}: {}\n", path, at.line, at.column, title_of(*edit, written));
+    }
+    if (const auto done = write_text(path, text); !done) return Error{done.error()};
+    auto again = rule_files::read(path);
+    if (!again) return again;
+    rules = std::move(*again);
+  }
+  return rules;
+}
+
 int check_files(const CheckOptions& options) {
   const auto robot = ros2::options_from_environment();
   if (options.robot && !robot) return fail(robot.error(), kUsage);
@@ -157,6 +206,7 @@ int check_files(const CheckOptions& options) {
     if (files) make_room(*files);
     for (const std::string& file : files ? *files : std::vector<std::string>{}) {
       auto rules = rule_files::read(file);
+      if (rules && options.fixes) rules = fixed(file, std::move(*rules), options);
       if (rules) {
         all.push_back(std::move(*rules));
       } else {
@@ -179,8 +229,7 @@ void add_check(CLI::App& app, int& exit_code) {
   command->add_flag("--strict", options->strict, "Every component and signal must be declared");
   auto* robot = command->add_flag(
       "--robot", options->robot,
-      "Check also against the live robot: nodes, topics, parameters, diagnostics and services "
-      "that it has not");
+      "Also report nodes, topics, parameters, diagnostics and services that the live robot lacks");
   add_seconds(*command, "--wait", options->wait_seconds, "How long to look at the robot", 0.1, 600)
       ->needs(robot);
   CLI::Option* bags =
@@ -196,6 +245,13 @@ void add_check(CLI::App& app, int& exit_code) {
       ->type_name("FOLDER")
       ->allow_extra_args(false)
       ->needs(bags);
+  command
+      ->add_flag("--fix", options->fixes, "Apply the fixes that editors offer, and write the files")
+      ->excludes(robot);
+  command
+      ->add_option("--fail-on", options->fail_on, "What makes the command fail: error or warning")
+      ->check(CLI::IsMember({"error", "warning"}))
+      ->capture_default_str();
   command
       ->add_option("--format", options->format,
                    "text for people; json or sarif (2.1.0) for programs, on stdout")

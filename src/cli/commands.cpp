@@ -4,19 +4,20 @@
 #include <iterator>
 
 #include "cli/culprit_manual.h"
+#include "terminal/help.h"
 
 namespace culprit::cli {
 namespace {
 
-// What culprit-lab does in culprit's name.
+// A command of culprit-lab that culprit offers, too.
 struct OfLaboratory {
   const char* name;
   const char* description;
 };
 constexpr OfLaboratory kOfLaboratory[] = {
-    {"demo", "Let culprit heal a live robot (by culprit-lab)"},
+    {"demo", "Demonstrate a repair on a live robot (by culprit-lab)"},
     {"study", "Campaigns over the exemplars and over random robots (by culprit-lab)"},
-    {"torture", "Run culprit on random robots with everything going wrong (by culprit-lab)"},
+    {"torture", "Run culprit on random robots with all kinds of faults (by culprit-lab)"},
 };
 
 }  // namespace
@@ -30,12 +31,14 @@ void add_all(CLI::App& app, const std::string& version, int& exit_code) {
   add_run(app, version, exit_code);
   add_doctor(app, exit_code);
   add_init(app, exit_code);
+  add_drill(app, exit_code);
   add_graph(app, exit_code);
   add_plan(app, exit_code);
   add_modes(app, exit_code);
   add_status(app, exit_code);
   add_top(app, exit_code);
   add_orders(app, exit_code);
+  add_names(app, exit_code);
   add_record(app, exit_code);
   add_alerts(app, exit_code);
   add_check(app, exit_code);
@@ -47,6 +50,7 @@ void add_all(CLI::App& app, const std::string& version, int& exit_code) {
   add_policy(app, exit_code);
   add_web(app, exit_code);
   add_lsp(app, version, exit_code);
+  add_mcp(app, version, exit_code);
   add_log(app, exit_code);
   add_incident(app, exit_code);
   add_audit(app, exit_code);
@@ -57,6 +61,7 @@ void add_all(CLI::App& app, const std::string& version, int& exit_code) {
   add_fleet(app, exit_code);
 #endif
   for (const OfLaboratory& each : kOfLaboratory) app.add_subcommand(each.name, each.description);
+  add_help(app, exit_code);
   group_commands(app);
   add_manual(app, culprit_manual(), exit_code);
 }

@@ -19,19 +19,22 @@ bool is_of_laboratory(std::string_view command);
 void add_run(CLI::App& app, const std::string& version, int& exit_code);
 void add_status(CLI::App& app, int& exit_code);
 void add_top(CLI::App& app, int& exit_code);
-// pause, resume, silence, approve, refuse, run-strategy
+// pause, resume, silence, approve, refuse, propose, run-strategy
 void add_orders(CLI::App& app, int& exit_code);
+void add_names(CLI::App& app, int& exit_code);
 void add_record(CLI::App& app, int& exit_code);
 void add_alerts(CLI::App& app, int& exit_code);
 void add_check(CLI::App& app, int& exit_code);
 void add_doctor(CLI::App& app, int& exit_code);
 void add_init(CLI::App& app, int& exit_code);
+void add_drill(CLI::App& app, int& exit_code);
 void add_explain(CLI::App& app, int& exit_code);
 void add_fmt(CLI::App& app, int& exit_code);
 void add_test(CLI::App& app, int& exit_code);
 void add_plan(CLI::App& app, int& exit_code);
 void add_graph(CLI::App& app, int& exit_code);
 void add_lsp(CLI::App& app, const std::string& version, int& exit_code);
+void add_mcp(CLI::App& app, const std::string& version, int& exit_code);
 void add_web(CLI::App& app, int& exit_code);
 void add_import(CLI::App& app, int& exit_code);
 void add_log(CLI::App& app, int& exit_code);

@@ -80,7 +80,7 @@ struct Composed : testing::Test {
     return TestProgram(world, std::move(arguments));
   }
   std::string keeps() const { return (world.folder() / "keeps").string(); }
-  // What a box that culprit started has said.
+  // The output of a box that culprit started.
   std::string said() const {
     std::ifstream in(state() + "/log/box.log");
     return {std::istreambuf_iterator<char>(in), {}};
@@ -128,7 +128,7 @@ TEST_F(Composed, NoContainerIsReplacedThatHasWhatNobodyCouldLoadAgain) {
   std::ofstream(keeps()) << "now";
   auto container = box({"/box", "/detector", "/tracker", "/planner"});
   const auto culprit = run(rules("") + kWeak);
-  EXPECT_TRUE(culprit.prints("/planner lives there, too, and nobody could load it again"))
+  EXPECT_TRUE(culprit.prints("/planner lives there, too, and could not be loaded again"))
       << culprit.output();
   EXPECT_TRUE(culprit.prints("DetectorWeak is exhausted")) << culprit.output();
   EXPECT_FALSE(container.wait(100ms)) << "the container was ended";
@@ -157,8 +157,8 @@ TEST_F(Composed, AContainerThatIsKilledComesBackOnceWithAllThatItHad) {
   ASSERT_NE(first, 0) << culprit.output();
   kill(first, SIGKILL);
   EXPECT_TRUE(culprit.prints("BoxGone resolved by box_redeploy")) << culprit.output();
-  EXPECT_TRUE(culprit.prints("DetectorGone went away")) << culprit.output();
-  EXPECT_TRUE(culprit.prints("TrackerGone went away")) << culprit.output();
+  EXPECT_TRUE(culprit.prints("DetectorGone cleared")) << culprit.output();
+  EXPECT_TRUE(culprit.prints("TrackerGone cleared")) << culprit.output();
   // One dead process is one fault.
   EXPECT_THAT(culprit.output(), HasSubstr("box is held responsible for BoxGone"));
   EXPECT_THAT(culprit.output(), Not(HasSubstr("detector is held responsible")));
@@ -192,7 +192,7 @@ TEST_F(Composed, WhatAKilledCulpritLeftUnfinishedIsFinishedOnce) {
   end_box(culprit);
 }
 
-// Whoever is on the network can offer services of these names.
+// Any program on the network can offer services of these names.
 TEST_F(Composed, WhoOnlyOffersTheServicesOfAContainerIsNotBelieved) {
   const std::string stalls = (world.folder() / "stalls").string();
   TestProgram container(world, {"ros2_peer_node", domain(), "--active", "--stalls-if", stalls,
@@ -219,7 +219,7 @@ TEST_F(Composed, WhoOnlyOffersTheServicesOfAContainerIsNotBelieved) {
   ASSERT_TRUE(culprit.prints("DetectorWeak detected")) << culprit.output();
   std::filesystem::rename(world.write("seconds", "300"), stalls);  // only the forger answers
   ASSERT_TRUE(comes([&] { return !std::filesystem::exists(stalls); }));
-  EXPECT_TRUE(culprit.prints("somebody else answers for the container /box")) << culprit.output();
+  EXPECT_TRUE(culprit.prints("another process answers for the container /box")) << culprit.output();
   EXPECT_FALSE(container.wait(100ms)) << "the container was ended";
   EXPECT_EQ(asked, 0);
   executor.stop();

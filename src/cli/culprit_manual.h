@@ -1,4 +1,4 @@
-// What the manual of culprit says beside its options.
+// The parts of culprit's manual beside its options.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -31,7 +31,7 @@ Expected<std::optional<Entry>> decision_at(const journal::Reader& journal, std::
     rule = text_of(body, "rule");
     if (is_decision(**row, body) || rule.empty()) return row;
   }
-  // Of no row in particular: a strategy that was chosen says more than a failure that waits.
+  // Without a given row, a chosen strategy says more than a failure that waits.
   std::int64_t before = id;
   while (true) {
     auto row = journal.newest(journal::kind::kEvent, before);
@@ -55,7 +55,7 @@ std::string evidence_line(const Json& piece) {
 std::string suspects_of(const Json& body) {
   const Json suspects = body.value("suspects", Json::array());
   if (!suspects.is_array() || suspects.empty()) return "";
-  std::string out = "\nWho may be responsible\n";
+  std::string out = "\nPossible causes\n";
   for (const Json& each : suspects) {
     out += fmt::format("  {:>3.0f} %  {}, by {}\n", 100 * journal::number_of(each, "probability"),
                        text_of(each, "component"), text_of(each, "failure"));
@@ -86,8 +86,8 @@ bool is_over(const std::string& type) {
   return type == words_of<FailureResolved>().name || type == words_of<FailureLost>().name;
 }
 
-// What followed for the same rule, up to the end of the strategy; the other rows in between are of
-// other failures.
+// The events after the decision for the same rule, up to the end of the strategy; the other rows in
+// between belong to other failures.
 Expected<std::vector<Entry>> sequel_of(const journal::Reader& journal, const Entry& decision,
                                        const std::string& rule) {
   std::vector<Entry> sequel;
@@ -146,7 +146,7 @@ Expected<std::string> explain_decision(const journal::Reader& journal, std::int6
       fmt::format("Row {}, {}\n{}\n", entry.id, local_time(entry.at), text_of(body, "text"));
   if (!is_decision(entry, body)) return out + to_indented(body) + "\n";
   out += suspects_of(body) + candidates_of(body);
-  if (!sequel.empty()) out += "\nWhat came of it\n";
+  if (!sequel.empty()) out += "\nOutcome\n";
   for (const Entry& each : sequel) out += log_line(each) + "\n";
   return out;
 }

@@ -1,4 +1,5 @@
-// What a check found, for programs: editors, scripts, and what shows it beside the code.
+// The diagnostics of a check, for programs: editors, scripts, and viewers that show it beside the
+// code.
 //
 // Lines and columns count from 1, columns in characters; ends are exclusive.
 #pragma once
@@ -24,7 +25,7 @@ Json json_report(const std::vector<CheckedFile>& files);
 // SARIF 2.1.0 (OASIS), one run. Every code is a rule, found or not.
 Json sarif_report(const std::vector<CheckedFile>& files);
 
-// `document` as text. What is not UTF-8 in a rule file becomes U+FFFD.
+// `document` as text. Invalid UTF-8 in a rule file becomes U+FFFD.
 std::string to_text(const Json& document);
 
 }  // namespace culprit::cli

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <stop_token>
+#include <thread>
 #include <unistd.h>
 
 #include <fmt/chrono.h>
@@ -18,6 +20,7 @@
 #include "json/json.h"
 #include "ros2/options.h"
 #include "terminal/console.h"
+#include "terminal/progress.h"
 #include "terminal/seconds_option.h"
 
 namespace culprit::cli {
@@ -63,7 +66,7 @@ void print(const Report& report, const DoctorOptions& options) {
 
 bool is_same(const Finding& a, const Finding& b) { return a.code == b.code && a.who == b.who; }
 
-// What has come and what has gone since the last look.
+// Prints the findings that are new and those that are gone since the last look.
 void print_changes(const Report& before, const Report& now) {
   const auto is_in = [](const Finding& finding, const Report& report) {
     return std::ranges::any_of(report.findings,
@@ -108,7 +111,7 @@ int watch_robot(const doctor::LookOptions& how, const doctor::Baseline* healthy,
       [&](const doctor::Picture& picture) {
         Report now = report_of(picture, healthy);
         print_again(last ? &*last : nullptr, now, options);
-        // What was told and is in doubt now has neither gone nor come again.
+        // An earlier finding that is doubtful now is neither gone nor new.
         for (const Finding& each : last ? last->findings : std::vector<Finding>()) {
           if (std::ranges::any_of(now.doubtful,
                                   [&](const Finding& other) { return is_same(each, other); }))
@@ -136,6 +139,26 @@ int save_robot(const doctor::Picture& picture, const Report& report, const std::
   return exit_code_of(report);
 }
 
+// Shows on a terminal how much of the look is over.
+class LookProgress {
+ public:
+  explicit LookProgress(double time_seconds) {
+    if (isatty(STDERR_FILENO) != 1) return;
+    drawing_ = std::jthread([time_seconds](std::stop_token stop) {
+      constexpr auto kTick = std::chrono::milliseconds(100);
+      const auto ticks = static_cast<std::uint64_t>(std::max(time_seconds * 10, 1.0));
+      Progress progress(0, ticks);
+      for (std::uint64_t done = 0; done < ticks && !stop.stop_requested(); ++done) {
+        progress.show(done);
+        std::this_thread::sleep_for(kTick);
+      }
+    });
+  }
+
+ private:
+  std::jthread drawing_;  // stopped, and joined, at the end
+};
+
 int examine_robot(const DoctorOptions& options) {
   const auto participant = ros2::options_from_environment();
   if (!participant) return fail(participant.error(), kUsage);
@@ -153,7 +176,10 @@ int examine_robot(const DoctorOptions& options) {
       .time = from_seconds(options.seconds),
       .extent = needs_all ? doctor::Extent::kEverything : doctor::Extent::kFindings};
   if (options.watch) return watch_robot(how, healthy ? &*healthy : nullptr, options);
-  const auto picture = doctor::look(how);
+  const auto picture = [&] {
+    const LookProgress progress(options.seconds);
+    return doctor::look(how);
+  }();
   if (!picture) return fail(picture.error());
   const Report report = report_of(*picture, healthy ? &*healthy : nullptr);
   print(report, options);
@@ -203,23 +229,20 @@ void add_doctor(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<DoctorOptions>();
   CLI::App* command = app.add_subcommand(
       "doctor",
-      "Say what is wrong with the robot, or was wrong in recordings of it, without a rule: looks "
-      "for "
-      "some seconds, changes nothing. Exits with 0 if it finds nothing, with 3 if it only warns");
+      "Find problems of the robot, or in recordings of it, without rules: observes it for some "
+      "seconds, changes nothing. Exits with 0 if there are none, with 3 if there are only warnings");
   CLI::Option* bags = add_bag_options(*command, options->recorded);
   add_seconds(*command, "--for", options->seconds, "How long to look", 0.1, 3600)->excludes(bags);
   auto* json = command->add_flag("--json", options->json, "For programs");
   command->add_flag("--sarif", options->sarif, "For programs that read SARIF 2.1.0")
       ->excludes(json);
-  auto* watch =
-      command
-          ->add_flag("--watch", options->watch, "Look again and again, and say what comes and goes")
-          ->excludes(bags);
-  auto* save =
-      command
-          ->add_option("--save", options->save, "Write the healthy robot as a file to compare with")
-          ->type_name("FILE");
-  command->add_option("--against", options->against, "Compare with a robot that was saved")
+  auto* watch = command
+                    ->add_flag("--watch", options->watch,
+                               "Look again and again, and report new and cleared findings")
+                    ->excludes(bags);
+  auto* save = command->add_option("--save", options->save, "Save the healthy robot as a baseline")
+                   ->type_name("FILE");
+  command->add_option("--against", options->against, "Compare with a saved baseline")
       ->type_name("FILE")
       ->excludes(save)
       ->excludes(bags);

@@ -1,5 +1,5 @@
-// Culprit started a node, and somebody else starts it, too: a launch file that comes late, or one that
-// starts its nodes again. Two of one name are worse than either; culprit ends its own, and only that.
+// Culprit started a node, and another launcher starts it, too: a launch file that comes late, or one that restarts its nodes. Two nodes of one name are worse
+// than either; culprit ends its own, and only that.
 #include <csignal>
 #include <fstream>
 #include <thread>
@@ -134,7 +134,7 @@ TEST_F(Doubled, NothingIsEndedWhereCulpritIsToDoNothing) {
   if (ours > 0) kill(ours, SIGKILL);
 }
 
-// What was launched makes two nodes, and only one of them is doubled: none may be missing.
+// The launch makes two nodes, and only one of them is doubled; neither may be missing.
 TEST_F(Doubled, WhatElseWouldEndIsNotEnded) {
   const std::string peer = (own_folder() / "ros2_peer_node").string() + " " + domain;
   const std::string both =

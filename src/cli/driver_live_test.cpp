@@ -1,5 +1,5 @@
-// Who takes a node through its lifecycle when it starts, where nobody has declared it and no rule says where it must
-// be: the node itself by a timer, or nobody. A node whose timer finds that somebody was there first ends with an error, as nodes in Python do.
+// Detects the driver of a node's lifecycle after its start, where neither a declaration nor a rule names a state: the node itself by a timer, or none. If the
+// node's timer finds that another driver came first, the node exits with an error, as nodes in Python do.
 #include <csignal>
 #include <thread>
 
@@ -20,7 +20,7 @@ struct ADriver : testing::Test {
   ~ADriver() override {
     for (const int pid : all_) kill(pid, SIGKILL);
   }
-  // Of a node that runs already, and of which culprit sees only that it is active.
+  // Watches a node that runs already, of which culprit sees only that it is active.
   void watch(const std::string& options) {
     if (!first_)
       first_.emplace(world, std::vector<std::string>{"ros2_peer_node", environment("ROS_DOMAIN_ID"),
@@ -89,8 +89,8 @@ TEST_F(ADriver, OfWhichNothingIsKnownIsWaitedFor) {
   EXPECT_EQ(journal.requests("lidar: activate"), 0u) << journal.all();
 }
 
-// It would crash if it were activated before its timer. Nothing is known of the first one, so it is watched; the next
-// culprit knows how long it takes.
+// It would crash if it were activated before its timer. There is no history at its first start, so culprit only watches; the next culprit knows how long it
+// takes.
 TEST_F(ADriver, ThatComesLaterThanTheImpactIsLearned) {
   watch(" --activates-after 5");
   kill_and_await(1);

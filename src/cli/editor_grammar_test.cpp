@@ -44,7 +44,7 @@ Words set_of(const Range& range) {
 TEST(EditorGrammar, KnowsEveryKeyword) {
   Words known = words_of("statements");
   known.merge(words_of("clauses"));
-  // Words of the language that other things may be called, too: they are told by their place.
+  // Words of the language that are also allowed as names: their place distinguishes them.
   for (const char* word : {"INCLUDE", "TEMPLATE", "END", "USE", "REPORT", "FROM", "THEN"})
     EXPECT_EQ(known.erase(word), 1u) << word;
   EXPECT_EQ(known, set_of(reserved_words()));

@@ -1,5 +1,5 @@
-// How nodes end, as the operating system tells it: one that was killed is not waited for, and a
-// launch that somebody ends is not started again.
+// Ends of nodes, as reported by the operating system: a killed one is not waited for, and a launch
+// that a person ends is not started again.
 #include <csignal>
 #include <filesystem>
 #include <memory>
@@ -183,7 +183,7 @@ TEST_F(EndsHealed, WhatStandsInForOneOfALaunchEndsWithIt) {
   EXPECT_TRUE(goes(pid_in(all.culprit->output(), "b"))) << all.culprit->output();
 }
 
-// As with on_exit=Shutdown(), unless culprit is told that this is what the launch file says.
+// As with on_exit=Shutdown(), unless culprit is configured for such a launch file.
 TEST_F(EndsHealed, ALaunchThatEndsSoonAfterACrashStaysDownUnlessRevived) {
   for (const bool revives : {false, true}) {
     const Healed all = healed(

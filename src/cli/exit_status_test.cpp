@@ -113,7 +113,7 @@ TEST(ExitStatus, IsOneWhereNoCulpritAnswers) {
   }
 }
 
-// What programs read has one spelling.
+// Options that programs read have one spelling.
 TEST(JsonOption, IsSpeltTheSameEverywhere) {
   CLI::App app("culprit");
   int exit_code = 0;

@@ -1,10 +1,14 @@
 #include <charconv>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include <fmt/core.h>
 
+#include "base/name_grammar.h"
 #include "cli/commands.h"
 #include "cli/decision_report.h"
+#include "cli/glossary.h"
 #include "cli/journal_file.h"
 #include "doctor/explanations.h"
 #include "journal/json.h"
@@ -14,7 +18,9 @@ namespace culprit::cli {
 namespace {
 
 struct ExplainOptions {
-  std::string what;
+  std::vector<std::string> words;
+  std::string what;  // the words as one text
+  bool lists_terms = false;
   bool last = false;
   JournalOption journal;
   bool markdown = false;
@@ -27,6 +33,26 @@ Json to_json(const Explanation& e) {
           {"why", e.why},
           {"wrong", e.wrong},
           {"right", e.right}};
+}
+
+Json to_json(const Term& term) {
+  return {{"term", term.name}, {"section", term.section}, {"meaning", term.meaning}};
+}
+
+int list_terms(bool is_json) {
+  Json all = Json::array();
+  std::string section;
+  for (const Term& term : glossary()) {
+    if (is_json) {
+      all.push_back(to_json(term));
+      continue;
+    }
+    if (term.section != section) fmt::print("{}{}\n", section.empty() ? "" : "\n", term.section);
+    section = term.section;
+    fmt::print("  {}\n", term.name);
+  }
+  if (is_json) fmt::print("{}\n", to_line(all));
+  return kOk;
 }
 
 Json to_json(const doctor::Explanation& e) {
@@ -57,6 +83,7 @@ bool is_number(const std::string& text) {
 }
 
 int explain(const ExplainOptions& options) {
+  if (options.lists_terms) return list_terms(options.json);
   if (options.last || is_number(options.what)) return explain_row(options);
   if (options.markdown) {
     const bool of_doctor = options.what == "doctor";
@@ -82,9 +109,15 @@ int explain(const ExplainOptions& options) {
   }
   const Explanation* explanation = find_explanation(options.what);
   if (explanation == nullptr) {
-    fmt::print(stderr, "culprit: there is no code '{}'; culprit explain without a code lists all\n",
-               options.what);
-    return kUsage;
+    if (const Term* term = find_term(options.what)) {
+      fmt::print("{}", options.json ? to_line(to_json(*term)) + "\n" : page(*term));
+      return kOk;
+    }
+    const std::string near = nearest_term(options.what);
+    return fail("there is no code and no term '" + printable(options.what) + "'" +
+                    (near.empty() ? "" : "; did you mean '" + near + "'?") +
+                    "\nculprit explain lists all codes, culprit explain --terms all terms.",
+                kUsage);
   }
   if (options.json) {
     fmt::print("{}\n", to_line(to_json(*explanation)));
@@ -100,17 +133,24 @@ void add_explain(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ExplainOptions>();
   CLI::App* command = app.add_subcommand(
       "explain",
-      "Explain a decision from the journal, or what culprit check and culprit doctor say");
-  auto* code = command->add_option("WHAT", options->what,
-                                   "A row of culprit log, as in 123; or the code of a diagnostic, "
-                                   "as in R012, or of a finding, as in D001; nothing: all codes");
+      "Explain a decision from the journal, a message of culprit check or doctor, or a term");
+  auto* code =
+      command->add_option("WHAT", options->words,
+                          "A row of culprit log (123), a code (R012, D001) or a term (root cause); "
+                          "without it: all codes");
   command->add_flag("--last", options->last, "The latest decision")->excludes(code);
   options->journal.add_to(*command);
   command->add_flag("--json", options->json, "As one JSON document");
   command->add_flag(
       "--markdown", options->markdown,
       "All explanations, as docs/diagnostics.md; with \"doctor\" as docs/findings.md");
-  command->callback([options, &exit_code] { exit_code = explain(*options); });
+  command->add_flag("--terms", options->lists_terms, "List the terms of the glossary")
+      ->excludes(code);
+  command->callback([options, &exit_code] {
+    for (const std::string& word : options->words)
+      options->what += (options->what.empty() ? "" : " ") + word;
+    exit_code = explain(*options);
+  });
 }
 
 }  // namespace culprit::cli

@@ -41,7 +41,7 @@ void add_export(CLI::App& app, int& exit_code) {
   command->add_option("RULES", options->file, "A rule file; - is the standard input")
       ->type_name("FILE")
       ->required();
-  command->add_option("-o,--output", options->output, "Where to write it (default: stdout)")
+  command->add_option("-o,--output", options->output, "Output file (default: stdout)")
       ->type_name("FILE");
   command->callback([options, &exit_code] { exit_code = export_json(*options); });
 }

@@ -1,5 +1,4 @@
-// What a new user does: `init`, `check`, `run`, and then nodes are killed. Each comes back, by the draft as
-// it is, and nothing is restarted that was well.
+// The first steps of a new user: `init`, `check`, `run`, and then nodes are killed. Each comes back, by the unchanged draft, and no healthy node is restarted.
 //
 // Three robots: SUNSET, SUAVE, and one of ten nodes that no rule file has ever named: two that a launcher starts
 // again, four that a launcher took through their lifecycle, four that activate themselves; all have a topic of a
@@ -142,7 +141,7 @@ class NewUser {
     std::cout << component << ": " << seconds(live_now() - begin) << " s\n";
   }
 
-  // Nothing was begun but for what was killed.
+  // Only killed nodes were repaired.
   void sees_nothing_needless() const {
     const std::string said = culprit_->output();
     EXPECT_LE(count(said, ": done\n"), killed_) << said << draft_;
@@ -235,8 +234,7 @@ TEST(FirstHour, EachNodeOfARobotThatNobodyKnows) {
   kill_each(world);
 }
 
-// Looks at a robot that is well, for as long as it is told, and finds nothing but, where the robot breaks something itself,
-// what is ill then.
+// Examines a healthy robot for the given time, and reports only failures that the robot causes itself.
 void look_at_the_healthy(const TestWorld& world, const std::string& breaks_itself = "") {
   const char* wanted = std::getenv("CULPRIT_HEALTHY_SECONDS");
   const auto time = std::chrono::seconds(wanted == nullptr ? 10 : std::atoi(wanted));

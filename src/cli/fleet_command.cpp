@@ -23,7 +23,7 @@ struct FleetCommand {
   std::string html;
 };
 
-// Nobody interrupts a command but by ending it.
+// The only way to interrupt a command is to end it.
 const std::atomic<bool> kGoesOn = false;
 
 Expected<fleet::Server> connect(const FleetCommand& options) {
@@ -83,12 +83,11 @@ int report(const Kind& kind, const FleetCommand& options) {
 }
 
 constexpr Kind kKinds[] = {
-    {"status", "Robots that fail now or are not heard, and the state of the models",
-     fleet::status_queries},
+    {"status", "Failed and unreachable robots, and the state of the models", fleet::status_queries},
     {"incidents", "The latest incidents, the worst rules and components, and times to repair",
      fleet::incident_queries},
     {"beliefs", "The outcomes of each strategy on all robots", fleet::belief_queries},
-    {"compare", "Robots that are not like the others, and versions beside each other",
+    {"compare", "Robots that differ from the others, and a comparison of versions",
      fleet::version_queries, true}};
 
 void add_address(CLI::App& command, FleetCommand& options) {
@@ -104,7 +103,7 @@ void add_report(CLI::App& fleet, const Kind& kind, int& exit_code) {
   add_address(*command, *options);
   command->add_option("--model", options->scope.model, "Only robots of this model");
   command->add_option("--robot", options->scope.robot, "Only the robot of this name");
-  command->add_option("--days", options->scope.days, "So far back")
+  command->add_option("--days", options->scope.days, "Number of past days")
       ->check(CLI::Range(1, 3650))
       ->capture_default_str();
   auto* json = command->add_flag("--json", options->as_json, "For programs");
@@ -123,8 +122,8 @@ void add_fleet(CLI::App& app, int& exit_code) {
       app.add_subcommand("fleet", "Data that the robots of a fleet share in a PostgreSQL database");
   command->require_subcommand(1);
   auto options = std::make_shared<FleetCommand>();
-  CLI::App* set_up = command->add_subcommand(
-      "init", "Set the database up, or bring it up to date, and say what was done");
+  CLI::App* set_up =
+      command->add_subcommand("init", "Set up the database, or update it, and report the changes");
   add_address(*set_up, *options);
   set_up->add_option("--keep", options->keep_days, "Days that failures are kept")
       ->check(CLI::Range(1, 36500))

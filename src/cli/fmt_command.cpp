@@ -63,8 +63,7 @@ int format_files(const FmtOptions& options) {
 
 void add_fmt(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<FmtOptions>();
-  CLI::App* command = app.add_subcommand(
-      "fmt", "Lay rule files out in the one canonical way; what they say stays the same");
+  CLI::App* command = app.add_subcommand("fmt", "Format rule files; their meaning stays the same");
   command
       ->add_option(
           "FILES", options->files,

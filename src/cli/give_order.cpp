@@ -9,7 +9,7 @@
 namespace culprit::cli {
 namespace {
 
-// Who is at the terminal, for the record.
+// The user at the terminal, for the record.
 std::string who_orders() {
   const std::string behind_sudo = geteuid() == 0 ? environment("SUDO_USER") : "";
   if (!behind_sudo.empty()) return behind_sudo;

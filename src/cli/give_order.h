@@ -1,7 +1,7 @@
-// Gives an order to a running culprit, and hears what becomes of it.
+// Gives an order to a running culprit, and waits for its outcome.
 //
-// It counts as done when the manager itself has said that it follows it and, if it stands (a pause, say), when
-// it is on the disk, so that a restart of culprit does not forget it. All else is not done.
+// It counts as done once the manager reports that it follows it. If it lasts (a pause, for example), it must also be on the disk, so that culprit keeps it
+// across a restart. Any other outcome is a failure.
 #pragma once
 
 #include <string>

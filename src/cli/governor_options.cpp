@@ -63,34 +63,33 @@ void GovernorOptions::add_to(CLI::App& command) {
   const auto intensity = [&](const char* option, std::string& value, const char* help) {
     command.add_option(option, value, help)->capture_default_str()->group(kGroup);
   };
-  time("--quiet", quiet_seconds, "Begin nothing for so long after the start");
-  intensity("--intensity", overall, "At most so many strategies in such a time, or none");
+  time("--quiet", quiet_seconds, "Begin no strategy for this time after the start");
+  intensity("--intensity", overall, "Limit of strategies per time, or none");
   intensity("--intensity-kind", per_kind,
-            "The same of each kind: reconfigurations, lifecycle changes, restarts of processes");
-  intensity("--intensity-component", per_component, "The same at each component");
+            "The same for each kind: reconfigurations, lifecycle changes, process restarts");
+  intensity("--intensity-component", per_component, "The same for each component");
   intensity("--restarts", restarts,
-            "A component is restarted at most so often in such a time, whatever its failures; "
-            "beyond, a person must look");
+            "Limit of restarts of a component per time; beyond, a person must look");
   time("--backoff", backoff_seconds,
-       "The time between two restarts of a component, doubled with each; 0: no back-off");
-  time("--backoff-most", backoff_most_seconds, "At most so long");
+       "Back-off between restarts of a component, doubled each time; 0: none");
+  time("--backoff-most", backoff_most_seconds, "Upper limit of the back-off");
   time("--healthy", healthy_seconds,
-       "A failure that stayed away, and a component that was well, for so long is proven "
-       "well: only then is learned from it, and attempts are counted anew");
+       "Time without a failure that proves a recovery; then culprit learns from it, and resets the "
+       "count of attempts");
   command
-      .add_option("--storm", storm_percent,
-                  "Stop acting when so many percent of the components are ill and nothing explains "
-                  "it; 0: never")
+      .add_option(
+          "--storm", storm_percent,
+          "Stop acting if this percentage of components fails without a common cause; 0: never")
       ->check(CLI::Range(0, 100))
       ->capture_default_str()
       ->group(kGroup);
   command
       .add_flag("--no-evidence", no_evidence,
-                "For the silence of others, also redeploy what runs and publishes")
+                "Allow redeploying a running component when only other topics are silent")
       ->group(kGroup);
   command
       .add_flag("--revive", revive,
-                "Start a launch again that ended within 2 s of a crash (on_exit=Shutdown())")
+                "Restart a launch that ended within 2 s of a crash (on_exit=Shutdown())")
       ->group(kGroup);
 }
 

@@ -31,7 +31,7 @@ struct GovernorOptions {
   // An error: an intensity that is none.
   Expected<Governor::Options> options() const;
 
-  // For the journal. What is missing there was as recommended, but for `restarts`: not bounded.
+  // For the journal. A missing field has the recommended value, but `restarts` is unlimited.
   Json to_json() const;
   static GovernorOptions from_json(const Json& json);
 };

@@ -223,15 +223,14 @@ int show_graph(const GraphOptions& options) {
 
 void add_graph(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<GraphOptions>();
-  CLI::App* command =
-      app.add_subcommand("graph",
-                         "Show the live robot: its nodes, and who depends on whom; or what a rule "
-                         "file says of it");
-  auto* rules = command
-                    ->add_option("RULES", options->rules,
-                                 "A rule file: show its components, what it declares of who "
-                                 "depends on whom, and its rules, without a robot")
-                    ->type_name("FILE");
+  CLI::App* command = app.add_subcommand(
+      "graph", "Show the nodes and dependencies of the live robot, or of a rule file");
+  auto* rules =
+      command
+          ->add_option(
+              "RULES", options->rules,
+              "Show this rule file's components, declared dependencies and rules, without a robot")
+          ->type_name("FILE");
   auto* json = command->add_flag("--json", options->json, "As one JSON object");
   command
       ->add_flag("--dot", options->dot, "For Graphviz: culprit graph --dot | dot -Tsvg > robot.svg")

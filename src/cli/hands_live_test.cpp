@@ -73,7 +73,7 @@ TEST_F(Hands, SeeAndSteerARunningCulprit) {
   EXPECT_THAT(status_says("all is well"), HasSubstr("two_cameras: all is well"));
   EXPECT_EQ(ended({"status"}).code, 0);
 
-  // What it asks for is approved by name.
+  // A repair that awaits approval is approved by name.
   camera.signal(SIGKILL);
   camera.wait();
   EXPECT_THAT(status_says("culprit approve"),
@@ -94,7 +94,7 @@ TEST_F(Hands, SeeAndSteerARunningCulprit) {
   EXPECT_EQ(refused.code, 1);
   EXPECT_THAT(refused.said, HasSubstr("paused"));
 
-  // One that is killed has no last word, and nobody takes its silence for one.
+  // A killed culprit reports no end, and its silence counts for none.
   run_->signal(SIGKILL);
   run_->wait();
   const Ended dead = ended({"resume"});

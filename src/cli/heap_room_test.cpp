@@ -9,7 +9,7 @@
 namespace culprit::cli {
 namespace {
 
-// Of this process, in MiB.
+// Memory of this process, in MiB.
 long resident() {
   long size = 0;
   long pages = 0;

@@ -49,7 +49,7 @@ std::string answer_with(const std::string& body) {
          std::to_string(body.size()) + "\r\n\r\n" + body;
 }
 
-// What one of them sends when it may; empty: nothing.
+// The next data that one of them sends; empty: none.
 std::string next_piece(Habit habit) {
   switch (habit) {
     case Habit::kSilent:
@@ -106,8 +106,8 @@ std::string next_piece(Habit habit) {
   }
 }
 
-// /tmp and /run as only this process and its children see them: root's command looks through both for all culprits of the
-// machine, and would find those of other tests. Nothing without the right to.
+// Private /tmp and /run for this process and its children. Root's command looks through both for all culprits of the machine, and would find those of other
+// tests. Without the right to mount, it does nothing.
 class OwnFolders {
  public:
   OwnFolders() {
@@ -206,7 +206,7 @@ TEST_F(HostileNeighbours, DoNotDelayOrFalsifyAPause) {
   EXPECT_LT(longest, Duration(std::chrono::seconds(10)))
       << "one silent socket alone cost 5 s, and they are 50";
 
-  // To all, as root may say: the real one is told at once, and the others change nothing about that.
+  // To all, as root may say: the real one receives it at once, and the others do not delay it.
   const Ended all = ended({"pause", "--all"});
   EXPECT_EQ(all.code, 1) << "some did not answer";
   EXPECT_THAT(all.said, HasSubstr("culprit of yard (process " + std::to_string(run.pid())));

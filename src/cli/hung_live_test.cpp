@@ -1,6 +1,5 @@
-// A node whose only thread hangs in a callback. Its process runs, and so do the threads of its middleware: that its
-// topics are silent and that it answers nothing is all that tells it from one that is well. What is only slow, or held
-// by a debugger, is left alone. Times are the journal's.
+// A node whose only thread hangs in a callback. Its process runs, and so do the threads of its middleware: only its silent topics and unanswered requests
+// distinguish it from a healthy one. A node that is only slow, or held by a debugger, is left alone. Times are the journal's.
 #include <csignal>
 #include <fstream>
 #include <sys/ptrace.h>
@@ -85,7 +84,7 @@ RULE Silent
     EXPECT_EQ(rows().requests("lidar: stop process"), 0u) << rows().all();
   }
   Rows rows() const { return Rows(state_ + "/hung.journal"); }
-  // What was written once culprit has ended.
+  // The journal after culprit has ended.
   Rows rows_at_the_end() {
     run_->signal(SIGINT);
     EXPECT_EQ(run_->wait(), 0);
@@ -152,8 +151,8 @@ TEST_F(AHungNode, IsNotOneThatIsSlowOnceButWithinItsPauses) {
 TEST_F(AHungNode, IsNotOneThatAnswersLate) {
   watch("alive(lidar) == false || age(/lidar/value) > 400ms");
   stall("0.7");
-  EXPECT_TRUE(run_->prints("it is seen whether lidar still answers")) << run_->output();
-  EXPECT_TRUE(run_->prints("Silent went away")) << run_->output();
+  EXPECT_TRUE(run_->prints("culprit checks whether lidar still answers")) << run_->output();
+  EXPECT_TRUE(run_->prints("Silent cleared")) << run_->output();
   expect_left_alone();
 }
 
@@ -166,7 +165,7 @@ TEST_F(AHungNode, IsNotOneThatADebuggerHolds) {
   EXPECT_EQ(owners::state_letter(pid_), 't');
   waitpid(pid_, nullptr, __WALL);
   ptrace(PTRACE_DETACH, pid_, nullptr, nullptr);
-  EXPECT_TRUE(run_->prints("Silent went away")) << run_->output();
+  EXPECT_TRUE(run_->prints("Silent cleared")) << run_->output();
   EXPECT_THAT(run_->output(), Not(HasSubstr("lidar is lost")));
   EXPECT_EQ(pid_in(run_->output(), "lidar"), pid_);
 }

@@ -74,7 +74,7 @@ void add_import(CLI::App& app, int& exit_code) {
       "Convert a rule file of the paper's reference manager (BEGIN CONSTS, BEGIN RULES), or the "
       "JSON of culprit export");
   command->add_option("FILE", options->file, "The file to convert")->type_name("FILE")->required();
-  command->add_option("-o,--output", options->output, "Where to write the rules (default: stdout)")
+  command->add_option("-o,--output", options->output, "Output file (default: stdout)")
       ->type_name("FILE");
   command->callback([options, &exit_code] { exit_code = import_file(*options); });
 }

@@ -8,16 +8,16 @@
 #include "base/text_file.h"
 #include "cli/commands.h"
 #include "cli/journal_file.h"
-#include "incidents/incident_json.h"
-#include "incidents/incident_report.h"
-#include "incidents/incident_words.h"
-#include "incidents/regression.h"
+#include "incident_reports/incident_json.h"
+#include "incident_reports/incident_report.h"
+#include "incident_reports/incident_words.h"
+#include "incident_reports/regression.h"
 #include "terminal/console.h"
 
 namespace culprit::cli {
 namespace {
 
-using incidents::Incident;
+using incident_reports::Incident;
 
 constexpr double kNanosecondInSeconds = 1e-9;
 
@@ -43,9 +43,9 @@ void print_incident(const Incident& incident,
   for (const recorder::StoredRecording& each : recordings)
     names += "  " + each.path.filename().string();
   const auto began = static_cast<std::int64_t>(incident.began / kNanosecondInSeconds);
-  fmt::print("{:<10} {:<24} {:>12}  {:<24} {}{}\n", incident.id(), local_time(began),
-             incidents::lasting_text(incident.seconds), incidents::cause_of(incident),
-             incidents::outcome_of(incident), escape_controls(names));
+  fmt::print("{:<13} {:<24} {:>12}  {:<24} {}{}\n", incident.id, local_time(began),
+             incident_reports::lasting_text(incident.seconds), incident_reports::cause_of(incident),
+             incident_reports::outcome_of(incident), escape_controls(names));
 }
 
 int list_incidents(const IncidentOptions& options) {
@@ -60,19 +60,19 @@ int list_incidents(const IncidentOptions& options) {
   if (!path) return fail(path.error());
   const auto journal = journal::Reader::open(*path);
   if (!journal) return fail(journal.error());
-  auto found = incidents::incidents_of(*journal, since);
+  auto found = incident_reports::incidents_of(*journal, since);
   if (!found) return fail(found.error());
   const auto recordings = recorder::recordings_in(recordings_beside(options, *path));
   Json list = Json::array();
   if (!options.json && !found->incidents.empty())
-    fmt::print("{:<10} {:<24} {:>12}  {:<24} {}\n", "id", "when", "for", "cause",
+    fmt::print("{:<13} {:<24} {:>12}  {:<24} {}\n", "id", "when", "for", "cause",
                "how it ended, and its recordings");
   for (Incident& incident : found->incidents) {
     if (!incident.is_over)
       incident.seconds = std::max(incident.seconds, found->newest - incident.began);
-    const auto own = incidents::recordings_of(incident, recordings);
+    const auto own = incident_reports::recordings_of(incident, recordings);
     if (options.json) {
-      list.push_back(incidents::to_json(incident, own));
+      list.push_back(incident_reports::to_json(incident, own));
     } else {
       print_incident(incident, own);
     }
@@ -82,14 +82,14 @@ int list_incidents(const IncidentOptions& options) {
                                 {"oldest", found->oldest},
                                 {"incidents", std::move(list)}}));
   } else if (found->incidents.empty()) {
-    fmt::print("nothing went wrong{}, as far as {} tells\n",
+    fmt::print("no incidents{} in {}\n",
                options.since.empty() ? "" : " in the last " + options.since, path->string());
   }
   return kOk;
 }
 
 // {"name", "about", "unit", "limits", "points": [[seconds since 1970, value] …]}
-Json curve_as_json(const incidents::Curve& curve) {
+Json curve_as_json(const incident_reports::Curve& curve) {
   Json points = Json::array();
   for (const auto& point : curve.points)
     points.push_back({kNanosecondInSeconds * static_cast<double>(point.at), point.value});
@@ -100,23 +100,23 @@ Json curve_as_json(const incidents::Curve& curve) {
           {"points", std::move(points)}};
 }
 
-Json report_as_json(const incidents::PageContent& content,
+Json report_as_json(const incident_reports::PageContent& content,
                     const std::vector<recorder::StoredRecording>& recordings) {
-  Json json =
-      incidents::to_json(content.incident, incidents::recordings_of(content.incident, recordings));
+  Json json = incident_reports::to_json(
+      content.incident, incident_reports::recordings_of(content.incident, recordings));
   json["robot"] = content.robot;
   json["events"] = content.events;
   json["curves"] = Json::array();
   json["remarks"] = content.remarks;
   if (!content.curves) return json;
-  for (const incidents::Curve& curve : content.curves->curves)
+  for (const incident_reports::Curve& curve : content.curves->curves)
     json["curves"].push_back(curve_as_json(curve));
   for (const std::string& each : content.curves->remarks) json["remarks"].push_back(each);
   return json;
 }
 
 int write_incident(const IncidentOptions& options) {
-  if (!incidents::began_by_id(options.id))
+  if (!incident_reports::began_by_id(options.id))
     return fail(
         "'" + printable(options.id) + "' is no id of an incident; culprit incident lists them",
         kUsage);
@@ -125,14 +125,14 @@ int write_incident(const IncidentOptions& options) {
   const auto journal = journal::Reader::open(*path);
   if (!journal) return fail(journal.error());
   const std::filesystem::path recordings = recordings_beside(options, *path);
-  const auto content = incidents::report_of(*journal, options.id, recordings,
-                                            kNanosecondInSeconds * static_cast<double>(wall_now()));
+  const auto content = incident_reports::report_of(
+      *journal, options.id, recordings, kNanosecondInSeconds * static_cast<double>(wall_now()));
   if (!content) return fail(content.error());
   if (!*content)
     return fail("there is no incident '" + options.id + "' in '" + path->string() +
                 "'; culprit incident --journal '" + path->string() + "' lists them");
   if (!options.json || !options.output.empty()) {
-    const auto written = write_text(options.output, incidents::incident_page(**content));
+    const auto written = write_text(options.output, incident_reports::incident_page(**content));
     if (!written) return fail(written.error());
   }
   if (options.json)
@@ -150,8 +150,8 @@ int make_test(const IncidentOptions& options) {
   if (!path) return fail(path.error());
   const auto journal = journal::Reader::open(*path);
   if (!journal) return fail(journal.error());
-  const auto made = incidents::export_test(*journal, options.id, recordings_beside(options, *path),
-                                           options.export_test);
+  const auto made = incident_reports::export_test(
+      *journal, options.id, recordings_beside(options, *path), options.export_test);
   if (!made) return fail(made.error());
   say(stderr, "culprit: {0} expects {1}; run it: culprit test {0}\n", made->test.string(),
       made->expectations == 1 ? "one thing" : fmt::format("{} things", made->expectations));
@@ -162,26 +162,25 @@ int make_test(const IncidentOptions& options) {
 
 void add_incident(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<IncidentOptions>();
-  CLI::App* command = app.add_subcommand(
-      "incident",
-      "List the times that the robot was not well; or write one as an HTML file that needs nothing "
-      "else, with plots of what was recorded meanwhile");
+  CLI::App* command = app.add_subcommand("incident",
+                                         "List the robot's incidents; or write one as a "
+                                         "self-contained HTML file, with plots of its recordings");
   CLI::Option* id =
-      command->add_option("ID", options->id, "Which, as the list says (default: list them)");
+      command->add_option("ID", options->id, "The id from the list (default: list them)");
   options->journal.add_to(*command);
   command
       ->add_option("--record-folder", options->recordings,
-                   "Where the recordings are (default: recordings beside the journal)")
+                   "Folder of the recordings (default: recordings beside the journal)")
       ->type_name("FOLDER");
-  command->add_option("-o,--output", options->output, "Where to write the file (default: stdout)")
+  command->add_option("-o,--output", options->output, "Output file (default: stdout)")
       ->type_name("FILE")
       ->needs(id);
   command
       ->add_option("--since", options->since,
-                   "List those of so long ago until now, and what lasted then: 10min, 2h")
+                   "Only incidents of this past time, and those that lasted then: 10min, 2h")
       ->excludes(id);
   command->add_flag("--json", options->json,
-                    "The list, or the incident with what happened and was recorded, as JSON");
+                    "The list, or the incident with its events and recordings, as JSON");
   command
       ->add_option("--export-test", options->export_test,
                    "Cut its recording, and write it with its rules and a test below this folder")

@@ -80,7 +80,7 @@ Expected<init::Sighting> look(const InitOptions& options) {
   return seen;
 }
 
-// What was written, in a sentence, and what to do next.
+// Reports the written file in a sentence, with the next step.
 void advise(const std::string& file, const RuleSet& rules) {
   say(stderr,
       "culprit: {} has {} components and {} rules. Read it, then try it:\n"
@@ -243,7 +243,7 @@ Expected<ParameterUpdate> parameter_update(
   return update;
 }
 
-// Nothing is written over what somebody changed meanwhile.
+// A file that was changed meanwhile is not overwritten.
 Expected<void> write_parameters(const ParameterUpdate& update) {
   if (update.after.empty()) return {};
   std::error_code error;
@@ -322,10 +322,10 @@ int update_rules(const InitOptions& options) {
 
 void add_init(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<InitOptions>();
-  CLI::App* command = app.add_subcommand(
-      "init",
-      "Draft a rule file from a live robot that is well: its components, how they are started, and "
-      "how long their topics pause. Changes nothing on the robot");
+  CLI::App* command =
+      app.add_subcommand("init",
+                         "Draft a rule file from a healthy live robot: its components, their start "
+                         "commands, and the periods of their topics. Changes nothing on the robot");
   add_seconds(*command, "--for", options->seconds, "How long to watch it", 5, 3600);
   command
       ->add_option("-o,--output", options->output,
@@ -333,20 +333,19 @@ void add_init(CLI::App& app, int& exit_code) {
                    "of --update")
       ->type_name("FILE");
   command
-      ->add_option(
-          "--launch", options->launch_dump,
-          "How composed nodes are loaded, and what is started again: what play_launch dumps of "
-          "the robot's launch file (system_model.yaml, or record.json)")
+      ->add_option("--launch", options->launch_dump,
+                   "play_launch's dump of the robot's launch file (system_model.yaml or "
+                   "record.json), for composed and respawned nodes")
       ->type_name("FILE");
-  command->add_flag("--pack", options->packs,
-                    "Include the packs of rules that fit what is found (docs/packs.md), with the "
-                    "rates that were measured");
+  command->add_flag(
+      "--pack", options->packs,
+      "Include the rule packs that fit the robot (docs/packs.md), with the measured rates");
   command
       ->add_option(
           "--update", options->update,
-          "Bring this rule file up to the robot, and show how as a unified diff: what is new is "
-          "added, what a draft wrote and no longer fits is replaced, and what a person wrote "
-          "stays. Writes nothing without -o, which may name the same file")
+          "Update this rule file to the robot, and show the changes as a unified diff. New parts "
+          "are added, unchanged drafted parts are replaced if they no longer fit, and lines "
+          "written by people stay. Writes only with -o, which may name the same file")
       ->type_name("FILE");
   CLI::Option* bags =
       command

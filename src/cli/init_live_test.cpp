@@ -1,4 +1,4 @@
-// `init` where there is nothing to draft. What a draft is good for: first_hour_live_test.cpp.
+// `init` where there is nothing to draft. Drafts are tested in first_hour_live_test.cpp.
 #include <filesystem>
 
 #include <gmock/gmock.h>

@@ -89,6 +89,11 @@ std::string log_line(const journal::Entry& entry) {
     text = fmt::format("{} with {}: went away {:g} times, stayed {:g} times",
                        journal::text_of(body, "effect"), journal::text_of(body, "cause"),
                        journal::number_of(body, "cleared"), journal::number_of(body, "stayed"));
+  if (text.empty() && body.contains("incident")) {
+    const std::string how = journal::text_of(body, "how");
+    text = fmt::format("{}: {}", journal::text_of(body, "incident"),
+                       how.empty() ? journal::text_of(body, "headline") : how);
+  }
   if (text.empty() && body.contains("lifecycle"))
     text = fmt::format("{} is to be {}", journal::text_of(body, "component"),
                        journal::text_of(body, "lifecycle"));

@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// The camera takes its time to come up, and whoever restarts it can be killed meanwhile.
+// The camera takes its time to come up, and culprit can be killed during the restart.
 constexpr const char* kJournalRules = R"(
 ROBOT one_camera
 COMPONENT camera NODE /managed_subsystem/camera LAUNCH "sunset-node camera"

@@ -1,4 +1,4 @@
-// What formatting changes, as a unified diff.
+// The effect of formatting, as a unified diff.
 //
 // Formatting keeps the lines of a text and their order; it changes the blanks within them and
 // leaves out blank lines. So which lines belong together is known, and nothing has to be searched.

@@ -21,7 +21,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-// What the plainest reader of a diff makes of `before`, holding it to what the diff says of it.
+// Applies a diff as the plainest reader would, and checks its context against `before`.
 std::string patched(const std::string& before, const std::string& diff) {
   const auto olds = lines_of(before);
   std::vector<std::string> edits = lines_of(diff);

@@ -1,4 +1,4 @@
-// Who says what a running culprit has to say.
+// The listeners that report what a running culprit does.
 #pragma once
 
 #include <memory>

@@ -8,7 +8,7 @@
 
 namespace culprit::cli {
 
-// Reads and checks a rule file. Prints what is wrong with it to stderr; null if that are errors.
+// Reads and checks a rule file. Prints its mistakes to stderr; null if any is an error.
 std::unique_ptr<const RuleSet> load_rules(const std::string& path,
                                           Strictness strictness = Strictness::kLenient);
 

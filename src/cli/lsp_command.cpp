@@ -103,7 +103,7 @@ void add_lsp(CLI::App& app, const std::string& version, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "lsp", "Serve an editor: the Language Server Protocol on standard input and output");
   command->add_flag("--robot", options->robot,
-                    "Show also what the live robot has: its names, values, and what it has not");
+                    "Also show the live robot's names and values, and names that it lacks");
   command
       ->add_option("--message-path", options->message_path,
                    "Folders with .msg files: <folder>/<package>/msg/<Type>.msg")

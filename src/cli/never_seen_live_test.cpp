@@ -83,8 +83,8 @@ TEST_F(NeverSeen, WhatDiedWithCulpritIsKnownToHaveDied) {
   EXPECT_EQ(second.wait(), 0);
 }
 
-// Which of two nodes a component without NODE is, nobody can say: none of them is touched. Who sees
-// the marker sees the second arm, too: they are one participant.
+// If two nodes fit a component without NODE, neither is touched. An observer of the marker also
+// sees the second arm: they are one participant.
 TEST_F(NeverSeen, ANameThatTwoNodesHaveIsActedOnByNobody) {
   const std::string domain = std::to_string(ros2::options_from_environment()->domain);
   TestProgram first(world, {"ros2_peer_node", domain, "/r1/arm"});

@@ -1,4 +1,4 @@
-// What people order of a running culprit from a terminal: pause, resume, silence, approve, refuse,
+// Orders to a running culprit from a terminal: pause, resume, silence, approve, refuse, propose,
 // run-strategy.
 #include <algorithm>
 #include <functional>
@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "base/closest.h"
+#include "base/duration_words.h"
 #include "base/live_clock.h"
 #include "base/name_grammar.h"
 #include "cli/commands.h"
@@ -127,19 +128,58 @@ int order(const OrderOptions& options, const MakeOrder& make) {
   if (options.json)
     say(stdout, "{}\n",
         to_line({{"orders", list}, {"others", here->others}, {"not_meant", here->not_meant}}));
-  // Somebody may have meant one of these.
+  // The user may have meant one of these.
   for (const auto* others : {&here->others, &here->not_meant}) {
     for (const std::string& other : *others)
-      say(stderr, "culprit: not told: {}\n", escape_controls(other));
+      say(stderr, "culprit: not asked: {}\n", escape_controls(other));
   }
   return is_all_done && (here->others.empty() || !all) ? kOk : kFailed;
+}
+
+// "rule Slow until 12 min from now, by ada: maintenance"
+std::string silence_line(const Json& silence, double now) {
+  const bool is_rule = silence.contains("rule");
+  std::string line = (is_rule ? "rule " : "component ") +
+                     web::text_of(silence, is_rule ? "rule" : "component").value_or("");
+  if (silence.contains("until") && silence["until"].is_number())
+    line += ", for another " +
+            in_words(from_seconds(std::max(silence["until"].get<double>() - now, 0.0)));
+  const std::string author = web::text_of(silence, "author").value_or("");
+  const std::string reason = web::text_of(silence, "reason").value_or("");
+  if (!author.empty()) line += ", by " + author;
+  return reason.empty() ? line : line + ": " + reason;
+}
+
+// What the culprits leave alone.
+int list_silences(const OrderOptions& options) {
+  auto here = culprits_here(options.which);
+  if (!here) return fail(here.error(), kUsage);
+  if (here->answering.empty()) return fail(none_to_ask(*here));
+  Json list = Json::array();
+  for (const RunningCulprit& culprit : here->answering) {
+    const auto control = culprit.client.get("/api/control", web::LocalClient::kLargeAnswer);
+    const auto state = culprit.client.get("/api/state", web::LocalClient::kLargeAnswer);
+    if (!control || !state)
+      return fail(culprit.name() +
+                  " does not answer: " + (control ? state.error() : control.error()));
+    const Json silences = control->value("silences", Json::array());
+    list.push_back({{"process", culprit.process}, {"silences", silences}});
+    if (options.json) continue;
+    const double now = state->is_object() ? state->value("t", 0.0) : 0.0;
+    say(stdout, "{}: {}\n", culprit.name(),
+        silences.empty() ? "nothing is silenced" : "these are left alone");
+    for (const Json& silence : silences)
+      say(stdout, "  {}\n", escape_controls(silence_line(silence, now)));
+  }
+  if (options.json) say(stdout, "{}\n", to_line(list));
+  return kOk;
 }
 
 CLI::App* add_order(CLI::App& app, int& exit_code, const char* name, const char* description,
                     MakeOrder make, const std::shared_ptr<OrderOptions>& options) {
   CLI::App* command = app.add_subcommand(name, description);
   command->add_option("--reason", options->reason, "Why, for the record");
-  command->add_flag("--json", options->json, "What became of it, as a JSON document");
+  command->add_flag("--json", options->json, "Print the result as a JSON document");
   options->which.add_to(*command);
   command->callback(
       [options, make = std::move(make), &exit_code] { exit_code = order(*options, make); });
@@ -196,36 +236,45 @@ void add_orders(CLI::App& app, int& exit_code) {
   const auto make = [] { return std::make_shared<OrderOptions>(); };
   auto options = make();
   CLI::App* pause = add_order(app, exit_code, "pause",
-                              "Let a running culprit change nothing more, until it is resumed",
+                              "Pause a running culprit: it changes nothing until it is resumed",
                               plain("pause"), options);
   options->which.add_all_to(*pause);
-  add_order(app, exit_code, "resume", "Let a culprit that is paused go on", plain("resume"),
-            make());
+  add_order(app, exit_code, "resume", "Resume a paused culprit", plain("resume"), make());
   add_order(app, exit_code, "revive",
-            "Let a running culprit start the components again that a person ended", plain("revive"),
+            "Have a running culprit restart the components that a person ended", plain("revive"),
             make());
   add_end_started(app, exit_code);
 
   options = make();
-  CLI::App* silence = add_order(
-      app, exit_code, "silence",
-      "Let a running culprit leave a component, or a rule, alone. It is watched all the same",
-      silence_of, options);
-  silence->add_option("NAME", options->name, "A component or a rule")->required();
+  CLI::App* silence =
+      add_order(app, exit_code, "silence",
+                "Have a running culprit leave a component or a rule alone. It is still watched",
+                silence_of, options);
+  silence->add_option("NAME", options->name, "A component or a rule; list: what is left alone now")
+      ->type_name("NAME")
+      ->required();
   auto* lasts = add_seconds(*silence, "--for", options->seconds,
-                            "For so long (default: until it is lifted)", 1, 7 * 24 * 3600)
+                            "Duration (default: until it is lifted)", 1, 7 * 24 * 3600)
                     ->default_str("");
-  silence->add_flag("--lift", options->lifts, "It is left alone no longer")->excludes(lasts);
+  silence->add_flag("--lift", options->lifts, "Lift the silence")->excludes(lasts);
+  silence->callback([options, &exit_code] {
+    const bool is_list = options->name == "list" && !options->lifts;
+    exit_code = is_list ? list_silences(*options) : order(*options, silence_of);
+  });
 
   for (const auto& [word, call, description] :
        {std::tuple("approve", "approve",
-                   "Let a running culprit do what it asks for (run --approve)"),
+                   "Approve the strategy that a running culprit proposes (run --approve)"),
         std::tuple("refuse", "refuse",
-                   "Let a running culprit not do what it asks for, but the next best"),
-        std::tuple("run-strategy", "run", "Let a running culprit carry out a strategy now")}) {
+                   "Reject the proposed strategy; culprit proposes the next one"),
+        std::tuple("propose", "propose",
+                   "Propose a strategy for a present failure. It begins once a person approves it "
+                   "(run --approve)"),
+        std::tuple("run-strategy", "run", "Have a running culprit carry out a strategy now")}) {
     options = make();
     add_order(app, exit_code, word, description, about_strategy(call), options)
         ->add_option("STRATEGY", options->name, "As culprit status names it: Rule.strategy")
+        ->type_name("STRATEGY")
         ->required();
   }
 }

@@ -1,5 +1,5 @@
-// Who starts and ends a component is asked, and never fought: nodes that a real systemd runs, and
-// culprit as users run it.
+// culprit asks the owner of a component, and never works against it: nodes that a real systemd
+// runs, and culprit as users run it.
 #include <csignal>
 #include <fstream>
 #include <thread>
@@ -58,7 +58,7 @@ struct NodesOfARealSystemd : testing::Test {
     }
     return 0;
   }
-  // What was broken works again, by the same owner and started once.
+  // The failed component works again, under the same owner and started once.
   void expect_healed(const TestProgram& culprit, int old) {
     EXPECT_TRUE(culprit.prints("LidarGone resolved by lidar_redeploy")) << culprit.output();
     const int now = another(culprit, old);

@@ -72,8 +72,8 @@ bool all_is_known(const Knowledge& knowledge) {
   return true;
 }
 
-// Until discovery has settled and all that triggers read is known (or has had as long again to
-// come), and as long as rules wait until they call something a failure.
+// Runs until discovery has settled and all inputs of triggers are known (or as long again has
+// passed). Then it runs as long as rules wait before they report a failure.
 void watch(Manager& manager, live::LiveRobot& robot, const RuleSet& rules, Duration discovery,
            const std::atomic<bool>& stop) {
   Runtime runtime(manager, robot);
@@ -149,13 +149,13 @@ int plan(const PlanOptions& options) {
 void add_plan(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<PlanOptions>();
   CLI::App* command = app.add_subcommand(
-      "plan", "Show what would be decided now, why, and what would have changed the decision");
+      "plan", "Show the decision that would be made now, its reasons, and what would change it");
   command->add_option("RULES", options->rules, "The rule file")->type_name("FILE")->required();
-  CLI::Option_group* what = command->add_option_group("What is the case");
-  what->add_option("--state", options->state, "A file that says how the robot is (docs/plan.md)")
+  CLI::Option_group* what = command->add_option_group("State of the robot");
+  what->add_option("--state", options->state, "File with the robot's state (docs/plan.md)")
       ->type_name("FILE");
   what->add_flag("--robot", options->robot,
-                 "The live robot is watched for a moment; nothing is changed on it");
+                 "Watch the live robot for a moment, without changing it");
   what->require_option(1);
   command->add_option("--format", options->format, "text for people, json for programs")
       ->check(CLI::IsMember({"text", "json"}))
@@ -163,7 +163,7 @@ void add_plan(CLI::App& app, int& exit_code) {
   command->add_flag_function(
       "--json", [options](std::int64_t) { options->format = "json"; }, "The same as --format json");
   add_seconds(*command, "--settle", options->settle_seconds,
-              "With --robot: the time that is given to discovery", 0, 3600);
+              "With --robot: grace period for discovery", 0, 3600);
   command
       ->add_option("--message-path", options->message_path,
                    "Folders with .msg files: <folder>/<package>/msg/<Type>.msg")

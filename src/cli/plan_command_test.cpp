@@ -114,7 +114,7 @@ TEST_F(Plan, OfARobotThatIsWellNamesWhatIsNearest) {
   ASSERT_EQ(plan_for(std::string(kAllTopics) + "SIGNAL segmentation_entropy            0.05\n"),
             kOk);
   EXPECT_EQ(out,
-            "Nothing waits for a decision.\n"
+            "No failure awaits a decision.\n"
             "Nearest to a failure:\n"
             "  SegmentationBad: segmentation_entropy is 0.05, compared with 0.06\n"
             "Unknown, and so no failure yet: autofocus_needed\n");
@@ -151,7 +151,8 @@ TEST_F(Plan, ChoosesNothingWhileTheInterlockIsClosed) {
   }
 }
 
-// What run would not do for want of evidence is not planned either; what it would do instead is.
+// A strategy that run would not choose for lack of evidence is not planned; the one it would choose
+// is.
 TEST_F(Plan, HearsTheEvidence) {
   const std::string rules = sunset_with(
       "RULE SegmentationSuspected\n  POLICIES ERROR\n"
@@ -164,8 +165,9 @@ TEST_F(Plan, HearsTheEvidence) {
                      rules),
             kOk)
       << err;
-  EXPECT_THAT(out, HasSubstr("SegmentationSuspected.guess is held back: camera runs and publishes "
-                             "/managed_subsystem/rgb_camera; what is silent is not its"));
+  EXPECT_THAT(out,
+              HasSubstr("SegmentationSuspected.guess is held back: camera runs and publishes "
+                        "/managed_subsystem/rgb_camera; it does not publish the silent topic"));
   EXPECT_THAT(out, Not(HasSubstr("would redeploy camera")));
 }
 

@@ -119,10 +119,10 @@ int write_policy(PolicyOptions& options) {
 
 void add_policy(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<PolicyOptions>();
-  CLI::App* command = app.add_subcommand(
-      "policy",
-      "Write what a rule file needs to be allowed, and no more: culprit's permissions on a secured "
-      "DDS domain (SROS2), or the settings of its systemd unit");
+  CLI::App* command =
+      app.add_subcommand("policy",
+                         "Write the minimal permissions for a rule file: culprit's permissions on "
+                         "a secured DDS domain (SROS2), or the settings of its systemd unit");
   command->add_option("RULES", options->rules, "The rule file")->type_name("FILE")->required();
   command
       ->add_option("--format", options->format,
@@ -130,16 +130,17 @@ void add_policy(CLI::App& app, int& exit_code) {
                    "openssl; systemd: a drop-in for packaging/culprit.service")
       ->check(CLI::IsMember({"sros2", "permissions", "systemd"}))
       ->capture_default_str();
-  command->add_option("--enclave", options->enclave,
-                      "Whose keys culprit has (default: ROS_SECURITY_ENCLAVE_OVERRIDE, /culprit)");
-  command->add_option("--days", options->days, "How long the permissions are valid, from today on")
+  command->add_option(
+      "--enclave", options->enclave,
+      "The enclave with culprit's keys (default: ROS_SECURITY_ENCLAVE_OVERRIDE, /culprit)");
+  command->add_option("--days", options->days, "Validity of the permissions in days, from today")
       ->check(CLI::Range(1, 36500))
       ->capture_default_str();
   command->add_flag("--improvise", options->improvise, "For culprit run --improvise");
   add_snapshot(*command, options->snapshot_of, "For culprit run --snapshot");
   command->add_flag("--other-users", options->other_users,
                     "systemd: the robot's nodes run as other users than culprit");
-  command->add_option("-o,--output", options->output, "Where to write it (default: stdout)")
+  command->add_option("-o,--output", options->output, "Output file (default: stdout)")
       ->type_name("FILE");
   command->callback([options, &exit_code] { exit_code = write_policy(*options); });
 }

@@ -1,4 +1,4 @@
-// culprit policy as a user runs it. What it allows on DDS is ros2/policy_test.cpp's.
+// culprit policy as a user runs it. The policy's effect on DDS is tested in ros2/policy_test.cpp.
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -84,7 +84,7 @@ TEST_F(PolicyCommand, ImprovisedRulesNeedMore) {
   EXPECT_THAT(written, HasSubstr("/camera/change_state"));
 }
 
-// The settings for rules about a camera and a base, of which each does what is said here.
+// The settings for rules about a camera and a base, each with its action.
 std::string settings(const std::string& camera, const std::string& base,
                      const UnitOptions& options = {"/etc/culprit/robot.rules"}) {
   const std::string rules =
@@ -118,7 +118,7 @@ TEST(UnitSettings, WhatStartsNothingCanExecuteNothing) {
 TEST(UnitSettings, WhatEndsNothingNeedNotBeAnybody) {
   EXPECT_THAT(settings("restart", "restart"), HasSubstr("DynamicUser=yes"));
   EXPECT_THAT(settings("start", "restart"), Not(HasSubstr("DynamicUser")));
-  EXPECT_THAT(settings("stop", "restart"), HasSubstr("User= has to be whoever runs them: camera."));
+  EXPECT_THAT(settings("stop", "restart"), HasSubstr("User= must be their user: camera."));
 }
 
 TEST(UnitSettings, WhatSystemdStartsAndEndsTakesARightAndNothingElse) {

@@ -37,11 +37,10 @@ void add_record(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<RecordOptions>();
   CLI::App* command = app.add_subcommand(
       "record",
-      "Let a running culprit that records (run --record) write a recording now, of the last "
-      "seconds and the next ones");
-  command->add_option("--name", options->name, "What it is called, beside when it was")
+      "Have a running culprit (run --record) write a recording of the last and the next seconds");
+  command->add_option("--name", options->name, "Name of the recording, beside its time")
       ->capture_default_str();
-  command->add_flag("--json", options->json, "Where it is, as a JSON document");
+  command->add_flag("--json", options->json, "Print the recording's path as a JSON document");
   options->which.add_to(*command);
   command->callback([options, &exit_code] { exit_code = record(*options); });
 }

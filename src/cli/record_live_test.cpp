@@ -62,7 +62,7 @@ struct BlackBoxes : testing::Test {
   }
   std::string state() const { return (world.folder() / "state").string(); }
 
-  // `culprit record`, until a recording has what `topic` says: then all is heard.
+  // Repeats `culprit record` until a recording contains `topic`: then all topics are received.
   void wait_until_heard(const TestProgram& culprit, const char* topic) const {
     const Time end = live_now() + TestProgram::kPatience;
     while (true) {

@@ -15,7 +15,7 @@
 #include "cli/bag_words.h"
 #include "cli/commands.h"
 #include "cli/load_rules.h"
-#include "incidents/bag_page.h"
+#include "incident_reports/bag_page.h"
 #include "knowledge/describe.h"
 #include "replay/bag_replay.h"
 #include "terminal/console.h"
@@ -170,7 +170,7 @@ class BagOutput {
 };
 
 Expected<void> write_page(const BagReplayOptions& options, const RuleSet& rules) {
-  const auto page = incidents::bag_page(
+  const auto page = incident_reports::bag_page(
       rules, options.planner.planner(),
       {options.bag,
        ros2::message_directories(options.message_path, environment("AMENT_PREFIX_PATH")),

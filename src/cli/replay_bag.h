@@ -1,4 +1,4 @@
-// What rules would have decided about a recorded bag.
+// The decisions that rules would have made about a recorded bag.
 #pragma once
 
 #include <filesystem>

@@ -86,7 +86,7 @@ int repeat(const ReplayOptions& options, const journal::Reader& journal,
   return kFailed;
 }
 
-// What rules and a planner say to do: one line for each failure and each strategy.
+// The advice of rules and a planner: one line for each failure and each strategy.
 struct Advice {
   double at = 0;
   std::string what;
@@ -117,7 +117,7 @@ Expected<std::vector<Advice>> advice(replay::Recording& recording, const RuleSet
   return all;
 }
 
-// What is on one side only is marked, '-' as recorded or '+' as it would be.
+// A line of one side only is marked, '-' as recorded or '+' as it would be.
 struct AdviceLine {
   double at;
   char mark;
@@ -220,7 +220,7 @@ std::vector<Advice> advice(const replay::Hindsight& hindsight) {
   return all;
 }
 
-// What the rules would have said of the last while, beside what those said that ran then.
+// Compares these rules with those that ran, over the last while.
 int look_back(const ReplayOptions& options, const journal::Reader& journal, bool other_planner) {
   const auto age = parse_duration(options.since);
   if (!age) return fail("--since: " + age.error()), kUsage;

@@ -1,4 +1,5 @@
-// A running culprit and the nodes of its user: what they are told, and the orders that they give.
+// A running culprit and the nodes of its user: the reports that they receive, and the orders that
+// they give.
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
@@ -75,7 +76,7 @@ TEST_F(RosApiLive, TellsWhatBreaksAndHowItIsHealed) {
   EXPECT_TRUE(incidents.wait_for_one([&](const Json& incident) {
     return incident["state"] == constant("Incident", "STATE_RESOLVED");
   }));
-  // Nobody may order anything on a domain without keys.
+  // Without keys, no participant of the domain may give orders.
   EXPECT_EQ(
       panel.call("/culprit/pause", kPauseType, {{"author", "ann"}}, std::chrono::milliseconds(500)),
       nullptr);
@@ -88,7 +89,7 @@ TEST_F(RosApiLive, TellsWhatBreaksAndHowItIsHealed) {
 TEST_F(RosApiLive, ObeysAnyoneIfItIsToldTo) {
   const TestProgram camera(world, {"sunset-node", "camera"});
   auto culprit = run({"--orders-from-anyone"});
-  ASSERT_TRUE(culprit->prints("takes orders over DDS from whoever is on this domain"))
+  ASSERT_TRUE(culprit->prints("takes orders over DDS from any participant of this domain"))
       << culprit->output();
   ASSERT_TRUE(culprit->prints("camera is there")) << culprit->output();
   TestRosNode panel(options());
@@ -100,7 +101,7 @@ TEST_F(RosApiLive, ObeysAnyoneIfItIsToldTo) {
   EXPECT_TRUE(
       statuses.wait_for_one([](const Json& status) { return status["is_paused"] == true; }));
   EXPECT_TRUE(culprit->prints("people on the floor")) << culprit->output();
-  // The process that follows knows of it, and is told to go on.
+  // The next process knows of it, and receives the order to go on.
   culprit->signal(SIGKILL);
   culprit->wait();
   culprit = run({"--orders-from-anyone"});
@@ -137,7 +138,7 @@ struct SecuredRosApi : RosApiLive {
   ros2::TestKeystore keys;
 };
 
-// What `culprit policy` says, but for the lines that `leave_out` is in.
+// The output of `culprit policy` without the lines that contain `leave_out`.
 std::string permissions_for(const TestWorld& world, const std::string& leave_out) {
   const std::string file = (world.folder() / "permissions.xml").string();
   TestProgram policy(world, {"culprit", "policy", world.write("allowed.rules", kRosApiRules),
@@ -155,7 +156,7 @@ TEST_F(SecuredRosApi, WatchesWithThePermissionsOfAnOlderCulpritAndSaysWhatTheyLa
   keys.add("/culprit", permissions_for(world, "/culprit/status"));
   auto culprit = run();
   ASSERT_TRUE(culprit->prints("culprit status")) << culprit->output();
-  EXPECT_THAT(culprit->output(), HasSubstr("nodes are told nothing by ~/status"));
+  EXPECT_THAT(culprit->output(), HasSubstr("culprit does not publish ~/status"));
   EXPECT_THAT(culprit->output(), HasSubstr("do the permissions of the enclave /culprit allow it?"));
   culprit->signal(SIGINT);
   EXPECT_EQ(culprit->wait(), 0);

@@ -169,7 +169,7 @@ std::string in_dot(const std::string& text) {
   return quoted + '"';
 }
 
-// A rule may be called as a component is: they are told apart by what stands in front.
+// A rule may have the same name as a component: a prefix distinguishes them.
 std::string as_dot(const RuleGraph& graph) {
   std::string text = "digraph rules {\n  rankdir=LR;\n";
   const auto component = [&](ComponentId id) {

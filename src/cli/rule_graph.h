@@ -1,5 +1,5 @@
-// What a rule file says of its robot, as a graph: the components, who is declared to depend on whom, and what each rule
-// looks at and adapts. No robot is asked: who hears whom is not in a file.
+// A rule file as a graph: the components, their declared dependencies, and which components each rule reads and adapts. No robot is asked: subscriptions are
+// not in a file.
 #pragma once
 
 #include <optional>
@@ -25,7 +25,7 @@ struct RuleGraph {
   struct Rule {
     std::string name;
     Criticality criticality = Criticality::kNonCritical;
-    // Components, each once, ascending. A topic is of nobody until a robot runs.
+    // Components, each once, ascending. A topic has no publisher until a robot runs.
     std::vector<ComponentId> reads;  // whether they live, their lifecycle, their parameters
     std::vector<ComponentId> adapts;
     Place place;
@@ -41,7 +41,7 @@ RuleGraph graph_of(const RuleSet& rules, const Source& source);
 std::string as_text(const RuleGraph& graph);
 // {"components": [{name, node, declared, file, line, column}], "dependencies": [{consumer, producer}], "rules": [{name,
 // criticality, reads: [component], adapts: [component], file, line, column}]}. Lines and columns count from 1, columns in
-// characters. What is not UTF-8 becomes U+FFFD.
+// characters. Invalid UTF-8 becomes U+FFFD.
 std::string as_json(const RuleGraph& graph);
 // For Graphviz.
 std::string as_dot(const RuleGraph& graph);

@@ -67,7 +67,7 @@ Json results_as_json(const Totals& totals, const std::vector<rule_test::SuiteRep
   return all;
 }
 
-// Folders as the files in them. What cannot be found is said and counted.
+// Replaces folders by the files in them. A missing path is reported and counted.
 std::vector<std::string> files_of(const std::vector<std::string>& paths, Totals& totals) {
   std::vector<std::string> all;
   for (const std::string& path : paths) {
@@ -114,7 +114,7 @@ int run_tests(const TestOptions& options) {
 void add_test(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<TestOptions>();
   CLI::App* command = app.add_subcommand(
-      "test", "Run unit tests of rule files: what the manager does with a robot that is played");
+      "test", "Run unit tests of rule files: the manager's behaviour on a simulated robot");
   command->add_option("FILES", options->files, "Test files, and folders of *.test")
       ->type_name("FILE")
       ->required();

@@ -1,5 +1,4 @@
-// Tells people of faults while culprit runs, if they want to be told: what happens is looked at on the thread that
-// manages, and sent by others.
+// Sends alerts to people while culprit runs, if they want them: events are examined on the thread that manages, and sent by others.
 #pragma once
 
 #include <memory>

@@ -55,10 +55,10 @@ void add(std::vector<web::Route>& all, std::vector<web::Route> more) {
   for (web::Route& route : more) all.push_back(std::move(route));
 }
 
-// What a person waits for, at most.
+// The longest wait of a person.
 constexpr Duration kDiskAnswers = std::chrono::seconds(3);
 
-// What is asked and told from a terminal of this machine, and on the page.
+// The calls for terminals of this machine, and for the page.
 std::vector<web::Route> local_routes(web::Hub& hub, const web::Metrics& metrics,
                                      web::OrderDesk& orders, live::LiveRun& live,
                                      RunRecording* recording) {
@@ -106,7 +106,7 @@ Expected<std::unique_ptr<RunRecording>> open_recording(const RunOptions& options
                              session.robot.link.participant, session.robot.link.types});
 }
 
-// On a domain with keys whoever speaks is somebody that its owner vouches for. Empty: no orders are taken.
+// On a domain with keys, the owner of the keys vouches for every participant. Empty: no orders are taken.
 ros_api::OrderServices::Give orders_over_dds(const RunOptions& options,
                                              const live::LiveSession::Options& session,
                                              web::OrderDesk& desk, web::Hub& hub,
@@ -115,7 +115,8 @@ ros_api::OrderServices::Give orders_over_dds(const RunOptions& options,
   if (!has_keys && !options.takes_orders_from_anyone) return {};
   if (!has_keys)
     say(remarks,
-        "culprit: takes orders over DDS from whoever is on this domain (--orders-from-anyone)\n");
+        "culprit: takes orders over DDS from any participant of this domain "
+        "(--orders-from-anyone)\n");
   return [&desk, &hub](const Json& order) { return web::give_order(desk, hub, order); };
 }
 
@@ -250,10 +251,10 @@ int run(const RunOptions& options) {
 void add_run(CLI::App& app, const std::string& version, int& exit_code) {
   auto options = std::make_shared<RunOptions>();
   options->version = version;
-  CLI::App* command =
-      app.add_subcommand("run",
-                         "Watch a live robot and heal it until Ctrl-C.\nJoins the DDS domain that "
-                         "ROS_DOMAIN_ID and ROS_LOCALHOST_ONLY name. SIGHUP reloads the rules.");
+  CLI::App* command = app.add_subcommand("run",
+                                         "Watch a live robot and repair it until Ctrl-C.\n"
+                                         "Joins the DDS domain that ROS_DOMAIN_ID and "
+                                         "ROS_LOCALHOST_ONLY name. SIGHUP reloads the rules.");
   options->add_to(*command);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

@@ -11,11 +11,11 @@ namespace culprit::cli {
 
 void FleetOptions::add_to(CLI::App& command) {
   command.add_option("--fleet", address,
-                     "Share what is learned with other robots, in this PostgreSQL database "
+                     "Share outcomes with other robots in this PostgreSQL database "
                      "(postgresql://HOST/DATABASE, without a password; docs/fleet.md)");
-  command.add_option("--fleet-name", name, "What people call this robot (default: its host name)");
+  command.add_option("--fleet-name", name, "This robot's name for people (default: its host name)");
   command.add_option("--fleet-context", context,
-                     "Where or at what it works: what robots learn elsewhere does not count here");
+                     "Its place or task; outcomes of robots in other contexts do not count");
 }
 
 #ifdef CULPRIT_FLEET

@@ -1,5 +1,8 @@
 #include "cli/run_options.h"
 
+#include <algorithm>
+#include <cctype>
+
 #include "base/environment.h"
 #include "base/name_grammar.h"
 #include "live/robot_survey.h"
@@ -45,76 +48,95 @@ Expected<live::LiveSession::Options> RunOptions::session(const RuleSet& rule_set
   return out;
 }
 
+namespace {
+
+// "dry-run": "CULPRIT_DRY_RUN"
+std::string variable_of(const std::string& option) {
+  std::string name = "CULPRIT_" + option;
+  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) {
+    return c == '-' ? '_' : static_cast<char>(std::toupper(c));
+  });
+  return name;
+}
+
+}  // namespace
+
 void RunOptions::add_to(CLI::App& command) {
   command.add_option("RULES", rules, "The rule file")->type_name("FILE")->required();
-  command.add_flag("--dry-run", dry_run, "Say what would be done, and do nothing");
+  command.add_flag("--dry-run", dry_run, "Report decisions without carrying them out");
   command.add_flag("--launch", launch,
                    "Start components that are missing, by their LAUNCH commands, and bring their "
                    "lifecycle nodes up");
   command.add_flag("--improvise", improvise,
-                   "Also repair components that no rule adapts, by what they offer: restart, "
-                   "redeploy");
+                   "Also repair components without a rule, by restart or redeploy where possible");
   add_seconds(command, "--settle", settle_seconds,
-              "For so long, nothing is called missing because it was not seen", 0, 3600);
-  command.add_option("--state-dir", state_folder, "Where logs of started components go")
+              "Grace period for discovery; nothing is reported missing before it ends", 0, 3600);
+  command.add_option("--state-dir", state_folder, "Folder for logs of started components")
       ->type_name("FOLDER")
       ->default_str("~/.local/state/culprit");
-  auto* kept =
-      command
-          .add_option(
-              "--journal", journal,
-              "Where everything is written down (default: <robot>.journal in the state folder)")
-          ->type_name("FILE");
+  auto* kept = command
+                   .add_option("--journal", journal,
+                               "Journal file (default: <robot>.journal in the state folder)")
+                   ->type_name("FILE");
   auto* unkept =
-      command.add_flag("--no-journal", no_journal, "Write nothing down, and know nothing")
-          ->excludes(kept);
+      command.add_flag("--no-journal", no_journal, "Run without a journal")->excludes(kept);
   fleet.add_to(command);
   command.get_option("--fleet")->excludes(unkept);
   command
       .add_option("--lease-key", lease_key,
-                  "A file that only you can read, with a key that culprits on other machines "
-                  "share: they agree who manages the robot (docs/security.md)")
+                  "Private file with the key that culprits on other machines share, to agree on "
+                  "one manager (docs/security.md)")
       ->type_name("FILE");
   command
       .add_option("--message-path", message_path,
                   "Folders with .msg files: <folder>/<package>/msg/<Type>.msg")
       ->type_name("FOLDER");
   command.add_flag("--use-sim-time", use_sim_time,
-                   "The robot is simulated: nothing is judged while its /clock stands still");
+                   "The robot is simulated; judge nothing while its /clock stands still");
   command
       .add_option("--node-name", node_name,
-                  "What culprit's own node is called, where a culprit of another machine is "
-                  "called /culprit, too (default: culprit, or culprit_2 and so on beside others "
+                  "Name of culprit's own node (default: culprit; culprit_2 and so on beside others "
                   "of this machine)")
       ->check([](const std::string& name) {
         return is_valid_node_name(name) ? std::string() : "'" + name + "' is no name of a node";
       });
-  command.add_flag("--orders-from-anyone", takes_orders_from_anyone,
-                   "Take orders over DDS (~/pause, ~/run_strategy ...) on a domain without keys, "
-                   "too: whoever is on "
-                   "it can stop culprit, and have it restart nodes (docs/ros2-packages.md)");
-  command
-      .add_option("--forgetting", forgetting,
-                  "What was learned n outcomes ago weighs this to the n-th power; 1: nothing is "
-                  "forgotten")
+  command.add_flag(
+      "--orders-from-anyone", takes_orders_from_anyone,
+      "Take orders over DDS (~/pause, ~/run_strategy ...) also on a domain without keys, where any "
+      "participant can then pause culprit or have it restart nodes (docs/ros2-packages.md)");
+  command.add_option("--forgetting", forgetting, "Discount factor per outcome (1 = never forget)")
       ->check(CLI::Range(0.5, 1.0))
       ->capture_default_str();
-  command.add_flag("--json", json,
-                   "Print what happens as JSON, a document each line (docs/web.md); all else "
-                   "goes to the standard error output");
+  command.add_flag(
+      "--json", json,
+      "Print events as JSON, one document a line (docs/web.md); other output goes to stderr");
   command
-      .add_option("--alerts", alerts,
-                  "A file that only you can read, of where alerts go: to a webhook, or to a "
-                  "program (docs/alerts.md)")
+      .add_option(
+          "--alerts", alerts,
+          "Private file with the receivers of alerts: webhooks or programs (docs/alerts.md)")
       ->type_name("FILE");
   planner.add_to(command);
-  command.add_flag("--web", is_on_web, "Show in a browser what is seen, decided and done");
-  command.add_flag(
-      "--edit-rules", may_edit_commands,
-      "Let the page also change what the rules execute: LAUNCH, UNIT, call and the like");
+  command.add_flag("--web", is_on_web, "Show the robot, decisions and repairs in a browser");
+  command.add_flag("--edit-rules", may_edit_commands,
+                   "Let the page also change executed commands: LAUNCH, UNIT, call and the like");
   web.add_to(command);
   recording.add_to(command);
   governor.add_to(command);
+  // Before the variables are named: CULPRIT_CONFIG names the file.
+  command.add_option("--config", config, "Options in a file, as --print-config prints them")
+      ->type_name("FILE")
+      ->envname("CULPRIT_CONFIG")
+      ->configurable(false);
+  command
+      .add_flag("--print-config", prints_config,
+                "Print all options and their values as culprit.toml, and end")
+      ->configurable(false);
+  for (CLI::Option* option : command.get_options([](const CLI::Option* each) {
+         return each->get_configurable() && !each->get_lnames().empty();
+       })) {
+    if (option != command.get_help_ptr())
+      option->envname(variable_of(option->get_lnames().front()));
+  }
 }
 
 }  // namespace culprit::cli

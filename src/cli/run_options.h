@@ -17,6 +17,8 @@ namespace culprit::cli {
 struct RunOptions {
   std::string version;  // of culprit
   std::string rules;
+  std::string config;  // a file (cli/run_configuration.h); empty: there is none
+  bool prints_config = false;
   bool dry_run = false;
   bool launch = false;
   bool improvise = false;

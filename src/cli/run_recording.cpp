@@ -40,27 +40,26 @@ void RecordingOptions::add_to(CLI::App& command) {
       "--record", is_on,
       "Keep the last seconds of the robot's topics, and write a recording (MCAP) of each incident "
       "(docs/recording.md)");
-  add_seconds(command, "--record-before", before_seconds,
-              "What is recorded begins so long before a failure", 0, kMostSeconds);
+  add_seconds(command, "--record-before", before_seconds, "Start of a recording before the failure",
+              0, kMostSeconds);
   add_seconds(command, "--record-after", after_seconds,
-              "It ends so long after all is well again; after 5 min at the latest", 0, 300);
+              "End of a recording after the recovery; after 5 min at the latest", 0, 300);
   command
       .add_option("--record-topics", topics,
-                  "Only these topics: names, with * for anything, or with ! before them: all but "
-                  "these (default: all, large ones as far as there is memory for them)")
+                  "Topics to record, with * as wildcard, or ! to exclude (default: all; large ones "
+                  "within --record-budget)")
       ->type_name("TOPIC");
   add_bytes(command, "--record-budget", memory,
-            "The memory for what is kept; a quarter of it is for large messages", "200MB");
+            "Memory for recent messages; a quarter is for large ones", "200MB");
   add_bytes(command, "--record-disk", disk,
-            "What all recordings may have of the disk; the oldest goes first", "5GB");
+            "Disk space for all recordings; the oldest is deleted first", "5GB");
   command
       .add_option("--record-folder", folder,
-                  "Where recordings go (default: recordings in the state folder)")
+                  "Folder for recordings (default: recordings in the state folder)")
       ->type_name("FOLDER");
   add_snapshot(command, snapshot_of,
-               "Have this recorder's node write what it has in memory, about each incident: that "
-               "of 'ros2 bag record "
-               "--snapshot-mode' is /rosbag2_recorder (docs/recording.md)")
+               "Request a snapshot from this recorder at each incident; the one of 'ros2 bag "
+               "record --snapshot-mode' is /rosbag2_recorder (docs/recording.md)")
       ->group(kGroup);
   command.get_option("--record-budget")->check(CLI::Range(kLeastMemory, kMostMemory));
   for (CLI::Option* option : command.get_options()) {

@@ -14,7 +14,7 @@
 
 namespace culprit::cli {
 
-// --snapshot NODE: of whom snapshots are wanted (live/snapshots.h). `node` must live as long as `command`.
+// --snapshot NODE: the recorder that is asked for snapshots (live/snapshots.h). `node` must live as long as `command`.
 CLI::Option* add_snapshot(CLI::App& command, std::string& node, const std::string& what);
 
 struct RecordingOptions {
@@ -34,7 +34,7 @@ struct RecordingOptions {
   void add_to(CLI::App& command);
 };
 
-// What people should know of it, from any thread.
+// Reports remarks on the recording, from any thread.
 void say_of_recording(const std::string& text);
 
 class RunRecording {

@@ -116,7 +116,7 @@ void WhichCulprit::add_to(CLI::App& command) {
       .add_option("--domain", domain, "The one on this DDS domain (default: ROS_DOMAIN_ID, or 0)")
       ->check(CLI::Range(0, 232))
       ->group(kGroup);
-  command.add_option("--node-name", node_name, "The one whose own node is called so: culprit_2")
+  command.add_option("--node-name", node_name, "The one with this node name: culprit_2")
       ->group(kGroup);
   command
       .add_option("--user", user,

@@ -52,7 +52,7 @@ Expected<RunningCulprit> the_culprit(const WhichCulprit& which);
 
 // The culprits that one has to be chosen of, in lines.
 std::string several_to_choose(const CulpritsHere& here);
-// Why nobody can be asked, in lines.
+// Explains why no culprit can be asked, in lines.
 std::string none_to_ask(const CulpritsHere& here);
 
 // Time for all culprits together to say who they are.

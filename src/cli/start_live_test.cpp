@@ -1,5 +1,5 @@
-// What a person sees when culprit or its demonstration starts, and what becomes of both when that
-// person, or the terminal, is gone.
+// The output at the start of culprit or its demonstration, and the fate of both when the person or
+// the terminal is gone.
 #include <csignal>
 #include <thread>
 
@@ -81,7 +81,7 @@ TEST_F(Start, RunSaysWhatTheRobotHasOfTheRulesAndWhatNot) {
   EXPECT_THAT(plan.output(), HasSubstr("did you mean '/managed_subsystem/rgb_camera'?"));
 }
 
-// What it finds under a number in that /proc is not what it would signal under that number.
+// A PID in that /proc is another process in culprit's own namespace.
 TEST_F(Start, NothingIsManagedByTheProcOfAnotherNamespace) {
   TestProgram run(world, {"unshare", "--pid", "--fork", own_folder() / "culprit", "run", rules,
                           "--state-dir", state()});
@@ -150,7 +150,7 @@ TEST_F(Start, ADemosNodesEndWithItAndARobotsNodesDoNotEndWithCulprit) {
   EXPECT_TRUE(eventually([&] { return nodes_on(demos).empty(); }));
 }
 
-// Lifecycle nodes that nobody drives, and rules that they must be active.
+// Lifecycle nodes without a manager, and rules that they must be active.
 TEST_F(Start, LaunchBringsUpWhatNobodyElseDrives) {
   std::string text = "ROBOT up\n";
   for (const char* name : {"planner", "map", "lidar", "wheels"}) {
@@ -178,7 +178,7 @@ TEST_F(Start, LaunchBringsUpWhatNobodyElseDrives) {
     kill(pid_in(run.output(), name), SIGKILL);
 }
 
-// It is a lifecycle node that nobody else brings up.
+// It is a lifecycle node without another manager.
 TEST_F(Start, WhatWasBeingLaunchedWhenCulpritWasKilledIsBroughtUpByTheNext) {
   const std::string text = "ROBOT half\nCOMPONENT lidar NODE /lidar LAUNCH \"ros2_peer_node " +
                            std::to_string(domain()) +
@@ -261,7 +261,7 @@ TEST_F(Start, WhatALaunchNeedsIsSetUpForIt) {
   std::filesystem::permissions(setup, std::filesystem::perms(0666));
   auto risky = culprit({"check", "--robot", world.write("risky.rules", text(setup))});
   EXPECT_EQ(risky.wait(), 0);
-  EXPECT_THAT(risky.output(), HasSubstr("somebody else could change it"));
+  EXPECT_THAT(risky.output(), HasSubstr("another user could change it"));
   kill(pid_in(run.output(), "lidar"), SIGKILL);
 }
 

@@ -1,5 +1,9 @@
 #include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdio>
 #include <memory>
+#include <thread>
 #include <unistd.h>
 
 #include "base/name_grammar.h"
@@ -14,6 +18,7 @@ namespace {
 struct StatusOptions {
   WhichCulprit which;
   bool json = false;
+  bool watch = false;
 };
 
 // Errors: it says who it is, and nothing more.
@@ -75,20 +80,43 @@ int status(const StatusOptions& options) {
   return worst == Verdict::kWell ? kOk : worst == Verdict::kSeesLess ? kWarnings : kFailed;
 }
 
+// Until Ctrl-C: over and over in one place on a terminal, one report below the other elsewhere.
+int watch_status(const StatusOptions& options) {
+  constexpr auto kPeriod = std::chrono::seconds(2);
+  const bool is_screen = isatty(STDOUT_FILENO) == 1 && !options.json;
+  constexpr auto kTick = std::chrono::milliseconds(100);
+  StopSignals signals;
+  std::atomic<bool> is_stopped = false;
+  signals.on_stop([&] { is_stopped = true; });
+  for (;;) {
+    constexpr const char* kClear = "\033[H\033[2J";
+    if (is_screen) say_text(stdout, kClear);
+    const int verdict = status(options);
+    for (Duration waited{}; waited < kPeriod; waited += kTick) {
+      if (is_stopped) return verdict;
+      std::this_thread::sleep_for(kTick);
+    }
+    if (std::ferror(stdout) != 0) return kFailed;  // nobody reads it
+  }
+}
+
 }  // namespace
 
 void add_status(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<StatusOptions>();
-  CLI::App* command = app.add_subcommand("status",
-                                         "Show who is ill, who is blamed and what happens next, as "
-                                         "the culprits that run on this machine say.\n"
-                                         "Exits with 0 if all is well, with 3 if rules that are "
-                                         "not ERROR are blind and nothing else is wrong, else "
-                                         "with 1.");
+  CLI::App* command =
+      app.add_subcommand("status",
+                         "Show failures, their root cause and the next step, as reported by the "
+                         "culprits of this machine.\n"
+                         "Exits with 0 if all is well, with 3 if rules that are not ERROR are "
+                         "blind and nothing else is wrong, else with 1.");
   command->add_flag("--json", options->json, "As one JSON document (docs/web.md)");
+  command->add_flag("--watch", options->watch, "Report again every 2 s until Ctrl-C");
   options->which.add_to(*command);
   options->which.add_all_to(*command);
-  command->callback([options, &exit_code] { exit_code = status(*options); });
+  command->callback([options, &exit_code] {
+    exit_code = options->watch ? watch_status(*options) : status(*options);
+  });
 }
 
 }  // namespace culprit::cli

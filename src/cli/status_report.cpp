@@ -80,7 +80,7 @@ std::string tinted(const std::string& text, Tone tone, Colour colour) {
   return in_tone(text, tone, Weight::kStrong, colour);
 }
 
-// What the wall clock showed at a time `t` of culprit's; nothing: it is not known.
+// The wall clock at culprit's time `t`; empty: unknown.
 std::optional<double> clock_at(const WhatCulpritSays& said, double t) {
   const auto now = number_at(said.state, "t");
   const auto clock = number_at(said.state, "clock");
@@ -96,15 +96,7 @@ std::string since(const WhatCulpritSays& said, const Json& incident) {
                      lasting(*now - *t));
 }
 
-std::string tinted_health(const std::string& text, const std::string& health, Colour colour) {
-  const Tone tone = health == "ERROR" || health == "EXHAUSTED" ? Tone::kAlarm
-                    : health == "WARNING"                      ? Tone::kWarning
-                    : health == "OK"                           ? Tone::kRelief
-                                                               : Tone::kAside;
-  return tinted(text, tone, colour);
-}
-
-// What keeps culprit from acting as it usually does, in words; empty: nothing.
+// The modes that restrict culprit, in words; empty: none.
 std::vector<std::string> modes_of(const Json& control) {
   std::vector<std::string> modes;
   if (is_set(control, "paused")) modes.emplace_back("paused");
@@ -143,27 +135,23 @@ std::vector<BlindRule> blind_rules(const WhatCulpritSays& said) {
   return all;
 }
 
-// REQUIRED components are watched without a rule.
-bool is_watching_nothing(const WhatCulpritSays& said) {
-  const auto rules = list_at(said.state, "rules");
-  const auto components = list_at(said.robot, "components");
-  if (rules.empty())
-    return std::none_of(components.begin(), components.end(),
-                        [](const Json& each) { return is_set(each, "required"); });
-  return blind_rules(said).size() == rules.size();
+// How the robot is, as the running culprit has decided (web/overview.h).
+std::string look_of(const WhatCulpritSays& said) {
+  return text_at(member_at(said.state, "overview"), "look");
 }
 
-// "BatteryLow is blind", "3 rules are blind"
-std::string blind_in_short(const std::vector<BlindRule>& blind) {
-  return blind.size() == 1 ? blind[0].name + " is blind"
-                           : fmt::format("{} rules are blind", blind.size());
+Tone tone_of(const std::string& look) {
+  if (look == "OK") return Tone::kRelief;
+  if (look == "ERROR" || look == "EXHAUSTED" || look == "MISSING") return Tone::kAlarm;
+  return look == "NON_CRITICAL" ? Tone::kAside : Tone::kWarning;
 }
 
 void add_incident(const WhatCulpritSays& said, const Json& incident, Colour colour, Lines& lines) {
   const std::string health = text_at(incident, "health");
-  lines.push_back(fmt::format("  {}  ({}, rule {})",
-                              tinted_health(text_at(incident, "headline"), health, colour), health,
-                              text_at(incident, "rule")));
+  const std::string id = text_at(incident, "id");
+  lines.push_back(fmt::format(
+      "  {}  ({}, rule {}{})", tinted(text_at(incident, "headline"), tone_of(health), colour),
+      health, text_at(incident, "rule"), id.empty() ? "" : ", incident " + id));
   if (const std::string when = since(said, incident); !when.empty())
     lines.push_back("      " + when);
   const auto consequences = texts_at(incident, "consequences");
@@ -191,7 +179,7 @@ void add_blind(const WhatCulpritSays& said, Colour colour, Lines& lines) {
     lines.push_back(fmt::format("  {} more rules are blind", blind.size() - kMost));
 }
 
-// What people have ordered, and are asked.
+// Lists people's orders and the questions to them.
 void add_people(const WhatCulpritSays& said, Lines& lines) {
   const Json& control = said.control;
   const double now = number_at(said.state, "clock").value_or(0);
@@ -199,7 +187,8 @@ void add_people(const WhatCulpritSays& said, Lines& lines) {
     lines.emplace_back("  Paused: nothing is changed on the robot until `culprit resume`.");
   if (control.is_object() && !is_set(control, "hears"))
     lines.emplace_back(
-        "  Deaf: the robot cannot be heard, so nothing is judged and nothing is done.");
+        "  Deaf: culprit does not receive the robot's messages, so it judges nothing and does "
+        "nothing.");
   if (is_set(control, "dry_run"))
     lines.emplace_back("  It only advises: a dry run, or another culprit manages this robot.");
   for (const Json& each : list_at(control, "asked")) {
@@ -219,7 +208,7 @@ void add_people(const WhatCulpritSays& said, Lines& lines) {
   }
 }
 
-// What culprit started, and what a person ended.
+// Lists the components that culprit started, and those that a person ended.
 void add_started(const WhatCulpritSays& said, Lines& lines) {
   const double now = number_at(said.state, "clock").value_or(0);
   for (const Json& each : list_at(said.control, "started")) {
@@ -281,42 +270,22 @@ std::string event_line(const Json& event, double now, Colour colour) {
 }
 
 std::string headline_from(const WhatCulpritSays& said, Colour colour) {
-  const std::string robot = robot_name(said);
   const auto modes = modes_of(said.control);
   const std::string mode = modes.empty() ? "" : "  [" + listed(modes) + "]";
-  if (!said.state.is_object()) return robot + ": nothing is known yet" + mode;
-  const auto incidents = list_at(said.state, "incidents");
-  if (incidents.empty() && !is_set(said.control, "hears"))
-    return robot + ": " + tinted("nobody knows", Tone::kWarning, colour) +
-           ", the robot cannot be heard" + mode;
-  if (incidents.empty() && is_watching_nothing(said))
-    return robot + ": " + tinted("watching nothing", Tone::kWarning, colour) + ", no rule can see" +
-           mode;
-  const auto blind = blind_rules(said);
-  if (incidents.empty() && !blind.empty())
-    return robot + ": no failure is seen, but " +
-           tinted(blind_in_short(blind), Tone::kWarning, colour) + mode;
-  if (incidents.empty()) return robot + ": " + tinted("all is well", Tone::kRelief, colour) + mode;
-  const std::string more =
-      incidents.size() > 1 ? fmt::format(", and {} more", incidents.size() - 1) : "";
-  return robot + ": " +
-         tinted_health(text_at(incidents[0], "headline"), text_at(incidents[0], "health"), colour) +
-         more + mode;
+  const std::string headline = text_at(member_at(said.state, "overview"), "headline");
+  if (headline.empty()) return robot_name(said) + ": nothing is known yet" + mode;
+  return robot_name(said) + ": " + tinted(headline, tone_of(look_of(said)), colour) + mode;
 }
 
 }  // namespace
 
 Verdict verdict_of(const WhatCulpritSays& said) {
-  const bool is_well = said.state.is_object() && list_at(said.state, "incidents").empty() &&
-                       !is_set(said.control, "paused") && is_set(said.control, "hears") &&
+  const std::string look = look_of(said);
+  const bool may_act = !is_set(said.control, "paused") && is_set(said.control, "hears") &&
                        list_at(said.control, "asked").empty();
-  if (!is_well || is_watching_nothing(said)) return Verdict::kNotWell;
-  const auto blind = blind_rules(said);
-  const bool is_grave = std::any_of(blind.begin(), blind.end(), [](const BlindRule& rule) {
-    return rule.criticality == "ERROR";
-  });
-  if (is_grave) return Verdict::kNotWell;
-  return blind.empty() ? Verdict::kWell : Verdict::kSeesLess;
+  if (!may_act) return Verdict::kNotWell;
+  if (look == "OK") return Verdict::kWell;
+  return look == "BLIND" ? Verdict::kSeesLess : Verdict::kNotWell;
 }
 
 std::vector<std::string> situation_lines(const WhatCulpritSays& said, Colour colour) {
@@ -334,21 +303,24 @@ std::vector<std::string> component_lines(const WhatCulpritSays& said, Colour col
   const auto components = list_at(said.state, "components");
   const auto names = list_at(said.robot, "components");
   Lines well;
-  Lines lines{
-      fmt::format("{:<28} {:<12} {:<9} {:<12} now", "component", "health", "process", "lifecycle")};
+  Lines lines{fmt::format("{:<28} {:<12} {:<12} {:<12} now", "component", "health", "process",
+                          "lifecycle")};
   for (std::size_t c = 0; c < std::min(components.size(), names.size()); ++c) {
     const Json& each = components[c];
-    const std::string health = text_at(each, "health");
+    const std::string look = text_at(each, "look");
+    const std::string condition = text_at(each, "condition");
     const std::string process = text_at(each, "process");
     const std::string adapting = text_at(each, "adapting");
-    std::string line = fmt::format(
-        "{:<28} {} {:<9} {:<12} {}", text_at(names[c], "name"),
-        tinted_health(fmt::format("{:<12}", health), health, colour),
-        process.empty() ? (is_set(each, "present") ? "?" : "-") : process,
-        text_at(each, "lifecycle"), adapting.empty() ? text_at(each, "remark") : adapting);
-    const Json& alive = member_at(each, "alive");
-    const bool is_well = health == "OK" && (!alive.is_boolean() || alive.get<bool>());
-    (is_well ? well : lines).push_back(std::move(line));
+    // A component that no rule can judge has no health.
+    const std::string health = look == "NEVER_SEEN" || look == "BLIND" || look == "UNWATCHED"
+                                   ? "?"
+                                   : text_at(each, "health");
+    std::string line =
+        fmt::format("{:<28} {} {:<12} {:<12} {}", text_at(names[c], "name"),
+                    tinted(fmt::format("{:<12}", health), tone_of(look), colour),
+                    condition.empty() ? process : condition, text_at(each, "lifecycle"),
+                    adapting.empty() ? text_at(each, "remark") : adapting);
+    (look == "OK" ? well : lines).push_back(std::move(line));
   }
   lines.insert(lines.end(), well.begin(), well.end());
   return lines;
@@ -357,9 +329,12 @@ std::vector<std::string> component_lines(const WhatCulpritSays& said, Colour col
 std::vector<std::string> event_lines(const WhatCulpritSays& said, std::size_t most, Colour colour) {
   Lines lines;
   const double now = number_at(said.state, "clock").value_or(0);
-  for (std::size_t i = said.events.size() - std::min(most, said.events.size());
-       i < said.events.size(); ++i)
-    lines.push_back(event_line(said.events[i], now, colour));
+  std::vector<const Json*> told;  // the others are for programs
+  for (const Json& event : said.events) {
+    if (!text_at(event, "text").empty()) told.push_back(&event);
+  }
+  for (std::size_t i = told.size() - std::min(most, told.size()); i < told.size(); ++i)
+    lines.push_back(event_line(*told[i], now, colour));
   return lines;
 }
 

@@ -1,5 +1,4 @@
-// How a robot is and what its culprit does about it, in words for a terminal: who is ill, who is blamed, what
-// happens next. Made from what a running culprit says of itself (docs/web.md).
+// The state of a robot and its culprit in words for a terminal: failures, root causes, next steps. Made from a running culprit's own report (docs/web.md).
 #pragma once
 
 #include <string>
@@ -36,7 +35,7 @@ std::vector<std::string> component_lines(const WhatCulpritSays& said, Colour col
 // The latest events, oldest first.
 std::vector<std::string> event_lines(const WhatCulpritSays& said, std::size_t most, Colour colour);
 
-// Who says this, and where its page is.
+// culprit's identity, and the address of its page.
 std::vector<std::string> about_lines(const WhatCulpritSays& said);
 
 }  // namespace culprit::cli

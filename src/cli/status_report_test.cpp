@@ -30,8 +30,9 @@ WhatCulpritSays well() {
       parse_json(R"({"robot": "rover", "components": [{"name": "camera"}, {"name": "fusion"}]})");
   said.state =
       parse_json(R"({"t": 20, "clock": 1795538720, "incidents": [], "rules": [{"phase": "quiet"}],
-      "components": [{"health": "OK", "alive": true, "process": "running", "present": true},
-                     {"health": "OK", "alive": true, "process": "running", "present": true}]})");
+      "overview": {"look": "OK", "headline": "all is well", "detail": "no failure is seen by 1 rule"},
+      "components": [{"health": "OK", "look": "OK", "condition": "", "alive": true, "process": "running", "present": true},
+                     {"health": "OK", "look": "OK", "condition": "", "alive": true, "process": "running", "present": true}]})");
   said.control = parse_json(
       R"({"paused": false, "dry_run": false, "hears": true, "silences": [], "asked": []})");
   return said;
@@ -39,12 +40,13 @@ WhatCulpritSays well() {
 
 WhatCulpritSays ill() {
   WhatCulpritSays said = well();
-  said.state["incidents"].push_back(
-      parse_json(R"({"headline": "camera is dead", "health": "ERROR", "since": 11.5,
+  said.state["incidents"].push_back(parse_json(
+      R"({"id": "mywpiwzf-0k7", "headline": "camera is dead", "health": "ERROR", "since": 11.5,
       "rule": "CameraGone", "components": ["camera"], "certain": true, "consequences": ["FusionSilent", "PoseSilent"],
       "needs_person": false, "doing": "being repaired: redeploy camera", "next": "redeploy is being carried out"})"));
+  said.state["overview"] = {{"look", "ERROR"}, {"headline", "camera is dead"}};
   said.state["components"][0] = parse_json(
-      R"({"health": "ERROR", "alive": false, "process": "gone", "adapting": "redeploy"})");
+      R"({"health": "ERROR", "look": "ERROR", "condition": "dead", "alive": false, "process": "gone", "adapting": "redeploy"})");
   said.state["rules"][0]["phase"] = "attempting";
   return said;
 }
@@ -61,7 +63,8 @@ TEST(StatusReport, SaysWhoIsIllWhoIsBlamedAndWhatHappensNext) {
   EXPECT_EQ(verdict_of(ill()), Verdict::kNotWell);
   const std::string text = all_of(ill());
   EXPECT_THAT(text, HasSubstr("rover: camera is dead\n"));
-  EXPECT_THAT(text, HasSubstr("  camera is dead  (ERROR, rule CameraGone)\n"));
+  EXPECT_THAT(text,
+              HasSubstr("  camera is dead  (ERROR, rule CameraGone, incident mywpiwzf-0k7)\n"));
   EXPECT_THAT(text, HasSubstr(", for 8.5 s\n"));
   EXPECT_THAT(text, HasSubstr("and so fail FusionSilent and PoseSilent\n"));
   EXPECT_THAT(text, HasSubstr("now: being repaired: redeploy camera\n"));
@@ -92,6 +95,8 @@ WhatCulpritSays with_blind(const char* criticality) {
       R"({"phase": "quiet", "trigger": null, "blind": {"since": 11.5, "why": "never_seen",
           "input": "battery", "near": "charge",
           "text": "signal battery was never seen; did you mean 'charge'?"}})"));
+  said.state["overview"] = {{"look", criticality == std::string("ERROR") ? "BLIND_ERROR" : "BLIND"},
+                            {"headline", "no failure is seen, but BatteryLow is blind"}};
   return said;
 }
 
@@ -112,21 +117,30 @@ TEST(StatusReport, NeverSaysThatAllIsWellWhileARuleIsBlind) {
 
 TEST(StatusReport, SaysThatNothingIsWatchedIfNoRuleCanSee) {
   WhatCulpritSays said = with_blind("WARNING");
-  said.state["rules"][0] = said.state["rules"][1];
-  EXPECT_THAT(all_of(said), HasSubstr("rover: watching nothing, no rule can see\n"));
-  EXPECT_EQ(verdict_of(said), Verdict::kNotWell);
-  said = well();
-  said.state["rules"] = Json::array();
-  EXPECT_THAT(all_of(said), HasSubstr("rover: watching nothing, no rule can see\n"));
+  said.state["overview"] = {{"look", "WATCHING_NOTHING"},
+                            {"headline", "watching nothing: no rule can see"}};
+  EXPECT_THAT(all_of(said), HasSubstr("rover: watching nothing: no rule can see\n"));
   EXPECT_EQ(verdict_of(said), Verdict::kNotWell);
 }
 
 TEST(StatusReport, NeverSaysThatARobotIsWellThatCannotBeHeard) {
   WhatCulpritSays said = well();
   said.control["hears"] = false;
+  said.state["overview"] = {{"look", "DEAF"},
+                            {"headline", "culprit does not receive the robot's messages"}};
   EXPECT_EQ(verdict_of(said), Verdict::kNotWell);
-  EXPECT_THAT(all_of(said), HasSubstr("nobody knows, the robot cannot be heard"));
+  EXPECT_THAT(all_of(said),
+              HasSubstr("rover: culprit does not receive the robot's messages  [deaf]"));
   EXPECT_THAT(all_of(WhatCulpritSays{}), HasSubstr("nothing is known yet"));
+}
+
+TEST(StatusReport, GivesNoHealthToWhatNoRuleJudges) {
+  WhatCulpritSays said = well();
+  said.state["components"][0] =
+      parse_json(R"({"health": "OK", "look": "NEVER_SEEN", "condition": "never seen"})");
+  const std::string text = all_of(said);
+  EXPECT_THAT(text, testing::ContainsRegex("camera +\\? +never seen"));
+  EXPECT_THAT(text, testing::ContainsRegex("fusion +OK +running"));
 }
 
 TEST(StatusReport, TakesDocumentsOfAnyForm) {
@@ -144,6 +158,7 @@ TEST(StatusReport, TakesDocumentsOfAnyForm) {
 TEST(StatusReport, LetsNoNameSteerTheTerminal) {
   WhatCulpritSays said = ill();
   said.state["incidents"][0]["headline"] = "\033[2J\u009b2Jcamera\n";
+  said.state["overview"]["headline"] = "\033[2J";
   EXPECT_THAT(all_of(said), Not(HasSubstr("\033")));
   EXPECT_THAT(all_of(said), HasSubstr("\\x1b[2J\\x9b2Jcamera\\x0a"));
 }

@@ -27,7 +27,7 @@ class Rows {
   std::optional<Row> first(const std::string& text, const std::optional<Row>& after = {}) const;
   // How often exactly that was asked for.
   std::size_t requests(const std::string& text) const;
-  // All, one a line, for whoever has to find out why a test failed.
+  // All, one a line, to find out why a test failed.
   std::string all() const;
 
  private:

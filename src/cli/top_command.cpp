@@ -92,7 +92,7 @@ std::vector<std::string> screen(const Follower::Now& now, const std::string& not
   const Colour colour = colour_of(STDOUT_FILENO);
   std::vector<std::string> lines;
   if (!now.trouble.empty() || now.old > kSilenceAtMost)
-    lines.push_back(fmt::format("OLD: nothing was heard of it for {:.0f} s: {}", seconds(now.old),
+    lines.push_back(fmt::format("OLD: no data for {:.0f} s: {}", seconds(now.old),
                                 now.trouble.empty() ? "it does not answer" : now.trouble));
   const auto add = [&](const std::vector<std::string>& more) {
     lines.insert(lines.end(), more.begin(), more.end());
@@ -143,8 +143,8 @@ int top(const WhichCulprit& which) {
 
 void add_top(CLI::App& app, int& exit_code) {
   auto which = std::make_shared<WhichCulprit>();
-  CLI::App* command = app.add_subcommand(
-      "top", "Watch at a terminal how the robot is and what its culprit does, as it happens");
+  CLI::App* command =
+      app.add_subcommand("top", "Watch the robot and its culprit at a terminal, live");
   which->add_to(*command);
   command->callback([which, &exit_code] { exit_code = top(*which); });
 }

@@ -8,7 +8,7 @@
 namespace culprit::cli {
 namespace {
 
-// What the rules do to processes: names of components, each once, in file order.
+// The rules' effects on processes: names of components, each once, in file order.
 struct Processes {
   std::vector<std::string> started;
   std::vector<std::string> ended;
@@ -99,12 +99,12 @@ std::string end_settings(const Processes& processes, NodeOwner nodes) {
   const bool ends = !processes.ended.empty();
   if (nodes == NodeOwner::kSameUser) {
     if (ends)
-      return fmt::format("# These are ended, so User= has to be whoever runs them: {}.\n",
+      return fmt::format("# culprit ends these processes, so User= must be their user: {}.\n",
                          fmt::join(processes.ended, ", "));
     if (!processes.started.empty() || !processes.of_systemd.empty() ||
         !processes.of_engines.empty() || !processes.elsewhere.empty())
       return "";
-    return "# No process is ever ended or started: it need not be anybody.\n"
+    return "# No process is ever ended or started, so no user is needed.\n"
            "User=\n"
            "DynamicUser=yes\n";
   }

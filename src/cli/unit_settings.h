@@ -1,4 +1,4 @@
-// What systemd has to allow culprit for a rule file, and no more: a drop-in for
+// The minimal permissions that a rule file needs from systemd: a drop-in for
 // packaging/culprit.service, which forbids what no rule file needs.
 //
 // It depends on three things: whether the rules start programs (which then live in culprit's
@@ -21,7 +21,7 @@ enum class NodeOwner : std::uint8_t {
 struct UnitOptions {
   std::string rules;  // the absolute path of the rule file
   NodeOwner nodes = NodeOwner::kSameUser;
-  // What the service has to know of the domain: ROS_DOMAIN_ID, ROS_SECURITY_ENABLE ...
+  // The service's variables for the domain: ROS_DOMAIN_ID, ROS_SECURITY_ENABLE ...
   std::vector<std::pair<std::string, std::string>> environment{};
 };
 

@@ -62,7 +62,7 @@ void add_web(CLI::App& app, int& exit_code) {
       ->type_name("FILE")
       ->required();
   command->add_flag("--robot", options->robot,
-                    "Offer what the live robot has: its nodes, topics, parameters and services");
+                    "Offer the live robot's nodes, topics, parameters and services");
   options->web.add_to(*command);
   command->callback([options, &exit_code] { exit_code = edit(*options); });
 }

@@ -36,7 +36,6 @@ bool is_about(const alerts::Alert& alert, const std::string& component) {
 void Alerting::begins(const Manager& manager, std::function<Remarks()> /*remarks*/,
                       Time /*start*/) {
   manager_ = &manager;
-  situation_.forget();
 }
 
 void Alerting::stepped(const Runtime::Step& step) {
@@ -47,7 +46,6 @@ void Alerting::stepped(const Runtime::Step& step) {
 
 void Alerting::note(std::span<const Event> events) {
   const RuleSet& rules = manager_->knowledge().rules;
-  situation_.take(events, rules);
   for (const Event& event : events) {
     if (const auto* resolved = std::get_if<FailureResolved>(&event.what)) {
       resolved_[rules[resolved->rule].name] = describe(event, rules);
@@ -74,9 +72,11 @@ void Alerting::forget_what_is_seen_again() {
 std::vector<Alerting::Problem> Alerting::problems() const {
   const RuleSet& rules = manager_->knowledge().rules;
   std::vector<Problem> all;
-  for (const Incident& each : situation_.incidents(*manager_)) {
+  for (const Incident& each : manager_->incidents().open()) {
+    Incidents::Course course = manager_->course_of(each);
     Problem problem;
     alerts::Alert& alert = problem.alert;
+    alert.id = each.id;
     alert.needs_person = each.needs_person();
     alert.headline = each.headline;
     problem.tells_condition = !each.condition.empty();
@@ -84,9 +84,9 @@ std::vector<Alerting::Problem> Alerting::problems() const {
     alert.rule = rules[each.root].name;
     for (const ComponentId c : each.components) alert.components.push_back(rules[c].name);
     alert.consequences = names_of_rules(each.consequences, rules);
-    alert.doing = each.doing;
-    // What else comes next is over before anybody reads it.
-    if (each.needs_person()) alert.next = each.next;
+    alert.doing = std::move(course.doing);
+    // Any other next step has passed before a person reads the alert.
+    if (each.needs_person()) alert.next = std::move(course.next);
     problem.keys = {alert.consequences.begin(), alert.consequences.end()};
     problem.keys.insert(alert.rule);
     for (const std::string& name : alert.components) problem.keys.insert(key_of_component(name));
@@ -142,7 +142,7 @@ std::vector<Alerting::Problem> Alerting::problems_of_sight() const {
   return all;
 }
 
-// What no rule says.
+// Problems that no rule covers.
 std::vector<Alerting::Problem> Alerting::problems_of_the_whole() const {
   const Knowledge& knowledge = manager_->knowledge();
   std::vector<Problem> all;
@@ -156,7 +156,7 @@ std::vector<Alerting::Problem> Alerting::problems_of_the_whole() const {
     return problem;
   };
   if (const auto& storm = manager_->governor().storm())
-    add("storm in general", "much of the robot is ill at once",
+    add("storm in general", "much of the robot fails at once",
         "nothing more is done: " + storm->reason)
         .alert.needs_person = true;
   if (!manager_->hears())
@@ -172,7 +172,8 @@ std::vector<Alerting::Problem> Alerting::problems_of_the_whole() const {
   return all;
 }
 
-// One that has a rule or a component in common with it now, or had a moment ago; or a new one. Of several the one that was told.
+// Returns the fault that shares a rule or a component with the problem, now or a moment ago; else a new one. If several do, the one that was already reported
+// is preferred.
 Alerting::Fault& Alerting::fault_of(const Problem& problem, Time now) {
   std::vector<std::size_t> same;
   for (std::size_t i = 0; i < faults_.size(); ++i) {
@@ -183,8 +184,10 @@ Alerting::Fault& Alerting::fault_of(const Problem& problem, Time now) {
     Fault fault;
     fault.began = now;
     fault.alert.began = wall_();
-    fault.alert.id = fmt::format("{:x}-{}", std::llround(1000 * fault.alert.began),
-                                 problem.alert.rule.empty() ? "robot" : problem.alert.rule);
+    fault.alert.id = problem.alert.id;
+    if (fault.alert.id.empty())  // no incident, but what keeps culprit from finding any
+      fault.alert.id = fmt::format("{:x}-{}", std::llround(1000 * fault.alert.began),
+                                   problem.alert.rule.empty() ? "robot" : problem.alert.rule);
     faults_.push_back(std::move(fault));
     return faults_.back();
   }
@@ -211,7 +214,7 @@ void Alerting::close_part(Fault& part, const std::string& whole) {
 void Alerting::take(Problem problem, Time now) {
   Fault& fault = fault_of(problem, now);
   fault.gone = kNever;
-  // What became two is told as one until it was that for a while; the worse speaks for it.
+  // A fault that split in two is reported as one at first; the worse part gives it its name.
   if (std::exchange(fault.looked_at, now) == now) {
     fault.alert.doing += "; also: " + problem.alert.headline;
     is_one_of_two_ = true;
@@ -240,7 +243,7 @@ void Alerting::look(Time now) {
       fault.alert.ended = wall_();
     }
     if (is_there && fault.looked_at != now)
-      fault.alert.doing = "it cannot be seen any more, and nobody knows whether it is gone";
+      fault.alert.doing = "it is not observable any more; it is unknown whether it has cleared";
     tell(fault, now);
   }
   std::erase_if(faults_, [&](Fault& fault) { return is_over(fault, now); });
@@ -265,7 +268,7 @@ void Alerting::tell(Fault& fault, Time now) {
   post_(fault.alert);
 }
 
-// If so, that is told.
+// If so, a message reports it.
 bool Alerting::is_over(Fault& fault, Time now) {
   if (fault.keys.empty()) return true;
   if (fault.gone == kNever || now < later(fault.gone, kStaysAway)) return false;

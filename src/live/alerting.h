@@ -1,12 +1,11 @@
 // Turns what a manager finds into alerts for people: one fault, one alert, and one more when it is over.
 //
-// - A fault is what situation.h calls an incident: a cause, and all that fails because of it. While it lasts it
-//   may turn out to have another cause, or to be part of another fault; it is told as one.
-// - It is told after a while (`wait`). What is over by then was healed: one message says both. At once it is told
-//   if a person is needed, also where it was told before.
-// - That it is over is told when it stayed away for kStaysAway. What comes back before is the same fault.
-// - What concerns the whole robot is told likewise: a storm, that culprit cannot hear it, a REQUIRED component
-//   that is not there.
+// - An incident (incidents/incidents.h) is a fault, and the alert has its id. If it returns within kStaysAway, it is the
+//   same fault, under the id of its first incident.
+// - It is reported after `wait`. If it has cleared by then, one message reports both. It is reported at once if a person is needed, also if it was reported
+//   before.
+// - The end is reported once the fault has been absent for kStaysAway.
+// - Problems of the whole robot are reported in the same way: a storm, a deaf culprit, a missing REQUIRED component.
 #pragma once
 
 #include <functional>
@@ -17,7 +16,6 @@
 
 #include "alerts/alert.h"
 #include "live/observer.h"
-#include "live/situation.h"
 
 namespace culprit::live {
 
@@ -44,7 +42,7 @@ class Alerting : public Observer {
   void announced(Time, const EventWords&, const std::string&) override {}
 
  private:
-  // What is wrong at a moment.
+  // A problem at one moment.
   struct Problem {
     std::set<std::string> keys{};           // by which it is known again: its rules, its components
     alerts::Alert alert{};                  // but for what is the same all the time
@@ -80,8 +78,7 @@ class Alerting : public Observer {
   const Options options_;
   const Post post_;
   const WallClock wall_;
-  const Manager* manager_ = nullptr;  // null: none has begun
-  Situation situation_;
+  const Manager* manager_ = nullptr;             // null: none has begun
   std::set<std::string> lost_sight_;             // rules that failed and cannot be judged now
   std::set<std::string> flapping_;               // rules
   std::map<std::string, std::string> resolved_;  // rules, and how their failure went away last

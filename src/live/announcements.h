@@ -1,5 +1,5 @@
-// What culprit says about itself rather than about the robot: not events of the manager, but named
-// in the same way.
+// Announcements of culprit about itself: they are no events of the manager, but named in the same
+// way.
 #pragma once
 
 #include "knowledge/event_words.h"

@@ -39,7 +39,7 @@ std::string begin_anew() {
   for (int descriptor = kFirst; descriptor < kMost; ++descriptor)
     fcntl(descriptor, F_SETFD, FD_CLOEXEC);
   execv("/proc/self/exe", pointers.data());
-  return std::string("culprit cannot be started anew: ") + std::strerror(errno);
+  return std::string("culprit cannot restart itself: ") + std::strerror(errno);
 }
 
 }  // namespace culprit::live

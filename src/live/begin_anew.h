@@ -1,4 +1,4 @@
-// What culprit does when it stays deaf: it replaces itself by a new process.
+// If culprit stays deaf, it replaces itself by a new process.
 #pragma once
 
 #include <string>

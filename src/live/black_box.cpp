@@ -17,7 +17,7 @@ double clock_now() {
 void BlackBox::begins(const Manager& manager, std::function<Remarks()> /*remarks*/,
                       Time /*start*/) {
   manager_ = &manager;
-  // What is still wrong is found anew.
+  // The recorder finds all current incidents again.
   recorder_.over();
 }
 
@@ -26,7 +26,7 @@ void BlackBox::stepped(const Runtime::Step& step) {
   const Knowledge& knowledge = manager_->knowledge();
   for (const Event& event : step.events) {
     Json json = journal::to_json(event, knowledge.rules);
-    if (journal::text_of(json, "text").empty()) continue;
+    if (journal::text_of(json, "text").empty() && !json.contains("incident")) continue;
     json["clock"] = clock_now();
     recorder_.note_event(to_line(json));
     if (const auto* detected = std::get_if<FailureDetected>(&event.what))

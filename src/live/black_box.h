@@ -1,5 +1,5 @@
-// Tells a black box (recorder/recorder.h) what the manager finds and does, and when a recording is wanted: from the first
-// failure until none is there any more. A failure that is given up counts as over: nothing more is done about it.
+// Passes the manager's findings and actions to a black box (recorder/recorder.h), and starts a recording: from the first failure until there is none any more.
+// A failure that is given up counts as over: nothing more is done about it.
 #pragma once
 
 #include "live/observer.h"

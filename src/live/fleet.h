@@ -1,5 +1,5 @@
-// The fleet that a robot shares what it learns with, as its sessions see it: what happened is told,
-// and what others learned comes back. Nothing here waits for anybody.
+// The fleet that a robot shares its outcomes with, as its sessions see it: they report outcomes and
+// receive what others learned. No call here blocks.
 #pragma once
 
 #include <functional>

@@ -1,5 +1,5 @@
-// A live robot beside somebody who speaks in the name of its node, from this computer and from another one: the node is
-// healthy, so nothing is done to it. If it really ends, it is healed.
+// A live robot beside a forger of its node's messages, on this computer and on another one: the node is healthy, so culprit does not act on it. If it really
+// ends, it is healed.
 #include <algorithm>
 #include <atomic>
 #include <csignal>
@@ -44,7 +44,7 @@ bool comes_true(Done done) {
   return true;
 }
 
-// Listens as anybody in the domain can: participants, their endpoints and addresses.
+// Listens as any participant of the domain can: participants, their endpoints and addresses.
 class Eavesdropper {
  public:
   explicit Eavesdropper(const ros2::ParticipantOptions& options)

@@ -44,7 +44,7 @@ ros2::Health of_rule(RuleId id, const Knowledge& knowledge) {
   return health;
 }
 
-// Nothing if nobody needs it, or nobody knows yet.
+// Empty if the component is not REQUIRED, or its state is unknown.
 std::optional<ros2::Health> of_component(ComponentId id, const Knowledge& knowledge) {
   const Component& component = knowledge.rules[id];
   const ComponentState& state = knowledge.components[id];

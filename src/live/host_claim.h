@@ -1,9 +1,9 @@
 // Which of several culprits on one machine is in charge of something: of a robot, or of a node.
 //
-// A claim is a name that the kernel gives to one process at a time (ros2/named_lock.h). Such names
-// are open to all who are on the machine, so that having one proves nothing: it counts if the
-// kernel says that its process belongs to our own user, or to root. Root's culprit goes first. Who
-// else squats on the name is told of, and not given way to.
+// A claim is a name that the kernel gives to one process at a time (ros2/named_lock.h). Any user of
+// the machine can take such a name, so a claim counts only if the kernel says that its process
+// belongs to our own user, or to root. Root's culprit goes first. Any other holder of the name is
+// reported and ignored.
 #pragma once
 
 #include <cstdint>
@@ -19,9 +19,9 @@ class HostClaim {
   // `name`: what is claimed, the same for all culprits.
   explicit HostClaim(std::string name) : name_(std::move(name)) {}
 
-  // Looks anew. Gives whether it is ours: nobody who counts has it.
+  // Looks anew. Returns whether it is ours: no other entitled process has it.
   bool look();
-  // Who has it instead, "process 123"; empty while it is ours.
+  // The holder, "process 123"; empty while the claim is ours.
   const std::string& holder() const { return holder_; }
   // Its process; 0: in another container.
   int holder_pid() const { return holder_pid_; }

@@ -14,7 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// Nobody else's.
+// A name of our own.
 std::string name() { return "test-" + std::to_string(getpid()); }
 
 // Another process, of this user, that holds the name that culprits of `user` claim by.

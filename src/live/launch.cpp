@@ -13,8 +13,8 @@
 namespace culprit::live {
 namespace {
 
-// Producers before their consumers, else as the file has them. Who waits for one another comes in
-// the file's order, too.
+// Producers before their consumers, else as the file has them. Components that depend on one
+// another come in the file's order, too.
 void add_in_order(ComponentId component, const RuleSet& rules, std::vector<bool>& is_visited,
                   std::vector<ComponentId>& order) {
   if (is_visited[component.index]) return;
@@ -61,13 +61,14 @@ class Starting {
     }
   }
 
-  // Of what was started before. `was_asked`: and taken through its lifecycle, as far as that came.
+  // Resumes a component that was started before. `was_asked`: its lifecycle transitions had begun
+  // as well.
   void resume(ComponentId component, bool was_asked) {
     part(component).is_left_halfway = was_asked;
     end_ = std::min(end_, later(robot_.now(), times_.patience));
   }
 
-  // Says what went wrong; nothing: it is up, or nobody is to bring it up.
+  // Returns the problem; empty: it is up, or needs no lifecycle changes.
   std::optional<std::string> bring_up(ComponentId component) {
     const LifecycleDriver driver = rules_[component].lifecycle;
     const bool joined = joins(component);
@@ -202,7 +203,7 @@ class Starting {
     return it.began ? *it.joined - *it.began : Duration::zero();
   }
 
-  // Whether it leaves the state in which every lifecycle node begins, and nobody asked it here.
+  // Whether it leaves the state in which every lifecycle node begins, without a request from here.
   bool moves(ComponentId component) {
     const Part& it = part(component);
     using Driver = ComingUp::Driver;
@@ -216,7 +217,8 @@ class Starting {
     });
   }
 
-  // Takes it from one state to the next, if it is in the first. What counts is what is read back.
+  // Takes it from one state to the next, if it is in the first. Only the state that is read back
+  // counts.
   std::optional<std::string> step(ComponentId component, Transition transition, Lifecycle from,
                                   Lifecycle to) {
     if (read(component) != from) return std::nullopt;

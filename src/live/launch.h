@@ -1,15 +1,13 @@
-// `run --launch`: starts what is missing, and brings up what stands still after its start.
+// `run --launch`: starts missing components, and brings up nodes that stay inactive after their
+// start.
 //
-// A node is one with a lifecycle if it shows the services of one within a second after all else that it shows, or within 10 s
-// where the file says LIFECYCLE managed. A lifecycle node that nobody drives stays unconfigured for ever: it is configured and activated,
-// in the order of the DEPENDENCY lines, and where they say nothing in that of the file. A node that
-// does it itself, or has somebody who does, is left alone: the file says so (LIFECYCLE), or it moved
-// within its time. That is twice as long as it took when somebody else brought it up before; none where
-// culprit did; and where nothing is known, as long as its start took. Nothing is judged meanwhile: the manager begins afterwards,
-// so that a start of many is no storm. What is RESPAWNED is for its launcher to start.
+// A node counts as a lifecycle node if it offers lifecycle services within 1 s after its other endpoints. Where the file says LIFECYCLE managed, it has 10 s. A
+// lifecycle node without a manager stays unconfigured for ever, so culprit configures and activates it: in the order of the DEPENDENCY lines, else in that of
+// the file. A node that does so itself, or has another manager, is left alone: the file says so (LIFECYCLE), or the node changed its state within its grace
+// period. The grace period is twice the time that it took when another manager brought it up before. It is zero if culprit did, and without a history as long
+// as the node's start took. The manager begins only afterwards, so a start of many nodes is no storm. A RESPAWNED component is left to its launcher.
 //
-// What is not finished is kept on disk meanwhile: a culprit that comes after one that was killed brings
-// up what that one had started, also if it is not to launch anything itself.
+// Unfinished launches are kept on disk: if culprit is killed, the next one brings up the components that it had started, also without --launch.
 #pragma once
 
 #include <atomic>
@@ -37,8 +35,7 @@ struct LaunchTimes {
   Duration transition = std::chrono::seconds(10);  // for each that is asked for
 };
 
-// What a launch has not finished: components by name, and whether culprit has begun to take it through
-// its lifecycle, so that where it stands is no intention.
+// Unfinished launches: components by name, and whether culprit has begun to take it through its lifecycle. If so, its current state is no intention.
 using Unfinished = std::map<std::string, bool>;
 
 // Beside the journal. Reading gives nothing where there is nothing to read; what is empty is removed.
@@ -58,7 +55,8 @@ struct LaunchKeeper {
 
 // For the manager to begin with.
 struct Launched {
-  // What was observed. Of lifecycles only where they are now: how they got there was a start.
+  // The observations. Lifecycles only by their current state: the transitions before it belong to
+  // the start.
   std::vector<Observation> seen;
   std::vector<KnownRobot::Part> parts;  // what was started, and so counts as seen
   History past;                         // how it came up

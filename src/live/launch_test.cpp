@@ -29,7 +29,7 @@ struct ScriptedNode {
   Lifecycle state = Lifecycle::kUnconfigured;
 };
 
-// Virtual time; nodes that come up as they are told to, and write down what they are asked.
+// Virtual time; nodes that come up as scripted, and record their requests.
 class ScriptedRobot : public Robot {
  public:
   explicit ScriptedRobot(const RuleSet& rules) : rules_(rules) {}
@@ -318,7 +318,7 @@ TEST_F(Launching, BringsUpWhatAnEarlierCulpritHadStarted) {
   }
 }
 
-// Where it stands is where culprit left it, and nobody's intention.
+// Its state is where culprit left it, and no intention of a person.
 TEST_F(Launching, BringsUpWhatWasLeftHalfway) {
   robot.nodes["lidar"].state = Lifecycle::kInactive;
   robot.in(10ms, [this](auto& out) { robot.appear("/lidar", ComponentId(1u), out); });

@@ -1,4 +1,4 @@
-// Who is told what a running culprit has to say: a terminal, say.
+// Receives what a running culprit reports: a terminal, for example.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace culprit::live {
 
-// Nothing of it has to be listened to.
+// A listener may ignore any of these calls.
 class Listener {
  public:
   virtual ~Listener() = default;
@@ -19,7 +19,7 @@ class Listener {
                                const std::string& /*text*/) {}
   // Whole lines, of what it finds and begins. From any thread.
   virtual void on_remark(const std::string& /*lines*/) {}
-  // What went wrong at the end, when nothing else can tell it any more.
+  // A problem at the end, when no other channel can report it.
   virtual void on_trouble(const std::string& /*text*/) {}
 };
 

@@ -96,7 +96,7 @@ void LiveRobot::observe(Time until, std::vector<Observation>& observations) {
   shown_until_ = until - Duration(1);
   if (live_now() >= until) prove_hearing(observations);
   witness(before, observations);
-  // What a container's owner was asked for here is not the manager's.
+  // Replies to requests to a container's owner do not concern the manager.
   const auto is_composed = [this](const Observation& o) {
     const auto* reply = std::get_if<Reply>(&o.what);
     return reply != nullptr && composed_->answered(*reply);
@@ -104,7 +104,7 @@ void LiveRobot::observe(Time until, std::vector<Observation>& observations) {
   observations.erase(std::remove_if(observations.begin() + static_cast<std::ptrdiff_t>(before),
                                     observations.end(), is_composed),
                      observations.end());
-  // A component whose process was found is watched from now on, whoever started it.
+  // A component whose process was found is watched from now on, also if culprit did not start it.
   for (std::size_t i = before; i < observations.size(); ++i) {
     containers_.observe(observations[i]);
     composed_->observe(observations[i]);
@@ -118,8 +118,8 @@ void LiveRobot::observe(Time until, std::vector<Observation>& observations) {
   tell_what_ends_together(before, observations);
 }
 
-// Of what a container loads, and of what has an owner, nothing else is ended: it is reloaded, or
-// refused. What something else started is ended by itself, without its group.
+// No other component ends with one that a container loads or that has an owner: it is reloaded, or
+// the request is refused. A process that culprit did not start is ended alone, without its group.
 void LiveRobot::tell_what_ends_together(std::size_t before,
                                         std::vector<Observation>& observations) {
   const bool is_news = std::any_of(observations.begin() + static_cast<std::ptrdiff_t>(before),
@@ -140,8 +140,8 @@ void LiveRobot::tell_what_ends_together(std::size_t before,
   }
 }
 
-// Until then, or until it becomes doubtful whether anything is heard, or no longer is. Between two
-// heartbeats there is nothing to tell.
+// Until then, or until hearing becomes doubtful or certain again. Between two heartbeats nothing
+// changes.
 void LiveRobot::listen(Time until, std::vector<Observation>& observations) {
   const std::size_t before = observations.size();
   while (true) {
@@ -156,9 +156,9 @@ void LiveRobot::listen(Time until, std::vector<Observation>& observations) {
 }
 
 // A silence is judged when its time is up, and that the robot was heard last may be shown of a
-// moment before it only. So culprit says something to itself, and what it hears until that comes
-// back, a fraction of a millisecond, belongs to what is judged. Where it does not come back in time
-// it is doubtful whether anything is heard.
+// moment before it only. So culprit sends a message to itself. Messages that arrive until it
+// returns, a fraction of a millisecond later, are judged as well. If it does not return in time,
+// hearing is doubtful.
 void LiveRobot::prove_hearing(std::vector<Observation>& observations) {
   constexpr Duration kLook = std::chrono::microseconds(100);
   const Time asked = live_now();
@@ -169,7 +169,7 @@ void LiveRobot::prove_hearing(std::vector<Observation>& observations) {
   shown_until_ = link_->heard();
 }
 
-// What silence means is clear before anything that was observed is judged.
+// Must run before observations are judged: it decides whether missing messages mean anything.
 void LiveRobot::witness(std::size_t before, std::vector<Observation>& observations) {
   const Time now = live_now();
   const bool judges = link_->doubtful() > now;
@@ -229,13 +229,12 @@ void LiveRobot::withdraw_doubles(const std::function<bool(ComponentId)>& may) {
 void LiveRobot::start(CommandId command, ComponentId component, Duration patience) {
   const auto cut_off = rules_[component].has_owner() ? std::nullopt : link_->cut_off(component);
   if (cut_off)
-    return inbox_.put(
-        Reply{command,
-              Outcome::kUnreachable,
-              {},
-              rules_[component].name + " ran on " + *cut_off +
-                  ", of which nothing is heard now: it may still run there. Nothing is "
-                  "started in its place"});
+    return inbox_.put(Reply{command,
+                            Outcome::kUnreachable,
+                            {},
+                            rules_[component].name + " ran on " + *cut_off +
+                                ", which is unreachable now: it may still run there. culprit "
+                                "starts nothing in its place"});
   if (composed_->is_responsible_for(component))
     return composed_->start(command, component, patience);
   start_process(command, component);
@@ -246,7 +245,8 @@ void LiveRobot::start_process(CommandId command, ComponentId component) {
   supervisor_->start(command, component);
 }
 
-// What culprit started is the component's by its LAUNCH, whatever else is in it.
+// A process that culprit started belongs to the component by its LAUNCH, whatever other nodes are
+// in it.
 void LiveRobot::stop_process(const Command& command) {
   const ComponentId component = command.component;
   const Adaptation& what = rules_[command.purpose.strategy].adaptations[command.purpose.adaptation];

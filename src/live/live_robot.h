@@ -31,35 +31,33 @@ class LiveRobot : public Robot {
   static Expected<std::unique_ptr<LiveRobot>> open(const RuleSet& rules, Options options);
 
   Time now() const override { return live_now(); }
-  // No later than it was last shown that the robot is heard: no silence is measured to a moment at
-  // which culprit may have been deaf.
+  // At most the last moment at which culprit has proven to receive: no silence is measured to a
+  // moment at which culprit may have been deaf.
   Time observed_until() const override { return std::min(live_now(), shown_until_); }
   void observe(Time until, std::vector<Observation>& observations) override;
   void execute(const Command& command) override;
 
-  // Starts a component: by its LAUNCH, or by asking the systemd that runs its UNIT, or the container
-  // that loads it, which has so long.
+  // Starts a component: by its LAUNCH, or through the systemd that runs its UNIT, or the container that loads it; the container has `patience` to do so.
   void start(CommandId command, ComponentId component,
              Duration patience = owners::ComposedNodes::kComingUp);
 
   // The component ran in this process at `known`, in an earlier run of culprit.
   void adopt_again(ComponentId component, int pid, Time known);
 
-  // Ends what culprit started where somebody else runs the component, too: two of one name are worse
-  // than either. Both have to be proven, and nothing else may end with it that has no other. `may`:
-  // whether anything may be done to the component now.
+  // Ends the process that culprit started if another launcher runs the component, too: two nodes of one name are worse than either. Both must be proven, and no
+  // other component may end with it that has no other process. `may`: whether anything may be done to the component now.
   void withdraw_doubles(const std::function<bool(ComponentId)>& may);
 
   void interrupt() override { inbox_.interrupt(); }
 
-  // Since when it is not sure that what the robot says is heard, or that nobody else manages it;
-  // nothing: it is.
+  // Time since which it is not sure that culprit receives the robot's messages, or that no other
+  // culprit manages it; empty: it is sure.
   std::optional<Time> deaf_since() const { return deaf_since_; }
 
   // Something about culprit itself that a person should know. From any thread.
   void report(std::string trouble);
 
-  // What the fleet learned. From any thread.
+  // Takes the priors that the fleet learned. Callable from any thread.
   void tell(PriorsTold priors);
 
   ros2::Link& link() { return *link_; }

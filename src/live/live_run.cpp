@@ -1,21 +1,21 @@
 #include "live/live_run.h"
 
-#include <cassert>
 #include <cstdlib>
 
 #include <fmt/core.h>
 
+#include "base/invariant.h"
 #include "live/announcements.h"
 #include "live/begin_anew.h"
 
 namespace culprit::live {
 namespace {
 
-// How long nothing is heard before culprit begins anew. A cut cable is no reason: what it says to
-// itself does not leave the computer.
+// Time without any message before culprit begins anew. A cut cable is no reason: culprit's messages
+// to itself do not leave the computer.
 constexpr Duration kDeafAtMost = std::chrono::seconds(20);
 
-// Who cannot tell whether a person has paused the robot is paused.
+// If it is unknown whether a person has paused the robot, the successor starts paused.
 std::optional<journal::StandingOrders> orders_for_successor(const RoleOfCulprit& role,
                                                             const ros2::LeaseLink* lease) {
   if (role.role() != Role::kManage) return std::nullopt;
@@ -26,7 +26,7 @@ std::optional<journal::StandingOrders> orders_for_successor(const RoleOfCulprit&
   return paused;
 }
 
-// What it had learned and tried.
+// Learned and tried by the predecessor.
 std::optional<Expected<journal::Inheritance>> inheritance_for_successor(
     const RoleOfCulprit& role, const ros2::LeaseLink* lease, const RuleSet& rules, Time now) {
   if (role.role() != Role::kManage) return std::nullopt;
@@ -53,7 +53,7 @@ LiveRun::LiveRun(Options options, RoleOfCulprit role, OrderKeeper& keeper, Liste
   take_role();
 }
 
-// Whoever only advises neither acts nor writes the journal.
+// A culprit that only advises neither acts nor writes the journal.
 void LiveRun::take_role() {
   frame_.advises = options_.dry_run || role_.role() == Role::kAdvise;
   frame_.records = options_.session.no_journal.empty() && role_.role() == Role::kManage;
@@ -84,7 +84,7 @@ Expected<std::size_t> LiveRun::reload(const std::string& author) {
   if (entered_ == nullptr) return Error{"the rules are just being reloaded; ask again"};
   const std::string& robot = entered_->rules().robot;
   if (loaded->rules.robot != robot)
-    return Error{fmt::format("{} is now about the robot '{}' instead of '{}'; start culprit anew",
+    return Error{fmt::format("{} is now about the robot '{}' instead of '{}'; restart culprit",
                              path, loaded->rules.robot, robot)};
   next_ = Next{std::move(*loaded), author};
   entered_->leave();
@@ -104,7 +104,7 @@ Expected<void> LiveRun::join(LoadedRules rules) {
 }
 
 void LiveRun::begin(OrderTaker& desk, const std::atomic<bool>& stopped) {
-  assert(session_);
+  CULPRIT_ASSERT(session_);
   session_->begin(stopped);
   open(desk);
 }
@@ -120,7 +120,7 @@ void LiveRun::close(OrderTaker& desk) {
   enter(nullptr);
 }
 
-// Whoever acts leaves alone what others manage.
+// The acting culprit leaves alone the components that others manage.
 void LiveRun::look_at_neighbours() {
   std::set<std::string> nodes;
   if (!frame_.advises) nodes = session_->adapted_nodes();
@@ -135,7 +135,8 @@ void LiveRun::look_at_neighbours() {
     session_->submit(std::move(order));
 }
 
-// Begins anew in another role, with the same rules. Who manages from now on has watched already.
+// Begins anew in another role, with the same rules. A new manager keeps what it observed while it
+// only advised.
 Expected<void> LiveRun::change_role(OrderTaker& desk, const std::atomic<bool>& stopped) {
   close(desk);
   frame_.told_orders = orders_for_successor(role_, session_->lease());
@@ -170,8 +171,7 @@ bool LiveRun::take_over(const std::atomic<bool>& stopped) {
   const auto elsewhere = role_.managed_elsewhere(session_->adapted_nodes(), session_->lease());
   const auto taken = session_->take_over(frame_, elsewhere, stopped);
   frame_.manager_before.reset();
-  if (!taken)
-    frame_.listener.on_remark("culprit: it joins the domain anew: " + taken.error() + "\n");
+  if (!taken) frame_.listener.on_remark("culprit: it rejoins the domain: " + taken.error() + "\n");
   return taken.has_value();
 }
 
@@ -192,14 +192,13 @@ void LiveRun::change_rules(Next next, OrderTaker& desk) {
   open(desk);
 }
 
-// Whoever stays deaf is not fed, and begins anew.
+// A culprit that stays deaf does not feed the watchdog, and replaces itself.
 void LiveRun::watch_hearing(OrderTaker& desk) {
   const auto deaf_since = session_->deaf_since();
   if (!deaf_since) return systemd_.feed(session_->now());
   if (session_->now() < later(*deaf_since, kDeafAtMost)) return;
-  session_->announce(
-      announcements::kBeginsAnew,
-      "the robot was not heard for " + to_string(kDeafAtMost) + "; culprit begins anew");
+  session_->announce(announcements::kBeginsAnew, "no message of the robot arrived for " +
+                                                     to_string(kDeafAtMost) + "; culprit restarts");
   close(desk);
   session_->end();
   frame_.listener.on_trouble(begin_anew());
@@ -207,7 +206,7 @@ void LiveRun::watch_hearing(OrderTaker& desk) {
 }
 
 Expected<void> LiveRun::run(OrderTaker& desk, const std::atomic<bool>& stopped) {
-  assert(session_);
+  CULPRIT_ASSERT(session_);
   systemd_.ready("watching " + name_of(session_->rules()));
   std::optional<Next> next;
   Time joined = session_->now();
@@ -220,7 +219,8 @@ Expected<void> LiveRun::run(OrderTaker& desk, const std::atomic<bool>& stopped) 
     if (frame_.orders.is_kept_again())
       session_->announce(announcements::kKept, "what people have ordered was not kept, and is now");
     watch_hearing(desk);
-    // Without a journal nobody would know what is under way: then the new rules wait for its end.
+    // Without a journal, the actions under way would be lost: then the new rules wait for their
+    // end.
     const bool has_to_wait = next && !frame_.records && session_->is_adapting();
     if (next && !has_to_wait) {
       change_rules(std::move(*next), desk);

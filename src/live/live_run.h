@@ -31,9 +31,9 @@ class LiveRun {
   Expected<void> join(LoadedRules rules);
   // Begins to manage; `desk` takes orders from now on. @pre join() succeeded
   void begin(OrderTaker& desk, const std::atomic<bool>& stopped);
-  // Manages until it is stopped; who sets `stopped` calls leave(), too. Who stays deaf begins anew
-  // in this process and does not return. Errors: the robot cannot be joined in another role.
-  // @pre begin() was called
+  // Manages until it is stopped; the code that sets `stopped` must call leave(), too. If culprit
+  // stays deaf, it replaces itself in this process, and run() does not return. Errors: the robot
+  // cannot be joined in another role. @pre begin() was called
   Expected<void> run(OrderTaker& desk, const std::atomic<bool>& stopped);
 
   // The following may be called from any thread.

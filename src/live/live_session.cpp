@@ -30,7 +30,7 @@ ros2::Severity severity_in_rosout(EventSeverity severity) {
   return ros2::Severity::kInfo;
 }
 
-// That no other culprit is to manage, whatever its robot is called.
+// Names of the nodes that no other culprit may manage, whatever name it gives to the robot.
 std::vector<std::string> claimed_nodes(const RuleSet& rules) {
   std::vector<std::string> nodes;
   for (const ComponentId c : adapted_components(rules))
@@ -61,6 +61,7 @@ journal::Session session_of(const LiveSession::Frame& frame, const std::string& 
   session.process = getpid();
   session.boot = journal::boot_id();
   session.start = start;
+  session.wall = wall_now();
   session.watched_since = watched_since;
   session.discovery = options.discovery;
   session.forgetting = options.forgetting;
@@ -75,8 +76,8 @@ journal::Session session_of(const LiveSession::Frame& frame, const std::string& 
   return session;
 }
 
-// Also those that left the graph while nobody looked on, because they were stopped, say. Not where
-// the rules name another node now.
+// Also those that left the graph while culprit did not watch, for example because they were
+// stopped. Not where the rules name another node now.
 void adopt_again(LiveRobot& robot, const History& past, const Sightings& sightings) {
   for (const Event& event : past) {
     const auto* found = std::get_if<ComponentFound>(&event.what);
@@ -85,8 +86,8 @@ void adopt_again(LiveRobot& robot, const History& past, const Sightings& sightin
   }
 }
 
-// What the journal says of processes holds for those that run since then. Numbers are given out
-// anew.
+// The journal's statements on processes hold only for those that have run since then. PIDs are
+// reused.
 void forget_other_processes(KnownRobot& known, const History& past, const RuleSet& rules) {
   for (KnownRobot::Part& part : known.parts) {
     const auto component = journal::find_component(rules, part.component);
@@ -142,7 +143,7 @@ void add_what_stays_down(const Knowledge& knowledge, const RuleSet& next, Histor
 }
 
 // Verdicts that wait for their proof. None is due before the next session has had the time to see
-// the robot: what nobody looked at counts for nothing.
+// the robot: time without observation does not count.
 History waiting_verdicts(const Knowledge& knowledge, const RuleSet& next, Time first) {
   const RuleSet& rules = knowledge.rules;
   History waiting;
@@ -166,7 +167,7 @@ void add(History& past, const History& more) {
   }
 }
 
-// What people have ordered and what still holds.
+// The orders that still hold.
 std::vector<Observation> standing_orders(const Manager& manager, bool advised_at_first,
                                          const RuleSet& next, Time now) {
   std::vector<Observation> orders;
@@ -239,8 +240,8 @@ RunBeginning LiveSession::look_back() {
   return {};
 }
 
-// What people have ordered, of the last run and of this process before. Who managed last knows
-// better than our file, unless that is later.
+// Collects the orders of the last run and of this process. The orders of the previous manager
+// override our file, unless the file is later.
 void LiveSession::hold(RunBeginning& beginning) {
   std::string trouble;
   if (const auto& told = frame_.told_orders) {
@@ -259,7 +260,7 @@ void LiveSession::hold(RunBeginning& beginning) {
     beginning.orders = frame_.orders.begin_without(frame_.options.no_journal, beginning.orders);
   } else if (!frame_.records) {
     beginning.orders =
-        frame_.orders.begin_advising("another culprit manages this robot, and has to be told");
+        frame_.orders.begin_advising("another culprit manages this robot; give orders to that one");
   } else if (beginning.is_of_another) {
     beginning.orders =
         frame_.orders.begin_without("another culprit writes the journal", beginning.orders);
@@ -272,8 +273,7 @@ void LiveSession::hold(RunBeginning& beginning) {
     beginning.past.push_back(std::move(silence));
 }
 
-// What the one that managed knows of itself counts for more than what our journal has of the time
-// before.
+// The previous manager's own account overrides what our journal has of the time before.
 void LiveSession::inherit(RunBeginning& beginning) {
   const auto& told = frame_.told_inheritance;
   if (!told) return;
@@ -341,7 +341,7 @@ void LiveSession::begin(const std::atomic<bool>& stop, const KnownRobot& known_r
   manage(std::move(beginning), std::move(seen), "", watched_since);
 }
 
-// What is to be launched is found by a look of its own.
+// Components to be launched need a session of their own, which looks for them first.
 bool LiveSession::can_take_over() const {
   const bool has_to_launch = frame_.options.launches ||
                              (frame_.options.no_journal.empty() &&
@@ -372,7 +372,7 @@ Expected<void> LiveSession::take_over(const Frame& frame,
 
 void LiveSession::begin(Handover before) {
   RunBeginning beginning = look_back();
-  // What the manager knew is known, whether or not the journal could be written.
+  // The manager's knowledge is kept, whether or not the journal could be written.
   beginning.learned = std::move(before.learned);
   beginning.orders = frame_.orders.orders();
   add(beginning.known_robot, before.known_robot);
@@ -426,7 +426,7 @@ void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
         *manager_, [this] { return robot_->link().contested(); }, frame_.start);
     runtime_->next_look = [observer] { return observer->next_look(); };
   }
-  // What is asked for is written down before it goes out, and others are told when it has.
+  // Each request is journaled before it is sent; others are informed afterwards.
   runtime_->before_commands = [this](const Runtime::Step& step) {
     if (recorder_ == nullptr) return;
     std::vector<Observation> observations = step.observations;
@@ -452,8 +452,7 @@ void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
   bequeath();
 }
 
-// Tells who may take over what was learned and tried, as far as it is new, and not for each step of
-// many.
+// Sends the successor what was learned and tried, if it is new, and not for each step of many.
 void LiveSession::bequeath() {
   ros2::LeaseLink* lease = robot_->link().lease();
   if (!bequest_ || lease == nullptr) return;
@@ -465,7 +464,7 @@ void LiveSession::bequeath() {
       bequest_->text(learned_by(manager_->knowledge()), ros2::ManagerLease::kLongestState));
 }
 
-// Whoever only advises learns nothing, and writes nothing down.
+// A culprit that only advises learns nothing, and writes nothing.
 void LiveSession::join_fleet() {
   if (frame_.fleet == nullptr || !frame_.records) return;
   is_in_fleet_ = true;
@@ -505,8 +504,8 @@ void LiveSession::end_with_launches() {
   }
 }
 
-// A launch of which no process of its own is left, and whose launcher ended while no culprit watched: a person may have
-// ended it. Of one component alone nobody could tell that from a crash.
+// If no process of a launch is left, and its launcher exited while no culprit watched, a person may have ended it. For a single component, this cannot be
+// distinguished from a crash.
 void LiveSession::keep_down_what_ended_unseen(RunBeginning& beginning) const {
   if (frame_.options.launches || frame_.options.governor.revives_in_doubt) return;
   std::map<int, std::set<ComponentId>> ended;  // by launcher
@@ -567,7 +566,7 @@ void LiveSession::leave_alone(const std::map<std::string, std::string>& nodes) {
   for (Order& order : to_leave_alone(nodes)) submit(std::move(order));
 }
 
-// What is not ordered already.
+// Only new orders.
 std::vector<Order> LiveSession::to_leave_alone(
     const std::map<std::string, std::string>& nodes) const {
   constexpr const char* kAuthor = "another culprit";

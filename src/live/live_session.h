@@ -32,7 +32,7 @@ class LiveSession {
     LiveRobot::Options robot;
     PlannerFactory planner;
     Governor::Options governor;
-    // How both are written down in the journal, for whoever repeats the run.
+    // The form of both in the journal, for replays of the run.
     Json planner_record;
     Json governor_record = Json::object();
     double forgetting = 1;
@@ -43,7 +43,7 @@ class LiveSession {
     std::filesystem::path journal;
     std::string no_journal;  // why nothing is written down; empty: it is
   };
-  // What is the same for all sessions of a run. All that it refers to must outlive them.
+  // The part that all sessions of a run share. All objects that it refers to must outlive them.
   struct Frame {
     const Options& options;
     bool advises = false;                   // a dry run, or another culprit manages the robot
@@ -54,15 +54,15 @@ class LiveSession {
     Observer* observer = nullptr;  // null: nobody looks on
     Fleet* fleet = nullptr;        // null: there is none
     Time start{};                  // of the run: what people read counts from here
-    // What people had ordered of the culprit on another machine that managed before; nothing: none
-    // did.
+    // Orders that the previous manager, on another machine, had received; empty if there was none.
     std::optional<journal::StandingOrders> told_orders{};
-    // What that one had learned and tried; nothing: likewise. Error: it is not known, and why.
+    // Learned and tried by that manager; empty if there was none. Error: the reason why it is
+    // unknown.
     std::optional<Expected<journal::Inheritance>> told_inheritance{};
     // The process of the other culprit that managed until now (RoleOfCulprit::manager_before()).
     std::optional<int> manager_before{};
   };
-  // What a session leaves to the next one.
+  // A session's legacy to the next one.
   struct Handover {
     journal::Learned learned;
     KnownRobot known_robot;
@@ -85,8 +85,8 @@ class LiveSession {
   // it has seen, as the frame says: its manager and its journal begin anew, its link goes on in this
   // term. Whether it can is asked before.
   bool can_take_over() const;
-  // `elsewhere`: as leave_alone()'s, from the first step on. Errors: others cannot be told that it
-  // manages; nothing has changed then. @pre can_take_over()
+  // `elsewhere`: as leave_alone()'s, from the first step on. Errors: others cannot be notified that
+  // it manages; nothing has changed then. @pre can_take_over()
   Expected<void> take_over(const Frame& frame, const std::map<std::string, std::string>& elsewhere,
                            const std::atomic<bool>& stop);
 
@@ -97,11 +97,11 @@ class LiveSession {
   void interrupt() { robot_->interrupt(); }
   void submit(Order order);
 
-  // Nothing more is done; the journal is whole. What is to go on with `next`.
+  // Ends all actions; the journal is complete. Returns what must continue with `next`.
   Handover hand_over(const RuleSet& next, std::string occasion);
-  // Likewise, but nothing goes on; `ending`: why.
+  // The same, but nothing continues; `ending`: why.
   void end(journal::Ending ending = journal::Ending::kStopped);
-  // What was seen of the robot.
+  // The robot as observed.
   KnownRobot known_robot() const;
 
   // Says it to people, wherever they look (announcements.h).
@@ -121,7 +121,7 @@ class LiveSession {
   // The last word to other culprits, of who steps back or ends.
   void say_lease();
   Time now() const { return robot_->now(); }
-  // Since when the robot cannot be heard; nothing: it can. On the thread of run().
+  // Since when culprit is deaf; empty: it is not. On the thread of run().
   std::optional<Time> deaf_since() const { return robot_->deaf_since(); }
   // Whether a strategy is under way.
   bool is_adapting() const;

@@ -94,7 +94,7 @@ bool is_asked(const fs::path& folder, std::uint32_t owner, const WhoIsAsked& who
          std::find(who.users.begin(), who.users.end(), owner) != who.users.end();
 }
 
-// Why nobody should listen in this folder; nothing: it is ours alone.
+// The reason why culprit must not listen in this folder; empty: it is ours alone.
 std::optional<std::string> objection_to(const fs::path& folder) {
   struct stat status {};
   if (lstat(folder.c_str(), &status) != 0)
@@ -125,7 +125,7 @@ std::optional<LocalSocket> read_socket_name(const fs::path& path) {
   return LocalSocket{path, static_cast<std::uint32_t>(*domain), *process};
 }
 
-// Nothing: it is gone meanwhile, or nobody's business.
+// Empty: it is gone meanwhile, or no socket of a culprit.
 std::optional<LocalSocket::State> state_of(const fs::path& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;

@@ -13,8 +13,8 @@
 // no process listens there, and the next culprit removes it.
 //
 // Any user can listen in a folder of such a name, and be silent or lie there. So a folder counts only if it
-// belongs to the asking user or to root, if nobody else may write to it, and if it is no link. Root may also ask other
-// users' culprits; which, is root's decision (`WhoIsAsked`), but for /run/culprit: only root can have given that to a user.
+// belongs to the asking user or to root, if no other user may write to it, and if it is no link. Root may also ask other users' culprits; which, is root's
+// decision (`WhoIsAsked`), but for /run/culprit: only root can have given that to a user.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@
 namespace culprit::live {
 
 // Where this process is to listen; makes the folder. Errors: the folder cannot be made, belongs to
-// somebody else, or others may write there; its name is too long for a socket; somebody listens there.
+// another user, or others may write there; its name is too long for a socket; another process listens there.
 Expected<std::filesystem::path> own_socket(std::uint32_t domain);
 
 struct LocalSocket {

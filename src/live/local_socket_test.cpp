@@ -26,7 +26,7 @@ struct LocalSockets : testing::Test {
   }
   ~LocalSockets() override { unsetenv("XDG_RUNTIME_DIR"); }
 
-  // Of those in our folder.
+  // Only those in our folder.
   std::vector<LocalSocket> found() const {
     std::vector<LocalSocket> ours;
     for (LocalSocket& each : local_sockets()) {

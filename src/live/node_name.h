@@ -1,9 +1,8 @@
-// What culprit's own node is called: /culprit, so that people find it; where another culprit of this
-// machine is called so on the same domain, /culprit_2, and so on. Two nodes of one name are told of as
-// doubled by every tool, and services of one of them reach either.
+// The name of culprit's own node: /culprit, so that people find it. If another culprit of this machine has that name on the same domain, it is /culprit_2, and
+// so on. Every tool reports two nodes of one name as duplicates, and a request to their services reaches either.
 //
 // Where keys are used, what they permit is permitted to /culprit by name, and that is what it is called.
-// Culprits of other machines are not seen before they are met: they are told of, and --node-name helps.
+// Culprits of other machines are only discovered later: they are reported, and --node-name helps.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// Who looks on while a robot is managed: a page in a browser, say.
+// Follows the management of a robot: a page in a browser, for example.
 #pragma once
 
 #include <functional>
@@ -21,18 +21,18 @@ class Observer {
  public:
   virtual ~Observer() = default;
 
-  // What people should know of nodes beyond what the manager knows, by full name.
+  // Remarks on nodes that the manager does not know of, by full name.
   using Remarks = std::map<std::string, std::string>;
 
-  // Culprit's own node is there, for who tells something over DDS, until leaves() is called.
+  // Culprit's own node exists, for publishers of culprit's own data, until leaves() is called.
   virtual void joined(ros2::NodeEntry& /*node*/) {}
   virtual void leaves() {}
-  // A manager begins. Both are there until the last step that is told of. People count times from
+  // A manager begins. Both exist until the last step that is reported. People count times from
   // `start`, which is the same for all sessions of a run.
   virtual void begins(const Manager& manager, std::function<Remarks()> remarks, Time start) = 0;
   // It did a step, and its commands have gone out.
   virtual void stepped(const Runtime::Step& step) = 0;
-  // When it wants to be told of a step even if nothing happens.
+  // When it wants a step reported even if nothing happens.
   virtual Time next_look() const = 0;
   // Something about culprit itself (announcements.h).
   virtual void announced(Time at, const EventWords& words, const std::string& text) = 0;

@@ -72,7 +72,8 @@ StandingOrders OrderKeeper::told() const {
   return told_;
 }
 
-// What they had told before, and what we had from them, is known: a person may have freed us of it.
+// Orders that they announced before, and orders that they had from us, are not new: a person may
+// have lifted them here since.
 std::vector<Order> OrderKeeper::heed(const StandingOrders& theirs, const RuleSet& rules, Time now) {
   if (!mutex_.try_lock()) return {};
   const MutexLock lock(mutex_, std::adopt_lock);

@@ -1,7 +1,7 @@
-// Keeps what people order for the next process (journal/standing_orders.h), in the order that
-// cannot harm: what restrains culprit is in force first and kept then, whatever the disk does; what
-// frees it is kept first, and is in force only then. What is in force and not kept is written as
-// soon as the disk takes it.
+// Keeps people's orders for the next process (journal/standing_orders.h), in the order that cannot
+// harm. A restraint of culprit is in force first and is kept then, whatever the disk does. An order
+// that lifts one is kept first, and is in force only then. Orders in force that are not kept are
+// written as soon as the disk accepts them.
 #pragma once
 
 #include <atomic>
@@ -28,17 +28,17 @@ struct Kept {
 // Gives an order that stands to the manager, by calling `submit`, and keeps it for the next
 // process. It may take as long as the disk.
 using KeepOrder = std::function<Kept(const std::function<void()>& submit)>;
-// What does that for an order; does not block.
+// Keeps an order in this way; does not block.
 using KeepOrders = std::function<KeepOrder(const Order& order, const RuleSet& rules)>;
 
-// Where people give orders: by names of a rule set, for whoever manages with it.
+// Takes people's orders, by names of a rule set, for the current manager.
 class OrderTaker {
  public:
   virtual ~OrderTaker() = default;
 
   // `rules` must live until it is closed, or opened with others. `submit` must not block.
   virtual void open(const RuleSet& rules, std::function<void(Order)> submit) = 0;
-  // Nobody manages for a while.
+  // Called when managing is suspended.
   virtual void close() = 0;
 };
 
@@ -51,26 +51,27 @@ class OrderKeeper {
   ~OrderKeeper();
 
   // From now on orders are kept in `file`. `found` holds according to it; `is_in_file`: and stands
-  // there just so. What was ordered of this process before holds as well. Gives what holds now.
-  // Errors, if what holds cannot be written, are put into `trouble`.
+  // there just so. Earlier orders of this process hold as well. Returns all orders that hold. If
+  // they cannot be written, the error is put into `trouble`.
   journal::StandingOrders begin(std::filesystem::path file, const journal::StandingOrders& found,
                                 bool is_in_file, std::string& trouble);
-  // From now on nothing is kept; `why` says so to people. What `found` says holds as well.
+  // From now on orders are not kept; `why` is the reason for people. The orders in `found` hold as
+  // well.
   journal::StandingOrders begin_without(std::string why, const journal::StandingOrders& found);
-  // Likewise, and this one must not act: a dry run cannot be ended.
+  // The same for a culprit that must not act: its dry run cannot be ended.
   journal::StandingOrders begin_advising(std::string why);
 
-  // For whoever takes orders from people.
+  // For the classes that take orders from people.
   KeepOrders keeping();
 
   // What holds now.
   journal::StandingOrders orders() const;
-  // What a successor on another machine is to learn with the lease: what holds now, and what is in
-  // force and being written. Does not wait for the disk.
+  // Orders that a successor on another machine must learn with the lease: those that hold now, and
+  // those in force that are being written. Does not wait for the disk.
   journal::StandingOrders told() const;
-  // What another culprit that managed this robot for a while says that people ordered there. Gives
-  // which restraints of it are new here, to be submitted; they are kept like any other. Does not
-  // wait: while the disk is busy it gives none, to be asked again.
+  // Takes orders that people gave to another culprit that managed this robot for a while. Returns
+  // its restraints that are new here, to be submitted; they are kept like any other. Does not wait:
+  // while the disk is busy it returns none; ask again.
   std::vector<Order> heed(const journal::StandingOrders& theirs, const RuleSet& rules, Time now);
   // Whether what was in force and not kept is kept since it was asked last.
   bool is_kept_again() { return is_kept_again_.exchange(false); }

@@ -322,7 +322,7 @@ TEST_F(KillSwitch, OutlivesEveryBadPageOfTheJournal) {
   }
 }
 
-// (c): no battery, so it begins in 1970; then the network tells the time.
+// (c): no battery, so it begins in 1970; then the network sets the time.
 TEST_F(KillSwitch, OutlivesAJumpOfTheClock) {
   {
     Run run(path, rules, 0);

@@ -104,7 +104,7 @@ std::string nobody_on(std::uint32_t domain) {
 
 namespace {
 
-// Who runs what the rules do not say the owner of.
+// Finds the owners of components whose rules name none.
 void find_owners(const RuleSet& rules, LiveInventory& robot) {
   for (const Component& component : rules.components) {
     const std::string node = robot.node_of(component);
@@ -121,7 +121,7 @@ void find_owners(const RuleSet& rules, LiveInventory& robot) {
   }
 }
 
-// Who of those that run the components could not be asked.
+// Finds owners that do not answer.
 void find_owner_troubles(const RuleSet& rules, const std::stop_token& stop, LiveInventory& robot) {
   std::map<std::string, bool> reached{{"", true}};
   for (const Component& component : rules.components) {
@@ -145,7 +145,7 @@ void find_owner_troubles(const RuleSet& rules, const std::stop_token& stop, Live
   }
 }
 
-// What could not be asked of the services that are there.
+// Finds requests that cannot be made to the services of the robot.
 void find_request_troubles(const RuleSet& rules, ros2::Survey& survey, const std::stop_token& stop,
                            LiveInventory& robot) {
   for (const Strategy& strategy : rules.strategies) {
@@ -179,7 +179,7 @@ void find_launch_differences(const RuleSet& rules, LiveInventory& robot) {
   }
 }
 
-// What its container, where that runs, could not load.
+// Finds components that their running container could not load.
 void find_composition_troubles(const Component& component, LiveInventory& robot) {
   using Clause = LiveInventory::LaunchTrouble::Clause;
   const Composition& how = *component.composed;

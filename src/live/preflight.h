@@ -1,5 +1,5 @@
-// What a robot has of what the rules name, and what it has not: said by `check --robot`, and by
-// `run` and `plan --robot` before anything else.
+// Compares a robot with the names in the rules. `check --robot` reports the result, `run` and `plan
+// --robot` report it before anything else.
 #pragma once
 
 #include <cstdint>
@@ -35,10 +35,10 @@ Expected<Sighting> sight(const Source& source,
                          const std::vector<std::filesystem::path>& message_path);
 
 // Looks at the robot of the environment on a thread of its own, and says what it found: once all is
-// there, or 3 s are over. Where nobody is there it says that, and looks until somebody is.
+// there, or 3 s are over. Without a robot it says so, and looks until there is one.
 class Preflight {
  public:
-  // Of rules without errors. `say` is called on the thread, with whole lines.
+  // The rules must be without errors. `say` is called on the thread, with whole lines.
   Preflight(Source rules, std::vector<std::filesystem::path> message_path,
             std::function<void(const std::string&)> say);
 

@@ -21,7 +21,7 @@ Expected<LiveInventory> RobotNames::look(const LiveInterest& interest) {
   const MutexLock lock(mutex_);
   if (const auto opened = open(); !opened) return Error{opened.error()};
   LiveInterest all = interest;
-  // Two pages look at different nodes. What a person has typed half is forgotten in the end.
+  // Two pages look at different nodes. Names that a person has typed half are dropped in the end.
   if (interest_.nodes.size() < kMostNodes)
     all.nodes.insert(interest_.nodes.begin(), interest_.nodes.end());
   if (all != interest_) survey_->ask_for(interest_ = all);

@@ -1,4 +1,4 @@
-// What the live robot has, for forms: looked at only once somebody asks.
+// The live robot's names, for forms: looked up only on request.
 #pragma once
 
 #include "base/mutex.h"
@@ -14,7 +14,7 @@ class RobotNames {
   // web::Look. The first call finds little, for discovery takes a moment. Errors: the domain cannot
   // be joined. From any thread.
   Expected<LiveInventory> look(const LiveInterest& interest);
-  // The last lines that a node has logged since this was called first, the newest last. Errors: likewise.
+  // The last lines that a node has logged since this was called first, the newest last. Errors: the same.
   Expected<std::vector<ros2::msg::Log>> log_of(const std::string& node);
 
  private:

@@ -104,16 +104,14 @@ std::vector<std::string> RoleOfCulprit::warnings(const ros2::LeaseLink* lease) {
   };
   const auto strangers = lease != nullptr ? lease->strangers() : std::vector<std::string>();
   for (const std::string& host : strangers)
-    warn("a culprit on " + host +
-         " says that it manages this robot or a node of it, and does not " +
+    warn("a culprit on " + host + " claims to manage this robot or a node of it, and does not " +
          (lease_.key.empty()
-              ? "prove it: give both the same --lease-key, or end one of them; this one goes on"
-              : "know the key of --lease-key; this one goes on"));
+              ? "prove it: give both the same --lease-key, or end one of them; this one continues"
+              : "know the key of --lease-key; this one continues"));
   const auto squatter = [&](const HostClaim& claim, const std::string& what) {
     if (!claim.stranger().empty())
-      warn(claim.stranger() +
-           " keeps the name by which culprits on this machine tell who manages " + what +
-           ", and is nobody who may; end it; this one goes on");
+      warn(claim.stranger() + " holds the name that marks the manager of " + what +
+           " on this machine, without the right to; end it; this one continues");
   };
   squatter(claim_, "this robot");
   for (const auto& [node, claim] : node_claims_) squatter(claim, node);

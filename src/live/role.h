@@ -2,8 +2,8 @@
 // components belong to another culprit, one that calls the robot by another name.
 //
 // Two managers would undo each other's work. On one machine a claim that the kernel keeps decides
-// (host_claim.h), among machines the lease (ros2/manager_lease.h); both are looked at again while
-// culprit runs. Who manages a component is decided by the name of its node.
+// (host_claim.h), among machines the lease (ros2/manager_lease.h). Both are checked again while
+// culprit runs. The name of its node decides which culprit manages a component.
 #pragma once
 
 #include <map>
@@ -45,12 +45,12 @@ class RoleOfCulprit {
   // machine; nothing: none was.
   std::optional<int> manager_before() const { return manager_before_; }
 
-  // What people have ordered of the robot, as told by the latest other culprit that managed it;
-  // nothing: there was none. Error: there was one, and it could not be told what.
+  // Orders as reported by the latest other culprit that managed the robot; empty: there was none.
+  // Error: there was one, and its orders are unknown.
   Expected<std::optional<journal::StandingOrders>> told_orders(const ros2::LeaseLink* lease) const;
 
-  // What that one had learned and tried, as of `now`; nothing: there was none. Error: it is not
-  // known, and why.
+  // Learned and tried by that culprit, as of `now`; empty: there was none. Error: the reason
+  // why it is unknown.
   std::optional<Expected<journal::Inheritance>> told_inheritance(const ros2::LeaseLink* lease,
                                                                  const RuleSet& rules,
                                                                  Time now) const;
@@ -60,7 +60,7 @@ class RoleOfCulprit {
   std::map<std::string, std::string> managed_elsewhere(const std::set<std::string>& nodes,
                                                        const ros2::LeaseLink* lease);
 
-  // What a person should know of strangers: each line once.
+  // Warnings about foreign claims, each once.
   std::vector<std::string> warnings(const ros2::LeaseLink* lease);
 
  private:

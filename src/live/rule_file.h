@@ -18,11 +18,11 @@ Expected<LoadedRules> read_rules(const std::string& path,
                                  Strictness strictness = Strictness::kLenient,
                                  Colour colour = Colour::kOff);
 
-// The same with rules for components that nobody wrote one for (language/improvise.h).
+// The same with rules for components without any (language/improvise.h).
 Expected<LoadedRules> improvised(LoadedRules loaded, const std::string& path);
 
-// What culprit manages a robot by: the same of files that nobody else can change
-// (live/rule_trust.h), improvised on if that is asked for.
+// The rules for `run`: from files that no other user can change (live/rule_trust.h), and improvised
+// on request.
 Expected<LoadedRules> trusted_rules(const std::string& path, bool improvises, Colour colour);
 
 }  // namespace culprit::live

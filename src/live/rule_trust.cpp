@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Whether nobody but `owner` is in the group.
+// Whether `owner` is the only member of the group.
 bool is_private_group(gid_t group, uid_t owner) {
   const passwd* user = getpwuid(owner);
   if (user == nullptr || user->pw_gid != group) return false;
@@ -29,7 +29,7 @@ bool is_private_group(gid_t group, uid_t owner) {
   return true;
 }
 
-// What is wrong with it, and the remedy; empty if nothing is.
+// The weakness and its remedy; empty if there is none.
 std::string weakness(const fs::path& path) {
   struct stat status {};
   if (stat(path.c_str(), &status) != 0)
@@ -46,7 +46,7 @@ std::string weakness(const fs::path& path) {
   return fmt::format("{0} is writable by others; chmod go-w {0}", path.string());
 }
 
-// Likewise of what it is in.
+// The same for the folders that contain it.
 std::string weakness_up_from(fs::path path) {
   std::string why = weakness(path);
   while (why.empty() && path != path.parent_path()) {
@@ -83,7 +83,7 @@ std::vector<fs::path> files_of(const fs::path& journal) {
 Expected<void> trust_rules(const std::string& path) {
   if (const std::string why = weakness_of_all(path); !why.empty())
     return Error{fmt::format(
-        "{} says what is done to the robot, and somebody else could change it: {}", path, why)};
+        "{} decides what is done to the robot, and another user could change it: {}", path, why)};
   return {};
 }
 
@@ -92,7 +92,7 @@ Expected<void> trust_setup(const std::string& path) {
   if (why.starts_with("cannot find")) return Error{fmt::format("SETUP: {}", why)};
   if (!why.empty())
     return Error{fmt::format(
-        "SETUP {} is run before a LAUNCH, and somebody else could change it: {}", path, why)};
+        "SETUP {} is run before a LAUNCH, and another user could change it: {}", path, why)};
   return {};
 }
 
@@ -101,12 +101,12 @@ Expected<void> trust_state(const fs::path& folder, const fs::path& journal) {
   std::vector<fs::path> all = files_of(journal);
   all.insert(all.end(), {folder, folder / "log", journal});
   for (fs::path each : all) {
-    // What is not there yet is made where it will be.
+    // A missing folder will be made in the nearest one that exists.
     each = fs::absolute(each);
     while (!fs::exists(each, error) && each != each.parent_path()) each = each.parent_path();
     if (const std::string why = weakness_of_all(each); !why.empty())
       return Error{
-          fmt::format("culprit does what it finds in {}, and somebody else could change it: {}",
+          fmt::format("culprit follows the content of {}, and another user could change it: {}",
                       folder.string(), why)};
   }
   return {};

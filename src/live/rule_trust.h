@@ -1,7 +1,7 @@
-// Who could change what culprit does? Whoever writes its rule file says what is done to the robot,
-// and which programs are started as culprit's user. Whoever writes its journal says which process
-// is whose, and what was under way. So nobody but that user and root may be able to write them, or
-// to put others in their place.
+// Who could change what culprit does? The author of its rule file decides what is done to the
+// robot, and which programs run as culprit's user. The author of its journal decides which process
+// belongs to which component, and which actions were under way. So only that user and root may be
+// able to write these files, or to replace them.
 #pragma once
 
 #include <filesystem>
@@ -11,16 +11,16 @@
 
 namespace culprit::live {
 
-// Errors: the file or a folder above it belongs to somebody else, or is writable for its group or
-// for all. A group that is its owner's alone, as Debian gives each user one, is no other; in a
-// folder with the sticky bit, such as /tmp, nobody replaces what is not his own.
+// Errors: the file or a folder above it belongs to another user, or is writable for its group or
+// for all. A group that is its owner's alone, as Debian gives each user one, is no other. In a
+// folder with the sticky bit, such as /tmp, users can only replace their own files.
 Expected<void> trust_rules(const std::string& path);
 
-// Likewise of the SETUP of a launch command, a file of shell. An error, too: it is not there.
+// The same for the SETUP of a launch command, a shell script. A missing file is an error, too.
 Expected<void> trust_setup(const std::string& path);
 
-// Likewise of where culprit keeps what it knows: the state folder, the journal, and what is kept
-// beside that. What is not there yet is judged by the folder that it will be made in.
+// The same for culprit's own data: the state folder, the journal, and the files beside it. A
+// missing file is judged by the folder that it will be made in.
 Expected<void> trust_state(const std::filesystem::path& folder,
                            const std::filesystem::path& journal);
 

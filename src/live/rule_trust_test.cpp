@@ -44,7 +44,8 @@ TEST_F(RuleTrust, AFileThatOnlyItsOwnerWritesIsGood) { EXPECT_EQ(objection(), ""
 TEST_F(RuleTrust, AFileThatOthersMayWriteIsNot) {
   allow(file, 0666);
   EXPECT_EQ(objection(),
-            file.string() + " says what is done to the robot, and somebody else could change it: " +
+            file.string() +
+                " decides what is done to the robot, and another user could change it: " +
                 file.string() + " is writable by others; chmod go-w " + file.string());
 }
 
@@ -58,7 +59,7 @@ TEST_F(RuleTrust, NorOneThatOthersMayReplace) {
 TEST_F(RuleTrust, NorASetupThatOthersMayWriteOrThatIsNotThere) {
   EXPECT_TRUE(trust_setup(file));
   allow(file, 0666);
-  EXPECT_THAT(trust_setup(file).error(), HasSubstr("is run before a LAUNCH, and somebody else "));
+  EXPECT_THAT(trust_setup(file).error(), HasSubstr("is run before a LAUNCH, and another user "));
   EXPECT_THAT(trust_setup(folder / "none").error(), HasSubstr("SETUP: cannot find"));
 }
 

@@ -17,7 +17,7 @@ void tell(const Recovery& recovery, const RuleSet& rules, std::vector<std::strin
     const std::string what = strategy.name + " for " + rules[strategy.rule].name;
     if (recovery.is_other_robot()) {
       findings.push_back("the last run ended in the middle of " + what + "; " +
-                         (recovery.was_other_boot ? "the machine was started anew since"
+                         (recovery.was_other_boot ? "the machine was rebooted since"
                                                   : "that was in another DDS domain") +
                          ", so nothing of it is left to do");
     } else {
@@ -33,14 +33,14 @@ void tell(const Recovery& recovery, const RuleSet& rules, std::vector<std::strin
         "the last run ended without being asked to; nothing was left in the middle");
 }
 
-// Nobody knows whether a person wants it to wait.
+// It is unknown whether a person wants culprit to wait, so it does.
 void pause(RunBeginning& beginning, const std::string& why) {
   beginning.orders.pause = journal::StandingOrders::Said{"culprit", why};
   beginning.findings.push_back(
       why + "; so it is paused until a person resumes it: culprit resume does that");
 }
 
-// What the rows of a culprit say that had no file for it.
+// Orders from the journal's rows, for a culprit that had no file for them.
 journal::StandingOrders orders_of(const Recovery& recovery, const RuleSet& rules) {
   journal::StandingOrders orders;
   const journal::StandingOrders::Said said{"the last run", "it was ordered so when it ended"};
@@ -147,7 +147,7 @@ RunBeginning begin_journal(const std::filesystem::path& path, const RuleSet& rul
   }
   // The other one lives, and writes it itself.
   if (beginning.is_of_another) beginning.unwritten.clear();
-  // Of a file that was set aside, what was learned is known better.
+  // If the journal was set aside, its writer still knows what was learned.
   if (const auto learned = beginning.writer ? beginning.writer->learned() : Error{}; learned)
     beginning.learned = *learned;
   const Rows found = !was_there ? Rows::kNone : recovery ? Rows::kRead : Rows::kUnreadable;

@@ -12,10 +12,10 @@ namespace culprit::live {
 std::filesystem::path default_journal(const std::filesystem::path& state_folder,
                                       const std::string& robot);
 
-// What is known when a run begins.
+// All that is known when a run begins.
 struct RunBeginning {
   std::optional<journal::Writer> writer;  // nothing: it cannot be written now
-  // What the last run could not write any more, to be written before this one begins.
+  // Rows that the last run could not write; they are written before this one begins.
   std::vector<journal::Entry> unwritten;
   journal::Learned learned;
   Json interrupted = Json::array();
@@ -29,12 +29,12 @@ struct RunBeginning {
 };
 
 // Opens the journal, or reads it if it cannot be written, and finds out what the last run left
-// behind. Nothing that is wrong with a journal keeps culprit from watching the robot; but if it
-// cannot be told whether a person has paused it, it is paused. `manager_before`: as recover()'s.
+// behind. A faulty journal never keeps culprit from watching the robot. If it is unknown whether a
+// person has paused culprit, it is paused. `manager_before`: as recover()'s.
 RunBeginning begin_journal(const std::filesystem::path& path, const RuleSet& rules,
                            const journal::Moment& now, std::optional<int> manager_before = {});
 
-// What people have ordered according to the file beside the journal, if it is not to be written.
+// People's orders according to the file beside the journal, if the journal is not to be written.
 RunBeginning begin_without_journal(const std::filesystem::path& path, Time now);
 
 }  // namespace culprit::live

@@ -5,7 +5,8 @@
 namespace culprit::live {
 namespace {
 
-// What the latest of its kind is about, by its number; nothing for other observations.
+// The number of the thing that an observation is about, if only its latest counts; empty for other
+// observations.
 struct NumberOf {
   using Number = std::optional<std::size_t>;
 
@@ -92,7 +93,7 @@ void SeenSoFar::note(const Observation& observation) {
   }
 }
 
-// Of those in a row that nobody answered, only a few decide anything.
+// Among consecutive probes without an answer, only a few affect a decision.
 void SeenSoFar::probed(const Probed& probed, Entry entry) {
   constexpr int kMostCounted = 10;
   if (probed.node > 0) return;  // of its other nodes the next answer tells
@@ -106,7 +107,7 @@ void SeenSoFar::probed(const Probed& probed, Entry entry) {
   }
 }
 
-// Whatever was missed before may have been there.
+// An answer before that may have been missed.
 void SeenSoFar::listens_from(Time at) {
   since_ = std::max(since_, at);
   unanswered_.clear();
@@ -119,7 +120,7 @@ void SeenSoFar::appeared(const std::string& node, Entry entry) {
     known->second.again = std::move(entry);
     return;
   }
-  // What it had before it vanished is announced anew.
+  // Endpoints from before it vanished are announced again.
   if (known != named_.end()) {
     ends_ -= known->second.ends.size();
     named_.erase(known);
@@ -163,7 +164,7 @@ std::vector<Observation> SeenSoFar::observations() const {
   std::vector<Observation> all;
   for (const Entry* entry : entries) {
     all.push_back(entry->observation);
-    // Those that were lost on the way before it belong to a rhythm that nobody knows any more.
+    // Samples that were lost on the way before it belong to an unknown rhythm.
     if (auto* sample = std::get_if<SampleArrived>(&all.back().what)) sample->published = 1;
   }
   return all;

@@ -1,5 +1,5 @@
-// What a culprit that only looks on has seen of the robot, so that it knows it if it has to manage:
-// of each thing the latest observation, as of when it was made.
+// Observations of a culprit that only advises, so that it knows the robot if it becomes the
+// manager: of each thing the latest one, with its time.
 //
 // A manager that begins with these stands where one would that had begun to watch at since(), and
 // has heard of each topic once: nothing that was seen has to be discovered anew, and silences and
@@ -33,7 +33,8 @@ class SeenSoFar {
   // In the order in which they were made.
   void note(std::span<const Observation> observations);
 
-  // Nobody listened before: nothing that was missing until then was missing on the robot.
+  // Before that culprit did not listen: messages that were missing until then need not have been
+  // missing on the robot.
   Time since() const { return since_; }
   // False: there were too many things, so that a manager has to discover the robot by itself.
   bool is_whole() const { return is_whole_; }

@@ -1,4 +1,4 @@
-// What a culprit that only looked on knows of the robot when it has to manage.
+// Knowledge of an advising culprit about the robot when it becomes the manager.
 #include "live/seen_so_far.h"
 
 #include <gmock/gmock.h>
@@ -50,7 +50,7 @@ struct Onlooker : testing::Test {
     for (const char* node : {"/camera", "/fusion"}) sees(kStart + 500ms, NodeAppeared{node, 7});
     sees(kStart + 500ms, EndpointAppeared{"/fusion", EndpointKind::kPublisher, "/fused"});
   }
-  // What a manager says that takes over at `now`; and the commands that it gives.
+  // The events and commands of a manager that takes over at `now`.
   std::vector<std::string> said_at(Time now) {
     Manager::Options options;
     options.start = std::max(seen.since(), now - options.discovery);

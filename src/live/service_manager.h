@@ -1,5 +1,5 @@
-// What systemd is told of a service of Type=notify (sd_notify(3)): datagrams to the socket that
-// $NOTIFY_SOCKET names. Without one, nothing.
+// Notifies systemd about a service of Type=notify (sd_notify(3)), by datagrams to the socket that
+// $NOTIFY_SOCKET names. Without this variable, it does nothing.
 //
 // The watchdog is fed from the decision loop, not from a thread of its own: what hangs is to be
 // found hanging.
@@ -23,7 +23,7 @@ class ServiceManager {
   void ready(const std::string& status) const;
   void stopping() const;
 
-  // The decision loop is alive. Tells it only when it is time to.
+  // The decision loop is alive. Feeds the watchdog only when it is due.
   void feed(Time now);
   // The loop has to come round by then: half of the watchdog's time. kNever without a watchdog.
   Time next_feeding() const { return next_; }

@@ -1,4 +1,4 @@
-// What LAUNCH commands need beside themselves: their SETUP, ENV and CWD, and whether they could run.
+// The environment of LAUNCH commands: their SETUP, ENV and CWD, and whether they could run.
 #pragma once
 
 #include <stop_token>
@@ -11,15 +11,14 @@
 
 namespace culprit::live {
 
-// What each component's LAUNCH has in its environment beside what it inherits, by component. Reads
-// each SETUP, which takes as long as that. Errors: it cannot be read, others could change it, or it
-// fails.
+// The variables that each component's LAUNCH gets beyond the inherited ones, by component. Runs
+// each SETUP, and takes as long as they do. Errors: a SETUP cannot be read, others could change it,
+// or it fails.
 std::vector<Expected<std::vector<std::string>>> environments_of(const RuleSet& rules);
 
-// The components whose LAUNCH could not run here, and why, as far as that can be told without running
-// anything of what may be somebody else's rule file: a SETUP is only looked at, and where there is one,
-// the program is not looked for. Each program is looked for once in each folder and environment, which
-// takes a process. What comes after a request to stop is left out.
+// The components whose LAUNCH could not run here, and why. No program of the rule file is run, since the file may be another user's: a SETUP is only inspected,
+// and with a SETUP the program is not looked up. Each program is looked up once for each folder and environment, which takes a process. Checks that a stop
+// request cuts off are left out.
 std::vector<LiveInventory::LaunchTrouble> launch_troubles(const RuleSet& rules,
                                                           const std::stop_token& stop = {});
 

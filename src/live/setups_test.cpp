@@ -26,7 +26,7 @@ struct Setups : testing::Test {
   static RuleSet rules(const std::string& components) {
     return *check(Source("test.rules", components)).rules;
   }
-  // Of a component with these clauses.
+  // For a component with these clauses.
   static std::optional<LiveInventory::LaunchTrouble> trouble(const std::string& clauses) {
     const auto all = launch_troubles(rules("COMPONENT c " + clauses + "\n"));
     return all.empty() ? std::nullopt : std::optional(all.front());
@@ -81,7 +81,7 @@ TEST_F(Setups, AProgramIsLookedForBesideCulpritToo) {
   EXPECT_FALSE(trouble("LAUNCH \"" + self + " 1\""));
 }
 
-// A rule file that is checked may be somebody else's.
+// A checked rule file may be another user's.
 TEST_F(Setups, NothingIsRunToCheckThem) {
   EXPECT_FALSE(trouble("LAUNCH \"only_there 1\" SETUP " + setup.string()));
   EXPECT_FALSE(std::filesystem::exists(folder / "count"));
@@ -103,7 +103,7 @@ TEST_F(Setups, OneThatOthersMayWriteIsNotRead) {
   const std::string clauses = "LAUNCH \"sleep 1\" SETUP " + setup.string();
   const auto found = trouble(clauses);
   ASSERT_TRUE(found);
-  EXPECT_THAT(found->why, HasSubstr("somebody else could change it"));
+  EXPECT_THAT(found->why, HasSubstr("another user could change it"));
   EXPECT_FALSE(environments_of(rules("COMPONENT c " + clauses + "\n"))[0]);
   EXPECT_FALSE(std::filesystem::exists(folder / "count"));
 }

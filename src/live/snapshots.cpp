@@ -52,7 +52,7 @@ void Snapshots::look_for_recorder(Time now) {
   if (now < looks_) return;
   looks_ = kNever;
   if (client_ && !client_->is_ready())
-    options_.say("no snapshots yet: nobody offers " + service_ +
+    options_.say("no snapshots yet: no node offers " + service_ +
                  ", as 'ros2 bag record --snapshot-mode' does");
 }
 
@@ -61,7 +61,7 @@ void Snapshots::ask(const std::string& why) {
   const auto on_answer = [say = options_.say, service = service_,
                           why](const ros2::CallResult& result) {
     if (result.outcome == ros2::CallOutcome::kUnreachable)
-      return say("no snapshot (" + why + "): nobody offers " + service);
+      return say("no snapshot (" + why + "): no node offers " + service);
     const auto answer = result.outcome == ros2::CallOutcome::kAnswered
                             ? ros2::decode<ros2::srv::Snapshot::Response>(result.reply)
                             : std::nullopt;

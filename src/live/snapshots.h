@@ -2,8 +2,8 @@
 // failure is detected, for what led to it, and again some seconds after all is well, for what came then. Each snapshot
 // begins where the one before it ended.
 //
-// The recorder is somebody else's: it changes nothing of the robot, and nothing depends on whether it answers. A failure
-// that comes and goes asks for no more than two in each Options::after.
+// culprit does not own the recorder: it changes nothing of the robot, and nothing depends on whether it answers. A failure that comes and goes asks for no more
+// than two in each Options::after.
 #pragma once
 
 #include <functional>
@@ -29,7 +29,7 @@ class Snapshots : public Observer {
   // So long it may take to be discovered before that is said.
   static constexpr Duration kDiscovery = std::chrono::seconds(10);
 
-  // What such a recorder offers.
+  // The service of such a recorder.
   static std::string service_of(const std::string& recorder) { return recorder + "/snapshot"; }
 
   explicit Snapshots(Options options);

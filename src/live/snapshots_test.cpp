@@ -1,4 +1,4 @@
-// Who records the robot is asked for a snapshot of each incident, over DDS, by its service as ROS 2 has it.
+// culprit asks a recorder for a snapshot of each incident, over DDS, by its ROS 2 service.
 #include "live/snapshots.h"
 
 #include <gmock/gmock.h>
@@ -29,7 +29,7 @@ RULE Hot
       ADAPTATION motor redeploy 3
 )";
 
-// A manager that is told how hot the motor is, and who looks on.
+// A manager that receives the motor's temperature, and its observer.
 struct HotRobot {
   HotRobot() {
     snapshots.joined(node);
@@ -110,8 +110,9 @@ TEST(Snapshots, OfARecorderThatIsNotThereAreMissedBeforeTheyAreNeeded) {
   robot.is(20, 9);
   EXPECT_THAT(robot.said.all(), IsEmpty()) << "it may still be discovered";
   robot.is(20, 3);
-  EXPECT_THAT(robot.said.all(), ElementsAre(HasSubstr("nobody offers /rosbag2_recorder/snapshot")));
-  // Whoever starts it in time has them.
+  EXPECT_THAT(robot.said.all(),
+              ElementsAre(HasSubstr("no node offers /rosbag2_recorder/snapshot")));
+  // A recorder that is started in time gets the requests.
   robot.is(90);
   RecorderOfAnotherOne recorder(robot.domain);
   EXPECT_TRUE(robot.says("wrote a snapshot (Hot is detected)"));

@@ -43,7 +43,7 @@ MessageType type_named(const std::string& name, ros2::MessageLibrary& library) {
   return {name, std::move(*definitions), *hash};
 }
 
-// Of the lines "uint8 NAME=3".
+// Reads the lines "uint8 NAME=3".
 std::map<std::string, int> constants_in(std::string_view text) {
   std::map<std::string, int> constants;
   while (!text.empty()) {

@@ -1,11 +1,11 @@
-// The types of culprit_msgs, by the files of that package, which are part of the program.
+// The types of culprit_msgs, from the files of that package, which are part of the program.
 //
 //     const CulpritTypes types;
 //     const MessageType& status = types.message("culprit_msgs/msg/Status");
 //     types.constant("culprit_msgs/msg/Component", "HEALTH_OK");  // 0
 //
-// Reads everything when it is made, and never changes: from any thread. What is asked for has to be in
-// the package; the program ends otherwise, for its own files say what there is.
+// Reads everything when it is made, and never changes: from any thread. A requested type must be in
+// the package; otherwise the program ends, for its own files list all types.
 #pragma once
 
 #include <map>

@@ -86,7 +86,7 @@ std::string text_of_file(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// What packaging/monitoring/foxglove.json shows are topics and fields that are told.
+// The topics and fields in packaging/monitoring/foxglove.json must exist.
 TEST(CulpritTypes, HaveWhatTheLayoutForFoxgloveShows) {
   const std::string layout = text_of_file("packaging/monitoring/foxglove.json");
   const std::map<std::string, std::string> types = {

@@ -22,7 +22,7 @@ Json candidate_message(const Candidate& candidate, const RuleSet& rules) {
   return message;
 }
 
-// What kind of decision each event is; empty: none.
+// The kind of decision of each event; empty: none.
 struct KindOf {
   std::string_view operator()(const StrategyChosen& e) const {
     return e.dry_run ? "KIND_ADVISED" : "KIND_BEGUN";
@@ -42,7 +42,7 @@ struct KindOf {
   std::string_view operator()(const auto&) const { return ""; }
 };
 
-// What it is about.
+// Adds the members about the event's subject.
 struct Additions {
   const RuleSet& rules;
   Json& message;

@@ -1,4 +1,4 @@
-// What of the manager's events is a decision, or what became of one, as culprit_msgs/msg/Decision.
+// The manager's events that are a decision, or the result of one, as culprit_msgs/msg/Decision.
 #pragma once
 
 #include <optional>

@@ -1,19 +1,17 @@
-// Follows incidents (live/situation.h) from their beginning to their end, by the names of the rules that
-// fail. Where another manager begins, for the rules were reloaded, say, what it does not see yet is lost:
-// if it is there still, it is another one.
+// The messages for readers of /culprit/incidents: one message when an incident begins, one when something about
+// it has changed, at most every kPeriod, and one when it is over.
 //
-// What a reader of /culprit/incidents is told: one message when an incident begins, one when something about
-// it changed, at most every kPeriod, and one when it is over.
+// The manager finds incidents (incidents/incidents.h). If another manager begins, for example after the rules
+// were reloaded, an incident that it does not continue counts as lost. If its failure has not cleared, it becomes a new
+// incident.
 #pragma once
 
-#include <functional>
-#include <map>
-#include <set>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "json/json.h"
-#include "live/situation.h"
+#include "manager/manager.h"
 #include "ros_api/culprit_types.h"
 
 namespace culprit::ros_api {
@@ -29,36 +27,32 @@ class IncidentWatch {
 
   explicit IncidentWatch(const CulpritTypes& types) : types_(types) {}
 
-  // What happened since it was called last: how failures ended.
-  void note(std::span<const Event> events, const RuleSet& rules);
+  // Takes the events since the last call. Gives the messages of incidents that are over.
+  std::vector<Json> note(std::span<const Event> events, WallTime wall);
 
-  // Messages for the topic. `all` are the incidents now, `wall` is the time on the wall of `now`.
-  std::vector<Json> look(const std::vector<live::Incident>& all, const RuleSet& rules, Time now,
-                         WallTime wall);
-  // When something that changed may be told; kNever: all is told.
+  // Messages for the topic. `wall` is the time on the wall of `now`.
+  std::vector<Json> look(const Manager& manager, Time now, WallTime wall);
+  // When a change may be published; kNever: all is told.
   Time due() const { return due_; }
 
-  // Those that are open, as they were at the last look, the worst first.
+  // Those that are open, as they were at the last look, in the order of all views.
   std::vector<Json> open() const;
 
  private:
   struct Followed {
     std::string id;
     WallTime since;
-    std::set<std::string> rules;  // that fail, or failed until then
-    Json message;                 // as it is now
-    Json told;                    // as it was told last, without what changes with the time
+    Json message;  // as it is now
+    Json told;     // as published last, without what changes with the time
     Time told_at = kLongAgo;
   };
 
-  Followed& followed(const live::Incident& incident, const std::set<std::string>& rules,
-                     const std::set<std::string>& roots, const std::string& root,
-                     std::set<std::string>& taken, Time now, WallTime wall);
-  Json ended(const Followed& each, WallTime wall) const;
+  Json message_of(const Incident& incident, const Manager& manager, WallTime since,
+                  WallTime wall) const;
+  Json ended(const Followed& each, IncidentEnd how, WallTime wall) const;
 
   const CulpritTypes& types_;
-  std::vector<Followed> all_;                // the worst first
-  std::map<std::string, bool> is_resolved_;  // by rule: its failure is gone, or not seen any more
+  std::vector<Followed> all_;
   Time due_ = kNever;
 };
 

@@ -59,7 +59,7 @@ std::optional<T> number_in(const Json& document) {
   }
 }
 
-// Whoever reads a text in Python gets an exception otherwise.
+// Otherwise a reader of the text in Python gets an exception.
 std::string mended(const std::string& text) {
   return parse_json(to_line(Json(text))).get<std::string>();
 }

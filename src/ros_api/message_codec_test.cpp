@@ -14,7 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// Of a type with all that a field may be.
+// A type with every kind of field.
 MessageType test_type(const std::string& text) {
   ros2::MessageLibrary library;
   library.learn("t/msg/Part", "string name\nfloat64 weight\n");
@@ -112,7 +112,7 @@ TEST(MessageCodec, WhatIsNoMessageIsRefused) {
   EXPECT_TRUE(decode(whole, type));
 }
 
-// Whatever is sent, an order is read or refused, with no more memory than it has bytes.
+// For any bytes: an order is read or refused, with no more memory than it has bytes.
 RC_GTEST_PROP(MessageCodec, AnyBytesAreReadOrRefused, (ros2::Bytes bytes)) {
   static const CulpritTypes types;
   bytes.insert(bytes.begin(), {0, 1, 0, 0});

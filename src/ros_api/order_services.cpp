@@ -62,7 +62,7 @@ Expected<Json> to_order(std::string_view service_type, const Json& request) {
     add_name(order, request, "rule");
     add_name(order, request, "strategy");
   }
-  // For the record: nobody has proven to be who this says.
+  // For the record: the author is not authenticated.
   const std::string author = text_at(request, "author");
   order["author"] = author.empty() ? "" : author + " (over DDS)";
   order["reason"] = text_at(request, "reason");
@@ -99,7 +99,7 @@ std::vector<std::string> OrderServices::open(ros2::NodeEntry& node) {
   return troubles;
 }
 
-// Nobody waits for an answer that does not come, whatever was sent.
+// Every request gets an answer, whatever its bytes, so that no client waits in vain.
 void OrderServices::take(const ServiceType& type, ros2::WorkerThread& worker,
                          ros2::ByteView request, const ros2::ServiceServer::Answer& answer) {
   const auto say = [&type, answer](const Json& said) {
@@ -117,7 +117,7 @@ Json OrderServices::obey(const ServiceType& type, const Json& request) const {
   auto order = to_order(type.name, request);
   if (!order) return response(false, order.error());
   (*order)["wait_s"] = seconds(kPatience);
-  // It is not followed once its sender was told that nothing came of it.
+  // It is not carried out once its sender received a timeout.
   (*order)["valid_until"] = seconds(live_now().time_since_epoch() + kPatience);
   const web::Answer answer = give_(*order);
   if (answer.status >= 400)

@@ -1,8 +1,9 @@
-// Orders over DDS: services of culprit_msgs, which give what is asked to the call that HTTP and the unix socket
-// give theirs to (web/order_routes.h), and answer with what it answers.
+// Orders over DDS: services of culprit_msgs. They pass each request to the same call as HTTP and
+// the unix socket (web/order_routes.h), and return its answer.
 //
-// Each service has a thread of its own, for an order may wait for the disk or for the manager, and a pause is not
-// to wait behind another order. What comes while kMostWaiting wait is refused at once.
+// Each service has a thread of its own: an order may wait for the disk or for the manager, and a
+// pause must not wait behind another order. While kMostWaiting wait, further orders are refused at
+// once.
 #pragma once
 
 #include <functional>

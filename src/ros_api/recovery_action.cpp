@@ -33,7 +33,8 @@ constexpr int kErrorNone = 0;
 constexpr int kErrorUnknownGoal = 2;
 constexpr int kErrorGoalTerminated = 3;
 
-// rcl_action's: services as such, the topics reliable, and who comes late gets the newest state of all goals.
+// rcl_action's: services as such, the topics reliable, and a late joiner gets the newest state of
+// all goals.
 constexpr ros2::Qos kFeedbackQos{.depth = 10};
 // A client of rclcpp takes feedback before answers, and drops what is about a goal that it does not
 // know yet: so a goal's first feedback comes so long after the answer that accepts it.
@@ -102,7 +103,7 @@ class RecoveryAction::Offer {
   }
 
   using Take = std::function<void(const Json& request, const Answer& answer)>;
-  // What is no request gets no answer: the services of actions have no word for it.
+  // Invalid requests get no answer: the services of actions have no field for an error.
   void serve(const std::string& part, const char* type_name, Take take) {
     const ServiceType& type = types_.service(type_name);
     const auto name = ros2::resolve_name(name_of(part), node_.name());
@@ -115,7 +116,7 @@ class RecoveryAction::Offer {
     if (server) {
       servers_.push_back(std::move(*server));
     } else {
-      troubles_.push_back("nobody can wait by " + *name + ": " + server.error());
+      troubles_.push_back("no goals are taken by " + *name + ": " + server.error());
     }
   }
 
@@ -124,7 +125,7 @@ class RecoveryAction::Offer {
     const MessageType& type = types_.message(type_name);
     auto publisher = ros2::RawPublisher::create(node_, name_of(part), type.name, qos, type.hash);
     if (publisher) return std::move(*publisher);
-    troubles_.push_back("who waits is told nothing by " + name_of(part) + ": " + publisher.error());
+    troubles_.push_back("culprit does not publish " + name_of(part) + ": " + publisher.error());
     return nullptr;
   }
 
@@ -170,7 +171,7 @@ class RecoveryAction::Offer {
     answer_with(answer, kGetResult, {{"status", number_of(goal.state)}, {"result", goal.result}});
   }
 
-  // Tells what has come of the goals, and waits for the next time that runs out.
+  // Publishes the goals' progress, and waits for the next time limit.
   void follow() {
     goals_.expire(live_now());
     for (const Id& id : goals_.take_news()) {

@@ -1,8 +1,8 @@
 // The action ~/wait_for_recovery (culprit_msgs/action/WaitForRecovery) at culprit's own node, as rclcpp and
 // rclpy ask for actions: three services and two topics below ~/wait_for_recovery/_action (rcl_action).
 //
-// It orders nothing, so it is always offered. What is known of the robot comes from what is told anyway
-// (told()). A goal ends without a word when the node does.
+// It orders nothing, so it is always offered. Its data about the robot are those that are published
+// anyway (told()). If the node leaves, its goals end without a result.
 #pragma once
 
 #include <memory>
@@ -24,7 +24,7 @@ class RecoveryAction {
   std::vector<std::string> open(ros2::NodeEntry& node);
   void close();
 
-  // A culprit_msgs/msg/Status as it was told. On the thread that opens and closes.
+  // A culprit_msgs/msg/Status as it was published. On the thread that opens and closes.
   void told(const Json& status);
 
  private:

@@ -12,9 +12,9 @@ namespace {
 // culprit_msgs/msg/Component: PROCESS_STOPPED and worse.
 constexpr int kFirstBadProcess = 2;
 
-// What a status says of what a goal is about.
+// The facts of a status about the subject of a goal.
 struct Outlook {
-  bool is_known = false;  // the robot is heard
+  bool is_known = false;  // the robot's messages arrive
   bool is_there = false;  // and has such a component
   std::vector<std::string> ill;
   std::string doing;
@@ -79,7 +79,7 @@ void RecoveryGoals::forget_some() {
   });
 }
 
-// Whoever has waited for longest is the most likely to be gone.
+// The client that has waited longest is the most likely to have left.
 void RecoveryGoals::make_room() {
   std::vector<Goal*> open;
   for (const Id& id : order_) {

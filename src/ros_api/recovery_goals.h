@@ -1,5 +1,5 @@
-// Who waits for the recovery of a component, or of the whole robot: the goals of the action
-// WaitForRecovery (ros/culprit_msgs/action), without the middleware that they come by.
+// Clients that wait for the recovery of a component, or of the whole robot: the goals of the action
+// WaitForRecovery (ros/culprit_msgs/action), without the middleware.
 //
 //     RecoveryGoals goals;
 //     goals.begin({id, "camera", 10s}, now, wall);
@@ -7,10 +7,10 @@
 //     goals.expire(now);        // when goals.due() has come
 //     for (const auto& end : goals.take_ended()) answer(end.id, end.state, end.result);
 //
-// A component has recovered when its node is there, no rule that fails touches it, its process neither
-// stopped, hung nor ended, and nothing changes it. The robot has when that holds for all of its components
-// and nothing else is wrong either. What is not known is no recovery: a robot that cannot be heard, and one
-// that nobody has looked at yet.
+// A component has recovered when its node is there, no failed rule involves it, and nothing changes
+// it. Its process is neither stopped, hung nor exited. The robot has recovered when that holds for
+// all of its components and nothing else is wrong either. An unknown state is no recovery: an
+// unreachable robot, and one that has not been checked yet.
 //
 // One thread.
 #pragma once
@@ -37,7 +37,8 @@ class RecoveryGoals {
 
   using Id = std::array<std::uint8_t, 16>;  // unique_identifier_msgs/msg/UUID
 
-  // As action_msgs/msg/GoalStatus numbers them. Nothing is between: who waits neither starts nor stops.
+  // As action_msgs/msg/GoalStatus numbers them. Nothing is between: a waiting goal neither starts
+  // nor stops.
   enum class State : std::int8_t {
     kUnknown = 0,
     kExecuting = 2,
@@ -56,11 +57,11 @@ class RecoveryGoals {
     WallTime accepted{};
     Time ends = kNever;
     State state = State::kExecuting;
-    Json feedback;  // a WaitForRecovery_Feedback, as it was told last; null: none was
+    Json feedback;  // a WaitForRecovery_Feedback, as published last; null: none was
     Json result;    // a WaitForRecovery_Result, once it has ended
   };
 
-  // False: its id is taken. What can be said of it at once look_again() says.
+  // False: its id is taken. look_again() gives its first feedback, if there is any.
   bool begin(const Request& request, Time now, WallTime wall);
 
   // Messages of type Status; the newest is kept for goals to come.
@@ -76,7 +77,7 @@ class RecoveryGoals {
   // Whether one was accepted and has not been forgotten, and how it is.
   const Goal* find(const Id& id) const;
 
-  // What was not taken yet: of goals that have ended, and of others whose feedback has changed.
+  // The news that were not taken yet: goals that have ended, and others whose feedback has changed.
   std::vector<Id> take_ended();
   std::vector<Id> take_news();
 
@@ -89,7 +90,7 @@ class RecoveryGoals {
   void consider(Goal& goal);
   void end(Goal& goal, State state, std::string message);
 
-  Json status_;  // null: none was told
+  Json status_;  // null: none was published
   std::map<Id, Goal> goals_;
   std::deque<Id> order_;  // in which they came
   std::vector<Id> ended_, news_;

@@ -83,7 +83,7 @@ TEST(RecoveryGoals, TakeForNoRecoveryWhatIsNotKnown) {
   ASSERT_TRUE(goals.begin({id_of(1), "camera", 0s}, kNow, kWall));
   ASSERT_TRUE(goals.begin({id_of(2), "", 0s}, kNow, kWall));
   goals.look_again();
-  EXPECT_EQ(state_of(goals, 1), State::kExecuting) << "nobody has looked yet";
+  EXPECT_EQ(state_of(goals, 1), State::kExecuting) << "it has not been checked yet";
   Json deaf = kWell;
   deaf["hears"] = false;
   goals.look(deaf);

@@ -1,6 +1,6 @@
 #include "ros_api/ros_api.h"
 
-#include <cassert>
+#include "base/invariant.h"
 
 namespace culprit::ros_api {
 namespace {
@@ -37,7 +37,7 @@ void RosApi::joined(ros2::NodeEntry& node) {
   if (troubles.empty()) return;
   std::string text = troubles[0];
   if (troubles.size() > 1)
-    text += " (and " + std::to_string(troubles.size() - 1) + " more of culprit_msgs likewise)";
+    text += " (and " + std::to_string(troubles.size() - 1) + " more of culprit_msgs)";
   options_.on_trouble(text);
 }
 
@@ -53,7 +53,7 @@ Expected<void> RosApi::offer(ros2::NodeEntry& node, Topic topic, std::string_vie
   Told& told = told_[place_of(topic)];
   auto publisher = ros2::RawPublisher::create(node, name, told.type->name, qos, told.type->hash);
   if (!publisher)
-    return Error{"nodes are told nothing by " + std::string(name) + ": " + publisher.error()};
+    return Error{"culprit does not publish " + std::string(name) + ": " + publisher.error()};
   told.publisher = std::move(*publisher);
   return {};
 }
@@ -72,13 +72,13 @@ Expected<void> RosApi::describe_types(ros2::NodeEntry& node) {
   return {};
 }
 
-// What cannot be sent is a status more or less: the robot is healed without it.
+// If a message cannot be sent, the robot is healed without it.
 void RosApi::tell(Topic topic, const Json& message) {
   if (topic == Topic::kStatus) recovery_.told(message);
   const Told& told = told_[place_of(topic)];
   if (!told.publisher) return;
   const auto payload = encode(message, *told.type);
-  assert(payload);
+  CULPRIT_ASSERT(payload);
   if (payload) (void)told.publisher->publish(*payload);
 }
 

@@ -1,14 +1,14 @@
-// What culprit tells nodes of ROS 2, and the orders that it takes from them: topics and services of
+// culprit's messages to ROS 2 nodes, and the orders that it takes from them: topics and services of
 // culprit_msgs (ros/culprit_msgs) at culprit's own node.
 //
 //     ~/status         culprit_msgs/msg/Status    reliable, transient local, depth 1
 //     ~/incidents      culprit_msgs/msg/Incident  reliable
 //     ~/decisions      culprit_msgs/msg/Decision  reliable
 //     ~/wait_for_recovery   culprit_msgs/action/WaitForRecovery
-//     ~/pause, ~/resume, ~/approve, ~/silence, ~/run_strategy      if orders are taken
-//     ~/get_type_description    what these types look like, as each node of Jazzy and newer says it
+//     ~/pause, ~/resume, ~/approve, ~/silence, ~/run_strategy      if orders are taken;
+//     ~/get_type_description    definitions of these types, as nodes of Jazzy and newer serve them
 //
-// Whoever looks on sees the sessions of a run one after the other; each has a node of its own.
+// The sessions of a run follow one another; each has a node of its own.
 #pragma once
 
 #include <array>
@@ -27,8 +27,8 @@ class RosApi : public live::Observer {
     std::string version;  // of culprit
     // Takes orders; empty: none are taken.
     OrderServices::Give give{};
-    // Told, once for each node, what could not be offered, for permissions are missing, say. Nothing else
-    // depends on it.
+    // Called once for each node with the endpoints that could not be created, for example without
+    // permissions. All else works without them.
     std::function<void(const std::string& trouble)> on_trouble = [](const std::string&) {};
   };
 

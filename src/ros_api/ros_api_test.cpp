@@ -42,7 +42,7 @@ constexpr const char* kStatus = "culprit_msgs/msg/Status";
 
 enum class Orders : std::uint8_t { kNone, kTaken };
 
-// culprit's node, a manager, and what it was told through the very desk that HTTP's orders go to.
+// culprit's node, a manager, and the orders that it gets through the same desk as HTTP's.
 struct OrderedCulprit {
   explicit OrderedCulprit(Orders orders = Orders::kNone, Approval approval = Approval::kNone)
       : OrderedCulprit(
@@ -136,7 +136,8 @@ TEST(RosApi, TellsIncidentsAndDecisions) {
   OrderedCulprit culprit;
   auto& incidents = culprit.panel.hear("/culprit/incidents", "culprit_msgs/msg/Incident");
   auto& decisions = culprit.panel.hear("/culprit/decisions", "culprit_msgs/msg/Decision");
-  ASSERT_TRUE(culprit.panel.is_known_to("/culprit")) << "or it would miss what is told once";
+  ASSERT_TRUE(culprit.panel.is_known_to("/culprit"))
+      << "or it would miss messages that are sent once";
   culprit.step({{culprit.now, ProcessSeen{ComponentId(0), ProcessState::kRunning, 12, ""}}});
   culprit.step({{culprit.now, ProcessSeen{ComponentId(0), ProcessState::kGone, 12,
                                           "killed by signal 9", Cause::kFault}}});
@@ -166,7 +167,7 @@ TEST(RosApi, ObeysAPauseAndItsEnd) {
                                          {{"author", "ann"}, {"reason", "people on the floor"}});
   EXPECT_EQ(paused["success"], true) << paused;
   EXPECT_THAT(paused["message"].get<std::string>(), HasSubstr("not kept: this is a test"))
-      << "the manager's own word, and whether the next culprit will know";
+      << "the manager's answer, and whether the order outlives culprit";
   EXPECT_TRUE(culprit.manager->governor().is_paused());
   const auto orders = culprit.keeper.orders();
   ASSERT_TRUE(orders.pause);
@@ -273,7 +274,7 @@ TEST(RosApi, AForgedRequestIsAnsweredWithAnErrorAndDoesNothing) {
   ros2::CdrWriter no_text;
   no_text.write_string("ann\xff");
   no_text.write_string("");
-  ros2::CdrWriter too_long;  // it says, and is not
+  ros2::CdrWriter too_long;  // its length field is too large
   too_long.write(std::uint32_t{0xFFFFFFFF});
   for (const ros2::Bytes& request : {ros2::Bytes{0, 1, 0, 0}, ros2::Bytes{0, 9, 0, 0, 1, 2, 3, 4},
                                      no_text.take(), too_long.take()}) {
@@ -284,7 +285,7 @@ TEST(RosApi, AForgedRequestIsAnsweredWithAnErrorAndDoesNothing) {
   }
   EXPECT_FALSE(culprit.manager->governor().is_paused());
   EXPECT_EQ(culprit.panel.call("/culprit/pause", kPause, {{"author", "ann"}})["success"], true)
-      << "and who comes next is heard";
+      << "and the next request is answered";
 }
 
 TEST(RosApi, APauseDoesNotWaitBehindAnotherOrder) {
@@ -335,7 +336,7 @@ TEST(RosApi, MoreOrdersThanItCanKeepAreRefusedAtOnce) {
     return each.find("too many orders wait") != std::string::npos;
   }));
   disk.set_value();
-  EXPECT_TRUE(answers.wait_for_count(count)) << "nobody is left without an answer";
+  EXPECT_TRUE(answers.wait_for_count(count)) << "every request gets an answer";
 }
 
 constexpr const char* kAction = "/culprit/wait_for_recovery/_action/";
@@ -405,7 +406,7 @@ TEST(RosApi, WhoWaitsForARecoveryIsAnsweredWhenItComes) {
   EXPECT_TRUE(states.wait_for_one([](const Json& each) {
     const Json& all = each["status_list"];
     return all.size() == 2 && all[0]["status"] == 4 && all[0]["goal_info"]["goal_id"] == goal_id(1);
-  })) << "and the topic says so";
+  })) << "and the topic shows it";
 }
 
 TEST(RosApi, WhoWaitsForARecoveryMayStopOrRunOutOfTime) {

@@ -4,13 +4,14 @@
 
 #include "ros_api/decision_message.h"
 #include "web/component_health.h"
+#include "web/overview.h"
 
 namespace culprit::ros_api {
 namespace {
 
 constexpr std::string_view kComponentType = "culprit_msgs/msg/Component";
 
-// Samples and values come at the rate of the robot's topics; what they mean is told by events.
+// Samples and values come at the rate of the robot's topics; events report their meaning.
 bool may_change_status(const Observation& observation) {
   const auto& what = observation.what;
   const auto* reply = std::get_if<Reply>(&what);
@@ -33,22 +34,12 @@ bool is_silenced(const Silenceable& what, const Governor& governor) {
                              [&](const auto& each) { return each.what == what; });
 }
 
-// "all is well", "camera is dead", "camera is dead, and 2 more", "no failure is seen, but 1 rule is blind"
-std::string summary_of(const std::vector<Json>& incidents, const Manager& manager) {
-  const Blindness& blindness = manager.knowledge().blindness;
-  const std::size_t blind = blindness.count();
-  std::string text = "all is well";
-  if (blind > 0)
-    text = "no failure is seen, but " + std::to_string(blind) +
-           (blind == 1 ? " rule is blind" : " rules are blind");
-  if (blindness.is_total()) text = "watching nothing: no rule can see";
-  if (!manager.hears()) text = "the robot cannot be heard, and nothing is judged";
-  if (!incidents.empty()) text = incidents.front()["headline"].get<std::string>();
-  if (incidents.size() > 1) text += ", and " + std::to_string(incidents.size() - 1) + " more";
+std::string summary_of(const Manager& manager) {
+  const std::string text = web::overview_of(manager).headline;
   return manager.governor().is_paused() ? text + " [paused]" : text;
 }
 
-// What changes with the time alone is no news.
+// A field that changes with the time alone is no news.
 Json without_times(Json status) {
   status.erase("stamp");
   for (Json& incident : status["incidents"]) {
@@ -63,8 +54,7 @@ Json without_times(Json status) {
 void Teller::begins(const Manager& manager, std::function<Remarks()> remarks, Time) {
   manager_ = &manager;
   remarks_ = std::move(remarks);
-  situation_.forget();
-  // Of the node that comes with it nothing was told yet.
+  // The new node has published nothing yet.
   told_ = nullptr;
   may_have_changed_ = true;
   is_new_manager_ = true;
@@ -72,12 +62,11 @@ void Teller::begins(const Manager& manager, std::function<Remarks()> remarks, Ti
 }
 
 void Teller::stepped(const Runtime::Step& step) {
-  const RuleSet& rules = manager_->knowledge().rules;
-  situation_.take(step.events, rules);
-  incidents_.note(step.events, rules);
+  const std::vector<Json> closed = incidents_.note(step.events, wall_());
   tell_decisions(step.events, step.now);
   if (std::exchange(is_new_manager_, false) || !step.events.empty() || incidents_.due() <= step.now)
     tell_incidents(step.now);
+  for (const Json& message : closed) tell_(Topic::kIncidents, message);
   may_have_changed_ |=
       !step.events.empty() || std::ranges::any_of(step.observations, may_change_status);
   if (may_have_changed_ && step.now >= later(looked_, kPeriod)) tell_status(step.now);
@@ -107,8 +96,7 @@ void Teller::tell_decisions(std::span<const Event> events, Time now) {
 }
 
 void Teller::tell_incidents(Time now) {
-  const auto all = situation_.incidents(*manager_);
-  for (const Json& message : incidents_.look(all, manager_->knowledge().rules, now, wall_()))
+  for (const Json& message : incidents_.look(*manager_, now, wall_()))
     tell_(Topic::kIncidents, message);
 }
 
@@ -133,7 +121,7 @@ Json Teller::status() const {
                {"robot", rules.robot},
                {"version", version_},
                {"health", health},
-               {"summary", summary_of(incidents, *manager_)},
+               {"summary", summary_of(*manager_)},
                {"hears", manager_->hears()},
                {"is_paused", governor.is_paused()},
                {"advises", manager_->autonomy() == Autonomy::kAdvise},

@@ -1,11 +1,11 @@
-// Says in messages of culprit_msgs what a manager finds and does. It knows no middleware: where the messages
-// go is whoever's who made it (ros_api.h).
+// Reports a manager's findings and actions in messages of culprit_msgs. It knows no middleware:
+// its creator publishes the messages (ros_api.h).
 //
-// - Status: what is there now. When it has changed, at most every kPeriod.
+// - Status: the present state. When it has changed, at most every kPeriod.
 // - Incident: incident_watch.h.
 // - Decision: as they happen; beyond kMostDecisions in a second they are counted and left out.
 //
-// So it costs little whatever happens on the robot, and nothing while nothing does.
+// So it costs little however much happens on the robot, and nothing while nothing happens.
 #pragma once
 
 #include <functional>
@@ -55,7 +55,6 @@ class Teller : public live::Observer {
   const WallClock wall_;
   const Manager* manager_ = nullptr;  // null: none has begun
   std::function<Remarks()> remarks_;
-  live::Situation situation_;
   IncidentWatch incidents_;
 
   bool is_new_manager_ = false;

@@ -1,4 +1,4 @@
-// What readers are told while a robot is healed, in virtual time.
+// Checks the messages to readers while a robot is healed, in virtual time.
 #include "ros_api/teller.h"
 
 #include <gmock/gmock.h>
@@ -112,7 +112,7 @@ TEST(Teller, NeverSaysThatAllIsWellWhileARuleIsBlind) {
     told.run_for(1s);
   }
   told.run_for(60s);
-  EXPECT_EQ(told.statuses.back()["summary"], "no failure is seen, but 1 rule is blind");
+  EXPECT_EQ(told.statuses.back()["summary"], "no failure is seen, but Dark is blind");
 }
 
 TEST(Teller, TellsWhoIsThereAndThatAllIsWell) {
@@ -140,7 +140,7 @@ TEST(Teller, SaysNothingWhileNothingChanges) {
   told.clear();
   told.run_for(10min);
   EXPECT_THAT(told.statuses, IsEmpty());
-  EXPECT_EQ(told.teller.next_look(), kNever) << "and it wants no step of its own";
+  EXPECT_EQ(told.teller.next_look(), kNever) << "and it needs no step of its own";
 }
 
 TEST(Teller, TellsAnIncidentFromItsBeginningToItsEnd) {
@@ -277,46 +277,6 @@ TEST(Teller, ANewManagerKnowsOfNoIncidentUntilItSeesOne) {
   told.teller.stepped({told.robot->now, {}, none, {}, next.events()});
   EXPECT_EQ(told.incidents.back()["state"], told.constant("Incident", "STATE_LOST"));
   EXPECT_THAT(told.statuses.back()["incidents"], IsEmpty());
-}
-
-// Two causes at first, in whichever order they are told; each keeps its name.
-TEST(IncidentWatch, KnowsAnIncidentAgainByItsCause) {
-  const ToldRobot told;
-  const RuleSet& rules = told.robot->rules();
-  IncidentWatch watch(told.types);
-  const auto incident = [](std::size_t root, std::vector<RuleId> consequences = {}) {
-    return live::Incident{
-        .root = RuleId(root), .consequences = std::move(consequences), .since = Time()};
-  };
-  const auto look = [&](const std::vector<live::Incident>& all, Duration after) {
-    return watch.look(all, rules, Time(after), WallTime(std::chrono::hours(1)) + after);
-  };
-  ASSERT_THAT(look({incident(0, {RuleId(1)})}, 1s), SizeIs(1));
-  const Json first = watch.open()[0]["id"];
-  const auto split = look({incident(1), incident(0)}, 2s);
-  EXPECT_THAT(split, SizeIs(2));
-  EXPECT_EQ(watch.open()[1]["id"], first) << "CameraSilent is the old one";
-  const auto merged = look({incident(0, {RuleId(1)})}, 3s);
-  ASSERT_THAT(merged, SizeIs(2));
-  EXPECT_EQ(merged[1]["state"], told.constant("Incident", "STATE_MERGED"));
-  EXPECT_EQ(merged[0]["id"], first);
-  const auto renamed = look({incident(1)}, 4s);
-  ASSERT_THAT(renamed, SizeIs(1));
-  EXPECT_EQ(renamed[0]["id"], first) << "another cause of the same";
-  EXPECT_EQ(renamed[0]["rule"], "FusionSilent");
-  const auto gone = look({}, 5s);
-  ASSERT_THAT(gone, SizeIs(1));
-  EXPECT_EQ(gone[0]["state"], told.constant("Incident", "STATE_LOST"));
-}
-
-TEST(IncidentWatch, WhatIsDoneByOrderBeginsWhenItIsSeen) {
-  const ToldRobot told;
-  IncidentWatch watch(told.types);
-  const WallTime wall(std::chrono::hours(1));
-  const auto news =
-      watch.look({{.root = RuleId(0)}}, told.robot->rules(), Time(Duration(3s)), wall);
-  ASSERT_THAT(news, SizeIs(1));
-  EXPECT_EQ(news[0]["since"], stamp_of(wall));
 }
 
 TEST(Teller, ShowsWhoElseHasTheNameOfANode) {

@@ -20,7 +20,8 @@ ros2::EventLog<Json>& TestRosNode::hear(const std::string& topic, const std::str
   return log;
 }
 
-// Discovery data comes in order: who answers a client knows what was made before it.
+// Discovery data comes in order: a node that answers a client has discovered all that was made
+// before it.
 bool TestRosNode::is_known_to(const std::string& node) {
   const auto client = ros2::ServiceClient::create(
       node_, {node + "/get_type_description", std::string(ros2::srv::GetTypeDescription::kType)});

@@ -1,4 +1,5 @@
-// A node of the robot's user, as rclcpp makes one: it hears what culprit tells, and gives it orders.
+// A node of the robot's user, as rclcpp makes one: it receives culprit's messages, and gives it
+// orders.
 #pragma once
 
 #include <memory>
@@ -31,8 +32,8 @@ class TestRosNode {
   Json call_with(const std::string& service, const std::string& type, const ros2::Bytes& request,
                  Duration patience = ros2::kPatience);
 
-  // Of a service of culprit's node, which has no namespace. What it asks for is sent once, when the server has proven that it knows the
-  // client: an order is not given twice.
+  // A client of a service of culprit's node, which has no namespace. It sends a request once, when
+  // the server has proven that it knows the client: so no order is given twice.
   std::unique_ptr<ros2::ServiceClient> client_of(const std::string& service,
                                                  const std::string& type);
 

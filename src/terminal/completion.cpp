@@ -33,12 +33,13 @@ std::vector<Completed> places_of(const CLI::App& app, const Manual& manual) {
   return all;
 }
 
-enum class ValueKind { kNothing, kWords, kFile, kFolder, kText };
+enum class ValueKind { kNothing, kWords, kFile, kFolder, kText, kLive };
 
-// What an option, or an argument, takes.
+// The type of an option's or argument's value.
 struct ValueType {
   ValueKind kind = ValueKind::kNothing;
-  std::string words{};  // "bayes paper"
+  // "bayes paper"; of live names: the arguments of the program that print them, "names components".
+  std::string words{};
 };
 
 ValueType type_of_value(const CLI::Option& option) {
@@ -46,6 +47,9 @@ ValueType type_of_value(const CLI::Option& option) {
   if (type.empty()) return {};
   if (type.starts_with("FILE")) return {ValueKind::kFile};
   if (type.starts_with("FOLDER")) return {ValueKind::kFolder};
+  if (type == "COMPONENT") return {ValueKind::kLive, "names components"};
+  if (type == "NAME") return {ValueKind::kLive, "names names"};
+  if (type == "STRATEGY") return {ValueKind::kLive, "names strategies"};
   const std::size_t end = type.find('}');
   if (type.front() != '{' || end == std::string::npos) return {ValueKind::kText};
   std::string words = type.substr(1, end - 1);
@@ -135,13 +139,15 @@ std::string bash_value(const ValueType& value) {
       return "@folder";
     case ValueKind::kText:
       return "@text";
+    case ValueKind::kLive:
+      return in_quotes("@live " + value.words);
   }
   return "";
 }
 
 // Looks at the words before the cursor: which command they name, and whether the last one is an option that waits for
 // its value. A "=" is a word of its own to bash.
-constexpr const char* kBash = R"(
+constexpr const char* kBash = R"BASH(
 FUNCTION() {
   local command= commands options arguments value others word waiting= i
   local -a words=()
@@ -178,6 +184,8 @@ FUNCTION() {
   fi
   case $waiting in
     @text) ;;
+    @live*)
+      mapfile -t COMPREPLY < <(compgen -W "$(PROGRAM ${waiting#@live } 2>/dev/null)" -- "$word") ;;
     @file)
       compopt -o filenames 2>/dev/null
       mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
@@ -188,11 +196,11 @@ FUNCTION() {
   esac
 }
 complete -F FUNCTION PROGRAM
-)";
+)BASH";
 
 // ---- zsh
 
-std::string zsh_value(const CLI::Option& option) {
+std::string zsh_value(const CLI::Option& option, const std::string& program) {
   const ValueType value = type_of_value(option);
   const std::string name = option.get_positional() ? option.get_name(true) : "value";
   switch (value.kind) {
@@ -206,6 +214,8 @@ std::string zsh_value(const CLI::Option& option) {
       return ":" + name + ":_files -/";
     case ValueKind::kText:
       return ":" + name + ": ";
+    case ValueKind::kLive:
+      return ":" + name + ":($(" + program + " " + value.words + " 2>/dev/null))";
   }
   return "";
 }
@@ -214,14 +224,14 @@ std::string zsh_purpose(const std::string& text) {
   return "[" + with_backslashes(short_of(text), "[]\\") + "]";
 }
 
-std::string zsh_specs(const CLI::App& command) {
+std::string zsh_specs(const CLI::App& command, const std::string& program) {
   std::string out = " \\\n    '(- *)--help[Tell the options]'";
   for (const CLI::Option* option : named_options_of(command)) {
     const auto names = names_of(*option);
     std::string others;
     for (const std::string& name : names) others += (others.empty() ? "" : " ") + name;
     const std::string before = takes_several(*option) ? "*" : "(" + others + ")";
-    const std::string value = zsh_value(*option);
+    const std::string value = zsh_value(*option, program);
     for (const std::string& name : names) {
       const char* joint = value.empty() ? "" : name.starts_with("--") ? "=" : "+";
       out +=
@@ -229,7 +239,8 @@ std::string zsh_specs(const CLI::App& command) {
     }
   }
   for (const CLI::Option* argument : arguments_of(command))
-    out += " \\\n    " + in_quotes((takes_several(*argument) ? "*" : "") + zsh_value(*argument));
+    out += " \\\n    " +
+           in_quotes((takes_several(*argument) ? "*" : "") + zsh_value(*argument, program));
   return out;
 }
 
@@ -238,13 +249,14 @@ std::string zsh_function(const Completed& place, const std::string& function,
   const std::string own = function + (place.path.empty() ? "" : "__" + identifier(place.path));
   const auto parts = commands_in(*place.command);
   if (place.is_of_others) {
-    // That one's command line begins with the name of its program.
+    // Its command line begins with the name of its program.
     return "\n" + own + "() {\n  words=(" + manual.others.program +
            " \"${words[@]}\")\n  (( CURRENT++ ))\n  (( $+functions[_" + manual.others.program +
            "] )) && _" + manual.others.program + "\n}\n";
   }
   if (parts.empty())
-    return "\n" + own + "() {\n  _arguments -s -S" + zsh_specs(*place.command) + "\n}\n";
+    return "\n" + own + "() {\n  _arguments -s -S" + zsh_specs(*place.command, manual.name) +
+           "\n}\n";
   std::string listed;
   std::string chosen;
   for (const CLI::App* part : parts) {
@@ -256,7 +268,7 @@ std::string zsh_function(const Completed& place, const std::string& function,
   return "\n" + own +
          "() {\n  local curcontext=\"$curcontext\" state state_descr line\n  local -A opt_args\n"
          "  local -a commands\n  _arguments -C -s -S" +
-         zsh_specs(*place.command) +
+         zsh_specs(*place.command, manual.name) +
          " \\\n    '1: :->command' \\\n    '*:: :->argument'\n"
          "  case $state in\n    command)\n      commands=(\n" +
          listed +
@@ -267,7 +279,7 @@ std::string zsh_function(const Completed& place, const std::string& function,
 
 // ---- fish
 
-std::string fish_value(const ValueType& value) {
+std::string fish_value(const ValueType& value, const std::string& program) {
   switch (value.kind) {
     case ValueKind::kNothing:
       return "";
@@ -279,6 +291,8 @@ std::string fish_value(const ValueType& value) {
       return " -x -a '(__fish_complete_directories)'";
     case ValueKind::kText:
       return " -x";
+    case ValueKind::kLive:
+      return " -x -a '(" + program + " " + value.words + " 2>/dev/null)'";
   }
   return "";
 }
@@ -348,7 +362,8 @@ std::string as_bash_completion(const CLI::App& app, const Manual& manual) {
                  at +
                  "  esac\n}\n\n# What an option of a command takes: some of these words, a @file, "
                  "a "
-                 "@folder, @text, or nothing.\nFUNCTION_value() {\n  value=\n  case $1 in\n" +
+                 "@folder, @live names, @text, or nothing.\nFUNCTION_value() {\n  value=\n  case "
+                 "$1 in\n" +
                  values + "  esac\n}\n" + kBash,
              {{"FUNCTION", function}, {"PROGRAM", manual.name}, {"OTHERS", manual.others.program}});
 }
@@ -385,13 +400,14 @@ std::string as_fish_completion(const CLI::App& app, const Manual& manual) {
       out += here;
       for (const std::string& name : option->get_snames()) out += " -s " + name;
       for (const std::string& name : option->get_lnames()) out += " -l " + name;
-      out += fish_value(type_of_value(*option)) + " -d " +
+      out += fish_value(type_of_value(*option), manual.name) + " -d " +
              in_fish_quotes(short_of(purpose_of(*option))) + "\n";
     }
     for (const CLI::Option* argument : arguments_of(*place.command)) {
       const ValueType value = type_of_value(*argument);
       if (value.kind == ValueKind::kFile || value.kind == ValueKind::kFolder) out += here + " -F\n";
       if (value.kind == ValueKind::kWords) out += here + " -a " + in_quotes(value.words) + "\n";
+      if (value.kind == ValueKind::kLive) out += here + fish_value(value, manual.name) + "\n";
     }
   }
   return out;

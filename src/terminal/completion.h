@@ -1,6 +1,5 @@
-// What completes the words of a program's command line in a shell, made of the program's own commands and options: so
-// it knows them all, and nothing else. Values are completed where their type says what they are (help.h): one of
-// several words ({text,json}), FILE or FOLDER.
+// Shell completion for a program's command line. It is made from the program's own commands and options, so it is complete and exact. Values are completed
+// where their type says what they are (help.h): one of several words ({text,json}), FILE or FOLDER.
 //
 //     source <(culprit manual --format bash)
 //

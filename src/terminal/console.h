@@ -1,4 +1,4 @@
-// What culprit prints while it works, and how it is asked to stop.
+// culprit's output on the terminal, and its signals to stop.
 #pragma once
 
 #include <atomic>
@@ -22,15 +22,15 @@ Colour colour_of(int descriptor);
 // One event as a line with its time since `start`: "   3.214  detected   RGBDead (ERROR)". Empty
 // for events that are not worth one.
 std::string line(const Event& event, const RuleSet& rules, Time start, Colour colour);
-// Likewise, of anything that has such words. What would steer the terminal in it is escaped.
+// The same for any event with such words. Control characters in it are escaped.
 std::string line(const EventWords& words, Duration after, const std::string& text, Colour colour);
 
 // The label of an event, as wide as all are.
 std::string label_of(const EventWords& words, Colour colour);
 std::string in_tone(const std::string& text, Tone tone, Weight weight, Colour colour);
 
-// Prints at once. A reader who is gone, or a full disk, keeps nobody from managing a robot: what
-// cannot be said is left out.
+// Prints at once. A closed pipe or a full disk must not keep culprit from managing a robot: output
+// that cannot be written is dropped.
 void say_text(std::FILE* stream, const std::string& text);
 template <class... Args>
 void say(std::FILE* stream, fmt::format_string<Args...> format, Args&&... args) {
@@ -50,15 +50,16 @@ class StopSignals {
   ~StopSignals();
   StopSignals(const StopSignals&) = delete;
 
-  // What to do when a signal comes; called on another thread. Called at once if one came already.
+  // `stop` is called when a signal comes, on another thread. If one came already, it is called at
+  // once.
   void on_stop(std::function<void()> stop);
-  // What to do on SIGHUP, if that means to reload; called on another thread. A SIGHUP because the
+  // `reload` is called on SIGHUP, if that means to reload; on another thread. A SIGHUP because the
   // terminal is gone still stops.
   void on_reload(std::function<void()> reload);
-  // What to do on SIGUSR1; called on another thread. Without it SIGUSR1 does nothing.
+  // `act` is called on SIGUSR1, on another thread. Without it SIGUSR1 does nothing.
   void on_user_signal(std::function<void()> act);
-  // Ends the program the hard way (exit code 1) if it has not ended so long after the first signal to stop, whichever
-  // of its threads waits for a disk, a terminal or a lock.
+  // If the program has not ended within this time after the first signal to stop, it is ended the hard way (exit code 1). So no thread that waits for a disk, a
+  // terminal or a lock can hold it up.
   void end_within(Duration patience) { patience_ = patience; }
   const std::atomic<bool>& stopped() const { return stopped_; }
   // For commands that have nothing else to wait for.

@@ -1,6 +1,14 @@
 #include "terminal/help.h"
 
 #include <sstream>
+#include <string_view>
+#include <vector>
+
+#include "base/closest.h"
+#include "base/name_grammar.h"
+#include "terminal/command.h"
+#include "terminal/console.h"
+#include "terminal/listed.h"
 
 namespace culprit {
 namespace {
@@ -19,7 +27,7 @@ class HelpFormatter : public CLI::Formatter {
   std::string make_option_desc(const CLI::Option* option) const override {
     return wrapped(purpose_of(*option), kTexts);
   }
-  // Of the others of a command, the first line says enough.
+  // For a subcommand, the first line is enough.
   std::string make_subcommand(const CLI::App* command) const override {
     const std::string& text = command->get_description();
     std::stringstream out;
@@ -77,6 +85,35 @@ std::string wrapped(const std::string& text, std::size_t columns) {
   }
   end_word();
   return out;
+}
+
+void add_help(CLI::App& app, int& exit_code) {
+  auto words = std::make_shared<std::vector<std::string>>();
+  CLI::App* command = app.add_subcommand("help", "Show the help of a command");
+  command->add_option("COMMAND", *words, "A command, as in: help run");
+  command->callback([&app, words, &exit_code] {
+    const CLI::App* about = &app;
+    std::string path;
+    for (const std::string& word : *words) {
+      const CLI::App* part = command_named(*about, word);
+      if (part == nullptr) {
+        std::vector<std::string_view> known;
+        for (const CLI::App* each : commands_in(*about)) known.push_back(each->get_name());
+        const std::string near = closest(word, known);
+        exit_code = fail("there is no command '" + printable(word) + "'" +
+                             (near.empty() ? "" : "; did you mean '" + near + "'?"),
+                         kUsage);
+        return;
+      }
+      path += (path.empty() ? "" : " ") + about->get_name();
+      about = part;
+    }
+    // The command `help` itself is chosen, and would be shown in place of `app`.
+    const auto* formatter = dynamic_cast<const CLI::Formatter*>(about->get_formatter().get());
+    if (formatter == nullptr) return;
+    const std::string name = (path.empty() ? "" : path + " ") + about->get_name();
+    say_text(stdout, formatter->make_help(about, name, CLI::AppFormatMode::Normal));
+  });
 }
 
 std::shared_ptr<CLI::FormatterBase> help_formatter() { return std::make_shared<HelpFormatter>(); }

@@ -8,15 +8,19 @@
 
 namespace culprit {
 
-// What an option takes: "{text,json}", "DURATION", "FILE ..."; empty: nothing.
+// The value of an option: "{text,json}", "DURATION", "FILE ..."; empty: it has none.
 std::string value_of(const CLI::Option& option);
 
-// What it is for, and its default: "How many of the latest rows (default: 50)".
+// The purpose of an option, and its default: "How many of the latest rows (default: 50)".
 std::string purpose_of(const CLI::Option& option);
 
 // `text` in lines of so many characters at most, if its words allow it.
 std::string wrapped(const std::string& text, std::size_t columns);
 
 std::shared_ptr<CLI::FormatterBase> help_formatter();
+
+// Adds the command `help`, which prints the help of the command that it is given, or the program's.
+// `app` must outlive the call of the command.
+void add_help(CLI::App& app, int& exit_code);
 
 }  // namespace culprit

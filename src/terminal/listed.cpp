@@ -15,6 +15,12 @@ std::vector<const CLI::App*> commands_in(const CLI::App& app) {
   return app.get_subcommands(is_listed);
 }
 
+const CLI::App* command_named(const CLI::App& app, const std::string& name) {
+  const auto all = app.get_subcommands(
+      [&](const CLI::App* command) { return !name.empty() && command->get_name() == name; });
+  return all.empty() ? nullptr : all.front();
+}
+
 std::vector<const CLI::Option*> options_in(const CLI::App& command) {
   auto options = command.get_options([&command](const CLI::Option* option) {
     return !option->get_group().empty() && option != command.get_help_ptr();

@@ -1,4 +1,4 @@
-// Lets people of this machine ask a running culprit, and tell it, from another terminal: culprit status, pause.
+// Serves other terminals of this machine, for questions and orders to a running culprit: culprit status, pause.
 #pragma once
 
 #include <cstdio>

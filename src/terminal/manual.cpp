@@ -1,11 +1,15 @@
 #include "terminal/manual.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <memory>
+#include <system_error>
 
 #include <fmt/core.h>
 
+#include "base/name_grammar.h"
+#include "base/text_file.h"
 #include "terminal/command.h"
 #include "terminal/completion.h"
 #include "terminal/console.h"
@@ -41,22 +45,9 @@ std::string heading_of(const CLI::Option& option) {
   return value.empty() ? names : names + " " + value;
 }
 
-// "culprit run [OPTIONS] RULES"
-std::string usage_of(const CLI::App& command, const std::string& path) {
-  std::string usage = path;
-  const auto options = options_in(command);
-  if (std::any_of(options.begin(), options.end(),
-                  [](const CLI::Option* o) { return !o->get_positional(); }))
-    usage += " [OPTIONS]";
-  for (const CLI::Option* option : options) {
-    if (option->get_positional()) usage += " " + heading_of(*option);
-  }
-  return commands_in(command).empty() ? usage : usage + " COMMAND";
-}
-
 // ---- man(7)
 
-// What would be a request at the beginning of a line, or the beginning of an escape.
+// Escapes requests at the beginning of a line, and escape characters.
 std::string for_man(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -137,19 +128,29 @@ std::string upper(std::string text) {
 
 }  // namespace
 
+std::string usage_of(const CLI::App& command, const std::string& path) {
+  std::string usage = path;
+  const auto options = options_in(command);
+  if (std::any_of(options.begin(), options.end(),
+                  [](const CLI::Option* o) { return !o->get_positional(); }))
+    usage += " [OPTIONS]";
+  for (const CLI::Option* option : options) {
+    if (option->get_positional()) usage += " " + heading_of(*option);
+  }
+  return commands_in(command).empty() ? usage : usage + " COMMAND";
+}
+
 const Manual::Entries& exit_statuses() {
   static const Manual::Entries all = {
-      {"0", "What was asked for is done; nothing is wrong."},
+      {"0", "Success; nothing is wrong."},
       {"1",
-       "It could not be done, and why is said on the standard error output; or something is wrong: "
-       "with the "
+       "Failure; the reason is on the standard error output. Or a problem was found: with the "
        "robot (status, doctor), a file (check, fmt --check), a test (test), a record (audit, "
        "replay)."},
       {"2",
-       "It was asked for wrongly: an unknown command or option, a value that an option does not "
-       "take, or an "
-       "environment variable that makes no sense. Nothing was done."},
-      {"3", "There are warnings, and no error (doctor, status)."}};
+       "Usage error: an unknown command or option, an invalid value of an option, or an invalid "
+       "environment variable. Nothing was done."},
+      {"3", "Warnings, and no error (doctor, status)."}};
   return all;
 }
 
@@ -157,7 +158,7 @@ std::string examples_of(const Manual& manual) {
   std::string text = "Examples:\n";
   for (const auto& [command, purpose] : manual.examples)
     text += fmt::format("  {:<34} {}\n", command, purpose);
-  text += "culprit COMMAND --help tells the options of a command.";
+  text += "culprit COMMAND --help prints the options of a command.";
   return text;
 }
 
@@ -184,6 +185,31 @@ std::string as_man_page(const CLI::App& app, const Manual& manual) {
   return out;
 }
 
+std::string as_man_page_of(const CLI::App& command, const Manual& manual) {
+  const std::string path = manual.name + " " + command.get_name();
+  const std::string page = manual.name + "-" + command.get_name();
+  const std::string& description = command.get_description();
+  std::string out = ".\\\" Made by " + manual.name + " manual; do not edit.\n.TH " + upper(page) +
+                    " 1 \"\" \"culprit\" \"User commands\"\n.SH NAME\n" + for_man(page) + " \\- " +
+                    for_man(description.substr(0, description.find('\n'))) + "\n.SH SYNOPSIS\n.B " +
+                    for_man(usage_of(command, path)) + "\n.SH DESCRIPTION\n" +
+                    for_man(description) + "\n";
+  Manual::Entries options;
+  for (const CLI::Option* option : options_in(command))
+    options.emplace_back(heading_of(*option), purpose_of(*option));
+  man_entries(out, "OPTIONS", options);
+  const auto parts = commands_in(command);
+  if (!parts.empty()) out += ".SH COMMANDS\n";
+  for (const CLI::App* part : parts) man_command(out, *part, path + " " + part->get_name());
+  man_entries(out, "EXIT STATUS", exit_statuses());
+  Manual::Entries examples;
+  for (const auto& example : manual.examples) {
+    if ((example.first + " ").starts_with(path + " ")) examples.push_back(example);
+  }
+  man_entries(out, "EXAMPLES", examples);
+  return out + ".SH SEE ALSO\n" + for_man(manual.name) + "(1)\n";
+}
+
 std::string as_markdown(const CLI::App& app, const Manual& manual) {
   std::string out = "# " + manual.name + ": commands and options\n\n<!-- Made by `" + manual.name +
                     " manual --format markdown`; do not edit. -->\n";
@@ -203,6 +229,23 @@ std::string as_markdown(const CLI::App& app, const Manual& manual) {
   return out;
 }
 
+namespace {
+
+// "culprit-run.1" and so on, for each command of the program's own.
+int write_man_pages(const CLI::App& app, const Manual& manual, const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  for (const CLI::App* command : commands_in(app)) {
+    if (!manual.others.heading.empty() && command->get_group() == manual.others.heading) continue;
+    const std::string file = folder + "/" + manual.name + "-" + command->get_name() + ".1";
+    const auto written = write_text(file, as_man_page_of(*command, manual));
+    if (!written) return fail(written.error());
+  }
+  return kOk;
+}
+
+}  // namespace
+
 void add_manual(CLI::App& app, const Manual& manual, int& exit_code) {
   using Format = std::string (*)(const CLI::App&, const Manual&);
   static const std::map<std::string, Format> formats = {{"man", as_man_page},
@@ -211,6 +254,8 @@ void add_manual(CLI::App& app, const Manual& manual, int& exit_code) {
                                                         {"zsh", as_zsh_completion},
                                                         {"fish", as_fish_completion}};
   auto format = std::make_shared<std::string>("man");
+  auto about = std::make_shared<std::string>();
+  auto folder = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand("manual", "Print the manual")->group("");
   command
       ->add_option("--format", *format,
@@ -218,8 +263,21 @@ void add_manual(CLI::App& app, const Manual& manual, int& exit_code) {
                    "and options there")
       ->check(CLI::IsMember({"man", "markdown", "bash", "zsh", "fish"}))
       ->capture_default_str();
-  command->callback([&app, &manual, &exit_code, format] {
-    say_text(stdout, formats.at(*format)(app, manual));
+  command->add_option("COMMAND", *about, "The command whose page for man(1) is printed");
+  command->add_option("--pages", *folder, "Write a page for man(1) for each command to this folder")
+      ->type_name("FOLDER");
+  command->callback([&app, &manual, &exit_code, format, about, folder] {
+    if (!folder->empty()) {
+      exit_code = write_man_pages(app, manual, *folder);
+      return;
+    }
+    const CLI::App* one = command_named(app, *about);
+    if (one == nullptr && !about->empty()) {
+      exit_code = fail("there is no command '" + printable(*about) + "'", kUsage);
+      return;
+    }
+    say_text(stdout,
+             one != nullptr ? as_man_page_of(*one, manual) : formats.at(*format)(app, manual));
     exit_code = kOk;
   });
 }

@@ -10,7 +10,7 @@
 
 namespace culprit {
 
-// What options do not say.
+// The part of the manual beyond the options.
 struct Manual {
   using Entries = std::vector<std::pair<std::string, std::string>>;
   std::string name;                        // "culprit"
@@ -27,6 +27,9 @@ struct Manual {
   } others{};
 };
 
+// "culprit run [OPTIONS] RULES"; `path`: "culprit run".
+std::string usage_of(const CLI::App& command, const std::string& path);
+
 // How a command ends, the same for all (terminal/command.h).
 const Manual::Entries& exit_statuses();
 
@@ -35,10 +38,12 @@ std::string examples_of(const Manual& manual);
 
 // man(7)
 std::string as_man_page(const CLI::App& app, const Manual& manual);
+// The page of one command: culprit-run(1).
+std::string as_man_page_of(const CLI::App& command, const Manual& manual);
 std::string as_markdown(const CLI::App& app, const Manual& manual);
 
-// Adds the command `manual` to the program, which prints either, or a shell's completion (terminal/completion.h), and is
-// not listed. Both must live as long as `app`.
+// Adds the command `manual` to the program, which is not listed. It prints either, or a shell's completion
+// (terminal/completion.h), or the page of one command, or writes the pages of all commands to a folder. Both must live as long as `app`.
 void add_manual(CLI::App& app, const Manual& manual, int& exit_code);
 
 }  // namespace culprit

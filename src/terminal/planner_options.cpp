@@ -10,22 +10,21 @@ namespace culprit {
 void PlannerOptions::add_to(CLI::App& command) {
   command
       .add_option("--planner", name,
-                  "bayes: who is most likely responsible, and what is worth most;\n"
+                  "bayes: the most likely root cause, and the most valuable strategies;\n"
                   "paper: Algorithm 1 of the paper")
       ->check(CLI::IsMember({"bayes", "paper"}))
       ->capture_default_str();
   CLI::Option* wish =
-      command.add_option("--objective", objective, "What the bayes planner spares most")
+      command.add_option("--objective", objective, "Cost that the bayes planner minimizes")
           ->check(CLI::IsMember({"balanced", "downtime", "adaptations", "redeployments"}))
           ->capture_default_str();
   const std::string kFactors = "The paper planner's factors";
   const auto factor = [&](const char* flag, bool& value, const char* help) {
     return command.add_flag(flag, value, help)->group(kFactors);
   };
-  factor("--no-dependencies", no_dependencies,
-         "Do not look for root causes in the dependency graph");
-  factor("--no-criticality", no_criticality, "Treat all failures as equally critical");
-  factor("--no-impact", no_impact, "Do not count a strategy's impact as cost");
+  factor("--no-dependencies", no_dependencies, "Ignore the dependency graph");
+  factor("--no-criticality", no_criticality, "Ignore the criticality of failures");
+  factor("--no-impact", no_impact, "Ignore the impact of strategies");
   command.parse_complete_callback([this, wish] {
     const bool has_factor = no_dependencies || no_criticality || no_impact;
     if (has_factor && name != "paper")

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,13 +19,15 @@
 #include "terminal/command.h"
 #include "terminal/console.h"
 #include "terminal/help.h"
+#include "terminal/listed.h"
+#include "terminal/manual.h"
 
 namespace culprit {
 namespace {
 
-std::vector<std::string_view> commands_of(const CLI::App& app) {
+std::vector<std::string_view> names_of(const std::vector<const CLI::App*>& commands) {
   std::vector<std::string_view> names;
-  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  for (const CLI::App* command : commands) names.push_back(command->get_name());
   return names;
 }
 
@@ -32,6 +35,7 @@ std::vector<std::string> options_of(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
   }
   return names;
 }
@@ -42,33 +46,169 @@ std::string meant(std::string_view word, const std::vector<std::string_view>& kn
   return near.empty() ? "" : "; did you mean '" + near + "'?";
 }
 
+std::string comma_separated(const std::vector<std::string_view>& words) {
+  std::string out;
+  for (const std::string_view word : words) out += (out.empty() ? "" : ", ") + std::string(word);
+  return out;
+}
+
+// The command that the line names, and how it is called: "culprit beliefs show".
+struct Chosen {
+  const CLI::App* command;
+  std::string path;
+  int depth = 0;  // words of `path` behind the program's name
+};
+
+Chosen chosen(const CLI::App& app) {
+  Chosen out{&app, app.get_name()};
+  while (!out.command->get_subcommands().empty()) {
+    out.command = out.command->get_subcommands().front();
+    out.path += " " + out.command->get_name();
+    ++out.depth;
+  }
+  return out;
+}
+
+// A word with a digit behind its '-' is a number.
+bool is_option(std::string_view word) {
+  return word.size() > 1 && word[0] == '-' && (word[1] < '0' || word[1] > '9') && word[1] != '.';
+}
+
 // The first option on the command line that the command has not; empty: there is none.
 std::string unknown_option(const std::vector<std::string>& known, int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string_view word(argv[i]);
-    const std::string option(word.substr(0, word.find('=')));
+    std::string option(word.substr(0, word.find('=')));
     if (option == "--") return "";
-    const bool is_option = option.starts_with("--");
-    if (is_option && std::find(known.begin(), known.end(), option) == known.end()) return option;
+    if (!is_option(option)) continue;
+    if (!option.starts_with("--")) option.resize(2);  // "-n5"
+    if (std::find(known.begin(), known.end(), option) == known.end()) return option;
   }
   return "";
 }
 
-// Why the words of the command line are wrong, where the name of a command or of an option is not
-// known; nothing where something else is.
-std::optional<std::string> unknown_word(const CLI::App& app, int argc, char** argv) {
-  const auto chosen = app.get_subcommands();
-  if (chosen.empty()) {
-    if (argc < 2 || *argv[1] == '-') return std::nullopt;
-    return "there is no command '" + printable(argv[1]) + "'" + meant(argv[1], commands_of(app));
+// Which of the other commands have it.
+std::vector<std::string_view> commands_with(const CLI::App& app, const std::string& option) {
+  std::vector<std::string_view> names;
+  for (const CLI::App* command : commands_in(app)) {
+    if (command->get_option_no_throw(option) != nullptr) names.push_back(command->get_name());
   }
-  const CLI::App* command = chosen.front();
-  while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
-  const std::vector<std::string> known = options_of(*command);
+  return names;
+}
+
+// The mistake, where the name of a command or of an option is not known; nothing where something
+// else is wrong.
+std::optional<std::string> unknown_word(const CLI::App& app, const Chosen& line, int argc,
+                                        char** argv) {
+  const auto parts = commands_in(*line.command);
+  if (!parts.empty() && line.depth + 1 < argc && !is_option(argv[line.depth + 1])) {
+    const char* word = argv[line.depth + 1];
+    return (line.command == &app ? "there is" : line.command->get_name() + " has") +
+           " no command '" + printable(word) + "'" + meant(word, names_of(parts));
+  }
+  const std::vector<std::string> known = options_of(*line.command);
   const std::string option = unknown_option(known, argc, argv);
   if (option.empty()) return std::nullopt;
-  return command->get_name() + " has no option '" + printable(option) + "'" +
-         meant(option, {known.begin(), known.end()});
+  const std::string cause =
+      (line.command == &app ? "there is" : line.command->get_name() + " has") + " no option '" +
+      printable(option) + "'";
+  const std::string near = meant(option, {known.begin(), known.end()});
+  const auto others = near.empty() ? commands_with(app, option) : std::vector<std::string_view>{};
+  constexpr std::size_t kMostNamed = 4;
+  if (others.empty() || others.size() > kMostNamed) return cause + near;
+  return cause + "; " + comma_separated(others) + (others.size() == 1 ? " has it" : " have it");
+}
+
+std::string without(std::string text, std::string_view prefix) {
+  return text.starts_with(prefix) ? text.substr(prefix.size()) : text;
+}
+
+// "Value 99999 not in range 0 to 65535", "xml not in {text,json}"
+std::string invalid_value(const std::string& text) {
+  const std::size_t colon = text.find(": ");
+  if (colon == std::string::npos) return text;
+  const std::string option = text.substr(0, colon + 2);
+  const std::string rest = without(text.substr(colon + 2), "Value ");
+  constexpr std::string_view kRange = " not in range ";
+  if (const auto at = rest.find(kRange); at != std::string::npos)
+    return option + "'" + rest.substr(0, at) + "' is no number from " +
+           rest.substr(at + kRange.size());
+  constexpr std::string_view kSet = " not in {";
+  const auto at = rest.find(kSet);
+  if (at == std::string::npos || !rest.ends_with('}')) return text;
+  const std::string value = rest.substr(0, at);
+  const std::string list = rest.substr(at + kSet.size(), rest.size() - at - kSet.size() - 1);
+  std::vector<std::string_view> known;
+  for (std::string_view left = list; !left.empty();) {
+    const auto comma = left.find(',');
+    known.push_back(left.substr(0, comma));
+    left = comma == std::string_view::npos ? "" : left.substr(comma + 1);
+  }
+  return option + "'" + value + "' is none of " + comma_separated(known) + meant(value, known);
+}
+
+std::string missing(const CLI::RequiredError& error, const CLI::App& command) {
+  const std::string text = error.what();
+  constexpr std::string_view kRequired = " is required";
+  if (text == "A subcommand is required")
+    return command.get_name() +
+           " needs a command: " + comma_separated(names_of(commands_in(command)));
+  constexpr std::string_view kOneOf = "Exactly 1 option from [";
+  if (text.starts_with(kOneOf)) {
+    std::string options = text.substr(kOneOf.size(), text.find(']') - kOneOf.size());
+    for (auto at = options.find(','); at != std::string::npos; at = options.find(',', at + 4))
+      options.replace(at, 1, " or ");
+    return "give " + options + ", and not both";
+  }
+  return text.ends_with(kRequired) ? text.substr(0, text.size() - kRequired.size()) + " is missing"
+                                   : text;
+}
+
+// The mistake in the words of people. CLI11 has its own for each.
+std::string cause_of(const CLI::ParseError& error, const CLI::App& command) {
+  const std::string text = error.what();
+  if (const auto* required = dynamic_cast<const CLI::RequiredError*>(&error))
+    return missing(*required, command);
+  if (dynamic_cast<const CLI::ValidationError*>(&error) != nullptr) return invalid_value(text);
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
+    std::string extra = without(text, "The following argument was not expected: ");
+    extra = without(extra, "The following arguments were not expected: ");
+    // Several come in the order from the last to the first.
+    if (const auto blank = extra.rfind(' '); blank != std::string::npos)
+      extra = extra.substr(blank + 1);
+    return "'" + printable(extra) + "' is one argument too many";
+  }
+  constexpr std::string_view kNoConversion = "Could not convert: ";
+  if (text.starts_with(kNoConversion)) {
+    const std::string rest = text.substr(kNoConversion.size());
+    const auto equals = rest.find(" = ");
+    if (equals != std::string::npos)
+      return rest.substr(0, equals) + ": '" + printable(rest.substr(equals + 3)) + "' is no number";
+  }
+  constexpr std::string_view kOneMissing = ": 1 required ";
+  if (const auto at = text.find(kOneMissing); at != std::string::npos)
+    return text.substr(0, at) + " needs a value";
+  constexpr std::string_view kMoreMissing = ": At least ";
+  if (const auto at = text.find(kMoreMissing); at != std::string::npos)
+    return text.substr(0, at) + " needs at least " +
+           text.substr(at + kMoreMissing.size(),
+                       text.find(' ', at + kMoreMissing.size()) - at - kMoreMissing.size()) +
+           " values";
+  return text;
+}
+
+// The mistake, how the command is called, and where its options are listed.
+int usage_error(const std::string& cause, const CLI::App& app, const Chosen& line) {
+  const std::string of_command = without(line.path, app.get_name());
+  const bool has_help = command_named(app, "help") != nullptr;
+  const std::string more = has_help ? app.get_name() + " help" + of_command : line.path + " --help";
+  return fail(fmt::format("{}\nUsage: {}\nRun '{}' for more information.", cause,
+                          usage_of(*line.command, line.path), more),
+              kUsage);
+}
+
+bool is_one_of(std::string_view word, std::initializer_list<std::string_view> words) {
+  return std::find(words.begin(), words.end(), word) != words.end();
 }
 
 int parse_and_run(CLI::App& app, const std::function<void(int& exit_code)>& add_commands, int argc,
@@ -81,14 +221,16 @@ int parse_and_run(CLI::App& app, const std::function<void(int& exit_code)>& add_
     say(stderr, "{}", app.help());
     return kUsage;
   }
+  // "culprit --help run" is about `run`.
+  const bool is_help_first = argc > 2 && is_one_of(argv[1], {"--help", "-h"}) && *argv[2] != '-';
+  if (is_help_first) std::rotate(argv + 1, argv + 2, argv + argc);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() != 0) {
-      if (const auto why = unknown_word(app, argc, argv))
-        return fail(*why + "\nRun with --help for more information.", kUsage);
-    }
-    return app.exit(error) == 0 ? kOk : kUsage;
+    if (error.get_exit_code() == 0) return app.exit(error) == 0 ? kOk : kUsage;
+    const Chosen line = chosen(app);
+    const auto word = unknown_word(app, line, argc, argv);
+    return usage_error(word ? *word : cause_of(error, *line.command), app, line);
   }
   return exit_code;
 }

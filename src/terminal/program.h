@@ -1,4 +1,4 @@
-// What is the same for every program of the project that has subcommands.
+// The base of every program of the project with subcommands.
 #pragma once
 
 #include <functional>

@@ -2,9 +2,12 @@
 
 #include <cstdio>
 #include <unistd.h>
+#include <utility>
+#include <vector>
 
 #include "terminal/command.h"
 #include "terminal/help.h"
+#include "terminal/manual.h"
 #include "terminal/seconds_option.h"
 
 namespace culprit {
@@ -26,15 +29,27 @@ Ended ended(std::vector<std::string> words) {
   CLI::App app("culprit");
   bool robot = false;
   double wait = 3;
+  int port = 1;
+  std::string format, file;
+  std::vector<std::string> pair, files;
   testing::internal::CaptureStderr();
   const int code = run_program(
       app,
-      [&](int&) {
+      [&](int& code) {
         CLI::App* check = app.add_subcommand("check", "Check");
         check->add_flag("--robot", robot, "Against the robot");
         add_seconds(*check, "--wait", wait, "How long", 0.5, 60);
         check->callback([&] { std::fprintf(stderr, "waits %.3f", wait); });
-        app.add_subcommand("test", "Test");
+        check->add_option("--format", format, "How")->check(CLI::IsMember({"text", "json"}));
+        check->add_option("--port", port, "Where")->check(CLI::Range(1, 9));
+        check->add_option("--pair", pair, "Two")->expected(2);
+        check->add_option("FILE", file, "A file");
+        CLI::App* test = app.add_subcommand("test", "Test");
+        test->add_flag("--verbose", robot, "All");
+        test->add_option("FILES", files, "Files")->required();
+        CLI::App* beliefs = app.add_subcommand("beliefs", "Beliefs")->require_subcommand(1);
+        beliefs->add_subcommand("show", "Show")->callback([] {});
+        add_help(app, code);
       },
       static_cast<int>(words.size()), argv.data());
   return {code, testing::internal::GetCapturedStderr()};
@@ -51,6 +66,61 @@ TEST(Program, SaysWhichOptionWasMeant) {
   const Ended end = ended({"check", "--robto"});
   EXPECT_EQ(end.code, kUsage);
   EXPECT_THAT(end.said, HasSubstr("check has no option '--robto'; did you mean '--robot'?"));
+}
+
+TEST(Program, SaysHowACommandIsCalled) {
+  EXPECT_THAT(ended({"test"}).said,
+              HasSubstr("FILES is missing\nUsage: culprit test [OPTIONS] FILES ...\nRun 'culprit "
+                        "help test' for more information."));
+}
+
+TEST(Program, ExplainsEachKindOfMistakeInOneLine) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> mistakes = {
+      {{"check", "-x"}, "check has no option '-x'\n"},
+      {{"check", "--verbose"}, "check has no option '--verbose'; test has it\n"},
+      {{"check", "a", "b"}, "'b' is one argument too many\n"},
+      {{"check", "--format", "jsn"}, "'jsn' is none of text, json; did you mean 'json'?\n"},
+      {{"check", "--port", "12"}, "--port: '12' is no number from 1 to 9\n"},
+      {{"check", "--port", "abc"}, "--port: 'abc' is no number from 1 to 9\n"},
+      {{"check", "--format"}, "--format needs a value\n"},
+      {{"check", "--pair", "a"}, "--pair needs at least 2 values\n"},
+      {{"beliefs"}, "beliefs needs a command: show\n"},
+      {{"beliefs", "shwo"}, "beliefs has no command 'shwo'; did you mean 'show'?\n"},
+      {{"--verison"}, "there is no option '--verison'\n"},
+      {{"help", "chekc"}, "there is no command 'chekc'; did you mean 'check'?\n"}};
+  for (const auto& [words, cause] : mistakes) {
+    const Ended end = ended(words);
+    EXPECT_EQ(end.code, kUsage) << cause;
+    EXPECT_THAT(end.said, HasSubstr(cause));
+  }
+}
+
+TEST(Program, ShowsTheHelpOfACommand) {
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {"help", "test"}, {"--help", "test"}, {"test", "--help"}}) {
+    testing::internal::CaptureStdout();
+    EXPECT_EQ(ended(words).code, kOk);
+    EXPECT_THAT(testing::internal::GetCapturedStdout(),
+                HasSubstr("Usage: culprit test [OPTIONS] FILES"));
+  }
+}
+
+TEST(Manual, HasAPageForEachCommand) {
+  CLI::App app("culprit");
+  app.add_subcommand("check", "Check rule files\nAll of them")
+      ->add_flag("--strict", "Every component must be declared");
+  const Manual manual{.name = "culprit",
+                      .purpose = "keep robots working",
+                      .examples = {{"culprit check my.rules", "One file."},
+                                   {"culprit checks", "Another command."}}};
+  const std::string page = as_man_page_of(*app.get_subcommand("check"), manual);
+  EXPECT_THAT(page, HasSubstr(".TH CULPRIT-CHECK 1"));
+  EXPECT_THAT(page, HasSubstr(".SH NAME\nculprit\\-check \\- Check rule files\n"));
+  EXPECT_THAT(page, HasSubstr(".B culprit check [OPTIONS]"));
+  EXPECT_THAT(page, HasSubstr(".B \\-\\-strict\nEvery component"));
+  EXPECT_THAT(page, HasSubstr("culprit check my.rules"));
+  EXPECT_EQ(page.find("Another command"), std::string::npos);
+  EXPECT_THAT(page, HasSubstr("culprit(1)"));
 }
 
 TEST(Program, AloneShowsItsCommands) {

@@ -1,6 +1,5 @@
 #include "terminal/progress.h"
 
-#include <cassert>
 #include <cmath>
 #include <cstdio>
 #include <unistd.h>
@@ -8,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "base/environment.h"
+#include "base/invariant.h"
 
 namespace culprit {
 namespace {
@@ -26,7 +26,7 @@ std::string in_words(double seconds) {
 
 std::string progress_line(std::uint64_t done, std::uint64_t total, std::uint64_t done_before,
                           std::chrono::duration<double> elapsed) {
-  assert(total > 0);
+  CULPRIT_ASSERT(total > 0);
   const double share = static_cast<double>(done) / static_cast<double>(total);
   const auto filled = static_cast<std::size_t>(share * kWidth);
   std::string line =

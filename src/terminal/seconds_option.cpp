@@ -7,8 +7,7 @@
 namespace culprit {
 namespace {
 
-// A number of seconds is left as it is; what is neither that nor a duration, too: CLI11 says then
-// what is wrong with it.
+// A number of seconds stays unchanged, and so does invalid text: CLI11 reports its error then.
 std::string in_seconds(std::string& text) {
   if (text.find_first_not_of("+-.0123456789eE") == std::string::npos) return "";
   const auto time = parse_duration(text);

@@ -31,7 +31,7 @@ class TestWorld {
 // The process that culprit said last `component` to be; 0 if it did not.
 int pid_in(const std::string& output, const std::string& component);
 
-// A program of the project that runs, or has run. What is left of it is killed with the object.
+// A program of the project that runs, or has run. The destructor kills its remaining processes.
 class TestProgram {
  public:
   // Only failures need it.
@@ -59,14 +59,14 @@ class TestProgram {
   std::optional<int> exit_;
 };
 
-// What a process holds.
+// The resources that a process holds.
 struct Holdings {
   std::size_t descriptors = 0;
   std::size_t kilobytes = 0;  // resident
 };
 Holdings holdings_of(int pid);
 
-// Of what is in `folder`, the names that begin so.
+// The names in `folder` that begin so.
 std::set<std::string> names_in(const std::filesystem::path& folder, const std::string& beginning);
 
 }  // namespace culprit

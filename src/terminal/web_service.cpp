@@ -10,32 +10,32 @@ namespace culprit {
 void WebOptions::add_to(CLI::App& command) {
   const std::string kGroup = "Web app";
   command
-      .add_option("--port", port,
-                  fmt::format("Where the web app is served; 0: any that is free (default: {}, or "
-                              "another if that is taken)",
-                              kUsualPort))
+      .add_option(
+          "--port", port,
+          fmt::format(
+              "Port of the web app; 0: any free one (default: {}, or another if that is taken)",
+              kUsualPort))
       ->check(CLI::Range(0, 65535))
       ->group(kGroup);
   command
       .add_option("--address", address,
-                  "The address of this machine at which it is served; one that others can reach "
-                  "needs --token-file")
+                  "Address of the web app; one that other machines can reach needs --token-file")
       ->capture_default_str()
       ->group(kGroup);
   command
-      .add_option("--token-file", token_file,
-                  "A file that only you can read, with the token that may do everything "
-                  "(default: a new token each time)")
+      .add_option(
+          "--token-file", token_file,
+          "Private file with the token that permits everything (default: a new token each time)")
       ->type_name("FILE")
       ->group(kGroup);
   command
       .add_option("--operate-token-file", operate_token_file,
-                  "A file with a token that gives orders and cannot change the rules")
+                  "File with a token that permits orders, but no change of rules")
       ->type_name("FILE")
       ->group(kGroup);
   command
       .add_option("--look-token-file", look_token_file,
-                  "A file with a token that sees all and changes nothing")
+                  "File with a token that permits only reading")
       ->type_name("FILE")
       ->group(kGroup);
   CLI::Option* const cert =
@@ -44,14 +44,14 @@ void WebOptions::add_to(CLI::App& command) {
                       "Encrypt (https) with this certificate, a PEM file with its chain")
           ->type_name("FILE")
           ->group(kGroup);
-  command.add_option("--web-key", key, "The key of --web-cert, a PEM file that only you can read")
+  command.add_option("--web-key", key, "The key of --web-cert, a private PEM file")
       ->type_name("FILE")
       ->needs(cert)
       ->group(kGroup);
   cert->needs(command.get_option("--web-key"));
   command
       .add_option("--allow-host", allowed_hosts,
-                  "A name by which browsers may call this machine, beside its addresses")
+                  "Host name that browsers may use, beside this machine's addresses")
       ->group(kGroup);
 }
 

@@ -1,5 +1,4 @@
-// Long calculations for somebody who looks on: done by a process of its own, so that neither their time nor their memory
-// nor a mistake in them is the manager's.
+// Long calculations for web clients: done by a process of its own, so that their time, memory and errors do not affect the manager.
 #pragma once
 
 #include <filesystem>

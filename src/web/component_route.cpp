@@ -5,7 +5,7 @@
 namespace culprit::web {
 namespace {
 
-// Of a component, as the stream tells it.
+// A component as in the stream.
 struct Known {
   std::string node;
   int pid = 0;  // on this machine; 0: it is not known which

@@ -1,5 +1,5 @@
-// The call about one component, beyond what the stream tells of all: what its process uses and used, its parameters, and
-// what it logged last. Asked again and again while somebody looks at it.
+// The call about one component, beyond the stream's data on all: its process's usage, now and before, its parameters, and its latest log lines. A page calls it
+// repeatedly while it shows the component.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// The call that has the robot examined: what is wrong with it, without a rule (docs/doctor.md).
+// The call that examines the robot without rules (docs/doctor.md).
 #pragma once
 
 #include <functional>
@@ -8,13 +8,13 @@
 
 namespace culprit::web {
 
-// Looks at a robot for so long; gives what `culprit doctor --json` prints. Errors: it cannot be looked at.
+// Examines a robot for this time; returns what `culprit doctor --json` prints. Errors: it cannot be examined.
 using Doctor = std::function<Expected<Json>(Duration time)>;
 
 // One examination runs at a time: each joins the robot's network.
 std::vector<Route> doctor_routes(Doctor doctor);
 
-// Of the robot of the environment (ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY).
+// Examines the robot of the environment (ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY).
 Expected<Json> examine_robot(Duration time);
 
 }  // namespace culprit::web

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "incidents/incident_json.h"
+#include "incident_reports/incident_json.h"
 #include "journal/event_json.h"
 #include "knowledge/describe.h"
 #include "rule_test/plan_report.h"
@@ -17,7 +17,7 @@ Json to_json(const Candidate& candidate, const RuleSet& rules) {
           {"resolves", candidate.resolves}, {"excluded", exclusion_as_json(candidate, rules)}};
 }
 
-// What people who look on want beyond what the journal keeps of an event.
+// Fields of an event for people, beyond the journal's.
 struct Additions {
   const RuleSet& rules;
   Time start;
@@ -45,7 +45,7 @@ Json time_to_json(Time at, Time start) {
   return std::round(seconds(at - start) * 1000) / 1000;
 }
 
-Json to_json(const EventWords& words) { return incidents::to_json(words); }
+Json to_json(const EventWords& words) { return incident_reports::to_json(words); }
 
 Json to_json(const Event& event, const RuleSet& rules, Time start) {
   Json json{{"t", time_to_json(event.at, start)}};

@@ -1,5 +1,5 @@
-// What the manager did, as JSON (docs/web.md): a row of the journal (journal/event_json.h), and
-// what the page needs to show it without a table of its own.
+// Events of the manager as JSON (docs/web.md): a row of the journal (journal/event_json.h), and the
+// fields that the page needs to show it without a table of its own.
 #pragma once
 
 #include "json/json.h"
@@ -10,7 +10,7 @@ namespace culprit::web {
 // Seconds since `start`, to the millisecond; null for kNever and kLongAgo.
 Json time_to_json(Time at, Time start);
 
-// Of components or rules, say.
+// For example of components or rules.
 Json names_of(const auto& ids, const RuleSet& rules) {
   Json names = Json::array();
   for (const auto id : ids) names.push_back(rules[id].name);

@@ -10,7 +10,8 @@
 
 namespace culprit::web {
 
-// What can be broken, and how to do it. The functions are called from any thread, and may block.
+// The faults that can be injected, and functions that do so. The functions are called from any
+// thread, and may block.
 struct Faults {
   struct Fault {
     std::string name;

@@ -13,7 +13,7 @@ using JournalOf = std::function<Expected<std::filesystem::path>(const std::strin
 
 Route hindsight_route(JournalOf journal_of);
 
-// Of the robot that the rules name, where culprit run writes it unless it is said otherwise.
+// The journal of the robot that the rules name, at the default path of culprit run.
 Expected<std::filesystem::path> usual_journal(const std::string& rules);
 
 }  // namespace culprit::web

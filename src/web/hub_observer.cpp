@@ -41,7 +41,6 @@ void HubObserver::begins(const Manager& manager, std::function<Remarks()> remark
   told_ = next_tell_ = kLongAgo;
   is_graph_new_ = true;
   told_control_.clear();
-  situation_.forget();
   metrics_.watch(manager);
   hub_.publish(Kind::kRobot, to_line(rules_to_json(manager.knowledge().rules)));
 }
@@ -68,10 +67,11 @@ void HubObserver::tell_event(Json json) {
 
 void HubObserver::tell_events(std::span<const Event> events) {
   const RuleSet& rules = manager_->knowledge().rules;
-  situation_.take(events, rules);
   for (const Event& event : events) {
     Json json = to_json(event, rules, start_);
-    if (!json["text"].get_ref<const std::string&>().empty()) tell_event(std::move(json));
+    // Incidents have no sentence: a page that looks back is made of them.
+    const bool is_told = !json["text"].get_ref<const std::string&>().empty();
+    if (is_told || json.contains("incident")) tell_event(std::move(json));
   }
   if (!events.empty()) next_tell_ = later(told_, kSoon);
 }
@@ -86,7 +86,8 @@ void HubObserver::tell_state(Time now) {
   if (control != told_control_) hub_.publish(Kind::kControl, told_control_ = std::move(control));
   Json state = state_to_json(knowledge, start_);
   state["clock"] = rounded_to_ms(wall_());
-  state["incidents"] = incidents_to_json(situation_.incidents(*manager_), knowledge.rules, start_);
+  add_looks(*manager_, state);
+  state["incidents"] = incidents_to_json(*manager_, start_);
   if (remarks_) add_remarks(state);
   hub_.publish(Kind::kState, to_line(state));
   told_ = now;

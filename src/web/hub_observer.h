@@ -1,8 +1,8 @@
-// Tells browsers, through a hub, what a manager does; and counts it.
+// Publishes a manager's events and state to browsers, through a hub; and counts them.
 //
-// Events are told as they happen. The graph and the present state are told when they have changed,
-// but not more often than kPeriod, and only while somebody reads: a robot that nobody looks at pays
-// nothing for being visible.
+// Events are published as they happen. The graph and the present state are published when they have
+// changed, but not more often than kPeriod, and only while a client reads: without clients, a robot
+// pays nothing for being visible.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,6 @@
 
 #include "http/hub.h"
 #include "live/observer.h"
-#include "live/situation.h"
 #include "web/event_json.h"
 #include "web/metrics.h"
 
@@ -19,7 +18,7 @@ namespace culprit::web {
 class HubObserver : public live::Observer {
  public:
   static constexpr Duration kPeriod = std::chrono::milliseconds(200);
-  // After an event the state is told sooner, at most so often.
+  // After an event the state is published sooner, at most this often.
   static constexpr Duration kSoon = std::chrono::milliseconds(33);
 
   // Seconds since 1970: what people read off a wall, while the robot may count otherwise.
@@ -49,7 +48,6 @@ class HubObserver : public live::Observer {
   const WallClock wall_;
   const Manager* manager_ = nullptr;  // null: none has begun
   std::function<Remarks()> remarks_;
-  live::Situation situation_;
   Time start_{};
   Time told_ = kLongAgo;       // when the state was told last
   Time next_tell_ = kLongAgo;  // when it may be told again

@@ -10,22 +10,24 @@
 #include "base/live_clock.h"
 #include "base/mutex.h"
 #include "base/text_file.h"
-#include "incidents/incident_json.h"
-#include "incidents/incident_report.h"
+#include "incident_reports/incident_json.h"
+#include "incident_reports/incident_reader.h"
+#include "incident_reports/incident_report.h"
 #include "recorder/recording_folder.h"
 #include "web/aside.h"
 
 namespace culprit::web {
 namespace {
 
-using incidents::Incident;
+using incident_reports::Incident;
 
 Json to_json(const std::vector<Incident>& all, const std::filesystem::path& folder) {
   const auto recordings =
       folder.empty() ? std::vector<recorder::StoredRecording>() : recorder::recordings_in(folder);
   Json list = Json::array();
   for (const Incident& incident : all)
-    list.push_back(incidents::to_json(incident, incidents::recordings_of(incident, recordings)));
+    list.push_back(
+        incident_reports::to_json(incident, incident_reports::recordings_of(incident, recordings)));
   return list;
 }
 
@@ -41,7 +43,7 @@ std::optional<Number> number_of(const Json& query, const char* name) {
   return number;
 }
 
-// Of what the stream still has.
+// The incidents that are still in the stream.
 class Recent {
  public:
   explicit Recent(Hub& hub) {
@@ -57,17 +59,15 @@ class Recent {
     }
   }
   std::vector<Incident> incidents() const {
-    incidents::IncidentBuilder builder;
-    const auto components_of = [this](const std::string& rule, const std::string& strategy) {
-      return this->components_of(rule, strategy);
-    };
+    incident_reports::IncidentReader reader;
     for (const auto& [number, event] : events_) {
-      if (text_of(event, "type") == "reloaded") builder.cut();
-      builder.add({static_cast<std::int64_t>(number), event.value("clock", 0.0),
-                   event.value("t", 0.0), event},
-                  components_of);
+      if (text_of(event, "type") == "reloaded") reader.cut();
+      reader.add({static_cast<std::int64_t>(number), event.value("clock", 0.0),
+                  event.value("t", 0.0), event});
     }
-    return builder.incidents();
+    std::vector<Incident> all = reader.incidents();
+    std::ranges::stable_sort(all, incident_reports::comes_before);
+    return all;
   }
   std::string robot() const { return text_of(robot_, "robot").value_or(""); }
   Json events(std::int64_t first, std::int64_t last) const {
@@ -75,6 +75,7 @@ class Recent {
     for (const auto& [number, event] : events_) {
       if (static_cast<std::int64_t>(number) < first || static_cast<std::int64_t>(number) > last)
         continue;
+      if (text_of(event, "text").value_or("").empty()) continue;
       list.push_back(event);
       list.back()["t"] = event.value("clock", 0.0);
     }
@@ -82,34 +83,18 @@ class Recent {
   }
 
  private:
-  std::vector<std::string> components_of(const std::string& rule,
-                                         const std::string& strategy) const {
-    for (const Json& each : robot_.value("rules", Json::array())) {
-      if (each["name"] != rule) continue;
-      if (strategy.empty()) return each["components"];
-      for (const Json& own : each["strategies"]) {
-        if (own["name"] == strategy) return own["components"];
-      }
-    }
-    return {};
-  }
-
   Json robot_ = Json::object();
   std::vector<std::pair<std::uint64_t, Json>> events_;
 };
 
-// Rules that see a failure now, as far as somebody told.
-std::set<std::string> failing_now(Hub& hub) {
-  std::set<std::string> failing;
-  const auto robot = hub.latest(Kind::kRobot);
+// Ids of incidents that are open now, according to the latest events.
+std::set<std::string> open_now(Hub& hub) {
+  std::set<std::string> open;
   const auto state = hub.latest(Kind::kState);
-  if (!robot || !state) return failing;
-  const Json rules = parse_json(*robot)["rules"];
-  const Json states = parse_json(*state)["rules"];
-  for (std::size_t r = 0; r < std::min(rules.size(), states.size()); ++r) {
-    if (states[r]["phase"] != "quiet") failing.insert(rules[r]["name"].get<std::string>());
-  }
-  return failing;
+  if (!state) return open;
+  for (const Json& each : parse_json(*state).value("incidents", Json::array()))
+    open.insert(text_of(each, "id").value_or(""));
+  return open;
 }
 
 Answer list(Hub& hub, const std::filesystem::path& path, const std::filesystem::path& recordings,
@@ -120,7 +105,7 @@ Answer list(Hub& hub, const std::filesystem::path& path, const std::filesystem::
   std::string why = "no journal is written";
   if (!path.empty()) {
     const auto journal = journal::Reader::open(path);
-    const auto found = journal ? incidents::incidents_of(*journal, *since, failing_now(hub))
+    const auto found = journal ? incident_reports::incidents_of(*journal, *since, open_now(hub))
                                : Error{journal.error()};
     if (found)
       return {200,
@@ -139,16 +124,17 @@ Answer events(Hub& hub, const std::filesystem::path& path, const Json& query) {
   const auto first = number_of<std::int64_t>(query, "first");
   const auto last = number_of<std::int64_t>(query, "last");
   if (!first || !last)
-    return refuse(400, "say which, as GET /api/incidents tells them: ?first=17&last=42");
+    return refuse(400, "name one, as listed by GET /api/incidents: ?first=17&last=42");
   if (text_of(query, "from") == "stream")
     return {200, {{"events", Recent(hub).events(*first, *last)}}};
   if (path.empty()) return refuse(404, "no journal is written");
   const auto journal = journal::Reader::open(path);
   if (!journal) return refuse(503, journal.error());
-  auto told = incidents::events_of(*journal, *first, *last);
+  auto told = incident_reports::events_of(*journal, *first, *last);
   if (!told) return refuse(503, told.error());
   Json list = Json::array();
-  for (incidents::ToldEvent& each : *told) list.push_back(incidents::to_json(std::move(each)));
+  for (incident_reports::ToldEvent& each : *told)
+    list.push_back(incident_reports::to_json(std::move(each)));
   return {200, {{"events", list}}};
 }
 
@@ -160,14 +146,14 @@ Answer as_page(std::string html) {
 }
 
 constexpr const char* kNoSuchIncident =
-    "there is no such incident any more; GET /api/incidents tells those that there are";
+    "there is no such incident any more; GET /api/incidents lists the existing ones";
 
 Answer page_of_stream(Hub& hub, const std::string& id) {
   constexpr double kNanosecond = 1e-9;
   const Recent recent(hub);
   for (const Incident& incident : recent.incidents()) {
-    if (incident.id() != id) continue;
-    incidents::PageContent content;
+    if (incident.id != id) continue;
+    incident_reports::PageContent content;
     content.incident = incident;
     content.robot = recent.robot();
     for (const Json& event : recent.events(incident.first_row, incident.last_row))
@@ -177,7 +163,7 @@ Answer page_of_stream(Hub& hub, const std::string& id) {
     content.written_at = kNanosecond * static_cast<double>(wall_now());
     if (!incident.is_over)
       content.incident.seconds = std::max(incident.seconds, content.written_at - incident.began);
-    return as_page(incidents::incident_page(content));
+    return as_page(incident_reports::incident_page(content));
   }
   return refuse(404, kNoSuchIncident);
 }
@@ -187,8 +173,8 @@ Answer page(Hub& hub, const std::filesystem::path& journal, const std::filesyste
             Mutex& making, const Json& query) {
   constexpr int kMostSecondsOfPage = 60;
   const auto id = text_of(query, "id");
-  if (!id || !incidents::began_by_id(*id))
-    return refuse(400, "say which, as GET /api/incidents tells them: ?id=...");
+  if (!id || !incident_reports::began_by_id(*id))
+    return refuse(400, "name one, as listed by GET /api/incidents: ?id=...");
   if (journal.empty() || text_of(query, "from") == "stream") return page_of_stream(hub, *id);
   if (!making.try_lock()) return refuse(409, "another page is being made; ask again in a moment");
   const MutexLock lock(making, std::adopt_lock);
@@ -209,10 +195,10 @@ Answer page(Hub& hub, const std::filesystem::path& journal, const std::filesyste
   return html ? as_page(std::move(*html)) : refuse(503, html.error());
 }
 
-// What is asked for is compared with what is there, and never becomes part of a path.
+// The requested name is only compared with existing files, and never becomes part of a path.
 Answer recording(const std::filesystem::path& folder, const Json& query) {
   const auto name = text_of(query, "name");
-  if (!name) return refuse(400, "say which, as GET /api/incidents tells them: ?name=...");
+  if (!name) return refuse(400, "name one, as listed by GET /api/incidents: ?name=...");
   for (const recorder::StoredRecording& each : recorder::recordings_in(folder)) {
     if (each.path.filename() == *name)
       return {200, {}, {}, Answer::File{each.path.string(), "application/octet-stream", *name}};

@@ -9,8 +9,8 @@
 
 namespace culprit::web {
 
-// `recordings`: the folder of the black box (recorder/recording_folder.h); empty: there is none. They are told from `journal`; from what the stream still has where that is empty (no journal is written) or cannot be
-// read. `hub` must outlive the routes.
+// `recordings`: the folder of the black box (recorder/recording_folder.h); empty: there is none. Incidents are read from `journal`. Without a journal, or if it
+// cannot be read, they come from the events that the stream still has. `hub` must outlive the routes.
 std::vector<Route> incident_routes(Hub& hub, std::filesystem::path journal,
                                    std::filesystem::path recordings = {});
 

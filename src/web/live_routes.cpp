@@ -5,7 +5,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// The state is told while somebody reads, so whoever asks for it once reads for a moment.
+// The state is published while a client reads, so a single call reads for a moment.
 Answer newest(Hub& hub, Kind kind) {
   constexpr auto kPatience = 1s;
   const Hub::Reader reader(hub);

@@ -1,4 +1,4 @@
-// The calls about the robot that is watched: what the stream tells, for those who do not stay.
+// The calls about the live robot: the stream's data for clients that do not stay.
 #pragma once
 
 #include "http/hub.h"

@@ -36,7 +36,7 @@ std::string of_strategy(StrategyId id, const RuleSet& rules, std::string_view ou
          label("outcome", outcome);
 }
 
-// What held an action back (knowledge/event.h).
+// The reason that held an action back (knowledge/event.h).
 std::string_view word_of(Restraint restraint) {
   constexpr std::string_view kWords[] = {
       "paused",   "quiet_period", "storm",     "graph_in_doubt", "interlock", "overall",
@@ -174,7 +174,7 @@ std::string Metrics::text() const {
   };
   all("culprit_failures_detected_total", "counter", "Failures that were detected.",
       counts.detected);
-  all("culprit_failures_resolved_total", "counter", "Failures that went away.", counts.resolved);
+  all("culprit_failures_resolved_total", "counter", "Failures that cleared.", counts.resolved);
   all("culprit_failures_exhausted_total", "counter",
       "Failures about which nothing was left to try.", counts.exhausted);
   all("culprit_plans_total", "counter", "Decisions about a failure.", counts.plans);
@@ -186,7 +186,7 @@ std::string Metrics::text() const {
   all("culprit_failures_open", "gauge", "Failures that are there now.", counts.open);
   all("culprit_rule_blind", "gauge", "1 while the rule's trigger has no value.", counts.blind);
   all("culprit_components", "gauge", "Components of the rules by health.", counts.components);
-  one("culprit_hears", "gauge", "1 while the robot can be heard.", hears_ ? 1 : 0);
+  one("culprit_hears", "gauge", "1 while culprit receives the robot's messages.", hears_ ? 1 : 0);
   {
     const MutexLock dropping(dropped_mutex_);
     one("culprit_foreign_datagrams_total", "counter",
@@ -200,9 +200,9 @@ std::string Metrics::text() const {
   one("culprit_paused", "gauge", "1 while a person has paused it.", counts.is_paused ? 1 : 0);
   one("culprit_dry_run", "gauge", "1 while it only says what it would do.",
       counts.is_dry_run ? 1 : 0);
-  one("culprit_storm", "gauge", "1 while so much is ill that nothing is done.",
+  one("culprit_storm", "gauge", "1 while a storm of failures stops all actions.",
       counts.is_storm ? 1 : 0);
-  one("culprit_observations_total", "counter", "What was observed of the robot.", observations_);
+  one("culprit_observations_total", "counter", "Observations of the robot.", observations_);
 
   begin("culprit_step_seconds", "histogram", "How long the manager's steps took.");
   std::uint64_t below = 0;

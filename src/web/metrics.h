@@ -1,5 +1,5 @@
-// What culprit counts of itself, as Prometheus reads it (text format 0.0.4; the naming is that of
-// prometheus.io/docs/practices). docs/web.md lists it.
+// culprit's own metrics in Prometheus' text format 0.0.4; the names follow
+// prometheus.io/docs/practices. docs/web.md lists it.
 //
 // The manager's thread counts; any thread may read. Counting a step in which nothing happened is a
 // handful of atomic additions, and no reader can hold the manager up: what it copies under the lock
@@ -24,14 +24,14 @@ class Metrics {
   static constexpr std::array<double, 12> kStepBounds = {
       0.00005, 0.0001, 0.00025, 0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 1};
 
-  // What `manager` may have to count is there from now on, at 0: a rate needs a beginning. Counts
-  // go on where another manager before it left off.
+  // All counters of `manager` exist from now on, at 0: a rate needs a beginning. Counters of a
+  // previous manager go on.
   void watch(const Manager& manager);
-  // After each step of `manager`, which took so long.
+  // Must be called after each step of `manager`, with its duration.
   void stepped(Duration took, std::size_t observations, const Manager& manager);
 
-  // How many datagrams were dropped because they came from elsewhere than whom they speak for; it is asked from now
-  // on. Empty: it can be asked no more, and what it gave last stays.
+  // `dropped` returns how many datagrams were dropped because their sender was not the participant that they claim; it is called from now on. Empty: it cannot
+  // be called any more, and its last value stays.
   void count_dropped(std::function<std::uint64_t()> dropped);
 
   // From any thread.

@@ -1,4 +1,4 @@
-// What monitoring systems read of culprit while it heals a robot.
+// The metrics that monitoring systems read while culprit heals a robot.
 #include "web/metrics.h"
 
 #include <fstream>
@@ -104,7 +104,7 @@ std::string text_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// What packaging/monitoring asks Prometheus for is told, under these names and with these labels.
+// The metrics that packaging/monitoring queries exist, under these names and with these labels.
 TEST_F(Counted, AreWhatTheDashboardAndTheAlertsAskFor) {
   const std::string told = metrics.text();
   for (const char* file : {"culprit-alerts.yaml", "grafana.json"}) {

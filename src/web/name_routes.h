@@ -1,4 +1,4 @@
-// The call that tells what the live robot has, for forms to offer.
+// The call that lists the live robot's names, for forms.
 #pragma once
 
 #include <functional>
@@ -9,7 +9,8 @@
 
 namespace culprit::web {
 
-// What the robot has by now, looking from now on at what `interest` names. Called from any thread.
+// The robot's names by now; from now on the names in `interest` are observed, too. Called from any
+// thread.
 using Look = std::function<Expected<LiveInventory>(const LiveInterest& interest)>;
 
 // `load` finds what the rules include.

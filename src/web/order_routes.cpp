@@ -59,7 +59,7 @@ std::vector<std::string_view> names_of_all(const auto& things) {
   return names;
 }
 
-// What was meant instead, and what to name.
+// Names the wrong part, with similar names, and the remedy.
 Error unknown_strategy(const Json& body, const RuleSet& rules) {
   const std::string remedy = "name a 'rule' and one of its strategies as 'strategy'";
   const auto rule = find<RuleId>(rules.rules, text_of(body, "rule"));
@@ -85,6 +85,7 @@ Expected<What> about_strategy(const std::string& word, const Json& body, const R
   if (!strategy) return unknown_strategy(body, rules);
   if (word == "approve") return What(Approve{*strategy});
   if (word == "refuse") return What(Refuse{*strategy});
+  if (word == "propose") return What(Propose{*strategy});
   return What(RunStrategy{*strategy});
 }
 
@@ -116,16 +117,15 @@ Expected<What> read(const Json& body, const RuleSet& rules) {
     if (on == body.end() || !on->is_boolean()) return Error{"say whether it is 'on'"};
     return What(SetDryRun{on->get<bool>()});
   }
-  if (word == "approve" || word == "refuse" || word == "run")
+  if (word == "approve" || word == "refuse" || word == "propose" || word == "run")
     return about_strategy(word, body, rules);
   if (word == "silence" || word == "lift") return about_silence(word, body, rules);
   if (word == "forget") return about_learning(body, rules);
   if (word == "revive") return What(Revive{});
   if (word == "end_started") return What(EndStarted{});
   return Error{
-      "'order' has to be pause, resume, dry_run, approve, refuse, silence, lift, run, forget, "
-      "revive "
-      "or end_started"};
+      "'order' has to be pause, resume, dry_run, approve, refuse, propose, silence, lift, run, "
+      "forget, revive or end_started"};
 }
 
 Expected<Order> read_order(const Json& body, const RuleSet& rules, std::uint64_t number) {
@@ -140,7 +140,8 @@ Expected<Order> read_order(const Json& body, const RuleSet& rules, std::uint64_t
   return order;
 }
 
-// Its sender was told meanwhile that nothing came of it: culprit was stopped, say, and goes on now.
+// The caller was answered meanwhile that the order failed: for example culprit was stopped, and
+// goes on now.
 bool is_late(const Order& order, const Json& body) {
   const auto until = body.find("valid_until");
   return until != body.end() && until->is_number() &&
@@ -148,7 +149,7 @@ bool is_late(const Order& order, const Json& body) {
          standing_of(order) != Standing::kRestrains;
 }
 
-// What the manager says of the order of this number; nothing: it did not in time.
+// The manager's reply to the order of this number; empty: none came in time.
 std::optional<Json> word_on(std::uint64_t number, Hub& hub, std::uint64_t after, double patience) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(patience);
   while (true) {

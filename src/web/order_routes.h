@@ -1,4 +1,4 @@
-// The call by which people tell the manager something (robot/order.h).
+// The call for people's orders to the manager (robot/order.h).
 #pragma once
 
 #include <functional>
@@ -12,19 +12,19 @@
 
 namespace culprit::web {
 
-// Where orders are taken: by names of a rule set, for whoever manages with it. Both may be replaced
-// while the server runs. All members may be called from any thread.
+// Takes orders, by names of a rule set, for the current manager. Both may be replaced while the
+// server runs. All members may be called from any thread.
 class OrderDesk : public live::OrderTaker {
  public:
   // `keeping` is called under a lock.
   explicit OrderDesk(live::KeepOrders keeping) : keeping_(std::move(keeping)) {}
 
   void open(const RuleSet& rules, std::function<void(Order)> submit) override;
-  // Only a pause is taken meanwhile, and given to whoever is next.
+  // Until then only a pause is taken, and given to the next manager.
   void close() override;
 
-  // 202: the manager has it, and an event of its number will say what becomes of it. Who says until
-  // when it is wanted (`valid_until`) is refused later, unless it restrains culprit.
+  // 202: the manager has it, and an event of its number will say what becomes of it. An order with
+  // `valid_until` is refused after that time, unless it restrains culprit.
   Answer take(const Json& body);
 
  private:
@@ -39,8 +39,8 @@ class OrderDesk : public live::OrderTaker {
   std::uint64_t last_ CULPRIT_GUARDED_BY(mutex_) = 0;        // number of the last order
 };
 
-// Gives an order as /api/orders does: whoever says for how long it waits (`wait_s`) is answered with the manager's own
-// word, as `hub` tells it: 200 or, if it refuses the order, 409. Blocks so long.
+// Gives an order as /api/orders does: if the call has `wait_s`, it returns the manager's own answer from `hub`, 200 or, if it refuses the order, 409. Blocks
+// for at most that time.
 Answer give_order(OrderDesk& desk, Hub& hub, const Json& body);
 
 // Both must outlive the routes.

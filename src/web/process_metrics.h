@@ -1,4 +1,4 @@
-// What the operating system says of this process, under the names that Prometheus' own client
+// Metrics of this process from the operating system, under the names that Prometheus' own client
 // libraries use: CPU time, memory, file descriptors, threads, start.
 #pragma once
 
@@ -6,7 +6,7 @@
 
 namespace culprit::web {
 
-// In Prometheus' text format. What cannot be read is left out.
+// In Prometheus' text format. Unreadable values are left out.
 std::string process_metrics();
 
 }  // namespace culprit::web

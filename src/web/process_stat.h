@@ -1,4 +1,4 @@
-// What the kernel says of one process of this machine (proc_pid_stat(5)).
+// The kernel's statistics of one process of this machine (proc_pid_stat(5)).
 #pragma once
 
 #include <cstdint>

@@ -7,6 +7,7 @@
 #include "knowledge/describe.h"
 #include "web/component_health.h"
 #include "web/event_json.h"
+#include "web/overview.h"
 
 namespace culprit::web {
 namespace {
@@ -21,7 +22,7 @@ Json strategy_to_json(const Strategy& strategy, const RuleSet& rules) {
   return json;
 }
 
-// Who starts and ends it, in words; empty: nobody that the rules know.
+// The owner in words; empty: the rules name none.
 std::string owner_of(const Component& component) {
   using Engine = EngineContainer::Engine;
   if (component.unit)
@@ -86,7 +87,7 @@ Json rule_to_json(RuleId id, const Knowledge& knowledge, Time start) {
     if (!blind->input.empty()) json["blind"]["input"] = blind->input;
     if (!blind->near.empty()) json["blind"]["near"] = blind->near;
   }
-  // What is true and must hold a while longer, FOR or HOLD, is no failure yet.
+  // A trigger that is true, but not yet for the time of FOR or HOLD, is no failure yet.
   if (state.phase == RulePhase::kQuiet) {
     json["trigger"] =
         state.detection.trigger.known ? Json(state.detection.trigger.b) : Json(nullptr);
@@ -109,7 +110,7 @@ Json rule_to_json(RuleId id, const Knowledge& knowledge, Time start) {
   return json;
 }
 
-// What became of the process. One that is stopped is not gone: it goes on if somebody lets it.
+// The state of the process. A stopped process has not exited: it goes on after SIGCONT.
 std::string_view word_of_process(const ComponentState& state) {
   if (state.process == ProcessState::kStopped) return "stopped";
   if (state.hangs()) return "hung";
@@ -124,7 +125,7 @@ Json components_to_json(const Knowledge& knowledge) {
     const ComponentState& state = knowledge.components[id];
     Json json{{"health", kHealthWords[health[c]]}, {"present", knowledge.graph.is_present(id)}};
     json["alive"] = state.alive ? Json(*state.alive) : Json(nullptr);
-    // Of another computer its number says nothing here.
+    // A PID of another computer means nothing here.
     if (state.known_pid() != 0 && knowledge.rules.components[c].host().empty())
       json["pid"] = state.known_pid();
     if (state.alive) json["process"] = word_of_process(state);
@@ -153,7 +154,7 @@ Json topics_to_json(const Knowledge& knowledge) {
   return list;
 }
 
-// What was learned of which failure goes away with which.
+// The learned couplings between failures.
 Json couplings_to_json(const Knowledge& knowledge) {
   Json list = Json::array();
   for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
@@ -202,13 +203,26 @@ Json rules_to_json(const RuleSet& rules) {
   return json;
 }
 
+namespace {
+
+// Of a culprit that only looks at the robot, `culprit doctor` say: no part of it.
+bool is_survey(const std::string& node) {
+  return node.substr(node.rfind('/') + 1).starts_with("_culprit_survey");
+}
+
+}  // namespace
+
 Json graph_to_json(const Knowledge& knowledge) {
   const DependencyGraph& graph = knowledge.graph;
-  const std::vector<DependencyGraph::Edge> edges = graph.edges();
+  std::vector<DependencyGraph::Edge> edges = graph.edges();
+  std::erase_if(
+      edges, [](const auto& edge) { return is_survey(edge.consumer) || is_survey(edge.producer); });
   std::map<std::string, bool> nodes;  // and whether they are present
   // A node that is gone but has an edge counts: its consumers wait for it.
   for (const auto& edge : edges) nodes[edge.consumer] = nodes[edge.producer] = false;
-  for (const std::string& node : graph.nodes()) nodes[node] = true;
+  for (const std::string& node : graph.nodes()) {
+    if (!is_survey(node)) nodes[node] = true;
+  }
 
   // So does a component, whether it is there or not.
   std::map<std::string, ComponentId> components;
@@ -236,7 +250,7 @@ Json graph_to_json(const Knowledge& knowledge) {
 
 namespace {
 
-// What culprit started and what runs, and what it stands in for.
+// The running components that culprit started, and the launcher that each one stands in for.
 void add_started(const Knowledge& knowledge, Time start, Json& list) {
   for (const Departures::Started& each : knowledge.departures.started()) {
     Json entry{{"component", knowledge.rules[each.component].name},
@@ -247,7 +261,7 @@ void add_started(const Knowledge& knowledge, Time start, Json& list) {
   }
 }
 
-// What is not started again, since a person ended it, or may have.
+// The components that are not started again, since a person ended them, or may have.
 void add_down(const Knowledge& knowledge, Json& list) {
   for (std::size_t c = 0; c < knowledge.rules.components.size(); ++c) {
     const auto departure = knowledge.departures.of(ComponentId(c), knowledge.now);
@@ -263,7 +277,9 @@ void add_down(const Knowledge& knowledge, Json& list) {
 
 Json control_to_json(const Manager& manager, Time start) {
   const RuleSet& rules = manager.knowledge().rules;
+  const auto held_back = manager.held_back();
   Json json{{"paused", manager.governor().is_paused()},
+            {"held_back", held_back ? Json(*held_back) : Json()},
             {"dry_run", manager.autonomy() == Autonomy::kAdvise},
             {"hears", manager.hears()},
             {"silences", Json::array()},
@@ -289,12 +305,14 @@ Json control_to_json(const Manager& manager, Time start) {
   return json;
 }
 
-Json incidents_to_json(const std::vector<live::Incident>& incidents, const RuleSet& rules,
-                       Time start) {
+Json incidents_to_json(const Manager& manager, Time start) {
+  const RuleSet& rules = manager.knowledge().rules;
   Json list = Json::array();
-  for (const live::Incident& each : incidents) {
+  for (const Incident& each : manager.incidents().open()) {
+    const Incidents::Course course = manager.course_of(each);
     list.push_back(
-        {{"headline", each.headline},
+        {{"id", each.id},
+         {"headline", each.headline},
          {"health", each.is_exhausted ? "EXHAUSTED" : culprit::to_string(each.criticality)},
          {"since", time_to_json(each.since, start)},
          {"rule", rules[each.root].name},
@@ -303,10 +321,20 @@ Json incidents_to_json(const std::vector<live::Incident>& incidents, const RuleS
          {"host", each.host.empty() ? Json(nullptr) : Json(each.host)},
          {"consequences", names_of(each.consequences, rules)},
          {"needs_person", each.needs_person()},
-         {"doing", each.doing},
-         {"next", each.next}});
+         {"doing", course.doing},
+         {"next", course.next}});
   }
   return list;
+}
+
+void add_looks(const Manager& manager, Json& state) {
+  state["overview"] = to_json(overview_of(manager));
+  const std::vector<std::size_t> health = health_of_components(manager.knowledge());
+  for (std::size_t c = 0; c < health.size(); ++c) {
+    const ComponentLook look = look_of(ComponentId(c), health[c], manager);
+    state["components"][c]["look"] = look.look;
+    state["components"][c]["condition"] = look.condition;
+  }
 }
 
 Json state_to_json(const Knowledge& knowledge, Time start) {

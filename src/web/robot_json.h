@@ -1,7 +1,6 @@
-// What the manager knows, as JSON (docs/web.md): what never changes, the graph, the present state.
+// The manager's knowledge as JSON (docs/web.md): the constant part, the graph, the present state.
 #pragma once
 
-#include "live/situation.h"
 #include "manager/manager.h"
 #include "web/event_json.h"
 
@@ -17,12 +16,15 @@ Json graph_to_json(const Knowledge& knowledge);
 // How it stands: rules, components, topics, inputs, beliefs. Times are seconds since `start`.
 Json state_to_json(const Knowledge& knowledge, Time start);
 
-// What people have told the manager, and what it asks them: paused or not, silences, strategies
-// that wait for approval.
+// The orders of people, and questions to them: paused or not, silences, strategies that await
+// approval.
 Json control_to_json(const Manager& manager, Time start);
 
-// Who is ill and who is blamed: part of the present state.
-Json incidents_to_json(const std::vector<live::Incident>& incidents, const RuleSet& rules,
-                       Time start);
+// The open incidents, in the order of all views: part of the present state.
+Json incidents_to_json(const Manager& manager, Time start);
+
+// The state of the robot and of each component in one word (web/overview.h): part of it, too. @pre `state` is of
+// this manager
+void add_looks(const Manager& manager, Json& state);
 
 }  // namespace culprit::web

@@ -1,4 +1,4 @@
-// What the calls answer, and that openapi.json tells all of them.
+// The answers of the calls, and that openapi.json describes all of them.
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -143,7 +143,7 @@ TEST_F(Routes, AreAllInTheOpenApiDocument) {
   for (const auto& [path_told, calls] : document["paths"].items()) {
     for (const auto& [method, call] : calls.items()) told.insert(method + " " + path_told);
   }
-  // Of the server itself (server.cpp), and of the commands (cli/what_if_route.cpp,
+  // The calls of the server itself (server.cpp), and of the commands (cli/what_if_route.cpp,
   // cli/single_run_route.cpp).
   std::set<std::string> served{"get /api/about", "get /api/openapi.json", "get /api/stream",
                                "post /api/what-if", "post /api/studies/run"};
@@ -255,7 +255,7 @@ TEST_F(Routes, DoNotSaveRulesThatArePartOfTheProgram) {
   EXPECT_EQ(routes[1].answer({{"text", ""}, {"version", ""}}).status, 403);
 }
 
-// Somebody who may change a threshold may not for that reason run programs on the robot.
+// A client that may change a threshold may not for that reason run programs on the robot.
 TEST(RuleDesk, LetsAPageChangeWhatIsExecutedOnlyIfThatWasAllowed) {
   const test::TestFolder folder;
   const std::string file = folder / "robot.rules";
@@ -306,7 +306,7 @@ RULE CameraSilent
     RuleDesk free(file, RuleDesk::Commands::kMayChange);
     EXPECT_EQ(refusal(free, text), "") << to;
   }
-  // A detour by a text that nobody can read.
+  // A detour by an unreadable text.
   EXPECT_THAT(refusal(desk, "COMPONENT"), HasSubstr("could change what is executed"));
   std::ofstream(file) << "COMPONENT";
   const auto outcome = desk.save(before, desk.read()->version);
@@ -387,7 +387,7 @@ TEST_F(Routes, SayWhetherAnOrderIsKept) {
   EXPECT_TRUE(orders.empty());
 }
 
-// As HubObserver tells the manager's word.
+// The manager's reply, as HubObserver publishes it.
 Json word(const char* type, std::uint64_t number) {
   return {
       {"type", type}, {"number", number}, {"text", "ada: pause"}, {"refused_because", "so it is"}};
@@ -418,7 +418,7 @@ TEST_F(Routes, SayWhenTheManagerDoesNotTakeAnOrderInTime) {
   EXPECT_EQ(orders.size(), 1u) << "it takes it when it comes round";
 }
 
-// Who was stopped and goes on finds orders that their senders have given up.
+// A culprit that was stopped and goes on receives orders that their senders have given up.
 TEST_F(Routes, DoNotFollowAnOrderThatCameTooLateUnlessItRestrains) {
   Json order{{"order", "resume"}, {"author", "ada"}, {"valid_until", 0.001}};
   EXPECT_EQ(ask("post /api/orders", order).status, 408);
@@ -495,13 +495,26 @@ Json incident_event(const char* type, double t, Json more = Json::object()) {
   return event;
 }
 
+Json incident_told(const char* type, double t) {
+  return incident_event(type, t,
+                        {{"text", ""},
+                         {"incident", "mywpiwzf-0k7"},
+                         {"rule", "R"},
+                         {"components", {"camera"}},
+                         {"certain", true},
+                         {"criticality", "ERROR"},
+                         {"how", "resolved"}});
+}
+
 TEST_F(Routes, TellIncidentsOfTheStreamWhereThereIsNoJournal) {
   hub.publish(Kind::kRobot, R"({"rules": [{"name": "R", "components": ["camera"], "strategies": [
       {"name": "s", "components": ["camera"]}]}]})");
   for (const Json& event :
        {incident_event("failure_detected", 10, {{"rule", "R"}, {"criticality", "ERROR"}}),
+        incident_told("incident_opened", 10),
         incident_event("strategy_chosen", 10.1, {{"rule", "R"}, {"strategy", "s"}}),
-        incident_event("failure_resolved", 12, {{"rule", "R"}, {"strategy", "s"}})})
+        incident_event("failure_resolved", 12, {{"rule", "R"}, {"strategy", "s"}}),
+        incident_told("incident_closed", 12)})
     hub.publish(Kind::kEvent, to_line(event));
   const Answer answer = ask("get /api/incidents", {{"since", "0"}});
   ASSERT_EQ(answer.status, 200);
@@ -584,24 +597,21 @@ TEST_F(Routes, TakeOnlyNumbersBehindTheQuestionMark) {
 
 TEST_F(Routes, TellWhichRecordingsAnIncidentHasAndGiveThemAndNoOtherFile) {
   const double now = static_cast<double>(wall_now()) * 1e-9;
-  const auto tell = [&](const char* type, double when) {
-    hub.publish(Kind::kEvent, to_line({{"type", type},
-                                       {"rule", "CameraDead"},
-                                       {"clock", when},
-                                       {"t", when},
-                                       {"criticality", "ERROR"}}));
-  };
   for (const double began : {now - 1000, now - 1}) {
-    tell("failure_detected", began);
-    tell("failure_resolved", began + 0.5);
+    for (const char* type : {"incident_opened", "incident_closed"}) {
+      Json event = incident_told(type, 0);
+      event["incident"] = began < now - 500 ? "mywpiwzf-0k7" : "mywpiwzf-0k8";
+      event["t"] = event["clock"] = began + (type == std::string("incident_opened") ? 0 : 0.5);
+      hub.publish(Kind::kEvent, to_line(event));
+    }
   }
   const Json made = ask("post /api/recordings", {{"reason", "Dead"}}).body;
   std::ofstream(recordings / "secret") << "not for everybody";
   const Json incidents = ask("get /api/incidents", {{"since", "0"}}).body["incidents"];
   ASSERT_EQ(incidents.size(), 2u) << incidents;
-  EXPECT_EQ(incidents[0]["recordings"], Json::array()) << "it was long before";
-  ASSERT_EQ(incidents[1]["recordings"].size(), 1u) << incidents;
-  const Json& recording = incidents[1]["recordings"][0];
+  EXPECT_EQ(incidents[1]["recordings"], Json::array()) << "it was long before";
+  ASSERT_EQ(incidents[0]["recordings"].size(), 1u) << incidents;
+  const Json& recording = incidents[0]["recordings"][0];
   EXPECT_EQ(recording["path"], made["recording"]);
   EXPECT_EQ(recording["bytes"], 14);
   const Answer given = ask("get /api/incidents/recording", {{"name", recording["name"]}});

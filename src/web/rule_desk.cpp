@@ -14,7 +14,7 @@
 namespace culprit::web {
 namespace {
 
-// FNV-1a. It tells versions apart that people made; nobody gains by making two alike.
+// FNV-1a. It distinguishes versions that people made; there is no gain in forging one.
 std::string version_of(const std::string& text) {
   std::uint64_t hash = 14695981039346656037u;
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
@@ -64,7 +64,7 @@ bool RuleDesk::includes(const std::filesystem::path& file) const {
   return false;
 }
 
-// Rules with mistakes tell nothing of what they execute, neither before nor after.
+// Rules with mistakes do not show what they execute, neither before nor after.
 std::string RuleDesk::changed_command(const std::string& text) const {
   const auto now = rule_files::read(path_);
   std::error_code error;
@@ -103,8 +103,9 @@ std::variant<std::string, RuleDesk::Refusal> RuleDesk::save(const std::string& t
   const auto now = read();
   if (!now) return Refusal{Problem::kNotWritten, now.error()};
   if (now->version != version)
-    return Refusal{Problem::kChangedMeanwhile,
-                   path_ + " was changed by somebody else since you opened it; nothing is written"};
+    return Refusal{
+        Problem::kChangedMeanwhile,
+        path_ + " was changed by another program since you opened it; nothing is written"};
   const std::string command = commands_ == Commands::kStay ? changed_command(text) : "";
   if (!command.empty())
     return Refusal{Problem::kChangesCommands,

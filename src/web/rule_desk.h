@@ -1,5 +1,5 @@
-// The rule file that a page edits. Many pages may have it open, and editors beside them: who saves
-// says which version was changed, so that nobody overwrites what another has written.
+// The rule file that a page edits. Many pages may have it open, and editors beside them: a client
+// that saves names the version that it changed, so that no change of another is overwritten.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace culprit::web {
 
-// What messages call a text that a page sends.
+// The name of a page's text in messages.
 inline constexpr const char* kTextOfPage = "rules";
 
 // All members may be called from any thread.
@@ -38,9 +38,8 @@ class RuleDesk {
   // Errors: the file cannot be read. One that is not there yet is empty.
   Expected<Content> read() const;
 
-  // Where a text that a page sends finds what it includes: beside the file and below, among the rules
-  // that were installed, and what the file itself includes already. No page reads anything else of
-  // this computer. Of rules without a file: nowhere. The desk must outlive it.
+  // Finds the files that a page's text includes: beside the file and below, among the installed rules, and those that the file itself includes already. No page
+  // reads anything else of this computer. Rules without a file can include nothing. The desk must outlive it.
   RuleLoader loader() const;
 
   enum class Problem : std::uint8_t { kChangedMeanwhile, kChangesCommands, kNotWritten };

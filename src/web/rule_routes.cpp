@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kUri = "culprit:rules";  // what the language server calls the text
 
-// What an editor may ask about a text; anything else would need a session.
+// The questions that an editor may ask about a text; any other would need a session.
 constexpr std::array<std::string_view, 4> kQuestions = {
     "textDocument/completion", "textDocument/hover", "textDocument/formatting",
     "textDocument/codeAction"};

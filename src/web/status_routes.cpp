@@ -22,7 +22,8 @@ bool steps(Hub& hub, const Metrics& metrics, std::chrono::milliseconds patience)
 
 Answer health(bool does_step, const Metrics& metrics) {
   if (!does_step) return refuse(503, "the decision loop does not come round");
-  if (!metrics.hears()) return refuse(503, "the robot cannot be heard, and nothing is judged");
+  if (!metrics.hears())
+    return refuse(503, "culprit does not receive the robot's messages, and judges nothing");
   return {200, {{"status", "ok"}}};
 }
 

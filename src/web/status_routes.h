@@ -1,4 +1,4 @@
-// What other programs ask of a service: whether it lives, whether it is ready, what it counts.
+// The questions of other programs to a service: whether it lives, whether it is ready, its metrics.
 #pragma once
 
 #include "http/hub.h"

@@ -12,7 +12,8 @@
 
 namespace culprit::web {
 
-// Whoever runs the campaigns. The functions are called from any thread, and may block for a moment.
+// The runner of the campaigns. The functions are called from any thread, and may block for a
+// moment.
 struct Studies {
   static constexpr std::uint32_t kMostRuns = 100'000;
 

@@ -1,5 +1,5 @@
-// What the process of each component used over the last quarter of an hour. A thread of its own looks every few seconds,
-// whoever looks on: so the page also shows what was before somebody looked.
+// The usage of each component's process over the last quarter of an hour. A thread of its own samples it every few seconds, with or without a viewer: so the
+// page also shows the time before it was opened.
 #pragma once
 
 #include <chrono>

@@ -71,7 +71,7 @@ export interface StreamMessage {
 const kLongestSilence = 5000 // ms, until the connection is given up
 
 // Server-sent events (WHATWG HTML). Not by EventSource, which cannot send the token. Goes on after
-// an interruption where it left off, for ever. `onSign` is told of whatever comes, also if it is no message.
+// an interruption where it left off, for ever. `onSign` is called for any data that arrives, also if it is no message.
 export async function follow(
   onMessage: (message: StreamMessage) => void,
   onSign: () => void,

@@ -2,12 +2,13 @@
 import { useEffect, useRef, useState } from 'preact/hooks'
 import uPlot from 'uplot'
 import 'uplot/dist/uPlot.min.css'
-import { call, hasToken } from './api'
+import { call } from './api'
 import { beta, density } from './beta'
+import { when } from './clock'
 import { download } from './download'
 import { act } from './notices'
-import { order } from './order'
-import { can, events, robot, state } from './store'
+import { order, canOrder } from './order'
+import { can, clockAt, events, robot, state } from './store'
 import { colour, isDark } from './theme'
 import type { ManagerEvent, Strategy } from './types'
 
@@ -61,7 +62,13 @@ function Density({ entry }: { entry: Entry }) {
       [x, x.map((p) => density(p, prior[0], prior[1])), x.map((p) => density(p, a, b))],
       place.current!
     )
-    return () => plot.destroy()
+    const fit = () => plot.setSize({ width: Math.min(640, place.current!.clientWidth || 640), height: 300 })
+    const observer = new ResizeObserver(fit)
+    observer.observe(place.current!)
+    return () => {
+      observer.disconnect()
+      plot.destroy()
+    }
   }, [entry.rule, entry.strategy.name, a, b, isDark.value])
   return (
     <figure>
@@ -100,12 +107,12 @@ function Outcomes({ entry }: { entry: Entry }) {
   const list = events.value.filter(mine).slice(-kMostOutcomes).reverse()
   return (
     <section aria-label="Outcomes">
-      <h3>What came of it</h3>
+      <h3>Outcomes</h3>
       {list.length === 0 && <p class="muted">It was not tried since culprit began to watch.</p>}
       <ol>
         {list.map((e) => (
           <li key={e.number}>
-            <span class="number">{e.t.toFixed(2)} s</span> {kOutcomes[e.type]}
+            <time>{when(e.clock ?? clockAt(e.t))}</time> {kOutcomes[e.type]}
           </li>
         ))}
       </ol>
@@ -148,10 +155,10 @@ function Forget({ rule }: { rule: string }) {
     )
   return (
     <>
-      <button type="button" disabled={!hasToken || !rule} onClick={() => ask(rule)}>
+      <button type="button" disabled={!canOrder() || !rule} onClick={() => ask(rule)}>
         Reset {rule} …
       </button>
-      <button type="button" disabled={!hasToken} onClick={() => ask('')}>
+      <button type="button" disabled={!canOrder()} onClick={() => ask('')}>
         Reset all …
       </button>
     </>
@@ -171,47 +178,49 @@ export function BeliefsPage() {
         <Forget rule={list[chosen]?.rule ?? ''} />
       </div>
       <div class="columns">
-        <table>
-          <thead>
-            <tr>
-              <th scope="col">strategy</th>
-              <th scope="col">rules say</th>
-              <th scope="col">believed now</th>
-              <th scope="col">90 % sure of</th>
-              <th scope="col" class="interval-head">0 % to 100 %</th>
-              <th scope="col">learned from</th>
-            </tr>
-          </thead>
-          <tbody>
-            {list.map((entry, i) => {
-              const { prior } = entry.strategy
-              const [a, b] = entry.belief
-              const [low, high] = beta(a, b).interval
-              const seen = Math.max(0, a + b - entry.began[0] - entry.began[1])
-              const percent = (p: number) => `${(100 * p).toFixed(0)} %`
-              return (
-                <tr class={i === chosen ? 'chosen' : ''}>
-                  <th scope="row">
-                    <button type="button" aria-pressed={i === chosen} onClick={() => choose(i)}>
-                      {entry.rule}.{entry.strategy.name}
-                    </button>
-                  </th>
-                  <td class="number">{percent(prior[0] / (prior[0] + prior[1]))}</td>
-                  <td class="number">{percent(a / (a + b))}</td>
-                  <td class="number">
-                    {percent(low)} to {percent(high)}
-                  </td>
-                  <td>
-                    <Interval low={low} high={high} now={a / (a + b)} prior={prior[0] / (prior[0] + prior[1])} />
-                  </td>
-                  <td class="number">
-                    {seen < 0.5 ? 'nothing yet' : `${seen.toFixed(0)} outcome${seen < 1.5 ? '' : 's'}`}
-                  </td>
-                </tr>
-              )
-            })}
-          </tbody>
-        </table>
+        <div class="scrolls" tabIndex={0} role="group" aria-label="Beliefs">
+          <table>
+            <thead>
+              <tr>
+                <th scope="col">strategy</th>
+                <th scope="col">rules say</th>
+                <th scope="col">believed now</th>
+                <th scope="col">90 % sure of</th>
+                <th scope="col" class="interval-head">0 % to 100 %</th>
+                <th scope="col">learned from</th>
+              </tr>
+            </thead>
+            <tbody>
+              {list.map((entry, i) => {
+                const { prior } = entry.strategy
+                const [a, b] = entry.belief
+                const [low, high] = beta(a, b).interval
+                const seen = Math.max(0, a + b - entry.began[0] - entry.began[1])
+                const percent = (p: number) => `${(100 * p).toFixed(0)} %`
+                return (
+                  <tr class={i === chosen ? 'chosen' : ''}>
+                    <th scope="row">
+                      <button type="button" aria-pressed={i === chosen} onClick={() => choose(i)}>
+                        {entry.rule}.{entry.strategy.name}
+                      </button>
+                    </th>
+                    <td class="number">{percent(prior[0] / (prior[0] + prior[1]))}</td>
+                    <td class="number">{percent(a / (a + b))}</td>
+                    <td class="number">
+                      {percent(low)} to {percent(high)}
+                    </td>
+                    <td>
+                      <Interval low={low} high={high} now={a / (a + b)} prior={prior[0] / (prior[0] + prior[1])} />
+                    </td>
+                    <td class="number">
+                      {seen < 0.5 ? 'nothing yet' : `${seen.toFixed(0)} outcome${seen < 1.5 ? '' : 's'}`}
+                    </td>
+                  </tr>
+                )
+              })}
+            </tbody>
+          </table>
+        </div>
         {list[chosen] && (
           <div>
             <Density entry={list[chosen]} />

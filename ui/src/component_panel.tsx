@@ -37,7 +37,7 @@ function linksOf(node: string, isOut: boolean): Link[] {
 
 function rateOf(topic: string): string {
   const now = stateOfTopic(topic)
-  if (!now || now.rate === null) return robot.value?.topics.includes(topic) ? 'nothing heard yet' : 'not measured'
+  if (!now || now.rate === null) return robot.value?.topics.includes(topic) ? 'no message yet' : 'not measured'
   return now.age !== null && now.age > 3 / now.rate ? `silent for ${lasting(now.age)}` : `${now.rate.toFixed(1)} Hz`
 }
 
@@ -119,8 +119,8 @@ function Log() {
   const { log } = details.value!
   return (
     <>
-      <h3>What it logged last</h3>
-      {log.length === 0 && <p class="muted">Nothing since somebody began to look at components.</p>}
+      <h3>Latest log lines</h3>
+      {log.length === 0 && <p class="muted">No lines since this view was opened.</p>}
       <ol class="lines" tabIndex={0} aria-label="Log lines">
         {[...log].reverse().map((line) => (
           <li>
@@ -141,12 +141,12 @@ export function ComponentPanel({ name }: { name: string }) {
   const now = stateOfComponent(name)
   const rules = rulesByComponent.value.get(name) ?? []
   const strategies = rules.flatMap((r) => r.strategies.filter((s) => s.components.includes(name)).map((s) => ({ name: `${r.name}.${s.name}`, actions: s.actions })))
-  const done = events.value.filter((e) => e.component === name || e.components?.includes(name)).slice(-kMostDone).reverse()
+  const done = events.value.filter((e) => e.text && (e.component === name || e.components?.includes(name))).slice(-kMostDone).reverse()
   const known: [string, string | undefined][] = [
     ['node', node ?? 'not seen'],
     ['process', state.value ? (now?.process ?? 'not seen yet') : 'unknown'],
-    ['started by', facts?.owner ?? (facts && 'somebody whom the rules do not name')],
-    ['computer', (now?.host ?? facts?.host) && `${now?.host ?? facts?.host}${now?.unheard ? ', of which nothing is heard' : ''}`],
+    ['started by', facts?.owner ?? (facts && 'an owner that the rules do not name')],
+    ['computer', (now?.host ?? facts?.host) && `${now?.host ?? facts?.host}${now?.unheard ? ', which is unreachable' : ''}`],
     ['lifecycle', now?.lifecycle],
     ['being adapted by', now?.adapting],
     ['remark', now?.remark],
@@ -173,11 +173,11 @@ export function ComponentPanel({ name }: { name: string }) {
       )}
       {details.value && <Usage />}
       <Topics title="it publishes" links={node ? linksOf(node, true) : []} />
-      <Topics title="it hears" links={node ? linksOf(node, false) : []} />
+      <Topics title="it subscribes to" links={node ? linksOf(node, false) : []} />
       {details.value && <Parameters />}
       {done.length > 0 && (
         <>
-          <h3>What was about it</h3>
+          <h3>Its events</h3>
           <ol>
             {done.map((e) => (
               <li key={e.number}>

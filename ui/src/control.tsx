@@ -1,9 +1,8 @@
 // Orders of people to the manager: pause, resume, silence, run a strategy. Each is one call (POST /api/orders); its
 // result is an event.
 import { useState } from 'preact/hooks'
-import { hasToken } from './api'
 import { lasting, when } from './clock'
-import { Author, order } from './order'
+import { Author, order, canOrder } from './order'
 import { can, clockAt, control, now, robot } from './store'
 
 // Strategies that wait for a person's word: in front of all else.
@@ -24,14 +23,14 @@ export function Approvals() {
               <button
                 type="button"
                 class="primary"
-                disabled={!hasToken}
+                disabled={!canOrder()}
                 onClick={() => void order(`Approving ${strategy}`, { order: 'approve', rule, strategy })}
               >
                 Approve
               </button>
               <button
                 type="button"
-                disabled={!hasToken}
+                disabled={!canOrder()}
                 onClick={() => void order(`Refusing ${strategy}`, { order: 'refuse', rule, strategy })}
               >
                 Refuse
@@ -95,7 +94,7 @@ function Silences() {
           <span>why</span>
           <input value={reason} maxLength={200} onInput={(e) => setReason(e.currentTarget.value)} />
         </label>
-        <button type="submit" disabled={!hasToken}>
+        <button type="submit" disabled={!canOrder()}>
           Silence
         </button>
       </div>
@@ -112,7 +111,7 @@ function Silences() {
               </span>
               <button
                 type="button"
-                disabled={!hasToken}
+                disabled={!canOrder()}
                 onClick={() => void order(`Lifting the silence of ${name}`, { order: 'lift', [kind]: name })}
               >
                 Lift
@@ -152,7 +151,7 @@ function ByHand() {
             ))}
           </select>
         </label>
-        <button type="submit" disabled={!hasToken}>
+        <button type="submit" disabled={!canOrder()}>
           Run
         </button>
       </div>
@@ -168,7 +167,7 @@ export function Control() {
       <label>
         <input
           type="checkbox"
-          disabled={!hasToken}
+          disabled={!canOrder()}
           checked={control.value.dry_run}
           onChange={(e) => {
             const on = e.currentTarget.checked

@@ -76,7 +76,7 @@ export function Declarations({ document, change }: Props) {
     })
   return (
     <details class="rule declarations">
-      <summary>What the rules are about: {namesOf(document, 'COMPONENT').join(', ') || 'nothing declared'}</summary>
+      <summary>Declared components: {namesOf(document, 'COMPONENT').join(', ') || 'none'}</summary>
       {places.map((place) => (
         <DeclarationForm key={place} {...{ document, change, place }} />
       ))}

@@ -26,7 +26,7 @@ export interface Declaration {
 }
 
 const kOwners: Way[] = [
-  { words: 'nobody that culprit can ask', members: {} },
+  { words: 'no owner that culprit can ask', members: {} },
   { words: 'culprit, by a command', members: { launch: 'ros2 run my_package my_node' } },
   { words: 'systemd', members: { unit: 'my_node.service' } },
   { words: 'docker or podman', members: { container: ['docker', 'my_node'] } },
@@ -100,8 +100,22 @@ export const kDeclarations: Record<string, Declaration> = {
       return { consumer, producers: [producer] }
     },
   },
+  GROUP: {
+    title: 'Group with a lifecycle manager',
+    members: { name: {}, members: { kind: 'list', wide: true }, manager: { list: 'components' } },
+    fresh: (document) => {
+      const [member = 'my_node', manager = 'my_manager'] = namesOf(document, 'COMPONENT')
+      return { name: freeName(document, 'GROUP', 'my_group'), members: [member], manager }
+    },
+  },
   IGNORE: { title: 'Topics to ignore', members: { topics: { kind: 'list', wide: true } }, fresh: () => ({ topics: ['/rosout'] }) },
   INTERLOCK: { title: 'Interlock', members: { expression: { wide: true } }, fresh: () => ({ expression: 'false' }) },
+  ABORT: { title: 'End of a drill', members: { expression: { wide: true } }, fresh: () => ({ expression: 'false' }) },
+  DRILL: {
+    title: 'Drill',
+    members: { component: { list: 'components' }, type: {}, parameter: {}, value: {}, fault: {}, times: {} },
+    fresh: (document) => ({ component: namesOf(document, 'COMPONENT')[0] ?? 'my_node', type: 'limit', times: 0 }),
+  },
 }
 
 // At most one of each, in front of all else.

@@ -126,7 +126,7 @@ function Findings() {
 export function DoctorPage() {
   return (
     <main class="doctor">
-      <h2>What is wrong with {robot.value?.robot || 'the robot'}, rules or none?</h2>
+      <h2>Examine {robot.value?.robot || 'the robot'}, without rules</h2>
       <form
         class="bar"
         onSubmit={(e) => {

@@ -1,4 +1,4 @@
-// Files that the page gives to whoever looks at it.
+// Files that the page offers for download.
 
 export function download(name: string, content: BlobPart, type: string): void {
   const link = document.createElement('a')

@@ -24,7 +24,7 @@ interface Reply<T> {
 }
 
 const kKeywords =
-  /^(ROBOT|CYCLE|CONST|COMPONENT|NODE|LAUNCH|ENV|SETUP|CWD|UNIT|USER|CONTAINER|HOST|IN|PLUGIN|PACKAGE|PARAMETERS|REMAP|RESPAWNED|REQUIRED|READY|LIFECYCLE|DEPENDENCY|ON|IGNORE|INTERLOCK|LASTRESORT|WITHIN|TOPIC|SIGNAL|DIAGNOSTIC|KEY|FIELD|PARAMETER|STALE|RANGE|RULE|POLICIES|FROM|FOR|HOLD|COOLDOWN|ATTEMPTS|ON_CHANGE|REPORT|TRIGGER|STRATEGY|WHEN|ADAPTATION|THEN|INCLUDE|TEMPLATE|END|USE|ERROR|WARNING|NON_CRITICAL|OK|DEGRADED|FAILURE)\b/
+  /^(ROBOT|CYCLE|CONST|COMPONENT|NODE|LAUNCH|ENV|SETUP|CWD|UNIT|USER|CONTAINER|HOST|IN|PLUGIN|PACKAGE|PARAMETERS|REMAP|RESPAWNED|REQUIRED|READY|LIFECYCLE|DEPENDENCY|GROUP|MANAGER|ON|IGNORE|INTERLOCK|ABORT|DRILL|LASTRESORT|WITHIN|TOPIC|SIGNAL|DIAGNOSTIC|KEY|FIELD|PARAMETER|STALE|RANGE|RULE|POLICIES|FROM|FOR|HOLD|COOLDOWN|ATTEMPTS|ON_CHANGE|REPORT|TRIGGER|STRATEGY|WHEN|ADAPTATION|THEN|INCLUDE|TEMPLATE|END|USE|ERROR|WARNING|NON_CRITICAL|OK|DEGRADED|FAILURE)\b/
 
 const language = StreamLanguage.define<null>({
   startState: () => null,
@@ -137,7 +137,7 @@ function shadowRoot(parent: HTMLElement): ShadowRoot {
   return root
 }
 
-// `onText` is told each new text, `onFound` what a check says about the newest.
+// `onText` is called with each new text, `onFound` with the check's findings about the newest.
 export function makeEditor(
   parent: HTMLElement,
   text: string,
@@ -152,7 +152,7 @@ export function makeEditor(
         if (error instanceof Refusal && error.status === 0) return null
         throw error
       })
-      // Answers may overtake one another: what is said of an older text is not said of this one.
+      // Answers may overtake one another: findings about an older text are dropped.
       if (!reply || !view.state.doc.eq(doc)) return []
       const list = reply.diagnostics.map((d): Diagnostic => {
         const from = offset(doc, d.range.start)

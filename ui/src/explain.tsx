@@ -4,11 +4,11 @@ import { ComponentPanel } from './component_panel'
 import { byTheClock, lasting, lastingSoFar, when } from './clock'
 import { nowByTheClock } from './freshness'
 import { search } from './graph_model'
-import type { Failure, View } from './history'
-import { headlineOf, healthOf, type Incident, incidentsOf, type Known, listed } from './incidents'
+import { type Failure, healthOf, type View } from './history'
+import { type Incident, listed } from './incidents'
 import { usePaced } from './paced'
-import { doingOf, kSigns, type Tone } from './status'
-import { blindRules, clockAt, culprits, incidents, isLive, isNothingWatched, known, live, now, robot, rulesByComponent, selected, situation, state } from './store'
+import { kLooks, type Look, rankOf } from './looks'
+import { blindRules, can, clockAt, conditionAt, culprits, isLive, live, looks, now, robot, selected, state } from './store'
 import type { Candidate, Criticality, Evidence, ManagerEvent } from './types'
 
 export const kWords: Record<Criticality, string> = {
@@ -16,11 +16,6 @@ export const kWords: Record<Criticality, string> = {
   WARNING: 'warning',
   NON_CRITICAL: 'non-critical',
 }
-
-// A finished run has only its events.
-const knownIn = (view: View): Known => (view === live ? known : (c) => ({ isGone: view.situation.value.gone.has(c) }))
-const incidentsIn = (view: View) =>
-  view === live ? incidents.value : incidentsOf(view.situation.value.failures, () => [], knownIn(view))
 
 const signed = (log_odds: number) => `${log_odds < 0 ? '−' : '+'}${Math.abs(log_odds).toFixed(1)}`
 
@@ -46,7 +41,7 @@ export function Suspects({ decision, rule }: { decision: ManagerEvent; rule: str
   if (suspects.length === 0) return null
   return (
     <table class="suspects">
-      <caption>Who may be responsible</caption>
+      <caption>Possible causes</caption>
       <tbody>
         {suspects.slice(0, 5).map((s) => (
           <tr>
@@ -66,6 +61,44 @@ export function Suspects({ decision, rule }: { decision: ManagerEvent; rule: str
   )
 }
 
+export const kCostUnit = 'Expected effort, relative to the slowest strategy of the rules: no unit. Of the paper’s planner: 0 to 2.'
+
+const kNanosecond = 1e-9 // s
+
+// Causes begin before their effects: what began when, of all suspects on one axis that ends with the decision.
+function Onsets({ decision }: { decision: ManagerEvent }) {
+  const onsets = (decision.suspects ?? [])
+    .flatMap(({ component, evidence }) =>
+      (evidence ?? []).flatMap(({ text, age_ns, log_odds }) => (age_ns === undefined ? [] : [{ component, text, age: age_ns * kNanosecond, isFor: log_odds >= 0 }]))
+    )
+    .sort((a, b) => b.age - a.age)
+  if (onsets.length < 2) return null
+  const longest = Math.max(onsets[0].age, kNanosecond)
+  const at = (age: number) => `${2 + 96 * (1 - age / longest)}%`
+  return (
+    <details class="why">
+      <summary>What began first, until the decision at {byTheClock(decision.clock ?? clockAt(decision.t), 2)}</summary>
+      <table class="onsets">
+        <tbody>
+          {onsets.map(({ component, text, age, isFor }) => (
+            <tr>
+              <th scope="row">{component}</th>
+              <td class="axis">
+                <svg width="100%" height="16" aria-hidden="true">
+                  <line x1={at(age)} x2={at(0)} y1="8" y2="8" />
+                  <circle cx={at(age)} cy="8" r="4" class={isFor ? 'for' : 'against'} />
+                </svg>
+              </td>
+              <td class="number">{lasting(age)} before</td>
+              <td>{text}</td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+    </details>
+  )
+}
+
 // An excluded candidate has no cost.
 export const costOf = ({ cost, excluded }: { cost: number; excluded: unknown }) =>
   excluded && cost === 0 ? '–' : cost.toFixed(2)
@@ -74,11 +107,13 @@ export function Candidates({ list, chosen }: { list: Candidate[]; chosen?: strin
   if (list.length === 0) return null
   return (
     <table class="candidates">
-      <caption>What could be done</caption>
+      <caption>Possible repairs</caption>
       <thead>
         <tr>
           <th scope="col">strategy</th>
-          <th scope="col">cost</th>
+          <th scope="col" title={kCostUnit}>
+            relative cost
+          </th>
           <th scope="col">why, or why not</th>
         </tr>
       </thead>
@@ -95,40 +130,15 @@ export function Candidates({ list, chosen }: { list: Candidate[]; chosen?: strin
   )
 }
 
-// The next step and its time: for the present only, since the past has its events.
-function Next({ failure, incident }: { failure: Failure; incident: Incident }) {
-  if (!isLive.value) return null
-  const place = robot.value?.rules.findIndex((r) => r.name === failure.rule) ?? -1
-  const rule = state.value?.rules[place]
-  if (!rule) return null
-  const t = now.value
-  const left = (at: number | null | undefined) => (at ? Math.max(0, at - t).toFixed(1) : null)
-  if (rule.attempt) {
-    const { stage, strategy, deadline } = rule.attempt
-    const { chosen } = rule.attempt
-    if (stage === 'adapting')
-      return (
-        <p class="next">
-          Now: {strategy} is being carried out, for {lasting(t - chosen)}.
-        </p>
-      )
-    if (stage === 'undoing') return <p class="next">Now: what {strategy} changed is being undone.</p>
-    return (
-      <p class="next">
-        Now: waiting for the symptom to go
-        {left(deadline) && `; if it has not in ${left(deadline)} s, the next strategy is tried`}.
-      </p>
-    )
-  }
-  if (rule.settling)
-    return (
-      <p class="next">
-        Now: it is expected to go away with {rule.settling.with}, within {left(rule.settling.until)} s.
-      </p>
-    )
-  if (rule.retry_at) return <p class="next">Next: tried anew in {left(rule.retry_at)} s.</p>
-  if (failure.phase === 'exhausted') return <p class="next">Nothing more will be tried: a person must look.</p>
-  return <p class="next">Now: {doingOf(incident)}.</p>
+// The current action and the next one: for the present only, since the past has its events.
+function Next({ incident }: { incident: Incident }) {
+  if (!isLive.value || !incident.doing) return null
+  return (
+    <p class="next">
+      Now: {incident.doing}
+      {incident.next && `; ${incident.next}`}.
+    </p>
+  )
 }
 
 // By the clock; of a run that is over, by its own time.
@@ -145,8 +155,9 @@ function Why({ failure, isOpen }: { failure: Failure; isOpen: boolean }) {
   if (!decision?.suspects?.length && !decision?.candidates?.length) return null
   return (
     <details class="why" open={isOpen}>
-      <summary>Who may be responsible, what could be done</summary>
+      <summary>Possible causes and repairs</summary>
       <Suspects decision={decision} rule={failure.rule} />
+      <Onsets decision={decision} />
       <Candidates
         list={decision.candidates ?? []}
         chosen={decision.type === 'strategy_chosen' ? decision.strategy : null}
@@ -155,12 +166,12 @@ function Why({ failure, isOpen }: { failure: Failure; isOpen: boolean }) {
   )
 }
 
-// Under its cause: what it waits for is told, the tables are those of the cause.
+// Under its cause: the reason for waiting is shown, the tables are those of the cause.
 function Consequence({ failure, view }: { failure: Failure; view: View }) {
   return (
     <li class={healthOf(failure)}>
       <p>
-        <span aria-hidden="true">{kSigns[healthOf(failure) as Tone]}</span> <b>{failure.rule}</b>{' '}
+        <span aria-hidden="true">{kLooks[healthOf(failure)].sign}</span> <b>{failure.rule}</b>{' '}
         <small class="muted">
           <Since {...{ failure, view }} />
         </small>
@@ -174,22 +185,32 @@ function Consequence({ failure, view }: { failure: Failure; view: View }) {
 const isWide = matchMedia('(min-width: 901px)')
 
 function IncidentCard({ incident, view }: { incident: Incident; view: View }) {
-  const { root, consequences, health } = incident
+  const { health } = incident
+  const failures = view.situation.value.failures
+  const root = failures.find((f) => f.rule === incident.rule)
+  const consequences = failures.filter((f) => incident.consequences.includes(f.rule))
   return (
-    <article class={`incident ${health}`}>
+    <article class={`incident ${health}`} data-incident={incident.id}>
       <h2>
-        <span class={incident.isCertain ? 'culprit' : health} aria-hidden="true">
-          {incident.isCertain ? '★' : kSigns[health as Tone]}
+        <span class={incident.certain ? 'culprit' : health} aria-hidden="true">
+          {incident.certain ? '★' : kLooks[health].sign}
         </span>{' '}
-        {headlineOf(incident, knownIn(view))}
+        {incident.headline}
       </h2>
-      <p class="muted">
-        {root.rule}: {kWords[root.criticality]}{root.phase === 'exhausted' ? ', given up, ' : ' '}
-        
-        <Since failure={root} view={view} />
-      </p>
-      {root.decision && <p>{root.decision.text}.</p>}
-      {view === live && <Next failure={root} incident={incident} />}
+      {root && (
+        <p class="muted">
+          {root.rule}: {kWords[root.criticality]}
+          {root.phase === 'exhausted' ? ', given up, ' : ' '}
+          <Since failure={root} view={view} />
+          {can('get', '/api/incidents') && view === live && (
+            <>
+              , incident <a href={`#incidents/${incident.id}`}>{incident.id}</a>
+            </>
+          )}
+        </p>
+      )}
+      {root?.decision && <p>{root.decision.text}.</p>}
+      {view === live && <Next incident={incident} />}
       {consequences.length > 0 && (
         <details class="consequences">
           <summary>
@@ -203,36 +224,49 @@ function IncidentCard({ incident, view }: { incident: Incident; view: View }) {
           </ul>
         </details>
       )}
-      <Why failure={root} isOpen={isWide.matches} />
+      {root && <Why failure={root} isOpen={isWide.matches} />}
     </article>
   )
 }
 
 const kMostComponents = 60 // what one can look through; more are found by their names
 
-function ComponentButton({ name, sign }: { name: string; sign: string }) {
+interface Entry {
+  name: string
+  look: Look
+  condition: string
+  isBlamed: boolean
+}
+
+function ComponentButton({ name, look, condition, isBlamed }: Entry) {
   return (
-    <button type="button" aria-pressed={selected.value === name} onClick={() => (selected.value = selected.value === name ? null : name)}>
-      <span aria-hidden="true">{sign}</span> {name}
+    <button
+      type="button"
+      class={`look-${look}`}
+      aria-pressed={selected.value === name}
+      title={condition || kLooks[look].word}
+      onClick={() => (selected.value = selected.value === name ? null : name)}
+    >
+      <span aria-hidden="true">{isBlamed ? '★' : kLooks[look].sign}</span> {name}
+      {condition && <small> {condition}</small>}
     </button>
   )
 }
 
 const kPeriod = 150 // ms
 
-// The same as the graph in words, for whoever cannot see or point at it.
+// The same as the graph in words, for readers that cannot see or point at it. The worst come first.
 export function Components() {
-  const signs = usePaced(() => {
-    const sick = new Set(situation.value.failures.map((f) => f.rule))
+  const entries = usePaced(() => {
     const blamed = culprits.value
-    const ofRules = rulesByComponent.value
-    const signOf = (name: string) => (blamed.has(name) ? '★' : ofRules.get(name)?.some((r) => sick.has(r.name)) ? '◆' : '✓')
-    return (robot.value?.components ?? []).map(({ name }) => ({ name, sign: signOf(name) }))
+    const all = (robot.value?.components ?? []).map(
+      ({ name }): Entry => ({ name, look: looks.value.get(name) ?? 'UNTOLD', condition: conditionAt(name), isBlamed: blamed.has(name) })
+    )
+    return all.sort((a, b) => Number(b.isBlamed) - Number(a.isBlamed) || rankOf(a.look) - rankOf(b.look))
   }, kPeriod)
   const wanted = search.value.toLowerCase()
-  const found = signs.value.filter(({ name }) => name.toLowerCase().includes(wanted))
+  const found = entries.value.filter(({ name }) => name.toLowerCase().includes(wanted))
   const rest = found.slice(kMostComponents)
-  const ill = rest.filter(({ sign }) => sign !== '✓').slice(0, kMostComponents)
   return (
     <section class="components" aria-label="Components">
       <h2>Components</h2>
@@ -243,14 +277,7 @@ export function Components() {
           </li>
         ))}
       </ul>
-      {rest.length > 0 && (
-        <p class="muted others">
-          and {rest.length} more, to be found by their names above the graph.{' '}
-          {ill.map((each) => (
-            <ComponentButton key={each.name} {...each} />
-          ))}
-        </p>
-      )}
+      {rest.length > 0 && <p class="muted others">and {rest.length} more, to be found by their names above the graph.</p>}
       {selected.value && <ComponentPanel key={selected.value} name={selected.value} />}
     </section>
   )
@@ -258,15 +285,13 @@ export function Components() {
 
 // Rules that say nothing, and why.
 function BlindRules() {
-  const blind = blindRules.value
-  if (isNothingWatched.value && blind.length === 0) return <p class="headline">Watching nothing: there is no rule.</p>
   return (
     <>
-      {blind.map((rule) => (
+      {blindRules.value.map((rule) => (
         <article class={`incident ${rule.criticality}`} key={rule.name}>
           <h2>{rule.name} is blind</h2>
           <p>
-            {rule.text}. culprit cannot tell whether its failure is present, since {byTheClock(clockAt(rule.since), 1)}.
+            {sentence(rule.text)} culprit cannot tell whether its failure is present, since {byTheClock(clockAt(rule.since), 1)}.
           </p>
         </article>
       ))}
@@ -274,12 +299,34 @@ function BlindRules() {
   )
 }
 
+const sentence = (text: string) => text.charAt(0).toUpperCase() + text.slice(1) + (/[.?!]$/.test(text) ? '' : '.')
+
+// Where nothing has failed: how the robot is, as culprit says it.
+function NoIncident({ view }: { view: View }) {
+  if (view !== live || !isLive.value)
+    return (
+      <p class="headline well">
+        <b>✓ All is well.</b> No rule sees a failure{view.isNewest.value ? '' : ' at this moment'}.
+      </p>
+    )
+  if (!state.value) return <p class="headline look-UNTOLD">… Asking culprit how the robot is.</p>
+  const { look, headline, detail } = state.value.overview
+  return (
+    <p class={`headline look-${look} ${look === 'OK' ? 'well' : ''}`}>
+      <b>
+        {kLooks[look].sign} {sentence(headline)}
+      </b>{' '}
+      {sentence(detail)}
+    </p>
+  )
+}
+
 export function Explanation({ view }: { view: View }) {
   const wanted = view === live ? selected.value : null
   const rules = robot.value?.rules ?? []
-  const isAbout = (f: Failure) => !wanted || !!rules.find((r) => r.name === f.rule)?.components.includes(wanted)
-  const all = incidentsIn(view)
-  const shown = all.filter((i) => [i.root, ...i.consequences].some(isAbout) || i.components.includes(wanted ?? ''))
+  const isAbout = (rule: string) => !wanted || !!rules.find((r) => r.name === rule)?.components.includes(wanted)
+  const all = view.situation.value.incidents
+  const shown = all.filter((i) => [i.rule, ...i.consequences].some(isAbout) || i.components.includes(wanted ?? ''))
   return (
     <section class="explanation" aria-label="Explanation">
       {view === live && !isLive.value && (
@@ -288,12 +335,8 @@ export function Explanation({ view }: { view: View }) {
           what was told last. <button type="button" onClick={() => (view.moment.value = null)}>Back to now</button>
         </p>
       )}
+      {all.length === 0 && <NoIncident view={view} />}
       {view === live && isLive.value && <BlindRules />}
-      {all.length === 0 && !(view === live && isLive.value && (blindRules.value.length > 0 || isNothingWatched.value)) && (
-        <p class="headline well">
-          <b>✓ All is well.</b> No rule sees a failure{view.isNewest.value ? '' : ' at this moment'}.
-        </p>
-      )}
       {wanted && (
         <p class="muted">
           Only what concerns {wanted}.{' '}
@@ -303,7 +346,7 @@ export function Explanation({ view }: { view: View }) {
         </p>
       )}
       {shown.map((incident) => (
-        <IncidentCard key={incident.root.rule} {...{ incident, view }} />
+        <IncidentCard key={incident.id} {...{ incident, view }} />
       ))}
     </section>
   )

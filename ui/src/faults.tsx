@@ -1,6 +1,7 @@
 // Breaking a demonstration on purpose.
 import { useEffect, useState } from 'preact/hooks'
-import { call, hasToken } from './api'
+import { call } from './api'
+import { canOrder } from './order'
 import { act } from './notices'
 import { can } from './store'
 
@@ -37,12 +38,12 @@ export function Faults() {
           ))}
         </select>
       </label>
-      <button type="submit" class="danger" disabled={!hasToken}>
+      <button type="submit" class="danger" disabled={!canOrder()}>
         Inject fault
       </button>
       <button
         type="button"
-        disabled={!hasToken}
+        disabled={!canOrder()}
         onClick={() => void act('Clearing all faults', () => call('DELETE', '/api/faults'))}
       >
         Clear all

@@ -1,4 +1,4 @@
-// Tells whether the shown data is fresh. A page that keeps showing old data would mislead.
+// Whether the shown data is fresh. A page that keeps showing old data would mislead.
 import { computed, signal } from '@preact/signals'
 
 const kPatience = 2500 // ms without a sign: a server that lives gives one every second
@@ -12,7 +12,7 @@ const lastState = signal(0)
 const skew = signal(0) // s, of the robot's clock before this browser's
 const tick = signal(Date.now())
 
-// A page that was busy or asleep itself first hears what has come meanwhile.
+// A page that was busy or asleep itself first receives the messages that have arrived meanwhile.
 const kLate = 1000 // ms
 let ticked = Date.now()
 setInterval(() => {
@@ -60,6 +60,9 @@ export const freshness = computed((): Freshness => {
 })
 export const isOld = computed(() => freshness.value.kind === 'lost' || freshness.value.kind === 'stuck')
 
-// By the robot's clock, which stands still on a page that hears nothing.
+// culprit answers: its manager may be stuck, and receives a pause all the same.
+export const isReachable = computed(() => freshness.value.kind === 'fresh' || freshness.value.kind === 'stuck')
+
+// By the robot's clock, which stands still on a page that receives nothing.
 export const nowByTheClock = (): number =>
   freshness.value.kind === 'lost' || freshness.value.kind === 'stuck' ? freshness.value.since : onTheWall(tick.value)

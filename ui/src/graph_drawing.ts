@@ -1,14 +1,15 @@
 // Brings the drawing of the graph to what is to be shown, touching only what differs.
 import cytoscape from 'cytoscape'
 import { clearBend } from './edge_bends'
-import { cascade, edgeLabel, isSilent, kMarks, labelOf, lineBelow, search, shown, showsAll } from './graph_model'
+import { cascade, edgeLabel, isSilent, markOf, labelOf, lineBelow, search, shown, showsAll } from './graph_model'
 import { kLeastZoom, stylesheet } from './graph_style'
 import { effective, groupOf } from './grouping'
 import { GroupBoxes } from './group_boxes'
 import { groupedLayout } from './group_layout'
 import { Minimap } from './minimap'
 import { kLayer, kRow, layered, placed, type Point } from './layout'
-import { culprits, health, robot, selected } from './store'
+import { toneOf } from './looks'
+import { culprits, looks, robot, selected } from './store'
 import type { Graph } from './types'
 
 type Node = Graph['nodes'][number]
@@ -127,11 +128,11 @@ export class Drawing {
   }
 
   private show(node: Node): void {
-    const sick = (node.component && health.value.get(node.component)) || 'OK'
+    const look = node.component ? (looks.value.get(node.component) ?? 'UNTOLD') : 'OK'
     const isCulprit = !!node.component && culprits.value.has(node.component)
     const element = this.tell(node.node, {
-      label: (isCulprit ? '★ ' : kMarks[sick]) + labelOf(node) + lineBelow(node.component),
-      health: sick,
+      label: (isCulprit ? '★ ' : markOf(look)) + labelOf(node) + lineBelow(node.component),
+      tone: toneOf(look),
       component: node.component,
       isManaged: !!node.component,
       isPresent: node.present,
@@ -185,7 +186,7 @@ export class Drawing {
     const byName = new Map(shown.value.nodes.map((n) => [n.node, n]))
     return groupedLayout(names, links, (name) => groupOf(byName.get(name)!))
   }
-  // Beside whom a newcomer of a group belongs.
+  // The other members of a new node's group, beside which it is drawn.
   private companions(nodes: Node[]): (name: string) => string[] {
     if (this.groups === 'none') return () => []
     const groups = new Map(nodes.map((n) => [n.node, groupOf(n)]))

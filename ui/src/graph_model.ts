@@ -1,9 +1,9 @@
 // The content of the graph: its nodes and edges, their labels, and the path of a failure.
 import { computed, signal } from '@preact/signals'
 import { lasting } from './clock'
-import { conditionOf } from './incidents'
-import { culprits, graph, isLive, known, robot, situation, stateOfComponent, stateOfTopic } from './store'
-import type { Graph, Health } from './types'
+import { kLooks, type Look } from './looks'
+import { conditionAt, culprits, graph, isLive, robot, situation, stateOfComponent, stateOfTopic } from './store'
+import type { Graph } from './types'
 
 export const showsAll = signal(false) // also nodes that no rule is about
 export const search = signal('')
@@ -87,20 +87,14 @@ function edgesBetween(start: string, goals: Set<string | undefined>): string[] {
   return edges.filter(([, e]) => below.has(e.from) && above.has(e.to)).map(([id]) => id)
 }
 
-export const kMarks: Record<Health, string> = {
-  OK: '',
-  NON_CRITICAL: '○ ',
-  WARNING: '▲ ',
-  ERROR: '◆ ',
-  EXHAUSTED: '✖ ',
-}
+export const markOf = (look: Look) => (look === 'OK' || look === 'UNTOLD' ? '' : `${kLooks[look].sign} `)
 
 export function lineBelow(component: string | undefined): string {
   if (!component) return ''
   const live = isLive.value ? stateOfComponent(component) : undefined
   const decided = culprits.value.get(component)
   if (decided?.phase === 'attempting') return `\n${decided.blame!.strategy}`
-  const condition = conditionOf(known(component))
+  const condition = conditionAt(component)
   if (condition) return `\n${condition}`
   if (live?.lifecycle && live.lifecycle !== 'active') return `\n${live.lifecycle}`
   return ''

@@ -2,26 +2,28 @@
 import type cytoscape from 'cytoscape'
 import { kNode } from './layout'
 import { colour } from './theme'
-import type { Health } from './types'
+import type { Tone } from './looks'
 
 export const kLeastText = 7 // pixels: what is smaller is no text
 export const kLeastZoom = 0.5 // at which the names of nodes can be read
 
-const kShapes: Record<Health, string> = {
+const kShapes: Partial<Record<Tone, string>> = {
   OK: 'round-rectangle',
   NON_CRITICAL: 'barrel',
   WARNING: 'hexagon',
   ERROR: 'octagon',
   EXHAUSTED: 'octagon',
+  blind: 'round-rectangle',
+  unknown: 'round-rectangle',
 }
 
 export function stylesheet(): cytoscape.StylesheetStyle[] {
-  const healths = (Object.keys(kShapes) as Health[]).map((h) => ({
-    selector: `node[health = "${h}"]`,
+  const tones = (Object.keys(kShapes) as Tone[]).map((tone) => ({
+    selector: `node[tone = "${tone}"]`,
     style: {
-      shape: kShapes[h] as cytoscape.Css.NodeShape,
-      'background-color': colour(`${h}-fill`),
-      'border-color': colour(h),
+      shape: kShapes[tone] as cytoscape.Css.NodeShape,
+      'background-color': colour(`${tone}-fill`),
+      'border-color': colour(tone),
     },
   }))
   return [
@@ -43,11 +45,13 @@ export function stylesheet(): cytoscape.StylesheetStyle[] {
         'z-index': 2,
       },
     },
-    ...healths,
+    ...tones,
     {
       selector: 'node[!isManaged][!isGroup]',
       style: { 'border-style': 'dotted', 'background-opacity': 0.5, 'font-size': 13, height: 44 },
     },
+    // No rule judges it: neither well nor ill.
+    { selector: 'node[tone = "blind"]', style: { 'border-style': 'double', 'border-width': 6 } },
     { selector: 'node[!isPresent][!isGroup]', style: { 'border-style': 'dashed', 'background-opacity': 0.3 } },
     {
       selector: 'node[?isCulprit]',

@@ -6,15 +6,15 @@ import { Drawing, isUpright, kDiscovery } from './graph_drawing'
 import { cascade, search, shown, showsAll } from './graph_model'
 import { effective, groupBy, type Grouping, grouping, kGroupings } from './grouping'
 import { tell } from './notices'
-import { culprits, health, isLive, robot, selected, situation, state } from './store'
+import { culprits, isLive, looks, robot, selected, situation, state } from './store'
 import { isDark } from './theme'
 
-// A large graph takes a while to paint; nobody sees more than so many changes.
+// A large graph takes a while to paint; changes at a shorter period would not be visible.
 const kPeriod = 66 // ms
 
 // The inputs of a drawing.
 const readAll = () =>
-  [shown, cascade, effective, health, culprits, situation, robot, state, selected, isLive].map((each) => each.value)
+  [shown, cascade, effective, looks, culprits, situation, robot, state, selected, isLive].map((each) => each.value)
 
 export function GraphView() {
   const place = useRef<HTMLDivElement>(null)
@@ -51,7 +51,7 @@ export function GraphView() {
   }, [])
   const layOutAnew = () => {
     const undo = held.current?.layOutAnew()
-    tell({ text: 'Laid out anew.', undo })
+    tell({ text: 'New layout.', undo })
   }
   return (
     <section class="graph" aria-label="Dependency graph">
@@ -89,7 +89,7 @@ export function GraphView() {
           <button type="button" aria-label="Show all of the graph" title="Show all of it" onClick={() => held.current?.fit(true)}>
             ⤢
           </button>
-          <button type="button" aria-label="Lay out anew" title="Lay out anew: nodes keep their places otherwise" onClick={layOutAnew}>
+          <button type="button" aria-label="New layout" title="New layout: nodes keep their places otherwise" onClick={layOutAnew}>
             ⟲
           </button>
         </span>

@@ -2,12 +2,12 @@
 // of failed nodes, and the data flow between groups. Boxes are plain elements of a known size, since Cytoscape's compound
 // nodes cost time with each change.
 import type cytoscape from 'cytoscape'
-import { cascade, kMarks, type Shown } from './graph_model'
+import { cascade, markOf, type Shown } from './graph_model'
 import { groupOf } from './grouping'
-import { level } from './history'
 import { kNode, type Point } from './layout'
-import { culprits, health } from './store'
-import type { Graph, Health } from './types'
+import { isIll, type Look, rankOf, toneOf } from './looks'
+import { culprits, looks } from './store'
+import type { Graph } from './types'
 
 type Node = Graph['nodes'][number]
 
@@ -85,13 +85,13 @@ export class GroupBoxes {
 
   // As ill as the worst of its members, with how many there are.
   show(): void {
-    const healthOf = (n: Node): Health => (n.component && health.value.get(n.component)) || 'OK'
+    const lookOf = (n: Node): Look => (n.component && looks.value.get(n.component)) || 'OK'
     for (const { id, nodes } of this.groups) {
-      const worst = nodes.map(healthOf).reduce((a, b) => (level(b) > level(a) ? b : a))
-      const ill = nodes.filter((n) => healthOf(n) !== 'OK').length
+      const worst = nodes.map(lookOf).reduce((a, b) => (rankOf(b) < rankOf(a) ? b : a))
+      const ill = nodes.filter((n) => isIll(lookOf(n))).length
       const isCulprit = nodes.some((n) => n.component && culprits.value.has(n.component))
       const count = ill > 0 ? `${ill} of ${nodes.length} ill` : nodes.length
-      this.tell(id, { label: `${isCulprit ? '★ ' : kMarks[worst]}${groupOf(nodes[0])}\n${count}`, health: worst, isCulprit })
+      this.tell(id, { label: `${isCulprit ? '★ ' : markOf(worst)}${groupOf(nodes[0])}\n${count}`, tone: toneOf(worst), isCulprit })
     }
     for (const [flow, edges] of this.flows) this.tell(flow, { isCascade: edges.some((id) => cascade.value.has(id)) })
   }

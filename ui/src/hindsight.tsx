@@ -118,10 +118,10 @@ function Result() {
     <>
       {answer.missing.length > 0 && (
         <p class="sick" role="alert">
-          ▲ Not recorded, because the rules that ran did not read it: {answer.missing.join(', ')}. What depends on it is unknown here.
+          ▲ Not recorded, because the rules that ran did not read it: {answer.missing.join(', ')}. Conditions on it are unknown here.
         </p>
       )}
-      <Timeline view={view} label="What these rules would have seen" />
+      <Timeline view={view} label="Failures and repairs under these rules" />
       {rules.length === 0 && <p>Neither these rules nor those that ran saw a failure in that time.</p>}
       {rules.length > 0 && (
         <table>
@@ -165,7 +165,7 @@ export function Hindsight({ document, hasErrors }: { document: RuleDocument; has
             ))}
           </select>
         </label>
-        {found.value && !isOfThisText.value && <span class="muted">What stands below is of before your last change.</span>}
+        {found.value && !isOfThisText.value && <span class="muted">The result below is older than your last change.</span>}
       </div>
       {trouble.value && (
         <p class="sick" role="alert">

@@ -1,5 +1,6 @@
 // The events of the live robot or of a finished run, and the selected moment.
 import { computed, signal, type ReadonlySignal, type Signal } from '@preact/signals'
+import { follow, type Incident, inOrder } from './incidents'
 import type { Criticality, Health, ManagerEvent } from './types'
 
 export interface Failure {
@@ -18,6 +19,7 @@ export interface Failure {
 export interface Situation {
   t: number
   failures: Failure[] // most critical first
+  incidents: Incident[] // in the order of all views
   gone: Set<string> // components
 }
 
@@ -25,12 +27,16 @@ const kLevels: Criticality[] = ['NON_CRITICAL', 'WARNING', 'ERROR']
 export const level = (health: Health) =>
   health === 'EXHAUSTED' ? 3 : kLevels.indexOf(health as Criticality)
 
+export const healthOf = (failure: Failure): Health => (failure.phase === 'exhausted' ? 'EXHAUSTED' : failure.criticality)
+
 // Goes through what happened up to `t`.
 function situationAt(history: ManagerEvent[], t: number): Situation {
   const failures = new Map<string, Failure>()
   const gone = new Set<string>()
+  const incidents = new Map<string, Incident>()
   for (const event of history) {
     if (event.t > t) break
+    follow(incidents, event)
     const failure = event.rule ? failures.get(event.rule) : undefined
     switch (event.type) {
       case 'failure_detected':
@@ -98,7 +104,7 @@ function situationAt(history: ManagerEvent[], t: number): Situation {
         break
     }
   }
-  return { t, failures: [...failures.values()], gone }
+  return { t, failures: [...failures.values()], incidents: inOrder(incidents.values()), gone }
 }
 
 const sorted = (failures: Failure[]) =>
@@ -126,6 +132,7 @@ interface Extent {
   isOver: boolean
   // Failures that are known of otherwise than by events, at the newest moment.
   complete?: (failures: Failure[]) => Failure[]
+  incidents?: () => Incident[] | undefined // at the newest moment, if they are told otherwise than by events
   clockOf?: (t: number) => number
   oldest?: () => number
 }
@@ -133,23 +140,24 @@ interface Extent {
 export function viewOf(
   events: ReadonlySignal<ManagerEvent[]>,
   newest: ReadonlySignal<number>,
-  { isOver, complete, clockOf, oldest = () => 0 }: Extent
+  { isOver, complete, incidents, clockOf, oldest = () => 0 }: Extent
 ): View {
   const moment = signal<number | null>(null)
   const isNewest = computed(() => moment.value === null)
   const at = (t: number | null): Situation => {
     const told = situationAt(events.value, t ?? Infinity)
     const failures = t === null && complete ? [...told.failures, ...complete(told.failures)] : told.failures
-    return { ...told, failures: sorted(failures) }
+    const present = t === null ? incidents?.() : undefined
+    return { ...told, failures: sorted(failures), incidents: present ?? told.incidents }
   }
   const situation = computed(() => at(moment.value))
   const culprits = computed(() => {
     const blamed = new Map<string, Failure>()
-    for (const failure of situation.value.failures) {
-      if (failure.phase === 'exhausted') continue
-      for (const component of failure.blame?.components ?? []) {
-        if (!blamed.has(component)) blamed.set(component, failure)
-      }
+    const { incidents: open, failures } = situation.value
+    for (const incident of open) {
+      const root = failures.find((f) => f.rule === incident.rule)
+      if (!incident.certain || !root) continue
+      for (const component of incident.components) blamed.set(component, root)
     }
     return blamed
   })

@@ -10,7 +10,7 @@ import { nowByTheClock } from './freshness'
 import { viewOf } from './history'
 import { listed } from './incidents'
 import { answer, chosen, chosenId, followIncidents, incidents, kPeriods, type PastIncident, period, told, trouble } from './past_incidents'
-import { kSigns, type Tone } from './status'
+import { kLooks } from './looks'
 import { EventLog, Timeline } from './timeline'
 import type { ManagerEvent } from './types'
 
@@ -31,13 +31,15 @@ export const causeOf = (incident: PastIncident) => listed(incident.causes) || in
 export function outcomeOf(incident: PastIncident): string {
   if (incident.given_up) return 'given up: a person must look'
   if (!incident.over) return 'not over'
-  if (incident.cut) return 'nobody saw: culprit ended before'
-  return listed(incident.helped) || 'went away by itself'
+  if (incident.merged_into) return `part of ${incident.merged_into}`
+  if (incident.lost) return 'can no longer be evaluated'
+  if (incident.cut) return 'unknown: culprit ended before'
+  return listed(incident.helped) || 'cleared without a repair'
 }
 
 // All of them as the failures of one timeline, by cause.
 const asEvents = computed((): ManagerEvent[] =>
-  (answer.value?.incidents ?? []).flatMap((incident): ManagerEvent[] => {
+  [...incidents.value].sort((a, b) => a.clock - b.clock).flatMap((incident): ManagerEvent[] => {
     const both = { number: 0, label: '', tone: '', severity: 'info' as const, rule: causeOf(incident), text: '' }
     const text = `${when(incident.clock)}, ${lasting(incident.seconds)}: ${outcomeOf(incident)}`
     const from: ManagerEvent = { ...both, t: incident.clock, type: 'failure_detected', criticality: incident.worst, link: `#incidents/${incident.id}` }
@@ -80,7 +82,7 @@ function List() {
               </th>
               <td>
                 <span class={incident.worst} aria-hidden="true">
-                  {kSigns[incident.worst as Tone]}
+                  {kLooks[incident.worst].sign}
                 </span>{' '}
                 <b>{causeOf(incident)}</b>
               </td>
@@ -99,8 +101,8 @@ function Decisions() {
   const decisions = told.value.events.filter((e) => (e.candidates?.length ?? 0) > 0)
   return (
     <section aria-label="Decisions">
-      <h2>What was decided</h2>
-      {decisions.length === 0 && <p class="muted">Nothing was decided.</p>}
+      <h2>Decisions</h2>
+      {decisions.length === 0 && <p class="muted">No decisions.</p>}
       {decisions.map((event) => (
         <details key={event.number} class="why">
           <summary>
@@ -171,7 +173,7 @@ function Details({ incident }: { incident: PastIncident }) {
       <p>
         {incident.over ? 'It lasted' : 'It has lasted for'} {lasting(lastingOf(incident))}.{' '}
         {incident.consequences.length > 0 && `${listed(incident.consequences)} suffered. `}
-        {incident.over && `What helped: ${outcomeOf(incident)}.`}
+        {incident.over && `Outcome: ${outcomeOf(incident)}.`}
       </p>
       <Recordings incident={incident} />
       <Timeline view={view} />
@@ -187,7 +189,7 @@ function Head() {
   const { remark, oldest } = answer.value ?? {}
   return (
     <div class="bar">
-      <h2>What went wrong</h2>
+      <h2>Incidents</h2>
       <label>
         in the last{' '}
         <select value={String(period.value)} onChange={(e) => (period.value = Number(e.currentTarget.value))}>

@@ -65,7 +65,7 @@ export class Minimap {
     context.clearRect(0, 0, kWide, kHigh)
     this.cy.nodes('[!isGroup]').forEach((node) => {
       const { x: cx, y: cy } = node.position()
-      context.fillStyle = this.colours[node.data('isCulprit') ? 'culprit' : node.data('health')] ?? this.colours.line
+      context.fillStyle = this.colours[node.data('isCulprit') ? 'culprit' : node.data('tone')] ?? this.colours.line
       const [w, h] = [Math.max(2, node.width() * factor), Math.max(2, node.height() * factor)]
       context.fillRect(x(cx) - w / 2, y(cy) - h / 2, w, h)
     })

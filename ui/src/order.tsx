@@ -1,6 +1,7 @@
 // Orders to the manager, and who gives them.
 import { signal } from '@preact/signals'
-import { call } from './api'
+import { call, hasToken } from './api'
+import { isReachable } from './freshness'
 import { act, tell } from './notices'
 
 const kAuthorKey = 'culprit-author'
@@ -9,7 +10,11 @@ const author = signal(localStorage.getItem(kAuthorKey) ?? '')
 // For the record.
 export const authorName = () => author.value || 'somebody at the page'
 
-// The answer to a standing order (a pause, say) tells whether it outlives a restart of culprit.
+// An order that would not arrive is not offered.
+export const canOrder = () => hasToken && isReachable.value
+
+// The answer to a standing order (a pause, for example) includes whether it outlives a restart of
+// culprit.
 export async function order(what: string, body: Record<string, unknown>): Promise<boolean> {
   let text = 'done'
   const isDone = await act(what, async () => {

@@ -13,6 +13,8 @@ export interface PastIncident {
   seconds: number // how long; so far, if it lasts
   over: boolean
   cut: boolean // culprit ended before it was over
+  lost: boolean // what its rule reads could not be seen any more
+  merged_into: string | null // the id of the incident that its failures belonged to at its end
   given_up: boolean
   worst: Criticality
   causes: string[] // components
@@ -45,14 +47,14 @@ const kIdBase = 36
 // A link may be older than what is shown: its id says when that was.
 const linked = computed(() => (chosenId.value ? parseInt(chosenId.value, kIdBase) / 1000 || Infinity : Infinity))
 
-// Newest first.
-export const incidents = computed(() => [...(answer.value?.incidents ?? [])].reverse())
+// Those that are open, the most urgent first; then the newest first.
+export const incidents = computed(() => answer.value?.incidents ?? [])
 export const chosen = computed(() => incidents.value.find((i) => i.id === chosenId.value) ?? (chosenId.value ? undefined : incidents.value[0]))
 
 export const told = signal<{ key: string; events: ManagerEvent[] }>({ key: '', events: [] })
 const keyOf = ({ first, last }: PastIncident) => `${first} ${last}`
 
-const kChanging = /^(failure_|strategy_chosen|approval_asked|action_held_back|rule_exhausted|reloaded)/
+const kChanging = /^(incident_|failure_|strategy_chosen|approval_asked|action_held_back|rule_exhausted|reloaded)/
 const kSoon = 500 // ms: the journal is written by then
 
 let asked = 0

@@ -24,8 +24,7 @@ export function endOf(document: RuleDocument, begin: number): number {
   return end
 }
 
-// Tells for each statement whether it stands in a template, with its TEMPLATE and END lines: such statements have
-// parameters, and are no rules until the template is used.
+// Whether each statement is in a template, including its TEMPLATE and END lines: such statements have parameters, and are no rules until the template is used.
 export function inTemplates(document: RuleDocument): boolean[] {
   let isIn = false
   return document.statements.map((s) => {
@@ -77,6 +76,7 @@ export const kAdaptations: Record<string, string[]> = {
   redeploy: [],
   start: [],
   stop: [],
+  start_group: [],
   change_mode: ['mode'],
   call: ['service', 'request'],
 }
@@ -84,7 +84,7 @@ export const kAdaptations: Record<string, string[]> = {
 export const kOptional = ['request']
 
 // In cycles, as the rules of the examples have it: a parameter is light, a new process is not.
-const kImpacts: Record<string, number> = { activate: 5, deactivate: 5, restart: 5, redeploy: 10, start: 10, stop: 10 }
+const kImpacts: Record<string, number> = { activate: 5, deactivate: 5, restart: 5, redeploy: 10, start: 10, stop: 10, start_group: 50 }
 const kLightImpact = 2
 const kDefaults: Record<string, string> = {
   parameter: 'parameter', value: 'true', topic: 'topic', mode: 'mode', service: 'service',

@@ -73,7 +73,7 @@ async function tryOut(mine: Waiting, show: (text: string) => void): Promise<stri
     } catch (error) {
       const why = forPeople((error as Error).message)
       if (!waiting.includes(mine)) return why
-      // It may be for one before it, which is told first.
+      // The error may concern an earlier edit, which is answered first.
       if (sent.length > 1) {
         await Promise.all(sent.slice(0, -1).map((each) => each.settled))
         continue

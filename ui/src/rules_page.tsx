@@ -30,7 +30,7 @@ effect(() => hindsightFollows(text.value))
 const found = signal<Found[]>([])
 const unreadable = signal('') // why there is no form of the text
 const restored = signal<Draft | null>(null) // brought back after a reload
-const theirs = signal<File | null>(null) // what somebody else has saved meanwhile
+const theirs = signal<File | null>(null) // saved by another client meanwhile
 
 // The form of the text.
 async function readForm(): Promise<void> {
@@ -84,7 +84,7 @@ function Difference({ before, after }: { before: string; after: string }) {
   )
 }
 
-// Drafts from before a reload, and versions that somebody else saved meanwhile. The page never discards one unasked.
+// Drafts from before a reload, and versions that another client saved meanwhile. The page never discards one unasked.
 function Restored({ write }: { write: (text: string) => void }) {
   const draft = restored.value
   const other = theirs.value
@@ -98,7 +98,7 @@ function Restored({ write }: { write: (text: string) => void }) {
   if (!other)
     return (
       <section class="banner" role="status" aria-label="Draft">
-        <p>What you had not saved at {byTheClock(draft!.at / 1000)} is here again.</p>
+        <p>Your unsaved text of {byTheClock(draft!.at / 1000)} is restored.</p>
         <div class="bar">
           <button type="button" onClick={() => (restored.value = null)}>
             Go on
@@ -113,7 +113,7 @@ function Restored({ write }: { write: (text: string) => void }) {
   return (
     <section class="banner" role="alert" aria-label="Conflict">
       <p>
-        <b>{other.path} was changed by somebody else meanwhile.</b> Nothing was written. This is what they changed:
+        <b>{other.path} was changed by another program meanwhile.</b> Your text was not written. The other changes:
       </p>
       <Difference before={file.value.text} after={other.text} />
       <div class="bar">
@@ -156,7 +156,7 @@ function Save({ onClose }: { onClose: () => void }) {
         theirs.value = await call<File>('GET', '/api/rules').catch(() => null)
         if (theirs.value) onClose() // what both have changed is shown on the page
         else setWhy((error as Refusal).message)
-      } else setWhy(`${(error as Refusal).message}. What you wrote is kept in this browser.`)
+      } else setWhy(`${(error as Refusal).message}. Your text is kept in this browser.`)
       return false
     }
   }
@@ -200,7 +200,7 @@ function Save({ onClose }: { onClose: () => void }) {
 function whyNotSave(): string {
   if (file.value?.can_save === false) return 'these rules are part of the program'
   if (refusedFields() > 0) return 'a field of the form holds what was not taken; mend it, or press Escape in it'
-  return theirs.value ? 'somebody else has changed the file: say above what shall count' : ''
+  return theirs.value ? 'the file has changed meanwhile: choose a version above' : ''
 }
 
 export function RulesPage() {
@@ -307,7 +307,7 @@ export function RulesPage() {
       <Restored write={(next) => editor.current?.setText(next)} />
       {unreadable.value && (
         <pre class="sick unreadable" role="alert">
-          The form waits until the text can be read: {unreadable.value}
+          The form waits until the text can be read{errors > 0 ? '; the mistakes are listed below the text.' : `: ${unreadable.value}`}
         </pre>
       )}
       <div class="sides">
@@ -318,7 +318,7 @@ export function RulesPage() {
         </section>
         <section class="text" aria-label="Text">
           <div class="editor" ref={place} />
-          <ul class="found" aria-label="What the check says">
+          <ul class="found" aria-label="Findings of the check">
             {found.value.map((f) => (
               <li>
                 <button type="button" onClick={() => editor.current?.goTo(f.from)}>

@@ -3,7 +3,7 @@
 import { signal } from '@preact/signals'
 import { useEffect, useState } from 'preact/hooks'
 import { call, Refusal } from './api'
-import { costOf } from './explain'
+import { costOf, kCostUnit } from './explain'
 import { graph, robot, state } from './store'
 import type { State } from './types'
 
@@ -148,7 +148,9 @@ function PlanView({ plan }: { plan: Plan }) {
               <tr>
                 <th scope="col">strategy</th>
                 <th scope="col">helps in</th>
-                <th scope="col">cost</th>
+                <th scope="col" title={kCostUnit}>
+                  relative cost
+                </th>
                 <th scope="col">why, or why not</th>
               </tr>
             </thead>

@@ -122,7 +122,7 @@ function Played() {
         {run.is_told ? (
           <Explanation view={view} />
         ) : (
-          <p class="muted">This manager tells nothing of what it sees and decides; here is what the robot did.</p>
+          <p class="muted">This manager reports no events; these are the robot's.</p>
         )}
         <EventLog view={view} />
       </div>

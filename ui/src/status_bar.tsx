@@ -4,8 +4,9 @@ import { effect, signal } from '@preact/signals'
 import { byTheClock } from './clock'
 import { hasToken } from './api'
 import { freshness, nowByTheClock } from './freshness'
-import { order } from './order'
-import { status, title, type Tone } from './status'
+import { canOrder, order } from './order'
+import type { Tone } from './looks'
+import { status, title } from './status'
 import { can, control } from './store'
 import { colour, isDark } from './theme'
 
@@ -17,7 +18,7 @@ async function brake(isPaused: boolean): Promise<void> {
   isOrdering.value = false
 }
 
-const canBrake = () => can('post', '/api/orders') && hasToken && !!control.value
+const canBrake = () => can('post', '/api/orders') && canOrder() && !!control.value
 
 // A user in a hurry presses twice: the key only pauses, the button resumes.
 addEventListener('keydown', (e) => {
@@ -56,7 +57,7 @@ function Freshness() {
   if (now.kind === 'connecting') return <span class="freshness">connecting</span>
   if (now.kind === 'fresh')
     return (
-      <span class="freshness well" title="What you see is new">
+      <span class="freshness well" title="This view is up to date">
         <span aria-hidden="true">● </span>
         <span class="long">live </span>
         <time>{byTheClock(nowByTheClock())}</time>

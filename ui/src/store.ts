@@ -3,7 +3,7 @@ import { batch, computed, signal } from '@preact/signals'
 import { call, follow } from './api'
 import { begun, connected, hearsSign, hearsState, nowByTheClock } from './freshness'
 import { level, viewOf, type Failure } from './history'
-import { incidentsOf, type Known } from './incidents'
+import type { Look } from './looks'
 import type { ComponentState, ControlState, Graph, Health, ManagerEvent, Robot, Rule, State, TopicState } from './types'
 
 export const calls = signal<Set<string>>(new Set())
@@ -35,7 +35,7 @@ export async function start(): Promise<void> {
     frame = 0
     batch(() => {
       if (newest.robot) {
-        // The lists of a state are in the order of the rule set that it was told for.
+        // A state's lists are in the order of its rule set, so new rules drop the older state.
         robot.value = newest.robot as Robot
         state.value = null
       }
@@ -62,7 +62,7 @@ export async function start(): Promise<void> {
         newest[event] = told
         if (event === 'state') hearsState(told.clock)
       }
-      // A page that nobody sees draws no frames, but its title tells how the robot is.
+      // A hidden page draws no frames, but its title shows the robot's state.
       if (frame === 0) frame = document.hidden ? window.setTimeout(show, kHiddenPeriod) : requestAnimationFrame(show)
     },
     hearsSign,
@@ -70,7 +70,7 @@ export async function start(): Promise<void> {
   )
 }
 
-// Without a robot nothing is told, but that the server is there matters, too.
+// Without a robot there are no messages, but whether the server runs matters, too.
 async function watchServer(): Promise<void> {
   for (;;) {
     try {
@@ -83,7 +83,8 @@ async function watchServer(): Promise<void> {
   }
 }
 
-// Where things stand in the lists of a state, and who is about whom: for robots of many parts.
+// The places in the lists of a state, and the relations between components and rules: for robots of
+// many parts.
 const byPlace = (names: string[]) => new Map(names.map((name, place) => [name, place]))
 const placesOfComponents = computed(() => byPlace(robot.value?.components.map((c) => c.name) ?? []))
 const placesOfTopics = computed(() => byPlace(robot.value?.topics ?? []))
@@ -110,6 +111,7 @@ export const now = computed(() =>
 export const live = viewOf(events, now, {
   isOver: false,
   clockOf: clockAt,
+  incidents: () => state.value?.incidents ?? [],
   // Events are forgotten after a while, failures are not.
   complete: (failures) => {
     const last = new Map(events.value.map((e) => [e.rule, e.t]))
@@ -127,7 +129,7 @@ export const live = viewOf(events, now, {
 export const { moment, isNewest: isLive, situation, culprits } = live
 
 // By the clock on the wall, when it was `t` seconds since culprit began to watch. Simulated time has its own pace,
-// so the nearest that was told of counts.
+// so the nearest published time counts.
 export function clockAt(t: number): number {
   let before = state.value ? { t: state.value.t, clock: state.value.clock } : { t, clock: nowByTheClock() }
   const list = events.value
@@ -138,20 +140,6 @@ export function clockAt(t: number): number {
   return before.clock + t - before.t
 }
 
-// The state of a component at the selected moment.
-export const known: Known = (component) => ({
-  isGone: situation.value.gone.has(component),
-  state: isLive.value ? stateOfComponent(component) : undefined,
-})
-const componentsOfRule = (name: string) => robot.value?.rules.find((r) => r.name === name)?.components ?? []
-export const incidents = computed(() => incidentsOf(situation.value.failures, componentsOfRule, known))
-
-// As the robot is now, whatever moment is looked at.
-const presentSituation = computed(() => (isLive.value ? situation.value : live.situationAt(null)))
-export const presentlyKnown: Known = (component) => ({
-  isGone: presentSituation.value.gone.has(component),
-  state: stateOfComponent(component),
-})
 // Rules that are blind: culprit cannot tell whether their failure is present. ERROR rules first.
 export const blindRules = computed(() =>
   (robot.value?.rules ?? [])
@@ -161,19 +149,10 @@ export const blindRules = computed(() =>
     })
     .sort((a, b) => Number(b.criticality === 'ERROR') - Number(a.criticality === 'ERROR'))
 )
-// Without rules, REQUIRED components are watched nevertheless.
-export const isNothingWatched = computed(() => {
-  const rules = robot.value?.rules ?? []
-  return rules.length === 0 ? !robot.value?.components.some((c) => c.required) : blindRules.value.length === rules.length
-})
+export const presentIncidents = computed(() => state.value?.incidents ?? [])
 
-export const present = computed(() => {
-  const { failures } = presentSituation.value
-  return { failures, incidents: incidentsOf(failures, componentsOfRule, presentlyKnown) }
-})
-
-// Health of components: as sick as the most critical failure whose strategies touch them.
-export const health = computed(() => {
+// Of an earlier moment only what failed is known.
+const failedThen = computed(() => {
   const result = new Map<string, Health>()
   const rules = new Map(robot.value?.rules.map((r) => [r.name, r]) ?? [])
   for (const failure of situation.value.failures) {
@@ -185,3 +164,14 @@ export const health = computed(() => {
   }
   return result
 })
+// How each component looks now, and at the selected moment.
+export const presentLooks = computed(
+  () => new Map((robot.value?.components ?? []).map(({ name }, place): [string, Look] => [name, state.value?.components[place]?.look ?? 'UNTOLD']))
+)
+export const looks = computed((): Map<string, Look> => {
+  if (isLive.value) return presentLooks.value
+  return new Map((robot.value?.components ?? []).map(({ name }) => [name, failedThen.value.get(name) ?? 'UNTOLD']))
+})
+// "dead", "never seen"; empty: it works.
+export const conditionAt = (component: string): string =>
+  isLive.value ? (stateOfComponent(component)?.condition ?? '') : situation.value.gone.has(component) ? 'dead' : ''

@@ -99,7 +99,7 @@ function Progress() {
     <section aria-label="Progress" class="progress">
       <p role="status">
         <b>{now.study}</b> {kWords[now.state]}, {now.seconds.toFixed(0)} s
-        {now.done && `, ${now.done[0]} of ${now.done[1]}`}
+        {now.done && `, ${now.done[0].toLocaleString('en')} of ${now.done[1].toLocaleString('en')} simulated runs`}
       </p>
       {now.state === 'running' && (
         <div class="bar">
@@ -147,7 +147,7 @@ function Open() {
   )
 }
 
-// Somebody who has never seen a result.
+// For a reader who has never seen a result.
 function First() {
   if (opened.value || campaign.value) return null
   const start = () =>
@@ -160,7 +160,7 @@ function First() {
       </p>
       <p>
         <button type="button" class="primary" disabled={!hasToken} onClick={() => void start()}>
-          See a first one: SUNSET, one run of each configuration
+          See a first one: SUNSET, each configuration once (thousands of short simulated runs, about a minute)
         </button>
       </p>
     </section>

@@ -1,4 +1,4 @@
-// Begins with what somebody else has written: choose what goes wrong, say what it is called here, and look at it.
+// Begins with a template that others have written: choose a failure, name it, and look at it.
 import { useEffect, useState } from 'preact/hooks'
 import { call, type Refusal } from './api'
 import { namesOf } from './declarations'
@@ -41,7 +41,7 @@ function Fill({ template, change, close }: { template: Template; change: Props['
         {topics.map((name) => field(name, 'topic', 'topics'))}
       </div>
       <details>
-        <summary>What is in it</summary>
+        <summary>Text of the template</summary>
         <pre class="diff" tabIndex={0}>
           {template.text}
         </pre>

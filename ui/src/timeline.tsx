@@ -130,7 +130,7 @@ function Bars({ lane, row, begin, end }: { lane: Lane; row: number; begin: numbe
   )
 }
 
-// What is shown: the newest while nobody looks elsewhere, else what is around the moment.
+// The shown window: the newest data, unless the reader looks at another moment.
 function windowOf(view: View): { begin: number; end: number } {
   const newest = Math.max(view.newest.value, 1)
   const oldest = Math.min(view.oldest(), newest - kShortest)
@@ -202,7 +202,7 @@ function Moment({ view }: { view: View }) {
       >
         {isOver ? 'End' : '● Live'}
       </button>
-      <output class="moment">{isNewest.value ? `${isOver ? 'the end' : isOld.value ? 'the last told' : 'now'}, ${words}` : `at ${words}`}</output>
+      <output class="moment">{isNewest.value ? `${isOver ? 'the end' : isOld.value ? 'the last state' : 'now'}, ${words}` : `at ${words}`}</output>
     </>
   )
 }
@@ -364,11 +364,11 @@ export function EventLog({ view }: { view: View }) {
     return line
   }
   const upTo = view.moment.value ?? Infinity
-  const list = events.value.filter((e) => e.t <= upTo).slice(-200)
+  const list = events.value.filter((e) => e.text && e.t <= upTo).slice(-200)
   list.reverse()
   return (
-    <section class="log" aria-label="What happened">
-      <h2>What happened</h2>
+    <section class="log" aria-label="Event log">
+      <h2>Event log</h2>
       {list.length === 0 && <p class="muted">Nothing yet.</p>}
       <ol>{list.map(lineOf)}</ol>
     </section>

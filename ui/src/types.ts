@@ -1,4 +1,6 @@
 // The documents of the API (docs/web.md).
+import type { Incident } from './incidents'
+import type { Look } from './looks'
 
 export type Criticality = 'NON_CRITICAL' | 'WARNING' | 'ERROR'
 export type Health = 'OK' | Criticality | 'EXHAUSTED'
@@ -53,6 +55,8 @@ export interface RuleState {
 }
 export interface ComponentState {
   health: Health
+  look: Look
+  condition: string // in a word or two; empty: it works
   present: boolean
   alive: boolean | null
   process?: 'running' | 'stopped' | 'hung' | 'gone'
@@ -70,6 +74,8 @@ export interface TopicState {
 export interface State {
   t: number
   clock: number // on the wall, seconds since 1970
+  overview: { look: Look; headline: string; detail: string } // as culprit status says it
+  incidents: Incident[] // in the order of all views
   rules: RuleState[]
   components: ComponentState[]
   topics: TopicState[]
@@ -84,6 +90,7 @@ export interface ControlState {
   paused: boolean
   dry_run: boolean
   hears: boolean // the robot
+  held_back?: string | null // why nothing at all is begun now
   silences: { component?: string; rule?: string; until: number | null; author: string; reason: string }[]
   asked: { rule: string; strategy: string }[]
 }
@@ -132,4 +139,12 @@ export interface ManagerEvent {
   reason?: string
   remark?: string
   link?: string // to what it stands for
+  incident?: string // the id; these events have no text
+  headline?: string
+  consequences?: string[]
+  certain?: boolean
+  exhausted?: boolean
+  needs_person?: boolean
+  host?: string
+  age_ns?: number
 }

@@ -2,24 +2,23 @@
 import { useEffect } from 'preact/hooks'
 import { byTheClock } from './clock'
 import { freshness, nowByTheClock } from './freshness'
-import { level } from './history'
-import { conditionOf } from './incidents'
-import { kSigns, status, type Tone } from './status'
-import { health, present, presentlyKnown, robot } from './store'
+import { kLooks, rankOf, toneOf } from './looks'
+import { status } from './status'
+import { presentIncidents, presentLooks, robot, stateOfComponent } from './store'
 import { useDark } from './theme'
 
 function Tiles() {
-  const blamed = new Set(present.value.incidents.flatMap((i) => (i.isCertain ? i.components : [])))
-  const sick = (name: string) => health.value.get(name) ?? 'OK'
-  const components = [...(robot.value?.components ?? [])].sort((a, b) => level(sick(b.name)) - level(sick(a.name)))
+  const blamed = new Set(presentIncidents.value.flatMap((i) => (i.certain ? i.components : [])))
+  const lookOf = (name: string) => presentLooks.value.get(name) ?? 'UNTOLD'
+  const components = [...(robot.value?.components ?? [])].sort((a, b) => rankOf(lookOf(a.name)) - rankOf(lookOf(b.name)))
   return (
     <ul class="tiles">
       {components.map(({ name }) => (
-        <li class={`tile is-${sick(name)}${blamed.has(name) ? ' is-blamed' : ''}`}>
+        <li class={`tile is-${toneOf(lookOf(name))} look-${lookOf(name)}${blamed.has(name) ? ' is-blamed' : ''}`}>
           <b>
-            {blamed.has(name) ? '★' : kSigns[sick(name) as Tone]} {name}
+            {blamed.has(name) ? '★' : kLooks[lookOf(name)].sign} {name}
           </b>{' '}
-          <span>{conditionOf(presentlyKnown(name))}</span>
+          <span>{stateOfComponent(name)?.condition}</span>
         </li>
       ))}
     </ul>

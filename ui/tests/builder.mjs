@@ -108,7 +108,7 @@ export async function losesNothingToASlowServer() {
   })
 }
 
-// What the check says of an older text comes last: what it said of the newest stands.
+// The check's answer about an older text comes last; the answer about the newest text stays.
 export async function showsWhatIsSaidOfTheNewestText() {
   await session(['web', file('late.rules')], async (page) => {
     const text = page.locator('.cm-content')

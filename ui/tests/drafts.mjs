@@ -1,4 +1,4 @@
-// Nothing that was written is lost: not by a mistake in a field, a reload, a slip of the finger, or somebody else who
+// No text is lost: not by a mistake in a field, a reload, a wrong key, or another client that
 // writes the same file.
 import { cpSync, readFileSync, writeFileSync } from 'node:fs'
 import { dirname, join } from 'node:path'
@@ -30,7 +30,7 @@ async function enter(field, value) {
   await field.press('Tab')
 }
 
-// What is wrong stays in its field, with what is wrong about it; everything else goes on.
+// A mistake stays in its field, with its message; all other fields work on.
 async function mistake(page) {
   const form = formOf(page)
   const trigger = form.getByLabel('trigger').first()
@@ -140,7 +140,7 @@ async function aNewRule(page) {
 // Each kind of declaration by clicks alone: written, and read back as it was entered.
 async function declarations(page) {
   const form = formOf(page)
-  await form.getByText('What the rules are about').click()
+  await form.getByText('Declared components').click()
   const group = (name) => form.getByRole('group', { name, exact: true })
   const add = (title) => form.getByRole('button', { name: `+ ${title}`, exact: true }).click()
   const wrote = (line) => text(page).filter({ hasText: line }).waitFor()
@@ -175,14 +175,14 @@ async function declarations(page) {
   await picture(page, 'declarations')
 }
 
-// What others have written for what often goes wrong, with one's own names in it.
+// A template of others for a common failure, with the user's own names in it.
 async function template(page) {
   const form = formOf(page)
   await form.getByLabel('Begin with a template').selectOption({ label: 'A camera stalls: its node lives, its pictures stop' })
   const fill = form.getByRole('region', { name: 'Template' })
   await fill.getByLabel('node /front/camera_driver is here').fill('/camera')
   await fill.getByLabel('topic /front/image_raw is here').fill('/rgb')
-  await fill.getByText('What is in it').click()
+  await fill.getByText('Text of the template').click()
   await isAccessible(page)
   await picture(page, 'template')
   await fill.getByRole('button', { name: 'Add it' }).click()
@@ -206,7 +206,7 @@ async function pack(page) {
   await picture(page, 'pack')
   await fill.getByRole('button', { name: 'Add it' }).click()
   for (const line of [/INCLUDE "packs\/lidars.rules"/, /COMPONENT sick\s+NODE \/sick/, /USE sick_scan_xd\(sick, \/sick\/scan, 15\)/]) await text(page).filter({ hasText: line }).waitFor()
-  await page.getByText("no strategy of rule 'sick_gone' can ever run").waitFor() // nobody has said yet who starts it
+  await page.getByText("no strategy of rule 'sick_gone' can ever run").waitFor() // no owner is named yet
   await form.getByText('From other files and templates: packs/lidars.rules, sick_scan_xd').waitFor()
   await page.getByRole('status', { name: 'Notice' }).getByRole('button', { name: 'Undo' }).click()
   await text(page).filter({ hasNotText: 'USE sick_scan_xd' }).waitFor()

@@ -113,7 +113,7 @@ export async function writesEveryRow() {
         if (value !== true) await enter(group(name), member, value)
       }
     }
-    await form.getByText('What the rules are about').click()
+    await form.getByText('Declared components').click()
 
     await add('Robot')
     await say('Robot my_robot', { name: 'rover' })
@@ -245,7 +245,7 @@ export async function writesEveryRow() {
     await enter(form, 'name', 'others')
     await adaptations(strategy('others'), kAlone)
 
-    // What comes from elsewhere: a pack, a template of one's own with a rule and a use in it, and its use.
+    // Parts from elsewhere: a pack, a template of the user's own with a rule and a use in it, and its use.
     await form.getByText('From other files and templates').click()
     await add('Include')
     await say('Include packs/cameras.rules', { file: 'packs/driver.rules' })
@@ -286,7 +286,7 @@ export async function writesEveryRow() {
     expect(withoutLayout(saved) === kWanted.trim(), `this was saved:\n${saved}`)
     await page.reload()
     await form.getByRole('group', { name: 'Strategy others' }).waitFor()
-    await form.getByText('What the rules are about').click()
+    await form.getByText('Declared components').click()
     await form.getByText('From other files and templates').click()
     const after = await fields()
     expect(JSON.stringify(after) === JSON.stringify(before), `opened again it says\n${after}\nand was\n${before}`)

@@ -23,9 +23,9 @@ export const kLargeRobot = {
 }
 
 export const largeState = (t, clock = Date.now() / 1000) => ({
-  t, clock,
+  t, clock, incidents: [], overview: { look: 'OK', headline: 'all is well', detail: 'no failure is seen by 500 rules' },
   rules: names.map(() => ({ phase: 'quiet', trigger: false })),
-  components: names.map((_, i) => ({ health: i === Math.floor(t * 30) % kNodes ? 'ERROR' : 'OK', present: true, alive: true })),
+  components: names.map((_, i) => ({ health: i === Math.floor(t * 30) % kNodes ? 'ERROR' : 'OK', look: i === Math.floor(t * 30) % kNodes ? 'ERROR' : 'OK', condition: '', present: true, alive: true })),
   topics: names.map((_, i) => ({ rate: 10 + ((t * 30 + i) % 7), age: 0.1 })),
   inputs: [], beliefs: names.map(() => [5, 5]), priors: names.map(() => [5, 5]), couplings: [], latencies: [],
 })

@@ -14,7 +14,7 @@ await suite(() =>
     await page.getByRole('button', { name: 'Inject fault' }).click()
     // It may be well again before one has looked: what happened stays. On a machine that is too busy for the robot,
     // pictures are late and more happens; a dead camera is helped by nothing but a new process.
-    const log = page.getByRole('region', { name: 'What happened' })
+    const log = page.getByRole('region', { name: 'Event log' })
     await log.getByText(/^RGBDead resolved by rgb_redeploy/).first().waitFor()
     await well.waitFor()
 
@@ -40,11 +40,11 @@ await suite(() =>
 
     await page.getByRole('button', { name: 'Pause' }).click()
     await page.getByText('Paused: nothing is changed').waitFor()
-    // Also who is paused is told whose fault it is, and that nothing is done.
+    // While paused, the page still names the root cause, and says that nothing is done.
     await page.getByRole('button', { name: 'Inject fault' }).click()
     const bar = page.getByRole('region', { name: 'Status' })
     await bar.getByText('camera is dead').waitFor()
-    await bar.getByText('paused: nothing is done').waitFor()
+    await bar.getByText('nothing is done: culprit is paused').waitFor()
     await explanation.getByRole('heading', { name: 'camera is dead' }).waitFor()
     await picture(page, 'paused')
     await page.getByRole('button', { name: 'Resume' }).click()

@@ -3,7 +3,7 @@
 //
 //     node operator.mjs <culprit> <node_modules> <folder>, with SUNSET's camera running in the DDS domain
 import { readFileSync, writeFileSync } from 'node:fs'
-import { expect, file, isAccessible, picture, session, suite } from './session.mjs'
+import { culprit, expect, expectSoon, file, isAccessible, picture, session, suite } from './session.mjs'
 
 const kRules = `ROBOT one_camera
 COMPONENT camera NODE /managed_subsystem/camera LAUNCH "sunset-node camera"
@@ -21,17 +21,40 @@ const kArguments = ['run', path, '--web', '--approve', '--settle', '2', '--healt
 // The process that culprit says the camera to be, newest last.
 const cameras = (said) => [...said.matchAll(/camera is there \(process (\d+)/g)].map((m) => Number(m[1]))
 
+// The page decides nothing: at the same moment it shows what `culprit status --json` says, and no other incident.
+async function saysAsTheTerminal(page, moment) {
+  const region = (name) => page.getByRole('region', { name })
+  let seen = ''
+  await expectSoon(async () => {
+    const output = await culprit(['status', '--json']).catch((error) => error) // it exits with 1 where something is wrong
+    const { state } = JSON.parse(output.stdout).culprits[0]
+    const shown = {
+      headline: await region('Status').locator('.cause b').innerText(),
+      incidents: await region('Explanation').locator('[data-incident]').evaluateAll((all) => all.map((each) => each.dataset.incident)),
+      looks: await region('Components').locator('ul button').evaluateAll((all) => all.map((each) => each.className.replace('look-', '')).sort()),
+    }
+    const told = { headline: (state.incidents[0] ?? state.overview).headline, incidents: state.incidents.map((each) => each.id), looks: state.components.map((each) => each.look).sort() }
+    seen = JSON.stringify({ shown, told })
+    return shown.headline.toLowerCase().startsWith(told.headline.toLowerCase()) && shown.incidents.join() === told.incidents.join() && shown.looks.join() === told.looks.join()
+  }, `the page and the terminal do not say the same (${moment})`).catch((error) => {
+    throw new Error(`${error.message}: ${seen}`)
+  })
+}
+
 async function approve(page, program) {
-  const log = page.getByRole('region', { name: 'What happened' })
+  const log = page.getByRole('region', { name: 'Event log' })
   await log.getByText('camera is there').first().waitFor()
+  await saysAsTheTerminal(page, 'all is well')
   process.kill(cameras(program.said()).at(-1), 'SIGKILL')
   const question = page.getByRole('alert', { name: 'Approve camera_redeploy?' })
   await question.getByText('redeploy camera').waitFor()
+  await saysAsTheTerminal(page, 'it waits for approval')
   await isAccessible(page)
   await picture(page, 'approval')
   await question.getByRole('button', { name: 'Approve' }).click()
   await log.getByText('CameraGone resolved by camera_redeploy').waitFor()
   await question.waitFor({ state: 'detached' })
+  await saysAsTheTerminal(page, 'it is healed')
 }
 
 async function reload(page) {
@@ -47,7 +70,7 @@ async function reload(page) {
   await dialog.getByRole('button', { name: 'Save and reload' }).click()
   await page.getByText('Reloading the rules: done').waitFor()
   await page.getByRole('link', { name: 'Robot' }).click()
-  const log = page.getByRole('region', { name: 'What happened' })
+  const log = page.getByRole('region', { name: 'Event log' })
   await log.getByText(`${path} is reloaded, with 1 rules`).waitFor()
   expect(readFileSync(path, 'utf8').includes('camera_redeploy 70 10'), 'the file was not saved')
   await page.getByRole('region', { name: 'Explanation' }).getByText('All is well').waitFor()
@@ -70,7 +93,7 @@ async function beliefs(page) {
   await row.getByText('nothing yet').waitFor()
 }
 
-// What went wrong is told from the journal: also by the next culprit, at the same address.
+// The incidents come from the journal: also from the next culprit, at the same address.
 async function lookBack(page, program) {
   await page.getByRole('link', { name: 'Incidents' }).click()
   const row = page.getByRole('row', { name: /camera.*camera_redeploy/ })
@@ -85,10 +108,10 @@ async function lookBack(page, program) {
   await page.reload()
   expect(new URL(page.url()).hash === address, 'the link is another')
   await incident.getByText('camera is lost').waitFor()
-  await incident.getByText('What helped: camera_redeploy').waitFor()
+  await incident.getByText('Outcome: camera_redeploy').waitFor()
 }
 
-// One file for somebody who has neither the robot nor culprit, made by a process of its own from journal and recording.
+// One file for readers without the robot or culprit, made by a process of its own from journal and recording.
 async function send(page) {
   const incident = page.getByRole('region', { name: 'Incident', exact: true })
   const saving = page.waitForEvent('download')
@@ -125,7 +148,7 @@ async function hindsight(page) {
   await picture(page, 'hindsight')
 }
 
-// The node is examined, and a component tells what it uses, by what runs.
+// The doctor examines the node, and a component's panel shows its usage.
 async function examine(page) {
   await page.getByRole('link', { name: 'Doctor' }).click()
   await page.getByLabel('look for').selectOption('4 s')
@@ -143,7 +166,7 @@ const kEvil = '<img src=x onerror="window.wasHarmed = true">'
 const kEvilStream = {
   robot: { robot: kEvil, cycle_s: 0.2, components: [{ name: kEvil, can_start: false }], topics: [kEvil], inputs: [], rules: [] },
   graph: { nodes: [{ node: kEvil, present: true, component: kEvil }], edges: [[kEvil, `${kEvil}2`, kEvil]] },
-  state: { t: 1, clock: 1, rules: [], components: [{ health: 'OK', present: true, alive: true, remark: kEvil }], topics: [{ rate: 1, age: 0 }], inputs: [], beliefs: [], priors: [], couplings: [], latencies: [] },
+  state: { t: 1, clock: 1, rules: [], incidents: [], overview: { look: 'OK', headline: kEvil, detail: kEvil }, components: [{ health: 'OK', look: 'DEAD', condition: kEvil, present: true, alive: true, remark: kEvil }], topics: [{ rate: 1, age: 0 }], inputs: [], beliefs: [], priors: [], couplings: [], latencies: [] },
   event: { t: 1, type: 'trouble', label: kEvil, severity: 'warning', tone: kEvil, text: kEvil },
 }
 
@@ -155,7 +178,7 @@ async function isHarmless(page) {
   await page.getByRole('heading', { name: kEvil }).waitFor()
   const component = page.getByRole('button', { name: kEvil }).first()
   await component.click()
-  await page.getByRole('region', { name: 'What happened' }).getByText(kEvil).first().waitFor()
+  await page.getByRole('region', { name: 'Event log' }).getByText(kEvil).first().waitFor()
   expect((await page.locator('img').count()) === 0, 'a name became an element')
   expect(!(await page.evaluate('window.wasHarmed')), 'a name was run')
 }

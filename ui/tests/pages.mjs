@@ -1,5 +1,5 @@
 // Every page while something is wrong: the status bar says so on each, each can be used by the keyboard alone and with a
-// screen reader, and looks as in the pictures beside this. What each page is for is tried on the stub.
+// screen reader, and looks as in the pictures beside this. Each page's purpose is tested on the stub.
 import { readFileSync } from 'node:fs'
 import { kLargeRobot, largeState } from './large_robot.mjs'
 import { kSchemes, kSizes, pictures } from './pictures.mjs'
@@ -7,8 +7,8 @@ import { kHealed, kIncidentEvents, kIncidents, kNow, kStates, kToday, play, stat
 import { expect, expectSoon, file, isAccessible, isUsableByKeyboard, stubbed, suite } from './session.mjs'
 
 const kFindings = [
-  { code: 'D001', severity: 'error', who: '/scan: /lidar → /slam', seen: 'reliability: offered is best effort, requested is reliable', matters: '/slam hears nothing of /lidar', remedy: 'let /lidar offer reliable, or /slam request best effort' },
-  { code: 'D020', severity: 'warning', who: 'battery', seen: 'its diagnostic status is STALE', matters: 'who reports it has stopped reporting', remedy: 'look at its values: ros2 topic echo /diagnostics' },
+  { code: 'D001', severity: 'error', who: '/scan: /lidar → /slam', seen: 'reliability: offered is best effort, requested is reliable', matters: '/slam receives nothing from /lidar', remedy: 'let /lidar offer reliable, or /slam request best effort' },
+  { code: 'D020', severity: 'warning', who: 'battery', seen: 'its diagnostic status is STALE', matters: 'its node has stopped reporting', remedy: 'look at its values: ros2 topic echo /diagnostics' },
 ]
 let findings = kFindings
 let rules = [] // in the form
@@ -16,7 +16,7 @@ let pageTrouble = '' // why a page to send cannot be made
 const kCalls = {
   'get /api/stream': () => [200, {}],
   'post /api/orders': () => [202, { number: 1, text: 'kept' }],
-  'get /api/incidents': () => [200, { journal: '/var/lib/culprit/rover.journal', oldest: kIncidents[0].clock - 3600, incidents: kIncidents }],
+  'get /api/incidents': () => [200, { journal: '/var/lib/culprit/rover.journal', oldest: kIncidents.at(-1).clock - 3600, incidents: kIncidents }],
   'get /api/incidents/events': ({ first }) => [200, { events: first === '10' ? kIncidentEvents : [] }],
   'get /api/incidents/page': ({ id }) => (pageTrouble ? [409, { error: pageTrouble }] : [200, { what: `page of ${id}` }]),
   'get /api/incidents/recording': ({ name }) => [200, { name }],
@@ -74,7 +74,7 @@ async function everyPage(page, server, album) {
   expect((await page.locator('link[rel="icon"]').getAttribute('href')).startsWith('data:image/svg'), 'the icon does not follow')
 }
 
-// Whoever asks about a component is told all that is known of it.
+// A component's panel shows all that is known of it.
 async function tellsOfAComponent(page, server, album) {
   await become(page, server, kStates.ill, 'robot')
   await page.getByRole('region', { name: 'Components' }).getByRole('button', { name: 'camera' }).click()
@@ -102,7 +102,7 @@ async function keepsItsPlaces(page, server) {
     return new Map(await page.evaluate(() => JSON.parse(localStorage.getItem('culprit-places rover'))))
   }
   await page.evaluate(() => localStorage.clear())
-  await page.getByRole('button', { name: 'Lay out anew' }).click()
+  await page.getByRole('button', { name: 'New layout' }).click()
   await all.check()
   const before = await shown(7)
   await all.uncheck()
@@ -123,7 +123,7 @@ async function keepsItsPlaces(page, server) {
   await all.check()
   const own = await shown(7)
   expect(Math.min(...[...own.values()].map(({ x }) => x)) < Math.min(...[...after.values()].map(({ x }) => x)) - 400, 'where a node stood is forgotten')
-  await page.getByRole('button', { name: 'Lay out anew' }).click()
+  await page.getByRole('button', { name: 'New layout' }).click()
   await page.waitForFunction((was) => localStorage.getItem('culprit-places rover') !== was, JSON.stringify([...own]))
   await page.getByRole('status', { name: 'Notice' }).getByRole('button', { name: 'Undo' }).click()
   await page.waitForFunction((was) => localStorage.getItem('culprit-places rover') === was, JSON.stringify([...own]))
@@ -156,7 +156,7 @@ async function hangsOnTheWall(page, server, album) {
   await page.getByRole('navigation').waitFor()
 }
 
-// A list and a timeline of a day; one of it with what was decided; a link that lasts; a file for somebody without culprit.
+// A list and a timeline of a day; one of them with its decisions; a link that lasts; a file for readers without culprit.
 async function tellsIncidents(page, server, album) {
   await become(page, server, kHealed, 'incidents')
   const row = page.getByRole('row', { name: /14:03:22.*camera.*FusionSilent, SegmentationBad.*3\.0 s.*rgb_redeploy/ })
@@ -191,29 +191,29 @@ async function tellsIncidents(page, server, album) {
   const send = incident.getByRole('button', { name: 'Save as a page to send …' })
   await send.click()
   const saved = await saving
-  expect(saved.suggestedFilename() === `incident-${kIncidents.at(-1).id}.html`, 'the file to send has another name')
-  expect(readFileSync(await saved.path(), 'utf8').includes(`page of ${kIncidents.at(-1).id}`), 'another file is sent')
+  expect(saved.suggestedFilename() === `incident-${kIncidents[0].id}.html`, 'the file to send has another name')
+  expect(readFileSync(await saved.path(), 'utf8').includes(`page of ${kIncidents[0].id}`), 'another file is sent')
   pageTrouble = 'another page is being made; ask again in a moment'
   await send.click()
   await page.getByRole('alert').getByText(pageTrouble).waitFor()
   pageTrouble = ''
   // One that is older than what the list shows is looked for where it must be.
-  const longAgo = kIncidents[0].clock - 10 * 86_400
+  const longAgo = kIncidents.at(-1).clock - 10 * 86_400
   await page.evaluate((id) => (location.hash = `incidents/${id}`), Math.round(longAgo * 1000).toString(36))
   await expectSoon(() => server.received.some(([call, query]) => call === 'get /api/incidents' && Number(query.since) < longAgo), 'the journal was not asked for that time')
   await page.getByText('There is no incident of this address').waitFor()
-  // What the black box has of one.
-  await page.evaluate((id) => (location.hash = `incidents/${id}`), kIncidents[0].id)
+  // The black box's recordings of one.
+  await page.evaluate((id) => (location.hash = `incidents/${id}`), kIncidents.at(-1).id)
   await incident.getByText('/var/lib/culprit/recordings/rover_').waitFor()
   const keeping = page.waitForEvent('download')
   await incident.getByRole('button', { name: "Save the robot's topics (MCAP, 1.2 MB)" }).click()
   const recording = await keeping
-  expect(recording.suggestedFilename() === kIncidents[0].recordings[0].name, 'the recording has another name')
-  expect(readFileSync(await recording.path(), 'utf8').includes(kIncidents[0].recordings[0].name), 'it is another recording')
+  expect(recording.suggestedFilename() === kIncidents.at(-1).recordings[0].name, 'the recording has another name')
+  expect(readFileSync(await recording.path(), 'utf8').includes(kIncidents.at(-1).recordings[0].name), 'it is another recording')
   await page.evaluate(() => (location.hash = 'incidents/'))
 }
 
-// What is wrong without a rule; and what is new since the last time.
+// Findings without a rule; and which of them are new since the last time.
 async function examines(page, server, album) {
   await become(page, server, kStates.well, 'doctor')
   await page.getByRole('button', { name: 'Examine' }).click()
@@ -233,7 +233,7 @@ async function examines(page, server, album) {
   await report.getByRole('article').filter({ hasText: 'motor' }).getByText('new').waitFor()
 }
 
-// What a condition looks at is drawn with its threshold, which can be dragged, or moved by keys.
+// The input of a condition is drawn with its threshold, which can be dragged, or moved by keys.
 async function dragsAThreshold(page, server, album) {
   rules = [
     { statement: 'RULE', name: 'RGBDead' },
@@ -271,7 +271,7 @@ async function dragsAThreshold(page, server, album) {
   rules = []
 }
 
-// What one begins to imagine with is the robot as it is: with its dead camera.
+// The simulator begins with the robot's present state: with its dead camera.
 async function imaginesTheRobotAsItIs(page, server) {
   await become(page, server, kStates.ill, 'simulator')
   await page.getByRole('button', { name: 'As the robot is now' }).click()
@@ -289,7 +289,7 @@ async function theKeyPauses(page, server) {
   await page.getByRole('status', { name: 'Notice' }).getByText('Pausing: kept').waitFor()
   server.tell('control', { paused: true, dry_run: false, hears: true, silences: [], asked: [] })
   await page.getByRole('button', { name: 'Resume' }).waitFor()
-  await page.keyboard.press('Alt+KeyP') // whoever is in a hurry presses twice
+  await page.keyboard.press('Alt+KeyP') // a hurried user presses twice
   const orders = server.received.filter(([call]) => call === 'post /api/orders').map(([, body]) => body.order)
   expect(orders.join() === 'pause', `these were ordered: ${orders}`)
 }
@@ -301,7 +301,7 @@ async function staysUsableWhenLarge(page, server, album) {
   server.tell('state', largeState(2, kToday / 1000))
   await page.evaluate(() => (location.hash = 'robot'))
   await page.getByText('and 440 more').waitFor()
-  await page.getByRole('button', { name: 'Lay out anew' }).click()
+  await page.getByRole('button', { name: 'New layout' }).click()
   await photograph(page, album, 'large')
   for (let i = 0; i < 7; ++i) await page.getByRole('button', { name: 'Larger' }).click()
   expect(await page.locator('.minimap').isVisible(), 'there is no map of what is not on the screen')

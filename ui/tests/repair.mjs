@@ -16,7 +16,7 @@ export async function mendsABrokenFile() {
   writeFileSync(path, kRules)
 
   await session(['web', path], async (page) => {
-    const found = page.getByRole('list', { name: 'What the check says' })
+    const found = page.getByRole('list', { name: 'Findings of the check' })
     await found.getByText('line 7').waitFor()
     await found.getByText('line 8').waitFor()
     await picture(page, 'broken')

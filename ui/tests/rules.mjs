@@ -1,4 +1,4 @@
-// Whoever writes rules in the browser, with and without knowing the language.
+// Writing rules in the browser, with and without knowing the language.
 import { buildsThePapersRule, losesNothingToASlowServer, showsWhatIsSaidOfTheNewestText } from './builder.mjs'
 import { losesNothingThatWasWritten } from './drafts.mjs'
 import { writesEveryRow } from './grammar.mjs'

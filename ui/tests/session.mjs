@@ -92,7 +92,7 @@ async function newPage() {
   return context.newPage()
 }
 
-// All sessions of a test. Whatever a page complains of is a failure.
+// All sessions of a test. Any error that a page logs is a failure.
 export async function suite(sessions) {
   try {
     await sessions()
@@ -115,7 +115,7 @@ export async function browse(server, steps, now = null) {
     page.setDefaultTimeout(kPatience)
     page.on('pageerror', (error) => complaints.push(String(error)))
     page.on('console', (message) => {
-      // What the server refuses, and that it is gone, is told to the person by the page itself.
+      // The page itself reports refusals of the server, and its absence.
       const isRefusal = /responded with a status of 4|ERR_INCOMPLETE_CHUNKED|ERR_CONNECTION_(REFUSED|RESET)|ERR_EMPTY_RESPONSE/.test(message.text())
       if (message.type() === 'error' && !isRefusal) complaints.push(message.text())
     })
@@ -133,12 +133,12 @@ export async function browse(server, steps, now = null) {
   }
 }
 
-// Nothing that axe knows of stands in anybody's way, in either colour scheme.
+// axe finds no barrier in either colour scheme.
 export async function isAccessible(page) {
   for (const colorScheme of ['light', 'dark']) {
     await page.emulateMedia({ colorScheme })
     if (!(await page.evaluate('!!window.axe'))) await page.evaluate(axe)
-    // What the second scheme changes are the colours.
+    // The second scheme only changes the colours.
     const options = colorScheme === 'light' ? {} : { runOnly: ['color-contrast'] }
     const { violations } = await page.evaluate((o) => window.axe.run(document, o), options)
     const words = violations.map((v) => `${v.id}: ${v.nodes.map((n) => `${n.html} ${n.failureSummary}`).join('; ')}`)
@@ -165,10 +165,10 @@ export async function isUsableByKeyboard(page) {
     addEventListener('focusin', window.arrive)
     return window.unreached.size
   })
-  // Keys are taken in their order; nobody waits for each.
+  // Keys are processed in their order, without waiting for each.
   for (let i = 0; i < 3 && (await page.evaluate('window.unreached.size')) > 0; ++i)
     await Promise.all(Array.from({ length: count + 2 }, () => page.keyboard.press('Tab')))
-  // What is told of an order leaves by itself.
+  // The message about an order disappears by itself.
   const left = await page.evaluate('removeEventListener("focusin", window.arrive), [...window.unreached].filter((e) => e.isConnected).map((e) => e.outerHTML)')
   expect(left.length === 0, `cannot be reached by keyboard:\n${left.join('\n')}`)
   const unseen = await page.evaluate('window.unseen')

@@ -141,7 +141,7 @@ async function aDayOfJournal(page) {
   tell('  from the click to all of it, median of 5', quantile(clicked, 0.5), 1000)
 }
 
-// A robot of 500 nodes that tells its state and an event 30 times a second.
+// A robot of 500 nodes with a state and an event 30 times a second.
 async function frames(page, server) {
   for (const [kind, document] of Object.entries(kLargeRobot)) server.tell(kind, document)
   let step = 0

@@ -9,7 +9,7 @@ const kCalls = {
   'post /api/orders': () => [202, { number: 1, text: 'kept' }],
 }
 
-// What of the status bar is not all on the screen, or is under something else, or is cut off; and where Pause is.
+// The parts of the status bar that are not wholly on the screen, are covered, or are cut off; and the place of Pause.
 function look() {
   const bar = document.querySelector('.status-bar')
   const parts = {
@@ -25,7 +25,7 @@ function look() {
     const box = element.getBoundingClientRect()
     const isWithin = box.width > 0 && box.top >= 0 && box.left >= 0 && box.bottom <= innerHeight && box.right <= innerWidth
     const top = document.elementFromPoint(box.left + box.width / 2, box.top + box.height / 2)
-    // Of a sentence as much as of a word: what is cut off is not read.
+    // A cut sentence is as unreadable as a cut word.
     const isCut = element.scrollWidth > element.clientWidth + 1 || element.scrollHeight > element.clientHeight + 1
     const isSeen = isWithin && !isCut && (element === top || element.contains(top))
     return isSeen ? [] : [`${what} is not seen: ${JSON.stringify({ box, isCut, top: top?.outerHTML })}`]
@@ -55,7 +55,7 @@ async function looksRight(page, at, size, { cause, level, mode, also = [] }) {
 }
 
 const kAll = { ...kStates, forgotten: kForgotten }
-const kDisconnected = { cause: 'Disconnected since 14:03:34', level: 'Old', mode: 'was: Acting', also: ['What you see is old', 'It was: camera is dead'] }
+const kDisconnected = { cause: 'Disconnected since 14:03:34', level: 'Old', mode: 'was: Acting', also: ['This view is outdated', 'It was: camera is dead'] }
 
 async function inEverySize(page, steps) {
   for (const [size, viewport] of Object.entries(kSizes)) {
@@ -91,11 +91,11 @@ async function everyState(page, server) {
     play(server, each)
     await looksRight(page, name, 'desktop', each)
     const explanation = page.getByRole('region', { name: 'Explanation' })
-    await explanation.getByText('SegmentationBad is blind').waitFor()
+    await explanation.getByRole('heading', { name: 'SegmentationBad is blind' }).waitFor()
     expect((await explanation.getByText('All is well').count()) === 0, `it says that all is well (${name})`)
     await isAccessible(page)
   }
-  // The server is gone: the page says so at once, and keeps its colours from nobody.
+  // The server is gone: the page says so at once, and turns grey for all readers.
   server.anew()
   play(server, kStates.ill)
   await looksRight(page, 'before the server goes', 'desktop', kStates.ill)
@@ -106,6 +106,7 @@ async function everyState(page, server) {
   })
   expect((await page.title()).startsWith('⚠ Disconnected'), `the title is ${await page.title()}`)
   expect((await page.locator('main').evaluate((e) => getComputedStyle(e).filter)).includes('grayscale'), 'what is old is in colour')
+  expect(await page.getByRole('region', { name: 'Status' }).getByRole('button', { name: 'Pause' }).isDisabled(), 'one can press Pause while nobody would be told')
   await isAccessible(page)
   await album.end()
 }
@@ -117,7 +118,7 @@ async function isNeverOldInSecret(page, server) {
   play(server, kStates.well)
   server.tell('state', soon())
   await bar.getByText('All is well').waitFor()
-  await bar.getByText('Nothing new from culprit since').waitFor() // the server lives, its manager tells nothing
+  await bar.getByText('Nothing new from culprit since').waitFor() // the server runs, its manager reports nothing
   server.tell('state', soon())
   await bar.getByText('All is well').waitFor()
   server.fallSilent()

@@ -1,5 +1,5 @@
-// A culprit that plays what the page shall show: the calls of the API that the page needs, and a stream that tells
-// what a test wants it to tell. Beside the tests with the real program, it reaches the states that a robot is seldom in.
+// A simulated culprit for the page: the calls of the API that the page needs, and a stream of messages
+// that a test chooses. Beside the tests with the real program, it reaches the states that a robot is seldom in.
 import { createServer } from 'node:http'
 import { bundle } from '../bundle.mjs'
 
@@ -7,7 +7,7 @@ import { bundle } from '../bundle.mjs'
 export async function stub(modules, calls = {}) {
   const assets = new Map(bundle(modules).map((a) => [a.path, a]))
   const readers = new Set()
-  const said = [] // what a reader who comes later is told
+  const said = [] // messages for late readers
   const received = []
   let isSilent = false
   const json = (response, status, body) => {
@@ -54,19 +54,19 @@ export async function stub(modules, calls = {}) {
       said.push({ kind, data })
       write(block({ kind, data }))
     },
-    // Whoever comes later is told no more than the last `count` events.
+    // A late reader receives at most the last `count` events.
     keepEvents(count) {
       const events = said.filter((each) => each.kind === 'event')
       const old = new Set(events.slice(0, events.length - count))
       said.splice(0, said.length, ...said.filter((each) => !old.has(each)))
     },
-    // Whoever reads is told that what was before counts no more, as by a culprit that has just begun.
+    // Readers receive the message that earlier data is void, as from a culprit that has just begun.
     anew() {
       isSilent = false
       said.length = 0
       write(block({ kind: 'hello', data: { resumed: false } }))
     },
-    // Connections end, and nothing is known any more; whoever comes again is told what is told from now on.
+    // Connections end, and all data is dropped; readers that reconnect receive only later messages.
     forget() {
       isSilent = false
       said.length = 0

@@ -62,7 +62,7 @@ async function run(page) {
   await timeline.getByText('faults', { exact: true }).waitFor()
   expect((await timeline.locator('rect').count()) > 0, 'no failure is on the timeline')
   expect((await timeline.getByText('▼').count()) > 0, 'no strategy is on the timeline')
-  const log = single.getByRole('region', { name: 'What happened' })
+  const log = single.getByRole('region', { name: 'Event log' })
   const resolved = log.locator('li', { hasText: / resolved/ })
   expect((await resolved.count()) > 0, 'no outcome is told')
   await log.locator('li', { hasText: 'is held responsible' }).last().getByRole('button').click()
@@ -88,14 +88,14 @@ async function result(page) {
   await page.getByText('does not say which campaign').waitFor() // of the one before, which stays
 }
 
-// A file that culprit study wrote: its runs can be played, too, of a manager that tells nothing as well.
+// A file that culprit study wrote: its runs can be played, too, also those of a manager that reports no events.
 async function opened(page) {
   await culprit(['study', 'suave', '--managers', 'bt,culprit', '--runs', '2', '--json', '-o', file('suave.json')])
   await page.getByLabel('or open a result').setInputFiles(file('suave.json'))
   const single = page.getByRole('region', { name: 'Single run' })
   await single.getByRole('button', { name: 'Play it again' }).click()
   await single.getByText('This manager tells nothing').waitFor()
-  const log = single.getByRole('region', { name: 'What happened' })
+  const log = single.getByRole('region', { name: 'Event log' })
   await log.getByText('it inspects').waitFor()
   await single.getByLabel('who managed').selectOption('culprit')
   await single.getByRole('button', { name: 'Play it again' }).click()

@@ -53,7 +53,7 @@ export async function writesThreeRules() {
       await within.getByLabel(label, { exact: true }).last().selectOption(value)
     }
     const strategy = (name) => form.getByRole('group', { name: `Strategy ${name}`, exact: true })
-    await form.getByText('What the rules are about').click()
+    await form.getByText('Declared components').click()
     ++actions
     for (const [name, owner, how] of [['camera', 'culprit, by a command', 'ros2 run my_cameras camera'], ['lidar', 'systemd', 'lidar.service'], ['fusion']]) {
       await press('+ Component')

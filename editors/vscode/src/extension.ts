@@ -71,7 +71,7 @@ async function restart(): Promise<void> {
 
 const kLanguage = "culprit-rules";
 const kMostLines = 1000; // of comments in front
-const kStatements = /^\s*(ROBOT|CYCLE|COMPONENT|DEPENDENCY|IGNORE|INTERLOCK|CONST|SIGNAL|RULE|INCLUDE|TEMPLATE|USE)\b/;
+const kStatements = /^\s*(ROBOT|CYCLE|COMPONENT|DEPENDENCY|IGNORE|INTERLOCK|ABORT|DRILL|CONST|SIGNAL|RULE|INCLUDE|TEMPLATE|USE)\b/;
 
 // Its first line that is neither empty nor a comment is one of the language.
 function isOurs(document: TextDocument): boolean {

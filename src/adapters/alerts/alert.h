@@ -1,4 +1,5 @@
-// What a person is told of one fault: once when it is there, and once when it is over.
+// The message about one fault, for a person: sent once when the fault is there, and once when it is
+// over.
 #pragma once
 
 #include <cstdint>

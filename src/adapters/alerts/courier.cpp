@@ -23,7 +23,7 @@ constexpr Duration kAfterThat = 500ms;
 
 Outbox::Limits limits_for(const Destination& destination) {
   Outbox::Limits limits;
-  // What is not sent again Alertmanager takes for over after five minutes (resolve_timeout).
+  // Alertmanager resolves an alert that is not repeated within five minutes (resolve_timeout).
   if (destination.kind == Destination::Kind::kAlertmanager) limits.repeat = 1min;
   return limits;
 }
@@ -102,7 +102,7 @@ class Courier::Route : public std::enable_shared_from_this<Route> {
     something_came_.wait_for(lock, left);
   }
 
-  // Gives what is to be told of it.
+  // Returns the messages about it.
   std::vector<std::string> note(const Sent& sent) CULPRIT_REQUIRES(mutex_) {
     using How = Sent::How;
     std::vector<std::string> news;
@@ -123,7 +123,7 @@ class Courier::Route : public std::enable_shared_from_this<Route> {
     return news;
   }
 
-  // Without the lock: whoever hears it may take its time.
+  // Without the lock: the callback may take its time.
   void say(const std::vector<std::string>& news, MutexLock& lock) CULPRIT_NOT_ANALYZED {
     lock.unlock();
     for (const std::string& each : news) tell_(each);

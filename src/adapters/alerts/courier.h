@@ -1,5 +1,5 @@
-// Delivers alerts to all destinations, on a thread for each, so that one that hangs delays no other, and
-// nobody delays whoever posts.
+// Delivers alerts to all destinations, on a thread for each, so that one that hangs delays no
+// other, and none delays the caller.
 #pragma once
 
 #include <functional>
@@ -13,10 +13,10 @@ namespace culprit::alerts {
 
 class Courier {
  public:
-  // `tell` is told, from any thread, what could not be sent and when it can be again; nothing of it is
-  // secret. A name server that hangs may delay it beyond the end of the courier.
+  // `tell` receives, from any thread, which alerts could not be sent and when they can be again;
+  // nothing of it is secret. A name server that hangs may delay it beyond the end of the courier.
   Courier(std::vector<Destination> destinations, std::function<void(const std::string&)> tell);
-  // What can be sent in a moment is sent before it ends; the rest is told.
+  // Sends the alerts that can be sent in a moment before it ends, and logs how many are lost.
   ~Courier();
 
   // Does not wait for anybody. From any thread.

@@ -57,7 +57,7 @@ TEST(Courier, DeliversToEachDestinationWhatItIsFor) {
   EXPECT_EQ(told.text(), "");
 }
 
-// One that hangs holds up neither the other nor who posts, and what is lost is told.
+// A destination that hangs holds up neither the other nor the caller, and lost alerts are reported.
 TEST(Courier, IsHeldUpByNobody) {
   const test::TestWebhook well;
   char request[4096];

@@ -1,7 +1,8 @@
 #include "alerts/outbox.h"
 
 #include <algorithm>
-#include <cassert>
+
+#include "base/invariant.h"
 
 namespace culprit::alerts {
 
@@ -72,7 +73,7 @@ Time Outbox::due() const {
 }
 
 void Outbox::sent(Time now) {
-  assert(under_way_);
+  CULPRIT_ASSERT(under_way_);
   Alert alert = *std::exchange(under_way_, std::nullopt);
   failures_ = 0;
   retry_at_ = kLongAgo;
@@ -81,13 +82,13 @@ void Outbox::sent(Time now) {
   if (!is_repeated) tokens_ -= std::min<std::size_t>(1, tokens_);
   if (!limits_.repeat) return;
   firing_.erase(alert.id);
-  // What waits about it is newer, and may say that it is over.
+  // A newer alert about it waits, which may say that it is over.
   if (alert.state == Alert::State::kResolved) return;
   firing_[alert.id] = {alert, later(now, *limits_.repeat)};
 }
 
 void Outbox::failed(Time now, bool is_final) {
-  assert(under_way_);
+  CULPRIT_ASSERT(under_way_);
   Alert alert = *std::exchange(under_way_, std::nullopt);
   if (is_final) {
     firing_.erase(alert.id);

@@ -1,7 +1,7 @@
 // Which alert is sent when, to one destination: the newest of each fault, those that need a person first; again
 // after a while if it could not be sent; not too many in a time, and not more than are kept.
 //
-// Pure: whoever sends tells it the time, and what became of it.
+// Pure: the sender gives it the time, and the result of each attempt.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ class Outbox {
   struct Limits {
     std::size_t kept = 64;                       // alerts that wait; beyond, the oldest is given up
     std::size_t burst = 10;                      // so many at once
-    Duration refill = std::chrono::seconds(30);  // and then one each so long
+    Duration refill = std::chrono::seconds(30);  // and then one each time this has passed
     Duration first_retry = std::chrono::seconds(1);  // doubled with each failure
     Duration longest_retry = std::chrono::minutes(5);
     std::optional<Duration> repeat{};  // what is not over is sent again; nothing: it is not
@@ -31,12 +31,12 @@ class Outbox {
   // It replaces what waits about the same fault.
   void put(Alert alert, Time now);
 
-  // What is to be sent now; nothing: nothing is. Until sent() or failed(), the same is given.
+  // The alert to be sent now; nothing: none. Until sent() or failed(), the same is given.
   std::optional<Alert> next(Time now);
   // When to look again; kNever: not before something is put.
   Time due() const;
 
-  // What next() gave last was sent. @pre it gave one
+  // The alert that next() returned last was sent. @pre it gave one
   void sent(Time now);
   // It was not. `is_final`: nor would it be at another try, and is given up. @pre likewise
   void failed(Time now, bool is_final);

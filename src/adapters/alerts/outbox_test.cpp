@@ -16,7 +16,7 @@ Alert alert(const std::string& id, Alert::State state = Alert::State::kFiring,
   return alert;
 }
 
-// What is sent, one after the other, by a destination that takes everything.
+// The alerts that are sent, one after the other, if the destination accepts everything.
 std::string sent_by(Outbox& outbox, Time now) {
   std::string ids;
   while (const auto next = outbox.next(now)) {
@@ -49,7 +49,7 @@ TEST(Outbox, TriesAgainEachTimeLaterWithWhatIsNewestThen) {
     now += wait;
   }
   outbox.put(alert("a", Alert::State::kResolved), now);
-  EXPECT_EQ(sent_by(outbox, now), "a-") << "that it was there is said by that it is over";
+  EXPECT_EQ(sent_by(outbox, now), "a-") << "the resolved alert also shows that it fired";
   for (int i = 0; i < 100; ++i) {
     outbox.put(alert("b"), now);
     ASSERT_TRUE(outbox.next(now));
@@ -68,8 +68,7 @@ TEST(Outbox, GivesUpWhatIsRefusedAndTellsHowMany) {
   EXPECT_EQ(outbox.take_given_up(), 1u);
   EXPECT_EQ(outbox.take_given_up(), 0u);
   outbox.put(alert("b"), Time());
-  EXPECT_EQ(outbox.next(Time())->untold, 1u)
-      << "whoever reads the next one knows that there were more";
+  EXPECT_EQ(outbox.next(Time())->untold, 1u) << "the next one shows that there were more";
   outbox.sent(Time());
   outbox.put(alert("c"), Time());
   EXPECT_EQ(outbox.next(Time())->untold, 0u);

@@ -24,8 +24,8 @@ using How = Sent::How;
 
 // ---- over HTTP
 
-// Ends a request that takes too long as a whole, or is answered with too much: httplib waits anew for each byte,
-// and keeps what comes as headers.
+// Ends a request that takes too long as a whole, or is answered with too much: httplib waits again
+// for each byte, and keeps all headers that come.
 class Guard {
  public:
   Guard(Duration patience, const std::atomic<bool>& stop)
@@ -92,7 +92,7 @@ Sent post(const Destination& destination, const Alert& alert, Duration patience,
   request.path = path_for(destination.kind, *url);
   request.headers = {{"Content-Type", "application/json"}, {"User-Agent", "culprit"}};
   request.body = body_for(destination.kind, alert);
-  // Nobody wants to know what it answers beyond its status.
+  // Only the status of the answer counts; its body is dropped.
   request.content_receiver = [](const char*, std::size_t, std::uint64_t, std::uint64_t) {
     return true;
   };

@@ -12,11 +12,11 @@ namespace culprit::alerts {
 struct Sent {
   enum class How : std::uint8_t {
     kSent,
-    kNotNow,  // another try may help: nobody answers, or it says that it is overloaded
+    kNotNow,  // another try may help: no answer, or the destination is overloaded
     kNever    // it refuses what it is sent, or the program is not there
   };
   How how = How::kSent;
-  std::string why{};  // not; says nothing that is secret
+  std::string why{};  // why not; holds no secrets
 };
 
 // Blocks, for `patience` at most and a moment, however slow or hostile the other side is; less if

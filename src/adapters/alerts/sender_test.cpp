@@ -1,4 +1,5 @@
-// Alerts over real sockets and to real programs, to those who take them and to those who do not.
+// Alerts over real sockets and to real programs, to destinations that accept them and to others
+// that do not.
 #include "alerts/sender.h"
 
 #include <atomic>

@@ -25,8 +25,8 @@ std::string timestamp_of(double seconds_since_1970) {
 
 bool is_firing(const Alert& alert) { return alert.state == Alert::State::kFiring; }
 
-// Names come from the robot. Slack wants these three escaped, and reads nothing else of its markup in what
-// stands for itself (api.slack.com/reference/surfaces/formatting).
+// Names come from the robot. Slack requires these three to be escaped, and reads no other markup in
+// verbatim text (api.slack.com/reference/surfaces/formatting).
 std::string for_slack(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -52,8 +52,9 @@ Json slack(const Alert& alert) {
   return {{"text", text}, {"unfurl_links", false}};
 }
 
-// What POST /api/v2/alerts takes (prometheus.io/docs/alerting/latest/alerts_api). Labels tell alerts apart:
-// they stay the same until it is over. So a fault that a person is needed for is a second alert beside the first.
+// The body of POST /api/v2/alerts (prometheus.io/docs/alerting/latest/alerts_api). Labels
+// distinguish alerts: they stay the same until it is over. So a fault that a person is needed for
+// is a second alert beside the first.
 Json alertmanager(const Alert& alert) {
   Json all = Json::array();
   for (const char* name : {"CulpritFault", "CulpritNeedsPerson"}) {

@@ -91,7 +91,7 @@ TestListener::TestListener(std::function<void(int)> talk)
   port_ = ntohs(address.sin_port);
   thread_ = std::thread([this, talk = std::move(talk)] {
     for (int connection = 0; (connection = accept(socket_, nullptr, nullptr)) >= 0;) {
-      // Who closes without having read all leaves it full.
+      // A client that closes without having read everything leaves it full.
       const timeval patience{1, 0};
       setsockopt(connection, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
       talk(connection);

@@ -1,4 +1,5 @@
-// For tests: a server on loopback that takes webhooks, over HTTP or HTTPS, and behaves as badly as it is told.
+// For tests: a server on loopback that takes webhooks, over HTTP or HTTPS, and can be set to
+// misbehave.
 #pragma once
 
 #include <filesystem>
@@ -46,7 +47,8 @@ class TestWebhook {
   std::thread thread_;
 };
 
-// A socket that listens, and what it does with who connects is ours: it calls `talk` with each connection.
+// A listening socket, whose test decides what it does with each client: it calls `talk` with each
+// connection.
 class TestListener {
  public:
   explicit TestListener(std::function<void(int connection)> talk);

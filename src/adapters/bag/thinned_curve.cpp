@@ -1,8 +1,9 @@
 #include "bag/thinned_curve.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
+
+#include "base/invariant.h"
 
 namespace culprit::bag {
 
@@ -56,7 +57,7 @@ std::vector<ThinnedCurve::Point> ThinnedCurve::points() const {
 }
 
 std::int64_t ThinnedCurve::longest_gap() const {
-  assert(samples_ > 0);
+  CULPRIT_ASSERT(samples_ > 0);
   constexpr std::int64_t kTimes = 5;  // the mean distance; messages of a robot come no more evenly
   if (samples_ == 1) return 0;
   const std::int64_t mean = (last_ - first_) / static_cast<std::int64_t>(samples_ - 1);

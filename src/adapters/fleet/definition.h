@@ -1,5 +1,5 @@
-// What a strategy does, as a short text: outcomes of strategies that do the same are added up,
-// whatever rule file they stand in and whatever its numbers say.
+// The effect of a strategy, as a short text. Outcomes of strategies with the same effect are added
+// up, in whichever rule file they are, and with whichever numbers.
 #pragma once
 
 #include <map>

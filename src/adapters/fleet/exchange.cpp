@@ -69,7 +69,7 @@ FROM jsonb_to_recordset($1::jsonb)
 ON CONFLICT (run) DO NOTHING
 )sql";
 
-// A run belongs to the robot that told of it first.
+// A run belongs to the robot that reported it first.
 constexpr const char* kOutcomes = R"sql(
 INSERT INTO culprit.outcome(robot, run, rule_set, rule, strategy, context, definition, helped, failed)
 SELECT r.robot, r.run, r.rule_set, x.rule, x.strategy, r.context, x.definition, x.helped, x.failed
@@ -227,7 +227,7 @@ Expected<FleetKnowledge> ask(Server& server, const Identity& identity, const Rul
     known.models[text_in(row[2])] = {real_in(row[3]), real_in(row[4]), real_in(row[5]),
                                      real_in(row[6]), real_in(row[7])};
   }
-  // What the sums hold of this robot's: what was there when they were made.
+  // This robot's share of the sums: its outcomes when the sums were made.
   const auto own = server.query(
       "SELECT rule, strategy, sum(helped), sum(failed), coalesce(sum(recent_helped * "
       "culprit.fading(grew, at)) FILTER (WHERE added <= at), 0), coalesce(sum(recent_failed * "

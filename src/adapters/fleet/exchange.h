@@ -1,5 +1,5 @@
-// One visit to the database: what waits is sent, in transactions of a few hundred rows, and what the
-// fleet knows is taken back.
+// One visit to the database: it sends the waiting rows, in transactions of a few hundred, and takes
+// back the fleet's sums.
 #pragma once
 
 #include <functional>
@@ -18,8 +18,9 @@ struct Introduction {
   Run run;  // that goes on now
 };
 
-// Everything that waits. What the database does not take is sent row by row, and what it does not
-// take alone is told to `refused` and not sent again. Errors: the rest waits for the next visit.
+// Sends everything that waits. If the database rejects it, it is sent row by row. A row that is
+// rejected alone is reported to `refused` and not sent again. Errors: the rest waits for the next
+// visit.
 Expected<void> send(Server& server, Outbox& outbox, const Introduction& introduction,
                     const std::function<void(const std::string&)>& refused);
 
@@ -28,7 +29,7 @@ Expected<void> send(Server& server, Outbox& outbox, const Introduction& introduc
 enum class Twin : std::uint8_t { kNone, kElder, kYounger };
 Expected<Twin> find_twin(Server& server, const Identity& identity, const Run& run);
 
-// What the database knows of the strategies of `rules`, in this context.
+// The database's knowledge of the strategies of `rules`, in this context.
 Expected<FleetKnowledge> ask(Server& server, const Identity& identity, const RuleSet& rules,
                              const std::string& context);
 

@@ -44,8 +44,9 @@ struct Fleet : testing::Test {
 
 using CountsByRun = std::map<std::string, Counts>;
 
-// A robot that everything happens to. `heard`: what the database has to know, of all robots. Copies
-// of a disk have the beginnings of the same runs, so the largest count of a run is that of all.
+// A robot that everything happens to. `heard`: the events that the database must hold, of all
+// robots. Copies of a disk have the beginnings of the same runs, so the largest count of a run is
+// that of all.
 class SimulatedRobot {
  public:
   SimulatedRobot(fs::path folder, std::string machine, std::mt19937& random, CountsByRun& heard)
@@ -212,7 +213,7 @@ TEST_F(Fleet, CountsAreTheSumOfWhatHappenedWhateverHappensToRobots) {
   EXPECT_GT(happened.helped + happened.failed, 10 * count);
 }
 
-// A process of its own that is killed again and again, while it learns and while it tells.
+// A process of its own that is killed again and again, while it learns and while it reports.
 TEST_F(Fleet, NothingIsLostOrCountedTwiceByOneThatIsKilledAtAnyInstant) {
   const fs::path journal = folder / "a.journal";
   std::mt19937 random(3);
@@ -250,7 +251,7 @@ TEST_F(Fleet, NothingIsLostOrCountedTwiceByOneThatIsKilledAtAnyInstant) {
   EXPECT_EQ(sums(), happened);
 }
 
-// A member, and all that it says.
+// A member, and all its messages.
 struct Listening {
   static constexpr Member::Pace kHurried{1ms, 1ms, 1ms, 1h, 1ms, 1ms, 5ms};
 
@@ -304,13 +305,14 @@ TEST_F(Fleet, TroubleIsSaidOnceAndNothingIsLost) {
   std::int64_t happened = 1;
   const auto is_told = [&] { return sums().helped == happened; };
   const auto again = [&](int times) {
-    return robot.eventually([&] { return robot.times("told again") == times; });
+    return robot.eventually(
+        [&] { return robot.times("reach the fleet's database again") == times; });
   };
   EXPECT_TRUE(robot.says("cannot be kept for the fleet: "));
   fs::remove(outbox_beside(journal.path()));
   EXPECT_TRUE(robot.says("is kept for the fleet again"));
   EXPECT_EQ(robot.times("cannot be kept"), 1);
-  EXPECT_TRUE(robot.says("is not told what is learned: "));
+  EXPECT_TRUE(robot.says("no outcomes reach the fleet's database: "));
   journal.outcome("restart", true);
   std::this_thread::sleep_for(50ms);
   postgres->start();
@@ -337,7 +339,7 @@ TEST_F(Fleet, TroubleIsSaidOnceAndNothingIsLost) {
                 "DELETE FROM culprit.schema_version WHERE version = 99", "newer culprit"},
            Case{"ALTER ROLE rover NOLOGIN", "ALTER ROLE rover LOGIN", "not permitted to log in"},
        }) {
-    // Of the owner's own sessions the first one would keep the owner from mending it.
+    // Without this, a read-only database would also keep its owner's session from mending it.
     postgres->run("ALTER ROLE postgres SET default_transaction_read_only = off");
     postgres->run(each.breaks);
     journal.begins();
@@ -435,7 +437,7 @@ TEST_F(Fleet, ARobotReadsAndChangesNoRowsButItsOwn) {
     EXPECT_EQ(text_in((*rover.query("SELECT count(*) FROM " + name))[0][0]), "1") << table;
     EXPECT_EQ(text_in((*stranger.query("SELECT count(*) FROM " + name))[0][0]), "0") << table;
     EXPECT_FALSE(stranger.query("DELETE FROM " + name)) << table;
-    EXPECT_FALSE(rover.query("DELETE FROM " + name)) << "what was said stays said";
+    EXPECT_FALSE(rover.query("DELETE FROM " + name)) << "rows cannot be deleted";
   }
   // Forged rows, in the other's name.
   EXPECT_FALSE(
@@ -449,7 +451,7 @@ TEST_F(Fleet, ARobotReadsAndChangesNoRowsButItsOwn) {
   EXPECT_FALSE(
       stranger.query("INSERT INTO culprit.robot(robot, login, name, model, culprit, "
                      "rule_set, context) VALUES(gen_random_uuid(), 'rover', '', '', '', '', '')"))
-      << "of a login that is not its own";
+      << "the login of another robot";
   for (const char* change :
        {"UPDATE culprit.outcome SET helped = 1000", "UPDATE culprit.robot SET name = 'mine'",
         "UPDATE culprit.failure SET ended = now()"})
@@ -457,7 +459,7 @@ TEST_F(Fleet, ARobotReadsAndChangesNoRowsButItsOwn) {
   EXPECT_EQ(sums(), (Counts{1, 0}));
   EXPECT_EQ(postgres->query("SELECT 1 FROM culprit.robot WHERE name = 'mine'").size(), 0u);
   EXPECT_EQ(postgres->query("SELECT 1 FROM culprit.failure WHERE ended IS NULL").size(), 1u);
-  // Nor may it take back what it said itself, or change what it is not asked for.
+  // Nor may it take back its own rows, or change others.
   ASSERT_TRUE(rover.query("UPDATE culprit.outcome SET helped = 0"));
   EXPECT_EQ(sums(), (Counts{1, 0}));
   for (const char* change :
@@ -467,7 +469,7 @@ TEST_F(Fleet, ARobotReadsAndChangesNoRowsButItsOwn) {
         "DELETE FROM culprit.failure_other", "SELECT * FROM culprit.failure_other",
         "CREATE TABLE culprit.mine(x int)", "SET ROLE postgres"})
     EXPECT_FALSE(rover.query(change)) << change;
-  // The sums of all it may read, and they name nobody.
+  // It may read the sums of all, and they name no robot.
   EXPECT_TRUE(stranger.query("SELECT culprit.refresh_pool()"));
   EXPECT_EQ(text_in((*stranger.query("SELECT robots FROM culprit.pool"))[0][0]), "1");
   postgres->run("CREATE ROLE boss LOGIN IN ROLE culprit_reader");
@@ -476,7 +478,7 @@ TEST_F(Fleet, ARobotReadsAndChangesNoRowsButItsOwn) {
   EXPECT_FALSE(boss.query("UPDATE culprit.robot SET name = 'x'"));
 }
 
-// However many robots share a login, it is not all of them that are gone through to see whose a row is.
+// However many robots share a login, the owner of a row is found without going through all of them.
 TEST_F(Fleet, WhoseARowIsIsLookedUpByItsRobot) {
   postgres->run(R"sql(
 SET session_replication_role = replica;
@@ -557,7 +559,7 @@ TEST_F(Fleet, ANewRobotBeginsWithWhatTheOthersLearned) {
     EXPECT_EQ(robot.priors[0].priors.size(), 2u);
     const PriorsTold& told = robot.priors[1];
     EXPECT_EQ(told.source, "8 robots of rover");
-    ASSERT_EQ(told.priors.size(), 1u) << "nobody tried the other strategy";
+    ASSERT_EQ(told.priors.size(), 1u) << "no robot tried the other strategy";
     EXPECT_LT(told.priors[0].alpha / (told.priors[0].alpha + told.priors[0].beta), 0.2);
     EXPECT_LE(told.priors[0].alpha + told.priors[0].beta, 12.1);
   }
@@ -572,7 +574,7 @@ TEST_F(Fleet, ANewRobotBeginsWithWhatTheOthersLearned) {
     const std::lock_guard lock(robot.mutex);
     EXPECT_EQ(robot.priors[0].source, "8 robots of rover");
   }
-  // And one that is not like the others is told of.
+  // And a database that differs from the others is reported.
   postgres->start();
   for (int n = 0; n < 12; ++n) journal.outcome("restart", true);
   EXPECT_TRUE(
@@ -613,7 +615,7 @@ TEST_F(Fleet, ADatabaseIsSetUpAsOftenAsOneLikes) {
   const auto again = set_up(owner, {});
   ASSERT_TRUE(again) << again.error();
   EXPECT_TRUE(again->empty()) << again->front();
-  // What is older than it is kept goes with its month.
+  // Rows older than the retention period are dropped with their month.
   postgres->run(
       "CREATE TABLE culprit.failure_2019_01 PARTITION OF culprit.failure FOR VALUES FROM "
       "('2019-01-01') TO ('2019-02-01')");

@@ -21,7 +21,7 @@ Expected<bool> has_run(const journal::Reader& reader, std::int64_t row, const st
   return first.run()->id == run;
 }
 
-// What was improvised has none.
+// An improvised strategy has none.
 std::map<StrategyName, std::string> definitions_in(const std::string& rules_text) {
   const Checked checked = check(Source("rules", rules_text));
   return checked.rules ? definitions_of(*checked.rules) : std::map<StrategyName, std::string>();
@@ -40,7 +40,7 @@ Expected<void> JournalTail::follow(Outbox& outbox, const std::atomic<bool>& stop
 }
 
 // From the beginning of the newest run that is known, for what was counted of it is not known any
-// more. In another file, from its beginning: what was counted before counts once.
+// more. In another file, from its beginning: earlier outcomes count once.
 Expected<void> JournalTail::begin(const journal::Reader& reader, const Outbox& outbox) {
   tally_ = {};
   kept_.clear();

@@ -16,11 +16,11 @@ class JournalTail {
  public:
   explicit JournalTail(std::filesystem::path journal) : journal_(std::move(journal)) {}
 
-  // Takes what is new, and leaves off early if `stop` is set. After an error the run is read anew.
-  // Errors: the journal cannot be read, or the outbox not be written.
+  // Takes what is new, and leaves off early if `stop` is set. After an error the run is read from
+  // its beginning. Errors: the journal cannot be read, or the outbox not be written.
   Expected<void> follow(Outbox& outbox, const std::atomic<bool>& stop);
 
-  // That goes on now; nothing: there is none yet.
+  // The run under way; nothing: none yet.
   const std::optional<Run>& run() const { return tally_.run(); }
 
  private:

@@ -14,7 +14,7 @@
 
 namespace culprit::fleet {
 
-// Of the member and its thread, whichever lives longer.
+// Shared by the member and its thread, whichever lives longer.
 struct Member::State {
   explicit State(Options its_options)
       : options(std::move(its_options)), tail(options.journal), random(std::random_device()()) {}
@@ -47,11 +47,11 @@ struct Member::State {
   Ears ears CULPRIT_GUARDED_BY(mutex);
   std::uint64_t session CULPRIT_GUARDED_BY(mutex) = 0;
 
-  // Of the thread.
+  // Used by the thread only.
   std::optional<Outbox> outbox;
   JournalTail tail;
   std::mt19937 random;
-  std::shared_ptr<const RuleSet> heard_rules;  // of the session that priors are told to
+  std::shared_ptr<const RuleSet> heard_rules;  // of the session that gets the priors
   std::uint64_t heard_session = 0;
   PriorsTold told;           // in this session
   Time read_at = kLongAgo;   // the journal is not read before
@@ -122,12 +122,12 @@ void Member::State::run() {
     woken.wait_for(lock, kLook, [&]() CULPRIT_REQUIRES(mutex) { return stop || has_news; });
     if (stop) break;
     has_news = false;
-    if (!is_on) continue;  // another process may write the journal, and tell of it
+    if (!is_on) continue;  // another process may write the journal, and report it
     lock.unlock();
     try {
       work();
     } catch (const std::exception& error) {
-      // Memory that runs out, say: whatever it is, the robot is managed by others.
+      // For example, there is no memory left: the robot is managed all the same.
       fail_to_keep(error.what());
     }
     lock.lock();
@@ -190,8 +190,8 @@ void Member::State::work() {
   const Duration retry =
       std::min(options.pace.retry_most, options.pace.retry * (1 << std::min(failures, 10)) / 2);
   visit_at = later(live_now(), jittered(visited ? options.pace.visit : retry));
-  tell_of("the fleet's database is not told what is learned: ", said_of_database,
-          visited ? "" : visited.error(), "the fleet's database is told again what is learned");
+  tell_of("no outcomes reach the fleet's database: ", said_of_database,
+          visited ? "" : visited.error(), "outcomes reach the fleet's database again");
 }
 
 // News waits for more, unless somebody has to look.
@@ -204,7 +204,7 @@ bool Member::State::is_to_be_told(Time now) {
 
 void Member::State::fail_to_keep(const std::string& why) {
   tell_of(kNotKept, said_of_disk, why, "");
-  outbox.reset();  // it may be damaged: that is seen when it is opened
+  outbox.reset();  // it may be damaged: opening it shows that
   read_at = later(live_now(), jittered(options.pace.retry));
 }
 
@@ -230,7 +230,7 @@ Expected<void> Member::State::visit() {
   return {};
 }
 
-// Begins a session: what is known from before is told first.
+// Begins a session: priors known from before are reported first.
 void Member::State::listen() {
   {
     const MutexLock lock(mutex);
@@ -240,8 +240,8 @@ void Member::State::listen() {
   }
   told = {};
   ask_at = kLongAgo;
-  // Also where nothing is known: what was learned in an earlier run may have begun from more, or from
-  // what the rules said then.
+  // Also where nothing is known: outcomes of an earlier run may have begun from more, or from the
+  // former rules.
   const auto known = outbox->value("knowledge");
   if (known) tell(priors_for(*heard_rules, knowledge_from_text(known->value_or(""))));
 }
@@ -263,7 +263,7 @@ void Member::State::tell_of_dropped() {
   if (!dropped || *dropped <= said_dropped) return;
   said_dropped = *dropped;
   trouble("too much waits for the fleet's database: " + std::to_string(*dropped) +
-          " of the oldest outcomes and failures were dropped and will never be told");
+          " of the oldest outcomes and failures were dropped and will never be sent");
 }
 
 // Each strategy once.
@@ -282,7 +282,7 @@ void Member::State::tell_of_deviations(const FleetKnowledge& knowledge) {
   if (is_news) (void)outbox->set_value("deviations", to_line(said));
 }
 
-// A copy of this robot's disk on a computer that cannot be told from this one.
+// A copy of this robot's disk on a computer that cannot be distinguished from this one.
 Expected<void> Member::State::look_for_twin(Server& server) {
   const auto twin = find_twin(server, outbox->identity(), *tail.run());
   if (!twin) return Error{twin.error()};

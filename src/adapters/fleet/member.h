@@ -1,11 +1,12 @@
-// A robot as a member of its fleet: what it learns goes to a PostgreSQL database, and what the others
-// learned comes back as what the planner's beliefs begin with.
+// A robot as a member of its fleet: its outcomes go to a PostgreSQL database, and the others'
+// outcomes come back as priors of the planner's beliefs.
 //
-// All of it happens on a thread of its own, which the robot never waits for. That thread reads the
-// journal, as any other reader does, keeps what it amounts to beside it (outbox.h), and visits the
-// database when there is news, and now and then. A visit costs the database mostly a connection, so a failure
-// and its end half a minute later are told in one; where a person has to look, at once. While the database is away,
-// slow, full or of another version the robot is managed as before; that is said once, and nothing is lost.
+// All of it happens on a thread of its own, which the robot never waits for. The thread reads the
+// journal, as any other reader does, and keeps its sums beside it (outbox.h). It visits the
+// database when there is news, and now and then. A visit costs the database mostly a connection. So
+// a failure and its end half a minute later are sent in one visit; a failure that needs a person is
+// sent at once. While the database is away, slow, full or of another version the robot is managed
+// as before; that is reported once, and nothing is lost.
 #pragma once
 
 #include <condition_variable>
@@ -26,7 +27,7 @@ class Member {
   // How long it takes until ...
   struct Pace {
     Duration read = std::chrono::seconds(1);        // the journal is read after something happened
-    Duration gather = std::chrono::seconds(25);     // news is told, with what came since
+    Duration gather = std::chrono::seconds(25);     // news is sent after this time, with later news
     Duration visit = std::chrono::seconds(10);      // the database is visited again
     Duration beat = std::chrono::minutes(40);       // it is visited though there is no news
     Duration ask = std::chrono::minutes(40);        // it is asked for the fleet's priors again
@@ -48,13 +49,13 @@ class Member {
   };
 
   explicit Member(Options options);
-  // Comes back at once, whatever the database does.
+  // Returns at once, whatever the database does.
   ~Member();
   Member(const Member&) = delete;
 
-  // A session with these rules: its priors are told, those known from before first.
+  // A session with these rules: its priors are reported, those known from before first.
   void begin(const RuleSet& rules, Ears ears);
-  // Nothing more is told.
+  // Reports no more priors.
   void end();
   // The journal has news, or will have soon.
   void happened();

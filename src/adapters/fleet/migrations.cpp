@@ -1,7 +1,8 @@
 #include "fleet/migrations.h"
 
 #include <array>
-#include <cassert>
+
+#include "base/invariant.h"
 
 namespace culprit::fleet {
 namespace {
@@ -271,8 +272,8 @@ GRANT INSERT (robot, run, row, incident, rule, criticality, component, began, en
   ON culprit.failure TO culprit_robot;
 )sql";
 
-// Whose a row is was found by listing all robots of the login, in each statement: 20 ms where 10,000 share one. Now
-// its own robot is looked up.
+// To find a row's owner, each statement listed all robots of the login: 20 ms if 10,000 share one.
+// Now its own robot is looked up.
 constexpr const char* kRightsByRow = R"sql(
 ALTER POLICY own ON culprit.run
   USING (EXISTS (SELECT FROM culprit.robot r WHERE r.robot = run.robot AND r.login = session_user))
@@ -293,7 +294,7 @@ const std::array kMigrations = {std::string(kTables) + kFunctions + kRights,
 int migration_count() { return static_cast<int>(kMigrations.size()); }
 
 std::string migration(int n) {
-  assert(n >= 0 && n < migration_count());
+  CULPRIT_ASSERT(n >= 0 && n < migration_count());
   return kMigrations[static_cast<std::size_t>(n)];
 }
 

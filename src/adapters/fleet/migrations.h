@@ -7,7 +7,7 @@ namespace culprit::fleet {
 
 int migration_count();
 
-// What makes version n + 1 of version n. @pre 0 <= n < migration_count()
+// The statements that turn version n into version n + 1. @pre 0 <= n < migration_count()
 std::string migration(int n);
 
 }  // namespace culprit::fleet

@@ -61,7 +61,7 @@ std::string random_number() {
   return digits;
 }
 
-// The computer's id is nobody else's business (machine-id(5)).
+// The computer's id is confidential (machine-id(5)).
 std::string fingerprint(const std::string& machine, const std::string& robot) {
   if (machine.empty()) return "";
   journal::Hasher hasher;
@@ -92,8 +92,8 @@ Expected<Outbox> Outbox::open(const fs::path& path, const std::string& machine) 
   if (std::filesystem::exists(path) && Database::is_damaged(path, kLooks)) {
     const auto aside = Database::set_aside(path);
     if (!aside) return failure("it is damaged, and cannot be moved: " + aside.error());
-    remark = "what the fleet is still to be told was damaged; it is kept as '" + aside->string() +
-             "', and made anew from the journal";
+    remark = "the file of unsent outcomes for the fleet was damaged; it is kept as '" +
+             aside->string() + "', and made anew from the journal";
   }
   auto database = open_database(path);
   if (!database) return failure(database.error());

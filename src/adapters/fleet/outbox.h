@@ -1,13 +1,13 @@
-// What a fleet is still to be told, and who this robot is in it: a small SQLite file beside the
-// journal, "a.journal-fleet". The journal's own rows go after a month; what is here stays until the
-// database has it.
+// The results that the fleet's database has not received yet, and this robot's identity in the
+// fleet: a small SQLite file beside the journal, "a.journal-fleet". The journal's own rows go after
+// a month; rows here stay until the database has them.
 //
-// Nothing is counted here: what a run amounts to replaces what it amounted to (tally.h). So it may
-// be written as often as one likes, and lost: as far back as the journal goes it is made anew, and
-// only the robot's number is another one then.
+// It does not count: the sums of a run replace its former sums (tally.h). So it may be written as
+// often as one likes, and lost: it is made anew as far back as the journal goes, and only the
+// robot's number changes.
 //
-// It is bounded: beyond kMostFailures and kMostCounts the oldest go, those that were sent first, and
-// how many were not sent is kept, to be said.
+// It is bounded: beyond kMostFailures and kMostCounts the oldest rows go, and among those the sent
+// ones first. The number of unsent rows that went is kept and reported.
 #pragma once
 
 #include <filesystem>
@@ -37,7 +37,7 @@ struct Outcome {
   Counts counts;
 };
 
-// Of one run.
+// A failure of one run.
 struct RunFailure {
   std::string run;
   Failure failure;
@@ -55,7 +55,7 @@ class Outbox {
   static constexpr std::int64_t kMostFailures = 20'000;
   static constexpr std::int64_t kMostCounts = 50'000;
 
-  // Makes the file if it is not there; one that is damaged is set aside, and said in remark().
+  // Makes the file if it is not there; a damaged one is set aside, and reported in remark().
   // `machine`: the computer's id, empty if it has none. Errors: it cannot be written.
   static Expected<Outbox> open(const std::filesystem::path& path, const std::string& machine);
 
@@ -79,11 +79,11 @@ class Outbox {
   // Whether something was not sent yet; kUrgent: a rule's strategies are exhausted, so that a person has to look.
   enum class News : std::uint8_t { kNone, kSome, kUrgent };
   Expected<News> news() const;
-  // What was not sent yet, oldest first: at most so many of each.
+  // The unsent rows, oldest first: at most so many of each.
   Expected<Waiting> waiting(int most) const;
-  // It was sent as it is here; what changed since goes again.
+  // It was sent as it is here; later changes go again.
   Expected<void> sent(const Waiting& what);
-  // How much was never sent and is gone, in all.
+  // How much was dropped without having been sent, in all.
   Expected<std::int64_t> dropped() const;
 
   // A value kept under a name; nothing: there is none.
@@ -107,8 +107,8 @@ class Outbox {
 
 std::filesystem::path outbox_beside(const std::filesystem::path& journal);
 
-// What tells this computer from others: /etc/machine-id and, where it may be read, the number of its
-// board. Empty: it has neither.
+// The identity of this computer: /etc/machine-id and, if it is readable, the number of its board.
+// Empty: it has neither.
 std::string machine_id();
 
 }  // namespace culprit::fleet

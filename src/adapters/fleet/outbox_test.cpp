@@ -23,7 +23,8 @@ TEST(Outbox, ARobotKeepsItsNumberOnItsComputer) {
   const Identity again = Outbox::open(folder / "o", "one")->identity();
   EXPECT_EQ(again.robot, robot);
   EXPECT_FALSE(again.is_copy);
-  EXPECT_EQ(Outbox::open(folder / "o", "")->identity().robot, robot) << "who cannot tell goes on";
+  EXPECT_EQ(Outbox::open(folder / "o", "")->identity().robot, robot)
+      << "an unknown computer keeps its number";
 }
 
 TEST(Outbox, OnAnotherComputerItIsAnotherRobotThatKnowsTheFirst) {
@@ -88,7 +89,7 @@ TEST(Outbox, IsBoundedAndKnowsWhatItDropped) {
     failures.push_back(failure_at(row));
   ASSERT_TRUE(outbox.keep(kRun, {}, {}, failures));
   EXPECT_EQ(*outbox.dropped(), 0);
-  // What was sent goes first.
+  // Sent rows go first.
   ASSERT_TRUE(outbox.sent({{}, {}, {{kRun.id, failures[100]}}}));
   ASSERT_TRUE(outbox.keep(kRun, {}, {}, {failure_at(Outbox::kMostFailures + 1)}));
   EXPECT_EQ(*outbox.dropped(), Outbox::kMostFailures / 20);

@@ -95,7 +95,7 @@ PriorsTold changes(const PriorsTold& known, const PriorsTold& news) {
 }
 
 std::vector<Deviation> deviations(const RuleSet& rules, const FleetKnowledge& knowledge) {
-  constexpr std::int64_t kFewest = 5;  // outcomes, of which less says nothing
+  constexpr std::int64_t kFewest = 5;  // outcomes; fewer prove nothing
   // Not capped: how sure the fleet is of what it knows is the question here.
   constexpr Pooling kAll{.most = 1000};
   std::vector<Deviation> all;

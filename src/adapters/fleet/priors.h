@@ -13,7 +13,7 @@
 
 namespace culprit::fleet {
 
-// What is known of one strategy.
+// The outcomes of one strategy.
 struct StrategyKnowledge {
   std::map<std::string, RobotOutcomes> models;  // this robot's outcomes included, where it has any
   // This robot's share of those: fading as they do, and in all.
@@ -27,7 +27,7 @@ struct FleetKnowledge {
   std::map<StrategyName, StrategyKnowledge> strategies;
 };
 
-// As text, for the next start without a database, and back; what is damaged is nothing.
+// As text, for the next start without a database, and back; a damaged text gives nothing.
 std::string to_text(const FleetKnowledge& knowledge);
 FleetKnowledge knowledge_from_text(const std::string& text);
 

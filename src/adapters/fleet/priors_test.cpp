@@ -18,7 +18,7 @@ RobotOutcomes robots(int count, double helped, double failed) {
   return sums;
 }
 
-// To the last bit: what differs is told of.
+// To the last bit: differences are reported.
 void expect_those_of(const RuleSet& rules, const PriorsTold& told) {
   ASSERT_EQ(told.priors.size(), rules.strategies.size());
   for (const PriorsTold::Prior& each : told.priors) {

@@ -24,7 +24,7 @@ Expected<void> make_roles(Server& server, Done& done) {
     if (!there->empty()) continue;
     if (const auto made = server.run("CREATE ROLE " + role + " NOLOGIN"); !made) {
       return Error{made.error() +
-                   "; let an administrator say once: CREATE ROLE culprit_robot "
+                   "; let an administrator run once: CREATE ROLE culprit_robot "
                    "NOLOGIN; CREATE ROLE culprit_reader NOLOGIN;"};
     }
     done.push_back("made the role " + role);

@@ -1,4 +1,4 @@
-// The tables of a fleet's database, in the schema `culprit`, and who may do what there
+// The tables of a fleet's database, in the schema `culprit`, and the rights of each role there
 // (docs/fleet.md).
 //
 // Two roles without a login, which logins are members of: culprit_robot adds and reads its own rows
@@ -12,14 +12,14 @@
 
 namespace culprit::fleet {
 
-// Of databases that this culprit speaks with.
+// The version of the databases that this culprit can use.
 int schema_version();
 
-// What was done, one line each.
+// The changes that were made, one line each.
 using Done = std::vector<std::string>;
 
 struct Setup {
-  int keep_days = 400;  // failures are kept for so long
+  int keep_days = 400;  // how long failures are kept
 };
 
 // Makes the schema and the roles, or brings them up to date; makes partitions for the months that

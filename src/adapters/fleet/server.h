@@ -1,7 +1,7 @@
 // A PostgreSQL server over libpq, with owners and errors as values.
 //
-// Nothing here waits for longer than it was told, and a stop is heeded within a tenth of a second,
-// but for the look-up of a host's name, which libpq does without asking us.
+// No call waits longer than its limit, and each heeds a stop within a tenth of a second. The
+// exception is the look-up of a host's name, which libpq does itself.
 #pragma once
 
 #include <atomic>
@@ -48,9 +48,9 @@ class Server {
   // Several statements, without results.
   Expected<void> run(const std::string& sql);
 
-  // The SQLSTATE of what failed last; empty: the server did not say it.
+  // The SQLSTATE of what failed last; empty: the server gave none.
   const std::string& state() const { return state_; }
-  // Of an earlier failure, which is the one that matters.
+  // Restores the state of an earlier failure, which is the one that matters.
   void set_state(std::string state) { state_ = std::move(state); }
   // Whether it is the rows that were sent which it does not take, and not us, or anything.
   bool blames_rows() const;

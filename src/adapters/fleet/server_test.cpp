@@ -12,7 +12,7 @@ TEST(FleetAddress, IsALibpqAddressWithoutAPassword) {
     EXPECT_TRUE(address_from(good)) << good;
 }
 
-// Neither is it said again: what is printed stands in logs.
+// Nor does the error repeat it: printed text ends up in logs.
 TEST(FleetAddress, WithAPasswordIsRefusedWithTheRemedy) {
   for (const char* bad :
        {"postgresql://rover:hunter2@db/robots", "postgresql://db/robots?password=hunter2",

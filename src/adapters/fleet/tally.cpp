@@ -1,6 +1,9 @@
 #include "fleet/tally.h"
 
+#include <utility>
+
 #include "fleet/clean.h"
+#include "fleet/incident_number.h"
 #include "journal/json.h"
 
 namespace culprit::fleet {
@@ -21,7 +24,7 @@ std::string digest_of_text(const std::string& text) {
   return journal::to_hex(hasher.of(text)).substr(0, 16);
 }
 
-// Whom a decision holds responsible for this failure.
+// The component that a decision holds responsible for this failure.
 std::string blamed_in(const Json& body) {
   const Json suspects = body.value("suspects", Json::array());
   if (suspects.is_array() && !suspects.empty() && suspects[0].is_object())
@@ -64,6 +67,7 @@ void Tally::begin(const journal::Entry& entry, std::string_view hash) {
   run.culprit = clean(journal::text_of(body, "version"));
   run.model = clean(journal::text_of(body, "robot"));
   rules_text_ = journal::text_of(body, "rules_text");
+  tells_incidents_ = journal::integer_of(body, "wall") > 0;
   run.rule_set = digest_of_text(rules_text_);
   if (body.is_object())
     run.context = clean(journal::text_of(body.value("fleet", Json()), "context"));
@@ -78,6 +82,7 @@ Failure* Tally::open_failure(const std::string& rule) {
 }
 
 void Tally::close(Failure& failure, std::int64_t at, const char* how) {
+  if (failure.incident == 0) failure.incident = failure.row;
   failure.ended = at;
   failure.how = how;
   changed_.push_back(failure);
@@ -99,12 +104,16 @@ void Tally::event(const journal::Entry& entry) {
     if (open_.empty()) incident_ = entry.id;
     Failure failure;
     failure.row = entry.id;
-    failure.incident = incident_;
+    failure.incident = tells_incidents_ ? 0 : incident_;
     failure.rule = rule;
     failure.criticality = clean(journal::text_of(body, "criticality"));
     failure.began = entry.at;
     open_[rule] = std::move(failure);
     is_new_[rule] = true;
+  } else if (type == "incident_opened" || type == "incident_changed") {
+    take_incident(body);
+  } else if (type == "incident_closed") {
+    return;
   } else if (Failure* failure = open_failure(rule); failure == nullptr) {
     return;
   } else if (type == "strategy_chosen") {
@@ -128,13 +137,25 @@ void Tally::event(const journal::Entry& entry) {
   }
 }
 
+// A failure stays with the incident that it was part of first.
+void Tally::take_incident(const Json& body) {
+  const std::int64_t number = incident_number(journal::text_of(body, "incident"));
+  const auto take = [&](const Json& rule) {
+    const auto found = open_.find(rule.is_string() ? clean(rule.get<std::string>()) : "");
+    if (found == open_.end() || found->second.incident != 0) return;
+    found->second.incident = number == 0 ? found->second.row : number;
+    is_new_[found->first] = true;
+  };
+  take(body.value("rule", Json()));
+  for (const Json& rule : body.value("consequences", Json::array())) take(rule);
+}
+
 std::vector<Failure> Tally::take_failures() {
   std::vector<Failure> taken = std::move(changed_);
   changed_.clear();
   for (const auto& [rule, failure] : open_) {
-    if (is_new_[rule]) taken.push_back(failure);
+    if (failure.incident != 0 && std::exchange(is_new_[rule], false)) taken.push_back(failure);
   }
-  is_new_.clear();
   return taken;
 }
 

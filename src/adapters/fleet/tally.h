@@ -1,9 +1,9 @@
-// What the rows of a journal add up to for a fleet: how often each strategy helped, and the failures
-// of each run. Pure: the same rows give the same sums, so a process that was killed in between
-// begins anew with the first row of the run, and nothing is counted twice.
+// Adds up the rows of a journal for a fleet: how often each strategy helped, and the failures of
+// each run. Pure: the same rows give the same sums. So a process that was killed in between begins
+// anew with the first row of the run, and nothing is counted twice.
 //
-// A run is what follows one `session` row, and is called by the hash of that row: no two runs of all
-// robots have the same, and a copy of a journal goes on with rows, and runs, of its own.
+// A run is the rows after one `session` row, and its id is the hash of that row. No two runs of all
+// robots have the same id, and a copy of a journal goes on with rows, and runs, of its own.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "journal/entry.h"
+#include "json/json.h"
 
 namespace culprit::fleet {
 
@@ -40,11 +41,12 @@ struct StrategyName {
 };
 
 struct Failure {
-  std::int64_t row = 0;       // where it was detected
-  std::int64_t incident = 0;  // the row of the first failure since all was well
+  std::int64_t row = 0;  // where it was detected
+  std::int64_t incident =
+      0;  // incident_number.h; of an older culprit: the row of the first failure since all was well
   std::string rule;
   std::string criticality;
-  std::string component;        // that was held responsible; empty: nobody said
+  std::string component;        // the blamed one; empty: unknown
   std::int64_t began = 0;       // nanoseconds since 1970
   std::int64_t ended = 0;       // 0: it is still there
   double repair_seconds = -1;   // by the robot's own clock; below zero: it was not resolved
@@ -60,22 +62,24 @@ class Tally {
   // `hash`: of the row. Rows come in their order.
   void take(const journal::Entry& entry, std::string_view hash);
 
-  // Of the newest run; nothing: no row of a run was there yet.
+  // The newest run; nothing: no row of a run yet.
   const std::optional<Run>& run() const { return run_; }
   const std::string& rules_text() const { return rules_text_; }
   const std::map<StrategyName, Counts>& counts() const { return counts_; }
-  // Failures that began or changed since they were last taken, and those of a run that is over.
+  // Failures that began or changed since they were last taken, and those of a run that is over. A failure without an
+  // incident is not taken yet: a later row of the same step names it.
   std::vector<Failure> take_failures();
   // Begins with this row, or what comes after it.
   void begin_at(std::int64_t row) { last_row_ = row - 1; }
   std::int64_t next_row() const { return last_row_ + 1; }
 
-  // Whether the row begins another run: what there is of this one has to be taken first.
+  // Whether the row begins another run: the results of this one must be taken first.
   static bool begins_run(const journal::Entry& entry);
 
  private:
   void begin(const journal::Entry& entry, std::string_view hash);
   void event(const journal::Entry& entry);
+  void take_incident(const Json& body);
   Failure* open_failure(const std::string& rule);
   void close(Failure& failure, std::int64_t at, const char* how);
 
@@ -85,7 +89,8 @@ class Tally {
   std::map<std::string, Failure> open_;  // by rule
   std::vector<Failure> changed_;         // that are over
   std::map<std::string, bool> is_new_;   // of open ones: changed since they were taken
-  std::int64_t incident_ = 0;
+  bool tells_incidents_ = false;         // the culprit of this run does
+  std::int64_t incident_ = 0;            // else
   std::int64_t last_row_ = 0;
   std::int64_t last_at_ = 0;
 };

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/test_folder.h"
+#include "fleet/incident_number.h"
 #include "fleet/journal_tail.h"
 #include "fleet/test_journal.h"
 #include "journal/reader.h"
@@ -66,6 +67,27 @@ TEST_F(TallyOfAJournal, FollowsFailuresFromTheirDetectionToTheirEnd) {
   EXPECT_TRUE(now.take_failures().empty());
 }
 
+TEST_F(TallyOfAJournal, FailuresHaveTheIncidentsThatTheManagerTold) {
+  journal.begins("", 1'800'000'000'000'000'000);
+  journal.event("failure_detected", R"(,"rule":"Silent","criticality":"ERROR")");
+  EXPECT_TRUE(tally().take_failures().empty()) << "its incident is not told yet";
+  journal.event("incident_opened", R"(,"incident":"mywpiwzf-0k7","rule":"Silent")");
+  journal.event("failure_detected", R"(,"rule":"Dark","criticality":"WARNING")");
+  journal.event("incident_opened", R"(,"incident":"mywpj001-00a","rule":"Dark")");
+  Tally now = tally();
+  const auto failures = now.take_failures();
+  ASSERT_EQ(failures.size(), 2u);
+  EXPECT_EQ(incident_id(failures[0].incident), "mywpj001-00a");
+  EXPECT_EQ(incident_id(failures[1].incident), "mywpiwzf-0k7");
+}
+
+TEST(IncidentNumber, IsItsIdAndNoRow) {
+  EXPECT_EQ(incident_id(incident_number("mywpiwzf-0k7")), "mywpiwzf-0k7");
+  EXPECT_EQ(incident_id(4711), "") << "a row";
+  for (const char* other : {"", "-", "mywpiwzf", "4711-000", "a b-00a", "zzzzzzzzzzzzzzzz-000"})
+    EXPECT_EQ(incident_number(other), 0) << other;
+}
+
 TEST_F(TallyOfAJournal, FailuresOfARunThatIsOverAreLeft) {
   journal.begins();
   journal.event("failure_detected", R"(,"rule":"Silent","criticality":"ERROR")");
@@ -100,7 +122,7 @@ struct Followed : Folded {
   const std::atomic<bool> stop = false;
 };
 
-// Whoever follows may be killed at any instant, and begins anew with the run.
+// The process that follows may be killed at any instant, and begins anew with the run.
 TEST_F(Followed, NothingIsCountedTwiceHoweverOftenTheJournalIsReadAnew) {
   JournalTail kept(journal.path());
   for (int run = 0; run < 4; ++run) {

@@ -15,7 +15,7 @@ void TestJournal::append(std::string_view kind, const std::string& body) {
   if (!done) throw std::runtime_error(done.error());
 }
 
-void TestJournal::begins(const std::string& context) {
+void TestJournal::begins(const std::string& context, std::int64_t wall) {
   writer_.reset();
   auto writer = journal::Writer::open(path_, {.max_age_ns = std::int64_t{1} << 62});
   if (!writer) throw std::runtime_error(writer.error());
@@ -25,6 +25,7 @@ void TestJournal::begins(const std::string& context) {
   session.robot = "rover";
   session.rules_text = kFleetRules;
   session.fleet_context = context;
+  session.wall = wall;
   // As two processes never begin at the same nanosecond on the same clocks.
   session.boot = std::to_string(std::random_device()());
   append(journal::kind::kSession, to_line(journal::to_json(session)));

@@ -1,4 +1,4 @@
-// For tests: a journal as a robot's would be, written by the one who writes them all.
+// For tests: a journal as a robot's would be, written by the same writer.
 #pragma once
 
 #include <filesystem>
@@ -27,7 +27,8 @@ class TestJournal {
 
   const std::filesystem::path& path() const { return path_; }
   // A process of culprit begins. The rules are kFleetRules.
-  void begins(const std::string& context = "");
+  // `wall` above 0: the manager tells incidents.
+  void begins(const std::string& context = "", std::int64_t wall = 0);
   void ends();  // and lets go of the file
   void outcome(const std::string& strategy, bool has_helped);
   void event(const std::string& type, const std::string& more = "");

@@ -12,8 +12,8 @@
 
 namespace culprit::fleet {
 
-// A program of the distribution, as a user that may do nothing else; it ends with us. What it says goes to
-// `log`. That user may write into a folder that was given away.
+// A program of the distribution, as a user that may do nothing else; it ends with us. Its output
+// goes to `log`. give_away() lets that user write into the folder.
 pid_t start_as_nobody(std::vector<std::string> arguments, const std::filesystem::path& log);
 void give_away(const std::filesystem::path& folder);
 
@@ -31,16 +31,16 @@ class TestPostgres {
   // As a power failure would.
   void stop();
 
-  // Of the server, whose processes are its children.
+  // The server's process, whose children are its other processes.
   pid_t pid() const { return pid_; }
 
-  // Of its socket.
+  // The folder of its socket.
   const std::filesystem::path& folder() const { return folder_.path(); }
   // As this login, which needs no password.
   Address address(const std::string& login = "postgres") const;
   // Throws if that is impossible.
   Server connect(const std::string& login = "postgres") const;
-  // Of the owner of the database; throws if it fails.
+  // Runs a query as the owner of the database; throws if it fails.
   Rows query(const std::string& sql) const;
   void run(const std::string& sql) const;
   // Set up for a fleet, with this login as a robot's.

@@ -63,7 +63,7 @@ std::string_view to_string(Role role) {
 
 std::optional<Role> Access::role_of(std::string_view authorization) const {
   std::optional<Role> role;
-  // All are compared, so that the time tells nothing of which is near.
+  // All are compared, so that the time does not show which one is near.
   if (is_bearer_of(look_token, authorization)) role = Role::kLook;
   if (is_bearer_of(operate_token, authorization)) role = Role::kOperate;
   if (is_bearer_of(token, authorization)) role = Role::kAdminister;

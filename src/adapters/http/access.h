@@ -1,11 +1,11 @@
-// Who may ask for what. Web pages of other sites reach a server on this machine through the user's
-// browser, so what counts is not only where a request comes from.
+// Decides which request is allowed. Web pages of other sites reach a server on this machine through
+// the user's browser, so the source address alone does not decide.
 //
 // - Host has to name this server: an address, "localhost", or a name that was allowed. A page that
 //   had its own name resolved to this machine (DNS rebinding) still sends its own name.
 // - Origin, where a browser sends it, has to be this server's.
-// - A token allows what its role does (look < operate < administer). What changes anything needs one; from beyond this
-//   machine, everything does.
+// - A token allows the calls of its role (look < operate < administer). A call that changes
+//   anything needs one; from beyond this machine, every call does.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ namespace culprit::web {
 enum class Role : std::uint8_t {
   kLook,       // see all, and ask about rules that are not in force
   kOperate,    // give orders, and have recordings made
-  kAdminister  // change the rules, and have them read anew
+  kAdminister  // change the rules, and reload them
 };
 // "look", "operate", "administer"
 std::string_view to_string(Role role);
@@ -49,8 +49,9 @@ bool is_loopback(std::string_view address);
 // 128 random bits, as hexadecimal digits.
 std::string make_token();
 
-// The only line of a file that nobody else can read: at least 16 characters without blanks. `what`
-// it is, for messages. Errors: it cannot be read, is readable by others, or holds no such line.
+// The only line of a file that no other user can read: at least 16 characters without blanks.
+// `what` it is, for messages. Errors: it cannot be read, is readable by others, or holds no such
+// line.
 Expected<std::string> read_secret(const std::string& path, const std::string& what = "token");
 
 }  // namespace culprit::web

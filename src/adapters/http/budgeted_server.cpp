@@ -71,7 +71,7 @@ class Connection final : public httplib::Stream {
   ssize_t read(char* to, std::size_t size) override {
     if (at_ == end_ && !fill()) return is_over_ ? 0 : -1;
     size = std::min(size, end_ - at_);
-    // Of a header no more than to its end, for what follows counts as the body.
+    // While the header is read, no more than to its end, for the bytes after it count as the body.
     if (line_ends_ < kEndOfHeader.size()) size = 1;
     std::size_t& spent = line_ends_ < kEndOfHeader.size() ? header_ : body_;
     const std::size_t limit =
@@ -189,8 +189,8 @@ bool BudgetedServer::serve(socket_t socket) {
 }
 
 std::size_t affordable_connections(std::size_t wanted) {
-  // Processes that are started and watched, subscriptions, the journal: what a manager opens when
-  // it is needed most.
+  // Processes that are started and watched, subscriptions, the journal: the manager opens these
+  // when it needs them most.
   constexpr std::size_t kReserved = 32;
   rlimit limit{};
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return wanted;

@@ -1,11 +1,13 @@
 // httplib's server, with a budget for each connection.
 //
 // httplib itself keeps every header that comes, however many and however long a line is, and waits
-// anew for each byte. Here what a connection sends is counted before it is parsed: so many bytes of
-// headers, so many of a body, and so much time for both. Whoever exceeds them is cut off.
+// again for each byte. Here the bytes of a connection are counted before they are parsed: so many
+// bytes of headers, so many of a body, and so much time for both. A connection that exceeds them is
+// closed.
 //
-// Nor does it pack answers: httplib would by brotli at its slowest where a browser takes that, and the incidents of a day came
-// after seconds. takes_gzip() says whether the client can unpack an answer that is packed already.
+// Nor does it compress answers: httplib would use brotli at its slowest if the browser accepts
+// that, and the incidents of a day came after seconds. takes_gzip() says whether the client can
+// unpack an answer that is packed already.
 #pragma once
 
 #include <chrono>
@@ -28,7 +30,7 @@ struct ConnectionBudget {
   int requests = 1000;
 };
 
-// Who is served. Of a unix socket the kernel says who is at its other end.
+// The clients that are served. For a unix socket the kernel gives the user at its other end.
 enum class Clients : std::uint8_t { kAny, kOwnUser };
 
 // While one lives, BudgetedServers close each connection that they are to serve on this thread, unread.
@@ -39,7 +41,7 @@ class RefusesConnections {
   RefusesConnections(const RefusesConnections&) = delete;
 };
 
-// Of a request to a BudgetedServer.
+// Whether the client of a BudgetedServer's request accepts gzip.
 bool takes_gzip(const httplib::Request& request);
 
 class BudgetedServer : public httplib::Server {

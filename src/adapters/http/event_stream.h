@@ -4,8 +4,8 @@
 //     event: state
 //     data: {"t": 12.3, ...}
 //
-// The first event, "hello", says whether the stream goes on where the reader left off (its
-// Last-Event-ID) or begins anew; in that case what the reader has of earlier events is void.
+// The first event, "hello", shows whether the stream goes on where the reader left off (its
+// Last-Event-ID) or begins again; in that case what the reader has of earlier events is void.
 #pragma once
 
 #include <optional>
@@ -18,13 +18,14 @@ namespace culprit::web {
 // Used by one thread.
 class EventStream {
  public:
-  // How long the stream may be silent; then it says so, to find out whether the reader is there.
+  // The longest time without an event; then it sends a comment, to find out whether the reader is
+  // there.
   static constexpr std::chrono::milliseconds kSilence = std::chrono::seconds(1);
 
   // `hub` must outlive the stream. `last_event_id` is what the reader sent, of any content.
   EventStream(Hub& hub, const std::string& last_event_id);
 
-  // What to send next; waits for it. Nothing when the stream is over.
+  // Waits for the next text to send. Nothing: the stream is over.
   std::optional<std::string> next();
 
  private:

@@ -1,10 +1,10 @@
-// What browsers are told, and how they catch up: between the manager's thread, which never waits,
+// The messages to browsers, and how they catch up: between the manager's thread, which never waits,
 // and the threads of the web server, which may.
 //
-// Two kinds of messages. Of a *latest* one (the graph, the present state) only the newest counts: a
-// slow reader skips those between. *Events* are a history: a reader gets each of them, as long as
-// it is kept. All are numbered in one sequence, so a reader that says which number it had last goes
-// on from there, and a new one begins at 0.
+// Two kinds of messages. For a *latest* one (the graph, the present state) only the newest counts:
+// a slow reader skips those between. *Events* are a history: a reader gets each of them, as long as
+// it is kept. All are numbered in one sequence. So a reader that gives its last number goes on from
+// there, and a new one begins at 0.
 #pragma once
 
 #include <array>
@@ -39,15 +39,15 @@ class Hub {
   // Older events are forgotten beyond this many, or beyond this many bytes.
   static constexpr std::size_t kMostEvents = 4096;
   static constexpr std::size_t kMostBytes = 16 << 20;
-  // A batch holds at most so many messages: what a reader has to have sent before the next.
+  // A batch holds at most so many messages: a reader must have sent it before the next.
   static constexpr std::size_t kBatch = 256;
 
-  // `wake` is called when a reader comes while there was none: whoever publishes only for readers
-  // can do so at once. It must not block.
+  // `wake` is called when a reader comes while there was none: a caller that publishes only for
+  // readers can do so at once. It must not block.
   explicit Hub(std::function<void()> wake = {});
 
   void publish(Kind kind, std::string data);
-  // Asks whoever publishes to come round, as if a reader had come.
+  // Asks the publisher to publish, as if a reader had come.
   void wake() const {
     if (wake_) wake_();
   }
@@ -56,8 +56,8 @@ class Hub {
     bool is_gap = false;  // events between `after` and the first of these are forgotten
     std::vector<Message> messages;
   };
-  // What came after number `after`, oldest first: at once if there is something, else as soon as
-  // there is. Empty if nothing came in `patience`, or the hub was closed.
+  // The messages after number `after`, oldest first: at once if there are any, else as soon as
+  // there are. Empty if nothing came in `patience`, or the hub was closed.
   Batch wait(std::uint64_t after, std::chrono::milliseconds patience);
   // The newest message of a kind that is not kEvent; null if there was none.
   std::shared_ptr<const std::string> latest(Kind kind) const;
@@ -74,7 +74,7 @@ class Hub {
   };
   bool has_readers() const { return readers_ > 0; }
 
-  // Of this hub and no other: a number alone means nothing to the one after a restart.
+  // The name of this hub and no other: after a restart, a number alone means nothing.
   const std::string& name() const { return name_; }
   // The number of the newest message.
   std::uint64_t last() const;

@@ -48,7 +48,7 @@ Expected<Answer> answer_of(Expected<LocalAnswer> answer) {
 }
 
 std::string refusal_in(const Json& body) {
-  return text_of(body, "error").value_or("it refuses and does not say why");
+  return text_of(body, "error").value_or("it refuses without a reason");
 }
 
 // Server-sent events, as they come in pieces.

@@ -33,10 +33,10 @@ class LocalClient {
   LocalClient with_patience(Duration patience) const { return {socket_, patience, user_}; }
   std::uint32_t user() const { return user_; }
 
-  // What it answered, refusals too. Errors: nobody listens, or no whole answer came in time.
+  // Its answer, refusals too. Errors: no server listens, or no whole answer came in time.
   Expected<Answer> ask(Method method, const std::string& path, const Json& body = nullptr,
                        std::size_t most_bytes = kUsualAnswer) const;
-  // Of a call that only looks. Errors: likewise, and what it refused with.
+  // The answer to a call that only looks. Errors: as above, and the text of a refusal.
   Expected<Json> get(const std::string& path, std::size_t most_bytes = kUsualAnswer) const;
 
   // The same call of several, at once: none waits for another one. Answers in the order of `clients`;
@@ -45,9 +45,10 @@ class LocalClient {
                                                const std::string& path,
                                                std::span<const Json> bodies, Duration patience);
 
-  // GET /api/stream: calls `take` with each document and its kind ("state") until that says no, or the
-  // stream ends. A sign of life is of no kind, and comes each second at least. Errors: nobody listens, or
-  // nothing came for the time of `patience`, or a document was larger than kLargeAnswer.
+  // GET /api/stream: calls `take` with each document and its kind ("state") until that returns
+  // false, or the stream ends. A sign of life is of no kind, and comes each second at least.
+  // Errors: no server listens, or nothing came for the time of `patience`, or a document was larger
+  // than kLargeAnswer.
   using Take = std::function<bool(std::string_view kind, Json document)>;
   Expected<void> follow(const Take& take) const;
 

@@ -64,7 +64,7 @@ class Exchange {
   }
 
   bool is_over() const { return result_.has_value(); }
-  // At the end: what became of it. @pre is_over()
+  // At the end: the result. @pre is_over()
   Expected<LocalAnswer> result() { return std::move(*result_); }
   void fail(std::string why) { result_ = Error{std::move(why)}; }
 
@@ -75,7 +75,8 @@ class Exchange {
     if (is_connected_ && !is_over()) receive();
   }
 
-  // Connected: what is waited for. Not connected: the other's queue is full, and nothing tells when it is not.
+  // Connected: the event that it waits for. Not connected: the other's queue is full, and no event
+  // reports when it is not.
   std::optional<pollfd> waits_for() const {
     if (!is_connected_) return std::nullopt;
     const bool sends = sent_ < request_.text.size();
@@ -99,7 +100,7 @@ class Exchange {
     ucred peer{};
     socklen_t length = sizeof peer;
     if (getsockopt(socket_, SOL_SOCKET, SO_PEERCRED, &peer, &length) != 0)
-      return fail("the kernel does not say who listens there");
+      return fail("the kernel does not show which user listens there");
     if (peer.uid != request_.user && peer.uid != 0)
       return fail("a process of another user (" + std::to_string(peer.uid) + ") listens there");
     process_ = peer.pid;

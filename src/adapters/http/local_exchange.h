@@ -1,9 +1,9 @@
 // Requests to programs that listen at unix sockets of this machine: all at once, within one time and
 // one size of answer.
 //
-// Any program may listen at a socket. One that is silent, sends a byte now and then, or never ends its
-// answer costs the others nothing: each request fails by itself when the common time is over. Before a
-// byte is sent, the kernel says whose process listens (SO_PEERCRED).
+// Any program may listen at a socket. A server that is silent, sends a byte now and then, or never
+// ends its answer costs the others nothing: each request fails by itself when the common time is
+// over. Before a byte is sent, the kernel shows whose process listens (SO_PEERCRED).
 #pragma once
 
 #include <cstddef>
@@ -31,8 +31,9 @@ struct LocalAnswer {
   int process = 0;  // which listens; 0: it is of another PID namespace
 };
 
-// One answer for each request, in their order. Returns within `patience`. Errors: nobody listens, or another
-// user's process; no whole answer came in time; it is larger than it may be, or no HTTP.
+// One answer for each request, in their order. Returns within `patience`. Errors: no server
+// listens, or another user's process does; no whole answer came in time; it is larger than it may
+// be, or no HTTP.
 std::vector<Expected<LocalAnswer>> exchange_all(std::span<const LocalRequest> requests,
                                                 Duration patience);
 

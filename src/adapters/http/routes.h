@@ -1,5 +1,5 @@
 // The calls of the API, apart from how they travel: a method, a path, and what is answered to a
-// JSON document. docs/web.md tells them to people, openapi.json to programs.
+// JSON document. docs/web.md describes them for people, openapi.json for programs.
 #pragma once
 
 #include <functional>
@@ -29,7 +29,7 @@ struct Answer {
   std::optional<File> file{};  // likewise; it is sent piece by piece, however large it is
 };
 
-// {"error": "..."}: what is wrong and what to do about it.
+// {"error": "..."}: the fault and the remedy.
 Answer refuse(int status, const std::string& message);
 
 enum class Method : std::uint8_t { kGet, kPost, kPut, kDelete };

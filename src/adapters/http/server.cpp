@@ -44,7 +44,7 @@ bool has_body(const httplib::Request& request) {
   return request.has_header("Content-Length") && request.get_header_value("Content-Length") != "0";
 }
 
-// What tells of the robot; the app itself and whether culprit lives are no secrets.
+// Data about the robot need a token; the app itself, and whether culprit runs, are no secrets.
 bool is_api(const httplib::Request& request) {
   return request.path.rfind("/api/", 0) == 0 || request.path == "/metrics";
 }
@@ -60,7 +60,7 @@ std::string method_of(const Route& route) {
   return name;
 }
 
-// Left to itself, httplib shares a port with whoever has it already.
+// By default, httplib shares a port with a process that has it already.
 void take_port_alone(int socket) {
   const int yes = 1;
   setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
@@ -74,7 +74,7 @@ const char* reason_for(int status) {
 
 constexpr int kGzip = 16 + MAX_WBITS;  // the form, for zlib
 
-// For whoever cannot unpack, which is seldom: nothing is kept of it.
+// For a client that cannot unpack, which is rare: nothing is kept of it.
 std::string unpacked(std::string_view gzip) {
   z_stream stream{};
   if (inflateInit2(&stream, kGzip) != Z_OK) return {};
@@ -126,7 +126,7 @@ void send(const httplib::Request& request, httplib::Response& response, std::str
   response.set_content(content, type);
 }
 
-// As long as it is now: what comes behind that is of another time.
+// As long as it is now: bytes that are appended later are left out.
 void send_file(const httplib::Request& request, httplib::Response& response,
                const Answer::File& file) {
   constexpr std::size_t kPiece = 1 << 16;
@@ -239,7 +239,7 @@ class Server::Http {
   const Options& options() const { return options_; }
 
  private:
-  // What a process that had this number has left behind is in the way.
+  // An earlier process with the same PID may have left a socket file in the way.
   bool bind_to_socket() {
     unlink(options_.socket.c_str());
     server_.set_address_family(AF_UNIX);
@@ -288,15 +288,16 @@ class Server::Http {
     return Role::kAdminister;
   }
 
-  // Addresses say little of who asks: everybody on this machine has the same one. What the owner
-  // of the token changes is counted by itself, so that nobody without the token can delay it.
+  // An address says little about the client: all users of this machine share one. Changes by the
+  // owner of the token have a limit of their own, so that requests without the token cannot delay
+  // them.
   bool is_within_limits(const httplib::Request& q, bool has_token) {
     const auto now = RateLimit::Clock::now();
     if (has_token && changes(q)) return owner_limit_.allows("", now);
     return limit_.allows(q.remote_addr, now);
   }
 
-  // What this server offers: a page shows no more than that.
+  // The calls that this server offers: a page shows no more than that.
   Json about() const {
     Json calls = Json::array();
     if (hub_ != nullptr) calls.push_back("get /api/stream");
@@ -353,7 +354,7 @@ class Server::Http {
   }
 
   void stream(const httplib::Request& q, httplib::Response& r) {
-    // Whoever asks for something else needs a connection, too.
+    // Other requests need a connection, too.
     const std::size_t most = std::min(kMostStreams, (most_connections_ + 1) / 2);
     if (++streams_ > static_cast<int>(most)) {
       --streams_;

@@ -1,7 +1,7 @@
 // Serves the web app, its API and its stream of changes over HTTP, on threads of its own.
 //
-// It is made for hostile company: who may ask is in access.h; requests are bounded in size and in
-// number; connections are bounded, and one that dawdles is closed. A slow reader delays nobody but
+// It is made for hostile company: the rules of access are in access.h; requests are bounded in size
+// and in number; connections are bounded, and one that dawdles is closed. A slow reader delays only
 // itself, and the manager knows nothing of readers (hub.h).
 #pragma once
 
@@ -32,7 +32,7 @@ class Server {
   static constexpr std::size_t kMostConnections = 128;
   static constexpr std::size_t kMostStreams = 64;
   static constexpr std::size_t kMostBytes = 1 << 20;  // of a request's body
-  // Of one address, in the long run; and again as many changes with the token.
+  // The limit for one address, in the long run; and again as many changes with the token.
   static constexpr double kRequestsPerSecond = 50;
   static constexpr double kBurst = 200;
 
@@ -44,7 +44,7 @@ class Server {
     // Where to listen instead: a unix socket. Only processes of this user and of root
     // are served there, and need no token.
     std::string socket{};
-    Json about = Json::object();  // whose server this is, to be told beside what it offers
+    Json about = Json::object();  // identifies the server, beside its calls
     std::span<const Asset> app{};
     std::string_view openapi{};  // describes `routes`, at /api/openapi.json; outlives the server
   };
@@ -58,7 +58,7 @@ class Server {
   ~Server();
 
   int port() const;
-  // What to type into a browser, token included.
+  // The address to type into a browser, token included.
   std::string address() const;
 
  private:

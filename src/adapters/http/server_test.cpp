@@ -320,7 +320,7 @@ TEST_F(WebServer, RefusesPagesOfOtherSites) {
   EXPECT_EQ(post(with("Origin", "null")), 403);
   EXPECT_EQ(post(with("Sec-Fetch-Site", "cross-site")), 403);
   EXPECT_EQ(client().Get("/api/echo", {{"Sec-Fetch-Site", "cross-site"}})->status, 403);
-  // What a form can send without asking.
+  // A content type that a form can send without a preflight request.
   EXPECT_EQ(post(with_token, "{}", "text/plain"), 415);
   EXPECT_EQ(client().Options("/api/echo")->status, 401);
 }
@@ -366,7 +366,8 @@ TEST_F(WebServer, SlowsDownWhoAsksTooOften) {
   EXPECT_EQ(refused, 1);
 }
 
-// On one machine all users have one address: without the token, nobody keeps the owner's pause out.
+// On one machine all users have one address: requests without the token do not keep the owner's
+// pause out.
 TEST_F(WebServer, TakesOrdersWithTheTokenWhileSomebodyElseAsksTooOften) {
   const auto ask_too_often = [&] {
     int refused = 0;
@@ -405,7 +406,7 @@ TEST_F(WebServer, BoundsTheNumberOfStreams) {
     ASSERT_THAT(readers.back()->receive("hello"), HasSubstr("hello"));
   }
   EXPECT_EQ(client().Get("/api/stream")->status, 503);
-  readers.clear();  // and whoever publishes does not notice that they are gone
+  readers.clear();  // and the publisher does not notice that
   for (int i = 0; i < 10; ++i) hub.publish(Kind::kEvent, "{}");
 }
 
@@ -481,7 +482,7 @@ TEST(WebServerStart, LeavesDescriptorsToTheManager) {
     pause();
     _exit(0);
   }
-  // The flood is there when nobody else is served any more.
+  // The flood is there when no other client is served any more.
   httplib::Client impatient("127.0.0.1", server->port());
   impatient.set_connection_timeout(std::chrono::milliseconds(200));
   impatient.set_read_timeout(std::chrono::milliseconds(200));
@@ -524,7 +525,7 @@ struct LocalServer : testing::Test {
   const LocalClient client{path, std::chrono::seconds(20), geteuid()};
 };
 
-// No stack of this size can be had, so that no thread can be made while it lives.
+// No stack of this size is available, so no thread can be made while this exists.
 class NoThreads {
  public:
   NoThreads() {
@@ -614,7 +615,7 @@ TEST_F(LocalServer, TakesThePlaceOfWhatAKilledOneLeft) {
   EXPECT_TRUE(Server::start(options, {}, nullptr));
 }
 
-// The kernel says who asks: also where the file's permissions were opened by mistake.
+// The kernel shows which user asks: also where the file's permissions were opened by mistake.
 TEST_F(LocalServer, ServesNobodyElse) {
   if (geteuid() != 0) GTEST_SKIP() << "only root can become somebody else";
   std::filesystem::permissions(folder.path(), std::filesystem::perms::all);
@@ -671,7 +672,7 @@ TEST_F(LocalServer, IsFollowedUntilItEnds) {
   EXPECT_THAT(kinds, testing::IsSupersetOf({"hello", "state"}));
 }
 
-// Whoever is stopped takes connections all the same: its kernel does.
+// A stopped process accepts connections all the same: its kernel does.
 TEST(LocalClients, DoNotWaitForEverForWhoDoesNotAnswer) {
   const test::TestFolder folder;
   const std::string path = folder / "s";

@@ -65,7 +65,7 @@ std::unique_ptr<TlsConnection> TlsConnection::accept(const TlsContext& context, 
   return made;
 }
 
-// Says good-bye if that needs no waiting.
+// Sends close_notify if that needs no waiting.
 TlsConnection::~TlsConnection() {
   ERR_clear_error();
   SSL_shutdown(connection_);
@@ -73,7 +73,7 @@ TlsConnection::~TlsConnection() {
   SSL_free(connection_);
 }
 
-// What `step` gives once the socket was ready for it; 0: the client has ended the connection.
+// The result of `step` once the socket was ready for it; 0: the client has ended the connection.
 template <class Step>
 int TlsConnection::until_done(Step step, std::chrono::milliseconds patience) {
   const auto end = TlsClock::now() + patience;

@@ -3,7 +3,7 @@
 //     auto context = TlsContext::load("robot.crt", "robot.key");
 //     auto connection = TlsConnection::accept(*context, socket, std::chrono::seconds(10));
 //
-// TLS 1.2 and newer. Clients show no certificate: tokens say who they are (access.h).
+// TLS 1.2 and newer. Clients show no certificate: tokens show who they are (access.h).
 #pragma once
 
 #include <chrono>

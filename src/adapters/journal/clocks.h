@@ -1,7 +1,7 @@
 // One moment on both clocks that records which outlive a process are dated with.
 //
-// The robot's clock is reliable, but starts anew whenever the machine starts. The wall clock goes
-// on, but jumps: a computer without a battery begins in 1970 until the network tells it the time.
+// The robot's clock is reliable, but restarts whenever the machine does. The wall clock goes on,
+// but jumps: a computer without a battery begins in 1970 until it gets the time from the network.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct Clocks {
 // `robot`: now, on the robot's clock.
 Clocks clocks_now(Time robot);
 
-// How long ago `then` was, as far as that is certain: less if the clocks cannot tell.
+// How long ago `then` was, as far as that is certain: less if the clocks do not show it.
 Duration certain_age(const Clocks& then, const Clocks& now);
 
 }  // namespace culprit::journal

@@ -1,4 +1,4 @@
-// A journal that is damaged anywhere: what was learned survives or its loss is said, and the file
+// A journal that is damaged anywhere: the beliefs survive or their loss is reported, and the file
 // is written again.
 #include <fstream>
 #include <random>

@@ -30,10 +30,10 @@ class Statement {
   Statement& bind_blob(int place, std::string_view bytes);
 
   // Moves to the next row; false at the end. After the end, and after an error, the statement can
-  // be bound and stepped anew.
+  // be bound and stepped again.
   Expected<bool> step();
 
-  // Of the present row, from 0. Texts and blobs are valid until the next step.
+  // The columns of the present row, from 0. Texts and blobs are valid until the next step.
   std::int64_t integer(int column) const;
   double real(int column) const;
   std::string_view bytes(int column) const;
@@ -67,12 +67,12 @@ class Database {
   // The one number that `sql` selects.
   Expected<std::int64_t> number(const std::string& sql) const;
 
-  // Whether what failed last is to be blamed on what stands in the file: it is broken, cannot be
-  // read, or is not what it should be. False if something else was in the way: the disk is full,
-  // the file is locked or may not be written.
+  // Whether the last failure is due to the file's content: it is broken, cannot be read, or is not
+  // what it should be. False if something else was in the way: the disk is full, the file is locked
+  // or may not be written.
   bool blames_file() const { return *blames_file_; }
 
-  // Likewise of a file that cannot be opened, or in which one of `looks` fails.
+  // As blames_file(), for a file that cannot be opened, or in which one of `looks` fails.
   static bool is_damaged(const std::filesystem::path& path, std::span<const char* const> looks);
   // Moves a file and what SQLite keeps beside it to the first free name, "<path>.damaged-<n>".
   static Expected<std::filesystem::path> set_aside(const std::filesystem::path& path);

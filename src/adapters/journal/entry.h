@@ -2,8 +2,8 @@
 //
 //     hash_n = SHA-256( hash_(n-1) | n | at | size of kind | kind | body )
 //
-// Numbers are 8 bytes, most significant first; hash_0 is 32 zero bytes. Whoever changes, removes or
-// inserts a row has to change every hash after it.
+// Numbers are 8 bytes, most significant first; hash_0 is 32 zero bytes. A change to a row, a
+// removed row or an inserted one changes every hash after it.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace culprit::journal {
 
-// What a row is about. These words stand in files: they must not change.
+// The kinds of rows. Files hold these words: they must not change.
 namespace kind {
 inline constexpr std::string_view kSession = "session";    // culprit began to manage
 inline constexpr std::string_view kSteps = "steps";        // what the manager was stepped with
@@ -24,7 +24,7 @@ inline constexpr std::string_view kOutcome = "outcome";    // how such a request
 inline constexpr std::string_view kBelief = "belief";      // what is believed of a strategy now
 inline constexpr std::string_view kCoupling = "coupling";  // which failures go away together
 inline constexpr std::string_view kLatency = "latency";    // how late a rule shows a change
-inline constexpr std::string_view kRobot = "robot";        // what was seen of the robot, all of it
+inline constexpr std::string_view kRobot = "robot";        // the known robot, all of it
 inline constexpr std::string_view kGap = "gap";            // what could not be written
 inline constexpr std::string_view kEnd = "end";            // culprit was asked to stop
 }  // namespace kind

@@ -31,6 +31,7 @@ struct WordOfOrder {
   const char* operator()(const SetDryRun& o) const { return o.is_on ? "dry_run" : "act"; }
   const char* operator()(const Approve&) const { return "approve"; }
   const char* operator()(const Refuse&) const { return "refuse"; }
+  const char* operator()(const Propose&) const { return "propose"; }
   const char* operator()(const Silence&) const { return "silence"; }
   const char* operator()(const LiftSilence&) const { return "lift_silence"; }
   const char* operator()(const RunStrategy&) const { return "run_strategy"; }
@@ -39,10 +40,11 @@ struct WordOfOrder {
   const char* operator()(const EndStarted&) const { return "end_started"; }
 };
 
-// Writes, behind its type, what the event is about.
+// Writes the event's members, behind its type.
 class EventWriter {
  public:
-  EventWriter(const RuleSet& rules, JsonWriter& json) : rules_(rules), json_(json) {}
+  EventWriter(Time at, const RuleSet& rules, JsonWriter& json)
+      : at_(at), rules_(rules), json_(json) {}
 
   void operator()(const FailureDetected& e) const {
     about(e.rule);
@@ -185,6 +187,14 @@ class EventWriter {
     about(e.rule);
     json_.member("blind_for_ns", e.blind_for.count());
   }
+  void operator()(const IncidentOpened& e) const { add(e.incident); }
+  void operator()(const IncidentChanged& e) const { add(e.incident); }
+  void operator()(const IncidentClosed& e) const {
+    json_.member("incident", e.id);
+    about(e.root);
+    json_.member("how", culprit::to_string(e.how));
+    if (!e.into.empty()) json_.member("into", e.into);
+  }
   void operator()(const PriorsAdopted& e) const {
     json_.member("source", e.source);
     add_each("priors", e.priors, [this](const PriorsTold::Prior& each) {
@@ -226,6 +236,21 @@ class EventWriter {
       // An order that is refused may be about what does not exist.
       if (run->strategy.index < rules_.strategies.size()) about(run->strategy);
     }
+  }
+  void add(const Incident& incident) const {
+    json_.member("incident", incident.id);
+    about(incident.root);
+    add_names("consequences", incident.consequences);
+    add_names("components", incident.components);
+    if (!incident.host.empty()) json_.member("host", incident.host);
+    json_.member("certain", incident.is_certain);
+    json_.member("suspected", incident.is_suspected);
+    json_.member("age_ns", (at_ - incident.since).count());
+    json_.member("criticality", culprit::to_string(incident.criticality));
+    json_.member("exhausted", incident.is_exhausted);
+    json_.member("needs_person", incident.needs_person());
+    if (!incident.condition.empty()) json_.member("condition", incident.condition);
+    json_.member("headline", incident.headline);
   }
   void add_target(const Silenceable& what) const {
     const auto* rule = std::get_if<RuleId>(&what);
@@ -282,6 +307,7 @@ class EventWriter {
     return rules_[id].name;
   }
 
+  const Time at_;
   const RuleSet& rules_;
   JsonWriter& json_;
 };
@@ -309,7 +335,7 @@ class EventReader {
     return what;
   }
 
-  // Whom it is about has the same name in every event.
+  // Every event names its subject by the same members.
   template <class T>
   std::optional<What> read() const {
     T event{};
@@ -329,7 +355,7 @@ class EventReader {
     return event;
   }
 
-  // What else the row tells; false if the event is nothing without what is missing.
+  // Reads the other members of the row; false if a member is missing that the event needs.
   template <class T>
   bool complete(T& event) const {
     if constexpr (requires { event.adaptation; }) {
@@ -415,13 +441,16 @@ class EventReader {
   }
   bool complete(OrderAccepted& event) const { return complete(event.order); }
   bool complete(OrderRefused& event) const { return complete(event.order); }
-  bool complete(ActionHeldBack&) const { return false; }  // by which restraint?
-  bool complete(SilenceEnded&) const { return false; }    // of what?
-  bool complete(NeverSeen&) const { return false; }       // each run finds out anew
-  bool complete(PriorsAdopted&) const { return false; }   // likewise
-  bool complete(HostSilent&) const { return false; }      // likewise
-  bool complete(HostBack&) const { return false; }        // likewise
-  bool complete(ValueUnknown&) const { return false; }    // likewise
+  bool complete(ActionHeldBack&) const { return false; }   // by which restraint?
+  bool complete(SilenceEnded&) const { return false; }     // of what?
+  bool complete(NeverSeen&) const { return false; }        // each run detects it by itself
+  bool complete(PriorsAdopted&) const { return false; }    // likewise
+  bool complete(HostSilent&) const { return false; }       // likewise
+  bool complete(HostBack&) const { return false; }         // likewise
+  bool complete(ValueUnknown&) const { return false; }     // likewise
+  bool complete(IncidentOpened&) const { return false; }   // likewise
+  bool complete(IncidentChanged&) const { return false; }  // likewise
+  bool complete(IncidentClosed&) const { return false; }   // likewise
   bool complete(RuleBlind& event) const {
     const auto why = unseen_named(text_of(json_, "why"));
     if (!why) return false;
@@ -478,9 +507,9 @@ std::string line_of(const Event& event, const RuleSet& rules) {
   line.reserve(kUsual);
   JsonWriter json(line);
   json.begin_object();
-  // On disk the type of these stands behind the names.
+  // On disk their type comes after the names.
   if (!std::holds_alternative<NeverSeen>(event.what)) json.member("type", words_of(event).name);
-  std::visit(EventWriter(rules, json), event.what);
+  std::visit(EventWriter(event.at, rules, json), event.what);
   json.member("text", describe(event, rules));
   json.member("time", event.at.time_since_epoch().count());
   json.end_object();

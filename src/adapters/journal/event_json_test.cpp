@@ -96,7 +96,25 @@ std::vector<EventWhat> samples() {
           StaysDown{{c}, StaysDown::Why::kDoubt, 50, c, 700ms},
           StaysDown{{c}, StaysDown::Why::kOwner},
           OrderAccepted{{1, "ada", "", Revive{}}},
-          OrderAccepted{{1, "ada", "", EndStarted{}}}};
+          OrderAccepted{{1, "ada", "", EndStarted{}}},
+          IncidentOpened{{.id = "mywpiwzf-0k7",
+                          .root = r,
+                          .consequences = {r},
+                          .components = {c},
+                          .is_certain = true,
+                          .since = Time(3ns),
+                          .criticality = Criticality::kError,
+                          .condition = "dead",
+                          .headline = "camera is dead"}},
+          IncidentChanged{{.id = "mywpiwzf-0k7",
+                           .root = r,
+                           .components = {c},
+                           .host = "rover2",
+                           .since = Time(3ns),
+                           .is_exhausted = true,
+                           .headline = "nothing is heard of rover2, where camera ran"}},
+          IncidentClosed{"mywpiwzf-0k7", r},
+          IncidentClosed{"mywpiwzf-0k7", r, IncidentEnd::kMerged, "mywpiwzf-0k8"}};
 }
 
 std::vector<std::string> golden_rows() {
@@ -140,7 +158,7 @@ TEST(EventJson, WhatIsReadBackIsWrittenAgainWithTheSameNames) {
           "launcher", "fell",      "after_ns", "components"})
       EXPECT_EQ(again.value(key, Json()), row.value(key, Json())) << key << " of " << text;
   }
-  EXPECT_EQ(read, 48u) << "all but those whose rows do not tell enough";
+  EXPECT_EQ(read, 48u) << "all but those whose rows hold too little";
 }
 
 TEST(EventJson, ReadsNothingThatTheRulesDoNotHaveOrThatIsDamaged) {

@@ -17,7 +17,7 @@ class FileLock {
   FileLock& operator=(FileLock&& other) noexcept;
   ~FileLock();
 
-  // Its descriptor, for whoever also reads or writes the file.
+  // Its descriptor, for code that also reads or writes the file.
   int file() const { return file_; }
 
  private:

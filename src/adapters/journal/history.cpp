@@ -18,7 +18,7 @@ const What* order_of(const Event& event) {
   return accepted == nullptr ? nullptr : std::get_if<What>(&accepted->order.what);
 }
 
-// Of each component only the last event of this kind counts.
+// For each component only the last event of this kind counts.
 template <class What>
 bool replaces_older(const Event& event, History& kept) {
   const auto* newer = std::get_if<What>(&event.what);
@@ -31,8 +31,8 @@ bool replaces_older(const Event& event, History& kept) {
   return true;
 }
 
-// What stays down does so until it is found again, or a person orders otherwise. True for what is
-// about that alone.
+// A component that stays down does so until it is discovered again, or a person orders otherwise.
+// True if the event is about that alone.
 bool ends_stay(const Event& event, const RuleSet& rules, History& kept) {
   if (std::holds_alternative<StaysDown>(event.what)) {
     kept.push_back(event);
@@ -82,7 +82,7 @@ std::optional<RuleId> searched(const Event& event, const RuleSet& rules) {
   return std::nullopt;
 }
 
-// Is it gone for so long that it would be another one if it came now?
+// Has its failure been cleared for so long that a new one would count as another?
 bool is_long_gone(const Event& event, Time now) { return later(event.at, kPastCounts) <= now; }
 
 // By rule: from which event on its failure is there, or may still come back; past.size() if not.
@@ -106,7 +106,8 @@ std::optional<RuleId> went(const Event& event) {
   return std::nullopt;
 }
 
-// What each process says anew of a failure that is still there. @pre its failure is there
+// An event that each process repeats about a failure that has not cleared. @pre its failure is
+// there
 bool is_said_again(const Event& event, const History& kept, const RuleSet& rules) {
   if (!is_any_of<FailureDetected, LastResortReached, RuleExhausted>(event)) return false;
   const auto rule = searched(event, rules);
@@ -146,7 +147,7 @@ History still_counting(const History& past, Time now, const RuleSet& rules) {
       continue;
     }
     if (ends_stay(event, rules, kept)) continue;
-    // Nobody looked on when it was due.
+    // culprit did not run when the verdict was due.
     const auto* pending = std::get_if<OutcomePending>(&event.what);
     if (pending != nullptr && pending->due <= now) continue;
     if (const auto* counted = std::get_if<OutcomeCounted>(&event.what)) {

@@ -1,5 +1,5 @@
-// What runs of culprit did on this robot, as the next one remembers it (knowledge/history.h): gathered
-// from rows, and carried on from session to session until it no longer counts.
+// The events of earlier runs on this robot, as the next run remembers them (knowledge/history.h):
+// gathered from rows, and carried on from session to session until they no longer count.
 #pragma once
 
 #include "journal/json.h"
@@ -7,18 +7,18 @@
 
 namespace culprit::journal {
 
-// Nothing counts for longer, but silences, what was tried on failures that are still there,
-// and of each component its last process and its intended lifecycle.
+// Events count no longer than this. Exceptions: mutes, attempts on failures that have not cleared,
+// and of each component its last process and its intended lifecycle state.
 inline constexpr Duration kPastCounts = std::chrono::hours(1);
 
-// Is it one that the next run is told of (knowledge/history.h)?
+// Does the next run need it (knowledge/history.h)?
 bool is_remembered(const Event& event);
 
 // Leaves out what does not count at `now` any more.
 History still_counting(const History& past, Time now, const RuleSet& rules);
 
-// Only what holds on another robot, and on this one after a restart of the machine, whose clock
-// then begins anew: silences. `shift` is added to their times.
+// Keeps only what also holds on another robot, and on this one after a reboot, when its clock
+// restarts: silences. `shift` is added to their times.
 History of_people(const History& past, Duration shift);
 
 Json to_json(const History& past, const RuleSet& rules);

@@ -1,4 +1,4 @@
-// What of earlier runs still counts.
+// Checks which events of earlier runs still count.
 #include "journal/history.h"
 
 #include <gtest/gtest.h>

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::int64_t kVersion = 1;
 
-// Without reasons, which are for people, who were told.
+// Without reasons, which were for people.
 Json row_of(const Event& event, const RuleSet& rules) {
   Event told = event;
   if (auto* chosen = std::get_if<StrategyChosen>(&told.what))
@@ -20,7 +20,7 @@ Json row_of(const Event& event, const RuleSet& rules) {
   return to_json(History{std::move(told)}, rules).front();
 }
 
-// All that it says but when.
+// The whole row but its time.
 std::string without_time(const Event& event, const RuleSet& rules) {
   Json json = row_of(event, rules);
   json.erase("time");

@@ -1,4 +1,4 @@
-// What one culprit leaves to another one, on another machine.
+// The inheritance that one culprit leaves to another one on another machine.
 #include "journal/inheritance.h"
 
 #include <gtest/gtest.h>
@@ -90,7 +90,7 @@ TEST(Inheritance, OfTooMuchTheNewestIsToldAndWhatWasLearnedLast) {
   EXPECT_EQ(to_text(much, heirs_rules(), 10), "");
 }
 
-// Nothing counts for longer than an hour but what is not over.
+// No event counts for longer than an hour, unless its failure has not cleared.
 TEST(Inheritance, OfVeryManyEventsThoseThatDoNotCountAnyMoreAreForgotten) {
   Bequest bequest(heirs_rules());
   bequest.add(then(1s, FailureDetected{RuleId(0), {}, {}}));

@@ -42,7 +42,7 @@ bool may_stand_here(std::string_view kind) {
   return kind == kind::kEvent || kind == kind::kIntent || kind == kind::kOutcome;
 }
 
-// False: it is not what culprit writes, whatever its checksum.
+// False: culprit never writes that, even if the checksum fits.
 bool decode_part(std::string_view payload, SavedIntents& saved) {
   ByteReader in(payload);
   const Time step = Time(Duration(in.integer()));
@@ -133,7 +133,7 @@ Expected<void> IntentFile::append(Time step, std::string_view rows) {
   append_fixed(bytes_, 0, kSizeBytes);
   if (end_ + bytes_.size() > kMaxBytes)
     return cannot_write_intents(path_, "the journal does not keep up");
-  // What goes to a file that somebody removed or replaced would be lost in silence.
+  // Writes to a file that somebody removed or replaced would be lost without an error.
   struct stat status {};
   if (stat(path_.c_str(), &status) != 0 || status.st_ino != inode_)
     return cannot_write_intents(path_, "it was removed or replaced");
@@ -148,7 +148,7 @@ Expected<void> IntentFile::append(Time step, std::string_view rows) {
 }
 
 void IntentFile::empty() {
-  // What stays is known to stand in the journal when it is read.
+  // If the old content stays, the reader finds that the journal has it already.
   if (ftruncate(file_.file(), 0) != 0) return;
   end_ = 0;
 }

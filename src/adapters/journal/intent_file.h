@@ -1,9 +1,9 @@
-// What was decided and is asked for, until it stands in the journal: "a.journal-intents".
+// The decisions and requests that the journal does not hold yet: "a.journal-intents".
 //
 // Before a request goes out that needs no disk (settled_here.h) its rows are here, by one write().
 // From then on they are with the kernel, and outlive culprit however it ends; the journal follows
-// within moments, and on the disk. Nothing here is ever synced: what a power cut leaves of this
-// file is read as far as it is whole, and nothing is gone on with after one.
+// within moments, and on the disk. This file is never synced: after a power cut it is read as far
+// as it is whole, and no strategy is continued.
 //
 //     "culprit-intents1"  number (8 bytes) and hash (32 bytes) of a row of the journal: all below
 //                         comes after it
@@ -13,8 +13,8 @@
 //     0 (4 bytes): the end
 //
 // Sizes and numbers lowest byte first; the others as in bytes.h. The first part follows the hash of
-// the 56 bytes before it. Once all parts stand in the journal the next one is written over the
-// first, after a later row; what then remains behind the end was written before it.
+// the 56 bytes before it. Once all parts are in the journal, the next one is written over the
+// first, after a later row; older bytes may remain behind its end.
 #pragma once
 
 #include <filesystem>
@@ -40,24 +40,25 @@ class IntentFile {
   static constexpr std::size_t kMaxBytes = std::size_t{256} << 10;
 
   // Makes or empties the file beside `journal`, which exists, and gives it the journal's owner and
-  // permissions. Whatever it had must stand in the journal. Errors say why, with the path.
+  // permissions. Its old content must be in the journal. Errors say why, with the path.
   static Expected<IntentFile> open(const std::filesystem::path& journal);
 
-  // What such a file begins with. Made before it is needed, for nothing is asked for meanwhile.
+  // The beginning of such a file. It is made in advance, while no request waits for it.
   struct Head {
     Head() = default;
     explicit Head(const Link& newest);
     std::string bytes;
     Hash hash{};
   };
-  // All parts stand in the journal, and the row that `head` was made of: the next part is the first one.
+  // All parts are in the journal, and the row that `head` was made of: the next part is the first
+  // one.
   void begin_after(Head head);
 
   // One more part, whole with the kernel when this returns. After an error it is not there, and the
   // parts before it are. @pre begin_after() was called
   Expected<void> append(Time step, std::string_view rows);
 
-  // All parts stand in the journal, and no more follow for now.
+  // All parts are in the journal, and no more follow for now.
   void empty();
 
  private:
@@ -74,7 +75,7 @@ class IntentFile {
   std::string bytes_;    // memory that is used again
 };
 
-// What such a file says.
+// The content of such a file.
 struct SavedIntents {
   Link after;               // the row of the journal that all of it comes after
   std::vector<Entry> rows;  // without `id`
@@ -85,7 +86,7 @@ struct SavedIntents {
 // Reads as far as it is whole; trusts nothing. Only events, intents and outcomes are rows here.
 SavedIntents decode_intents(std::string_view bytes);
 
-// Nothing is saved where there is no such file. Errors: it cannot be read, or is no such file.
+// If there is no such file, nothing is saved. Errors: it cannot be read, or is no such file.
 Expected<SavedIntents> read_intents(const std::filesystem::path& path);
 
 }  // namespace culprit::journal

@@ -1,5 +1,4 @@
-// The file of intents: whatever becomes of its bytes, what is read from it is a beginning of what was
-// written to it.
+// The file of intents: whatever happens to its bytes, a read gives a beginning of what was written.
 #include "journal/intent_file.h"
 
 #include <csignal>

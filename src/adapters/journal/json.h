@@ -1,5 +1,5 @@
-// What the rows of the journal hold, as JSON (docs/journal.md): named, so that it can be read
-// without the rule file, and after the rule file has changed. Events: event_json.h.
+// The rows of the journal as JSON (docs/journal.md): by name, so that they can be read without the
+// rule file, and after the rule file has changed. Events: event_json.h.
 #pragma once
 
 #include <string>
@@ -18,11 +18,12 @@ double number_of(const Json& json, const char* key, double otherwise = 0);
 std::int64_t integer_of(const Json& json, const char* key, std::int64_t otherwise = 0);
 bool flag_of(const Json& json, const char* key);
 
-// What a command asks for: {"set_parameter": {"name": "gain", "value": 0.5}}
+// The request of a command: {"set_parameter": {"name": "gain", "value": 0.5}}
 void write(const decltype(Command::what)& request, JsonWriter& json);
 Expected<decltype(Command::what)> request_from_json(const Json& json);
 
-// What was read before a change, or with a reply: a value, {"lifecycle": "active"}, or null.
+// The value that was read before a change, or with a reply: a value, {"lifecycle": "active"}, or
+// null.
 void write(const decltype(Reply::value)& value, JsonWriter& json);
 decltype(Reply::value) reading_from_json(const Json& json);
 

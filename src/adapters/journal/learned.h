@@ -1,5 +1,4 @@
-// What was learned of strategies and failures, by name, so that it outlives the rule file's
-// numbers.
+// The beliefs about strategies and failures, by name, so that they outlive the rule file's numbers.
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
 // A second copy of what was learned, in a file of its own beside the journal: "a.journal-learned".
-// It tells when the tables of the journal are not what they were, and what they were then; and,
-// because it names a row that the journal had, when the end of the journal is lost.
+// It shows when the tables of the journal have changed, and what they were before; and, because it
+// names a row that the journal had, when the end of the journal is lost.
 #pragma once
 
 #include <filesystem>
@@ -23,15 +23,15 @@ Expected<void> write_copy(const std::filesystem::path& path, const LearnedCopy& 
 // Nothing: there is no such file. Errors: it cannot be read, or is damaged.
 Expected<std::optional<LearnedCopy>> read_copy(const std::filesystem::path& path);
 
-// The bodies of rows that say what is believed from then on.
+// The bodies of rows that hold a new belief.
 Json body_of(const LearnedBelief& learned);
 Json body_of(const LearnedCoupling& learned);
 Json body_of(const LearnedLatency& learned);
 
-// What the copy says, and what the rows of `journal` that are newer say after it.
+// The copy's content, with the newer rows of `journal` applied.
 Expected<Learned> brought_up_to_date(const LearnedCopy& copy, const Database& journal);
 
-// Whether both say the same, in whatever order.
+// Whether both hold the same, in whatever order.
 bool is_same(Learned a, Learned b);
 
 }  // namespace culprit::journal

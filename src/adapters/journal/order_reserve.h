@@ -1,8 +1,9 @@
 // Room on the disk for what people have ordered, taken while there is some: "a.journal-orders-reserve".
 //
-// A pause has to be kept when the disk is full. The file of the orders is replaced as a whole, which needs room for
-// the new one, so these 32 KiB are there beforehand and are written in place. Two records of 16 KiB take turns: while
-// one is written the other one holds; each is sealed (sealed_file.h), and begins with its number on a line.
+// A pause must be kept also when the disk is full. The file of the orders is replaced as a whole,
+// which needs room for the new one. So these 32 KiB are reserved beforehand and written in place.
+// Two records of 16 KiB take turns: while one is written the other one holds; each is sealed
+// (sealed_file.h), and begins with its number on a line.
 //
 // A file system that never writes in place (btrfs, ZFS) may refuse this, too; then the order is in force and not kept.
 #pragma once

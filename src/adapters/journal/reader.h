@@ -22,9 +22,9 @@ class Cursor {
  public:
   // False at the end. Reuses the memory of `entry`.
   Expected<bool> next(Entry& entry);
-  // Of the row that next() gave.
+  // The hash of the row that next() returned.
   std::string_view hash() const { return statement_.bytes(4); }
-  // Whether its hash is that of what it says, after the row before: what is acted on has to be.
+  // Whether its hash fits its content and the row before: rows that cause an action must pass.
   bool is_as_written(const Entry& entry, Hasher& hasher) const;
 
  private:

@@ -10,10 +10,10 @@
 namespace culprit::journal {
 namespace {
 
-// A person was told that it holds.
+// A person received a confirmation that it holds.
 bool is_order(const Event& event) { return std::holds_alternative<OrderAccepted>(event.what); }
 
-// What `news` speaks of is now as `news` says.
+// Replaces each part of `learned` that `news` has.
 void replace(Learned& learned, const Learned& news) {
   for (const LearnedBelief& each : news.beliefs) {
     std::erase_if(learned.beliefs, [&](const LearnedBelief& old) {
@@ -34,10 +34,13 @@ void replace(Learned& learned, const Learned& news) {
   }
 }
 
-// Journals from before rules could be blind have no such rows, and no decision depends on them.
-bool is_about_sight(const Event& event) {
+// Older journals have no such rows, and no decision depends on them.
+bool is_no_decision(const Event& event) {
   return std::holds_alternative<RuleBlind>(event.what) ||
-         std::holds_alternative<RuleSees>(event.what);
+         std::holds_alternative<RuleSees>(event.what) ||
+         std::holds_alternative<IncidentOpened>(event.what) ||
+         std::holds_alternative<IncidentChanged>(event.what) ||
+         std::holds_alternative<IncidentClosed>(event.what);
 }
 
 }  // namespace
@@ -49,7 +52,7 @@ std::optional<Digest> digest_of(std::span<const Command> commands, std::span<con
     all += std::to_string(command.id.number) + " " + rules[command.component].name + " " +
            culprit::to_string(command) + "\n";
   for (const Event& event : events) {
-    if (!is_about_sight(event)) all += line_of(event, rules) + "\n";
+    if (!is_no_decision(event)) all += line_of(event, rules) + "\n";
   }
   if (all.empty()) return std::nullopt;
   const Hash hash = hasher.of(all);
@@ -154,7 +157,7 @@ void Recorder::hand_over(Pending& step, std::span<const Command> commands,
   if (has_to_wait) wait_until_written();
 }
 
-// All that is kept happened by now; what it came of has its rows.
+// All kept steps happened by now; their results have their own rows.
 void Recorder::date_kept() {
   if (kept_ == 0) return;
   const auto kept = std::span(places_).first(kept_);
@@ -206,7 +209,7 @@ void Recorder::hand_over(Urgency urgency) {
   }
   const bool is_due = now_of_queue_ - first_queued_ >= kPeriod || queued_observations_ >= kMany;
   urgency_ = std::max({urgency_, urgency, is_due ? Urgency::kSoon : Urgency::kNone});
-  // Whoever waits wakes it.
+  // The thread that waits for the rows wakes the writer.
   if (urgency_ == Urgency::kSoon || urgency_ == Urgency::kSynced) is_writer_needed_ = true;
 }
 
@@ -243,7 +246,7 @@ void Recorder::decide(Pending& step, std::span<const Command> commands,
     add_row(kind::kIntent, line_of(command, rules_));
   }
   if (decision.rows.empty()) return;
-  // What of it was known before is among them.
+  // Rows that were kept for this step earlier are among them.
   if (decision.number == 0) decision.number = ++decisions_;
   remember_rows(decision);
 }
@@ -322,8 +325,8 @@ std::optional<KnownRobot> Recorder::newly_known(Time now) {
   const bool is_old = robot_written_ != kLongAgo && later(robot_written_, kRobotAtLatest) <= now;
   const bool was_looked_at =
       robot_looked_at_ != kLongAgo && now < later(robot_looked_at_, kRobotPeriod);
-  // What is seen for the first time is written at once: who dies together with culprit would never
-  // have been there. That is seldom; ends of topics come and go all the time.
+  // A first sighting is written at once: if the node died together with culprit, the journal would
+  // otherwise lack it. First sightings are rare; topics' publishers come and go all the time.
   const bool is_first_sight = sightings != robot_sightings_;
   if ((changes == robot_changes_ && !is_old) || (was_looked_at && !is_first_sight))
     return std::nullopt;
@@ -459,14 +462,14 @@ void Recorder::add(std::string_view kind, std::int64_t at, const Json& body) {
   add({0, at, std::string(kind), to_line(body)});
 }
 
-// What a step led to stands behind the row that the step is in.
+// The results of a step follow the row that holds the step.
 void Recorder::add(Entry row) {
   close_steps();
   unsaved_bytes_ += row.body.size();
   unsaved_.entries.push_back(std::move(row));
 }
 
-// In a file that takes the place of one that was removed or damaged, the run goes on.
+// The run goes on in a file that replaces one that was removed or damaged.
 Expected<void> Recorder::open_anew() {
   Writer::Options options = options_.writer;
   options.is_damaged = is_damaged_;
@@ -492,7 +495,7 @@ void Recorder::begin_session_anew(const std::filesystem::path& rows) {
     if (auto recovery = recover(*reader, {}, rules_, {now_, wall, where_.domain}))
       known = std::move(*recovery);
   }
-  // Without them nobody knows what is under way by now; what was at the beginning is not.
+  // Without them the strategies under way are unknown; those at the beginning are known.
   Json interrupted = Json::array();
   if (known) {
     for (const Interrupted& each : known->interrupted) interrupted.push_back(to_json(each, rules_));
@@ -555,8 +558,8 @@ void Recorder::tell_of_copy() {
   if (!options_.on_trouble) return;
   options_.on_trouble(copy_trouble_.empty()
                           ? "the second copy of what was learned is written again"
-                          : "what was learned stands in the journal alone, its second copy cannot "
-                            "be written: " +
+                          : "the second copy of what was learned cannot be written, so only the "
+                            "journal has it: " +
                                 copy_trouble_);
 }
 
@@ -580,9 +583,8 @@ void Recorder::tell_of_intents() {
   told_of_intents_ = trouble;
   if (!options_.on_trouble) return;
   options_.on_trouble(trouble.empty()
-                          ? "what is asked for stands beside the journal again before it goes out"
-                          : "what is asked for waits for the journal each time, which is slower: " +
-                                trouble);
+                          ? "requests are saved beside the journal again before they go out"
+                          : "each request waits for the journal now, which is slower: " + trouble);
 }
 
 // The journal has all.
@@ -594,7 +596,7 @@ void Recorder::empty_intents() {
 }
 
 Expected<void> Recorder::failed(Error error) {
-  // A file that cannot be written now may be another one next time: it is opened anew.
+  // A file that cannot be written now may be another one next time: it is opened again.
   if (writer_) is_damaged_ = writer_->is_damaged();
   writer_.reset();
   bound_unsaved();

@@ -2,15 +2,15 @@
 //
 // The manager's thread keeps the steps that decide nothing, hands them over several at a time and
 // goes on; a thread of the recorder's own turns them into rows. Steps that decide nothing wait for
-// others, because each write costs whole pages of the disk, however little it is about; what was
-// said or asked is written soon. Only a step that learned something, took an order or asks for
-// changes that nobody could look up later is waited for: its rows are on the disk before anything is
-// asked for or said. What is settled by reading back (settled_here.h) waits for one write to the
-// intent file only, and is on the disk soon.
+// others, because each write costs whole pages of the disk, however little it is about; events and
+// requests are written soon. The manager waits only for a step that learned something, took an
+// order or requests changes that cannot be read back later: its rows are on the disk before any
+// request or message goes out. A request that can be settled by reading back (settled_here.h) waits
+// for one write to the intent file only, and is on the disk soon.
 //
-// If the file cannot be written, nothing waits for it: the robot is managed all the same. Rows are
-// kept and written as soon as it is possible again. If they become too many, the oldest `steps` go
-// first, then the oldest others, and a `gap` row says how many.
+// If the file cannot be written, the manager does not wait: the robot is managed all the same. Rows
+// are kept and written as soon as it is possible again. If they become too many, the oldest `steps`
+// go first, then the oldest others, and a `gap` row holds their number.
 #pragma once
 
 #include <array>
@@ -34,8 +34,8 @@
 
 namespace culprit::journal {
 
-// What identifies the decisions of a step (StepReader gives it back). Nothing: it decided nothing.
-// Which rules are blind is left out.
+// The digest of a step's decisions (StepReader gives it back). Nothing: it decided nothing. Blind
+// rules and incidents are left out.
 std::optional<Digest> digest_of(std::span<const Command> commands, std::span<const Event> events,
                                 const RuleSet& rules, Hasher& hasher);
 
@@ -49,11 +49,11 @@ class Recorder {
   // How long steps that decide nothing wait to be written, by the robot's clock.
   static constexpr Duration kPeriod = std::chrono::seconds(20);
   static constexpr Duration kSoon = std::chrono::milliseconds(200);  // between two writes
-  static constexpr std::size_t kMany = 1 << 13;  // observations that do not wait for so long
+  static constexpr std::size_t kMany = 1 << 13;  // observations that are not kept waiting
   // How long, and how many, steps that decide nothing are kept before they are handed over.
   static constexpr Duration kKept = std::chrono::milliseconds(100);
   static constexpr std::size_t kMaxKept = 16;
-  // What is known of the robot is written once it changed, and at the latest after so long: old
+  // The known robot is written once it has changed, and at the latest after kRobotAtLatest: old
   // rows are dropped.
   static constexpr Duration kRobotPeriod = std::chrono::seconds(1);
   static constexpr Duration kRobotAtLatest = std::chrono::hours(1);
@@ -61,15 +61,15 @@ class Recorder {
   // How long an action waits for a disk that does not answer.
   static constexpr Duration kPatience = std::chrono::seconds(2);
   static constexpr std::size_t kMaxUnsaved = 16u << 20;  // bytes of rows, and of steps not yet rows
-  // A disk that has not answered for so long may keep whoever writes to it: then an action waits for
-  // the journal, and no longer than kPatience.
+  // A disk that has not answered for so long may block every writer: then an action waits for the
+  // journal, and no longer than kPatience.
   static constexpr Duration kStalled = std::chrono::milliseconds(100);
 
   struct Options {
     std::filesystem::path path;
     Writer::Options writer;
     std::function<std::int64_t()> wall_clock;  // nanoseconds since 1970
-    // What the last run could not write any more (unwritten.h); comes before the first row.
+    // The rows that the last run could not write (unwritten.h); they come before the first row.
     std::vector<Entry> unwritten{};
     // Called when writing begins to fail, and when it goes on; from the recorder's thread.
     std::function<void(const std::string&)> on_trouble;
@@ -80,7 +80,7 @@ class Recorder {
   // the first row.
   Recorder(std::optional<Writer> writer, Options options, const Session& session,
            const Knowledge& knowledge);
-  // As end(), but without a word: as if the process had ended by itself.
+  // As end(), but without a report: as if the process had ended by itself.
   ~Recorder();
   Recorder(const Recorder&) = delete;
 
@@ -98,17 +98,17 @@ class Recorder {
     }
   }
 
-  // The same of a step with commands in two calls, with the commands between them: that the rows are
-  // written soon is seen to when the commands are out. Whatever has to be on the disk before is.
+  // As stepped(), for a step with commands, in two calls with the commands between them. The first
+  // call writes what must be on the disk before; the second one wakes the writer for the rest.
   void before_commands(Time now, std::vector<Observation>& observations,
                        std::span<const Command> commands, std::span<const Event> events);
   void after_commands() { wake_writer(); }
 
-  // Writes what is waiting. An error says what is lost. No step after it.
+  // Writes what is waiting. An error names the lost rows. No step after it.
   Expected<void> end(Ending ending = Ending::kStopped);
 
  private:
-  // What few steps have beside observations.
+  // The parts of a step that few steps have.
   struct Decided {
     std::uint64_t number = 0;  // counted from 1; 0: it has no rows
     std::vector<Command> commands;
@@ -117,8 +117,8 @@ class Recorder {
     Learned learned;
     std::optional<KnownRobot> robot;
   };
-  // One line of the cache: between two steps of a robot at rest, others use the cache, and each
-  // line that has to be fetched anew is felt in what a step takes.
+  // One cache line: between two steps of a robot at rest, others use the cache, and each line that
+  // is fetched again lengthens the step.
   struct alignas(64) Pending {
     Time now{};
     std::int64_t wall = 0;
@@ -134,7 +134,7 @@ class Recorder {
     void clear();
   };
 
-  // What is kept, the last of which is `step`.
+  // Hands over the kept steps, the last of which is `step`.
   void hand_over(Pending& step, std::span<const Command> commands, std::span<const Event> events);
   // kSynced: soon, and on the disk then.
   enum class Urgency : std::uint8_t { kNone, kSoon, kSynced, kNow };
@@ -149,7 +149,7 @@ class Recorder {
   bool is_with_the_kernel(const Decided& decision, Time now);
   void wait_until_written();
   Learned changes();
-  // Nothing if it was written.
+  // Nothing: it was written already.
   std::optional<KnownRobot> newly_known(Time now);
   void run();
   void make_rows(Pending& pending);
@@ -172,7 +172,7 @@ class Recorder {
   const Knowledge& knowledge_;
   const RuleSet& rules_;
 
-  // Of the manager's thread.
+  // Used by the manager's thread only.
   std::vector<Belief> beliefs_;  // as written last
   std::vector<std::vector<Couplings::Learned>> couplings_;
   std::vector<Latencies::Learned> latencies_;
@@ -181,7 +181,8 @@ class Recorder {
   std::uint64_t decisions_ = 0;
   std::optional<IntentFile> intents_;  // nothing: what is asked for waits for the journal
   std::uint64_t in_file_ = 0;          // the newest decision that it has
-  // The rows of decisions that are in no file yet, as far as is known: what an intent follows from.
+  // The rows of decisions that are in no file yet, as far as is known: an intent may follow from
+  // them.
   struct Recent {
     std::uint64_t decision;
     std::string rows;
@@ -203,7 +204,7 @@ class Recorder {
   alignas(64) std::size_t kept_ = 0;
   std::array<Pending, kMaxKept> places_;
 
-  // Of both threads, under the mutex.
+  // Shared by both threads, under the mutex.
   alignas(64) Mutex mutex_;
   Urgency urgency_ CULPRIT_GUARDED_BY(mutex_) = Urgency::kNone;
   Time first_queued_ CULPRIT_GUARDED_BY(mutex_){};  // steps that wait, from here
@@ -225,10 +226,10 @@ class Recorder {
   bool is_failing_ CULPRIT_GUARDED_BY(mutex_) = false;
   bool is_ending_ CULPRIT_GUARDED_BY(mutex_) = false;
 
-  // Of the recorder's thread.
+  // Used by the recorder's thread only.
   std::optional<Writer> writer_;
   bool is_damaged_ = false;   // the file, which cannot be written any more
-  std::string copy_trouble_;  // that was told
+  std::string copy_trouble_;  // that was reported
   std::string told_of_intents_;
   Time now_{};                    // of the newest step
   std::uint64_t unsaved_to_ = 0;  // the newest decision in `unsaved_`, or before it

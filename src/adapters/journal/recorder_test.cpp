@@ -1,4 +1,5 @@
-// What is on the disk when, and what becomes of rows that cannot be written yet.
+// Checks which rows are on the disk at which time, and what happens to rows that cannot be written
+// yet.
 #include "journal/recorder.h"
 
 #include <csignal>
@@ -95,7 +96,7 @@ struct Recording : testing::Test {
     for (int i = 0; i < 3000 && !is_true(); ++i) std::this_thread::sleep_for(10ms);
     return is_true();
   }
-  // While this lives nobody else writes the journal: the recorder's thread hangs.
+  // While this exists, no other process writes the journal: the recorder's thread hangs.
   Database lock_the_file() const {
     Database other = value_of(Database::open(path, Database::Mode::kWrite));
     EXPECT_TRUE(other.run("BEGIN IMMEDIATE"));
@@ -149,7 +150,8 @@ TEST_F(RecordingHere, ARequestThatIsReadBackIsBesideTheJournalBeforeItGoesOut) {
   EXPECT_THAT(beside(path), IsEmpty());
 }
 
-// Whoever is killed in between leaves the intent; the journal need not wait for its next time.
+// A culprit that is killed in between leaves the intent; the journal need not wait for its next
+// time.
 TEST_F(RecordingHere, TheJournalFollowsWhenTheRequestIsOut) {
   const auto recorder = begin();
   sees_a_failure(*recorder);
@@ -239,7 +241,7 @@ TEST_F(RecordingHere, WithoutTheFileBesideItARequestIsOnTheDiskFirst) {
   fs::remove(intents_beside(path));
   asks_for_a_stop(*recorder);
   EXPECT_TRUE(has(kind::kIntent));
-  // It is made anew, by the recorder's thread.
+  // The recorder's thread makes it again.
   ASSERT_TRUE(comes_true([&] { return fs::exists(intents_beside(path)); }));
   auto locked = lock_the_file();
   asks_for_a_stop(*recorder);

@@ -63,7 +63,7 @@ class Trail {
   // When its run lived last, as far as is known.
   Time latest() const { return latest_; }
 
-  // Those that had begun to change anything. Not where nobody knows who changed what since.
+  // Those that had begun to change anything. Gives none if others may have changed the robot since.
   std::vector<Interrupted> open(Time now, std::optional<int> manager_before) && {
     std::erase_if(open_, [](const Interrupted& each) { return each.requests.empty(); });
     const bool is_long_ago = now - latest_ > kGoneOnWith;
@@ -74,7 +74,7 @@ class Trail {
     for (const Interrupted& each : open_) {
       const Strategy& strategy = rules_[each.strategy];
       given_up_.push_back(strategy.name + " for " + rules_[strategy.rule].name + ": " + why +
-                          ", so it is not gone on with");
+                          ", so it is not continued");
     }
     return {};
   }
@@ -84,8 +84,8 @@ class Trail {
   static std::int64_t first_step(const Entry& steps) { return ByteReader(steps.body).integer(); }
 
   void event(const Json& body) {
-    // What ends a strategy does so even if the rules no longer have it. A failure is held back
-    // only while no strategy of its own is under way.
+    // An event that ends a strategy does so even if the rules no longer have that strategy. A
+    // failure is held back only while no strategy of its own is under way.
     constexpr std::array kEnds = {kKindOf<FailureResolved>, kKindOf<FailureLost>,
                                   kKindOf<FailureHeldBack>, kKindOf<RoundSpent>,
                                   kKindOf<RuleExhausted>,   kKindOf<StrategyAbandoned>,
@@ -117,7 +117,7 @@ class Trail {
   }
 
   void begin(const StrategyChosen& chosen) {
-    // A last resort is no part of what is gone on with: it is due anew, and begun at once.
+    // A last resort is never continued: it is due again, and begun at once.
     if (chosen.dry_run || rules_[chosen.strategy].is_last_resort) return;
     close(rules_[chosen.strategy].rule);
     open_.emplace_back();
@@ -136,7 +136,7 @@ class Trail {
     if (!command) return give_up(body, command.error());
     if (rules_[command->purpose.strategy].is_last_resort) return;
     Interrupted* found = find(command->purpose.strategy);
-    // A person may have ordered it without a failure: then nobody chose it.
+    // A person may have ordered it without a failure: then it was not chosen.
     if (found == nullptr) {
       found = &open_.emplace_back();
       found->strategy = command->purpose.strategy;
@@ -149,7 +149,7 @@ class Trail {
     const auto number = static_cast<std::uint64_t>(integer_of(body, "command"));
     const auto outcome = outcome_from(text_of(body, "outcome"));
     for (Interrupted& each : open_) {
-      // Numbers begin anew with each run: the latest is meant.
+      // Each run numbers its requests from the beginning: the latest is meant.
       const auto request = std::find_if(
           each.requests.rbegin(), each.requests.rend(),
           [&](const Interrupted::Request& r) { return r.command.id.number == number; });
@@ -179,12 +179,13 @@ class Trail {
   bool is_dry_run_ = false;
 };
 
-// The robot's clock counts from the start of the machine: what it showed then in what it shows now.
+// The robot's clock counts from the start of the machine: the difference between its present and
+// its former reading of the same time.
 Duration shift_of_clock(const Entry& begin, Time robot_then, const Moment& now) {
   return (now.robot - robot_then) - Duration(now.wall - begin.at);
 }
 
-// The newest row says all.
+// The newest row holds everything.
 Expected<KnownRobot> find_known_robot(const Reader& journal, const Whereabouts& where,
                                       std::int64_t last_run) {
   const auto newest = journal.newest(kind::kRobot);
@@ -196,7 +197,7 @@ Expected<KnownRobot> find_known_robot(const Reader& journal, const Whereabouts& 
   Hasher hasher;
   const auto row = rows->next(entry);
   if (!row) return Error{row.error()};
-  // What was seen must not be for others to say.
+  // A row that others changed must not tell culprit what was discovered.
   if (!rows->is_as_written(entry, hasher)) return KnownRobot{};
   KnownRobot known = known_robot_of(parse_json(entry.body), where);
   // The last run may have had other rules, and did not see the robot whole.
@@ -230,7 +231,8 @@ Expected<Recovery> recover(const Reader& journal, const Unwritten& unwritten, co
     return false;
   };
   if (!row) return Error{row.error()};
-  // A row that somebody else could have written must not say which process is whose.
+  // A row that another user could have written must not decide which process belongs to a
+  // component.
   if (!is_good()) return recovery;
   const Json begin = parse_json((*last)->body);
   recovery.was_other_boot = text_of(begin, "boot") != boot_id();
@@ -257,8 +259,8 @@ Expected<Recovery> recover(const Reader& journal, const Unwritten& unwritten, co
       recovery.was_other_boot ? shift_of_clock(**last, robot_then, now) : Duration::zero();
   recovery.past = still_counting(
       recovery.is_other_robot() ? of_people(trail.past(), shift) : trail.past(), now.robot, rules);
-  // Whoever stops culprit may stop the robot as well, and another culprit repairs it: what comes
-  // back then proves nothing.
+  // A person who stops culprit may stop the robot as well, and another culprit repairs it: a
+  // recovery after that proves nothing.
   if (recovery.was_stopped || trail.was_succeeded_by(manager_before)) {
     std::erase_if(recovery.past, [](const Event& event) {
       return std::holds_alternative<OutcomePending>(event.what);

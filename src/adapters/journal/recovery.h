@@ -1,10 +1,10 @@
-// What the last run of culprit left behind: told from its intents, and from what it said since. The
-// newest of both may stand beside the journal only (unwritten.h).
+// Finds what the last run of culprit left unfinished, from its intents and its later events. The
+// newest rows of both may be beside the journal only (unwritten.h).
 //
-// A strategy was under way if it was chosen or resumed, at least one change for it was about to be
-// asked for, and neither its success nor the end of its undoing is on record. It is not gone on with
-// where others may have changed the robot since: another culprit managed it, or nobody did for
-// longer than kGoneOnWith. Only rows that are what was written count (Cursor::is_as_written()).
+// A strategy was under way if it was chosen or resumed and at least one change for it was about to
+// be requested. Its success or the end of its undoing would be on record. It is not continued if
+// others may have changed the robot since: another culprit managed it, or none did for longer
+// than kGoneOnWith. Only rows with their original hash count (Cursor::is_as_written()).
 #pragma once
 
 #include <optional>
@@ -19,7 +19,7 @@
 
 namespace culprit::journal {
 
-// How long culprit may have been dead to go on with what it left in the middle.
+// The longest time without culprit after which it continues the strategies that it left unfinished.
 inline constexpr Duration kGoneOnWith = std::chrono::minutes(1);
 
 // How long culprit may have been away to expect that all is as it left it (KnownRobot::is_whole).
@@ -28,7 +28,7 @@ inline constexpr Duration kExpected = std::chrono::minutes(10);
 struct Recovery {
   bool had_run = false;           // there was a run before
   bool was_stopped = false;       // and it was asked to end
-  bool was_other_boot = false;    // the machine was started anew since
+  bool was_other_boot = false;    // the machine was booted since
   bool was_other_domain = false;  // or it was another robot
   bool is_other_robot() const { return was_other_boot || was_other_domain; }
   bool orders_kept = false;  // in a file of their own, which alone counts (standing_orders.h)
@@ -49,9 +49,9 @@ struct Moment {
   int domain = 0;
 };
 
-// `unwritten`: what comes after the rows of `journal`. `manager_before`: the process of the culprit
-// that was seen to manage the robot until now, 0 for one on another machine; nothing: none was.
-// Errors: the file cannot be read.
+// `unwritten`: the rows after those of `journal`. `manager_before`: the process of the culprit that
+// has managed the robot until now, 0 for one on another machine; nothing: none was. Errors: the
+// file cannot be read.
 Expected<Recovery> recover(const Reader& journal, const Unwritten& unwritten, const RuleSet& rules,
                            const Moment& now, std::optional<int> manager_before = {});
 

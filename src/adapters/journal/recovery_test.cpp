@@ -1,4 +1,4 @@
-// What a run takes from the one before, when rows are not what was written.
+// Checks what a run takes from the previous one when rows were changed.
 #include "journal/recovery.h"
 
 #include <gmock/gmock.h>
@@ -82,7 +82,7 @@ TEST_F(JournalRecovery, NorFromTheBeginningOfARun) {
          "]')) WHERE id = 1");
   const Recovery recovery = recovered();
   EXPECT_TRUE(recovery.had_run);
-  EXPECT_TRUE(recovery.orders_kept) << "whether it was paused, it does not tell";
+  EXPECT_TRUE(recovery.orders_kept) << "it does not show whether it was paused";
   EXPECT_THAT(processes(recovery.past), IsEmpty());
   EXPECT_THAT(recovery.given_up, ElementsAre(HasSubstr("row 1 (session)")));
 }
@@ -177,7 +177,7 @@ TEST_F(ExpectedRobot, IsNoneOfARunThatSawAPart) {
   EXPECT_FALSE(is_expected());
 }
 
-// It was killed before it saw anything; what is on record was seen under the rules of the one before.
+// It was killed before it saw anything; its record was made under the rules of the one before.
 TEST_F(ExpectedRobot, IsNoneOfTheRunBeforeTheLast) {
   write({});
   write_rows({}, {kind::kSession, kind::kEvent});

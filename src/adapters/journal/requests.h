@@ -12,7 +12,7 @@ namespace culprit::journal {
 std::string line_of(const Command& command, const RuleSet& rules);
 std::string text_of(const Command& command, const RuleSet& rules);
 
-// The same body, for whoever adds to it.
+// The same body, for code that adds to it.
 Json to_json(const Command& command, const RuleSet& rules);
 
 // Errors: it is no intent, or is about what `rules` does not have.

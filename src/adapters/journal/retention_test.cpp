@@ -1,5 +1,5 @@
-// What the next run needs to know is never dropped, however long a run lasts and whatever the clock
-// shows; and what it costs to write all that down.
+// Rows that the next run needs are never dropped, however long a run lasts and whatever the clock
+// shows. Also measures what it costs to write them.
 #include <atomic>
 #include <fstream>
 #include <thread>
@@ -41,7 +41,7 @@ struct Recovered : testing::Test {
       if (++steps % 420 == 0) wait_for_rows();
     }
   }
-  // The recorder has its own thread; time is ours. Of so many steps something is written.
+  // The recorder has its own thread; time is ours. After so many steps, some rows are written.
   void wait_for_rows() {
     const auto size = [&]() -> std::uintmax_t {
       std::error_code error;
@@ -87,7 +87,7 @@ TEST_F(Recovered, LacksASecondCopyOfWhatWasLearnedOnlyAfterThatWasSaid) {
   fs::create_directories(learned_beside(path) / "in the way");
   recorder().reset();
   ASSERT_EQ(troubles.size(), 1u);
-  EXPECT_THAT(troubles[0], testing::HasSubstr("second copy cannot be written"));
+  EXPECT_THAT(troubles[0], testing::HasSubstr("cannot be written, so only the journal has it"));
   EXPECT_THAT(troubles[0], testing::HasSubstr("a.journal-learned"));
 }
 
@@ -111,7 +111,7 @@ TEST_F(Recovered, IsWhatARunLeftWhoseFirstRowsAreGone) {
   EXPECT_LT(fs::file_size(path), 512u << 10);
 }
 
-// No battery: it begins in 1970, and a minute later the network tells the time.
+// No battery: it begins in 1970, and a minute later the network gives the time.
 TEST_F(Recovered, IsWhatARunLeftWhoseClockJumped) {
   clock = 0;
   auto run = recorder();

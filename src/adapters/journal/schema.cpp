@@ -6,7 +6,7 @@
 namespace culprit::journal {
 namespace {
 
-// "culp": tells file(1) and us whose file it is.
+// "culp": shows file(1) and us whose file it is.
 constexpr std::int64_t kApplication = 0x63756c70;
 
 // Step n makes version n + 1 of version n. A released step never changes.

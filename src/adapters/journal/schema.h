@@ -1,11 +1,11 @@
-// The tables of a journal file, and how a file of an older culprit becomes one of this.
+// The tables of a journal file, and how a file of an older culprit is brought up to date.
 #pragma once
 
 #include "journal/database.h"
 
 namespace culprit::journal {
 
-// Of files that this culprit writes.
+// The schema of the files that this culprit writes.
 int schema_version();
 
 // Makes the tables in a new file, or brings an older one up to date, in one transaction. Errors:
@@ -17,8 +17,8 @@ Expected<void> check_schema(const Database& database);
 // False for a journal of an older culprit, which has no such table.
 bool has_latencies(const Database& database);
 
-// Whether it has the tables of a journal, but not the numbers in its head that say so: not those of
-// any culprit that there may be.
+// Whether it has the tables of a journal, but lacks the numbers in its head that mark it as one:
+// not those of any culprit that there may be.
 bool has_damaged_head(const Database& database);
 
 }  // namespace culprit::journal

@@ -13,7 +13,7 @@ namespace culprit::journal {
 namespace {
 
 constexpr std::string_view kMark = "culprit-sealed 1 ";
-// Larger than any that culprit writes: what is not ours is not read into memory.
+// Larger than any that culprit writes: other files are not read into memory.
 constexpr off_t kLargest = 64 << 20;
 
 std::string head_of(std::string_view text) {

@@ -1,5 +1,5 @@
-// A small file that shows whether it was damaged: a checksum stands before the text. It is replaced
-// as a whole, so a crash or a power failure leaves one content or the other.
+// A small file that shows whether it was damaged: a checksum precedes the text. It is replaced as a
+// whole, so a crash or a power failure leaves one content or the other.
 //
 //     culprit-sealed 1 <SHA-256 of the text, hexadecimal>\n
 //     text

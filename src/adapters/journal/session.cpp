@@ -16,7 +16,7 @@ std::optional<std::pair<double, double>> pair_from(const Json& json, const char*
   return std::pair((*found)[0].get<double>(), (*found)[1].get<double>());
 }
 
-// Pseudo-counts are above zero, and no robot lives long enough for the others.
+// Pseudo-counts are above zero, and no robot runs long enough for the others.
 bool is_belief(const Belief& belief) {
   return belief.alpha > 0 && belief.beta > 0 && belief.alpha < 1e15 && belief.beta < 1e15;
 }
@@ -92,6 +92,7 @@ Json to_json(const Session& session) {
       {"process", session.process},
       {"boot", session.boot},
       {"start", session.start.time_since_epoch().count()},
+      {"wall", session.wall},
       {"settling", session.discovery.count()},
       {"forgetting", session.forgetting},
       {"advises", session.advises},
@@ -134,6 +135,7 @@ Expected<Session> session_from_json(const Json& json) {
   session.process = static_cast<int>(integer_of(json, "process"));
   session.boot = text_of(json, "boot");
   session.start = Time(Duration(integer_of(json, "start")));
+  session.wall = std::max<std::int64_t>(0, integer_of(json, "wall"));
   if (json.contains("watched_since"))
     session.watched_since = Time(Duration(integer_of(json, "watched_since")));
   session.discovery = Duration(integer_of(json, "settling"));

@@ -1,4 +1,5 @@
-// One run of culprit: all that the manager was made with, so that a replay can make it anew.
+// One run of culprit: all inputs that the manager was made with, so that a replay can make it
+// again.
 #pragma once
 
 #include <optional>
@@ -22,9 +23,11 @@ struct Session {
   bool advises = false;
   bool continued = false;  // the run began in another file, which is gone: it cannot be replayed
   int domain = 0;          // of DDS: another domain is another robot
-  int process = 0;         // culprit's, on its machine; 0: an older culprit did not say
+  int process = 0;         // culprit's, on its machine; 0: an older culprit left it out
   std::string boot;        // which start of the machine: the robot's clock counts from there
   Time start{};
+  std::int64_t wall =
+      0;  // nanoseconds since 1970 at `start`; 0: an older culprit, which told no incidents
   // The manager began with what this process had seen while another culprit managed, and so as if it
   // had watched since then; nothing: since `start`.
   std::optional<Time> watched_since;
@@ -34,14 +37,14 @@ struct Session {
   Json interrupted = Json::array();  // what the run before left behind (requests.h)
   Json past = Json::array();         // what earlier runs did that still counts (history.h)
   Json known_robot;                  // what they saw of this robot (known_robot.h)
-  // By a person's order in the run before, which goes on: said anew with the first step.
+  // By a person's order in the run before, which goes on: repeated with the first step.
   bool is_paused = false;
   bool is_dry_run = false;
-  // What stands of people's orders is in a file of its own (standing_orders.h); older culprits have
-  // it in the rows only.
+  // People's standing orders are in a file of their own (standing_orders.h); older culprits have it
+  // in the rows only.
   bool orders_kept = false;
   // The context in which what is learned is shared with a fleet; nothing: it is not. Beliefs begin
-  // from the fleet's priors then, which are told in the steps; those of `learned` hold until that.
+  // from the fleet's priors then, which the steps contain; those of `learned` hold until that.
   std::optional<std::string> fleet_context;
 };
 

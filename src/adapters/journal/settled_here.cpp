@@ -18,6 +18,7 @@ bool can_be_read_back(AdaptationType type) {
     case AdaptationType::kRedeploy:
     case AdaptationType::kStart:
     case AdaptationType::kStop:
+    case AdaptationType::kStartGroup:
       return true;
   }
   return false;

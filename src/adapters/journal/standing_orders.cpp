@@ -1,8 +1,8 @@
 #include "journal/standing_orders.h"
 
 #include <algorithm>
-#include <cassert>
 
+#include "base/invariant.h"
 #include "base/name_grammar.h"
 #include "journal/json.h"
 #include "journal/order_reserve.h"
@@ -50,7 +50,7 @@ std::pair<About, std::string> named(const Silenceable& what, const RuleSet& rule
 }  // namespace
 
 NamedOrder by_name(const Order& order, const RuleSet& rules) {
-  assert(standing_of(order) != Standing::kNot);
+  CULPRIT_ASSERT(standing_of(order) != Standing::kNot);
   NamedOrder out{order.what, {order.author, order.reason}, About::kComponent, ""};
   if (const auto* silence = std::get_if<Silence>(&order.what))
     std::tie(out.about, out.name) = named(silence->what, rules);
@@ -63,7 +63,7 @@ StandingOrders after(StandingOrders orders, const NamedOrder& order, Time now) {
   ++orders.revision;
   std::erase_if(orders.silences, [&](const Quiet& quiet) { return quiet.until <= now; });
   if (std::holds_alternative<Resume>(order.what)) orders.pause.reset();
-  // Whoever said it first is who is asked about it.
+  // The first person who ordered it is the one to ask about it.
   if (std::holds_alternative<Pause>(order.what) && !orders.pause) orders.pause = order.said;
   if (const auto* dry_run = std::get_if<SetDryRun>(&order.what)) {
     if (!dry_run->is_on) orders.dry_run.reset();

@@ -1,8 +1,8 @@
-// What people have ordered that holds until they say otherwise: pause, dry run, silences. It stands
-// in a small file of its own beside the journal, so that no damage and no retention of the journal,
-// and no jump of the clock, can make culprit forget that it must not act.
+// People's orders that hold until they are revoked: pause, dry run, mutes. They are in a small file
+// of their own beside the journal. So neither damage, nor retention, nor a jump of the clock can
+// make culprit forget that it must not act.
 //
-// Whoever finds that file unreadable, or missing although a run had one, is paused.
+// A culprit that finds that file unreadable, or missing although a run had one, is paused.
 #pragma once
 
 #include <filesystem>
@@ -55,8 +55,8 @@ bool restrain_alike(const StandingOrders& a, const StandingOrders& b);
 // All restraints of both.
 StandingOrders both(StandingOrders a, const StandingOrders& b);
 
-// What restrains according to `theirs` and not according to `ours`, as orders; no silences of what
-// `rules` does not have.
+// The restrictions of `theirs` that `ours` has not, as orders; no mutes of what `rules` does not
+// have.
 std::vector<Order> restraints_beyond(const StandingOrders& ours, const StandingOrders& theirs,
                                      const RuleSet& rules, Time now);
 
@@ -66,8 +66,8 @@ History to_past(const StandingOrders& orders, const RuleSet& rules, Time now);
 std::vector<StandingOrders::Quiet> silences_of(const History& past, const RuleSet& rules);
 bool is_about_silence(const Event& event);
 
-// As text, also for a successor on another machine. A silence goes on for what is left of it; where
-// the clocks cannot tell how much that is, for longer rather than shorter.
+// As text, also for a successor on another machine. A silence goes on for what is left of it; if
+// the clocks do not show how much that is, for longer rather than shorter.
 std::string to_text(const StandingOrders& orders, const Clocks& now);
 Expected<StandingOrders> orders_from_text(const std::string& text, const Clocks& now);
 
@@ -75,7 +75,7 @@ Expected<StandingOrders> orders_from_text(const std::string& text, const Clocks&
 std::filesystem::path orders_beside(const std::filesystem::path& journal);
 
 // On the disk when it returns: in the file, or, where the disk is full, in the room that was taken beforehand
-// (order_reserve.h). Errors say why not in the file.
+// (order_reserve.h). Errors give the reason why it is not in the file.
 Expected<void> write_orders(const std::filesystem::path& path, const StandingOrders& orders,
                             const Clocks& now);
 // The orders that were written last, by their revision. Nothing: there is no such file. Errors: it cannot be read, or is damaged.

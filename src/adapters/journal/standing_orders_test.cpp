@@ -1,5 +1,5 @@
-// What people have ordered outlives the process, the machine and damage; and where clocks cannot
-// tell how much of a silence is left, it lasts longer rather than shorter.
+// People's orders outlive the process, the machine and damage. If clocks cannot show how much of a
+// mute is left, it lasts longer rather than shorter.
 #include "journal/standing_orders.h"
 
 #include <fstream>
@@ -137,7 +137,7 @@ TEST(OrdersFile, IsReadAsItWasWritten) {
   EXPECT_EQ(**read, with_all());
 }
 
-// Wherever a bit flips and wherever it ends: the file never says something else than was written.
+// Wherever a bit flips and wherever it ends: the file never gives another text than was written.
 TEST(OrdersFile, IsUnreadableWithAnyBitChangedOrAnyByteMissing) {
   const TestFolder folder;
   const auto path = orders_beside(folder / "a.journal");

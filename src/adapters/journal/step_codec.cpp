@@ -3,7 +3,7 @@
 namespace culprit::journal {
 namespace {
 
-// These numbers stand in files: they must not change.
+// Files hold these numbers: they must not change.
 enum class Tag : std::uint8_t {
   kNodeAppeared = 1,
   kNodeVanished = 2,
@@ -52,10 +52,11 @@ enum class OrderTag : std::uint8_t {
   kRunStrategy = 8,
   kForget = 9,
   kRevive = 10,
-  kEndStarted = 11
+  kEndStarted = 11,
+  kPropose = 12
 };
 
-// Of a launcher; together.
+// Flags of a launcher; together.
 constexpr std::uint8_t kEnded = 1;
 constexpr std::uint8_t kCrashed = 2;
 constexpr std::uint8_t kRanOthers = 4;
@@ -73,8 +74,8 @@ enum class ValueTag : std::uint8_t {
   kLifecycle = 6
 };
 
-// Robots' clocks count from the start of the machine, or from 1970. What is beyond that by a
-// century is damage, with which nobody should calculate.
+// Robots' clocks count from the start of the machine, or from 1970. A time beyond that by a century
+// is damage, and must not enter calculations.
 bool is_plausible(Time time) {
   constexpr Duration kCentury = std::chrono::hours(24 * 365 * 100);
   return time.time_since_epoch() > -kCentury && time.time_since_epoch() < 2 * kCentury;
@@ -305,6 +306,10 @@ class Encoder {
     word(OrderTag::kRefuse);
     out_.natural(o.strategy.index);
   }
+  void write_order(const Propose& o) {
+    word(OrderTag::kPropose);
+    out_.natural(o.strategy.index);
+  }
   void write_order(const Silence& o) {
     word(OrderTag::kSilence);
     silenced(o.what);
@@ -367,7 +372,7 @@ class Decoder {
   }
 
  private:
-  // Damaged bytes may say anything; time must not overflow over it.
+  // Damaged bytes may hold anything; time must not overflow over it.
   Time earlier(Time now, std::int64_t nanoseconds) {
     std::int64_t at = 0;
     const bool overflows = __builtin_sub_overflow(now.time_since_epoch().count(), nanoseconds, &at);
@@ -376,7 +381,7 @@ class Decoder {
   }
 
   ObservationWhat what(Tag tag) {
-    // One field after the other: the order in which the arguments of a call are evaluated is open.
+    // One field after the other: the order of evaluation of a call's arguments is unspecified.
     switch (tag) {
       case Tag::kNodeAppeared: {
         std::string node = in_.text();
@@ -557,6 +562,8 @@ class Decoder {
         return Approve{id<StrategyId>(rules_.strategies.size())};
       case OrderTag::kRefuse:
         return Refuse{id<StrategyId>(rules_.strategies.size())};
+      case OrderTag::kPropose:
+        return Propose{id<StrategyId>(rules_.strategies.size())};
       case OrderTag::kSilence: {
         Silence silence{silenced(), {}};
         if (in_.byte() != 0) silence.lasts = Duration(in_.integer());

@@ -22,7 +22,7 @@
 
 namespace culprit::journal {
 
-// What identifies all that a step decided: its commands and events.
+// Identifies all decisions of a step: its commands and events.
 using Digest = std::uint64_t;
 
 struct Step {

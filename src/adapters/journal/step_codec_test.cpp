@@ -1,5 +1,4 @@
-// What a step's bytes promise: they bring back exactly what was written, and damaged ones are
-// refused.
+// A step's bytes bring back exactly what was written, and damaged ones are refused.
 #include "journal/step_codec.h"
 
 #include <gtest/gtest.h>

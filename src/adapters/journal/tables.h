@@ -1,4 +1,4 @@
-// The tables of what was learned, and the ends of the chain, as both readers and writers see them.
+// The tables of beliefs, and the ends of the chain, as both readers and writers see them.
 #pragma once
 
 #include "journal/database.h"

@@ -10,7 +10,7 @@
 namespace culprit::journal {
 namespace {
 
-// Rows of the file by what they say, each once for each time that it stands there.
+// The rows of the file by their content, each as often as it occurs there.
 class RowsToFind {
  public:
   explicit RowsToFind(const std::vector<Entry>& rows) {
@@ -37,11 +37,12 @@ class RowsToFind {
   std::size_t found_ = 0;
 };
 
-// Whether the journal says by this row that all before it was written, or was lost and is over.
+// Whether this row of the journal means that all rows before it were written, or were lost and are
+// over.
 bool is_the_last_word(const Entry& row) {
   if (row.kind == kind::kEnd) return true;
   if (row.kind == kind::kSession) return !flag_of(parse_json(row.body), "continued");
-  // Some of what waited to be written was dropped, and the rows that came of it follow.
+  // Some waiting rows were dropped, and the rows about their results follow.
   if (row.kind == kind::kGap) return integer_of(parse_json(row.body), "rows") > 0;
   return false;
 }
@@ -80,10 +81,10 @@ Expected<std::size_t> count_written(const SavedIntents& saved, const Reader& jou
 
 Unwritten unwritten_rows(const std::filesystem::path& intents, const Reader& journal) {
   Unwritten unwritten;
-  const std::string name = "'" + intents.string() + "', where what is asked for stands first, ";
+  const std::string name = "'" + intents.string() + "', the first record of requests, ";
   auto saved = read_intents(intents);
   if (!saved) {
-    unwritten.remark = saved.error() + "; what was asked for last may not be known";
+    unwritten.remark = saved.error() + "; the last requests may be unknown";
     return unwritten;
   }
   if (!saved->damage.empty())

@@ -1,5 +1,5 @@
-// What the last run decided and asked for and did not live to write into its journal: the rows of
-// its intent file that the journal lacks.
+// The decisions and requests that the last run could not write into its journal any more: the rows
+// of its intent file that the journal lacks.
 #pragma once
 
 #include <filesystem>
@@ -18,8 +18,8 @@ struct Unwritten {
 };
 
 // `intents`: the file (intents_beside()). `journal`: the rows that it belongs to, wherever they are
-// now. The rows of a file that belongs to other rows are left out, and so are those of a run that
-// another one has followed: both are said or known to be over.
+// now. Leaves out the rows of a file that belongs to other rows, and those of a run that another
+// one has followed: both are reported, or known to be over.
 Unwritten unwritten_rows(const std::filesystem::path& intents, const Reader& journal);
 
 }  // namespace culprit::journal

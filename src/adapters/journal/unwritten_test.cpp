@@ -89,7 +89,7 @@ TEST_F(UnwrittenRows, ThatAreAlikeCountOneByOne) {
   EXPECT_EQ(commands(), std::vector<std::int64_t>{1});
 }
 
-// Who changes a row must not make culprit believe that it was never written.
+// A changed row must not make culprit believe that it was never written.
 TEST_F(UnwrittenRows, AreNotThoseBeforeOneThatTheJournalHas) {
   keep({row(1)});
   keep({row(2)});
@@ -113,7 +113,7 @@ TEST_F(UnwrittenRows, GoOnInARunThatBeganANewSession) {
   EXPECT_EQ(commands(), std::vector<std::int64_t>{1});
 }
 
-// The disk was full for long: the rows of what came of them are later than they.
+// The disk was full for long: the rows about their results are later than they.
 TEST_F(UnwrittenRows, AreOverIfRowsWereDropped) {
   keep({row(1)});
   write({{0, kUnwrittenAt, std::string(kind::kGap), to_line({{"text", "odd"}})}});

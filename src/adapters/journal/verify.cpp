@@ -7,7 +7,7 @@
 namespace culprit::journal {
 namespace {
 
-// What the rows say that was learned last, to compare with the table of it.
+// The newest beliefs in the rows, to compare with the table of beliefs.
 class Replayed {
  public:
   void follow(const Entry& entry) {
@@ -29,7 +29,7 @@ class Replayed {
       const auto row = beliefs_.find({each.rule, each.strategy});
       if (row == beliefs_.end() || row->second == each.belief) continue;
       findings.push_back("the belief in " + each.strategy + " of " + each.rule +
-                         " is not what its last row says");
+                         " differs from its last row");
     }
   }
 

@@ -1,7 +1,7 @@
 // Whether a journal is still what was written.
 //
 // The chain shows every row that was changed, removed or inserted, but not rows removed from its
-// end: whoever wants to know that notes the newest row and its hash elsewhere, and names them here.
+// end: to detect that, note the newest row and its hash elsewhere, and name them here.
 #pragma once
 
 #include "journal/reader.h"

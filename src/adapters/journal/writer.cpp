@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <system_error>
 
+#include "base/invariant.h"
 #include "journal/schema.h"
 #include "json/json.h"
 
@@ -65,7 +66,7 @@ bool is_damaged(const fs::path& path) {
   return has_latencies(*database) && Database::is_damaged(path, kNewerLooks);
 }
 
-// What was learned, of a file that is damaged; nothing: that is lost.
+// The beliefs in a damaged file; nothing: they are lost.
 std::optional<Learned> saved_from(const fs::path& path,
                                   const Expected<std::optional<LearnedCopy>>& copy) {
   const auto old = Database::open(path, Database::Mode::kRead);
@@ -157,8 +158,8 @@ Expected<void> Writer::compare(const Expected<std::optional<LearnedCopy>>& copy)
                   ? "the journal is gone; a new one is begun, with what was learned"
                   : "the end of the journal is lost, all after row " + std::to_string(newest_.id) +
                         " (row " + std::to_string(second.newest.id) +
-                        " was there): was its -wal file removed? What was learned is known from "
-                        "its second copy";
+                        " was there): was its -wal file removed? culprit now uses the second copy "
+                        "of what was learned";
     return restore(second.learned);
   }
   auto hash = database_.prepare("SELECT hash FROM entry WHERE id = ?1");
@@ -203,8 +204,8 @@ void Writer::copy_learned() {
   copy_trouble_ = written ? "" : written.error();
 }
 
-// By ourselves, because with the first row that stands in the -wal file alone the copy has to be
-// written: it names that row, and so tells when the -wal file is lost.
+// culprit does this itself: once the first row exists in the -wal file alone, the copy must be
+// written. The copy names that row, and so shows when the -wal file is lost.
 void Writer::move_wal() {
   const fs::path wal = path_.string() + "-wal";
   std::error_code error;
@@ -353,6 +354,7 @@ Expected<void> Writer::drop_old(std::int64_t now) {
   wants_new_session_ = end >= *oldest && session_ == *oldest;
   if (session_ > 0) end = std::min(end, session_ - 1);
   if (end < *oldest) return {};
+  CULPRIT_ASSERT(end < newest_.id);  // the chain goes on from the newest row
   const std::string id = std::to_string(end);
   return database_.run(
       "DELETE FROM anchor; INSERT INTO anchor SELECT id, hash FROM entry WHERE id = " + id +

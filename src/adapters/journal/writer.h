@@ -1,10 +1,11 @@
-// The one who writes a journal file. A second one, in any process, is turned away.
+// The only writer of a journal file; a second one, in any process, is refused.
 //
-// A batch is in the file as a whole or not at all, and once append() returned it survives the end
-// of the process, however it ends; with Durability::kPowerFailure it survives that of the machine.
+// A batch is in the file as a whole or not at all. Once append() has returned, the batch survives
+// the end of the process, however it ends; with Durability::kPowerFailure it survives that of the
+// machine.
 //
-// A file that is damaged is never written on and never thrown away: it is set aside under another
-// name. What was learned has a second copy (learned_copy.h), and is carried over.
+// A damaged file is never written to and never deleted: it is renamed. The beliefs have a second
+// copy (learned_copy.h), and are carried over.
 //
 // The oldest rows go, but never those from the newest `session` row on: the next run needs them.
 #pragma once
@@ -41,14 +42,14 @@ class Writer {
   // Errors say why, with the path and what to do.
   static Expected<Writer> open(const std::filesystem::path& path, Options options);
 
-  // What was odd about the file and what was done about it; empty if nothing was.
+  // The anomaly of the file and what was done about it; empty: none.
   const std::string& remark() const { return remark_; }
   const std::filesystem::path& path() const { return path_; }
   // Where the file that was damaged is now; empty if it was not.
   const std::filesystem::path& aside() const { return aside_; }
 
   // Whether the error that append() gave comes from damage: then the writer is of no use any more,
-  // and the file has to be opened anew with Options::is_damaged.
+  // and the file must be opened again with Options::is_damaged.
   bool is_damaged() const { return is_damaged_; }
   // Why the second copy of what was learned is not written; empty: it is. It is tried again with
   // the next batch.

@@ -1,6 +1,6 @@
-// What a journal file promises: all of a batch or nothing, a chain that shows every change, one
-// writer, a bounded size; and what becomes of it when the disk, the file or another program is in
-// the way.
+// Checks the promises of a journal file: all of a batch or nothing, a chain that shows every
+// change, one writer, a bounded size. Also checks the file when the disk, the file or another
+// program is in the way.
 #include "journal/writer.h"
 
 #include <fstream>
@@ -329,7 +329,8 @@ TEST(Faults, ALatencyThatWasChangedBehindItsBackIsKnownFromTheSecondCopy) {
   EXPECT_EQ(value_of(writer.learned()).latencies, latencies);
 }
 
-// Root may write everywhere: while this lives, the test is nobody, and the folder is nobody's.
+// Root may write everywhere: while this exists, the test runs as nobody, and owns the folder as
+// nobody.
 class AsNobody {
  public:
   explicit AsNobody(const TestFolder& folder) : was_(geteuid()) {

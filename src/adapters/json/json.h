@@ -1,5 +1,5 @@
-// JSON documents, read from text and written as text. Here alone, for the library's parser is
-// compiled anew, which takes seconds, wherever it is called.
+// JSON documents, read from text and written as text. Here alone, for the library's parser takes
+// seconds to compile wherever it is called.
 //
 //     const Json answer = parse_json(R"({"node": "/camera", "pid": 42})");
 //     if (answer.is_discarded()) …       // it is no JSON
@@ -17,11 +17,12 @@ using Json = nlohmann::ordered_json;  // members stay in the order in which they
 
 // Never throws; discarded if `text` is no JSON.
 Json parse_json(std::string_view text);
-// Likewise, for what a stranger sends. Discarded, too, if an object has a member twice, since readers do not agree which
-// of the two counts, or if more than 100 lists and objects are in one another, which to_line() could not write.
+// As above, for text from an untrusted peer. Also discarded if an object has a member twice, since
+// readers disagree which of the two counts. Also if more than 100 lists and objects are nested,
+// which to_line() could not write.
 Json parse_strict_json(std::string_view text);
 
-// Neither throws: what is no UTF-8 is replaced, for robots name things as they like.
+// Neither throws: bytes that are no UTF-8 are replaced, for robots use any bytes in names.
 std::string to_line(const Json& json);      // on one line
 std::string to_indented(const Json& json);  // on several, without a newline at the end
 

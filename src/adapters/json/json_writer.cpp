@@ -58,8 +58,8 @@ void JsonWriter::write(std::int64_t value) {
   out_.append(digits.data(), digits.size());
 }
 
-// How it is printed is the library's, for rows of journals are compared by their bytes. Of what is whole
-// that is known, and many costs and chances are.
+// The library formats other numbers, for rows of journals are compared by their bytes. The format
+// of whole numbers is known, and many costs and probabilities are whole.
 void JsonWriter::write(double value) {
   separate();
   constexpr double kMost = 1e9;

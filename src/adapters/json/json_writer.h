@@ -21,7 +21,7 @@
 
 namespace culprit {
 
-// Whoever writes sees to it that what begins ends, and that no member is written twice.
+// The caller must end what it begins, and must write no member twice.
 class JsonWriter {
  public:
   // Appends to `out`, which must outlive it.
@@ -33,7 +33,7 @@ class JsonWriter {
   void end_array() { end(']'); }
 
   void null();
-  // What is no UTF-8 is replaced, and what is no number is null.
+  // Bytes that are no UTF-8 are replaced, and a value that is no number is null.
   template <class T>
   void value(const T& value) {
     if constexpr (std::same_as<T, bool>) {
@@ -49,7 +49,7 @@ class JsonWriter {
     }
   }
 
-  // What follows is the value of the member `name`.
+  // The next value is that of the member `name`.
   void key(std::string_view name);
   // `what` is a value, or writes one.
   template <class T>

@@ -1,7 +1,8 @@
 // Whether the system clock of this computer was stepped: set back, or ahead, by more than an adjustment.
 //
-// culprit measures by a clock that nobody sets, but nodes may not: timers of rclpy, and all that wait until a
-// time of day, stand still after the system clock is set back, until it has caught up.
+// culprit measures by a clock that cannot be set, but nodes may not: after the system clock is set
+// back, timers of rclpy, and all code that waits for a time of day, stand still until it has caught
+// up.
 #pragma once
 
 #include <optional>
@@ -15,8 +16,9 @@ class ClockStep {
   // NTP slews smaller differences.
   static constexpr Duration kLeast = std::chrono::seconds(1);
 
-  // `steady`: a clock that nobody sets and that goes on while the computer sleeps; `wall`: the system clock
-  // at the same time. By how much that was set since the last call; nothing: it was not.
+  // `steady`: a clock that cannot be set and that goes on while the computer sleeps; `wall`: the
+  // system clock at the same time. By how much that was set since the last call; nothing: it was
+  // not.
   std::optional<Duration> look(Duration steady, Duration wall) {
     const Duration offset = wall - steady;
     const Duration before = offset_.value_or(offset);

@@ -21,9 +21,9 @@ using namespace std::chrono_literals;
 // How long a node that was just seen may take until its services answer.
 constexpr Duration kJoining = 5s;
 constexpr Duration kProbe = 500ms;
-// A node that says that it changes its state may answer nothing until it has.
+// A node that announces a transition may answer nothing until it has finished.
 constexpr Duration kTransitionAsked = 100ms;
-// Between two questions about what events say: a flood of them asks the node 20 times a second.
+// Between two requests after events: a flood of them asks the node 20 times a second.
 constexpr auto kAskedAgain = 50ms;
 
 Lifecycle to_lifecycle(std::uint8_t id) {
@@ -241,7 +241,8 @@ void ComponentLink::watch_transitions() {
   if (subscription) transitions_ = std::move(*subscription);
 }
 
-// Anybody may send such an event. It is a reason to ask the node for its state, and says nothing by itself.
+// Anybody may send such an event. It is a reason to ask the node for its state, and proves nothing
+// by itself.
 void ComponentLink::on_transition(const Sample& sample) {
   const auto event = decode<msg::TransitionEvent>(sample.payload);
   if (!event) return;
@@ -275,8 +276,8 @@ void ComponentLink::ask_for_transition() {
                });
 }
 
-// A node with one thread answers nothing during a transition: then its silence confirms that one is under way. Any other
-// state is told only by the node itself, but that it was shut down.
+// A node with one thread answers nothing during a transition: then its silence confirms that one is
+// under way. Any other state counts only from the node itself, except that it was shut down.
 void ComponentLink::on_state(const CallResult& result, const Claim& claim) {
   const auto response = result.outcome == CallOutcome::kAnswered
                             ? decode<srv::GetState::Response>(result.reply)
@@ -296,7 +297,7 @@ void ComponentLink::on_state(const CallResult& result, const Claim& claim) {
   }
 }
 
-// The event that says so may have come after the question, and before its answer.
+// The event about it may have come after the request, and before its answer.
 bool ComponentLink::was_shut_down(const Claim& claim) {
   const MutexLock lock(claimed_mutex_);
   return claim.is_shut_down || (claimed_.last && claimed_.last->is_shut_down);
@@ -369,7 +370,7 @@ void ComponentLink::check_parameters() {
                });
 }
 
-// Of a few in a row nobody learns more.
+// Unanswered probes beyond a few in a row add no information.
 void ComponentLink::unanswered(Time due, const std::function<Time()>& heard) {
   constexpr std::size_t kMost = 10;
   const Time last = heard ? heard() : kNever;
@@ -394,7 +395,8 @@ void ComponentLink::forget_unanswered() {
 }
 
 void ComponentLink::probe(int pid, std::function<Time()> heard) {
-  // What is read of another computer may have come ReceiveThread::kSoon earlier.
+  // Messages that prove that another computer is reachable may have arrived up to
+  // ReceiveThread::kSoon earlier.
   const Time due = later(live_now(), kProbe + ReceiveThread::kSoon);
   const auto tell_of = [this, pid, heard = std::move(heard), due](const CallResult& result) {
     if (result.outcome == CallOutcome::kAnswered) {
@@ -417,7 +419,7 @@ void ComponentLink::ask(std::function<void(std::optional<GuidPrefix> answered)> 
   if (!is_asked) then(std::nullopt);
 }
 
-// Of one with a lifecycle that is its state, which is told as by check_lifecycle().
+// If the node has a lifecycle, this reads its state, and reports it as check_lifecycle() does.
 bool ComponentLink::read_anything(Duration patience, Haste haste,
                                   std::function<void(const CallResult&)> then) {
   const bool is_managed = has_lifecycle();
@@ -501,7 +503,7 @@ void ComponentLink::run(const Command& command, const ReadLifecycle&) {
                      });
 }
 
-// What is a list goes as one: the rules have its text.
+// A list parameter is set as a list: the rules have its text.
 Expected<msg::ParameterValue> ComponentLink::to_set(const std::string& name, const Value& value) {
   std::uint8_t type = 0;
   {

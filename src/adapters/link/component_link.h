@@ -1,11 +1,11 @@
-// What culprit asks of one component's node: its lifecycle, its parameters, its modes, its
-// routines.
+// The requests that culprit makes to one component's node: its lifecycle, its parameters, its
+// modes, its routines.
 //
-// Clients are made when the node is seen to offer a service, or at the first command that needs it,
-// and kept: a client that the server knows already needs no discovery when every millisecond
-// counts. Each changing service has a read of the same node as its probe (service_client.h), so
-// that a request is neither lost to discovery nor sent twice. Where the rules only look at a node,
-// there is only a client that reads: a secured domain need not allow more (policy.h).
+// Clients are made when the node is discovered to offer a service, or at the first command that
+// needs it, and kept: a client that the server knows already needs no discovery when every
+// millisecond counts. Each service that changes something has a read of the same node as its probe
+// (service_client.h). So a request is neither lost to discovery nor sent twice. If the rules only
+// look at a node, its client only reads, so a secured domain need not allow more (policy.h).
 #pragma once
 
 #include <atomic>
@@ -34,8 +34,8 @@ namespace culprit::ros2 {
 
 class ServiceCall;
 
-// All members may be called from any thread. What comes of them is put into the inbox: a Reply for
-// each command, and LifecycleRead, ParameterRead, ParametersListed and Probed as they become known.
+// All members may be called from any thread. Their results are put into the inbox: a Reply for each
+// command, and LifecycleRead, ParameterRead, ParametersListed and Probed as they become known.
 class ComponentLink {
  public:
   // `self` is our own node, `node` the component's full name. All references must outlive the link.
@@ -43,35 +43,38 @@ class ComponentLink {
   ComponentLink(NodeEntry& self, ComponentId component, std::string node, const RuleSet& rules,
                 Inbox& inbox, TypeFinder& types, Starvation& starvation);
 
-  // The process of the node, on this machine; 0: it is not known. And the participant that holds the node: from now on
-  // only its answers count, but for those of modes, which a mode manager gives for others.
+  // The process of the node, on this machine; 0: not known. And the participant that holds the
+  // node: from now on only its answers count, but for those of modes, which a mode manager gives
+  // for others.
   void lives_in(int pid, const GuidPrefix& participant);
 
-  // Its modes are told by this participant: its own, or that of a mode manager.
+  // Its modes come from this participant: its own, or that of a mode manager.
   void modes_come_from(const GuidPrefix& participant);
 
-  // Reads the parameters again: somebody says that they changed.
+  // Reads the parameters again: an event announced that they changed.
   void check_values() { read_parameters(); }
 
-  // The node was seen to offer a service: readies the client, reads the present state, and finds
-  // out what a routine takes while the node is well enough to be asked. On the executor's thread.
+  // The node was discovered to offer a service: readies the client, reads the present state, and
+  // finds out what a routine takes while the node is well enough to be asked. On the executor's
+  // thread.
   void service_seen(const GraphEndpoint& service);
 
-  // A cheap read that proves that the node answers: of its lifecycle, which is told as by
-  // check_lifecycle(), or of no parameter. `pid` is its process; 0: it is not known. That a traced
-  // one does not answer is not told; nor is it of one on another computer until something else of that
-  // computer was heard after the answer was due: `heard` says when last, and is called from any thread.
-  // Null: it is on this one. Nor is it told while culprit was starved a moment ago, or while the process is at work.
+  // A cheap read that proves that the node answers: of its lifecycle state, which is reported as by
+  // check_lifecycle(), or of no parameter. `pid` is its process; 0: not known. A missing answer is
+  // not reported if a debugger traces the process. For a node on another computer it is reported
+  // only once a later message of that computer arrived after the answer was due. `heard` returns
+  // the time of the last one, and is called from any thread. Null: the node is on this computer.
+  // Nor is it reported if culprit was starved a moment ago, or while the process is at work.
   void probe(int pid, std::function<Time()> heard = {});
   // Asks once, by the same read, whether the node is there, and gives the participant that answered, if any does.
   // `then` may be called before this returns.
   void ask(std::function<void(std::optional<GuidPrefix> answered)> then);
-  // Its computer is known to be silent: what was not told yet never is.
+  // Its computer is known to be unreachable: answers that are still missing are never reported.
   void forget_unanswered();
 
-  // Reads the state of a node that was seen to have a lifecycle, and tells it if it is another than
-  // was told last. Events tell of transitions sooner, and they may be lost: nobody repeats them,
-  // and the first ones pass before both sides know of each other.
+  // Reads the state of a node that was discovered to have a lifecycle, and reports it if it differs
+  // from the last report. Events report transitions sooner, and they may be lost: they are not
+  // repeated, and the first ones pass before both sides have matched.
   void check_lifecycle();
 
   // Asks a node that lacks a parameter of the rules which ones it has: one of those may be meant.
@@ -121,7 +124,7 @@ class ComponentLink {
   enum class Told : std::uint8_t { kAlways, kIfNew };
   void read_lifecycle(Duration patience, Told told, Haste haste);
   void tell(Lifecycle state, Told told);
-  // What a transition event says.
+  // The content of a transition event.
   struct Claim {
     Lifecycle state = Lifecycle::kUnknown;
     bool is_shut_down = false;  // somebody ordered its end
@@ -145,7 +148,7 @@ class ComponentLink {
   ServiceClient* make(std::unique_ptr<ServiceClient>& client, const std::string& service,
                       std::string_view type, const Qos& qos,
                       std::optional<ServiceClient::Probe> probe = {});
-  // Of one that only reads.
+  // Makes a client that only reads.
   ServiceClient* make_reader(std::unique_ptr<ServiceClient>& client, const std::string& service,
                              std::string_view type, const Qos& qos);
   ServiceClient* keep(std::unique_ptr<ServiceClient>& client, const std::string& service,
@@ -159,7 +162,8 @@ class ComponentLink {
   Inbox& inbox_;
   TypeFinder& types_;
   Starvation& starvation_;
-  // Not under the mutex: a receive thread that waited for it would stop whoever makes a client.
+  // Not under the mutex: a receive thread that waited for it would block the thread that makes a
+  // client.
   std::atomic<int> pid_ = 0;
   std::atomic<Lifecycle> told_ = Lifecycle::kUnknown;
   std::atomic<bool> misses_parameter_ = false;  // found since it was asked for its names
@@ -179,7 +183,7 @@ class ComponentLink {
       CULPRIT_GUARDED_BY(mutex_);        // that the node offers, by name
   std::optional<ProcessorLook> looked_;  // when it did not answer last; of the executor's thread
   Mutex unanswered_mutex_;
-  // When the answers were due that nobody was told of.
+  // The due times of missing answers that are not reported yet.
   std::deque<Time> unanswered_ CULPRIT_GUARDED_BY(unanswered_mutex_);
   Mutex lists_mutex_;  // another one: receive threads take it
   std::map<std::string, std::uint8_t> lists_

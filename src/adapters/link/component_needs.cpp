@@ -1,5 +1,7 @@
 #include "link/component_needs.h"
 
+#include <algorithm>
+
 namespace culprit::ros2 {
 namespace {
 
@@ -28,6 +30,7 @@ void add(const Adaptation& adaptation, ComponentNeeds& needs) {
       needs.routines.push_back(adaptation.subject);
       return;
     case AdaptationType::kStop:
+    case AdaptationType::kStartGroup:  // a rule set holds its parts instead
       return;
   }
 }
@@ -43,6 +46,10 @@ ComponentNeeds needs_of(ComponentId component, const RuleSet& rules) {
   }
   for (const Input& input : rules.inputs)
     needs.is_to_answer |= input.kind == Input::Kind::kAlive && input.component == component;
+  for (const Group& group : rules.groups) {
+    const bool is_member = std::ranges::find(group.members, component) != group.members.end();
+    needs.is_to_answer |= is_member || group.manager == component;
+  }
   return needs;
 }
 

@@ -10,7 +10,7 @@
 
 namespace culprit::ros2 {
 
-// Of something that was read again and again.
+// The course of a value that was read again and again.
 struct ValueCourse {
   std::size_t numbers = 0;
   std::size_t others = 0;  // texts, true and false, what is no finite number
@@ -24,7 +24,7 @@ struct ValueCourse {
   void note(const Value& value);
 };
 
-// Of a diagnostic status.
+// The course of a diagnostic status.
 struct StatusCourse {
   std::size_t messages = 0;
   std::uint8_t worst = 0;                       // level

@@ -1,9 +1,9 @@
-// What the rules want to know, picked out of diagnostic messages.
+// Picks the rules' signals out of diagnostic messages.
 //
-// A declared signal names a status, by its name or its hardware id, and a key. One that is only
-// used is looked for as a key of its name, or as "<hardware id>_<key>" or "<status name>_<key>"
-// (the convention of the SUNSET exemplar's blackboard). Until all of them are found, the names that
-// are heard instead are reported, so that a misspelled one can be found.
+// A declared signal names a status, by its name or its hardware id, and a key. An undeclared signal
+// is looked for as a key of its name, or as "<hardware id>_<key>" or "<status name>_<key>" (the
+// convention of the SUNSET exemplar's blackboard). Until all of them are found, the names that
+// arrive instead are reported, so that a misspelled one can be found.
 #pragma once
 
 #include <functional>
@@ -19,7 +19,7 @@ namespace culprit::ros2 {
 
 class DiagnosticsReading {
  public:
-  // Of what is told instead: strangers choose how much there is.
+  // Limits of that report: strangers choose how much there is.
   static constexpr std::size_t kMostStatuses = 256;
   static constexpr std::size_t kMostKeys = 64;
   static constexpr std::size_t kLongestName = 256;
@@ -34,7 +34,8 @@ class DiagnosticsReading {
 
   std::function<void(StatusHeard)> on_status;  // each status once
 
-  // Whether whoever published the message may say what `status` is, as the rules name it (signal_publishers.h).
+  // Whether the message's publisher may report `status`, as the rules name it
+  // (signal_publishers.h).
   using MaySay = std::function<bool(const std::string& status)>;
   // Calls the three above for what the rules want of `message`.
   void read(const msg::DiagnosticArray& message, const MaySay& may_say = {});

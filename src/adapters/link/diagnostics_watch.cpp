@@ -58,7 +58,7 @@ std::map<std::string, std::string> DiagnosticsWatch::conflicts() const {
 }
 
 void DiagnosticsWatch::on_sample(const Sample& sample) {
-  // What culprit itself publishes is no news.
+  // culprit's own messages are not read.
   const Guid writer = sample.identity.writer;
   if (writer.prefix() == self_.context().participant().guid().prefix()) return;
   const auto message = decode<msg::DiagnosticArray>(sample.payload);

@@ -1,8 +1,9 @@
-// Reads the rules' signals out of /diagnostics. What comes there may be 100 ms late (participant.h): many nodes say there again
-// and again what has not changed.
+// Reads the rules' signals out of /diagnostics. Messages may arrive 100 ms late (participant.h):
+// many nodes repeat there what has not changed.
 //
 // A status counts only from its publisher (signal_publishers.h). The watch looks up the node of a writer once, on the
-// executor's thread, where the writer's first message waits for that; and anew when nodes came or went.
+// executor's thread, where the writer's first message waits for that; and again when nodes came or
+// went.
 #pragma once
 
 #include <map>
@@ -25,7 +26,7 @@ class DiagnosticsWatch {
   static Expected<std::unique_ptr<DiagnosticsWatch>> create(NodeEntry& self, const RuleSet& rules,
                                                             Inbox& inbox);
 
-  // An earlier run learned who publishes that status. From any thread.
+  // An earlier run learned which node publishes that status. From any thread.
   void remember(const std::string& status, const std::string& node);
 
   // On the executor's thread.
@@ -58,7 +59,7 @@ class DiagnosticsWatch {
   std::unordered_map<Guid, SignalPublishers::Publisher> writers_
       CULPRIT_GUARDED_BY(mutex_);  // that were looked up
   int waiting_ CULPRIT_GUARDED_BY(mutex_) = 0;
-  // What was read last, by signal and by diagnostic.
+  // The newest values, by signal and by diagnostic.
   std::unordered_map<std::uint32_t, std::string> last_ CULPRIT_GUARDED_BY(mutex_);
   std::unordered_map<std::uint32_t, std::uint8_t> last_level_ CULPRIT_GUARDED_BY(mutex_);
   TaskGroup tasks_;  // outlives the one that posts to it

@@ -13,7 +13,7 @@ std::optional<GoalsSeen> goals_in(TopicId topic, ByteView payload) {
   GoalsSeen seen{topic, {}};
   const auto& all = message->status_list;
   for (std::size_t i = all.size() - std::min(all.size(), kMost); i < all.size(); ++i) {
-    // Half of a UUID is as good as all of it: nobody has so many goals.
+    // Half of a UUID is as good as all of it: no server has so many goals.
     std::uint64_t id = 0;
     for (std::size_t byte = 0; byte < 8; ++byte)
       id = id << 8 | (all[i].goal_info.goal_id[byte] ^ all[i].goal_info.goal_id[byte + 8]);

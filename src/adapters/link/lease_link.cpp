@@ -49,7 +49,7 @@ Expected<std::vector<std::unique_ptr<Writer>>> LeaseLink::announce(
   return writers;
 }
 
-// Of the claims of one participant the one that goes first counts.
+// If a participant makes several claims, the one with the highest rank counts.
 Expected<void> LeaseLink::take_over(std::int64_t term) {
   LeaseClaim claim = options_.claim;
   claim.term = term;
@@ -66,7 +66,7 @@ Expected<void> LeaseLink::take_over(std::int64_t term) {
   return {};
 }
 
-// Without a key nobody's beats would be believed.
+// Without a key no beat counts.
 Expected<void> LeaseLink::listen() {
   if (options_.claim.key.empty()) return {};
   auto reader =
@@ -81,7 +81,7 @@ Expected<void> LeaseLink::listen() {
   return {};
 }
 
-// ---- what others say
+// ---- messages of others
 
 void LeaseLink::on_discovery(const DiscoveryEvent& event) {
   constexpr std::size_t kMost = 1000;
@@ -163,7 +163,7 @@ Time LeaseLink::sure_until(Time now) const {
   return lease_.sure_until(now);
 }
 
-// ---- what is said
+// ---- own messages
 
 void LeaseLink::say() {
   const bool hears = hearing_.doubtful() > live_now();

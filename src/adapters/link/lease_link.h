@@ -1,5 +1,5 @@
-// The lease's way to the wire: announces the claim of this culprit in the domain, says its beats, and
-// hears those of others (manager_lease.h).
+// The lease's way to the wire: announces the claim of this culprit in the domain, sends its beats,
+// and receives those of others (manager_lease.h).
 #pragma once
 
 #include <functional>
@@ -22,7 +22,7 @@ class LeaseLink {
   struct Options {
     LeaseClaim claim;
     bool manages = false;  // now
-    // What people have ordered, for who takes over. Called on a thread of the link; must not wait.
+    // People's orders, for the successor. Called on a thread of the link; must not wait.
     std::function<std::string()> told_orders{};
   };
 
@@ -39,22 +39,23 @@ class LeaseLink {
   // Until when it is sure that no other culprit manages the robot. Not later than `now`: it is not.
   Time sure_until(Time now) const;
   // Where the culprit runs, on another machine, that goes before this one for the robot, or for the
-  // node of this full name: a host's name, or "another machine" where it does not say. Nothing:
+  // node of this full name: a host's name, or "another machine" if it announces none. Nothing:
   // there is none.
   std::optional<std::string> elder() const;
   std::optional<std::string> elder_at(const std::string& node) const;
   // Where those run that claim the same and do not prove it.
   std::vector<std::string> strangers() const;
-  // What the last one that managed this robot, on another machine or here, said of orders; empty:
-  // it did not say. Nothing: there was none.
+  // The orders that the last manager of this robot, on another machine or here, announced; empty:
+  // it announced none. Nothing: there was no manager.
   std::optional<std::string> told_orders() const;
-  // What that one told of all else that who takes over has to know, and by what our clock is ahead of
-  // its. Nothing: it told nothing, or not all of it came.
+  // The other state that the last manager announced for its successor, and by how much our clock is
+  // ahead of its. Nothing: it announced none, or some parts were lost.
   std::optional<ManagerLease::ToldState> told_state() const;
   std::int64_t highest_term() const;
-  // Of this one, from now on.
+  // The state of this manager, from now on.
   void tell_state(std::string state);
-  // Tells who takes over, now and not with the next beat: the last word of who steps back or ends.
+  // Informs the successor now and not with the next beat: the last message of a culprit that steps
+  // back or ends.
   void say();
   // This one, which did not manage, does from now on, in this term, and announces it beside what it
   // had announced. By one thread. Errors: the middleware refuses; then nothing has changed.
@@ -74,7 +75,7 @@ class LeaseLink {
   const Options options_;
   Context& context_;
   const Hearing& hearing_;
-  std::vector<std::unique_ptr<Writer>> writers_;      // the first says the beats
+  std::vector<std::unique_ptr<Writer>> writers_;      // the first sends the beats
   std::vector<std::unique_ptr<Writer>> of_new_term_;  // after take_over()
 
   mutable Mutex mutex_;  // the middleware is not called under it

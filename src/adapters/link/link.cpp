@@ -25,17 +25,17 @@ namespace {
 constexpr Duration kProbePeriod = std::chrono::milliseconds(400);
 constexpr Duration kAskPeriod = std::chrono::milliseconds(100);
 constexpr Duration kPublishPeriod = std::chrono::seconds(1);
-// A node that was said to leave, and answered.
+// A node that was announced to leave, and answered.
 constexpr auto kLeavingAskedAgain = std::chrono::seconds(2);
 constexpr Duration kAskedForParameters = std::chrono::seconds(1);
 constexpr Duration kReminder = std::chrono::minutes(1);
-// So long after the robot changed, what that took of the memory is given back.
+// So long after the robot changed, the memory for that is given back.
 constexpr auto kGivesBack = std::chrono::seconds(10);
 // One that ends, or is ended, needs no person.
 constexpr Duration kSettles = std::chrono::seconds(2);
 
-// Services that managers and tools use, of every node or of every managed node: who uses them
-// depends on nobody.
+// Services that managers and tools use, of every node or of every managed node: their users depend
+// on no node by them.
 bool is_for_management(std::string_view service) {
   constexpr std::array<std::string_view, 17> kNames = {
       "get_parameters",       "get_parameter_types",
@@ -60,7 +60,7 @@ std::string read_line(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// "process 99 (ros2 launch robot.launch.py)". A command line is what its process says of itself.
+// "process 99 (ros2 launch robot.launch.py)". A command line is the process's own claim.
 std::string process_in_words(int pid) {
   constexpr std::size_t kLongest = 120;
   std::string command = read_line("/proc/" + std::to_string(pid) + "/cmdline");
@@ -78,7 +78,7 @@ int parent_of(int pid) {
   return end + 4 < stat.size() ? std::atoi(stat.c_str() + end + 4) : 0;
 }
 
-// Who holds nodes of one name, who started each, and how to end what is one too many.
+// The processes that hold nodes of one name, their launchers, and how to end the extra one.
 std::string who_are(const std::vector<GraphNode>& nodes) {
   if (nodes.size() < 2) return "";
   std::string text;
@@ -98,7 +98,7 @@ std::string who_are(const std::vector<GraphNode>& nodes) {
       others += " " + std::to_string(node.pid);
     }
   }
-  text += ". Nothing is done to it until one is left: end the one too many";
+  text += ". culprit does not act on it until one is left: end the extra one";
   if (!others.empty()) text += " (kill" + others + (others.rfind(' ') > 0 ? ": one of them)" : ")");
   return text + ", and if a launch file starts it again, set respawn to False there";
 }
@@ -266,12 +266,12 @@ void Link::look_at_clocks() {
       std::chrono::seconds(steady.tv_sec) + std::chrono::nanoseconds(steady.tv_nsec);
   if (const auto step = system_clock_.look(running, Duration(wall_now()))) {
     const bool is_back = *step < Duration::zero();
-    inbox_.put(LinkTrouble{
-        "the system clock of this computer was set " + std::string(is_back ? "back" : "ahead") +
-        " by " + in_words(std::chrono::abs(*step)) +
-        (is_back ? ": timers of rclpy, and all that wait until a time of day, stand "
-                   "still until it has caught up; a restart of their nodes helps"
-                 : ": timers that wait until a time of day fire at once")});
+    inbox_.put(LinkTrouble{"the system clock of this computer was set " +
+                           std::string(is_back ? "back" : "ahead") + " by " +
+                           in_words(std::chrono::abs(*step)) +
+                           (is_back ? ": timers of rclpy, and waits for a time of day, stand "
+                                      "still until it has caught up; a restart of their nodes helps"
+                                    : ": timers that wait until a time of day fire at once")});
   }
   if (simulated_node_.empty() || told_of_clock_) return;
   constexpr Duration kClockComes = std::chrono::seconds(10);
@@ -300,7 +300,8 @@ std::string Link::doubt() const {
   if (is_paused()) return clock()->doubt(live_now());
   const Time now = live_now();
   return lease_ && lease_->sure_until(now) <= now
-             ? "culprit was away so long that another one may manage this robot by now; it listens"
+             ? "culprit was away so long that another one may manage this robot now; it waits for "
+               "its messages"
              : hearing_->doubt(now);
 }
 
@@ -382,7 +383,7 @@ void Link::on_discovery(const DiscoveryEvent& event) {
   if (lease_) lease_->on_discovery(event);
 }
 
-// Who is deaf, or stood still, did not hear what they said meanwhile.
+// If culprit was deaf, or stood still, it missed messages meanwhile.
 void Link::listen_to_hosts() {
   const Time now = live_now();
   const bool stood_still = later(looked_at_hosts_, 2 * kPublishPeriod) < now;
@@ -390,7 +391,7 @@ void Link::listen_to_hosts() {
   looked_at_hosts_ = now;
 }
 
-// Rules may have nothing to complain of, or complain late: this is told in its own right.
+// Rules may have nothing to complain of, or complain late: this is reported in its own right.
 void Link::on_namesakes(const NodeNamesakes& seen) {
   {
     const MutexLock lock(mutex_);
@@ -439,7 +440,7 @@ std::optional<std::string> Link::cut_off(ComponentId component) {
   return found->second;
 }
 
-// While it is not sure that we hear, nothing new is known of any.
+// While reception is doubtful, nothing new is known of any.
 void Link::look_at_hosts() {
   const Time now = live_now();
   if (sure_to_hear(now) <= now) return;
@@ -475,7 +476,7 @@ void Link::lives_on(ComponentId component, const std::string& host) {
   inbox_.put(LivesOn{component, host});
 }
 
-// Only a person can end that, and who comes late must hear of it too.
+// Only a person can end that, and late joiners must learn of it too.
 void Link::remind() {
   const Time now = live_now();
   std::vector<std::string> due;
@@ -572,7 +573,8 @@ void Link::doubt_leaving(const std::string& node, Leaving leaving) {
                  [this, node, doubt = leaving.doubt] { ask_leaving(node, doubt); });
 }
 
-// The middleware may know its services still, if somebody said in its name only that it holds no node.
+// The middleware may know its services still, if a message in its name announced only that it holds
+// no node.
 void Link::ask_leaving(const std::string& node, std::uint64_t doubt) {
   const auto component = binding_.bind(node);
   const auto found = leaving_.find(node);
@@ -594,8 +596,9 @@ void Link::believe_leaving(const std::string& node, std::optional<GuidPrefix> an
     return vanished(node, leaving.was_lost);
   }
   if (!std::exchange(leaving.is_told, true))
-    inbox_.put(LinkTrouble{node + " was said to have left, and answers: somebody may speak in its "
-                                  "name. It counts as being there"});
+    inbox_.put(LinkTrouble{node +
+                           " was announced to have left, but answers: another program may speak "
+                           "in its name. It counts as present"});
   doubt_leaving(node, leaving);
 }
 
@@ -609,7 +612,7 @@ void Link::vanished(const std::string& node, bool was_lost) {
   inbox_.put(NodeVanished{node});
 }
 
-// It says so itself, or somebody else does in its name: the node is asked.
+// The node announces it, or another program does in its name: the node is asked.
 void Link::on_said_to_leave(const std::string& node) {
   if (asked_whether_left_.insert(node).second)
     tasks_.post([this, node] { ask_whether_left(node); });
@@ -640,7 +643,7 @@ void Link::ask_whether_left(const std::string& node, int questions) {
       [then](const CallResult& result) { then(result.outcome == CallOutcome::kAnswered); });
 }
 
-// One that answers may be leaving all the same, so it is asked again while it is said.
+// One that answers may be leaving all the same, so it is asked again while that is announced.
 void Link::on_whether_left(const std::string& node, int questions, bool answers) {
   constexpr std::size_t kMost = 100;
   if (!answers && questions > 1) return ask_whether_left(node, questions - 1);
@@ -651,9 +654,9 @@ void Link::on_whether_left(const std::string& node, int questions, bool answers)
   tasks_.post_at(Executor::Clock::now() + kLeavingAskedAgain,
                  [this, node] { ask_whether_left(node); });
   if (told_of_false_leaving_.size() >= kMost || !told_of_false_leaving_.insert(node).second) return;
-  inbox_.put(LinkTrouble{"it was said in the name of " + node +
-                         " that it left the graph, but it answers: it is taken to be there. Does "
-                         "somebody on this network speak in its name?"});
+  inbox_.put(LinkTrouble{"a message in the name of " + node +
+                         " announced that it left the graph, but it answers and counts as "
+                         "present. Does another program on this network speak in its name?"});
 }
 
 void Link::remember_publishers(const std::map<std::string, std::string>& publishers) {
@@ -744,7 +747,8 @@ void Link::find_type(const std::string& node, const GraphEndpoint& endpoint, Top
       });
 }
 
-// The event of anybody else, and of a node that is not known to have this writer yet, is a reason to ask.
+// An event from another writer, or from one that is not known as the node's yet, is a reason to
+// ask.
 void Link::on_parameter_event(const msg::ParameterEvent& event, const Guid& writer) {
   const auto component = binding_.bind(event.node);
   if (!component || is_other_node(*component, event.node)) return;
@@ -806,9 +810,15 @@ void Link::probe() {
     if (input.kind != Input::Kind::kLifecycle || are_probed.contains(input.component)) continue;
     if (ComponentLink* link = link_of(input.component)) link->check_lifecycle();
   }
+  for (const Group& group : rules_.groups) {
+    for (const ComponentId member : group.members) {
+      ComponentLink* link = are_probed.contains(member) ? nullptr : link_of(member);
+      if (link != nullptr) link->check_lifecycle();
+    }
+  }
 }
 
-// Only of a process on this machine that is proven to be the node's.
+// Reports only a process on this machine that is proven to be the node's.
 void Link::tell_usage() {
   for (auto& [component, meter] : meters_) {
     const auto pid = pids_.find(binding_.node_of(component));
@@ -842,8 +852,9 @@ void Link::prove_listening(Time until) {
   });
 }
 
-// Discovery data is ordered for each participant (service_client.h): who answers a client knows
-// each reader that was made before it. So each topic has a client of its own, made after its reader.
+// Discovery data is ordered for each participant (service_client.h): a node that answers a client
+// has discovered each reader that was made before it. So each topic has a client of its own, made
+// after its reader.
 void Link::ask_silent_ones() {
   const Time now = live_now();
   if (now >= asks_until_) {
@@ -877,7 +888,7 @@ void Link::tell_of_refused() {
   if (refused.count == 0 || refused.count < 10 * refused_) return;
   refused_ = refused.count;
   inbox_.put(LinkTrouble{std::to_string(refused.count) + " datagrams were kept out so far: " +
-                         refused.why + "; who on this network sends that?"});
+                         refused.why + "; which program on this network sends them?"});
 }
 
 void Link::tell_of_foreign_sources() {

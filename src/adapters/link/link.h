@@ -1,8 +1,9 @@
-// The adapter: a live ROS 2 robot, spoken to directly over DDS.
+// The adapter to a live ROS 2 robot, directly over DDS.
 //
-// It joins as the node /culprit, tells the manager what it observes (nodes and who depends on whom,
-// the rhythm of topics, values of fields, diagnostics and parameters, lifecycle states), carries
-// out what is asked of nodes, and publishes what culprit has to say on /diagnostics and /rosout.
+// It joins as the node /culprit. It reports its observations to the manager: nodes and their
+// dependencies, the rhythm of topics, values of fields, diagnostics and parameters, lifecycle
+// states. It carries out the manager's commands to nodes, and publishes culprit's messages on
+// /diagnostics and /rosout.
 //
 // It does no harm: its readers are best effort and keep one sample, it subscribes only to what the
 // rules read, and it uses no shared memory.
@@ -49,7 +50,7 @@ struct Health {
   std::vector<std::pair<std::string, std::string>> values;
 };
 
-// execute(), publish() and log() may be called from any thread; what comes of commands goes to the
+// execute(), publish() and log() may be called from any thread; results of commands go to the
 // inbox.
 class Link {
  public:
@@ -72,27 +73,28 @@ class Link {
   ~Link();
 
   void execute(const Command& command);
-  // Publishes at once, and again every second until there is something new to say.
+  // Publishes at once, and again every second until there is something new to publish.
   void publish(std::vector<Health> health);
   void log(Severity severity, std::string text);
 
-  // Of each component's node, and each container's, that others have the name of, by full name: who they are, who started
-  // each, and how to end what is one too many. From any thread.
+  // For each component's and container's node whose name others have too, by full name: the
+  // processes that hold it, their launchers, and how to end the extra one. From any thread.
   std::map<std::string, std::string> contested() const;
   // The processes of all nodes of one name, where there are several: by that name; 0: on another
   // machine, or not proven. From any thread.
   std::map<std::string, std::vector<int>> doubled() const;
 
-  // The other computers that nodes of the graph run on, as their middleware says, by the nodes' full
-  // names. From any thread.
+  // The other computers that nodes of the graph run on, as their middleware announces them, by the
+  // nodes' full names. From any thread.
   std::map<std::string, std::string> nodes_elsewhere() const;
 
-  // The other computer where the component ran when it was seen last, if nothing is heard of it now:
-  // nobody knows whether it still runs there. What was found is told (HostHeard) before this returns.
-  // From any thread.
+  // The other computer where the component was last discovered, if that computer is unreachable
+  // now, so that its state there is unknown. The result is reported (HostHeard) before this
+  // returns. From any thread.
   std::optional<std::string> cut_off(ComponentId component);
 
-  // The component's node was ordered to leave: until then nobody is asked whether that is so. From any thread.
+  // The component's node was ordered to leave: until then the node is not asked whether it left.
+  // From any thread.
   void expect_departure(ComponentId component, Time until);
   // An earlier run had proven that a process of this machine has this node. From any thread.
   void note_proven_here(const std::string& node) { context_->note_proven_here(node); }
@@ -100,25 +102,26 @@ class Link {
   // The publishers of diagnostics that an earlier run learned, by status. From any thread.
   void remember_publishers(const std::map<std::string, std::string>& publishers);
 
-  // Our own node, for clients of what is no component. It goes with the link.
+  // Our own node, for clients of nodes that are no component. It goes with the link.
   NodeEntry& entry() { return node_->entry(); }
 
-  // Until when it is sure that what the robot says is heard (hearing.h), that no other culprit
+  // Until when it is certain that the robot's messages arrive (hearing.h), that no other culprit
   // manages it (lease_link.h), and that its time passes (simulated_clock.h). From any thread, as
   // all of the following.
   Time doubtful() const;
-  // When it was last shown that the robot is heard, and to have it shown now.
+  // When reception was last proven, and to have it proven now.
   Time heard() const { return hearing_->heard(); }
   void prove_hearing() { hearing_->say(); }
   // Asks those that alone publish what the rules watch, and of which nothing comes, whether they know
-  // that it is listened to (ListenerKnown), until then. Not where a discovery server stands between.
+  // that it is listened to (ListenerKnown), until then. Not through a discovery server.
   void prove_listening(Time until);
-  // What is not sure, if that time has come.
+  // The doubt, once that time has come.
   std::string doubt() const;
-  // Nothing is wrong with culprit: it is only the robot's time that stands still.
+  // True if culprit itself works, and only the robot's time stands still.
   bool is_paused() const;
 
-  // Who manages the robot, of the culprits of the domain. Null: this one claims nothing.
+  // The lease that decides which of the domain's culprits manages the robot. Null: this culprit
+  // claims none.
   LeaseLink* lease() { return lease_.get(); }
   const LeaseLink* lease() const { return lease_.get(); }
 
@@ -183,7 +186,7 @@ class Link {
   std::optional<Publisher<msg::DiagnosticArray>> diagnostics_;
   std::map<std::string, std::unique_ptr<TopicWatch>> watches_;  // by topic
   std::unique_ptr<TypeFinder> types_;
-  // If the robot is simulated, or a node says that it is. Made on the executor's thread, once.
+  // If the robot is simulated, or a node announces that it is. Made on the executor's thread, once.
   std::unique_ptr<SimulatedClock> clock_;
   std::atomic<const SimulatedClock*> made_clock_ = nullptr;  // for the other threads
   std::string simulated_node_;                               // the first that has use_sim_time
@@ -195,7 +198,7 @@ class Link {
   std::unique_ptr<RawSubscription> parameter_events_;
   std::atomic<int> parameter_events_waiting_ = 0;
   std::map<ComponentId, Time> parameters_asked_;           // because of somebody else's event
-  std::set<std::pair<std::string, std::string>> told_of_;  // nodes, and who speaks for them
+  std::set<std::pair<std::string, std::string>> told_of_;  // nodes, and the sources in their names
   std::map<std::string, GuidPrefix> holders_;              // participants of nodes that are there
   std::map<std::string, std::string> mode_managers_;       // by system: the node whose modes count
   struct ToProbe {
@@ -223,7 +226,7 @@ class Link {
     GuidPrefix participant{};
   };
   std::map<std::string, Unproven> unproven_;
-  // Such nodes that are said to have left.
+  // Such nodes that are announced to have left.
   struct Leaving {
     Unproven node;
     bool was_lost = false;
@@ -241,27 +244,27 @@ class Link {
   std::unique_ptr<Timer> probing_;
   std::unique_ptr<Timer> publishing_;
   std::unique_ptr<Hearing> hearing_;
-  std::uint64_t refused_ = 0;  // datagrams that were told of
+  std::uint64_t refused_ = 0;  // datagrams that were reported
   std::unique_ptr<LeaseLink> lease_;
   std::unique_ptr<NeighbourHosts> hosts_;
   Time looked_at_hosts_ = kLongAgo;              // on the executor's thread
   bool gives_memory_back_ = false;               // soon
-  std::set<std::string> asked_whether_left_;     // nodes that were said to leave
+  std::set<std::string> asked_whether_left_;     // nodes that were announced to leave
   std::set<std::string> told_of_false_leaving_;  // those of them that answered once
 
   mutable Mutex mutex_;
   // A component's node that others have the name of.
   struct Contest {
     std::string text;
-    Time due{};  // to be told
+    Time due{};  // for the report
   };
   std::map<std::string, Contest> contested_ CULPRIT_GUARDED_BY(mutex_);            // by node
   std::map<std::string, std::vector<int>> doubled_ CULPRIT_GUARDED_BY(mutex_);     // by node
   std::map<std::string, std::string> nodes_elsewhere_ CULPRIT_GUARDED_BY(mutex_);  // by node
   std::map<ComponentId, std::string> elsewhere_
-      CULPRIT_GUARDED_BY(mutex_);  // the other computer where it ran last, if it said no good-bye
+      CULPRIT_GUARDED_BY(mutex_);  // the other computer where it ran last, unless it left in order
   std::map<ComponentId, Time> departures_ CULPRIT_GUARDED_BY(mutex_);  // expected until then
-  std::set<std::string> silent_hosts_ CULPRIT_GUARDED_BY(mutex_);      // that were told of
+  std::set<std::string> silent_hosts_ CULPRIT_GUARDED_BY(mutex_);      // that were reported
   std::vector<Health> health_ CULPRIT_GUARDED_BY(mutex_);
   std::vector<std::unique_ptr<ComponentLink>> links_
       CULPRIT_GUARDED_BY(mutex_);  // by component; one that is made stays

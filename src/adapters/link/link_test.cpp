@@ -127,7 +127,7 @@ struct Robot {
   std::unique_ptr<LifecycleNode> managed;
 };
 
-// It announces the port of no process, so nobody knows whose it is.
+// It announces the port of no process, so its process is unknown.
 TEST(Link, WhoIsSaidToHaveLeftByNobodyKnowsWhomIsGivenTheTimeToComeBack) {
   const TestDomain domain;
   Linked linked(domain);
@@ -192,7 +192,7 @@ TEST(Link, BelievesNoTransitionEventButTheNodesOwnAnswer) {
   ASSERT_TRUE(reads(Lifecycle::kUnconfigured));
   const auto forged =
       RawPublisher::create(liar, "/robot/transition_event", msg::TransitionEvent::kType, {});
-  // As its own would be, if somebody speaks in the name of its participant.
+  // As its own would be, if another program uses its participant's identity.
   const auto own = RawPublisher::create(robot.managed->node().entry(), "/robot/transition_event",
                                         msg::TransitionEvent::kType, {});
   ASSERT_TRUE(forged && own);
@@ -210,7 +210,7 @@ TEST(Link, BelievesNoTransitionEventButTheNodesOwnAnswer) {
   EXPECT_FALSE(linked.has_seen<LifecycleRead>(
       [](const LifecycleRead& r) { return r.state == Lifecycle::kTransition; }));
   EXPECT_EQ(linked.ask(ChangeLifecycle{Transition::kConfigure}).outcome, Outcome::kDone);
-  EXPECT_TRUE(reads(Lifecycle::kInactive)) << "which an event told of, and the node confirmed";
+  EXPECT_TRUE(reads(Lifecycle::kInactive)) << "an event reported it, and the node confirmed it";
 }
 
 constexpr const char* kAliveRules =
@@ -221,7 +221,7 @@ auto tells(const std::string& part) {
   return [part](const LinkTrouble& told) { return told.text.find(part) != std::string::npos; };
 }
 
-// As whoever speaks in the name of its participant can.
+// Any program that uses its participant's identity can do that.
 TEST(Link, AsksANodeThatIsSaidToLeave) {
   const TestDomain domain;
   Robot robot(domain);
@@ -238,7 +238,7 @@ TEST(Link, AsksANodeThatIsSaidToLeave) {
   (*forged)->write(
       encode_discovery_info({robot.context->participant().guid(), {}}, GidSize::kHumbleAndOlder));
   const auto leaves = [](const NodeVanished& n) { return n.node == "/robot"; };
-  EXPECT_TRUE(linked.wait<LinkTrouble>(tells("but it answers: it is taken to be there")));
+  EXPECT_TRUE(linked.wait<LinkTrouble>(tells("but it answers and counts as present")));
   EXPECT_FALSE(linked.wait<NodeVanished>(leaves, 500ms));
   std::promise<void> goes_on;
   std::thread hung([&] { robot.context.run([&] { goes_on.get_future().wait(); }); });
@@ -312,7 +312,7 @@ TEST(Link, BelievesNoParameterEventOfOthers) {
   EXPECT_TRUE(linked.wait<ParameterRead>(is(3.0)));
 }
 
-// The announcement of a participant that nobody has (RTPS 2.3 §8.5.4.2, §9.6.2.2).
+// The announcement of a participant that does not exist (RTPS 2.3 §8.5.4.2, §9.6.2.2).
 Bytes announcement_of(std::uint16_t number) {
   Guid guid;
   guid.bytes = {1, 15, 0x5a, 0x5a};
@@ -338,7 +338,7 @@ Bytes announcement_of(std::uint16_t number) {
 TEST(Link, DiscoversANewProcessBesideAThousandParticipantsOfAStranger) {
   const TestDomain domain;
   Linked linked(domain, {}, kAliveRules);
-  EventLog<std::uint16_t> ports;  // anybody in the domain knows who listens where
+  EventLog<std::uint16_t> ports;  // announced to the whole domain
   const auto spy = Participant::create(domain.options(), [&](const DiscoveryEvent& event) {
     const auto* info = std::get_if<ParticipantInfo>(&event);
     if (info != nullptr && !info->metatraffic.empty()) ports.add(info->metatraffic.front().port);
@@ -386,13 +386,13 @@ TEST(Link, AsksWhetherANodeAnswersWhenItIsToldTo) {
     });
   });
   hangs.get_future().wait();
-  // Also on a machine that is too busy to tell.
+  // Also on a machine that is too busy to prove it.
   EXPECT_NE(ask().outcome, Outcome::kDone) << "its callback hangs";
   goes_on.set_value();
   hung.join();
 }
 
-// As with nodes of other users, in containers or not: nobody that can be seen holds their sockets.
+// As with nodes of other users, in containers or not: no visible process holds their sockets.
 TEST(Link, MissesNoProofOfWhatAnEngineOrSystemdEnds) {
   const TestDomain domain;
   Linked linked(domain, {},
@@ -417,7 +417,7 @@ TEST(Link, MissesNoProofOfWhatAnEngineOrSystemdEnds) {
   EXPECT_FALSE(linked.has_seen<LinkTrouble>(is_missed("/lidar")));
 }
 
-// Who answers a client that was made after the reader has been told of the reader, too.
+// A node that answers a client that was made after the reader has also discovered the reader.
 TEST(Link, KnowsThatWhoIsSilentKnowsItsListener) {
   const TestDomain domain;
   Robot robot(domain);
@@ -440,9 +440,9 @@ TEST(Link, KnowsThatWhoIsSilentKnowsItsListener) {
   ASSERT_TRUE(begins_to_speak());
   linked.link->prove_listening(live_now() + kPatience);
   EXPECT_TRUE(linked.wait<ListenerKnown>(is_about("/silent")));
-  EXPECT_FALSE(linked.has_seen<ListenerKnown>(is_about("/speaking"))) << "nobody has to ask";
+  EXPECT_FALSE(linked.has_seen<ListenerKnown>(is_about("/speaking"))) << "no request is needed";
   silent.publish(msg::Float64{1});
-  EXPECT_TRUE(linked.wait<SampleArrived>(is_about("/silent"))) << "the first one is heard";
+  EXPECT_TRUE(linked.wait<SampleArrived>(is_about("/silent"))) << "the first one arrives";
 }
 
 TEST(Link, TakesTheListenerForKnownToNobodyWhoDoesNotAnswer) {
@@ -500,14 +500,14 @@ TEST(Link, PublishesWhatItIsToldAgainAndAgain) {
   ASSERT_TRUE(subscription);
   Linked linked(domain);
   linked.link->publish({{"culprit: R", 2, "a person must look", {{"attempts", "6"}}}});
-  ASSERT_TRUE(heard.wait_for_count(2)) << "a late listener must hear it too";
+  ASSERT_TRUE(heard.wait_for_count(2)) << "a late joiner must receive it too";
   const msg::DiagnosticStatus status = heard.all()[0].status.at(0);
   EXPECT_EQ(status.level, 2);
   EXPECT_EQ(status.name, "culprit: R");
   EXPECT_EQ(status.values.at(0).value, "6");
 }
 
-// A type that nobody compiled in: two .msg files, one of which names the other.
+// A type that is not compiled in: two .msg files, one of which names the other.
 TEST(Link, ReadsFieldsOfMessagesThatFilesDefine) {
   const std::filesystem::path folder = testing::TempDir() + "culprit_messages";
   std::filesystem::create_directories(folder / "my_msgs/msg");
@@ -541,7 +541,7 @@ TEST(Link, ReadsWhatWasLatchedBeforeItCame) {
   Linked linked(domain);
   EXPECT_EQ(linked.reads("visibility"), Value(3.5));
   EXPECT_FALSE(linked.has_seen<SampleArrived>([](const SampleArrived&) { return true; }))
-      << "what was published before is no beat of its rhythm";
+      << "earlier samples are no beats of its rhythm";
   (*publisher)->publish(encode(msg::Float64{4.5}));
   EXPECT_TRUE(linked.wait<SignalRead>([](const SignalRead& r) { return r.value == Value(4.5); }));
 }
@@ -580,7 +580,7 @@ TEST(Link, ReadsFieldsRhythmsAndDiagnostics) {
   auto diagnostics = robot.publisher<msg::DiagnosticArray>("/diagnostics");
   Linked linked(domain);
   ASSERT_TRUE(linked.sees("/robot"));
-  // Volatile data: published until it is heard.
+  // Volatile data: published until it arrives.
   Timer timer(robot.context->executor(), 20ms, [&] {
     visibility.publish({2.5});
     msg::DiagnosticStatus motor{1, "motor", "", "m1", {{"temperature", "60.5"}}};
@@ -597,7 +597,7 @@ TEST(Link, ReadsFieldsRhythmsAndDiagnostics) {
   EXPECT_TRUE(linked.wait<DiagnosticRead>([](const DiagnosticRead& d) { return d.level == 1; }));
   const auto trouble = linked.wait<LinkTrouble>(
       [](const LinkTrouble& t) { return t.text.find("signal wrong") != std::string::npos; });
-  EXPECT_TRUE(trouble) << "a field that is not there must be said";
+  EXPECT_TRUE(trouble) << "a missing field must be reported";
   EXPECT_FALSE(linked.has_seen<StatusHeard>([](const StatusHeard&) { return true; }))
       << "all that the rules name was found";
 }
@@ -619,7 +619,7 @@ TEST(Link, TellsWhichOfTwoNodesPublished) {
   };
   Timer timer(robot.context->executor(), 20ms, [&] { of_robot.publish(msg::Float64{1}); });
   EXPECT_TRUE(linked.wait<SampleArrived>(is_of(0)));
-  EXPECT_TRUE(linked.wait<SampleArrived>(is_of(2))) << "who listens to all hears it, too";
+  EXPECT_TRUE(linked.wait<SampleArrived>(is_of(2))) << "the signal of all publishers has it, too";
   EXPECT_FALSE(linked.has_seen<SampleArrived>(is_of(1)));
   Timer another(context->executor(), 20ms, [&] { of_other.publish(msg::Float64{1}); });
   EXPECT_TRUE(linked.wait<SampleArrived>(is_of(1)));
@@ -661,7 +661,8 @@ TEST(Link, AsksEachNodeOfAProcessAndMeasuresIt) {
       [](const LifecycleRead& r) { return r.component != ComponentId(0); }));
 }
 
-// Of many a second most lie in their socket for a moment. A silence begins when the last one came.
+// If many messages come each second, most lie in their socket for a moment. A topic timeout counts
+// from the arrival of the last one.
 TEST(Link, KnowsWhenMessagesCameThatItReadsLater) {
   const TestDomain domain;
   Robot robot(domain);
@@ -695,7 +696,7 @@ RULE R
   };
   while (!comes_after(said[said.size() - 2]) && live_now() < end)
     (void)linked.wait<LinkTrouble>([](const LinkTrouble&) { return false; }, 20ms);
-  int between = 0;  // two messages, as seen by who said them
+  int between = 0;  // two messages, by the publisher's count
   for (const Observation& each : linked.seen()) {
     if (!std::holds_alternative<SampleArrived>(each.what) || each.at < said.front()) continue;
     constexpr Duration kClocks = 1ms;  // of the kernel and of us
@@ -707,8 +708,7 @@ RULE R
   EXPECT_LE(between, 15) << "but for a few, when somebody else had the processor";
 }
 
-// For whoever wrote a name otherwise: what is there instead is told once, and only while something
-// is missing.
+// For misspelled names: the existing names are reported once, and only while something is missing.
 TEST(Link, TellsWhatDiagnosticsAndParametersAreReallyCalled) {
   const TestDomain domain;
   Robot robot(domain);
@@ -998,7 +998,7 @@ TEST(Link, AnswersForRepliesOfTheWrongType) {
   const TestDomain domain;
   LiveContext liar(domain.options());
   NodeEntry entry(*liar, {"/", "robot"});
-  // Named and typed as the real service, but it answers with what is none of its responses.
+  // Named and typed as the real service, but its answers are none of its responses.
   auto server = ServiceServer::create(
       entry, {"/robot/get_state", std::string(srv::GetState::kType)}, qos::kServices,
       [](ByteView) { return Bytes{0, 1, 0, 0, 1, 0, 0, 0, 0xff, 0xff, 0xff, 0x7f}; });

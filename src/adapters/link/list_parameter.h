@@ -11,7 +11,7 @@ namespace culprit::ros2 {
 
 bool is_list(const msg::ParameterValue& value);
 
-// Of a single value, that; of a list, its text. Nothing: it is not set.
+// A single value as it is; a list as its text. Nothing: not set.
 std::optional<Value> value_or_list(const msg::ParameterValue& value);
 
 // The list that `text` means, for a parameter of this type (ParameterType). Nothing: it is none, or has

@@ -125,7 +125,7 @@ void ManagerLease::apply(const DiscoveryEvent& event, Time now) {
     other.is_proven =
         !own_.key.empty() && are_same(value("proof"), proof_of(kClaim, claim, prefix, own_.key));
     if (!other.is_proven) {
-      // Whoever borrows the name of a proven writer does not take its proof away.
+      // A stranger that uses the GUID of a proven writer does not cancel its proof.
       const auto known = others_.find(endpoint->guid);
       const bool is_borrowed = known != others_.end() && known->second.is_proven;
       if (is_borrowed || strangers().size() >= kMostStrangers) return;
@@ -176,7 +176,7 @@ void ManagerLease::tell_state(std::string state) {
   is_state_new_ = true;
 }
 
-// A round that has begun is told to its end, however often there is something new.
+// A round that has begun is sent to its end, however often there is something new.
 std::vector<std::string> ManagerLease::state_parts(Time now) {
   std::vector<std::string> parts;
   if (own_.key.empty() || !manages_ || !has_friends_) return parts;
@@ -201,8 +201,8 @@ std::vector<std::string> ManagerLease::state_parts(Time now) {
   return parts;
 }
 
-// `part`: what follows the proof. Its clock is of when it was written, so that the way here is all
-// that the shift is wrong by.
+// `part`: the text after the proof. Its clock is of when it was written, so that the way here is
+// all that the shift is wrong by.
 void ManagerLease::hear_state(const GuidPrefix& participant, std::string_view proof,
                               std::string_view part, Time now) {
   if (!are_same(proof, proof_of(kState, part, participant, own_.key))) return;
@@ -231,7 +231,7 @@ void ManagerLease::hear_state(const GuidPrefix& participant, std::string_view pr
     text += *each;
   }
   told_state_ = {std::move(text), Duration(shift)};
-  round.parts.clear();  // heard
+  round.parts.clear();  // complete
 }
 
 void ManagerLease::hear(const GuidPrefix& participant, std::string_view beat, Time now) {
@@ -261,7 +261,7 @@ Time ManagerLease::sure_until(Time now) const {
   return now < listens_until_ ? kLongAgo : later(*said_, kAway);
 }
 
-// While nothing is heard nobody is held to be gone.
+// While nothing is received, no other culprit counts as exited.
 bool ManagerLease::is_alive(const GuidPrefix& participant, Time now) const {
   const bool slept = now > later(ticked_, kAway);
   const auto life = lives_.find(participant);
@@ -269,7 +269,7 @@ bool ManagerLease::is_alive(const GuidPrefix& participant, Time now) const {
          now <= later(std::max(life->second.heard, hears_since_), kPatience);
 }
 
-// A claim of the same age is of this process, which joins the domain anew at times.
+// A claim of the same age is of this process, which rejoins the domain at times.
 template <class Predicate, class Order>
 std::optional<GuidPrefix> ManagerLease::first(Time now, const IsLeftOut& is_left_out,
                                               Predicate is_rival, Order order) const {

@@ -97,7 +97,7 @@ TEST(ManagerLease, IsNotLostToAStranger) {
               kNow);
   lease.apply(says(2, "robot=drone;since=1;id=2;term=0;nodes=;"), kNow);
   lease.apply(says(3, "robot=drone;since=1;id=3;term=0;nodes=;proof=00;"), kNow);
-  // Repeats what a friend said.
+  // Repeats a friend's claim.
   lease.apply(says(4, claim(9, {"drone", 1, 1}).user_data), kNow);
   EXPECT_FALSE(lease.elder(kNow));
   EXPECT_EQ(lease.strangers().size(), 4u);
@@ -151,7 +151,7 @@ TEST(ManagerLease, NamesEveryNodeOfARobotHoweverMany) {
   for (const std::string& node : nodes) EXPECT_TRUE(lease.elder_at(node, kNow)) << node;
 }
 
-// Two culprits of one robot on two machines, and what is between them, in virtual time.
+// Two culprits of one robot on two machines, and the network between them, in virtual time.
 struct Machine {
   Machine(std::uint8_t participant, std::int64_t since, std::int64_t term = 0)
       : prefix(writer(participant).prefix()),
@@ -253,14 +253,13 @@ TEST_F(TwoMachines, StandStillWhenTheyWereAwayUntilTheyKnowWhoManages) {
   // The other one took over meanwhile, as another participant.
   Machine successor{3, 200, second.lease.highest_term() + 1};
   first.ticks(now, &second);
-  EXPECT_LT(first.lease.sure_until(now), now - 1s)
-      << "whoever asked may have looked at the clock before";
+  EXPECT_LT(first.lease.sure_until(now), now - 1s) << "the caller may have read its clock before";
   first.lease.apply(successor.announcement(), now);
   successor.ticks(now, &first);
   EXPECT_EQ(first.lease.elder(now), successor.prefix);
   successor.lease.apply(first.announcement(), now);
   first.ticks(now, &successor);
-  EXPECT_FALSE(successor.lease.elder(now)) << "who was slow is no reason to step back";
+  EXPECT_FALSE(successor.lease.elder(now)) << "a slow culprit is no reason to step back";
   EXPECT_EQ(successor.lease.told_orders(), "none");
 }
 
@@ -288,8 +287,8 @@ TEST_F(TwoMachines, TakeOverAsTheSameParticipantAndGoBeforeTheOneThatWasSlow) {
   ASSERT_FALSE(is_led_by_first());
   second.lease.take_over(second.lease.highest_term() + 1);
   second.manages = true;
-  EXPECT_FALSE(second.lease.told_orders()) << "what the dead one was ordered is in force by now";
-  // Its new claim stands beside the one that it had.
+  EXPECT_FALSE(second.lease.told_orders()) << "the orders to the exited one are in force by now";
+  // Its new claim is added to the one that it had.
   EndpointInfo anew = second.announcement();
   anew.guid.bytes[14] = 7;
   first.lease.apply(anew, now);
@@ -332,7 +331,7 @@ TEST_F(TwoMachines, LearnWhatASuccessorHasToKnowHoweverLongItIs) {
   EXPECT_EQ(second.lease.told_state()->shift, 40s);
   EXPECT_THAT(first.lease.state_parts(now), IsEmpty()) << "it was told";
   now += ManagerLease::kStatePeriod;
-  EXPECT_FALSE(first.lease.state_parts(now).empty()) << "who comes late has to hear it";
+  EXPECT_FALSE(first.lease.state_parts(now).empty()) << "a late joiner must receive it";
   EXPECT_THAT(second.lease.state_parts(now), IsEmpty()) << "it does not manage";
 }
 
@@ -366,7 +365,7 @@ TEST_F(TwoMachines, BelieveNoStateOfAStrangerAndTellNoneThatIsTooLong) {
   for (const char* nonsense : {"proof=;state=1;", "proof=00;state=1;round=1;part=0;of=1;clock=0;x"})
     second.lease.hear(first.prefix, nonsense, now);
   EXPECT_FALSE(second.lease.told_state());
-  // An older culprit takes it for a beat without a proof: it is none of a newer one either.
+  // An older culprit takes it for a beat without a proof: it counts as none of a newer one either.
   std::string beat = parts[0];
   beat.replace(beat.find("state=1;"), 8, "count=9;manages=1;");
   second.lease.hear(first.prefix, beat, now);

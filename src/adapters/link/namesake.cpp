@@ -9,7 +9,7 @@ namespace culprit::ros2 {
 void Namesake::joined(const GraphNode& node, Time now) {
   text_ = "another node is called " + node.name + ", too" +
           (node.host.empty() ? "" : ", on " + printable(node.host)) +
-          ": who asks for one of them may reach the other; start one culprit with --node-name";
+          ": a request to one of them may reach the other; start one culprit with --node-name";
   since_ = now;
 }
 

@@ -1,5 +1,5 @@
 // Another node that has the name of ours. It may be our own of before, which is just leaving when rules are
-// reloaded: then it is nobody else.
+// reloaded: then it is no other node.
 #pragma once
 
 #include <optional>
@@ -12,12 +12,12 @@ namespace culprit::ros2 {
 
 class Namesake {
  public:
-  // Who is there for longer stays.
+  // A namesake that is still there after that is another node.
   static constexpr Duration kLeaves = std::chrono::seconds(2);
 
   void joined(const GraphNode& node, Time now);
   void left() { text_.reset(); }
-  // What a person has to know of it, once.
+  // The message for a person, once.
   std::optional<std::string> due(Time now);
 
  private:

@@ -22,7 +22,7 @@ void NeighbourHosts::joined(const GuidPrefix& participant, const std::string& ho
       host_of_.size() < kMostParticipants && (hosts_.size() < kMostHosts || hosts_.contains(host));
   if (!has_room || !host_of_.emplace(participant, host).second) return;
   Host& joined = hosts_[host];
-  // It is heard, so those that were lost went by themselves.
+  // A new participant proves that it is reachable, so the lost ones exited by themselves.
   joined.lost = 0;
   joined.there.insert(participant);
 }

@@ -1,13 +1,14 @@
-// Which other computers take part in the domain, and of which of them nothing is heard any more.
+// The other computers in the domain, and which of them are unreachable.
 //
-// A computer is called silent when nothing came from any of its participants for kPatience, and it had
-// two or more: what is silent with only one may as well be that one process. What it ran last counts,
-// also after the leases of its participants ran out; who said good-bye does not. While we ourselves may
-// not have heard (listens_from), nobody is silent.
+// A computer counts as unreachable if nothing came from any of its participants for kPatience, and
+// it had two or more: a single silent participant may as well be one exited process. Its last
+// participants count, also after their leases ran out; a participant that left in order does not.
+// While we ourselves may have missed messages (listens_from), no computer counts as unreachable.
 //
-// Computers are told apart by the names that participants say. Two of one name, or a stranger who says
-// that name from another computer, are taken for one: it is heard as long as either is, and then a
-// silent node counts as it would on any computer. What runs on this computer is no witness of another.
+// Computers are distinguished by the names that participants announce. Two of one name, or a
+// stranger that announces that name from another computer, count as one: it is reachable as long as
+// either is, and then a silent node counts as it would on any computer. A participant on this
+// computer proves nothing about another one.
 #pragma once
 
 #include <functional>
@@ -22,7 +23,7 @@
 
 namespace culprit::ros2 {
 
-// All that it says of its addresses must be ours: addresses of bridges are the same on many machines.
+// All addresses that it announces must be ours: addresses of bridges are the same on many machines.
 bool is_on_this_machine(const ParticipantInfo& info);
 
 // All members may be called from any thread.
@@ -40,18 +41,18 @@ class NeighbourHosts {
   void joined(const GuidPrefix& participant, const std::string& host, bool is_here);
   void left(const GuidPrefix& participant, bool was_lost, Time now);
 
-  // Nobody listened before: what did not come until `now` may have been said.
+  // Nobody listened before: messages up to `now` may have been missed.
   void listens_from(Time now);
 
   bool is_silent(const std::string& host, Time now) const;
-  // When something of it came last. kNever where that says nothing of a node there: the computer is not
-  // known, or has no second participant.
+  // When something of it came last. kNever where that proves nothing about a node there: the
+  // computer is not known, or has no second participant.
   Time heard(const std::string& host) const;
 
  private:
   struct Host {
     std::set<GuidPrefix> there;
-    std::size_t lost = 0;  // whose leases ran out since it was heard last
+    std::size_t lost = 0;  // whose leases ran out since the last datagram
   };
   Time heard(const Host& host) const CULPRIT_REQUIRES(mutex_);
 

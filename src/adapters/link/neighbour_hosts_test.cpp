@@ -13,7 +13,7 @@ GuidPrefix participant(std::uint8_t number) {
   return prefix;
 }
 
-// Participants 1 and 2 of rover2 were heard at 10 s.
+// The last datagrams of participants 1 and 2 of rover2 came at 10 s.
 struct Domain {
   Domain() {
     joined(1);
@@ -68,7 +68,7 @@ TEST(NeighbourHosts, AreNotSilentWhereOneParticipantOrNoneIsMissed) {
   EXPECT_FALSE(domain.is_silent()) << "it went by itself";
   domain.now += 1h;
   EXPECT_FALSE(domain.is_silent()) << "it may be that one process";
-  EXPECT_FALSE(domain.is_silent("rover3")) << "it was never heard";
+  EXPECT_FALSE(domain.is_silent("rover3")) << "no datagram came from it";
   EXPECT_FALSE(domain.is_silent(""));
 }
 
@@ -89,7 +89,8 @@ TEST(NeighbourHosts, AreNotSilentToOneThatDidNotListen) {
   EXPECT_TRUE(domain.is_silent());
 }
 
-// Whoever says another one's name from this computer cannot make it seem to be there.
+// A participant on this computer that announces another one's name cannot make that one seem
+// reachable.
 TEST(NeighbourHosts, HaveNoWitnessOnThisComputer) {
   Domain domain;
   domain.now += 1h;

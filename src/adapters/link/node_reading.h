@@ -1,7 +1,7 @@
-// Reads what one node tells of itself: its parameters and, if it is managed, its lifecycle state.
+// Reads what one node reports of itself: its parameters and, if it is managed, its lifecycle state.
 //
-// Each parameter is read once, and then followed by what /parameter_events says; the state is read
-// once, and then followed by the node's transition events.
+// Each parameter is read once, and then followed by the events on /parameter_events; the state is
+// read once, and then followed by the node's transition events.
 #pragma once
 
 #include <memory>
@@ -23,7 +23,7 @@ class NodeReading {
   // `self` is our own node and outlives the reading; `node` is the full name of the other one.
   NodeReading(Node& self, std::string node) : self_(self), node_(std::move(node)) {}
 
-  // The node was seen to offer a service.
+  // The node was discovered to offer a service.
   void service_seen(const std::string& service);
   // It announced changes.
   void parameters_changed(const msg::ParameterEvent& event);

@@ -1,8 +1,8 @@
 #include "link/policy.h"
 
 #include <algorithm>
-#include <cassert>
 
+#include "base/invariant.h"
 #include "base/ros_names.h"
 #include "link/component_needs.h"
 #include "link/diagnostics_reading.h"
@@ -13,7 +13,7 @@
 namespace culprit::ros2 {
 namespace {
 
-// Whatever else a rule file calls a service could not be called either.
+// Any other text that a rule file gives as a service could not be called either.
 bool is_name_or_pattern(std::string name) {
   std::replace(name.begin(), name.end(), '*', '_');
   return is_valid_topic_name(name);
@@ -90,7 +90,7 @@ Rights rights_of(const RuleSet& rules, const NodeName& self) {
   const auto lease = demangle_topic(ManagerLease::kTopic);
   const auto hearing = demangle_topic(Hearing::kTopic);
   rights.publishes = {"/diagnostics", "/parameter_events", "/rosout", lease->name, hearing->name};
-  // Of ros_api/: what is told, and the orders that are taken.
+  // Of ros_api/: its messages, and the orders that are taken.
   for (const char* topic :
        {"status", "incidents", "decisions", "wait_for_recovery/_action/feedback",
         "wait_for_recovery/_action/status"})
@@ -114,7 +114,7 @@ Rights rights_of(const RuleSet& rules, const NodeName& self) {
 }
 
 std::string sros2_policy(const Rights& rights, const NodeName& self, const std::string& enclave) {
-  assert(is_valid_topic_name(enclave));
+  CULPRIT_ASSERT(is_valid_topic_name(enclave));
   std::string xml = "<policy version=\"0.2.0\">\n  <enclaves>\n    <enclave path=\"" + enclave +
                     "\">\n      <profiles>\n        <profile ns=\"" + self.name_space +
                     "\" node=\"" + self.name + "\">\n";
@@ -127,7 +127,7 @@ std::string sros2_policy(const Rights& rights, const NodeName& self, const std::
 
 std::string permissions(const Rights& rights, const std::string& enclave, std::uint32_t domain,
                         const Validity& validity) {
-  assert(is_valid_topic_name(enclave));
+  CULPRIT_ASSERT(is_valid_topic_name(enclave));
   std::string xml =
       "<dds xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\"\n"
       "     xsi:noNamespaceSchemaLocation=\"http://www.omg.org/spec/DDS-SECURITY/20170901/"

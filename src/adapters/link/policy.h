@@ -1,8 +1,9 @@
-// What culprit may do on a secured domain (SROS2): what a rule file needs, and no more.
+// The rights of culprit on a secured domain (SROS2): those that a rule file needs, and no more.
 //
-// rights_of() says it in names of ROS 2. It is written as a policy of SROS2, whose tools make
-// permissions of it and sign them, or as the permissions themselves, which openssl signs. What
-// link.h, component_link.h, node.h and ros_api.h open on DDS must be among the rights; a test runs them so.
+// rights_of() gives them in names of ROS 2. It is written as a policy of SROS2, whose tools make
+// permissions of it and sign them, or as the permissions themselves, which openssl signs. All
+// endpoints that link.h, component_link.h, node.h and ros_api.h create must be among the rights; a
+// test runs them so.
 //
 // Sources: sros2's policy.xsd (version 0.2.0); DDS Security 1.1, 9.4.1.3 (permissions); names.h.
 #pragma once
@@ -25,7 +26,7 @@ struct Rights {
   std::vector<std::string> calls;       // services
 };
 
-// Of the node `self` with these rules.
+// The rights of the node `self` with these rules.
 Rights rights_of(const RuleSet& rules, const NodeName& self);
 
 // `enclave` is the one that culprit's keys are of: "/culprit".

@@ -1,5 +1,5 @@
-// Whether a process of this machine is at work, or would be if the machine had time for it: then it does not hang, though it
-// answers nobody.
+// Whether a process of this machine is at work, or would be if the machine had time for it: then it
+// does not hang, though it answers no request.
 #pragma once
 
 #include <optional>
@@ -8,8 +8,8 @@
 
 namespace culprit::ros2 {
 
-// The time that all threads of the process have had a processor for, or waited for one. Nothing: there is no such process,
-// or the kernel does not tell.
+// The time that all threads of the process have had a processor for, or waited for one. Nothing:
+// there is no such process, or the kernel does not show it.
 std::optional<Duration> processor_time_wanted(int pid);
 
 // One look at a process, to be compared with the next.

@@ -38,7 +38,7 @@ class Child {
 };
 
 TEST(ProcessorTime, TellsWhoIsAtWorkOrWouldBe) {
-  if (!processor_time_wanted(getpid())) GTEST_SKIP() << "the kernel does not tell";
+  if (!processor_time_wanted(getpid())) GTEST_SKIP() << "the kernel does not show it";
   EXPECT_TRUE(Child(true).works_within(200ms)) << "however little of the processor it gets";
   EXPECT_FALSE(Child(false).works_within(200ms));
 }

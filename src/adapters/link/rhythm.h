@@ -6,7 +6,7 @@
 
 namespace culprit::ros2 {
 
-// How the messages of a topic came.
+// How a topic's messages arrived.
 struct Rhythm {
   std::size_t messages = 0;
   Duration first_to_last{};

@@ -23,7 +23,7 @@ class RequestWriter {
   }
 
  private:
-  static constexpr int kDeepest = 30;  // what files of others say of themselves may go round
+  static constexpr int kDeepest = 30;  // definitions in others' files may be cyclic
   static constexpr std::size_t kMostElements = 100'000;
 
   void fail(const std::string& where, const std::string& what) {

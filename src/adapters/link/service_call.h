@@ -1,10 +1,11 @@
-// A call of a service of any type, as a person writes it: what is sent, and what the answer means.
+// A call of a service of any type, as a person writes it: the request, and how its response is
+// read.
 //
 // The request is YAML, as `ros2 service call` takes it: `data: true`, `{name: arm, target_state: {label:
-// active}}`. What is left out is 0, false or empty.
+// active}}`. Omitted fields are 0, false or empty.
 //
-// An answer refuses if it says so: by `success`, `ok`, `successful` or `result.successful`. Where it
-// has none of them, that it came is all that there is to know.
+// An answer is a refusal if one of these fields is false: `success`, `ok`, `successful` or
+// `result.successful`. If it has none of these fields, any answer counts as success.
 #pragma once
 
 #include <optional>
@@ -27,7 +28,7 @@ class ServiceCall {
 
   struct Verdict {
     bool is_done = false;
-    std::string text;  // what the server says of it; may be empty
+    std::string text;  // the server's message; may be empty
   };
   // Nothing: the payload is no answer of that type.
   std::optional<Verdict> judge(ByteView answer) const;

@@ -1,18 +1,19 @@
 // The publisher of each diagnostic status that the rules read: one node.
 //
-// Anybody on the network can publish a status of any name. So a status counts only from the node that was the first to
-// publish it, as it was learned in this run or by an earlier one (KnownRobot::publishers). Another publisher of the same
-// status is not used, and reported once.
+// Anybody on the network can publish a status of any name. So a status counts only from the node
+// that was the first to publish it, in this run or in an earlier one (KnownRobot::publishers).
+// Another publisher of the same status is not used, and reported once.
 //
 //   - The node is known by its name: its successor after a restart is the same publisher.
-//   - Once it was proven to be a process of this machine, only a proven process is it; and what is proven takes the place
-//     of what is not.
-//   - A proven process takes the place of a node that has been gone for kForgets, whatever its name: a driver may have
-//     another name each time.
+//   - Once it was proven to be a process of this machine, only a proven process is it; and a proven
+//     one replaces one that is not.
+//   - A proven process replaces a node that left more than kForgets ago, whatever its name: a
+//     driver may have another name each time.
 //   - A component of the rule file that is proven counts besides: in SUAVE the vehicle and a controller publish one status.
-//   - Many nodes publish statuses of others (drivers, aggregators), so the subject of a status says nothing.
+//   - Many nodes publish statuses of others (drivers, aggregators), so the subject of a status
+//     proves nothing.
 //
-// Pure: time and what is known of a publisher come with each question.
+// Pure: each question brings the time, and the known facts about a publisher.
 #pragma once
 
 #include <functional>
@@ -48,12 +49,12 @@ class SignalPublishers {
   struct Answer {
     bool is_used = false;
     bool is_learned = false;  // from now on it is the publisher
-    std::string conflict{};   // for people; empty: there is none, or it was told
+    std::string conflict{};   // for people; empty: none, or it was reported
   };
-  // May `by` say what `status` is?
+  // May `by` report `status`?
   Answer judge(const std::string& status, const Publisher& by, Time now, const IsThere& is_there);
 
-  // The conflicts that were told of, by status.
+  // The conflicts that were reported, by status.
   const std::map<std::string, std::string>& conflicts() const { return conflicts_; }
 
  private:
@@ -68,7 +69,7 @@ class SignalPublishers {
   Answer refuse(const std::string& status, const Publisher& by, const std::string& bound);
 
   std::map<std::string, Bound> bound_;  // by status
-  std::map<std::string, Time> first_;   // by status without a publisher: when it was first heard
+  std::map<std::string, Time> first_;   // by status without a publisher: when it first came
   std::set<std::pair<std::string, std::string>> told_;  // status, node
   std::map<std::string, std::string> conflicts_;
 };

@@ -45,7 +45,7 @@ TEST(SignalPublishers, MayPublishStatusesOfSeveralAndOfOthers) {
   EXPECT_FALSE(statuses.publishers.judge("camera", {"/camera", true}, Time(), is_there).is_used);
 }
 
-// The vehicle says that a thruster failed, and the controller that it works again.
+// The vehicle reports that a thruster failed, and the controller that it works again.
 TEST(SignalPublishers, MayBeBesidesAComponentThatIsProven) {
   Statuses statuses;
   statuses.says(kDriver);
@@ -54,7 +54,7 @@ TEST(SignalPublishers, MayBeBesidesAComponentThatIsProven) {
   EXPECT_EQ(besides.conflict, "");
   EXPECT_TRUE(statuses.uses(kDriver));
   EXPECT_FALSE(statuses.uses({"/controller", false, true, true})) << "somebody in its name";
-  EXPECT_FALSE(statuses.uses({"/controller", true, false, true})) << "another one of its name";
+  EXPECT_FALSE(statuses.uses({"/controller", true, false, true})) << "another node of its name";
 }
 
 // After a redeploy it is another process, and the same node.
@@ -71,7 +71,7 @@ TEST(SignalPublishers, AreSucceededByTheNextProcessOfTheNode) {
 TEST(SignalPublishers, ThatWereProvenAreNoStrangersOfTheirName) {
   Statuses statuses;
   EXPECT_FALSE(statuses.uses(kRemote)) << "somebody may be proven in a moment";
-  EXPECT_TRUE(statuses.uses(kRemote, 3s)) << "on another computer nobody is";
+  EXPECT_TRUE(statuses.uses(kRemote, 3s)) << "on another computer none is";
   EXPECT_TRUE(statuses.uses(kDriver, 4s));
   const auto forged = statuses.says(kRemote);
   EXPECT_FALSE(forged.is_used);

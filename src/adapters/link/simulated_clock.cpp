@@ -26,7 +26,7 @@ Expected<std::unique_ptr<SimulatedClock>> SimulatedClock::open(NodeEntry& self) 
 
 void SimulatedClock::tick(Duration shown, Time now) {
   const MutexLock lock(mutex_);
-  if (shown_ && shown == *shown_) return;  // told again: it stands still
+  if (shown_ && shown == *shown_) return;  // repeated: it stands still
   if (shown_) {
     const Duration step = shown - *shown_;
     const Duration pause = std::min(now - advanced_, kPatienceAtMost);
@@ -52,7 +52,7 @@ Time SimulatedClock::doubtful(Time now) const {
 
 std::string SimulatedClock::doubt(Time now) const {
   const MutexLock lock(mutex_);
-  if (!shown_) return "culprit runs with --use-sim-time, and nobody publishes /clock yet";
+  if (!shown_) return "culprit runs with --use-sim-time, and no node publishes /clock yet";
   return has_just_jumped(now) ? "the simulated time jumped" : "the simulated time stands still";
 }
 

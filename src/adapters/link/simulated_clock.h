@@ -2,7 +2,8 @@
 // publish (use_sim_time, design.ros2.org/articles/clock_and_time.html).
 //
 // While it stands still, the robot does, too: nothing that is missing is missing on the robot. When
-// it jumps, its nodes begin anew. How fast it runs is not looked at: ages stay in real time.
+// it jumps, its nodes start over. How fast it runs is not looked at: ages stay in real
+// time.
 #pragma once
 
 #include <memory>
@@ -19,11 +20,11 @@ namespace culprit::ros2 {
 class SimulatedClock {
  public:
   static constexpr const char* kTopic = "/clock";
-  // Who has a rhythm of its own has three of its usual pauses, and at least this.
+  // A publisher with a rhythm of its own has three of its usual intervals, and at least this.
   static constexpr Duration kPatience = std::chrono::milliseconds(100);
   // However slow it is usually.
   static constexpr Duration kPatienceAtMost = std::chrono::seconds(2);
-  // After a jump everything has so long to find its pace again.
+  // After a jump all nodes have so long to find their pace again.
   static constexpr Duration kAfterJump = std::chrono::seconds(1);
   // Back is a jump, and so is this much ahead at once, unless it is so many times real time.
   static constexpr Duration kJump = std::chrono::seconds(10);
@@ -36,7 +37,7 @@ class SimulatedClock {
   Time doubtful(Time now) const;
   // Whether anybody has published it.
   bool has_begun() const;
-  // What is not sure, if that time has come.
+  // The doubt, once that time has come.
   std::string doubt(Time now) const;
 
   // /clock shows `shown`, and `now` is the real time.

@@ -7,7 +7,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// A clock that is told at this rate how far the simulation is.
+// A clock that advances with the simulation at this rate.
 struct Simulation {
   SimulatedClock clock;
   Time now{10s};
@@ -26,7 +26,7 @@ TEST(SimulatedClock, IsInDoubtUntilItIsHeard) {
   Simulation s;
   EXPECT_FALSE(s.is_sure());
   EXPECT_EQ(s.clock.doubt(s.now),
-            "culprit runs with --use-sim-time, and nobody publishes /clock yet");
+            "culprit runs with --use-sim-time, and no node publishes /clock yet");
   s.run(1s);
   EXPECT_TRUE(s.is_sure());
 }

@@ -1,8 +1,8 @@
-// What a robot has at the moment, for checks and editors: its graph, its diagnostics, and of what
-// somebody asked for also parameters, lifecycle states, and the rates and fields of topics.
+// A snapshot of a robot, for checks and editors: its graph, its diagnostics, and on request also
+// parameters, lifecycle states, and the rates and fields of topics.
 //
-// It joins as a hidden node, as tools do. It does no harm: readers are best effort, and what nobody
-// asked for is not read.
+// It joins as a hidden node, as tools do. It does no harm: readers are best effort, and it reads
+// only what was asked for.
 #pragma once
 
 #include <deque>
@@ -37,25 +37,25 @@ class Survey {
   static Expected<std::unique_ptr<Survey>> open(Options options);
   ~Survey();
 
-  // Instead of what was asked for before.
+  // Replaces the former request.
   void ask_for(LiveInterest interest);
 
-  // What is known by now.
+  // The present snapshot.
   LiveInventory inventory() const;
-  // Hears /rosout from now on.
+  // Subscribes to /rosout from now on.
   void listen_to_log();
   // The last lines that loggers of this name, and of names below it, wrote since then; the newest last.
   std::vector<msg::Log> log_of(const std::string& logger) const;
   // How the messages came of the topics that were asked for, since they are.
   std::map<std::string, Rhythm> rhythms() const;
 
-  // How the fields went that were asked for of a topic, since they are; by topic and field.
+  // The courses of the requested fields of a topic, since the request; by topic and field.
   std::map<std::string, std::map<std::string, ValueCourse>> fields() const;
   // How each diagnostic status went; by name and hardware id.
   using StatusKey = std::pair<std::string, std::string>;
   std::map<StatusKey, StatusCourse> statuses() const;
 
-  // What has both messages of a service that is there; it may be that its node is asked for them.
+  // Returns a library with both messages of an existing service; its node may be asked for them.
   // Waits for that, TypeFinder::kPatience at most. Not on the executor's thread.
   Expected<MessageLibrary> find_service_type(const std::string& service);
 

@@ -74,7 +74,7 @@ TEST(Survey, SeesTheGraphAndTheDiagnosticsButNotItself) {
   }));
   const LiveInventory seen = survey->inventory();
   EXPECT_EQ(seen.nodes.size(), 1u);
-  EXPECT_FALSE(seen.nodes.at("/robot").parameters) << "nobody asked for them";
+  EXPECT_FALSE(seen.nodes.at("/robot").parameters) << "they were not requested";
   EXPECT_TRUE(seen.topics.at("/visibility").fields.empty());
   EXPECT_EQ(seen.diagnostics[0].values.at("temperature"), "60.5");
   const StatusCourse course = survey->statuses().at({"motor", "m1"});
@@ -110,7 +110,7 @@ TEST(Survey, ReadsWhatIsAskedForAndFollowsIt) {
   survey->ask_for({});
   EXPECT_TRUE(shows(*survey, [](const LiveInventory& seen) {
     return !seen.nodes.at("/robot").parameters && !seen.topics.at("/visibility").rate;
-  })) << "what nobody asks for any more is not read any more";
+  })) << "after the request ends, it is no longer read";
 }
 
 TEST(Survey, ForgetsWhatIsGone) {

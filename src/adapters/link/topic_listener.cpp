@@ -48,7 +48,7 @@ Expected<void> TopicListener::publisher_offers(const Qos& offered) {
   return {};
 }
 
-// Both hear until the first is gone; what is no news is passed over.
+// Both receive until the first is removed; repeated samples are passed over.
 Expected<void> TopicListener::hurry() {
   auto now = subscribe(reads_ ? PayloadUse::kWhole : PayloadUse::kBeginning);
   if (!now) return Error{now.error()};
@@ -62,7 +62,8 @@ void TopicListener::read(const Sample& sample) {
   if (is_news(sample.identity)) callbacks_.on_message(sample);
 }
 
-// The two readers hear the same, one of them sometimes late. What is far behind is a new count.
+// The two readers receive the same samples, one of them sometimes late. A number that is far behind
+// begins a new count.
 bool TopicListener::is_news(const SampleIdentity& identity) {
   constexpr std::size_t kMaxWriters = 1000;  // the network decides how many there are
   constexpr std::int64_t kFarBehind = 1000;

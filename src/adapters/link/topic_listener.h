@@ -1,11 +1,11 @@
-// Listens to one topic without disturbing it: its rhythm, and what its messages say.
+// Listens to one topic without disturbing it: its rhythm, and the content of its messages.
 //
 // One best effort reader that keeps one sample, so that it can hold no writer back; where payloads
 // are not asked for they are not even copied: watching a camera costs what receiving it costs.
 //
 // A latched topic (transient local: a map, a robot's description) is published once, before we come.
-// Only a reliable reader is sent what was published before (DDS 1.4 §2.2.3.4), so a second one
-// listens too once a publisher is known to latch.
+// Only a reliable reader receives samples from before (DDS 1.4 §2.2.3.4). So a second reader is
+// added once a publisher is known to be transient local.
 #pragma once
 
 #include <functional>
@@ -24,20 +24,21 @@ class TopicListener {
   struct Callbacks {
     // A sample came now: of the best effort reader, so each is a beat of the topic's rhythm.
     SampleCallback on_arrival;
-    // A sample to read, newer than what its writer was heard to say before. Needs kWhole or kWholeLater; one at a time.
+    // A sample to read, newer than its writer's earlier ones. Needs kWhole or kWholeLater; one at a
+    // time.
     SampleCallback on_message;
     // Samples came that cannot be put together (ReaderOptions).
     std::function<void()> on_unheard;
   };
 
   // `self` outlives the listener. `type` is "package/msg/Type". `keys`: whether its publishers have
-  // them; the others are not heard.
+  // them; the others are not received.
   static Expected<std::unique_ptr<TopicListener>> open(NodeEntry& self, const std::string& topic,
                                                        const std::string& type, Keys keys,
                                                        PayloadUse use, Callbacks callbacks);
   Keys keys() const { return keys_; }
 
-  // A publisher offers this. If it latches, what it published before is read, too.
+  // A publisher offers this. If it is transient local, earlier samples are read, too.
   Expected<void> publisher_offers(const Qos& offered);
 
   // From now on samples come at once: kWhole where kWholeLater was asked for. For a topic whose samples prove large.
@@ -54,7 +55,7 @@ class TopicListener {
   const std::string topic_;
   const std::string type_;
   const Keys keys_;
-  const bool reads_;  // what samples say
+  const bool reads_;  // the samples' content
   const Callbacks callbacks_;
   Mutex mutex_;
   std::unordered_map<Guid, std::int64_t> last_read_ CULPRIT_GUARDED_BY(mutex_);  // by writer

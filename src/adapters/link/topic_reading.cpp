@@ -33,7 +33,7 @@ std::unique_ptr<TopicReading> TopicReading::open(NodeEntry& self, const std::str
   return reading;
 }
 
-// That a topic's latched messages cannot be read shows in that none was.
+// If a topic's latched messages cannot be read, the count of messages shows it.
 void TopicReading::publisher_offers(const Qos& offered) {
   (void)listener_->publisher_offers(offered);
 }
@@ -67,7 +67,7 @@ void TopicReading::tell(LiveInventory::Topic& topic) const {
   const MutexLock lock(mutex_);
   topic.fields = values_;
   topic.unreadable = unreadable_;
-  if (now - since_ < kWindow) return;  // too early to tell
+  if (now - since_ < kWindow) return;  // too early for a rate
   const auto recent = std::count_if(arrivals_.begin(), arrivals_.end(),
                                     [&](Time at) { return at >= now - kWindow; });
   topic.rate = static_cast<double>(recent) / seconds(kWindow);

@@ -24,22 +24,22 @@ class TopicReading {
   // Rates are counted over this time.
   static constexpr Duration kWindow = std::chrono::seconds(2);
 
-  // `self` outlives the reading; `library` has the type, or says why it is not known. Fields that
-  // cannot be read are told of. Nothing if the topic cannot be read with this type.
+  // `self` outlives the reading; `library` has the type, or the reason why it is not known. Fields
+  // that cannot be read are reported. Returns null if the topic cannot be read with this type.
   static std::unique_ptr<TopicReading> open(NodeEntry& self, const std::string& topic,
                                             const std::string& type, Keys keys,
                                             const std::set<std::string>& fields,
                                             const Expected<MessageLibrary*>& library);
 
-  // A publisher offers this; what a latched topic was told before is read, too.
+  // A publisher offers this; the earlier messages of a latched topic are read, too.
   void publisher_offers(const Qos& offered);
 
   // Enters rate and fields. From any thread.
   void tell(LiveInventory::Topic& topic) const;
 
-  // Of all messages since it was opened. From any thread.
+  // The rhythm of all messages since it was opened. From any thread.
   Rhythm rhythm() const;
-  // Likewise of its fields.
+  // The courses of its fields, as above.
   std::map<std::string, ValueCourse> courses() const;
 
  private:

@@ -164,7 +164,7 @@ void TopicWatch::on_message(const Sample& sample) {
   }
 }
 
-// What we cannot put together was published all the same: nobody is silent.
+// Samples that cannot be reassembled were published all the same: the topic is not silent.
 void TopicWatch::on_unheard() {
   has_heard_ = true;
   if (!told_unheard_.exchange(true)) {

@@ -29,8 +29,8 @@ class TopicWatch {
 
   // Which component has made each writer of the topic.
   using Writers = std::unordered_map<Guid, ComponentId>;
-  // `ask` is called when a writer is heard that is not known, and that may matter: on any thread, at
-  // most once a second. Before a publisher is seen.
+  // `ask` is called when a message of an unknown writer arrives that may matter: on any thread, at
+  // most once a second. To be called before a publisher is discovered.
   void asks_for_writers(std::function<void()> ask) { ask_for_writers_ = std::move(ask); }
   // From any thread.
   void knows_writers(Writers writers);
@@ -45,8 +45,8 @@ class TopicWatch {
   bool has_heard() const { return has_heard_; }
 
   // A publisher of the topic was discovered: subscribes with its type, unless that is done already.
-  // `offered`: its quality of service. `library`: what has that type; not used where no field is
-  // read. On one thread.
+  // `offered`: its quality of service. `library`: a library with that type; not used where no field
+  // is read. On one thread.
   void publisher_seen(const std::string& type, const Qos& offered,
                       const Expected<MessageLibrary*>& library);
 
@@ -73,7 +73,7 @@ class TopicWatch {
     TopicId topic;
     ComponentId publisher;
   };
-  std::optional<TopicId> whole_;            // whatever who publishes it
+  std::optional<TopicId> whole_;            // from any publisher
   std::vector<OfPublisher> of_publishers_;  // FROM
   bool counts_ = false;                     // the rules read the rhythm of any of them
   bool reads_goals_ = false;                // it is the status of an action
@@ -81,7 +81,7 @@ class TopicWatch {
   std::string type_;
   std::set<std::string> told_;  // troubles: each publisher has the same ones
 
-  // Of the receive thread, once the listener exists.
+  // Used by the receive thread only, once the listener exists.
   std::vector<Field> fields_;
   std::unordered_map<Guid, std::int64_t> last_sequence_;  // by writer
 

@@ -64,8 +64,8 @@ Error unknown(const TypeFinder::Offer& offer, const std::string& why) {
                (is_service ? ".srv" : ".msg") + " with --message-path"};
 }
 
-// The files that the process was started with, below its own root directory. None of one that is
-// elsewhere, or may not be looked at; 0: it is not known.
+// The files that the process was started with, below its own root directory. Empty for a process
+// that is elsewhere, or may not be read; 0: it is not known.
 MessageLibrary files_of_process(int pid) {
   const auto prefixes = pid == 0 ? std::nullopt : environment_of(pid, "AMENT_PREFIX_PATH");
   if (!prefixes) return MessageLibrary();
@@ -117,7 +117,7 @@ void TypeFinder::ask(const Offer& offer, Callback found) {
       [this, offer](const GetTypeDescription::Answer& answer) { answered(offer, answer); });
 }
 
-// The hash says whether an answer is true, not who gave it.
+// The hash proves that an answer is true, not which node gave it.
 void TypeFinder::answered(const Offer& offer, const GetTypeDescription::Answer& answer) {
   Question& question = questions_.at(offer.node + ' ' + offer.hash);
   const std::vector<Callback> waiting = std::exchange(question.waiting, {});
@@ -125,12 +125,12 @@ void TypeFinder::answered(const Offer& offer, const GetTypeDescription::Answer& 
     for (const Callback& found : waiting) found(library);
   };
   if (!answer.response || !answer.response->successful)
-    return tell(unknown(offer, ", and its node does not tell it"));
+    return tell(unknown(offer, ", and its node does not describe it"));
   const auto definitions = to_definitions(answer.response->type_description);
   MessageLibrary library;
   if (definitions) library.define(*definitions);
   if (!definitions || !is_what_it_says(library, offer))
-    return tell(unknown(offer, ", and what its node tells of it is not what is published"));
+    return tell(unknown(offer, ", and its node's description differs from the published type"));
   keep(options_.kept_types, offer, *definitions);
   if (told_.size() >= kMostTold) told_.clear();
   tell(&told_.insert_or_assign(offer.hash, std::move(library)).first->second);

@@ -1,14 +1,14 @@
-// Finds out what a topic's messages, or a service's, look like, for types of which no file was given.
+// Finds the definition of a topic's messages, or a service's, for types of which no file was given.
 //
 // From Iron on every endpoint announces the hash of its type (type_description.h), and only a
-// definition with that hash is used: what our files say, what was kept from an earlier run, what
-// the files of the node's process say, and what the node tells when asked
-// (~/get_type_description, Jazzy). Before Iron there is no hash: the files that the node's process
-// was started with (AMENT_PREFIX_PATH, below its own root directory) go before ours.
+// definition with that hash is used: our files, those kept from an earlier run, the files of the
+// node's process, and the node's answer (~/get_type_description, Jazzy). Before Iron there is no
+// hash: the files that the node's process was started with (AMENT_PREFIX_PATH, below its own root
+// directory) go before ours.
 //
-// A node tells of a service by the hash of the service itself, which only Lyrical and newer announce
-// ("sertypehash"). From Iron to Kilted the hashes of its two messages are all that is announced: files are compared
-// with that of the request, and nobody can be asked.
+// A node announces a service with the hash of the service itself only from Lyrical on
+// ("sertypehash"). From Iron to Kilted only the hashes of its two messages are announced: files are
+// compared with that of the request, and the node cannot be asked.
 #pragma once
 
 #include <filesystem>
@@ -29,7 +29,7 @@ class TypeFinder {
  public:
   struct Options {
     std::vector<std::filesystem::path> message_path;  // where to find .msg and .srv files
-    // Where types that nodes told of are kept, by hash; what is there proves itself by it. Empty:
+    // Where types that nodes described are kept, by hash; the hash proves each file. Empty:
     // nowhere.
     std::filesystem::path kept_types;
   };
@@ -43,17 +43,17 @@ class TypeFinder {
 
     bool is_service() const { return type.find("/srv/") != std::string::npos; }
   };
-  // What has the type as this node means it (of a service both its messages), while the callback runs.
-  // Errors: why there is nothing, and what to do.
+  // A library with the type as this node means it (of a service both its messages), while the
+  // callback runs. Errors: why there is nothing, and what to do.
   using Callback = std::function<void(Expected<MessageLibrary*>)>;
 
-  // Others may be asked for so long.
+  // How long nodes may take to answer.
   static constexpr Duration kPatience = std::chrono::seconds(3);
 
   // `self` outlives the finder.
   TypeFinder(Node& self, Options options);
 
-  // At once, or when the node has answered; not after the finder is gone.
+  // At once, or when the node has answered; not after the finder is destroyed.
   void find(const Offer& offer, Callback found);
 
  private:

@@ -132,7 +132,7 @@ class Finding {
   std::unique_ptr<TypeFinder> finder_;
 };
 
-// A node as Jazzy's, which tells what `told` looks like whatever it is asked.
+// A node as Jazzy's, which describes `told` for any request.
 class TellingNode {
  public:
   TellingNode(const TestDomain& domain, const MessageDefinitions& told, const char* type = kType)
@@ -204,7 +204,7 @@ TEST(TypeFinder, AsksTheNodeAndKeepsWhatItSays) {
     Finding finding(domain, {{ours.path()}, kept.path() / "types"});
     EXPECT_EQ(finding.find({"/driver", kType, hash, 0}), "cells charge ");
   }
-  // Nobody is there to be asked.
+  // No node can be asked any more.
   Finding later(domain, {{ours.path()}, kept.path() / "types"});
   EXPECT_EQ(later.find({"/driver", kType, hash, 0}), "cells charge ");
 }
@@ -219,7 +219,7 @@ TEST(TypeFinder, BelievesNobodyWhoseWordsDoNotFitTheHash) {
   std::ofstream(kept.path() / hash) << "int32 forged\n";
   Finding finding(domain, {{}, kept.path()});
   EXPECT_THAT(finding.find({"/driver", kType, hash, 0}),
-              HasSubstr("what its node tells of it is not what is published"));
+              HasSubstr("its node's description differs from the published type"));
   EXPECT_THAT(finding.find({"/driver", kType, "RIHS01_../../etc/passwd", 0}),
               HasSubstr("none that can be checked"));
 }
@@ -239,7 +239,8 @@ TEST(TypeFinder, TakesTheFilesOfTheServersProcessForAService) {
             "my_msgs/srv/Other.srv with --message-path");
 }
 
-// From Iron to Kilted: nobody can be asked, but a request that the server would misread is not sent.
+// From Iron to Kilted: the node cannot be asked, but a request that the server would misread is not
+// sent.
 TEST(TypeFinder, TakesNoFileOfAnotherServiceThanTheOneOffered) {
   const TestDomain domain;
   const test::TestFolder ours;
@@ -264,7 +265,7 @@ TEST(TypeFinder, AsksTheNodeWhatItsServiceLooksLike) {
     Finding finding(domain, {{ours.path()}, kept.path() / "types"});
     EXPECT_EQ(finding.find(offer), "slot ");
   }
-  // Nobody is there to be asked.
+  // No node can be asked any more.
   Finding later(domain, {{ours.path()}, kept.path() / "types"});
   EXPECT_EQ(later.find(offer), "slot ");
 }
@@ -273,7 +274,7 @@ TEST(TypeFinder, WaitsForNobodyForEver) {
   const TestDomain domain;
   Finding finding(domain);
   EXPECT_THAT(finding.find({"/driver", kType, type_hash(kType, battery()), 0}),
-              HasSubstr("its node does not tell it"));
+              HasSubstr("its node does not describe it"));
 }
 
 }  // namespace

@@ -118,7 +118,7 @@ Expected<void> ModeManager::serve(const std::string& name, Handler handler) {
   return {};
 }
 
-// change_mode comes last: whoever sees it can read the mode as well.
+// change_mode comes last: a client that discovers it can read the mode as well.
 Expected<void> ModeManager::open_services(const modes::Entity& entity) {
   if (entity.is_system) {
     for (auto& opened :
@@ -278,7 +278,7 @@ void ModeManager::watch_overdue(const modes::Entity& entity, const modes::Target
   tasks_.post_at(ros2::Executor::Clock::now() + kOverdue, [this, &entity, target] {
     if (inference_.target(entity.name) != target || inference_.is_at(entity.name, target)) return;
     const modes::Actual& now = inference_.actual(entity.name);
-    trouble(entity.name + " was told to be " + to_string(target) + " and is " +
+    trouble(entity.name + " was requested to be " + to_string(target) + " but is " +
             std::string(ros2::label_of(now.state)) + ", mode " + mode_label(now));
   });
 }
@@ -301,7 +301,7 @@ void ModeManager::publish(const modes::Inference::Change& change) {
 }
 
 // Only where a part came to be what a rule is about: one that is not on its way yet is no
-// deviation. Not at once: what a rule aims at is a change of its own.
+// deviation. Not at once: a rule's own target is a change of its own.
 void ModeManager::apply_rules(const std::vector<modes::Inference::Change>& changes) {
   const auto came_to = [&](const std::string& part, const modes::Target& wanted) {
     return std::any_of(changes.begin(), changes.end(), [&](const auto& change) {

@@ -1,17 +1,19 @@
-// The mode manager of a live robot: changes the modes of systems and nodes, and tells in which they
-// are. It offers what the mode_manager of system_modes offers, as the node /__mode_manager:
+// The mode manager of a live robot: changes the modes of systems and nodes, and reports their
+// modes. It offers what the mode_manager of system_modes offers, as the node /__mode_manager:
 //
 // - of each system: change_state, get_state, get_available_states, and transition_event;
 // - of each system and node: change_mode, get_mode, get_available_modes, mode_event, and what was
 //   asked for, on mode_request_info and transition_request_info.
 //
-// What is accepted is not done: parts are told, and nobody waits for their answers; what came of it
-// is inferred (modes/inference.h) from what the nodes announce, and published when it changes. What was
-// accepted and did not come about is told after kOverdue.
+// An accepted request is not yet done: the manager sends requests to the parts, and does not wait
+// for their answers. It infers the result (modes/inference.h) from what the nodes announce, and
+// publishes it when it changes. If an accepted request has no effect, it reports that after
+// kOverdue.
 //
-// Other than the original it publishes at once, not once a second; reads the nodes' states and
-// parameters when it starts and when they do; and tells nobody to become active who is. It does not
-// hear the request topics of others, nor modes that nodes publish themselves.
+// Other than the original it publishes at once, not once a second. It reads the nodes' states and
+// parameters when it starts and when they do. It sends no activate request to a node that is
+// active. It does not subscribe to the request topics of others, nor to modes that nodes publish
+// themselves.
 #pragma once
 
 #include <functional>
@@ -48,7 +50,7 @@ class ModeManager {
   ~ModeManager();
 
  private:
-  // What is published of one system or node.
+  // The publishers of one system or node.
   struct Voice {
     std::optional<ros2::Publisher<ros2::msg::TransitionEvent>> transitions;  // of a system
     ros2::Publisher<msg::ModeEvent> modes;

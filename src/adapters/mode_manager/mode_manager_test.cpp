@@ -53,7 +53,7 @@ struct Pump {
   std::unique_ptr<ros2::LifecycleNode> node;
 };
 
-// The manager on an executor of its own, and what it told.
+// The manager on an executor of its own, and its reports.
 struct Manager {
   explicit Manager(const ros2::TestDomain& domain) {
     ModeManager::Options options;

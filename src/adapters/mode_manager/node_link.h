@@ -1,7 +1,7 @@
 // One managed node, as the mode manager speaks to it.
 //
-// What is asked is asked once and not awaited; a refusal is told. What the node tells comes on the
-// executor's thread.
+// Each request is sent once and not awaited; a refusal is reported. Callbacks run on the executor's
+// thread.
 #pragma once
 
 #include <functional>
@@ -42,7 +42,7 @@ class NodeLink {
 
   const modes::Entity& node_;
   const Ears ears_;
-  // What was announced since the last read() began.
+  // The announcements since the last read() began.
   bool has_told_state_ = false;
   std::set<std::string> announced_;
 

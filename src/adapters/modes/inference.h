@@ -1,4 +1,4 @@
-// In which state and mode everything is, inferred from what the nodes tell (system_modes,
+// The state and mode of each system and node, inferred from the nodes' reports (system_modes,
 // mode_inference.cpp).
 //
 // - A node is in its target mode if its parameters fit, or else in the first mode that they fit. A
@@ -6,11 +6,11 @@
 //   nodes a parameter for the form's sake that the node does not have.
 // - A system is in its target if every part is. Otherwise it is activating (in the mode that its
 //   parts fit, if they fit one) or deactivating.
-// - A system that nobody gave a target is in the first mode that its parts fit, or inactive if they
-//   all are. The original says "unknown" there, so that a manager that began anew knows nothing.
+// - A system without a target is in the first mode that its parts fit, or inactive if they all are.
+//   The original reports "unknown" there, so that a manager that restarted knows nothing.
 // - A part in error processing makes its system so.
 //
-// A pure data structure, told what happens.
+// A pure data structure, fed with the events.
 #pragma once
 
 #include <map>
@@ -29,7 +29,7 @@ struct Actual {
   bool operator==(const Actual&) const = default;
 };
 
-// What is unconfigured counts as inactive.
+// An unconfigured node counts as inactive.
 bool is_at(const Actual& actual, const Target& target);
 
 class Inference {
@@ -40,12 +40,12 @@ class Inference {
   // Names that are not in the model are left out.
   void heard_state(const std::string& node, LifecycleState state);
   void heard_parameter(const std::string& node, const std::string& parameter, const Value& value);
-  // Its process is gone.
+  // Its process has exited.
   void lost(const std::string& node);
   void set_target(const std::string& entity, const Target& target);
   std::optional<Target> target(const std::string& entity) const;
 
-  // What was inferred last.
+  // The newest inferred state.
   const Actual& actual(const std::string& entity) const;
   bool is_at(const std::string& entity, const Target& target) const;
 
@@ -54,7 +54,7 @@ class Inference {
     Actual before;
     Actual now;
   };
-  // Infers anew, and gives what changed.
+  // Infers the states again, and gives the changes.
   std::vector<Change> infer();
 
  private:

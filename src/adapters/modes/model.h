@@ -1,9 +1,9 @@
 // Which modes a robot's systems and nodes have: the model of system_modes.
 //
 // A node is a managed node; each of its modes sets some of its parameters. A system is a name for
-// some parts, nodes or other systems; each of its modes says of each part whether it is active, and
-// then in which mode. The first mode is the default.
-// Source: system_modes (micro-ROS), README and mode_impl.cpp.
+// some parts, nodes or other systems; each of its modes gives for each part whether it is active,
+// and then in which mode. The first mode is the default. Source: system_modes (micro-ROS), README
+// and mode_impl.cpp.
 #pragma once
 
 #include <map>
@@ -17,7 +17,7 @@ namespace culprit::modes {
 
 inline constexpr const char* kDefaultMode = "__DEFAULT__";
 
-// What a part is to be: "inactive", "active.FAST".
+// The target of a part: "inactive", "active.FAST".
 struct Target {
   bool is_active = true;
   std::string mode;  // empty of what is inactive

@@ -14,7 +14,7 @@
 namespace culprit::modes {
 namespace {
 
-constexpr std::size_t kLongest = 1 << 20;  // bytes; nobody writes such a model by hand
+constexpr std::size_t kLongest = 1 << 20;  // bytes; such a model is not written by hand
 constexpr int kDeepest = 8;                // namespaces
 
 // Leaves the reader at the first thing that is wrong; yaml-cpp's own errors leave it likewise.
@@ -69,7 +69,7 @@ YAML::Node needed(const YAML::Node& map, const std::string& name, const std::str
   return entry;
 }
 
-// A name in the file stands beside the others of its namespace.
+// A name in the file belongs to the namespace of the others beside it.
 std::string full_name(const std::string& name_space, const std::string& name,
                       const YAML::Node& at) {
   const std::string full = name.front() == '/' ? name : name_space + "/" + name;
@@ -124,7 +124,7 @@ class Reader {
              });
   }
 
-  // All but what a system says of its parts: those are not known yet.
+  // Reads all but the parts of a system: those are not known yet.
   void read_entity(Entry entry, const std::string& name) {
     if (model_.find(name) != nullptr) fail(entry.key, name + " is there twice");
     if (!entry.fields.IsMap()) fail(entry.fields, name + ": ros__parameters must be a mapping");
@@ -170,7 +170,7 @@ class Reader {
     }
   }
 
-  // Of the last mode.
+  // Reads the parameters of the last mode.
   void read_parameters(Entity& node, const YAML::Node& value) {
     const bool is_default = node.modes.size() == 1;
     Mode& mode = node.modes.back();

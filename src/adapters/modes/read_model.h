@@ -28,8 +28,8 @@
 
 namespace culprit::modes {
 
-// Errors say "file:line:column: what is wrong and what to do": no YAML, no __DEFAULT__, parts,
-// modes or parameters that there are not, systems that are parts of themselves. Any text is safe.
+// Errors say "file:line:column: the fault and the remedy": no YAML, no __DEFAULT__, parts, modes or
+// parameters that there are not, systems that are parts of themselves. Any text is safe.
 Expected<Model> read_model(const std::string& file, const std::string& text);
 
 }  // namespace culprit::modes

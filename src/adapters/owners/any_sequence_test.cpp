@@ -1,10 +1,10 @@
-// Random sequences of faults, for each kind of owner, culprit killed in between: what is asked of it
-// is what the manager asks. At no time are there two that culprit started, nor, with what somebody
-// else starts, two once it settled; then there is one, never none. What is composed is in
-// composed_nodes_test.cpp.
+// Random sequences of faults, for each kind of owner, with culprit killed in between. The test
+// requests the same things as the manager. At no time do two processes run that culprit started.
+// Once it has settled, exactly one runs, also if somebody else starts one. The sequences of
+// composed nodes are in composed_nodes_test.cpp.
 //
-// CULPRIT_SEQUENCES says how many of each kind (12 unless set), CULPRIT_SEQUENCES_SEED with which the
-// first begins.
+// CULPRIT_SEQUENCES sets how many of each kind (12 unless set), CULPRIT_SEQUENCES_SEED with which
+// the first begins.
 #include <algorithm>
 #include <array>
 #include <csignal>
@@ -53,7 +53,7 @@ std::vector<int> running(const std::string& program) {
   return pids;
 }
 
-// What is to be kept alive, whoever keeps it.
+// A program to be kept running, with the owner that keeps it running.
 class Kept {
  public:
   virtual ~Kept() = default;
@@ -64,11 +64,11 @@ class Kept {
   virtual bool redeploy() = 0;
   virtual bool start() = 0;
   virtual void break_it(bool is_broken) = 0;
-  // Somebody who is not culprit starts one beside.
+  // Another program than culprit starts one beside.
   virtual void start_by_another() {}
-  // Culprit hears which processes there are.
+  // Culprit receives the present processes.
   virtual void hear() {}
-  // What must hold at any time; empty: it does.
+  // The invariant that is broken now; empty: none.
   virtual std::string wrong() { return ""; }
 };
 
@@ -131,10 +131,10 @@ class Launched : public Kept {
   void break_it(bool is_broken) override {
     fs::permissions(program_, is_broken ? fs::perms(0644) : fs::perms(0755));
   }
-  // Its parent ends, so it is nobody's here. Nobody but a person could end one of several.
+  // Its parent exits, so init is its parent. If several ran, only a person could end one of them.
   void start_by_another() override {
     if (!are_all_culprits()) return;
-    // Closed when it is the program: until then nobody would find it to end it.
+    // Closed when it is the program: before that, the test could not find it to end it.
     std::array<int, 2> begun{};
     ASSERT_EQ(pipe2(begun.data(), O_CLOEXEC), 0);
     const pid_t parent = fork();
@@ -179,7 +179,8 @@ class Launched : public Kept {
 class Respawned : public Launched {
  public:
   Respawned() : Launched("RESPAWNED") { begin_launcher(); }
-  // With what it has forked and what is no process of the program yet: nobody would find that later.
+  // With what it has forked and what is no process of the program yet: the test could not find that
+  // later.
   ~Respawned() override {
     if (launcher_ != 0) kill(-launcher_, SIGKILL);
     end_launcher();
@@ -196,7 +197,8 @@ class Respawned : public Launched {
       start_by_another();
     }
   }
-  // What is left of an earlier launcher is nobody's, and nobody but a person could end one of several.
+  // A process that an earlier launcher left behind has no launcher, and only a person could end one
+  // of several.
   void start_by_another() override {
     if (!is_alive(launcher_) && are_all_culprits()) begin_launcher();
   }
@@ -221,7 +223,7 @@ class Respawned : public Launched {
   int launcher_ = 0;
 };
 
-// By somebody who is asked.
+// The owner is asked to start and end it.
 class Asked : public Kept {
  public:
   Asked(const std::string& clauses, Units::Of whose)
@@ -297,7 +299,7 @@ class ContainerKept : public Asked {
   TestEngine engine_;
 };
 
-// What the manager does when it has one too few, or too many.
+// Does as the manager does when too few or too many run.
 void settle(Kept& kept) {
   kept.break_it(false);
   for (int tries = 0; tries < 10; ++tries) {
@@ -313,7 +315,7 @@ void settle(Kept& kept) {
     if (all.size() == 1 && state_letter(all.front()) != 'T') return;
     if (all.empty()) {
       kept.start();
-      // Who starts it again may take its time.
+      // The launcher that starts it again may take its time.
       for (const Time end = later(live_now(), 5s); kept.processes().empty() && live_now() < end;)
         std::this_thread::sleep_for(5ms);
     } else {

@@ -1,5 +1,5 @@
-// Which components live in a component container (rclcpp_components): one process with many nodes,
-// of which one loads the others. To end that process is to end them all.
+// Finds the components that live in a component container (rclcpp_components): one process with
+// many nodes, of which one loads the others. To end that process is to end them all.
 //
 // A node in one process with others is nothing of the kind by itself: many programs make several
 // nodes, and start with all of them again.
@@ -48,7 +48,7 @@ class ComponentContainers {
   ComponentBinding binding_;
   std::map<std::string, int> processes_;  // of the nodes of the graph; 0: not known
   std::set<std::string> containers_;      // among them
-  std::map<ComponentId, int> last_;       // where each was seen last; likewise
+  std::map<ComponentId, int> last_;       // the last known process of each; 0: not known
 };
 
 }  // namespace culprit::owners

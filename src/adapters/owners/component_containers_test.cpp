@@ -56,7 +56,7 @@ TEST_F(ComponentContainersTest, RememberWhereAComponentLivedThatWasUnloaded) {
   see(NodeVanished{"/detector"});
   ASSERT_TRUE(home_of(0)) << "its container runs on";
   see(NodeVanished{"/box"});
-  EXPECT_FALSE(home_of(0)) << "nobody is left to protect";
+  EXPECT_FALSE(home_of(0)) << "no other node is left to protect";
 }
 
 TEST_F(ComponentContainersTest, ForgetAComponentThatMovedToAnotherMachine) {

@@ -133,7 +133,7 @@ void ComposedNodes::remember(ComponentId component, int pid) {
 bool ComposedNodes::answered(const Reply& reply) {
   const MutexLock lock(mutex_);
   const auto asked = asked_.find(reply.command);
-  // Also one that nobody waits for any more.
+  // Also a reply after its time limit.
   if (asked == asked_.end())
     return reply.command.number >= kFirstRequest &&
            reply.command.number <= kFirstRequest + requests_;
@@ -146,7 +146,7 @@ ComposedNodes::Process ComposedNodes::process_of(const std::string& node) const 
   const MutexLock lock(mutex_);
   const auto found = nodes_.find(node);
   if (found == nodes_.end()) return {};
-  // Where its process has ended the graph says so in a moment.
+  // If its process has exited, the graph reports that in a moment.
   return {found->second == 0 || has_process(found->second), found->second};
 }
 
@@ -228,7 +228,7 @@ void ComposedNodes::look_for_missing(Container& container) {
   });
 }
 
-// What it has is known before it hangs.
+// Lists the container's nodes before it can hang.
 void ComposedNodes::look(Container& container) {
   const Process process = process_of(container.node);
   if (process.is_there && process.pid != 0) list(container, process.pid, kAnswer);
@@ -282,7 +282,7 @@ ComposedNodes::Answer ComposedNodes::stop_part(Container& container, const Erran
   const Component& part = rules_[errand.component];
   const Process process = process_of(container.node);
   const Process own = process_of(part.node);
-  // What is there now is the successor of what was meant, or none is.
+  // The process that the order names has exited: now its successor runs, or none.
   if (errand.pid != 0 && own.pid != errand.pid && process.pid != errand.pid) return {};
   if (!process.is_there) {
     if (!own.is_there) return {};
@@ -326,7 +326,7 @@ ComposedNodes::Answer ComposedNodes::unload(Container& container, const Errand& 
     return Answer{answer.outcome, container.node + " did not unload " + part.name +
                                       (answer.text.empty() ? "" : ": " + answer.text)};
   };
-  // A process that is stopped by a signal answers nobody, however long it is waited for.
+  // A process that is stopped by a signal never answers.
   if (state_letter(pid) == 'T') return stuck({Outcome::kTimedOut, "its process is stopped"});
   ContainerAnswer has = list(container, pid, patience);
   if (!has_process(pid)) return {};
@@ -352,7 +352,7 @@ ComposedNodes::Answer ComposedNodes::unload(Container& container, const Errand& 
   if (!has_process(pid)) return {};
   if (has.outcome != Outcome::kDone) return stuck(has);
   if (!ids_of(part.node, has).empty() || !has_left)
-    return stuck({Outcome::kTimedOut, "it said that it did, and its node is still there"});
+    return stuck({Outcome::kTimedOut, "it reported success, but its node is still there"});
   if (errand.ending == Ending::kForGood) {
     const MutexLock lock(mutex_);
     lives_.erase(errand.component);
@@ -364,7 +364,7 @@ ComposedNodes::Answer ComposedNodes::unload(Container& container, const Errand& 
 std::string ComposedNodes::why_not_replace(const Container& container, int pid) const {
   if (!container.component)
     return "no COMPONENT has NODE " + container.node +
-           ", so it is not known who starts it; declare it with a LAUNCH or a UNIT";
+           ", so its owner is unknown; declare it with a LAUNCH or a UNIT";
   if (!rules_[*container.component].can_start_again())
     return rules_[*container.component].name + " has neither LAUNCH nor UNIT";
   std::set<std::string> others;
@@ -382,7 +382,7 @@ std::string ComposedNodes::why_not_replace(const Container& container, int pid) 
   }
   if (others.empty()) return "";
   return *others.begin() +
-         " lives there, too, and nobody could load it again; declare a COMPONENT with NODE " +
+         " lives there, too, and could not be loaded again; declare a COMPONENT with NODE " +
          *others.begin() + " IN " + container.node + " and its PLUGIN";
 }
 
@@ -421,7 +421,7 @@ ComposedNodes::Answer ComposedNodes::ensure(Container& container, Duration patie
         container.component ? rules_[*container.component].name : container.node;
     if (!container.component || !rules_[*container.component].can_start_again())
       return {Outcome::kRefused, "its container " + container.node +
-                                     " is not there, and the rules do not say who starts it; "
+                                     " is not there, and the rules name no owner for it; "
                                      "declare a COMPONENT with that NODE and a LAUNCH or a UNIT"};
     if (!is_coming(container)) {
       const Answer started = begin(container);
@@ -448,7 +448,7 @@ ComposedNodes::Answer ComposedNodes::ensure(Container& container, Duration patie
 
 void ComposedNodes::start_part(Container& container, const Errand& errand) {
   if (errand.component == container.component) {
-    // The answer is its process's; that its components come back, too, is nobody's to wait for.
+    // The answer is its process's; the order does not wait for its components to come back, too.
     if (process_of(container.node).is_there) {
       reply(errand.command, {Outcome::kDone, "", process_of(container.node).pid});
     } else if (is_coming(container)) {
@@ -467,7 +467,8 @@ void ComposedNodes::start_part(Container& container, const Errand& errand) {
   load_all(container, there.pid, errand);
 }
 
-// What the errand is for, and what a process of the container before this one had.
+// Loads the component that the errand is for, and the ones that the container's previous process
+// had.
 void ComposedNodes::load_all(Container& container, int pid, const Errand& errand) {
   for (const ComponentId part : container.parts) {
     const bool is_wanted = part == errand.component;
@@ -509,7 +510,7 @@ ComposedNodes::Answer ComposedNodes::load(Container& container, ComponentId part
   if (made.outcome == Outcome::kTimedOut) container.unanswered[part] = pid;
   if (made.outcome != Outcome::kDone || made.nodes.empty()) return {made.outcome, made.text};
   const LoadedNode& node = made.nodes.front();
-  // Whoever else loaded one meanwhile was first.
+  // If somebody else loaded the same node meanwhile, theirs stays.
   has = list(container, pid, kAnswer);
   auto ids = ids_of(component.node, has);
   const bool is_double = ids.size() > 1;
@@ -524,7 +525,7 @@ ComposedNodes::Answer ComposedNodes::load(Container& container, ComponentId part
   }
   if (has.outcome != Outcome::kDone) return {has.outcome, has.text};
   if (ids.empty())
-    return {Outcome::kRefused, container.node + " says that it loaded it, and does not list it"};
+    return {Outcome::kRefused, container.node + " reports that it loaded it, but does not list it"};
   return {Outcome::kDone, "", pid};
 }
 

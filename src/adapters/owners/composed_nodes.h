@@ -1,29 +1,29 @@
 // Components that a component container loads (IN /container PLUGIN package::Class).
 //
-// The container is asked to unload one and to load it again; that it did is believed when it lists
-// its nodes so. Whether a node of that name is loaded is looked at before, so that none is loaded
-// twice.
+// culprit asks the container to unload a component and to load it again, and believes that it did
+// so once it lists its nodes so. Before a load, culprit checks that no node of that name is loaded,
+// so that none is loaded twice.
 //
-// Where it does not unload, or does not answer, the container itself is replaced: it is ended and
-// started by whoever owns it, and everything that lived in it is loaded again, in order, producers
+// If the container does not unload it, or does not answer, the container itself is replaced: its
+// owner ends and starts it, and everything that lived in it is loaded again, in order, producers
 // first. That is done only if all of it can come back: the container is a component that can start
-// again, and each node that it lists is one that the rules say how to load. Likewise where it has
-// ended, whoever ended it: who starts it loads what it had. What somebody unloaded on purpose before
-// is not loaded.
+// again, and the rules describe how to load each node that it lists. If the container has exited,
+// for whatever reason, culprit loads its former components when it starts the container. A
+// component that somebody unloaded on purpose before is not loaded.
 //
-// A stop names the process that it is meant for. Once that has ended it is done, and nothing is unloaded from
-// a container that took its place.
+// A stop names the process that it is meant for. Once that process has exited, the stop is done,
+// and nothing is unloaded from the container's successor.
 //
-// A load that cannot happen, for its class or its file of parameters is not there, is reported with what is
-// missing (StartBarred). It is looked for every Supervisor::kMissingPeriod until it is there.
+// If a component's class or parameter file is missing, it cannot be loaded: the missing one is
+// reported (StartBarred). It is checked every Supervisor::kMissingPeriod until it exists.
 //
-// Proof before harm. A container is asked only if its process is known, by the proofs by which any
-// process is, and its answers count only if they come from that process. While two nodes have its
-// name none is asked.
+// Proof before harm. A container is asked only if its process is known, by the same proofs as any
+// other process. Its answers count only if they come from that process. While two nodes have its
+// name, neither is asked.
 //
-// Each container has a thread of its own here, on which it is asked for one thing after the other.
-// If this object goes while a container comes up, whoever takes over loads what is missing with the
-// first component that it starts there.
+// Each container has a thread of its own here, which makes one request after the other. If this
+// object is destroyed while a container comes up, the next one loads the missing components with
+// the first component that it starts there.
 #pragma once
 
 #include <deque>
@@ -47,18 +47,18 @@ namespace culprit::owners {
 // All members may be called from any thread. Replies go to the inbox.
 class ComposedNodes {
  public:
-  // Until a container has to answer what it has at hand; until a node that it says it has unloaded
-  // must have left the graph.
+  // Until a container has to answer what it has at hand; until a node must have left the graph
+  // after the container reported it unloaded.
   static constexpr Duration kAnswer = std::chrono::seconds(2);
   static constexpr Duration kHungAnswer = std::chrono::milliseconds(500);
   static constexpr Duration kUnload = std::chrono::seconds(3);
   // Until a container that was started must be in the graph.
   static constexpr Duration kComingUp = std::chrono::seconds(30);
-  // How long one of a container that it starts itself may load.
+  // How long a node may take to load in a container that was started here.
   static constexpr Duration kLoad = std::chrono::seconds(30);
 
-  // Who starts and ends a container's own process. The reply to a command has to come to
-  // answered(). May be called from any thread.
+  // The owner of a container's own process: starts and ends it. The reply to a command has to come
+  // to answered(). May be called from any thread.
   struct ContainerOwner {
     std::function<void(CommandId, ComponentId)> start;
     std::function<void(CommandId, ComponentId, int pid, Ending, Hangs)> stop;
@@ -79,7 +79,7 @@ class ComposedNodes {
   void observe(const Observation& observation);
   // The component lived in this process when an earlier run of culprit saw it.
   void remember(ComponentId component, int pid);
-  // Whether the reply is one to a container's owner, and nobody else's.
+  // Whether the reply is for a request of this object to a container's owner.
   bool answered(const Reply& reply);
 
  private:
@@ -100,11 +100,11 @@ class ComposedNodes {
     std::vector<ComponentId> parts;        // that it loads, in order
     std::deque<Errand> errands{};
     bool has_news = false;  // somebody came to it since it was asked what it has
-    // Of its thread.
+    // Used by its thread only.
     std::map<ComponentId, int> unanswered{};        // loads, and the process that was asked
     std::set<ComponentId> barred{};                 // parts whose class or parameters are missing
-    std::optional<std::set<std::string>> listed{};  // what it said last that it has
-    int listed_by = 0;                              // the process that said so
+    std::optional<std::set<std::string>> listed{};  // its last list
+    int listed_by = 0;                              // the process that gave that list
     Time coming_up = kLongAgo;                      // until when, since it was started here
     int coming_pid = 0;                             // its process then; 0: not known
     std::thread thread{};

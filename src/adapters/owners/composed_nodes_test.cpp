@@ -43,7 +43,7 @@ class OneContainer : public ContainerServices {
  public:
   OneContainer() { ask_anew(); }
 
-  // As another run of culprit would: what was under way is not.
+  // As another run of culprit would: requests under way are lost.
   void ask_anew() {
     composed.reset();
     composed = std::make_unique<ComposedNodes>(
@@ -259,7 +259,7 @@ TEST(ComposedNodes, AContainerThatDoesNotUnloadIsReplacedWithAllThatItHadInOrder
     OneContainer robot;
     robot.begin({"/tracker", "/detector"});
     if (says_so) robot.unloads({Outcome::kRefused, "cannot"});
-    robot.keeps_nodes = !says_so;  // it says that it did
+    robot.keeps_nodes = !says_so;  // it reports that it did
     EXPECT_EQ(robot.stop(kTracker).outcome, Outcome::kDone);
     robot.unloads({});
     EXPECT_EQ(robot.start(kTracker).outcome, Outcome::kDone);
@@ -274,7 +274,7 @@ TEST(ComposedNodes, AContainerThatIsStoppedIsNotWaitedForAndReplaced) {
   OneContainer box;
   box.begin({"/detector", "/tracker"});
   box.what_was_done();
-  // It would say all that it is asked for: what is not asked cannot be waited for.
+  // It would report every request: so this shows that it is not asked, and not waited for.
   kill(box.pid, SIGSTOP);
   while (state_letter(box.pid) != 'T') std::this_thread::sleep_for(1ms);
   EXPECT_EQ(box.stop(kDetector).outcome, Outcome::kDone);
@@ -310,7 +310,7 @@ TEST(ComposedNodes, ARedeployedContainerHasAllThatItHad) {
               ElementsAre("begin", "end", "begin", "load detector", "load tracker"));
 }
 
-// By somebody who wanted it so.
+// Somebody unloaded it on purpose.
 TEST(ComposedNodes, WhatWasUnloadedLongBeforeTheContainerEndedIsNotLoaded) {
   OneContainer robot;
   robot.begin({"/detector"});
@@ -373,9 +373,9 @@ TEST(ComposedNodes, NoneIsAskedWhileSeveralHaveItsName) {
 TEST(ComposedNodes, NothingIsEndedOnAStrangersWord) {
   OneContainer robot;
   robot.begin({"/detector"});
-  robot.lists({Outcome::kRefused, "somebody else answers"});
-  EXPECT_EQ(robot.stop(kDetector).text, "somebody else answers");
-  EXPECT_EQ(robot.start(kTracker).text, "somebody else answers");
+  robot.lists({Outcome::kRefused, "another process answers"});
+  EXPECT_EQ(robot.stop(kDetector).text, "another process answers");
+  EXPECT_EQ(robot.start(kTracker).text, "another process answers");
   EXPECT_THAT(robot.what_was_done(), ElementsAre("begin"));
 }
 

@@ -74,7 +74,7 @@ std::variant<Bytes, ContainerAnswer> ContainerClients::call(const std::string& c
   (*to)->call(std::move(request), which == Which::kList ? Repeat::kUntilAnswered : Repeat::kNever,
               patience, [this, under_way](const CallResult& result) {
                 under_way->reply.assign(result.reply.begin(), result.reply.end());
-                // Whose answer it is, the graph knows, on its own thread.
+                // The graph knows which process the answer is from; it is asked on its own thread.
                 tasks_.post([this, under_way, outcome = result.outcome, server = result.server] {
                   const MutexLock lock(mutex_);
                   under_way->outcome = outcome;
@@ -91,10 +91,10 @@ std::variant<Bytes, ContainerAnswer> ContainerClients::call(const std::string& c
                            container + " did not answer within " + culprit::to_string(patience)};
   if (*under_way->outcome == CallOutcome::kUnreachable)
     return ContainerAnswer{Outcome::kUnreachable,
-                           container + " offers no services of a container that answer"};
+                           container + " offers no container services that answer"};
   if (under_way->process != pid)
     return ContainerAnswer{Outcome::kRefused,
-                           "somebody else answers for the container " + container +
+                           "another process answers for the container " + container +
                                ", and is not believed: it is not proven to be process " +
                                std::to_string(pid)};
   return std::move(under_way->reply);

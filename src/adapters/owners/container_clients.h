@@ -1,9 +1,10 @@
 // The services of component containers (composition_interfaces), called over DDS.
 //
-// Whoever is on the network can offer services of these names, and answer. So an answer counts only
-// if it comes from the participant that the operating system proves to be the container's process
-// (ros2/process_finder.h); another one is told as a refusal. A request to load or to unload is sent
-// once, and not before the container has proven that it knows us (ros2/service_client.h).
+// Anybody on the network can offer services of these names, and answer. So an answer counts only if
+// it comes from the participant that the operating system proves to be the container's process
+// (ros2/process_finder.h); an answer from any other participant is reported as a refusal. A request
+// to load or to unload is sent once, and not before the container has proven that it knows us
+// (ros2/service_client.h).
 #pragma once
 
 #include <functional>

@@ -29,8 +29,8 @@ std::string variable(const char* name) {
   return value == nullptr ? "" : value;
 }
 
-// Where the engine listens: what its own tools take it from, or where its packages put it. Errors:
-// it is told to be elsewhere than on this machine.
+// Where the engine listens: from the same place as its own tools, or where its packages put it.
+// Errors: the engine is set to be on another machine.
 Expected<std::string> socket_of(EngineContainer::Engine engine) {
   const bool is_docker = engine == EngineContainer::Engine::kDocker;
   const char* name = is_docker ? "DOCKER_HOST" : "CONTAINER_HOST";
@@ -56,7 +56,7 @@ bool wait_for(int descriptor, short what, Time end) {
   }
 }
 
-// What others wrote is data: one line, of a length to be read.
+// Text that others wrote is untrusted: it is cut to one line of a readable length.
 std::string one_line(std::string text) {
   constexpr std::size_t kLongest = 200;
   text.resize(std::min(text.size(), kLongest));
@@ -94,7 +94,7 @@ class Engine::Connection {
   explicit Connection(const Engine& engine) : engine_(engine) {}
 
   Expected<void> open() { return engine_.host_.empty() ? open_here() : open_there(); }
-  // What it may take longer than an engine of this machine.
+  // The additional time that an engine on another computer may take.
   Duration extra() const { return remote_ ? RemoteProgram::kPatience : Duration::zero(); }
 
   Expected<void> send(const std::string& request, Time end) {
@@ -230,7 +230,7 @@ Expected<UnitState> Engine::state_of(const std::string& container) {
   state.load_state = "loaded";
   state.main_pid = static_cast<int>(*pid);
   if (*status == "paused")
-    return Error{container + " is paused, and is left to whoever did that: " + program() +
+    return Error{container + " is paused, and culprit does not resume it: " + program() +
                  " unpause " + container};
   if (*status == "running") {
     if (state.main_pid == 0) return no_form(what);
@@ -325,7 +325,7 @@ Expected<std::vector<std::string>> Engine::services() {
   return names;
 }
 
-// Whoever may use the socket may do all.
+// A user who may use the socket may do everything.
 Expected<void> Engine::may_manage(const std::string& container) {
   const auto state = state_of(container);
   return state ? Expected<void>() : Expected<void>(Error{state.error()});

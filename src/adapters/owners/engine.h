@@ -1,10 +1,10 @@
 // A container engine (docker, podman), asked over the REST API of its socket (Docker Engine API;
-// podman speaks the same). That of another computer is asked through its own `docker system
+// podman speaks the same). The engine of another computer is asked through its own `docker system
 // dial-stdio` or `podman system dial-stdio`, over ssh.
 //
-// Every call has a time limit, and blocks its thread for so long at most. What comes back is not
-// trusted: it has the form that the API documents, or is an error. Whoever may use the socket may do
-// all that the engine can (docs/security.md).
+// Every call has a time limit, and blocks its thread for so long at most. Its answers are not
+// trusted: one that has not the form of the API's documentation is an error. A user who may use the
+// socket may do all that the engine can (docs/security.md).
 #pragma once
 
 #include <map>
@@ -20,18 +20,18 @@ class Engine : public ServiceOwner {
  public:
   static constexpr Duration kPatience = std::chrono::seconds(2);
 
-  // `host`: the computer, as ssh is told; empty: this one.
+  // `host`: the computer, as ssh takes it; empty: this one.
   explicit Engine(EngineContainer::Engine which, std::string host = {})
       : which_(which), host_(std::move(host)) {}
 
   Expected<UnitState> state_of(const std::string& container) override;
   Expected<void> start(const std::string& container) override;
-  // The API has whole seconds: what has less gets none.
+  // The API has whole seconds: a shorter time becomes 0.
   Expected<void> stop(const std::string& container, Duration polite) override;
   Expected<void> restart(const std::string& container, Duration polite) override;
   Expected<void> kill(const std::string& container) override;
-  // By the control group that the kernel says it is in; or it is the first process of the container,
-  // or comes from that.
+  // By its control group, as the kernel shows it; or it is the first process of the container, or
+  // comes from that.
   Expected<bool> runs(const std::string& container, int pid) override;
   Expected<std::vector<std::string>> services() override;
   Expected<void> may_manage(const std::string& container) override;
@@ -47,14 +47,14 @@ class Engine : public ServiceOwner {
     int status = 0;  // 0: none came in time
     std::string body;
   };
-  // One that is open, and how to say what is wrong with it.
+  // An open connection, and the words for its errors.
   class Connection;
   Expected<Answer> ask(const std::string& method, const std::string& target, Duration patience);
-  // Asks for a change. What is not answered in time may be done all the same.
+  // Asks for a change. A change that is not answered in time may happen all the same.
   Expected<void> change(const std::string& container, const std::string& what, Duration patience);
   Error no_form(const std::string& what) const;
 
-  // Its program: what people know it as.
+  // Its program: the name that people know.
   std::string program() const;
 
   const EngineContainer::Engine which_;

@@ -1,5 +1,5 @@
-// What is asked of a container engine, and what its answers are taken for. The server is a stand-in
-// that speaks the Docker Engine API on a unix socket, and really runs a process for each container; no
+// Requests to a container engine, and how its answers are read. The server is a stand-in that
+// speaks the Docker Engine API on a unix socket, and really runs a process for each container; no
 // engine was asked.
 #include "owners/engine.h"
 
@@ -106,7 +106,7 @@ TEST_F(ContainersOnAStandInForDocker, ThatExitedAreDead) {
   ASSERT_TRUE(seen);
 }
 
-// As docker stop leaves them. Whoever is killed may have hung.
+// Exit codes as docker stop leaves them. A container that was killed may have hung.
 TEST_F(ContainersOnAStandInForDocker, ThatEndInAnOrderlyWayAreToldAsAnOrder) {
   for (const int code : {0, 143, 137}) {
     engine.add("slam");
@@ -145,7 +145,7 @@ TEST_F(ContainersOnAStandInForDocker, ThatSomebodyPausedAreLeftToHim) {
 
 TEST_F(ContainersOnAStandInForDocker, ThatCannotStartSayWhereToLook) {
   engine.add("slam", {.is_broken = true});
-  EXPECT_THAT(start().text, HasSubstr("docker logs slam says why"));
+  EXPECT_THAT(start().text, HasSubstr("see docker logs slam"));
 }
 
 TEST_F(ContainersOnAStandInForDocker, AreNotEndedOnWordsThatMakeNoSense) {

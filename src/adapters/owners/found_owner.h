@@ -1,5 +1,5 @@
-// Who runs a component whose rules do not say so, as far as the kernel can tell: a hint to people,
-// who may then declare it. culprit itself never acts on it.
+// Finds out what runs a component whose rules do not say so, as far as the kernel can tell: a hint
+// to people, who may then declare it. culprit itself never acts on it.
 #pragma once
 
 #include <optional>
@@ -12,8 +12,8 @@ struct FoundOwner {
   std::string declare;  // "UNIT lidar.service"; empty: nothing fits
 };
 
-// Of the process `pid`. `loader`: the node in the same process that loads others, "/box"; empty:
-// none. Nothing: nobody can be told.
+// The owner of the process `pid`. `loader`: the node in the same process that loads others, "/box";
+// empty: none. Nothing: not known.
 std::optional<FoundOwner> found_owner(int pid, const std::string& loader);
 
 }  // namespace culprit::owners

@@ -14,7 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// Or who runs this test with all that it starts: a container engine, or systemd.
+// Or the program that runs this test with all its children: a container engine, or systemd.
 TEST(FoundOwner, IsWhoeverStartedIt) {
   const test::TestFolder folder;
   const auto started =

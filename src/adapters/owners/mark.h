@@ -1,11 +1,12 @@
-// The mark that processes of components carry in their environment, so that whoever supervises the
-// same robot later knows them again.
+// The mark that processes of components carry in their environment, so that the next supervisor of
+// the same robot recognizes them.
 //
-// What a process starts in turn inherits the mark and is not the component: a second variable says
-// which process is, by its number, and a third where that number counts, for in another PID
-// namespace it is somebody else's.
+// A child process inherits the mark and is not the component. So a second variable holds the PID of
+// the component's process, and a third one the PID namespace: in another namespace that PID is
+// another process.
 //
-// A process that stands in for one of a launch says of which: the number of the launcher, and when it began.
+// A process that stands in for one of a launch names that launch: the launcher's PID, and when it
+// began.
 //
 // Any user can start a process with these variables. So a mark counts only in a process of our own user: a component
 // whose LAUNCH changes the user (sudo, setpriv) is known for as long as the culprit runs that started it.
@@ -18,8 +19,8 @@ namespace culprit::owners {
 
 inline constexpr const char* kPidVariable = "CULPRIT_PROCESS";
 
-// What is added to the environment of a component's process, beside its number. `component`:
-// "0/sunset/camera".
+// The variables that are added to the environment of a component's process, beside its PID.
+// `component`: "0/sunset/camera".
 std::vector<std::string> mark_of(const std::string& component);
 
 // Added to the mark of a process that stands in for one that `launcher` had started. Empty: there is no such launcher.
@@ -42,10 +43,10 @@ bool carries_mark(int pid, const std::string& component);
 // Not one that a marked process started in turn.
 bool is_what_was_launched(int pid);
 
-// What the process `pid` and all that it started have in their environment.
+// The variable that the process `pid` and all its descendants have in their environment.
 std::string variable_of(int pid);
 
-// Likewise of all components whose mark begins with `prefix`: "0/sunset/", "0/".
+// The processes of all components whose mark begins with `prefix`: "0/sunset/", "0/".
 struct MarkedProcess {
   std::string component;  // "0/sunset/camera"
   int pid = 0;
@@ -56,7 +57,7 @@ std::vector<MarkedProcess> marked_processes(const std::string& prefix);
 std::vector<int> launched_as(const std::string& component);
 
 // Living processes that those of the component had started, also in sessions of their own. `process`: of the one with
-// this variable (variable_of) only; empty: of those that have ended.
+// this variable (variable_of) only; empty: of those that have exited.
 std::vector<int> left_by(const std::string& component, const std::string& process);
 // Whether another process than that with this variable was launched with a mark, and it is part of that one's.
 bool is_anothers(int pid, const std::string& process);

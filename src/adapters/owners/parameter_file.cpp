@@ -109,7 +109,7 @@ ParameterValue scalar(const YAML::Node& node) {
   return value;
 }
 
-// All of one type, but that whole numbers may stand among others.
+// All of one type; only whole numbers may be among others.
 ParameterValue list_value(const YAML::Node& node) {
   ParameterValue value;
   std::set<ParameterType> types;
@@ -122,7 +122,7 @@ ParameterValue list_value(const YAML::Node& node) {
   const bool is_real = types == std::set{ParameterType::kInteger, ParameterType::kDouble} ||
                        types == std::set{ParameterType::kDouble};
   if (types.size() > 1 && !is_real) throw WrongFile(node.Mark(), "a list holds values of one type");
-  // As rcl has it: what no type can be told of is text.
+  // As rcl has it: values without a type are text.
   ParameterType type = ParameterType::kStringArray;
   for (const ParameterValue& each : all) {
     const auto of = static_cast<ParameterType>(each.type);

@@ -23,7 +23,7 @@ namespace culprit::owners {
 Expected<std::vector<ros2::msg::Parameter>> read_parameter_file(const std::string& path,
                                                                 const std::string& node);
 
-// What `-p name:=text` sets, as rcl reads it: YAML. Errors: it is no value.
+// The value that `-p name:=text` sets, as rcl reads it: YAML. Errors: it is no value.
 Expected<ros2::msg::ParameterValue> parse_parameter_value(const std::string& text);
 
 // As YAML has it: "true", "3", "0.5", "[1, 2]"; empty for what is not set.

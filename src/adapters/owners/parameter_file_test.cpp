@@ -80,7 +80,7 @@ TEST(ParameterFile, SaysWhatIsWrongAndWhere) {
               HasSubstr("there is no file /no/such.yaml"));
 }
 
-// What aliases make of a few lines would fill the memory.
+// Aliases expand a few lines to a text that would fill the memory.
 TEST(ParameterFile, EndsWhereAliasesDoNot) {
   std::string text = "a: &a {x0: 1, x1: 1, x2: 1, x3: 1, x4: 1, x5: 1, x6: 1, x7: 1}\n";
   for (char c = 'b'; c < 'j'; ++c) {

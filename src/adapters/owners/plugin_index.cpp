@@ -40,8 +40,8 @@ std::string perhaps(const std::string& wanted, const std::vector<std::string>& k
 Expected<void> find_plugin(int pid, const std::string& package, const std::string& plugin) {
   const auto prefixes = environment_of(pid, "AMENT_PREFIX_PATH");
   if (!prefixes)
-    return Error{"it cannot be seen what its container could load: process " + std::to_string(pid) +
-                 " shows no AMENT_PREFIX_PATH"};
+    return Error{"the components that its container could load are unknown: process " +
+                 std::to_string(pid) + " shows no AMENT_PREFIX_PATH"};
   // In a mount namespace of its own the same paths lead elsewhere.
   const std::filesystem::path root = "/proc/" + std::to_string(pid) + "/root";
   std::vector<std::string> packages;

@@ -1,5 +1,5 @@
-// Which classes a component container would find: what the ament index of its own environment has
-// registered (resource type rclcpp_components), read as the container reads it.
+// Which classes a component container would find: those that the ament index of its own environment
+// has registered (resource type rclcpp_components), read as the container reads it.
 #pragma once
 
 #include <string>

@@ -55,7 +55,7 @@ TEST_F(PluginIndex, FindsWhatTheContainersOwnEnvironmentHas) {
 
 TEST_F(PluginIndex, SaysWhatItCannotSee) {
   EXPECT_THAT(find_plugin(1 << 30, "vision", "vision::Detector").error(),
-              HasSubstr("cannot be seen"));
+              HasSubstr("its container could load are unknown"));
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What /proc/<pid>/stat says after the command, which is in parentheses and may hold anything.
+// The rest of /proc/<pid>/stat after the command, which is in parentheses and may hold anything.
 std::string stat_after_command(int pid) {
   std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
   std::string line;
@@ -144,7 +144,7 @@ std::optional<Users> users_of(int pid) {
   return std::nullopt;
 }
 
-// Both: a program that any user may run as its owner (setuid) keeps who ran it as the real one.
+// Both: a program that any user may run as its owner (setuid) keeps the caller as its real user.
 bool is_of_own_user(int pid) {
   const auto users = users_of(pid);
   return users && users->real == geteuid() && users->effective == geteuid();
@@ -179,7 +179,7 @@ std::optional<std::string> hold_of_debugger(int pid) {
 }
 
 std::optional<int> status_of_zombie(int pid) {
-  // Of other users' processes it is 0 (proc(5)).
+  // For other users' processes it is 0 (proc(5)).
   struct stat owner {};
   const std::string folder = "/proc/" + std::to_string(pid);
   const bool may_be_told =
@@ -302,14 +302,13 @@ Expected<void> proc_is_of_our_processes() {
   std::error_code error;
   const bool is_our_number =
       fs::read_symlink("/proc/self", error).native() == std::to_string(getpid());
-  // A kernel without PID namespaces tells none.
+  // A kernel without PID namespaces shows none.
   if (is_our_number && numbers_of("self").size() <= 1) return {};
   return Error{
-      "/proc does not show culprit's own process: it is of another PID namespace, or there is "
-      "none, "
-      "and whoever goes by its numbers ends the wrong processes. Mount culprit's own (mount -t "
-      "proc "
-      "proc /proc); in a container take no /proc of the host's, but its namespace (--pid host)"};
+      "/proc does not show culprit's own process: it is of another PID namespace, or is not "
+      "mounted. By its PIDs culprit would end the wrong processes. Mount culprit's own "
+      "(mount -t proc proc /proc); in a container use not the host's /proc, but its PID namespace "
+      "(--pid host)"};
 }
 
 std::optional<Identity> identity_of(int pid) {
@@ -317,7 +316,7 @@ std::optional<Identity> identity_of(int pid) {
   std::error_code error;
   std::string program = fs::read_symlink(process + "/exe", error).native();
   if (error) return std::nullopt;
-  constexpr std::string_view kDeleted = " (deleted)";  // it was installed anew since
+  constexpr std::string_view kDeleted = " (deleted)";  // it was reinstalled since
   if (program.ends_with(kDeleted)) program.resize(program.size() - kDeleted.size());
   const auto users = users_of(pid);
   if (!users) return std::nullopt;
@@ -338,7 +337,7 @@ std::vector<Relative> descendants_of(int pid) {
   }
   std::vector<Relative> found;
   std::vector<int> open = {pid};
-  // Numbers are given out anew while they are read: no more are found than there are.
+  // PIDs are reused while they are read: no more are found than there are.
   while (!open.empty() && found.size() <= parents.size()) {
     const int parent = open.back();
     open.pop_back();

@@ -1,4 +1,4 @@
-// What the kernel tells of processes in /proc.
+// Reads the kernel's data about processes from /proc.
 #pragma once
 
 #include <optional>
@@ -14,17 +14,18 @@ namespace culprit::owners {
 // 'R', 'S', 'T' (stopped), 'Z' (ended, not reaped) ...; nothing if there is no such process.
 std::optional<char> state_letter(int pid);
 
-// Why it is not replaced: a debugger holds it, and whoever debugs it would lose it. Nothing: none does.
+// Why it is not replaced: a debugger holds it, and its user would lose it. Nothing: none does.
 std::optional<std::string> hold_of_debugger(int pid);
 
-// What its parent will be told of its end, as of wait(2). Nothing: it has not ended, its parent was told,
-// or it is another user's.
+// The exit status that its parent will receive, as in wait(2). Nothing: it has not ended, its
+// parent has received it, or it is another user's.
 std::optional<int> status_of_zombie(int pid);
 
-// Who started it, or who got it when that one had ended; nothing if there is no such process.
+// Its parent, or its new parent once that one has exited; nothing if there is no such process.
 std::optional<int> parent_of(int pid);
 
-// Who started a process that culprit did not start, past `ros2 run`, which only waits for it.
+// The process that started one that culprit did not start; `ros2 run` is skipped, for it only
+// waits.
 struct Origin {
   enum class What : std::uint8_t {
     kKnown,
@@ -40,14 +41,14 @@ Origin origin_of(int pid);
 // On live_now()'s clock, to a hundredth of a second.
 std::optional<Time> started_at(int pid);
 
-// All processes that can be seen.
+// All processes that are visible.
 std::vector<int> all_processes();
 
 // When it began, in ticks of the kernel since the machine was started: with its number, which process it is.
 std::optional<std::int64_t> start_ticks_of(int pid);
 
-// What stands behind `prefix` ("NAME=") in the environment that the process was started with. Empty: nothing, or it is a
-// process of another user.
+// The value after `prefix` ("NAME=") in the environment that the process was started with. Empty:
+// nothing, or it is a process of another user.
 std::string value_of_variable(int pid, const std::string& prefix);
 
 // Those that it started itself and that have not ended.
@@ -59,21 +60,21 @@ bool has_variable(int pid, const std::string& variable);
 // All such processes.
 std::vector<int> processes_with(const std::string& variable);
 
-// Where processes are counted: "pid:[4026531836]". Empty if it cannot be told.
+// Where processes are counted: "pid:[4026531836]". Empty if it is unknown.
 std::string pid_namespace_of(int pid);
-// The number that a process has in the innermost namespace that it is in; 0 if it cannot be told.
+// The number that a process has in the innermost namespace that it is in; 0 if it is unknown.
 int own_number_of(int pid);
 // An error where /proc counts processes in another PID namespace than this process is in: its numbers are those of others here.
 Expected<void> proc_is_of_our_processes();
 
-// What a process runs: `script` is what an interpreter was given, as `ros2 run` is Python's.
+// The program of a process: `script` is an interpreter's argument, as `ros2 run` is Python's.
 struct Identity {
   unsigned user = 0;    // effective
   std::string program;  // with its path
   std::string script;   // with its path; empty for other programs
   bool operator==(const Identity&) const = default;
 };
-// Nothing: there is no such process, or it may not be seen.
+// Nothing: there is no such process, or it is not visible.
 std::optional<Identity> identity_of(int pid);
 // "/usr/bin/python3 /opt/ros/bin/ros2 of user 1000"
 std::string to_string(const Identity& identity);
@@ -83,7 +84,7 @@ std::string to_string(const Identity& identity);
 std::optional<SystemdUnit> unit_started_as(int pid);
 
 // The container of an engine (docker, podman) that it lives in, by its control group: its id, 64
-// digits. Empty: in none that can be told.
+// digits. Empty: in none, or unknown.
 std::string container_of(int pid);
 
 struct Relative {
@@ -95,7 +96,7 @@ std::vector<Relative> descendants_of(int pid);
 // Those in the process group and in the session that `leader` made, itself included.
 std::vector<int> members_of_group(int leader);
 
-// What processes have done and have.
+// The processor time that processes have used, and their memory.
 struct Work {
   Duration processor{};
   std::int64_t bytes = 0;  // of memory

@@ -26,7 +26,7 @@ static_assert(sizeof(PidfdInfo) == 64);
 constexpr std::uint64_t kExit = 1u << 3;
 constexpr unsigned long kGetInfo = _IOWR(0xFF, 11, PidfdInfo);
 
-// Once its parent has heard of it; of an older kernel nothing.
+// Once its parent has received it; an older kernel gives none.
 std::optional<int> status_by_pidfd(int pidfd) {
   PidfdInfo info;
   info.mask = kExit;
@@ -52,7 +52,7 @@ ProcessEnd killed(int signal) {
   return {"killed by signal " + std::to_string(signal), is_polite ? Cause::kWish : Cause::kFault};
 }
 
-// Its parent may hear of it between the two.
+// Its parent may receive it between the two.
 ProcessEnd end_of(int pid, int pidfd) {
   if (const auto status = status_by_pidfd(pidfd)) return by_status(*status);
   const auto unheard = status_of_zombie(pid);

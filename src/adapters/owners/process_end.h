@@ -1,8 +1,8 @@
 // How a process ended, and whether somebody wanted that.
 //
-// Only its parent is told how a process ended. Of other people's processes the kernel says it too,
-// to whom it may concern: since Linux 6.15 by the pidfd, and before that only until the parent has
-// heard of it, which is soon. Where neither says it nobody knows.
+// Only the parent of a process receives its exit status. For other processes the kernel shows it,
+// too: since Linux 6.15 by the pidfd, and before that only until the parent has received it, which
+// is soon. If neither shows it, it is unknown.
 #pragma once
 
 #include <string>
@@ -17,11 +17,11 @@ struct ProcessEnd {
 };
 
 // SIGINT, SIGTERM, SIGHUP and SIGQUIT are how people and launchers ask; so are the exit codes with
-// which programs pass on that it was one of these (130, 143; ros2 run says 254, 241).
+// which programs pass on that it was one of these (130, 143; ros2 run gives 254, 241).
 ProcessEnd exited(int code);
 ProcessEnd killed(int signal);
 
-// Of a process that has ended and is not our child. `pidfd` holds it.
+// The end of a process that has exited and is not our child. `pidfd` holds it.
 ProcessEnd end_of(int pid, int pidfd);
 
 }  // namespace culprit::owners

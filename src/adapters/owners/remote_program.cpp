@@ -10,6 +10,7 @@
 #include <thread>
 #include <unistd.h>
 
+#include "base/invariant.h"
 #include "base/live_clock.h"
 #include "owners/piped_program.h"
 #include "owners/spawn.h"
@@ -97,9 +98,10 @@ RemoteProgram& RemoteProgram::operator=(RemoteProgram&& other) noexcept {
 
 RemoteProgram::~RemoteProgram() { end(); }
 
-// Nothing over there is lost with it, and it may hang.
+// Killing ssh loses nothing on the other computer; ssh itself may hang.
 void RemoteProgram::end() {
   if (pid_ == 0) return;
+  CULPRIT_ASSERT(pid_ > 1);
   kill(-pid_, SIGKILL);
   while (waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
   }
@@ -127,7 +129,7 @@ bool RemoteProgram::was_let_in(Time until) {
   return status(until).value_or(kFailureOfSsh) != kFailureOfSsh;
 }
 
-// ssh says whom it speaks of now and then; we always do.
+// ssh names the computer in some of its messages; we always do.
 std::string RemoteProgram::without_its_name(std::string said) const {
   const std::string name = host_ + ": ";
   if (said.starts_with(name)) said.erase(0, name.size());
@@ -154,8 +156,8 @@ std::string RemoteProgram::trouble() {
          "; does it work there by hand?";
 }
 
-// What a key may run over there may be fixed to another program, which ends, too, when it is told no
-// more.
+// The other computer may restrict our key to another program; that one ends, too, when its input
+// ends.
 Expected<void> could_reach(const std::string& host) {
   auto nothing = RemoteProgram::begin(host, {"true"});
   if (!nothing) return Error{nothing.error()};

@@ -1,11 +1,12 @@
-// A program on another computer, that is talked to over ssh: what it reads and what it prints are the
-// two directions of one socket here.
+// A program on another computer, that is talked to over ssh: its input and its output are the two
+// directions of one socket here.
 //
-// ssh asks nobody anything (BatchMode): what needs a password, or whose key is not known yet, is an
-// error. The command is made of plain words that stand in this program, never of what a rule file or
-// the network says, so the shell over there has nothing to misread (one reads a variable of that user's own). Whom to connect to, and how, is
-// what `ssh computer` takes it from (~/.ssh/config). ssh ends with this object, and with culprit: the
-// program over there reads the end of its input then.
+// ssh never asks for input (BatchMode): a computer that needs a password, or whose key is not known
+// yet, is an error. The command consists of plain words from this program, never of text from a
+// rule file or the network. So the shell over there has nothing to misread (one word reads a
+// variable of that user's own). ssh takes the address and the way to connect from `ssh computer`'s
+// configuration (~/.ssh/config). ssh ends with this object, and with culprit: the program over
+// there then reads the end of its input.
 #pragma once
 
 #include <optional>
@@ -20,11 +21,11 @@ namespace culprit::owners {
 
 class RemoteProgram {
  public:
-  // What it takes at most until the other computer has let us in, or has not.
+  // Time limit for the other computer to let us in or to refuse.
   static constexpr Duration kPatience = std::chrono::seconds(4);
 
-  // `host` is as ssh is told it: "robot@rover2". Does not wait. Errors: there is no ssh, or the system
-  // gives no process.
+  // `host` is as ssh takes it: "robot@rover2". Does not wait. Errors: there is no ssh, or the
+  // system gives no process.
   static Expected<RemoteProgram> begin(const std::string& host, std::vector<std::string> words);
   RemoteProgram(RemoteProgram&& other) noexcept;
   RemoteProgram& operator=(RemoteProgram&& other) noexcept;
@@ -33,11 +34,11 @@ class RemoteProgram {
   // Where it is talked to, without waiting.
   int socket() const { return socket_.get(); }
 
-  // Says no more, and gives whether ssh was let in, and what it ran there has ended by then.
+  // Ends the input, and gives whether ssh was let in, and the program there has ended by then.
   bool was_let_in(Time until);
 
-  // Why it does not answer, and what to do: what ssh said, that it ended, or that it hangs. For when
-  // it did not answer.
+  // Why it does not answer, and what to do: ssh's message, that it ended, or that it hangs. For
+  // when it did not answer.
   std::string trouble();
 
  private:
@@ -62,7 +63,7 @@ class RemoteProgram {
   FileDescriptor errors_;
 };
 
-// Whether culprit's user is let in there without being asked. Errors say what is wrong and what to do.
+// Whether culprit's user is let in there without being asked. Errors give the fault and the remedy.
 // Waits for it, RemoteProgram::kPatience and a second at most.
 Expected<void> could_reach(const std::string& host);
 

@@ -1,6 +1,6 @@
-// What runs on another computer is asked over ssh. ssh and that computer are a stand-in (test_ssh.h);
-// behind it a real systemd-stdio-bridge speaks to the stand-in for systemd on a real dbus-daemon, or
-// the stand-in for docker's dial-stdio to the one for its engine.
+// Requests to owners on another computer go over ssh. ssh and that computer are a stand-in
+// (test_ssh.h). Behind it a real systemd-stdio-bridge speaks to the stand-in for systemd on a real
+// dbus-daemon, or the stand-in for docker's dial-stdio to the one for its engine.
 #include <csignal>
 #include <sys/wait.h>
 #include <thread>
@@ -211,7 +211,7 @@ TEST_F(RemoteUnits, OfAComputerThatIsLostAreOutOfReachAndNotDead) {
   const auto back = wait_for<HostReached>([](const auto&) { return true; });
   ASSERT_TRUE(back);
   EXPECT_TRUE(back->is_reached);
-  EXPECT_GE(live_now() - allowed, Units::kReturn) << "its nodes have to be heard again first";
+  EXPECT_GE(live_now() - allowed, Units::kReturn) << "its nodes must be discovered again first";
 }
 
 TEST_F(RemoteUnits, ThatDoNotExistThereAreToldWithTheNameThatWasMeant) {
@@ -231,7 +231,7 @@ TEST_F(RemoteUnits, OfWhichForgedWordsComeAreNotEnded) {
 // systemd itself, by way of its own bridge.
 TEST_F(Remote, UnitsOfAUserAreFoundOnTheBusOfThatUser) {
   const auto systemd = UserSystemd::begin();
-  if (!systemd) GTEST_SKIP() << "this machine lets nobody run an instance of systemd";
+  if (!systemd) GTEST_SKIP() << "this machine runs no second instance of systemd";
   systemd->start("lidar.service", "/bin/sleep 300", "");
   const auto could = could_manage(SystemdUnit{"lidar.service", true, kHost});
   EXPECT_TRUE(could) << (could ? "" : could.error());

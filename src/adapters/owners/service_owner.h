@@ -1,5 +1,5 @@
-// Who runs services by itself and is asked to start and to end them: systemd its units, a container
-// engine its containers.
+// A program that runs services by itself, and that culprit asks to start and to end them: systemd
+// its units, a container engine its containers.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace culprit::owners {
 
-// What the owner says of a service.
+// The state of a service, as its owner reports it.
 struct UnitState {
   enum class Activity : std::uint8_t {
     kActive,
@@ -31,16 +31,16 @@ struct UnitState {
   bool is_over() const { return activity == Activity::kInactive || activity == Activity::kFailed; }
 };
 
-// Every call has a time limit, and blocks its thread for so long at most. Errors say what is wrong
-// and what to do; nothing was done then.
+// Every call has a time limit, and blocks its thread for so long at most. Errors give the fault and
+// the remedy; nothing was done then.
 class ServiceOwner {
  public:
   virtual ~ServiceOwner() = default;
 
   virtual Expected<UnitState> state_of(const std::string& service) = 0;
   virtual Expected<void> start(const std::string& service) = 0;
-  // `polite`: how long its processes have to end by themselves, if that can be said with the request
-  // (an engine kills them then; systemd waits as its unit says).
+  // `polite`: how long its processes have to end by themselves, if the request can contain that (an
+  // engine kills them then; systemd waits as its unit configures).
   virtual Expected<void> stop(const std::string& service, Duration polite) = 0;
   virtual Expected<void> restart(const std::string& service, Duration polite) = 0;
   // SIGKILL to all its processes.
@@ -53,14 +53,14 @@ class ServiceOwner {
   // Whether culprit has the right to start and to end it. Errors: it has not.
   virtual Expected<void> may_manage(const std::string& service) = 0;
 
-  // Whether there was anybody to answer the last call, whatever the answer was.
+  // Whether the owner answered the last call, whatever the answer was.
   virtual bool was_reached() const = 0;
 
   // For people: "systemd", "docker".
   virtual std::string name() const = 0;
-  // What says why a service failed: "journalctl -u lidar.service".
+  // The command that shows why a service failed: "journalctl -u lidar.service".
   virtual std::string where_to_look(const std::string& service) const = 0;
-  // What says which services it has.
+  // The command that lists its services.
   virtual std::string what_lists_all() const = 0;
 };
 

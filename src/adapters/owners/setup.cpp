@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/invariant.h"
 #include "base/live_clock.h"
 #include "owners/piped_program.h"
 #include "owners/spawn.h"
@@ -16,9 +17,7 @@
 namespace culprit::owners {
 namespace {
 
-constexpr std::size_t kMostOutput = std::size_t{1} << 20;
-
-// The file sees no arguments. What it prints is for people, not for us.
+// The file sees no arguments. Its output is for people, so it goes to standard error.
 constexpr const char* kLine =
     R"(culprit_setup=$1; shift; . "$culprit_setup" >&2 && exec /usr/bin/env -0)";
 
@@ -27,32 +26,7 @@ bool begins_with_any(std::string_view variable, std::initializer_list<std::strin
                      [&](std::string_view name) { return variable.starts_with(name); });
 }
 
-// False at the end, and when there is too much.
-bool take_from(int descriptor, std::string& text) {
-  std::array<char, 4096> part{};
-  const ssize_t size = read(descriptor, part.data(), part.size());
-  if (size < 0) return errno == EINTR || errno == EAGAIN;
-  text.append(part.data(), static_cast<std::size_t>(size));
-  return size > 0 && text.size() <= kMostOutput;
-}
-
-enum class Over : std::uint8_t { kItself, kTime };
-// Reads until both ends are closed by all who have them, or `end`. Of errors the last part is kept.
-Over read_all(int out, int err, Time end, std::string& printed, std::string& errors) {
-  std::array<pollfd, 2> files{{{out, POLLIN, 0}, {err, POLLIN, 0}}};
-  while (files[0].fd >= 0) {
-    const Time now = live_now();
-    if (now >= end) return Over::kTime;
-    const auto wait = std::chrono::ceil<std::chrono::milliseconds>(end - now).count();
-    poll(files.data(), files.size(), static_cast<int>(wait));
-    if (files[0].revents != 0 && !take_from(out, printed)) files[0].fd = -1;
-    if (files[1].revents != 0 && !take_from(err, errors)) files[1].fd = -1;
-    if (errors.size() > kMostOutput / 2) errors.erase(0, errors.size() - kMostOutput / 4);
-  }
-  return Over::kItself;
-}
-
-// ": No such file or directory", of what it said last.
+// ": No such file or directory", from its last output.
 std::string last_words(const std::string& errors) {
   const std::string line = last_line(errors);
   return line.empty() ? "" : ": " + line;
@@ -67,27 +41,14 @@ Expected<std::vector<std::string>> environment_after(const std::filesystem::path
   // BASH_ENV names another file that bash would read.
   std::vector<std::string> before = environment_with(given);
   std::erase_if(before, [](const std::string& v) { return v.starts_with("BASH_ENV="); });
-  auto out = make_pipe();
-  auto err = make_pipe();
-  if (!out) return Error{name + ": " + out.error()};
-  if (!err) return Error{name + ": " + err.error()};
-  const auto pid = begin_piped(
-      {"/bin/bash", "--noprofile", "--norc", "-c", kLine, "culprit-setup", file.native()}, before,
-      {.out = out->write_end.get(), .err = err->write_end.get()});
-  out->write_end = FileDescriptor();
-  err->write_end = FileDescriptor();
-  if (!pid) return Error{name + ": " + pid.error()};
-  std::string printed;
-  std::string errors;
-  const Over over =
-      read_all(out->read_end.get(), err->read_end.get(), later(live_now(), limit), printed, errors);
-  kill(-*pid, SIGKILL);  // what it started in the background, too
-  int status = 0;
-  while (waitpid(*pid, &status, 0) < 0 && errno == EINTR) {
-  }
-  if (over == Over::kTime)
-    return Error{name + " took longer than " + culprit::to_string(limit) + last_words(errors)};
-  if (printed.size() > kMostOutput) return Error{name + " gives too large an environment"};
+  const auto run =
+      run_piped({"/bin/bash", "--noprofile", "--norc", "-c", kLine, "culprit-setup", file.native()},
+                before, limit);
+  if (!run) return Error{name + ": " + run.error()};
+  if (run->end == PipedRun::End::kTime)
+    return Error{name + " took longer than " + culprit::to_string(limit) + last_words(run->err)};
+  if (run->end == PipedRun::End::kTooMuch) return Error{name + " gives too large an environment"};
+  const std::string& printed = run->out;
   std::vector<std::string> after;
   for (std::size_t begin = 0; begin < printed.size();) {
     const std::size_t end = printed.find('\0', begin);
@@ -98,7 +59,7 @@ Expected<std::vector<std::string>> environment_after(const std::filesystem::path
       after.push_back(std::move(variable));
     begin = end + 1;
   }
-  if (after.empty()) return Error{name + " failed" + last_words(errors)};
+  if (after.empty()) return Error{name + " failed" + last_words(run->err)};
   std::erase_if(after, [&](const std::string& variable) {
     return std::any_of(given.begin(), given.end(), [&](const std::string& each) {
       return variable.starts_with(each.substr(0, each.find('=') + 1));

@@ -1,4 +1,4 @@
-// The one shell that culprit runs: what it is given, what it gives, and what goes wrong.
+// The one shell that culprit runs: its input, its output, and its errors.
 #include "owners/setup.h"
 
 #include <csignal>

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
@@ -18,6 +17,8 @@
 #include <system_error>
 #include <unistd.h>
 #include <utility>
+
+#include "base/invariant.h"
 
 extern char** environ;
 
@@ -51,7 +52,7 @@ struct Preparation {
   char* pid_digits;           // where the pid's are to be written; null: nowhere
   int kept;
   Until until;
-  pid_t ends_with;  // whose end ends it; 0: nobody's
+  pid_t ends_with;  // the process whose end ends it; 0: none
   mode_t mask;
 };
 constexpr std::size_t kPidDigits = 10;
@@ -73,7 +74,8 @@ void reset_signals() {
   sigprocmask(SIG_SETMASK, &none, nullptr);
 }
 
-// Culprit's service is spared when memory runs out (OOMScoreAdjust=); what it starts is not for that reason.
+// Culprit's service is spared when memory runs out (OOMScoreAdjust=); the processes that it starts
+// are not.
 void be_spared_no_more() {
   const int file = open("/proc/self/oom_score_adj", O_RDWR | O_CLOEXEC);
   if (file < 0) return;
@@ -102,7 +104,7 @@ const char* first_readable(char* const* places) {
   return nullptr;
 }
 
-// A time of the file that lies ahead says nothing: the clock was set back.
+// A modification time in the future proves nothing: the clock was set back.
 bool is_being_written(const char* path) {
   struct stat status {};
   if (stat(path, &status) != 0) return true;
@@ -119,8 +121,8 @@ const char* first_executable(char* const* places) {
   return nullptr;
 }
 
-// What execve() would find out of a script: whether the program that its first line names can be
-// run. Sets errno.
+// Checks a script as execve() would: whether the program that its first line names can be run. Sets
+// errno.
 bool has_interpreter(const char* path) {
   std::array<char, 256> line{};
   const int file = open(path, O_RDONLY | O_CLOEXEC);
@@ -136,7 +138,8 @@ bool has_interpreter(const char* path) {
   return access(begin, X_OK) == 0;
 }
 
-// Where the child says why it failed; closed by a successful execve(). What it keeps is beside it.
+// The child's report why it failed; closed by a successful execve(). The descriptors that it keeps
+// are beside it.
 constexpr int kReport = STDERR_FILENO + 1;
 constexpr int kKept = kReport + 1;
 
@@ -172,7 +175,7 @@ Failure become(const Preparation& ready, int report) {
   setsid();
   if (ready.ends_with != 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != ready.ends_with) _exit(127);  // it ended before it could be told
+    if (getppid() != ready.ends_with) _exit(127);  // it exited before the request took effect
   }
   prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0);
   // Our DDS sockets are not marked close-on-exec; a child that kept one would keep its port.
@@ -342,12 +345,12 @@ Launch::~Launch() {
     return;
   }
   kill(pid_, SIGKILL);
-  // One that hangs in a file system dies when that lets it go: nobody can wait for it.
+  // One that hangs in a file system exits when that lets it go: the supervisor cannot wait for it.
   waitpid(pid_, nullptr, WNOHANG);
 }
 
 Expected<void> Launch::outcome() {
-  assert(report_.get() >= 0);
+  CULPRIT_ASSERT(report_.get() >= 0);
   const int pid = std::exchange(pid_, 0);
   Failure failure{};
   ssize_t size = 0;

@@ -11,9 +11,9 @@
 
 namespace culprit::owners {
 
-// How long a process lives that nobody ends.
+// How long a process runs if it is not ended.
 enum class Lifetime : std::uint8_t {
-  kOwn,     // it outlives whoever started it, however that ends
+  kOwn,     // it outlives its starter, however that ends
   kStarter  // it is killed with the thread that started it: for worlds that are gone with theirs
 };
 
@@ -42,7 +42,7 @@ struct Program {
 enum class Until : std::uint8_t {
   kItRuns,
   kItCouldRun,  // all is done but the last step: the program is not run
-  kItIsReady    // likewise, and its files were not written for kSettles: no build is at them
+  kItIsReady    // as above, and its files were not written for kSettles: no build is at them
 };
 
 // A start under way: the process is there, whether the program runs will be known. It may take as
@@ -51,16 +51,15 @@ class Launch {
  public:
   static constexpr std::int64_t kSettles = 1;  // seconds
 
-  // The new process leads a session and a process group of its own (a Ctrl-C at culprit's terminal
-  // is not for it), reads nothing, inherits the environment, no open file
-  // and no capability that whoever started this program gave it, has default signal handling, and is not spared
-  // when memory runs out because this program is.
-  // Does not wait for any file system but that of the log. Errors: the system gives no process or
-  // no descriptor.
+  // The new process leads a session and a process group of its own, so a Ctrl-C at culprit's
+  // terminal does not reach it. It reads nothing. It inherits the environment, but no open file,
+  // and no capability that this program was given. It has default signal handling, and culprit's
+  // protection from the OOM killer does not extend to it. Does not wait for any file system but
+  // that of the log. Errors: the system gives no process or no descriptor.
   static Expected<Launch> begin(const Program& program, Until until);
   Launch(Launch&& other) noexcept;
   Launch& operator=(Launch&& other) noexcept;
-  // A start that is not over yet is given up. What runs goes on.
+  // Gives up a start that is not over yet. A running program goes on.
   ~Launch();
 
   int pid() const { return pid_; }
@@ -108,7 +107,7 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts);
 std::string value_in_environment(const std::string& variable,
                                  const std::vector<std::string>& added);
 
-// What we have in our environment, without what `added` has a value for, and `added`.
+// Our environment, with `added` in place of variables of the same names.
 std::vector<std::string> environment_with(const std::vector<std::string>& added);
 
 // Starts it and waits until it runs. Gives its pid; the caller reaps it.

@@ -34,7 +34,7 @@ std::optional<Started> started_as(int pid) {
   constexpr std::string_view kDeleted = " (deleted)";
   if (program.ends_with(kDeleted)) program.resize(program.size() - kDeleted.size());
   started.folder = fs::read_symlink(process / "cwd", error);
-  // What it is called by may matter to it; but a name alone depends on PATH, and a path on a folder.
+  // The program may read its own name, but a name alone depends on PATH, and a path on a folder.
   if (!started.command.front().starts_with('/')) started.command.front() = program;
   return started;
 }

@@ -15,7 +15,7 @@ struct Started {
 
 // Nothing: there is no such process, or it may not be looked into, or its program was removed or replaced.
 std::optional<Started> start_of(int pid);
-// Likewise, also if its program was removed or replaced.
+// As above, also if its program was removed or replaced.
 std::optional<Started> started_as(int pid);
 
 }  // namespace culprit::owners

@@ -31,8 +31,9 @@ std::vector<StartedProcess> end_processes(const std::vector<StartedProcess>& pro
 // The other processes that run and that the launcher of this process started. Empty: there are none, or no launcher is known.
 std::vector<int> others_of_own_launch();
 
-// For a culprit that ends: if all of `others`, which ran when it was told to, end within `patience`, its own launch is
-// being ended. Then asks the processes that stand in for others of that launch to end (SIGINT), and gives them.
+// For a culprit that ends: if all of `others`, which ran when it was ordered to end, end within
+// `patience`, its own launch is being ended. Then asks the processes that stand in for others of
+// that launch to end (SIGINT), and gives them.
 std::vector<StartedProcess> end_with_own_launch(const std::string& robot,
                                                 const std::vector<int>& others, Duration patience);
 

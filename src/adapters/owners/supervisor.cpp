@@ -22,7 +22,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Numbers are given out anew.
+// PIDs are reused.
 bool was_there(int pid, Time known) {
   const auto started = started_at(pid);
   return started && *started <= known;
@@ -79,7 +79,7 @@ std::filesystem::path Supervisor::log_of(ComponentId component) const {
   return options_.log_folder / (rules_[component].name + ".log");
 }
 
-// `launcher`: that it stands in for; 0: none.
+// `launcher`: the launcher whose process it stands in for; 0: none.
 Program Supervisor::program_of(ComponentId component, int launcher) const {
   const Component& what = rules_[component];
   Program program{what.launch, options_.search_first, log_of(component), {}, {}};
@@ -105,7 +105,7 @@ Expected<std::vector<std::string>> Supervisor::environment_of(ComponentId compon
 
 // From the decision to start until the program runs, and carries the mark, no other culprit may start it. The kernel
 // lets go of the lock when the last process that holds it has ended or runs the program. The file is its user's alone
-// from the beginning: whoever can open a file can lock it.
+// from the beginning: any user that can open a file can lock it.
 Expected<FileDescriptor> Supervisor::lock_start_of(ComponentId component) const {
   const std::filesystem::path log = log_of(component);
   std::error_code error;
@@ -115,8 +115,8 @@ Expected<FileDescriptor> Supervisor::lock_start_of(ComponentId component) const 
       open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW, 0600));
   const std::string& name = rules_[component].name;
   if (!lock)
-    return Error{"cannot start " + name + ": the file that tells other culprits so, " +
-                 path.string() + ", cannot be made: " + std::strerror(errno)};
+    return Error{"cannot start " + name + ": its lock file, " + path.string() +
+                 ", cannot be made: " + std::strerror(errno)};
   if (flock(lock.get(), LOCK_EX | LOCK_NB) == 0) return Expected<FileDescriptor>(std::move(lock));
   return Error{errno == EWOULDBLOCK
                    ? name + " is being started already; look at what its program waits for"
@@ -127,7 +127,7 @@ Expected<FileDescriptor> Supervisor::lock_start_of(ComponentId component) const 
 void Supervisor::start(CommandId command, ComponentId component) {
   const Component& what = rules_[component];
   const MutexLock lock(mutex_);
-  // Whoever started what started it may be the one that does: without a LAUNCH there is nobody else.
+  // The parent of its launcher may be what restarts it; without a LAUNCH there is no other way.
   if (is_left_to_launcher(component) || (what.is_respawned && what.launch.empty()))
     return answer(command, Outcome::kDone, "its launcher starts it again");
   if (what.launch.empty())
@@ -138,7 +138,7 @@ void Supervisor::start(CommandId command, ComponentId component) {
   wake();
 }
 
-// What was started by a culprit that was killed, and has no node yet, is what the order asks for.
+// A process that a killed culprit had started, and that has no node yet, fulfils the order.
 void Supervisor::meet(CommandId command, ComponentId component) {
   const auto coming_up = std::ranges::find_if(members_, [&](const Member& member) {
     return member.component == component && member.awaited && !member.launch &&
@@ -156,7 +156,7 @@ Expected<void> Supervisor::begin_start(CommandId command, ComponentId component)
     return Error{environment.error()};
   auto lock = lock_start_of(component);
   if (!lock) return Error{lock.error()};
-  // Whatever was started before has the lock no more, and is seen.
+  // A process that was started before no longer holds the lock, and is found here.
   take_over(component);
   if (!is_gone(component)) {
     meet(command, component);
@@ -212,7 +212,7 @@ void Supervisor::note_missing(const Launch& launch, ComponentId component,
     barred_.push_back({component, {}, later(live_now(), kMissingPeriod)});
 }
 
-// Nobody waits for the file system: another process looks.
+// The supervisor does not wait for the file system: another process looks.
 void Supervisor::look_for_missing(Time now) {
   std::erase_if(barred_, [&](Barred& each) CULPRIT_REQUIRES(mutex_) {
     if (each.trial && is_readable(each.trial->descriptor())) {
@@ -310,14 +310,14 @@ std::optional<std::string> Supervisor::doubt(const Member& member) const {
   if (!identity && member.process.state() == ProcessState::kGone) return std::nullopt;
   const std::string process = "process " + std::to_string(pid);
   if (!identity || found == identities_.end())
-    return process + " is not ended: it cannot be seen what it runs";
+    return process + " is not ended: its program is unknown";
   if (*identity == found->second) return std::nullopt;
   return process + " is not ended: it runs " + to_string(*identity) + ", but " +
          rules_[member.component].name + " was " + to_string(found->second) +
-         "; if that is right, start culprit anew";
+         "; if that is right, restart culprit";
 }
 
-// What it started may be the node.
+// A child of it may be the node.
 std::optional<std::string> Supervisor::hold_of(const Member& member) {
   std::vector<int> all{member.process.pid()};
   if (member.process.relation() != Relation::kAdopted) all = members_of_group(all.front());
@@ -383,7 +383,7 @@ void Supervisor::tell_ended_launchers() {
   }
 }
 
-// Also if it is not known who its launcher is: two of one name would be worse than none.
+// Also if its launcher is unknown: two of one name would be worse than none.
 bool Supervisor::is_left_to_launcher(ComponentId component) const {
   if (!rules_[component].is_respawned) return false;
   const auto launcher = launchers_.find(component);
@@ -395,7 +395,7 @@ std::optional<std::string> Supervisor::why_not_end(ComponentId component, Ending
   for (const Member& member : members_) {
     if (member.component != component) continue;
     if (auto why = doubt(member)) return why;
-    if (ending == Ending::kForGood) continue;  // that is what is wanted, whoever looks at it
+    if (ending == Ending::kForGood) continue;  // it is to end in any case
     if (auto why = hold_of(member)) return why;
   }
   const Component& what = rules_[component];
@@ -403,7 +403,7 @@ std::optional<std::string> Supervisor::why_not_end(ComponentId component, Ending
   if (!is_left_to_launcher(component)) {
     if (!what.launch.empty() || ending == Ending::kForGood) return std::nullopt;
     return "the launcher of " + what.name +
-           " has ended, and nobody would start it again: it has no LAUNCH command";
+           " has exited, and nothing else would start it again: it has no LAUNCH command";
   }
   if (ending == Ending::kForGood)
     return what.name + " is RESPAWNED: its launcher would start it again";
@@ -476,7 +476,7 @@ Supervisor::Shutdown* Supervisor::shutdown_of(ComponentId component) {
   return found == shutdowns_.end() ? nullptr : &*found;
 }
 
-// What hangs has no use for the rest of its time.
+// A process that hangs cannot use the rest of its time.
 void Supervisor::hurry(Shutdown& shutdown) {
   if (shutdown.hangs == Hangs::kYes) return;
   shutdown.hangs = Hangs::kYes;
@@ -528,7 +528,7 @@ std::set<std::uint64_t> Supervisor::started_members_of(ComponentId component) co
   return numbers;
 }
 
-// ---- one too many
+// ---- one process too many
 
 std::set<int> Supervisor::started(ComponentId component) const {
   const MutexLock lock(mutex_);
@@ -612,8 +612,8 @@ bool Supervisor::is_gone(ComponentId component) const {
 }
 
 void Supervisor::end_member(Member& member) {
-  // What the process had started must not live on beside its successor. While it is not reaped, no
-  // other group can have its number.
+  // Children of the process must not live on beside its successor. While it is not reaped, no other
+  // group can have its number.
   member.process.kill_group();
   const ProcessEnd end = member.process.reap();
   const bool is_ours =
@@ -636,8 +636,8 @@ void Supervisor::end_member(Member& member) {
   }
 }
 
-// Its children may leave its group, and clear their environment: then their parents tell. Not what is another component's, as where
-// it is a culprit of its own.
+// Its children may leave its group, and clear their environment: then they are found by their
+// parents. Not processes of another component, for example if it is a culprit of its own.
 void Supervisor::signal_tree(Member& member, int signal) const {
   if (member.variable.empty()) return;
   const std::vector<int> group = members_of_group(member.process.pid());
@@ -674,7 +674,7 @@ void Supervisor::kill_left(ComponentId component, const std::string& process) co
   }
 }
 
-// Ctrl-Z stops what was started together, and who started it.
+// Ctrl-Z stops the processes that were started together, and their launcher.
 Cause Supervisor::cause_of_stop(const Member& member) const {
   const auto launcher = launchers_.find(member.component);
   const bool is_wish = launcher != launchers_.end() && launcher->second.held &&
@@ -682,7 +682,7 @@ Cause Supervisor::cause_of_stop(const Member& member) const {
   return is_wish ? Cause::kWish : Cause::kFault;
 }
 
-// What somebody else's process had started is not ours to end.
+// Children of a process that somebody else started are not ours to end.
 void Supervisor::tell_what_stays(const Member& member) const {
   std::string stays;
   for (const Relative& each : member.left) {
@@ -737,7 +737,7 @@ void Supervisor::run() {
     const auto wait =
         until == kNever ? Duration(-1) : std::max(Duration::zero(), until - live_now());
     lock.unlock();
-    // Without the lock: nobody waits for a disk.
+    // Without the lock: a slow disk must block no caller.
     for (const std::filesystem::path& log : std::exchange(logs, {})) bound_log(log);
     // Round up: a deadline that is a fraction of a millisecond away must not be polled for in a
     // hurry.
@@ -793,7 +793,7 @@ bool Supervisor::is_settled(Member& member, ProcessState state, Time now) {
   return now >= later(*member.stands_since, kStopSettles);
 }
 
-// Of all that it started: the node may be a child of the tool that runs it.
+// Counts its whole group: the node may be a child of the tool that runs it.
 void Supervisor::look_for_work(Member& member, Time now) {
   if (!member.awaited || member.state != ProcessState::kRunning ||
       now < later(member.worked_at, kWorkPeriod))

@@ -1,44 +1,50 @@
 // Starts, stops and watches the processes of components.
 //
-// In the words of Erlang/OTP: the supervisor starts a child from its launch command, shuts it down
-// by escalation (SIGINT, after kPolite SIGTERM, after kFirm SIGKILL; SIGINT, after kHung SIGKILL,
-// if it hangs), and tells what becomes of it, and until its node is there whether it works.
-// It decides nothing: restarting is up to the manager. A stopped process cannot act on a polite
-// signal and must not wake up to do so late: it is killed at once.
+// In the words of Erlang/OTP: the supervisor starts a child from its launch command. It shuts it
+// down by escalation: SIGINT, after kPolite SIGTERM, after kFirm SIGKILL; or, if it hangs, SIGINT,
+// after kHung SIGKILL. It reports when the process runs, stops and ends, and until its node is
+// there whether it works. It decides nothing: restarting is up to the manager. A process that is
+// stopped (SIGSTOP) cannot act on a polite signal and must not wake up to do so late: it is killed
+// at once.
 //
-// What it starts carries a mark (mark.h), so that whoever supervises the same robot later knows it
-// again, also if this process died the moment after: a component is never started beside a process
-// that runs already. It is not marked until its program runs; until then it has a lock on the log,
-// which outlives us, too. (The tools of ROS 2 leave a daemon behind, which outlives whatever was
-// launched with them.)
+// Each process that it starts carries a mark (mark.h). The next supervisor of the same robot
+// recognizes it by that, also if this process died the moment after: a component is never started
+// beside a process that runs already. A process is not marked until its program runs; until then it
+// holds a lock on the log, which outlives us, too. (The tools of ROS 2 leave a daemon behind, which
+// outlives the nodes that were launched with them.)
 //
-// Proof before harm. What was not started here, and carries no mark of ours, is ended only if it is
-// what the component was when its process was found first: the same program of the same user. What
-// is ended to be started again is ended only if the start was tried, all but its last step. Nobody
-// waits here for a program whose file system does not answer. What a debugger holds is not replaced.
+// Proof before harm. A process that was not started here, and carries no mark of ours, is ended
+// only if it still is what it was when it was found first: the same program of the same user.
+// Before a process is ended to be started again, the start is tried, all but its last step. The
+// supervisor never waits for a program whose file system does not answer. A process that a debugger
+// holds is not replaced.
 //
-// A component that is RESPAWNED is its launcher's to start: it is ended, and its launcher starts it
-// again. It is started here only once that launcher is known and has ended.
+// The launcher of a RESPAWNED component starts it: culprit ends the process, and its launcher
+// starts it again. culprit starts it only once that launcher is known and has exited.
 //
-// That a process ended is told at once, with how, and whether somebody wanted that (process_end.h); what culprit itself
-// ended was wanted. Who started what culprit did not start is told, and when that one has ended.
+// The supervisor reports an exit at once, with its status, and whether somebody wanted it
+// (process_end.h); an end by culprit itself was wanted. It also reports which process started one
+// that culprit did not start, and when that one has exited.
 //
 // A process that is started while the launcher of the component's first one runs stands in for that one: its mark names
 // the launcher (StartedHere). Whether it is to end with the launch is up to the manager; it then ends as ros2 launch
 // ends its own, by end_with_launch().
 //
-// An order to stop is meant for the processes that run when it comes. Their successors are not ended by it.
+// An order to stop applies to the processes that run when it comes, and not to their successors.
 //
-// A start that fails because a file is not there, its program or its parameters, is reported with the path
-// (StartBarred), and tried all but its last step every kMissingPeriod until it would succeed.
+// If a start fails because its program or its parameter file is missing, that is reported with the
+// path (StartBarred). The supervisor then tries the start, all but its last step, every
+// kMissingPeriod until it would succeed.
 //
-// A process ends with all that it started, also with what leads a session of its own, as in a service of systemd: that
-// holds the device which the successor needs. It is found by the mark that it inherited, and by its parents. If the process ended
-// by itself without a fault, its children may be the node (a launch command that makes a daemon), and go on until
-// the component is ended or started. Children of what somebody else started are reported instead.
+// A process ends with all its descendants, also with one that leads a session of its own, as in a
+// service of systemd: such a descendant holds the device that the successor needs. Descendants are
+// found by the mark that they inherited, and by their parents. If the process exited by itself
+// without a fault, its children may be the node (a launch command that makes a daemon). They go on
+// until the component is ended or started. Children of a process that somebody else started are
+// reported instead.
 //
-// Whatever it started goes on running when the supervisor ends, unless stop_all() was called or its
-// lifetime is the starter's.
+// All processes that it started go on running when the supervisor ends, unless stop_all() was
+// called or their lifetime is the starter's.
 #pragma once
 
 #include <filesystem>
@@ -60,8 +66,8 @@
 namespace culprit::owners {
 
 enum class Ending : std::uint8_t { kForGood, kToStartAgain };
-// What hangs is not expected to act on a polite signal, and is waited for only as long as one that
-// needs no thread of its own to end.
+// A process that hangs is not expected to act on a polite signal. It gets only the time that a
+// process needs to end without a thread of its own.
 enum class Hangs : bool { kNo, kYes };
 
 // All members may be called from any thread. Observations (ProcessSeen, Reply) go to the inbox.
@@ -72,32 +78,33 @@ class Supervisor {
   static constexpr Duration kHung = std::chrono::milliseconds(300);
   // As ros2 launch: sigterm_timeout, sigkill_timeout.
   static constexpr Duration kOfLaunch = std::chrono::seconds(5);
-  // Of what was started and whose node is not there yet it is looked this often whether it works,
-  // for so long.
+  // After a start, until the node is there: how often the supervisor checks whether the process
+  // works, and for how long.
   static constexpr Duration kWorkPeriod = std::chrono::seconds(1);
   static constexpr Duration kComingUp = std::chrono::minutes(5);
   // How often it is looked whether a process was stopped; its end is known at once.
   static constexpr Duration kStatePeriod = std::chrono::milliseconds(200);
   // How often it is looked whether a log has become too long.
   static constexpr Duration kLogPeriod = std::chrono::seconds(1);
-  // What stands for less may be part of a stop that is on its way through a launch.
+  // A process that is stopped for a shorter time may be part of a stop that is on its way through a
+  // launch.
   static constexpr Duration kStopSettles = std::chrono::milliseconds(50);
   // How often it is looked whether what a start needs is there by now.
   static constexpr Duration kMissingPeriod = std::chrono::milliseconds(500);
-  // The supervisor waits so long for the children that it kills.
+  // How long the supervisor waits for the children that it kills.
   static constexpr Duration kLeftEnds = std::chrono::milliseconds(200);
   // How long the trial of a start may take.
   static constexpr Duration kTrial = std::chrono::seconds(5);
 
   struct Options {
-    std::filesystem::path log_folder;  // on this machine: nobody waits for it elsewhere
+    std::filesystem::path log_folder;  // on this machine: a remote file system could hang
     std::vector<std::filesystem::path> search_first;  // for launch commands without a path
     // Which robot, of all on this machine: "0/sunset". Empty: nothing is marked, and what other
     // supervisors started is not looked for.
     std::string robot{};
     Lifetime lifetime = Lifetime::kOwn;  // of what is started
-    // What a component has in its environment beside what it inherits, by component; those that
-    // have none may be left out. Where it could not be told, the component is neither ended to be
+    // The variables of each component beside the inherited ones; components that have none may be
+    // left out. If a component's environment could not be determined, it is neither ended to be
     // started again nor started.
     std::vector<Expected<std::vector<std::string>>> environments{};
   };
@@ -110,40 +117,41 @@ class Supervisor {
   // its launcher starts it.
   void start(CommandId command, ComponentId component);
 
-  // Ends all processes of the component that are watched, and no others, whatever their numbers;
+  // Ends all processes of the component that are watched, and no others, whatever their PIDs;
   // replies when they are gone. Refuses if one of them is not proven to be the component's, or if
-  // it could not be started again: then none is ended. Where that is under way already, it only waits
-  // for its end, and hurries it if it is known to hang by now.
-  // `pid`: the process that is meant; 0: whichever runs. If it has ended and only its successor runs, replies at once.
+  // it could not be started again: then none is ended. Where that is under way already, it only
+  // waits for its end, and hurries it if it is known to hang by now. `pid`: the process that is
+  // meant; 0: whichever runs. If it has ended and only its successor runs, replies at once.
   void stop(CommandId command, ComponentId component, int pid, Ending ending,
             Hangs hangs = Hangs::kNo);
 
   // Watches the process that had this number at `known` as the component's, for its node is there;
-  // one that began later is another. Tells that it is gone if it is. Does nothing if it is watched already.
+  // one that began later is another. Reports that it has exited if it has. Does nothing if it is
+  // watched already.
   void adopt(ComponentId component, int pid, Time known);
 
-  // Likewise, of a process that an earlier run of culprit knew, if it is not a zombie now. Says
-  // nothing where another process of the component is watched.
+  // As adopt(), for a process that an earlier run of culprit knew, if it is not a zombie now.
+  // Reports nothing if another process of the component is watched.
   void adopt_again(ComponentId component, int pid, Time known);
 
   // Whether all processes of the component that run were started here, or by a supervisor of the
   // same robot before, and there is one.
   bool has_started(ComponentId component) const;
 
-  // The component's processes that were started here, or by a supervisor of the same robot before,
-  // with all that they started and that is in their groups. Empty: there is none, or it is being
-  // started or ended.
+  // The component's processes that this or an earlier supervisor of the same robot started, with
+  // all their descendants and all that is in their groups. Empty: none, or one is being started or
+  // ended.
   std::set<int> started(ComponentId component) const;
 
   // Ends what was started of the component, here or by a supervisor of the same robot before, and
   // nothing else: it is not needed, for somebody else started one, too.
   void withdraw(ComponentId component);
 
-  // Likewise, as ros2 launch ends what it started: SIGINT, after kOfLaunch SIGTERM, after kOfLaunch SIGKILL. Does
-  // nothing where that is under way.
+  // As withdraw(), but with the signals of ros2 launch: SIGINT, after kOfLaunch SIGTERM, after
+  // kOfLaunch SIGKILL. Does nothing where that is under way.
   void end_with_launch(ComponentId component);
 
-  // Ends every process that was started here, and waits until all are gone.
+  // Ends every process that was started here, and waits until all have exited.
   void stop_all();
 
  private:
@@ -152,7 +160,7 @@ class Supervisor {
     ComponentId component;
     WatchedProcess process;
     ProcessState state = ProcessState::kRunning;
-    // While its program does not run yet: the start, what it answers, and the lock that it has.
+    // While its program does not run yet: the start, the command that it answers, and its lock.
     std::optional<Launch> launch{};
     CommandId command{};
     FileDescriptor lock{};
@@ -162,7 +170,7 @@ class Supervisor {
     std::optional<Work> work{};
     std::vector<Relative> left{};  // what somebody else's had started when its end was ordered
     Time left_at{};
-    std::optional<Time> stands_since{};  // while it is not told yet that it was stopped
+    std::optional<Time> stands_since{};  // while its stop is not reported yet
     int launcher = 0;        // that it stands in for, while its program does not run yet
     std::string variable{};  // what it and all that it started have in their environment
     std::vector<FileDescriptor> tree{};  // what it had started when its end was ordered
@@ -184,7 +192,7 @@ class Supervisor {
   };
   // A shutdown under way.
   struct Shutdown {
-    CommandId command;  // number 0: nobody waits for a reply
+    CommandId command;  // number 0: no reply is due
     ComponentId component;
     Hangs hangs = Hangs::kNo;
     std::set<std::uint64_t> meant{};  // members
@@ -193,13 +201,13 @@ class Supervisor {
     Time escalate = kNever;  // when the next one is due; kNever: another shutdown sees to that
   };
 
-  // Who started a component that culprit did not start.
+  // The process that started a component that culprit did not start.
   struct Launcher {
     int pid = 0;  // 0: it has ended, or it was a supervisor, since that had ended
     std::optional<Time> began{};
     std::vector<int> children{};  // when it was looked last, each kLogPeriod
     bool ran_others = false;      // when the component's process had ended
-    FileDescriptor held{};        // until it ended, which is told
+    FileDescriptor held{};        // until its end, which is reported
   };
 
   std::string marked_as(ComponentId component) const;

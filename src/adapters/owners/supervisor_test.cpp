@@ -35,7 +35,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Supervises component c with the given launch command and tells what came of it.
+// Supervises component c with the given launch command and reports the results.
 class Supervised {
  public:
   explicit Supervised(const std::string& launch, const std::string& robot = "")
@@ -295,7 +295,7 @@ TEST(Supervisor, TakesOverFromALauncherThatEndedBeforeItCame) {
   EXPECT_NE(c.start(), 0) << "there is no launcher any more to wait for";
 }
 
-// Nobody knows who started it, and so whether that one will start it again.
+// Its launcher is unknown, and so is whether that launcher will start it again.
 TEST(Supervisor, WaitsForWhomeverInitStartedItFor) {
   int pid = 0;
   int pipe_of[2];
@@ -319,7 +319,7 @@ TEST(Supervisor, WaitsForWhomeverInitStartedItFor) {
   EXPECT_EQ(c.start(), 0);
 }
 
-// It ends with what it runs, and whoever started it starts it again.
+// It ends with its program, and its launcher starts it again.
 TEST(Supervisor, TakesRos2RunForNoLauncher) {
   const test::TestFolder folder;
   const std::string tool = folder.path() / "ros2";
@@ -368,7 +368,8 @@ TEST(Supervisor, TellsHowALauncherEndedAndWhetherItRanOthers) {
   }
 }
 
-// What culprit starts while the launcher runs stands in for the launch, and says so itself.
+// A process that culprit starts while the launcher runs stands in for the launch, and its mark says
+// so.
 TEST(Supervisor, WhatItStartsWhileTheLauncherRunsStandsInForTheLaunch) {
   Supervised c("sleep 1000", "0/stand_in");
   const auto launcher = spawn({{"sh", "-c", "sleep 1000 & sleep 1001 & wait"}, {}, "/dev/null"});
@@ -396,7 +397,7 @@ TEST(Supervisor, WhatItStartsWhileTheLauncherRunsStandsInForTheLaunch) {
   EXPECT_TRUE(ended.has_ended);
   EXPECT_TRUE(ended.has_crashed);
   EXPECT_FALSE(place_held_by(pid).goes_on);
-  // A culprit that comes after the end is told of it at once.
+  // A culprit that starts after the end receives it at once.
   c.supervise();
   EXPECT_TRUE(c.launcher().has_ended);
   c.supervisor->end_with_launch(ComponentId(0));
@@ -436,7 +437,7 @@ TEST(Supervisor, AStopThatIsMeantForAProcessNeverReachesItsSuccessor) {
   EXPECT_NE(state_letter(second).value_or('Z'), 'Z');
 }
 
-// Whether somebody wanted the end of a process, whoever started it.
+// Whether somebody wanted the end of a process, whichever program started it.
 TEST(Supervisor, TellsWhetherAnEndWasWanted) {
   Supervised own("sleep 1000");
   kill(own.start(), SIGKILL);
@@ -472,7 +473,7 @@ TEST(Supervisor, TellsWhoStartedAProcessAndThatThisOneEnded) {
   EXPECT_NE(c.state(ProcessState::kGone).cause, Cause::kWish);
 }
 
-// Before its parent heard of it, and, where the kernel keeps it, after that.
+// Before its parent received it, and, where the kernel keeps it, after that.
 TEST(ProcessEnd, OfSomebodyElsesProcessIsToldByTheKernel) {
   const int pid = fork();
   if (pid == 0) {
@@ -600,7 +601,7 @@ TEST(Supervisor, AnswersAllWhoWaitForOneEnd) {
   EXPECT_EQ(c.reply_to({3}).outcome, Outcome::kDone);
 }
 
-// As `ros2 run` starts a node: what works is a child.
+// As `ros2 run` starts a node: the child works.
 TEST(Supervisor, TellsThatWhatItStartedWorksUntilItsNodeIsThere) {
   Supervised c("sh -c 'while :; do :; done & wait'");
   const int pid = c.start();
@@ -615,12 +616,12 @@ TEST(Proc, WhoOnlyWaitsDoesNotWork) {
   using namespace std::chrono_literals;
   const Work before{1s, 10 << 20};
   EXPECT_FALSE((Work{1s + 49ms, 10 << 20}.is_more_than(before)));
-  EXPECT_FALSE((Work{900ms, 5 << 20}.is_more_than(before))) << "one of its processes has ended";
+  EXPECT_FALSE((Work{900ms, 5 << 20}.is_more_than(before))) << "one of its processes has exited";
   EXPECT_TRUE((Work{1s + 50ms, 10 << 20}.is_more_than(before)));
   EXPECT_TRUE((Work{1s, 11 << 20}.is_more_than(before)));
 }
 
-// What SETUP and ENV came to, also PATH; and CWD.
+// Checks the variables of SETUP and ENV, also PATH; and CWD.
 TEST(Supervisor, StartsWithTheEnvironmentAndInTheFolderOfTheComponent) {
   Supervised c(Supervised::Declared{"LAUNCH \"my_node\" CWD /usr"});
   const std::filesystem::path program = c.folder() / "bin/my_node";
@@ -839,7 +840,7 @@ TEST(Launch, WhatRunsGoesOnWhetherOrNotAnybodyAsked) {
   ASSERT_EQ(waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED), 0) << "it is ours to reap";
 }
 
-// As after a crash: nothing is known but what the operating system says.
+// As after a crash: only the operating system's data are known.
 TEST(Supervisor, TakesOverWhatAnotherOneOfTheSameRobotStarted) {
   const std::string robot = "test/" + std::to_string(getpid());
   auto first = std::make_unique<Supervised>("sleep 1000", robot);
@@ -959,7 +960,7 @@ TEST(Supervisor, AdoptsAProcessAgainOnlyIfItIsTheSameOne) {
   ASSERT_TRUE(foreign);
   c.supervisor->adopt_again(ComponentId(0), *foreign, before);
   const int started = c.start();
-  EXPECT_NE(started, *foreign) << "a number that was given out anew since is not adopted";
+  EXPECT_NE(started, *foreign) << "a reused PID is not adopted";
   c.stop();
   c.supervisor->adopt_again(ComponentId(0), *foreign, live_now());
   c.supervisor->start({3}, ComponentId(0));
@@ -974,16 +975,17 @@ TEST(Supervisor, AProcessThatBeganLaterIsAnother) {
   const auto stranger = spawn({{"sleep", "1000"}, {}, "/dev/null", {}});
   ASSERT_TRUE(stranger);
   c.supervisor->adopt(ComponentId(0), *stranger, live_now() - 1s);
-  EXPECT_EQ(c.state(ProcessState::kGone).pid, *stranger) << "what had its number is gone";
+  EXPECT_EQ(c.state(ProcessState::kGone).pid, *stranger)
+      << "the former process with its PID has exited";
   c.stop();
-  EXPECT_TRUE(exists(*stranger)) << "it is nobody's business";
+  EXPECT_TRUE(exists(*stranger)) << "it is not culprit's to end";
   kill(*stranger, SIGKILL);
   waitpid(*stranger, nullptr, 0);
 }
 
 // ---- proof before harm
 
-// No more than `count`, for as long as it lives.
+// No more than `count` while this exists.
 class DescriptorsLeft {
  public:
   explicit DescriptorsLeft(std::size_t count) {
@@ -1072,7 +1074,7 @@ TEST(Supervisor, DoesNotEndWhatItCannotStartAgain) {
   }
 }
 
-// What others started is known by what it ran when it was found first.
+// A process that others started is recognized by the program that it ran when it was found first.
 TEST(Supervisor, DoesNotEndAnotherProgramThanTheComponentWas) {
   Supervised c("sleep 1000");
   const int node = start_by_others("exec sleep 1000");
@@ -1115,7 +1117,7 @@ TEST(Supervisor, LeavesTheGroupOfSomebodyElseAloneAndSaysWhatStays) {
   kill(child, SIGKILL);
 }
 
-// A culprit that was killed had started it: nobody's child any more, and the group is ours.
+// A culprit that was killed had started it: its parent has exited, and the group is ours.
 TEST(Supervisor, EndsTheGroupThatAnEarlierOneHadMade) {
   const std::string robot = "test/group/" + std::to_string(getpid());
   Supervised c("sleep 1000", robot);
@@ -1137,7 +1139,7 @@ TEST(Supervisor, EndsTheGroupThatAnEarlierOneHadMade) {
   for (const Relative& each : started) {
     for (int tries = 0; tries < 3000 && is_alive(each.pid); ++tries)
       std::this_thread::sleep_for(10ms);
-    EXPECT_FALSE(is_alive(each.pid)) << "it would live on beside the successor";
+    EXPECT_FALSE(is_alive(each.pid)) << "it would go on beside the successor";
   }
 }
 
@@ -1169,7 +1171,7 @@ TEST(Supervisor, StartsNothingWhileAnotherCulpritStartsIt) {
   EXPECT_NE(c.start(), 0);
 }
 
-// A reader of the log, of an older culprit's say, may lock that for as long as it likes.
+// A reader of the log, for example an older culprit, may lock it for as long as it likes.
 TEST(Supervisor, WaitsForNoLockOfAReaderOfItsLog) {
   Supervised c("sleep 1000");
   std::filesystem::create_directories(c.folder());
@@ -1235,7 +1237,7 @@ TEST(Supervisor, AMarkOfAnotherUsersProcessDoesNotCount) {
   kill(stranger, SIGKILL);
 }
 
-// As on a file system that does not answer: a script whose interpreter is a pipe nobody writes to
+// As on a file system that does not answer: a script whose interpreter is a pipe without a writer
 // would hang; so does a program on a stopped server. Here the log is what the child waits for.
 TEST(Supervisor, WaitsForNoFileSystemOfAProgram) {
   Supervised c("sleep 1000");

@@ -30,7 +30,7 @@ constexpr const char* kManager = "org.freedesktop.systemd1.Manager";
 constexpr const char* kUnit = "org.freedesktop.systemd1.Unit";
 constexpr const char* kServiceUnit = "org.freedesktop.systemd1.Service";
 
-// What others wrote is data: one line, of a length to be read.
+// Text that others wrote is untrusted: it is cut to one line of a readable length.
 std::string shown(const char* text) {
   constexpr std::size_t kLongest = 200;
   std::string line(text == nullptr ? "" : text, 0, kLongest);

@@ -1,10 +1,10 @@
-// systemd, asked over D-Bus: what its services do, and to start and to end them
-// (org.freedesktop.systemd1(5)). That of another computer is asked through its own
+// systemd, over D-Bus: reads the state of its services, and starts and ends them
+// (org.freedesktop.systemd1(5)). The systemd of another computer is asked through its own
 // systemd-stdio-bridge(1), over ssh.
 //
-// Every call has a time limit, and blocks its thread for so long at most. What comes back is not
-// trusted: it is of the type that systemd documents, or an error. The connection is made by the
-// first call, and again by the next one after it was lost.
+// Every call has a time limit, and blocks its thread for so long at most. Its answers are not
+// trusted: one that is not of the type that systemd documents is an error. The connection is made
+// by the first call, and again by the next one after it was lost.
 #pragma once
 
 #include <memory>
@@ -30,10 +30,10 @@ class SystemdBus : public ServiceOwner {
   enum class Whose : std::uint8_t { kSystem, kUser };
   static constexpr Duration kPatience = std::chrono::seconds(2);
 
-  // `host`: the computer, as ssh is told; empty: this one.
+  // `host`: the computer, as ssh takes it; empty: this one.
   explicit SystemdBus(Whose whose, std::string host = {}) : whose_(whose), host_(std::move(host)) {}
 
-  // Errors say what is wrong and what to do. Where systemd refused, nothing was done.
+  // Errors give the fault and the remedy. Where systemd refused, nothing was done.
   Expected<UnitState> state_of(const std::string& unit) override;
   Expected<void> start(const std::string& unit) override { return ask("StartUnit", unit); }
   Expected<void> stop(const std::string& unit, Duration) override { return ask("StopUnit", unit); }

@@ -1,5 +1,5 @@
 // For tests of owners that are asked (systemd, a container engine): one component, the first of the
-// rules, and what culprit hears after it asked for something.
+// rules, and culprit's observations after a request.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 namespace culprit::owners {
 
 struct AsksAnOwner : testing::Test {
-  // `clauses` say who runs the component.
+  // `clauses` name the component's owner.
   void manage(const std::string& name, const std::string& clauses, Units::Of whose,
               const std::string& host = {}) {
     units.reset();

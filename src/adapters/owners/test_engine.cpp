@@ -55,7 +55,7 @@ void TestEngine::add(const std::string& name, TestContainer container) {
 int TestEngine::start(const std::string& name) {
   const MutexLock lock(mutex_);
   TestContainer& container = containers_[name];
-  notice(container);  // its policy may be quicker: of two nobody would end the first
+  notice(container);  // its policy may be quicker, and must not start two
   if (container.pid == 0) run(container);
   return container.pid;
 }
@@ -108,7 +108,7 @@ void TestEngine::end(TestContainer& container) {
   container.status = "exited";
 }
 
-// What has ended by itself is started again where its policy says so.
+// Starts a container again that ended by itself, if its policy says so.
 void TestEngine::notice(TestContainer& container) {
   if (container.pid == 0 || state_letter(container.pid).value_or('Z') != 'Z') return;
   end(container);

@@ -27,7 +27,7 @@ struct TestContainer {
 
 class TestEngine {
  public:
-  // Whoever looks for docker meanwhile finds it.
+  // A program that looks for docker meanwhile finds this one.
   TestEngine();
   ~TestEngine();
 
@@ -41,7 +41,7 @@ class TestEngine {
   // How often it was asked how a container is.
   int looks() const { return looks_; }
 
-  // What it answers in place of the truth; empty: the truth.
+  // The answer that it gives in place of the truth; empty: the truth.
   void say(const std::string& answer);
   void hang(bool hangs);
 

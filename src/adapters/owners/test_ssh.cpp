@@ -66,7 +66,7 @@ TestSsh::TestSsh() : path_before_(std::getenv("PATH")) {
 
 TestSsh::~TestSsh() { setenv("PATH", path_before_.c_str(), 1); }
 
-// Whoever reads it finds all of it.
+// The reader always finds a complete file.
 void TestSsh::tell(const std::string& how) {
   std::ofstream(folder_ / "new") << how << "\n";
   std::filesystem::rename(folder_ / "new", folder_ / "how");

@@ -1,5 +1,5 @@
-// A stand-in for ssh and for the computer that it connects to, for tests: the commands run here, as a
-// shell of that computer would run them, unless it is told to refuse, to hang, or to be cut.
+// A stand-in for ssh and for the computer that it connects to, for tests: the commands run here, as
+// a shell of that computer would run them, unless it is set to refuse, to hang, or to be cut.
 #pragma once
 
 #include <string>
@@ -11,9 +11,9 @@ namespace culprit::owners {
 
 class TestSsh {
  public:
-  // Whoever looks for ssh meanwhile finds this one. The programs of the other computer are its own
-  // `systemd-stdio-bridge`, on the bus that is this process's system bus (or the one that it is told),
-  // and `docker`, at the engine that is this process's.
+  // A program that looks for ssh meanwhile finds this one. The other computer has two programs: its
+  // own `systemd-stdio-bridge`, on this process's system bus (or another one that is set), and
+  // `docker`, at this process's engine.
   TestSsh();
   ~TestSsh();
 
@@ -24,7 +24,7 @@ class TestSsh {
   void hang() { tell("hang"); }
   // Lets us in, and has no programs.
   void be_bare() { tell("bare"); }
-  // What runs is ended: the cable is cut. From now on it is refused.
+  // Ends the program that runs: the cable is cut. From now on connections are refused.
   void cut();
 
   // How it was called, one line each.

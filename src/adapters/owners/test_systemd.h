@@ -15,7 +15,8 @@
 
 namespace culprit::owners {
 
-// A real dbus-daemon on a socket of its own, which is both buses of whoever looks for them meanwhile.
+// A real dbus-daemon on a socket of its own; a program that looks for either bus meanwhile finds
+// it.
 class TestBus {
  public:
   TestBus();
@@ -49,12 +50,12 @@ class TestSystemd {
   // As `systemctl start`.
   int start(const std::string& name);
   int pid_of(const std::string& name);
-  // What was asked, in order: "RestartUnit lidar.service".
+  // The requests that it received, in order: "RestartUnit lidar.service".
   std::vector<std::string> asked();
 
   // Every request is refused with this D-Bus error; empty: none.
   void refuse(const std::string& error);
-  // What it says instead of the states of units; empty: the truth.
+  // The state that it reports for all units in place of the truth; empty: the truth.
   void say(const std::string& active, std::uint32_t main_pid);
 
  private:
@@ -77,8 +78,8 @@ class TestSystemd {
   std::thread thread_;
 };
 
-// systemd itself: a user instance with a dbus-daemon of its own, and no units but those that are
-// written. Needs the right to mount, and gives nothing where the machine does not grant it.
+// systemd itself: a user instance with a dbus-daemon of its own, and only the units that a test
+// writes. Needs the right to mount, and gives nothing where the machine does not grant it.
 class UserSystemd {
  public:
   static std::unique_ptr<UserSystemd> begin();

@@ -13,7 +13,7 @@ namespace {
 
 using Activity = UnitState::Activity;
 
-// Numbers are given out anew; two readings of one start differ by the clocks' rounding.
+// PIDs are reused; two readings of one start differ by the clocks' rounding.
 bool is_running(int pid, std::optional<Time> began) {
   constexpr Duration kSame = std::chrono::milliseconds(100);
   const auto begins = started_at(pid);
@@ -37,14 +37,13 @@ std::string in_words(const UnitState& state, const std::string& unit) {
 Error not_loaded(const std::string& name, const UnitState& state, ServiceOwner& owner) {
   if (state.load_state != "not-found")
     return Error{owner.name() + " cannot use " + name + " (" + state.load_state +
-                 "); systemctl status says why"};
+                 "); see systemctl status"};
   std::string near;
   if (const auto all = owner.services()) {
     near = closest(name, std::vector<std::string_view>(all->begin(), all->end()));
   }
   return Error{owner.name() + " has no " + name +
-               (near.empty() ? "; " + owner.what_lists_all() + " says what it has"
-                             : "; did you mean " + near + "?")};
+               (near.empty() ? "; see " + owner.what_lists_all() : "; did you mean " + near + "?")};
 }
 
 Expected<void> could_manage_with(ServiceOwner& owner, const std::string& name) {
@@ -92,7 +91,7 @@ ServiceOwner& Units::owner_of(ComponentId component) {
   return what.unit->is_of_user ? user_ : system_;
 }
 
-// Numbers of processes here say nothing of those on another computer.
+// PIDs of this computer mean nothing on another one.
 bool Units::runs_here(int pid, std::optional<Time> began) const {
   return is_here() && is_running(pid, began);
 }
@@ -178,9 +177,9 @@ void Units::look_at_all() {
   if (!is_here()) note_reach(trouble);
 }
 
-// What failed is proven to be dead, also if its node was never seen, and if it never had a main
-// process; what is inactive only if it was active before: it may have been stopped on purpose before
-// anybody looked.
+// A failed unit is proven to have exited, also if its node was never discovered, and if it never
+// had a main process. An inactive one is proven to have exited only if it was active before: it may
+// have been stopped on purpose before culprit started.
 void Units::look_at(ComponentId component, const UnitState& state) {
   if (!state.is_loaded) return;
   if (barred_.erase(component) > 0) inbox_.put(StartBarred{component, ""});
@@ -201,10 +200,11 @@ void Units::look_at(ComponentId component, const UnitState& state) {
   if (!state.is_over()) ended_here_.erase(component);
 }
 
-// That it is lost is said at once; that it is back, when its nodes had the time to be heard again.
+// A lost connection is reported at once, and the return once the nodes had time to be discovered
+// again.
 void Units::note_reach(const std::optional<std::string>& trouble) {
   if (trouble) {
-    // A connection that was lost says little of why.
+    // The error of a lost connection hardly gives the cause.
     constexpr int kEnough = 2;
     if (++failures_ < kEnough) return;
     returned_ = kLongAgo;
@@ -228,7 +228,7 @@ void Units::note_main_process(ComponentId component, const UnitState& state) {
     known->second = {state.main_pid, live_now()};
 }
 
-// Of all in its session, which is the node's where `ros2 run` is the main process.
+// Counts all processes in its session, which is the node's if `ros2 run` is the main process.
 void Units::look_for_work() {
   const Time now = live_now();
   std::erase_if(coming_up_, [&](const ComingUp& each) {
@@ -257,7 +257,7 @@ bool Units::answer(const Errand& errand, Outcome outcome, std::string text, int 
   // It may end before anybody looks.
   if (pid != 0) before_.insert_or_assign(errand.component, Activity::kActive);
   if (!is_here()) {
-    // What it runs now is what was asked for.
+    // The main process that runs now is the one that the order asked for.
     elsewhere_.erase(errand.component);
     if (pid != 0) elsewhere_.emplace(errand.component, Elsewhere{pid});
     if (pid != 0) inbox_.put(ProcessSeen{errand.component, ProcessState::kRunning, 0, ""});
@@ -275,7 +275,7 @@ bool Units::advance(Errand& errand) {
   ServiceOwner& owner = owner_of(errand.component);
   const auto state = owner.state_of(name);
   if (!state) {
-    // A connection that was lost is made anew.
+    // A lost connection is made again.
     if (!is_here() && !owner.was_reached() && live_now() < later(errand.since, kReconnect))
       return false;
     if (errand.was_asked && live_now() < std::min(errand.until, errand.latest)) return false;
@@ -318,9 +318,9 @@ bool Units::watch_start(Errand& errand, const UnitState& state) {
   if (!state.has_job && state.is_over())
     return answer(errand, Outcome::kRefused,
                   owner_of(errand.component).name() +
-                      " could not start it: " + in_words(state, name) + "; " +
-                      owner_of(errand.component).where_to_look(name) + " says why");
-  // What it does before its main process may take long.
+                      " could not start it: " + in_words(state, name) + "; see " +
+                      owner_of(errand.component).where_to_look(name));
+  // The steps before the main process (ExecStartPre) may take long.
   return live_now() >= errand.until &&
          answer(errand, Outcome::kDone, owner_of(errand.component).name() + " is starting " + name);
 }
@@ -337,7 +337,7 @@ std::optional<std::string> Units::who_else_would_end(ComponentId component) {
   return std::nullopt;
 }
 
-// What is to end for good does, whoever looks at it.
+// An order to end for good is done also if a debugger holds the process.
 std::optional<std::string> Units::hold_of(const Errand& errand, const UnitState& state) const {
   if (errand.kind != Errand::Kind::kReplace || !is_here()) return std::nullopt;
   for (const int pid : {errand.pid, state.main_pid}) {

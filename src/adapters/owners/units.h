@@ -1,25 +1,27 @@
-// Components that systemd runs (UNIT), or the engine of a container (CONTAINER): it is asked to start
-// and to end them, and what it says of them is proof. What follows is said of systemd, and holds of
-// an engine likewise, whose containers are its units.
+// Components that systemd runs (UNIT), or the engine of a container (CONTAINER): culprit asks it to
+// start and to end them, and its answer is proof. This header speaks of systemd and its units; all
+// of it also holds for an engine and its containers.
 //
-// To redeploy is RestartUnit: systemd starts the unit again by itself, also if culprit ends in
+// A redeploy is RestartUnit: systemd starts the unit again by itself, also if culprit exits in
 // between. A unit that systemd started again already (Restart=), or is about to, is not ended and
-// not started a second time. systemd ends a process politely; a process that is stopped, or is still
-// there after kPolite, or after Supervisor::kHung if it hangs, gets SIGKILL, through systemd too.
+// not started a second time. systemd ends a process politely. The process gets SIGKILL, through
+// systemd too, if it is stopped, is still there after kPolite, or hangs and is still there after
+// Supervisor::kHung.
 //
-// Proof before harm: a process that is not of the unit is not ended by ending the unit, so nothing
-// is ended then; nor is what a debugger holds replaced. Where systemd cannot be asked, or refuses, that is the answer, and nothing was
-// ended.
+// Proof before harm: if the process is not part of the unit, ending the unit would not end it, so
+// nothing is ended then; nor is a process replaced that a debugger holds. If systemd cannot be
+// asked, or refuses, that is the answer, and nothing was ended.
 //
-// What was started is said to work, until its node is there, as long as it does (ProcessWorked): what
-// is slow is not taken for what hangs.
+// A process that was started is reported as working (ProcessWorked) as long as it works, until its
+// node is there: so a slow start is not taken for a hang.
 //
-// On another computer (HOST) there is no process of ours to look at: what its owner says is all that is
-// known, no process is named to the manager, and one of this computer is never taken for it. While
-// that computer cannot be asked, its components are out of reach (HostReached), and nothing that is
-// missed of them is said to be dead. Once it can be again, they get kReturn to be heard.
+// On another computer (HOST) there is no process of ours to look at, and its owner's reports are
+// the only evidence. The manager receives no PID, and never takes a process of this computer for
+// it. While that computer cannot be asked, its components are unreachable (HostReached), and none
+// of them is reported as exited. Once it answers again, its nodes have kReturn to be discovered.
 //
-// Everything is asked on a thread of its own: nobody waits here for a bus that does not answer.
+// All requests are made on a thread of their own, so no caller waits for a bus that does not
+// answer.
 #pragma once
 
 #include <map>
@@ -49,21 +51,22 @@ class Units {
   // How often it is looked: while something is asked for, and else.
   static constexpr Duration kPeriod = std::chrono::milliseconds(50);
   static constexpr Duration kIdlePeriod = std::chrono::seconds(1);
-  // Likewise over ssh. An engine takes a connection of its own for each look.
+  // Likewise over ssh. An engine needs a connection of its own for each look.
   static constexpr Duration kRemotePeriod = std::chrono::milliseconds(200);
   static constexpr Duration kRemoteIdlePeriod = std::chrono::seconds(2);
   static constexpr Duration kEngineIdlePeriod = std::chrono::seconds(5);
   static constexpr Duration kReconnect = std::chrono::seconds(1);
-  // How long the nodes of a computer that can be asked again have to be seen again.
+  // Once a computer can be asked again, its nodes have so long to be discovered.
   static constexpr Duration kReturn = std::chrono::seconds(10);
-  // What somebody else started so lately is not replaced: it takes the place of what was missed.
+  // A process that somebody else started so recently is not replaced: it takes the place of the
+  // missing one.
   static constexpr Duration kFresh = std::chrono::seconds(10);
 
   // An engine answers a restart when it is done, so systemd's units do not wait for its containers.
   enum class Of : std::uint8_t { kSystemd, kEngines };
 
-  // `rules` and `inbox` must outlive this. Nothing is asked, and no thread is started, if no
-  // component has such an owner on that computer. `host`: empty, this one.
+  // `rules` and `inbox` must outlive this. If no component has such an owner on that computer,
+  // nothing is asked and no thread is started. `host`: empty, this one.
   Units(const RuleSet& rules, Inbox& inbox, Of whose = Of::kSystemd, std::string host = {});
   ~Units();
 
@@ -76,9 +79,9 @@ class Units {
   // Starts the component's unit and replies when systemd has started it, or does so by itself.
   void start(CommandId command, ComponentId component);
 
-  // Ends the process `pid` of the component's unit, and the unit; 0: whichever it runs. Replies when
-  // systemd and the kernel say that it is gone. That it hangs counts on this computer only: what does
-  // not answer from another one may be hard to reach.
+  // Ends the process `pid` of the component's unit, and the unit; 0: whichever it runs. Replies
+  // when systemd and the kernel report that it has exited. `hangs` counts on this computer only: a
+  // node on another computer that does not answer may be hard to reach.
   void stop(CommandId command, ComponentId component, int pid, Ending ending,
             Hangs hangs = Hangs::kNo);
 
@@ -113,8 +116,8 @@ class Units {
     std::optional<Work> work{};
   };
 
-  // Of a unit on another computer: which process it runs, and since when, if somebody else started
-  // that after culprit looked for the first time.
+  // For a unit on another computer: the process that it runs, and since when, if somebody else
+  // started that after culprit looked for the first time.
   struct Elsewhere {
     int main_pid = 0;
     Time since = kLongAgo;
@@ -153,7 +156,7 @@ class Units {
   const std::string host_;
   std::vector<ComponentId> components_;  // those with such an owner
 
-  // Of the thread.
+  // Used by the thread only.
   SystemdBus system_{SystemdBus::Whose::kSystem, host_};
   SystemdBus user_{SystemdBus::Whose::kUser, host_};
   Engine docker_{EngineContainer::Engine::kDocker, host_};
@@ -162,8 +165,8 @@ class Units {
   std::set<ComponentId> ended_here_;  // on culprit's request, and not seen to run since
   std::map<ComponentId, Elsewhere> elsewhere_;
   int failures_ = 0;          // in a row, to ask the computer
-  bool is_reached_ = true;    // as it was told
-  Time returned_ = kLongAgo;  // when it could be asked again, if that was not told yet
+  bool is_reached_ = true;    // as reported
+  Time returned_ = kLongAgo;  // when it could be asked again, if that is not reported yet
   // The node's process, and the main process of the unit then: `ros2 run` is another one.
   std::map<ComponentId, std::pair<int, int>> found_with_;
   std::map<ComponentId, Found> last_found_;
@@ -178,8 +181,8 @@ class Units {
   std::thread thread_;
 };
 
-// All that the rules name, each owner of each computer by itself: who does not answer holds up nobody
-// else.
+// All that the rules name, each owner of each computer by itself: an owner that does not answer
+// delays no other.
 class AllUnits {
  public:
   // `rules` and `inbox` must outlive this.

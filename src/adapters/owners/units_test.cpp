@@ -1,6 +1,6 @@
-// What is asked of systemd, and what its answers are taken for. The server is a stand-in that
-// speaks systemd's published interface on a real dbus-daemon and really runs a process for each
-// unit; units_live_test.cpp asks systemd itself.
+// Requests to systemd, and how its answers are read. The server is a stand-in that speaks systemd's
+// published interface on a real dbus-daemon and really runs a process for each unit;
+// units_live_test.cpp asks systemd itself.
 #include "owners/units.h"
 
 #include <csignal>
@@ -221,12 +221,12 @@ TEST_F(UnitsOnAStandInForSystemd, ThatCannotBeStartedSayWhatSystemdSays) {
   systemd.add("lidar.service", {.is_broken = true});
   running();
   const auto seen = wait_for<ProcessSeen>([](const auto&) { return true; });
-  ASSERT_TRUE(seen) << "what failed is dead, though its node was never seen";
+  ASSERT_TRUE(seen) << "a failed unit has exited, also without a discovered node";
   EXPECT_EQ(seen->state, ProcessState::kGone);
   EXPECT_EQ(seen->remark, "lidar.service failed: exit-code");
 }
 
-// Also by what it does before its main process (ExecStartPre=).
+// Also in a step before its main process (ExecStartPre=).
 TEST_F(UnitsOnAStandInForSystemd, ThatFailedBeforeAnybodyLookedAreDead) {
   systemd.add("lidar.service", {.active = "failed", .result = "exit-code"});
   ask();
@@ -237,11 +237,11 @@ TEST_F(UnitsOnAStandInForSystemd, ThatFailedBeforeAnybodyLookedAreDead) {
   EXPECT_EQ(seen->remark, "lidar.service failed: exit-code");
 }
 
-// As systemctl stop leaves them; what culprit ended itself is not a person's order.
+// As systemctl stop leaves them; an end by culprit itself is not a person's order.
 TEST_F(UnitsOnAStandInForSystemd, ThatEndInAnOrderlyWayAreToldAsAnOrder) {
   for (const bool by_culprit : {false, true}) {
     const int pid = by_culprit ? now_running() : running();
-    std::this_thread::sleep_for(2 * Units::kIdlePeriod);  // it was seen to run
+    std::this_thread::sleep_for(2 * Units::kIdlePeriod);  // Units has noticed that it runs
     if (by_culprit) {
       units->stop(CommandId{++count}, ComponentId(0), pid, Ending::kForGood, Hangs::kNo);
     } else {

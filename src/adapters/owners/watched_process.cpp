@@ -1,6 +1,5 @@
 #include "owners/watched_process.h"
 
-#include <cassert>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -9,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/invariant.h"
 #include "base/tracer.h"
 #include "owners/mark.h"
 #include "owners/proc.h"
@@ -45,9 +45,10 @@ void WatchedProcess::signal(int number) const {
   }
 }
 
-// A child's number is its own until we reap it, and so is its group's. Of others each one is looked
-// at while it is held: a group of this number may be somebody else's by now.
+// A child's number is its own until we reap it, and so is its group's. Other processes are held and
+// checked one by one: a group of this number may be somebody else's by now.
 void WatchedProcess::signal_group(int number) const {
+  CULPRIT_ASSERT(pid_ > 1);  // group 1 would be all processes
   if (relation_ == Relation::kChild) {
     // It may not lead its group yet.
     if (kill(-pid_, number) != 0) syscall(SYS_pidfd_send_signal, pidfd_.get(), number, nullptr, 0);
@@ -61,7 +62,7 @@ void WatchedProcess::signal_group(int number) const {
 }
 
 ProcessEnd WatchedProcess::reap() {
-  assert(state() == ProcessState::kGone);
+  CULPRIT_ASSERT(state() == ProcessState::kGone);
   if (relation_ != Relation::kChild) return end_of(pid_, pidfd_.get());
   is_reaped_ = true;
   siginfo_t info{};
@@ -71,7 +72,7 @@ ProcessEnd WatchedProcess::reap() {
 }
 
 void WatchedProcess::kill_group() const {
-  assert(!is_reaped_);  // the number may be another group's by now
+  CULPRIT_ASSERT(!is_reaped_);  // the number may be another group's by now
   if (relation_ != Relation::kAdopted) signal_group(SIGKILL);
 }
 

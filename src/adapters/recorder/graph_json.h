@@ -1,4 +1,5 @@
-// A robot's graph as JSON: its nodes with their processes, and what each publishes, hears, serves and calls.
+// A robot's graph as JSON: its nodes with their processes, and the topics and services that each
+// publishes, subscribes to, serves and calls.
 #pragma once
 
 #include <string>

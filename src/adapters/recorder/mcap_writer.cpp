@@ -1,9 +1,10 @@
 #include "recorder/mcap_writer.h"
 
 #include <algorithm>
-#include <cassert>
 #include <zlib.h>
 #include <zstd.h>
+
+#include "base/invariant.h"
 
 namespace culprit::recorder {
 namespace {
@@ -105,7 +106,7 @@ std::uint16_t McapWriter::add_schema(Schema schema) {
 }
 
 std::uint16_t McapWriter::add_channel(Channel channel) {
-  assert(channel.schema >= 1 && channel.schema <= schemas_.size());
+  CULPRIT_ASSERT(channel.schema >= 1 && channel.schema <= schemas_.size());
   if (channels_.size() >= kMostIds) return 0;
   const auto id = static_cast<std::uint16_t>(channels_.size() + 1);
   std::string body;
@@ -121,7 +122,7 @@ std::uint16_t McapWriter::add_channel(Channel channel) {
 }
 
 void McapWriter::add(const Head& head, std::string_view payload) {
-  assert(head.channel >= 1 && head.channel <= channels_.size());
+  CULPRIT_ASSERT(head.channel >= 1 && head.channel <= channels_.size());
   if (!is_good_) return;
   const auto [entries, is_new] = chunk_entries_.try_emplace(head.channel);
   if (is_new) {
@@ -148,7 +149,7 @@ void McapWriter::add(const Head& head, std::string_view payload) {
 }
 
 void McapWriter::add_metadata(const std::string& name, const Texts& metadata) {
-  assert(chunk_entries_.empty());
+  CULPRIT_ASSERT(chunk_entries_.empty());
   std::string body;
   put_text(body, name);
   put_texts(body, metadata);

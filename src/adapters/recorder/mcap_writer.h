@@ -1,5 +1,6 @@
-// Writes a file in MCAP (mcap.dev/spec, version 0) as it grows: messages in chunks, each with the schemas and channels
-// that it needs, so that whatever was written before a crash can be read without what follows.
+// Writes a file in MCAP (mcap.dev/spec, version 0) as it grows: messages in chunks, each with the
+// schemas and channels that it needs. So all chunks from before a crash can be read without the
+// rest.
 //
 //     McapWriter writer([&](std::string_view bytes) { return file.write(bytes); }, "ros2", "culprit 0.1.0");
 //     const auto schema = writer.add_schema({"std_msgs/msg/String", "ros2msg", "string data\n"});
@@ -7,8 +8,8 @@
 //     writer.add({channel, 0, now, now}, payload);
 //     writer.end();
 //
-// A chunk goes to the sink in one piece, with its index behind it. The summary at the end has what readers with an
-// index want: schemas, channels, statistics, and where the chunks are.
+// A chunk goes to the sink in one piece, with its index behind it. The summary at the end is for
+// readers with an index: schemas, channels, statistics, and where the chunks are.
 #pragma once
 
 #include <cstdint>
@@ -73,7 +74,7 @@ class McapWriter {
     std::uint64_t logged;
     std::uint64_t offset;  // in the chunk
   };
-  // Of the times of messages.
+  // The range of the messages' times.
   struct Span {
     std::uint64_t first = UINT64_MAX;
     std::uint64_t last = 0;

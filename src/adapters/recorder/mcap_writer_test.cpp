@@ -47,7 +47,7 @@ std::string as_written(const std::function<void(McapWriter&, std::uint16_t chann
   return bytes;
 }
 
-// How every message begins; the reader tells others.
+// How every message begins; the reader recognizes others.
 const std::string kCdr("\0\1\0\0", 4);
 
 RC_GTEST_PROP(McapWriter, IsReadBackAsItWasWritten, ()) {
@@ -69,7 +69,7 @@ RC_GTEST_PROP(McapWriter, IsReadBackAsItWasWritten, ()) {
     RC_ASSERT(read.messages[i] == std::pair(static_cast<std::int64_t>(i + 1), payloads[i]));
 }
 
-// Wherever the file is cut, what was flushed before is there.
+// Wherever the file is cut, earlier flushed messages are there.
 TEST(McapWriter, LosesNothingThatWasFlushedWhereverItIsCut) {
   std::vector<std::size_t> ends;  // of the file after each flush
   const std::string whole = as_written([&](McapWriter& writer, std::uint16_t channel) {
@@ -92,7 +92,8 @@ TEST(McapWriter, LosesNothingThatWasFlushedWhereverItIsCut) {
   }
 }
 
-// A process that writes is killed at some moment; what it said to be flushed is in its file.
+// A process that writes is killed at some moment; the part that it reported as flushed is in its
+// file.
 TEST(McapWriter, LeavesAFileThatCanBeReadWhenItsProcessIsKilled) {
   const test::TestFolder own;
   for (int round = 0; round < 20; ++round) {

@@ -18,7 +18,7 @@ void MessageRing::push(RingMessage message, Share share) {
   auto shared = std::make_shared<RingMessage>(std::move(message));
   const MutexLock lock(mutex_);
   shared->number = ++last_;
-  // What is old goes from both: one of them may get nothing for long.
+  // Old messages go from both parts: one of them may get none for long.
   for (Part& part : parts_) {
     while (!part.messages.empty() && part.messages.front()->at < oldest) drop_front(part);
   }

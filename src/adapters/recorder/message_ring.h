@@ -1,10 +1,12 @@
-// The last messages of a robot, in bounded memory: what is too old, or more than there is room for, goes, the oldest first.
+// The last messages of a robot, in bounded memory: messages that are too old, or for which there is
+// no room, go, the oldest first.
 //
-// Large messages have room of their own, so that one camera does not drive out everything else. Of latched topics (a
-// map, static transforms) the last message of each publisher stays, however old.
+// Large messages have room of their own, so that one camera does not drive out everything else. The
+// last message of each publisher of a latched topic (a map, static transforms) stays, however old.
 //
-// It is the only buffer between those who hear and the one who writes: whoever writes takes what it has not seen yet.
-// If it is too slow for that, messages are lost and counted, and nobody waits.
+// It is the only buffer between the receive threads and the writer, which takes the messages that
+// it has not seen yet. If the writer is too slow, messages are lost and counted, and no receive
+// thread waits.
 #pragma once
 
 #include <array>
@@ -23,7 +25,7 @@ namespace culprit::recorder {
 
 struct RingMessage {
   std::uint64_t number = 0;    // in the order in which they came, from 1; the ring gives it
-  std::size_t topic = 0;       // as whoever fills the ring counts them
+  std::size_t topic = 0;       // the caller's number for it
   std::uint32_t sequence = 0;  // of its publisher
   Time at{};                   // when it came, by the clock that never jumps
   std::int64_t received = 0;   // the same by the wall clock, nanoseconds since 1970
@@ -34,7 +36,7 @@ using SharedMessage = std::shared_ptr<const RingMessage>;
 
 enum class Share : std::uint8_t { kSmall, kLarge };
 
-// From any thread; nobody waits for more than another's call.
+// From any thread; a call waits at most for another thread's call.
 class MessageRing {
  public:
   struct Limits {
@@ -43,26 +45,26 @@ class MessageRing {
     std::size_t latched_bytes = 0;  // of what stays
     Duration keep{};
   };
-  // What a message takes beside its payload, about.
+  // The memory of a message beside its payload, about.
   static constexpr std::size_t kOverhead = 256;  // bytes
 
   explicit MessageRing(Limits limits) : limits_(limits) {}
 
   void push(RingMessage message, Share share);
-  // It stays until its publisher says something else. It is not given by after().
+  // It stays until its publisher publishes another one. It is not given by after().
   void latch(RingMessage message, const ros2::Guid& publisher);
 
   // Those after `number` that came at `since` or later, in the order in which they came; so many bytes of them, and at least one if there
   // is one.
   std::vector<SharedMessage> after(std::uint64_t number, Time since, std::size_t most_bytes);
-  // What is latched and came before `since`.
+  // The latched messages that came before `since`.
   std::vector<SharedMessage> latched(Time since) const;
 
   // From now on it counts what came at `since` or later and goes before after() gave it; until stop_counting().
   void count_lost(Time since);
   std::uint64_t stop_counting();
 
-  // What is held, with kOverhead for each; latched ones apart.
+  // The size of the held messages, with kOverhead for each; latched ones apart.
   std::size_t bytes(Share share) const;
   std::size_t latched_bytes() const;
 

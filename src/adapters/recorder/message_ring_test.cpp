@@ -63,8 +63,8 @@ TEST(MessageRing, CountsWhatIsLostBeforeItWasTaken) {
   EXPECT_EQ(ring.stop_counting(), 2) << "three were taken, and three are still there";
 }
 
-// Whatever comes in whatever order: each part holds no more than its room, the newest is held if it
-// fits at all, and what is given ascends.
+// For messages in any order: each part holds no more than its room, the newest is held if it fits
+// at all, and the numbers given ascend.
 RC_GTEST_PROP(MessageRing, NeverHoldsMoreThanItMay, ()) {
   const MessageRing::Limits limits{*rc::gen::inRange<std::size_t>(0, 20'000),
                                    *rc::gen::inRange<std::size_t>(0, 20'000),

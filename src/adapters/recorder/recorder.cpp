@@ -12,7 +12,7 @@ namespace culprit::recorder {
 namespace {
 
 constexpr std::size_t kMostAtOnce = std::size_t{4} << 20;  // bytes, from the ring
-// What comes while a disk dawdles is held so much longer.
+// Messages are held so much longer, for a disk that is slow.
 constexpr Duration kSlack = std::chrono::seconds(5);
 constexpr int kNice = 10;
 
@@ -99,7 +99,7 @@ void Recorder::note_graph(const std::string& json) {
 void Recorder::want(const std::string& why) {
   until_ = std::max(until_, later(live_now(), options_.after));
   ++wishes_;
-  // Of several at a time the first gives the name.
+  // The first of several requests gives the name.
   if (wish_.why.empty()) wish_ = {why, wall_now(), live_now(), wishes_};
   wish_.number = wishes_;
   changed_.notify_all();
@@ -153,7 +153,7 @@ void Recorder::work() {
     }
     const Time now = live_now();
     const bool is_done = (!is_ill_ && now >= until_) || now >= later(opened_, kLongest);
-    // Who wants one meanwhile has this one.
+    // A request that comes meanwhile gets this recording.
     const bool is_wanted_on = !wish_.why.empty() && !is_ending;
     const bool ends =
         file_ != nullptr && (is_ending || (is_done && !is_wanted_on) || !file_->trouble().empty());
@@ -175,7 +175,8 @@ void Recorder::open(const Wish& wish) {
   since_ = wish.at - options_.before;
   written_ = 0;
   ring_.count_lost(since_);
-  // What was latched long ago counts as heard at the beginning, else the recording would seem to begin then.
+  // An old latched message counts as received at the beginning; otherwise the recording would seem
+  // to begin then.
   const std::int64_t beginning = wish.when - options_.before.count();
   for (const SharedMessage& message : ring_.latched(since_)) {
     file_->add(*message, *topic_of(*message), std::max<std::int64_t>(0, beginning));

@@ -7,8 +7,8 @@
 //     recorder.begin("CameraDead");                     // a failure
 //     recorder.over();                                  // all is well again
 //
-// Nobody waits for a disk: a thread of its own, of low priority, opens, writes and ends the files. What it cannot do is
-// said once, and the next recording tries again.
+// Nobody waits for a disk: a thread of its own, of low priority, opens, writes and ends the files.
+// A failure to write is reported once, and the next recording tries again.
 #pragma once
 
 #include <filesystem>
@@ -29,9 +29,9 @@ namespace culprit::recorder {
 // All members may be called from any thread.
 class Recorder {
  public:
-  // A recording that nobody ends is ended after so long.
+  // A recording that is not ended is ended after so long.
   static constexpr Duration kLongest = std::chrono::minutes(5);
-  // Whoever is killed loses so much at most.
+  // A killed process loses at most so much.
   static constexpr Duration kFlushes = std::chrono::seconds(1);
 
   // So many at most, over all the time: the network decides how many there are.
@@ -44,13 +44,14 @@ class Recorder {
   struct Options {
     std::filesystem::path folder;
     std::string robot;    // its name
-    std::string library;  // who writes it: "culprit 0.1.0"
+    std::string library;  // the program that writes it: "culprit 0.1.0"
     Duration before = std::chrono::seconds(20);
     Duration after = std::chrono::seconds(10);
     std::size_t memory = 200'000'000;    // bytes, of all that is kept
     std::uint64_t disk = 5'000'000'000;  // bytes, of all recordings
     RecordingFolder::SpaceOf space = RecordingFolder::space_of;
-    // What people should know: what cannot be done, and what was written. From the recorder's thread.
+    // Receives messages for people: failures, and recordings that were written. Called on the
+    // recorder's thread.
     std::function<void(const std::string&)> say = [](const std::string&) {};
   };
 
@@ -59,21 +60,22 @@ class Recorder {
   ~Recorder();
   Recorder(const Recorder&) = delete;
 
-  // Of the memory: what large messages may have, and what latched ones may.
+  // The parts of the memory for large messages, and for latched ones.
   static std::size_t large_share(std::size_t memory) { return memory / 4; }
   static std::size_t latched_share(std::size_t memory) { return memory / 10; }
 
-  // Gives the number of the topic; the same for the same name, type and hash. What else is said of it replaces what was
-  // said before, but for recordings that know it already. kNoTopic: there are too many; what is said of it is not kept.
+  // Gives the number of the topic; the same for the same name, type and hash. Its other data
+  // replace the earlier ones, except in recordings that have those already. kNoTopic: there are too
+  // many; the topic is not kept.
   std::size_t add_topic(RecordedTopic topic);
-  // `number` and `at` are filled in, and `received`, if it is not said, with the same moment.
+  // `number` and `at` are filled in, and `received`, if it is not given, with the same moment.
   void take(RingMessage message, Share share = Share::kSmall);
-  // Likewise of a latched topic, whose last message stays.
+  // As take(), for a latched topic, whose last message stays.
   void take_latched(RingMessage message, const ros2::Guid& publisher, Share share);
 
-  // What culprit found, decided and did: JSON documents.
+  // An event of culprit (a failure, a decision, an action): a JSON document.
   void note_event(const std::string& json);
-  // The robot's graph from now on, likewise.
+  // The robot's graph from now on, in the same form.
   void note_graph(const std::string& json);
 
   // A failure, called `why`, which is there until over(). If a recording is on, it goes on.
@@ -88,7 +90,7 @@ class Recorder {
  private:
   // Replaced, never changed: the thread has one while it writes.
   using SharedTopic = std::shared_ptr<const RecordedTopic>;
-  // What is wanted of the thread.
+  // A request to the thread.
   struct Wish {
     std::string why;        // empty: nothing
     std::int64_t when = 0;  // nanoseconds since 1970
@@ -125,12 +127,12 @@ class Recorder {
   std::uint64_t answered_ CULPRIT_GUARDED_BY(mutex_) = 0;  // the last wish that was met, or not
   Expected<std::filesystem::path> answer_ CULPRIT_GUARDED_BY(mutex_) = Error{"it has not begun"};
 
-  // Of the thread.
+  // Used by the thread only.
   std::unique_ptr<RecordingFile> file_;  // null: none is on
   std::uint64_t written_ = 0;            // the last message that is in it
   Time since_{};                         // what it begins with
   Time opened_{};
-  std::string trouble_;  // the last that was said
+  std::string trouble_;  // the last one that was reported
 
   std::thread thread_;  // last: it begins when all is there
 };

@@ -24,7 +24,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-// What was said, from the thread of a recorder.
+// The messages for people, from the thread of a recorder.
 class Said {
  public:
   void add(const std::string& text) {
@@ -74,7 +74,7 @@ RecordedTopic topic_called(const char* name) {
   return {name, "std_msgs/msg/String", "", "string data\n", {ros2::Qos{}}};
 }
 
-// Texts by topic, of a recording of nothing else.
+// Texts by topic, from a recording without other content.
 std::multimap<std::string, std::string> texts_in(const std::filesystem::path& path) {
   std::multimap<std::string, std::string> all;
   auto file = bag::BagFile::open(path);
@@ -249,7 +249,7 @@ TEST_F(Recorders, LeaveAFileThatCanBeReadWhenTheDiskIsFull) {
   EXPECT_GE(messages, 6) << "what was written before";
 }
 
-// It is the promise to whoever heals: a disk that takes its time holds nobody up.
+// The manager relies on it: a slow disk delays no caller.
 TEST_F(Recorders, HoldNobodyUpWhileTheDiskDoesNotAnswer) {
   Mutex mutex;
   ConditionVariable changed;

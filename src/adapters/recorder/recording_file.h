@@ -1,9 +1,10 @@
 // One recording on the disk, as rosbag2 and Foxglove read it: MCAP of the profile "ros2", CDR in every channel, the
 // definitions of types as ros2msg, the offered quality of service as rosbag2 writes it.
 //
-// All channels have one encoding: rosbag2 opens no file with two ("All topics must have the same serialization format"). So what culprit
-// tells is CDR, too: JSON in a std_msgs/msg/String. A type that is not known has a schema without an encoding, as the
-// specification wants it; rosbag2 opens no channel without a schema.
+// All channels have one encoding: rosbag2 opens no file with two ("All topics must have the same
+// serialization format"). So culprit's own messages are CDR, too: JSON in a std_msgs/msg/String. A
+// type that is not known has a schema without an encoding, as the specification wants it; rosbag2
+// opens no channel without a schema.
 #pragma once
 
 #include <filesystem>
@@ -21,7 +22,8 @@
 
 namespace culprit::recorder {
 
-// What rosbag2 keeps in a channel as "offered_qos_profiles": a list in YAML, with the numbers of rmw/types.h.
+// The text of "offered_qos_profiles" in rosbag2's channels: a list in YAML, with the numbers of
+// rmw/types.h.
 std::string offered_qos_profiles(const std::vector<ros2::Qos>& offers);
 
 struct RecordedTopic {
@@ -42,7 +44,8 @@ class RecordingFile {
   ~RecordingFile();
   RecordingFile(const RecordingFile&) = delete;
 
-  // `topic` is what message.topic means. `logged`: when it counts as heard, if not when it was.
+  // `topic` is what message.topic means. `logged`: the time at which it counts as received; by
+  // default, when it was.
   void add(const RingMessage& message, const RecordedTopic& topic,
            std::optional<std::int64_t> logged = {});
   // Writes what is there so far; from now on a crash loses none of it.
@@ -51,7 +54,7 @@ class RecordingFile {
   void end();
 
   const std::filesystem::path& path() const { return path_; }
-  // Why it cannot go on; empty: it can. What was written until then can be read.
+  // Why it cannot go on; empty: it can. The messages up to then can be read.
   const std::string& trouble() const { return trouble_; }
   std::uint64_t messages() const { return writer_->messages(); }
 

@@ -1,7 +1,7 @@
 // Where recordings are kept, and how much of the disk they may have: the oldest goes first.
 //
 // A recording is called "<robot>_<when>_<why>.mcap": "submarine_20261125T190317.042Z_CameraDead.mcap", by the wall clock in
-// UTC. Nothing else in the folder is counted or touched.
+// UTC. Other files in the folder are neither counted nor touched.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,8 @@ struct StoredRecording {
   std::uint64_t bytes = 0;
 };
 
-// What a recording is called. Of `robot` and `why`, what does not belong into the name of a file is '-'.
+// The name of a recording. In `robot` and `why`, each character that is not allowed in a file name
+// becomes '-'.
 std::string recording_name(const std::string& robot, std::int64_t when, const std::string& why);
 // When it began; nothing: that is no name of a recording.
 std::optional<std::int64_t> when_recorded(const std::string& name);
@@ -39,7 +40,7 @@ class RecordingFolder {
   // statvfs(2).
   static Expected<Space> space_of(const std::filesystem::path& folder);
 
-  // So much of a file system stays free: a gigabyte, or a tenth of it where that is less.
+  // The part of a file system that stays free: a gigabyte, or a tenth of it where that is less.
   static constexpr std::uint64_t kLeftFree = 1'000'000'000;
   static std::uint64_t left_free(const Space& space);
 

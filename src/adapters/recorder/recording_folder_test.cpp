@@ -53,7 +53,7 @@ TEST_F(RecordingFolders, RemoveTheOldestForTheBudget) {
   const std::string third = record(3, 100);
   ASSERT_TRUE(folder.make_room(300, own / third));
   EXPECT_THAT(names(), ElementsAre(second, third));
-  EXPECT_TRUE(std::filesystem::exists(own / "mine.mcap")) << "that is nobody's recording";
+  EXPECT_TRUE(std::filesystem::exists(own / "mine.mcap")) << "it is no recording";
 }
 
 TEST_F(RecordingFolders, NeverRemoveTheOneThatIsWritten) {

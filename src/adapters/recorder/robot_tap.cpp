@@ -10,7 +10,7 @@
 namespace culprit::recorder {
 namespace {
 
-// Of what it says of itself the last line of each is no state of the robot.
+// Its topic is transient local, but its last line is no state of the robot.
 constexpr std::string_view kLog = "/rosout";
 
 // As people and other recorders write it: "std_msgs/Header", not "std_msgs/msg/Header".
@@ -25,7 +25,7 @@ std::int64_t nanoseconds_of(ros2::SystemTime time) { return time.time_since_epoc
 
 }  // namespace
 
-// One topic that is heard. Its callback runs on receive threads, one at a time.
+// One topic that is received. Its callback runs on receive threads, one at a time.
 class RobotTap::Listening {
  public:
   Listening(RobotTap& tap, std::string topic, std::size_t number, bool may_be_given_up)
@@ -46,7 +46,7 @@ class RobotTap::Listening {
   }
 
   void publisher_offers(const ros2::Qos& offered) {
-    // What cannot be heard twice is heard once.
+    // If there can be no second reader, the topic is received once only.
     (void)listener_->publisher_offers(offered);
     if (offered.durability == ros2::Durability::kTransientLocal && topic_ != kLog)
       is_latched_ = true;

@@ -1,16 +1,18 @@
-// Hears the topics of a live ROS 2 robot for a recorder, as a hidden node in a DDS participant of its own: nothing that
-// comes is handled on a thread of whoever manages the robot.
+// Receives the topics of a live ROS 2 robot for a recorder, as a hidden node in a DDS participant
+// of its own: no message is handled on a thread of the manager.
 //
-// Readers are best effort and hold no writer back; a latched topic has a second one, which is sent what was published
-// before (link/topic_listener.h). What a type looks like is found as for rules (link/type_finder.h), before its topic is
-// heard; if it is found nowhere, its messages are kept all the same, and that is said once.
+// Readers are best effort and hold no writer back; a latched topic has a second one, which receives
+// the earlier messages (link/topic_listener.h). The definition of a type is found as for rules
+// (link/type_finder.h), before its topic is received. If it is found nowhere, its messages are kept
+// all the same, and that is reported once.
 //
-// A topic whose messages are small has time: what came is taken together every few hundredths of a second, since to wake a
-// thread for each message is most of what recording it costs. A message of more than kSmall bytes, or one that cannot be put
-// together, ends that for its topic.
+// A topic whose messages are small has time: its messages are taken together every few hundredths
+// of a second. Waking a thread for each message would be most of the cost of recording it. A
+// message of more than kSmall bytes, or one that cannot be put together, ends that for its topic.
 //
-// A message of more than kLarge bytes makes its topic a large one, which is kept in memory of its own. One that nobody
-// named and that would not fit there for the time that is recorded is not heard any more, and that is said once.
+// A message of more than kLarge bytes makes its topic a large one, which is kept in memory of its
+// own. If that memory cannot hold such a topic for the recorded time, and nobody named the topic,
+// it is no longer received, and that is reported once.
 #pragma once
 
 #include <map>
@@ -32,7 +34,7 @@ class RobotTap {
  public:
   static constexpr std::size_t kSmall = 16 * 1024;  // bytes
   static constexpr std::size_t kLarge = 64 * 1024;
-  // So many are heard at a time: each costs memory, and the network decides how many there are.
+  // The most topics at a time: each costs memory, and the network decides how many there are.
   static constexpr std::size_t kMostHeard = 2000;
 
   struct Options {
@@ -41,7 +43,7 @@ class RobotTap {
     TopicChoice topics{{}};
     Duration before{};            // that is recorded
     std::size_t large_bytes = 0;  // of memory for large messages
-    // What people should know. From any thread of the tap.
+    // Receives messages for people. Called from any thread of the tap.
     std::function<void(const std::string&)> say = [](const std::string&) {};
   };
 
@@ -55,7 +57,7 @@ class RobotTap {
 
   struct TopicUse {
     std::map<std::string, ros2::GraphEndpoint> publishers;  // by node
-    std::unique_ptr<Listening> listening;                   // null: it is not heard
+    std::unique_ptr<Listening> listening;                   // null: not received
     bool is_asked_for = false;                              // its type is
     bool is_given_up = false;                               // it is too large
   };
@@ -81,9 +83,9 @@ class RobotTap {
   Recorder& recorder_;
   std::map<std::string, TopicUse> topics_;
   std::map<std::string, int> pids_;      // of the nodes that are there
-  std::set<std::string> unknown_types_;  // that were told of
+  std::set<std::string> unknown_types_;  // that were reported
   bool is_graph_due_ = false;
-  bool are_too_many_ = false;  // topics, and that was said
+  bool are_too_many_ = false;  // topics, and that was reported
 
   ros2::Executor executor_;
   std::unique_ptr<ros2::TaskGroup> tasks_;

@@ -1,4 +1,4 @@
-// What the tap hears of a live robot, on loopback.
+// Checks the messages that the tap receives from a live robot, on loopback.
 #include "recorder/robot_tap.h"
 
 #include <gmock/gmock.h>
@@ -83,7 +83,7 @@ TEST_F(RobotTaps, HearWhatWasLatchedBeforeTheyCame) {
   const Time end = live_now() + ros2::kPatience;
   std::size_t count = 0;
   while (count == 0 && live_now() < end) count = recorded("/map");
-  EXPECT_EQ(count, 1) << "it is heard once, by whichever of the two readers";
+  EXPECT_EQ(count, 1) << "one of the two readers receives it";
 }
 
 TEST_F(RobotTaps, GiveUpWhatIsTooLargeAndSayItOnce) {
@@ -104,7 +104,7 @@ TEST_F(RobotTaps, GiveUpWhatIsTooLargeAndSayItOnce) {
   EXPECT_THAT(said.all(), testing::Contains(HasSubstr("my_msgs/msg/Odd is not known")));
 }
 
-// A topic that begins small and becomes large is heard another way from then on.
+// A topic that begins small and becomes large is received in another way from then on.
 TEST_F(RobotTaps, HearWhatBecomesLargeOnTheWay) {
   const auto scan = publisher("/scan", "std_msgs/msg/String");
   const auto hears = tap({}, 1'000'000);

@@ -1,10 +1,11 @@
-// Which topics are recorded: those that somebody named, or all that are not hidden.
+// Selects the topics to record: named ones, or all that are not hidden.
 //
-//     TopicChoice({})                             all; what is large only as far as it fits
+//     TopicChoice({})                             all; large ones only as far as they fit
 //     TopicChoice({"/scan", "/camera/*"})         these; '*' stands for anything, slashes too
 //     TopicChoice({"!/camera/*"})                 all but these
 //
-// The robot's word on itself (/diagnostics, /rosout, /parameter_events) is always among them, unless it is named with '!'.
+// The robot's own reports (/diagnostics, /rosout, /parameter_events) are always recorded, unless
+// they are named with '!'.
 #pragma once
 
 #include <string>

@@ -9,7 +9,7 @@ TEST(TopicChoice, IsOfAllThatAreNotHiddenByDefault) {
   const TopicChoice all({});
   EXPECT_TRUE(all.includes("/scan"));
   EXPECT_FALSE(all.includes("/navigate/_action/status"));
-  EXPECT_FALSE(all.names("/scan")) << "nobody asked for it by its name";
+  EXPECT_FALSE(all.names("/scan")) << "it was not named";
 }
 
 TEST(TopicChoice, IsOfThoseThatAreNamedAndOfTheRobotsWordOnItself) {

@@ -1,9 +1,9 @@
 #include "ros2/context.h"
 
-#include <cassert>
 #include <chrono>
 #include <utility>
 
+#include "base/invariant.h"
 #include "base/live_clock.h"
 #include "ros2/process_finder.h"
 #include "ros2/type_description.h"
@@ -120,9 +120,10 @@ Expected<void> Context::listen_to_infos() {
   return {};
 }
 
-// A participant that was lost and comes back says once more which nodes it has, and its writer's number of that
-// is still the same: Fast DDS takes it for heard (2.9, RTPSReader::remove_persistence_guid()). Only a new reader
-// hears it. Others may have lost us, too.
+// A participant that was lost and comes back announces its nodes once more, and its writer's number
+// of that is still the same: Fast DDS takes it for received (2.9,
+// RTPSReader::remove_persistence_guid()). Only a new reader receives it. Others may have lost us,
+// too.
 void Context::note_return(const DiscoveryEvent& event) {
   constexpr std::size_t kMost = 1000;
   constexpr auto kTogether = std::chrono::milliseconds(50);  // those of one computer
@@ -139,7 +140,7 @@ void Context::note_return(const DiscoveryEvent& event) {
 }
 
 Context::~Context() {
-  assert(nodes_.empty());
+  CULPRIT_ASSERT(nodes_.empty());
   tasks_.close();
 }
 
@@ -192,7 +193,7 @@ void Context::unwatch_servers(const void* owner) {
   watches_.erase(owner);
 }
 
-// With the mutex, so that nobody is called whose unwatch_servers has returned.
+// With the mutex, so that no listener is called whose unwatch_servers has returned.
 void Context::on_server_left(const std::string& service) {
   const MutexLock lock(mutex_);
   for (const auto& [owner, watch] : watches_) {
@@ -200,8 +201,9 @@ void Context::on_server_left(const std::string& service) {
   }
 }
 
-// Robots are discovered in bursts of hundreds of endpoints: what came meanwhile is taken in together. Never
-// later than a task that was posted after it, for who is told of a match looks into the graph.
+// Robots are discovered in bursts of hundreds of endpoints: events that came meanwhile are taken in
+// together. Never later than a task that was posted after it, for a match's listener looks into the
+// graph.
 void Context::hear(Heard heard) {
   {
     const MutexLock lock(mutex_);
@@ -233,8 +235,8 @@ void Context::discovered(const DiscoveryEvent& event) {
   if (discovery_listener_) discovery_listener_(event);
   const auto* endpoint = std::get_if<EndpointInfo>(&event);
   if (endpoint == nullptr || gid_size_) return;
-  // Iron and newer put the hash of the type into the user data of every endpoint. So does a culprit,
-  // whatever the robot is.
+  // Iron and newer put the hash of the type into the user data of every endpoint. So does a culprit
+  // on any robot.
   if (endpoint->user_data.find("typehash=") != std::string::npos &&
       !is_of_culprit(endpoint->user_data))
     return decide(GidSize::kIronAndNewer);
@@ -247,8 +249,7 @@ void Context::discovered(const DiscoveryEvent& event) {
 void Context::on_info(const Bytes& payload, const GuidPrefix& sender) {
   if (sender == participant_->guid().prefix()) return;
   const auto info = decode_discovery_info(payload);
-  if (!info || info->participant.prefix() != sender)
-    return;  // nobody speaks for another participant
+  if (!info || info->participant.prefix() != sender) return;  // a participant announces only itself
   if (!gid_size_) decide(gid_size_of(payload));
   graph_.apply(*info, gid_size_of(payload));
 }
@@ -271,7 +272,7 @@ void Context::announce() {
   {
     const MutexLock lock(mutex_);
     is_scheduled_ = false;
-    if (!is_open_ || !gid_size_) return;  // without a peer there is nobody to read it
+    if (!is_open_ || !gid_size_) return;  // without a peer it has no reader
     info.participant = participant_->guid();
     for (const NodeEntry* node : nodes_) {
       NodeEntities& entities =

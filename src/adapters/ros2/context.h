@@ -6,8 +6,7 @@
 // graph belongs to that thread.
 //
 // Own nodes are announced after each change, once for all changes made in one go. With which size
-// of gid: as the options say, or as the first peer does; 24 bytes when there are peers that say
-// nothing about it.
+// of gid: as the options set, or as the first peer does; 24 bytes if no peer shows it.
 #pragma once
 
 #include <cstdint>
@@ -44,7 +43,7 @@ class Context {
   // On the executor's thread only.
   const Graph& graph() const { return graph_; }
 
-  // Hears of each event after the graph did, on the executor's thread. Before the executor runs.
+  // Receives each event after the graph did, on the executor's thread. Before the executor runs.
   void on_discovery(DiscoveryCallback listener) { discovery_listener_ = std::move(listener); }
 
   // A text that no other has: Cyclone's services find the two endpoints of a client by it.
@@ -60,9 +59,9 @@ class Context {
   void note_proven_here(const std::string& node);
   void look_at_unproven();
 
-  // Calls `on_left` on the executor's thread, before the graph's listener hears of it, whenever a
-  // server of `service` leaves the graph, until it is told to stop. `on_left` must not call back
-  // into the context.
+  // Calls `on_left` on the executor's thread whenever a server of `service` leaves the graph,
+  // before the graph's listener, until unwatch_servers(). `on_left` must not call back into the
+  // context.
   void watch_servers(const void* owner, std::string service, std::function<void()> on_left);
   void unwatch_servers(const void* owner);
 
@@ -81,7 +80,7 @@ class Context {
   Expected<void> open(const ParticipantOptions& options);
   Expected<void> listen_to_infos();
 
-  // Of a participant: what it said of its nodes, as it came.
+  // From a participant: the announcement of its nodes, as it came.
   struct RawInfo {
     Bytes payload;
     GuidPrefix sender;
@@ -110,7 +109,7 @@ class Context {
   std::set<GuidPrefix> lost_;  // participants whose leases ran out
   bool is_listening_anew_ = false;
   DiscoveryCallback discovery_listener_;  // may be empty
-  // What was proven a moment ago. A process of many nodes is found once, not for each of them.
+  // Recent proofs. So a process of many nodes is looked up once, not for each of them.
   struct Proof {
     ParticipantInfo of;
     FoundProcess found;

@@ -1,10 +1,10 @@
-// rmw_dds_common/msg/ParticipantEntitiesInfo: how a participant says which nodes it holds and which
-// endpoints are theirs, on the topic `ros_discovery_info`. Each message replaces everything known
-// about that participant.
+// rmw_dds_common/msg/ParticipantEntitiesInfo: a participant's announcement of its nodes and their
+// endpoints, on the topic `ros_discovery_info`. Each message replaces everything known about that
+// participant.
 //
 // The one type that is not wire-identical everywhere: up to Humble a gid takes 24 bytes (16 of
-// GUID, 8 of zeros), from Iron on 16. Both have the same type name, so a reader has to tell them
-// apart from the bytes, and a writer has to know what its peers speak: the wrong size makes them
+// GUID, 8 of zeros), from Iron on 16. Both have the same type name, so a reader must distinguish
+// them by the bytes, and a writer must know the size that its peers use: the wrong size makes them
 // print an error and not list our nodes.
 #pragma once
 

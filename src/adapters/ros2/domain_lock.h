@@ -1,4 +1,4 @@
-// A DDS domain of one's own, so that two tests or two demonstrations on one machine do not hear
+// A DDS domain of one's own, so that two tests or two demonstrations on one machine do not discover
 // each other. The lock is the name "culprit-domain-<n>"; a domain that somebody on this machine
 // listens in, lock or not, is no longer free either.
 #pragma once

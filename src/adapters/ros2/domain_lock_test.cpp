@@ -24,7 +24,7 @@ TEST(DomainLock, GivesADomainOfItsOwn) {
 }
 
 TEST(DomainLock, SaysWhenAllAreTakenAndFreesThemAtTheEnd) {
-  // No DDS domains, and nobody else's: other tests must not find theirs taken.
+  // No DDS domains, and no other process's: other tests must not find theirs taken.
   const auto first = 1000 + static_cast<std::uint32_t>(getpid()) * 2;
   std::optional<Expected<DomainLock>> one = DomainLock::reserve(first, first + 1);
   const auto other = DomainLock::reserve(first, first + 1);
@@ -35,7 +35,7 @@ TEST(DomainLock, SaysWhenAllAreTakenAndFreesThemAtTheEnd) {
   EXPECT_TRUE(DomainLock::reserve(first, first + 1));
 }
 
-// Of a demonstration that was killed, say, or of a robot.
+// Such a listener may be a demonstration that was killed, or a robot.
 TEST(DomainLock, TakesNoDomainThatSomebodyListensIn) {
   std::optional<Expected<DomainLock>> lock = DomainLock::reserve();
   ASSERT_TRUE(*lock);

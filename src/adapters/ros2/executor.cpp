@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cerrno>
 #include <cstring>
 #include <poll.h>
@@ -10,6 +9,8 @@
 #include <sys/eventfd.h>
 #include <sys/signalfd.h>
 #include <unistd.h>
+
+#include "base/invariant.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -24,7 +25,7 @@ timespec to_timespec(std::chrono::nanoseconds d) {
 Executor::Executor() : wake_fd_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
 
 Executor::~Executor() {
-  assert(ready_.empty() && timers_.empty() && running_ == nullptr);
+  CULPRIT_ASSERT(ready_.empty() && timers_.empty() && running_ == nullptr);
   close(wake_fd_);
   if (signal_fd_ >= 0) close(signal_fd_);
 }

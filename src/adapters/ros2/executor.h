@@ -1,7 +1,7 @@
 // One thread that runs the callbacks of a process, in the order in which they became due.
 //
-// Whoever calls run() is that thread. It sleeps until there is something to do, never polls, and
-// can be stopped from any thread, any callback, or by signals.
+// The thread that calls run() is that thread. It sleeps until there is something to do, never
+// polls, and can be stopped from any thread, any callback, or by signals.
 //
 // Work is handed in through a TaskGroup, which takes its unfinished work back when it is closed: so
 // an object that owns its TaskGroup, and closes it first of all in its destructor, is never called

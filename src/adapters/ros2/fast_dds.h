@@ -1,8 +1,8 @@
 // Everything that differs between the generations of Fast DDS; participant.cpp is its only user.
 //
-// Written for 2.9 (Debian 12). What 2.6, 2.14 and 3.x want instead is in docs and would be decided
-// here, and only here: names of headers and namespaces, the shape of a TopicDataType, the discovery
-// callbacks, a few members of QoS.
+// Written for 2.9 (Debian 12). The differences of 2.6, 2.14 and 3.x are in docs and would be
+// decided here, and only here: names of headers and namespaces, the shape of a TopicDataType, the
+// discovery callbacks, a few members of QoS.
 #pragma once
 
 #include <algorithm>
@@ -86,14 +86,14 @@ inline SystemTime to_time(const rtps::Time_t& time) {
 // A hostile peer can make us keep no more.
 inline std::string cut(std::string_view text) { return std::string(text.substr(0, kLongestSaid)); }
 
-// What a DataReader fills in.
+// The buffer that a DataReader fills.
 struct Incoming {
   PayloadUse use = PayloadUse::kWhole;
   Bytes bytes;
   std::size_t size = 0;
 };
 
-// What a DataWriter sends.
+// The payload that a DataWriter sends.
 struct Outgoing {
   ByteView payload;
 };
@@ -133,8 +133,8 @@ class RawType final : public dds::TopicDataType {
 
   void* createData() override { return new Incoming; }
   void deleteData(void* data) override { delete static_cast<Incoming*>(data); }
-  // Where the key is in a payload is not known, nor does it matter to whoever takes each sample: they
-  // are of one instance, unless the writer says which.
+  // The place of the key in a payload is unknown, and does not matter to a reader that takes each
+  // sample: they are of one instance, unless the writer announces which.
   bool getKey(void*, rtps::InstanceHandle_t* handle, bool) override {
     handle->value.clear();
     handle->value[0] = 1;
@@ -172,8 +172,9 @@ inline Duration from_duration(const DdsDuration& d) {
   return std::chrono::seconds(d.seconds) + std::chrono::nanoseconds(d.nanosec);
 }
 
-// What readers and writers have in common. They are built up from nothing rather than from the
-// factory's defaults, which an XML file named by FASTRTPS_DEFAULT_PROFILES_FILE could have changed.
+// The QoS that readers and writers have in common. They are built up from nothing rather than from
+// the factory's defaults, which an XML file named by FASTRTPS_DEFAULT_PROFILES_FILE could have
+// changed.
 template <class EntityQos>
 void apply(EntityQos& entity, const Qos& qos, const std::string& user_data) {
   entity.reliability().kind = qos.reliability == Reliability::kReliable
@@ -186,7 +187,7 @@ void apply(EntityQos& entity, const Qos& qos, const std::string& user_data) {
   entity.history().kind = keeps_all ? dds::KEEP_ALL_HISTORY_QOS : dds::KEEP_LAST_HISTORY_QOS;
   const auto depth = static_cast<std::int32_t>(qos.depth);
   entity.history().depth = depth;
-  // Of keys those are forgotten first of which no sample waits to be taken.
+  // When there are too many keys, those without an unread sample are dropped first.
   const std::int32_t instances = qos.keys == Keys::kSome ? 16 : 1;
   const std::int32_t samples = keeps_all ? 0 : std::max(5000 / instances, depth);  // 0: no limit
   entity.resource_limits().max_instances = instances;
@@ -221,7 +222,7 @@ inline dds::DataReaderQos reader_qos(const Qos& qos, const std::string& user_dat
   dds::DataReaderQos out;
   apply(out, qos, user_data);
   if (port != 0) out.endpoint().unicast_locator_list.push_back(locator("0.0.0.0", port));
-  // How often a reader that has not heard of a writer's history asks for it; 70 ms by default.
+  // How often a reader that has not received a writer's history asks for it; 70 ms by default.
   out.reliable_reader_qos().times.initialAcknackDelay = {0, 10'000'000};
   return out;
 }
@@ -244,16 +245,16 @@ inline dds::DataWriterQos writer_qos(const Qos& qos, const std::string& user_dat
   return out;
 }
 
-// Participants of one process, and the endpoints of one, would else hand each other their samples
-// without any socket. Nobody could tell then whether the sockets still work. Before the first
-// participant.
+// Otherwise participants of one process, and the endpoints of one, would pass each other their
+// samples without any socket, and the sockets would go untested. Before the first participant.
 inline void speak_through_sockets() {
   eprosima::fastrtps::LibrarySettingsAttributes settings;
   settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
   eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
 }
 
-// All that the servers know is told to a super client; a mere client hears of what it uses only.
+// A super client receives everything that the servers know; a mere client receives only what it
+// uses.
 inline void find_through(const std::vector<DiscoveryServer>& servers,
                          rtps::BuiltinAttributes& builtin) {
   builtin.discovery_config.discoveryProtocol = rtps::DiscoveryProtocol::SUPER_CLIENT;
@@ -265,7 +266,8 @@ inline void find_through(const std::vector<DiscoveryServer>& servers,
   }
 }
 
-// `peers`, and the hosts of servers, are IPv4 addresses. What is received goes through `reception` (careful_transport.h).
+// `peers`, and the hosts of servers, are IPv4 addresses. Datagrams are received through `reception`
+// (careful_transport.h).
 inline dds::DomainParticipantQos participant_qos(const ParticipantOptions& options,
                                                  const std::vector<std::string>& peers,
                                                  const Reception& reception) {
@@ -279,7 +281,8 @@ inline dds::DomainParticipantQos participant_qos(const ParticipantOptions& optio
       out.properties().properties().emplace_back(name, value);
   }
 
-  // Of 64 KiB each. By default there is one for each thread that could send at the same time, of which most never do.
+  // Each buffer has 64 KiB. By default there is one for each thread that could send at the same
+  // time; most of these never do.
   out.allocation().send_buffers.preallocated_number = 1;
   out.allocation().send_buffers.dynamic = true;
 
@@ -348,7 +351,7 @@ inline ParticipantInfo to_info(const rtps::ParticipantProxyData& data) {
   return out;
 }
 
-// Of a reader or of a writer.
+// The description of a reader or of a writer.
 template <class ProxyData>
 EndpointInfo to_info(const ProxyData& data) {
   EndpointInfo out;

@@ -1,8 +1,8 @@
 // Reads one value out of a message, without decoding the rest of it.
 //
 // A path such as `pose.pose.position.x`, `ranges[3]` or `status[0].level` is compiled once, against
-// the definition of the message type, into a flat plan: what to pass over, then what to read.
-// Nothing is allocated while reading, but for a string. Payloads are hostile: reading one takes
+// the definition of the message type, into a flat plan: the fields to pass over, then those to
+// read. Reading allocates no memory, except for a string. Payloads are hostile: reading one takes
 // time proportional to its size, whatever it claims.
 #pragma once
 
@@ -31,7 +31,7 @@ enum class PayloadFit : std::uint8_t {
 
 class FieldReader {
  public:
-  // A path ends at a primitive or a string. Errors say what there is instead.
+  // A path ends at a primitive or a string. Errors list the existing fields.
   static Expected<FieldReader> compile(MessageLibrary& library, std::string_view type,
                                        std::string_view path);
 

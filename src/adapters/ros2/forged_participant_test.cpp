@@ -1,5 +1,5 @@
-// A participant that announces, beside its own port, that of another process, and says that it
-// holds that process's node: as anybody on an unsecured domain can.
+// A participant that announces, beside its own port, that of another process, and claims to hold
+// that process's node: as anybody on an unsecured domain can.
 #include <csignal>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -38,7 +38,7 @@ class Victim {
   std::uint16_t port_ = 0;
 };
 
-// ROS 2 has no word for partitions, nor have our nodes; the middleware's profiles have.
+// ROS 2 has no partitions, nor have our nodes; the middleware's profiles have.
 TEST(Discovery, TellsThePartitionsOfAnEndpoint) {
   fast_dds::rtps::WriterProxyData writer(4, 1);
   writer.m_qos.m_partition.push_back("left");
@@ -59,7 +59,7 @@ TEST(ForgedParticipant, DoesNotChooseWhichProcessANodeIs) {
     const ParticipantInfo* info = watcher->graph().participant(forger.prefix());
     ASSERT_NE(info, nullptr);
     EXPECT_THAT(info->metatraffic, Contains(UdpAddress{{127, 0, 0, 1}, victim.port()}))
-        << "it says that it listens there";
+        << "it announces that port";
     ASSERT_EQ(watcher->graph().nodes().size(), 1u);
     EXPECT_EQ(watcher->graph().nodes()[0].node.pid, 0) << "the victim is " << victim.pid();
   });

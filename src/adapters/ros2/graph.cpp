@@ -1,9 +1,9 @@
 #include "ros2/graph.h"
 
 #include <algorithm>
-#include <cassert>
 #include <utility>
 
+#include "base/invariant.h"
 #include "base/ros_names.h"
 #include "ros2/service_mapping.h"
 
@@ -11,7 +11,7 @@ namespace culprit::ros2 {
 namespace {
 
 // A node's reader of a topic is a subscriber, its reader of requests a server, and so on. The other
-// halves of services (replies) say nothing new.
+// halves of services (replies) add nothing.
 std::optional<GraphEndpoint> ros_meaning(const EndpointInfo& info) {
   auto channel = demangle_topic(info.topic);
   if (!channel || channel->channel == Channel::kReply) return std::nullopt;
@@ -32,7 +32,7 @@ std::optional<GraphEndpoint> ros_meaning(const EndpointInfo& info) {
                            !user_data_value(info.user_data, "serviceid").empty()};
 }
 
-// Nothing when a name breaks the grammar.
+// Gives nothing if a name breaks the grammar.
 std::optional<std::string> full_name(const NodeEntities& node) {
   if (!is_valid_namespace(node.name_space) || !is_valid_node_name(node.name)) return std::nullopt;
   return NodeName{node.name_space, node.name}.full();
@@ -139,9 +139,9 @@ void Graph::replace_claims(const GuidPrefix& prefix, Peer& peer, const Claims& b
   }
 }
 
-// What of `info` is well-formed and has room. @pre peer.claims is empty
+// The part of `info` that is well-formed and has room. @pre peer.claims is empty
 Graph::Claims Graph::read_claims(const DiscoveryInfo& info, Peer& peer) {
-  assert(peer.claims.empty());
+  CULPRIT_ASSERT(peer.claims.empty());
   Claims claims;
   std::size_t new_nodes = 0;
   for (const NodeEntities& node : info.nodes) {
@@ -166,7 +166,7 @@ Graph::Claims Graph::read_claims(const DiscoveryInfo& info, Peer& peer) {
     for (const auto* guids : {&node.readers, &node.writers}) {
       for (const Guid& guid : *guids) {
         if (guid.prefix() != info.participant.prefix())
-          continue;  // nobody speaks for another participant
+          continue;  // a participant announces only itself
         if (!endpoints.contains(guid) && claim_count_ >= options_.limits.endpoints) {
           warn_of_limit("endpoints");
           return claims;
@@ -217,7 +217,7 @@ void Graph::remove_participant(const GuidPrefix& prefix) {
   looked_for_ = nullptr;
   const auto found = peers_.find(prefix);
   if (found == peers_.end()) return;
-  // As if it had said that it holds nothing, and then left.
+  // As if it had announced that it holds nothing, and then left.
   Peer& peer = found->second;
   const Claims before = std::exchange(peer.claims, {});
   for (const auto& [name, guids] : before) claim_count_ -= guids.size();
@@ -274,7 +274,7 @@ void Graph::claim(const GuidPrefix& prefix, const std::string& name) {
   if (!may_hold(name, peer)) return tell_of_stranger(name, peer);
   if (node.told) {
     warn_of_duplicate(name, node);
-    // First, so that its leaving is no loss; and again below, when more is known of who came.
+    // First, so that its leaving is no loss; and again below, when more is known of the new one.
     if (!has_ended(peers_.at(*node.told))) {
       count_namesakes(name, node);
       node.namesakes = -1;
@@ -403,8 +403,8 @@ bool Graph::has_ended(const Peer& peer) const {
   return options_.find_process && options_.find_process(peer.info).has_ended;
 }
 
-// For a node that it comes to hold, of several at once for the first. Of an ended process nothing can be proven
-// any more: what was known of it stays known.
+// Looks for a node that the peer comes to hold; of several at once, for the first. If a process has
+// ended, nothing can be proven of it any more, and the old proof stays.
 void Graph::look_for_process(Peer& peer) {
   const bool is_next = std::exchange(looked_for_, &peer) == &peer;
   if (!is_next && options_.find_process && (peer.pid == 0 || !has_ended(peer))) {
@@ -496,8 +496,8 @@ bool Graph::has_room(const std::string& source, std::size_t Source::*what, std::
                           of_this < std::max<std::size_t>(limit / 4, 1));
 }
 
-// A participant of this machine that is there for longest without any node goes. One of ROS 2 says what its nodes are at
-// once.
+// A participant of this machine that is there for longest without any node goes. A ROS 2
+// participant announces its nodes at once.
 bool Graph::make_room() {
   const Peer* oldest = nullptr;
   for (const auto& [prefix, peer] : peers_) {

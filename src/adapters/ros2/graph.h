@@ -1,23 +1,26 @@
 // The live graph: which nodes there are, and which topics and services each of them offers or uses.
 //
-// DDS says which endpoints exist; `ros_discovery_info` says which of them belong to which node. The
-// graph is the join of both, and tells its listener every change, edge by edge, in an order that
-// makes sense: a node before its endpoints, and its endpoints away before the node.
+// DDS reports the endpoints; `ros_discovery_info` assigns them to nodes. The graph is the join of
+// both, and reports every change to its listener, edge by edge, in an order that makes sense: a
+// node before its endpoints, and its endpoints away before the node.
 //
 // - A service server is its reader of requests, a client its writer of requests. Two endpoints of
 //   one node, kind and name are one edge: it appears with the first and vanishes with the last.
 // - Two nodes of one name: the one that came last is the node, for a restarted process comes while
-//   its killed predecessor's lease still runs (20 s). The change is told as a vanishing and an
-//   appearing, and as trouble unless the predecessor's process is known to be gone.
-// - Once a process of this machine was proven to hold a name that belongs here (is_kept_here), participants without such
-//   a proof hold it no more: neither as the node nor as its namesake, for anybody may claim a name. It is told once.
-// - A participant that says that it holds a node no more is not believed at once if that node is_asked_about: the
-//   listener is told (NodeSaidToLeave) and finds out. A participant that leaves takes its nodes with it.
-// - Names come from the network. Nodes whose names break the grammar are left out and told as
+//   its killed predecessor's lease still runs (20 s). The change is reported as a vanishing and an
+//   appearing, and as trouble unless the predecessor's process is known to have exited.
+// - A process of this machine may be proven to hold a name that belongs here (is_kept_here). Then
+//   participants without such a proof lose that name, both as the node and as its namesake: any
+//   participant may claim a name. It is reported once.
+// - If a participant says that it holds a node no more, and that node is_asked_about, the graph does
+//   not believe it at once: it reports NodeSaidToLeave, and the listener finds out. A participant
+//   that leaves takes its nodes with it.
+// - Names come from the network. Nodes whose names break the grammar are left out and reported as
 //   trouble once for each participant; endpoints that are not ROS 2's are left out silently.
 // - Tables are capped. Half of each is kept free for sources that are known: this machine, and those that hold a
-//   component. One source gets at most half of the other half. So a stranger who makes up participants does not keep
-//   the robot's from being seen. On this machine one that holds no node makes room for another.
+//   component. One source gets at most half of the other half. So a stranger that makes up
+//   participants does not keep the robot's from being discovered. On this machine a participant
+//   that holds no node makes room for another.
 //
 // A pure data structure: fed by one thread, no I/O, no clock.
 #pragma once
@@ -50,15 +53,15 @@ struct GraphEndpoint {
   std::string type_hash{};
   std::string service_hash{};  // likewise of the whole service; empty before Lyrical
   std::vector<std::string> partitions{};
-  // Of services: it names its other half ("clientid=", "serviceid="), as rmw_cyclonedds and who speaks
-  // its mapping too do (service_mapping.h).
+  // Of services: it names its other half ("clientid=", "serviceid="), as rmw_cyclonedds does, and
+  // others that use its mapping (service_mapping.h).
   bool names_its_pair = false;
 };
 
 struct GraphNode {
   std::string name;  // full: "/namespace/name"
   Vendor vendor = Vendor::kOther;
-  std::string host;          // empty where the participant does not say
+  std::string host;          // empty if the participant announces none
   int pid = 0;               // on this machine; 0 where it is not known
   GuidPrefix participant{};  // that holds it
 };
@@ -66,9 +69,9 @@ struct GraphNode {
 // The process of a participant, as far as it is proven.
 struct FoundProcess {
   int pid = 0;  // on this machine; 0: it is elsewhere, or not proven
-  // What is missing for a proof, in words: "nobody here has ...". Empty where nothing is claimed.
+  // The missing part of a proof, in words: "nobody here has ...". Empty where nothing is claimed.
   std::string missing;
-  // It was on this machine, and sockets that it had are nobody's any more.
+  // It was on this machine, and no process holds its sockets any more.
   bool has_ended = false;
   bool is_trusted = false;  // not proven, but root or our own user made each of its sockets here
 };
@@ -78,7 +81,7 @@ struct NodeJoined {
 };
 struct NodeLeft {
   std::string node;
-  bool was_lost = false;  // it said no good-bye: its lease ran out
+  bool was_lost = false;  // without leaving in order: its lease ran out
 };
 struct EndpointJoined {
   std::string node;
@@ -95,7 +98,8 @@ struct NodeNamesakes {
   int others = 0;
   std::vector<GraphNode> all;  // of them and the one that counts, the newest last
 };
-// The node is still there for the graph: somebody said in the name of its participant that it is not.
+// The node is still there for the graph: a message in the name of its participant announced that it
+// is not.
 struct NodeSaidToLeave {
   std::string node;
 };
@@ -112,8 +116,8 @@ class Graph {
     std::size_t nodes = 10'000;
     std::size_t endpoints = 100'000;  // discovered, and as many again claimed
   };
-  // Asked for each node that a participant comes to hold: what speaks against it may have come
-  // since it was asked last.
+  // Asked for each node that a participant comes to hold: new evidence against it may have come
+  // since the last call.
   using FindProcess = std::function<FoundProcess(const ParticipantInfo&)>;
   using IsRunning = std::function<bool(int pid)>;
   // Whether somebody else ends what this node runs in: then nothing is missing without a proof.
@@ -142,21 +146,24 @@ class Graph {
   explicit Graph(Options options);
 
   void apply(const DiscoveryEvent& event);
-  // What `info.participant` said of its nodes, in which form; replaces what it said before.
+  // The nodes of `info.participant`, as it announced them in this form; replaces the earlier
+  // announcement.
   void apply(const DiscoveryInfo& info, std::optional<GidSize> form = {});
-  // A process of this machine has ended: whoever it was is gone, though leases may still run.
+  // A process of this machine has ended: its participants have left, though leases may still run.
   void forget_process(int pid);
-  // Likewise all that claim a name that others claim too, and have ended by now, as far as the
-  // operating system can tell: by their processes, or by their sockets where those are not proven.
+  // As above, for all participants that claim a name that others claim too, and that have ended by
+  // now. The operating system shows that by their processes, or by their sockets if no process is
+  // proven.
   void forget_ended_namesakes();
 
-  // It was found out that what was told as NodeSaidToLeave is so.
+  // It is proven that the node of NodeSaidToLeave has left.
   void believe_left(const std::string& node);
-  // Whether that was told, and it is neither believed nor taken back.
+  // Whether that was reported, and is neither believed nor taken back.
   bool is_said_to_leave(const std::string& node) const;
   // A process of this machine was proven to hold this name before.
   void note_proven_here(const std::string& node);
-  // Looks again at who claims a name without a proof: a process may be proven later than its node is heard of.
+  // Checks the participants again that claim a name without a proof: a process may be proven later
+  // than its node is discovered.
   void look_at_unproven();
 
   // Null when they are not known (any more).
@@ -194,7 +201,7 @@ class Graph {
   struct ParticipantView {
     ParticipantInfo info;
     int pid = 0;                    // on this machine, as far as it is known
-    std::optional<GidSize> form{};  // of what it said of its nodes; nothing: it said nothing
+    std::optional<GidSize> form{};  // of its announcement of nodes; nothing: there was none
     std::vector<std::string> nodes{};
     std::vector<OwnedEndpoint> endpoints{};
     std::size_t undiscovered = 0;  // endpoints that its nodes claim, and that were not discovered
@@ -213,9 +220,9 @@ class Graph {
     int pid = 0;
     bool pid_is_known = false;
     std::string missing;       // for a proof of its process
-    std::string told_missing;  // what was told of last
+    std::string told_missing;  // the last one that was reported
     bool is_trusted = false;
-    std::set<std::string> doubted;  // nodes that it is said to hold no more
+    std::set<std::string> doubted;  // nodes that it announced to hold no more
     bool told_of_stranger = false;
     std::string source;
     std::uint64_t number = 0;  // in the order in which they came
@@ -238,7 +245,7 @@ class Graph {
     int count = 0;  // of the endpoints that make it
   };
   struct Node {
-    std::vector<GuidPrefix> claimants;  // who says it holds this node; the last one that may counts
+    std::vector<GuidPrefix> claimants;  // that announce this node; the last one that may counts
     std::optional<GuidPrefix> told;     // whose node the listener knows
     std::map<EdgeKey, Edge> edges;      // that the listener knows
     int namesakes = 0;                  // that the listener knows
@@ -289,8 +296,8 @@ class Graph {
   std::unordered_map<Guid, std::string> owners_;  // endpoint -> the node that claims it
   std::map<std::string, Node> nodes_;
   std::set<std::string> proven_here_;  // names that are kept here, and were proven to be held here
-  std::set<const char*> exceeded_;     // limits that trouble was told of
-  bool is_losing_ = false;             // who leaves now said no good-bye
+  std::set<const char*> exceeded_;     // limits whose trouble was reported
+  bool is_losing_ = false;             // participants leave now by their leases
   const Peer* looked_for_ = nullptr;   // whose process was looked for last, in one change
 };
 

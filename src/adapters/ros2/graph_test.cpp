@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-// Endpoint ids: the last byte says reader (4) or writer (3).
+// Endpoint ids: the last byte marks a reader (4) or a writer (3).
 Guid guid_of(std::uint8_t participant, std::uint8_t entity, bool is_reader) {
   Guid guid;
   guid.bytes[0] = participant;
@@ -48,7 +48,7 @@ NodeEntities node(std::string name_space, std::string name, std::vector<Guid> en
   return entities;
 }
 
-// A graph, and everything that it told, as short texts.
+// A graph, and all its reports, as short texts.
 class Watched {
  public:
   explicit Watched(Graph::Options options = {}) : graph_(with_listener(std::move(options))) {}
@@ -315,7 +315,7 @@ TEST(Graph, ANamesakeIsForgottenWhenItsProcessHasEnded) {
   EXPECT_THAT(watched.told(), ElementsAre("=/a has 0 namesakes"));
   running.erase(20);
   watched.looks_for_ended_namesakes();
-  EXPECT_THAT(watched.told(), IsEmpty()) << "alone, it is told of by who watches its process";
+  EXPECT_THAT(watched.told(), IsEmpty()) << "for a single one, its process's watcher reports that";
 }
 
 TEST(Graph, AnUnprovenNamesakeIsForgottenWhenItsSocketsAreGone) {
@@ -349,7 +349,7 @@ TEST(Graph, TheProcessOfManyNodesIsLookedForOnce) {
   watched.joins(1, 10).says(1, {node("/", "a"), node("/", "b"), node("/", "c")});
   EXPECT_EQ(looks, 1);
   watched.says(1, {node("/", "a"), node("/", "b"), node("/", "c"), node("/", "d")});
-  EXPECT_EQ(looks, 2) << "it says something else";
+  EXPECT_EQ(looks, 2) << "its announcement changed";
 }
 
 TEST(Graph, TellsOnceWhatIsMissingForTheProofOfAProcess) {
@@ -366,7 +366,7 @@ TEST(Graph, TellsOnceWhatIsMissingForTheProofOfAProcess) {
                   "+/a", "+/b", "+/c"));
 }
 
-// Of several nodes in a process one may be somebody else's to end, and another ours.
+// A process may hold a node that another owner ends, and one that culprit ends.
 TEST(Graph, NothingIsMissingForANodeThatOthersEnd) {
   Graph::Options options;
   options.find_process = [](const ParticipantInfo&) {
@@ -408,13 +408,13 @@ TEST(Graph, AnEndedProcessIsGoneAtOnce) {
   watched.says(1, {node("/", "a")}).says(2, {node("/", "b")}).says(3, {node("/", "c")}).told();
   watched.ends(10);
   EXPECT_THAT(watched.told(), ElementsAre("-/a"));
-  watched.ends(0);  // nobody's
+  watched.ends(0);  // no process
   EXPECT_THAT(watched.told(), IsEmpty());
   watched.leaves(1);  // its lease
   EXPECT_THAT(watched.told(), IsEmpty());
 }
 
-// One message says that the camera is no more. Whoever acts on that finds out first.
+// One message announces that the camera has left. The listener that acts on that finds out first.
 TEST(Graph, ANodeThatIsAskedAboutStaysUntilItIsFoundToHaveLeft) {
   Graph::Options options;
   options.is_asked_about = [](const std::string& node) { return node == "/camera"; };
@@ -434,7 +434,7 @@ TEST(Graph, ANodeThatIsAskedAboutStaysUntilItIsFoundToHaveLeft) {
   watched.says(1, {camera});
   EXPECT_FALSE(watched.graph().is_said_to_leave("/camera"));
   watched.is_found_to_have_left("/camera");
-  EXPECT_THAT(watched.told(), IsEmpty()) << "it said meanwhile that it is there";
+  EXPECT_THAT(watched.told(), IsEmpty()) << "meanwhile it announced itself";
 
   watched.says(1, {}).is_found_to_have_left("/camera");
   EXPECT_THAT(watched.told(), ElementsAre("?-/camera", "-/camera publishes /rgb", "-/camera"));
@@ -445,7 +445,7 @@ TEST(Graph, ANodeThatIsAskedAboutStaysUntilItIsFoundToHaveLeft) {
       << "the participant takes its nodes with it";
 }
 
-// Anybody may claim a name. Of a process of this machine there is proof.
+// Anybody may claim a name. A process of this machine can be proven.
 TEST(Graph, AClaimOfAStrangerIsNeitherTheNodeNorItsNamesake) {
   std::map<int, FoundProcess> found = {
       {10, {10, ""}}, {20, {0, "nobody here has it"}}, {30, {30, ""}}};
@@ -646,7 +646,7 @@ TEST(Graph, TellsWhetherWhoLeftSaidGoodBye) {
   EXPECT_THAT(lost, ElementsAre(true, false));
 }
 
-// Whatever comes in whatever order: what was told, taken together, is what the graph shows.
+// In any order of events: the reported changes add up to the graph's content.
 RC_GTEST_PROP(Graph, WhatItTellsAddsUpToWhatItShows, ()) {
   std::set<std::string> nodes, edges;
   Graph::Options options;

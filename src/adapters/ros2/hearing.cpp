@@ -48,7 +48,7 @@ Expected<std::unique_ptr<Hearing>> Hearing::begin(Participant& participant, Exec
 const char* Hearing::doubt(Time now) const {
   const bool hangs = later(participant_.receivers_attended(), kReceivePatience) <= now;
   return hangs ? "datagrams lie unread, since the thread that receives them hangs"
-               : "what culprit says to itself over the network does not come back";
+               : "culprit's own messages over the network do not come back";
 }
 
 void Hearing::say() { writer_->write(payload_of(secret_)); }

@@ -1,12 +1,11 @@
-// A witness of our own hearing: what we say to ourselves, through sockets like everything that the
-// robot says, and when it came back last.
+// Tests our own reception: a message that we send to ourselves, through sockets like all messages
+// of the robot, and when it came back last.
 //
-// It is said on the executor's thread and heard on the receive thread, so that it also tells of these
-// threads, and of the network interfaces. Discovery has a port of its own: what the participant
-// announces of itself has to come through there. What comes by multicast is no witness, since it goes
-// away with a network interface; of every socket it is seen whether datagrams lie unread
-// (receive_watch.h). What readers that have time were sent before it is heard before it
-// (receive_thread.h).
+// It is sent on the executor's thread and received on the receive thread, so that it also tests
+// these threads, and the network interfaces. Discovery has a port of its own: the participant's own
+// announcements must arrive there. Multicast datagrams are no test, since they vanish with a
+// network interface. Instead each socket is checked for unread datagrams (receive_watch.h). Samples
+// to readers that have time arrive before it if they were sent before it (receive_thread.h).
 #pragma once
 
 #include <algorithm>
@@ -26,8 +25,8 @@ class Hearing {
   static constexpr const char* kTopic = "rt/_culprit_hearing";
   static constexpr const char* kType = "culprit::msg::dds_::Heartbeat_";
   static constexpr Duration kPeriod = std::chrono::milliseconds(100);
-  // Whoever does not hear itself for so long does not hear others either. Shorter than the silences
-  // that rules usually wait for.
+  // A participant that has not received its own message for so long does not receive others either.
+  // Shorter than the usual topic timeouts of rules.
   static constexpr Duration kPatience = std::chrono::milliseconds(400);
   // The first time, since the endpoints have to find each other.
   static constexpr Duration kFirstPatience = std::chrono::seconds(3);
@@ -35,7 +34,7 @@ class Hearing {
   // Both outlive it. An error when the middleware, or the domain's permissions, refuse.
   static Expected<std::unique_ptr<Hearing>> begin(Participant& participant, Executor& executor);
 
-  // What is announced to everybody comes to our port for discovery too, once a second.
+  // Our announcements to everybody arrive at our own discovery port too, once a second.
   static constexpr Duration kDiscoveryPatience = std::chrono::seconds(5);
 
   // A datagram that lies unread for so long has no thread that reads it. Looked at again and again.
@@ -51,10 +50,11 @@ class Hearing {
                      later(participant_.receivers_attended(), kReceivePatience)});
   }
 
-  // Says it now, not only when the next time has come. What was said to us before is heard before it. From any thread.
+  // Sends it now, without waiting for its next time. Messages that were sent to us before arrive
+  // before it. From any thread.
   void say();
 
-  // What did not come back in time, when it is doubtful.
+  // The test that did not come back in time, if reception is doubtful.
   const char* doubt(Time now) const;
 
  private:
@@ -63,7 +63,7 @@ class Hearing {
   Participant& participant_;
   // Shared with the reader's callback, which runs before there is a Hearing.
   std::shared_ptr<std::atomic<std::int64_t>> heard_;
-  std::uint64_t secret_ = 0;  // nobody else says it
+  std::uint64_t secret_ = 0;  // no other participant sends it
   std::unique_ptr<Reader> reader_;
   std::unique_ptr<Writer> writer_;
   std::unique_ptr<Timer> timer_;

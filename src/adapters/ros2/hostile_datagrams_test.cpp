@@ -70,7 +70,7 @@ class HostileDatagrams : public testing::Test {
     EXPECT_TRUE(speaks());
   }
 
-  // The robot's writers, as the attacker knows them: its own, and those that tell of endpoints.
+  // The robot's writers, as the attacker knows them: its own, and those that announce endpoints.
   std::vector<Guid> writers() const {
     std::vector<Guid> all{writer->guid()};
     for (const std::uint8_t entity : {3, 4}) {
@@ -80,7 +80,7 @@ class HostileDatagrams : public testing::Test {
     }
     return all;
   }
-  // Whether what the robot writes is heard.
+  // Whether the robot's samples arrive.
   bool speaks() {
     const auto sequence = writer->write(kSmall);
     return sequence && samples.wait_for_one([&](std::int64_t heard) { return heard == *sequence; });
@@ -147,8 +147,8 @@ TEST_F(HostileDatagrams, FragmentsWithinTheBudgetTakeNoMoreThanIt) {
   EXPECT_LT(resident_bytes(), before + (64u << 20));
 }
 
-// What a participant announces comes to its own port for discovery again and again: the witness of
-// the thread there.
+// A participant's own announcements arrive at its discovery port again and again: they prove that
+// the thread there works.
 TEST_F(HostileDatagrams, TheOwnAnnouncementsComeThrough) {
   const auto is_within = [&](auto condition) {
     const auto end = std::chrono::steady_clock::now() + kPatience;
@@ -161,7 +161,7 @@ TEST_F(HostileDatagrams, TheOwnAnnouncementsComeThrough) {
   EXPECT_TRUE(is_within([&] { return victim->own_came_through() > first; }));
 }
 
-// What is said through the middleware comes back only through sockets and threads that live.
+// Messages through the middleware come back only if sockets and threads work.
 TEST(Hearing, IsDoubtfulWithoutTheThreadThatSpeaks) {
   const TestDomain domain;
   const auto participant = join(domain);

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <string>
+
+#include "base/invariant.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -109,14 +110,14 @@ const LifecycleTransition* LifecycleMachine::find(std::string_view label) const 
 }
 
 LifecycleTransition LifecycleMachine::begin(const LifecycleTransition& transition) {
-  assert(transition.start == state_);
+  CULPRIT_ASSERT(transition.start == state_);
   state_ = transition.goal;
   return transition;
 }
 
 LifecycleTransition LifecycleMachine::finish(TransitionResult result) {
   const LifecycleTransition* found = find(label_of(result));
-  assert(found != nullptr);
+  CULPRIT_ASSERT(found != nullptr);
   const LifecycleTransition transition = *found;
   state_ = transition.goal;
   return transition;

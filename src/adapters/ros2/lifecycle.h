@@ -27,7 +27,7 @@ enum class TransitionId : std::uint8_t {
   kActiveShutdown = 7
 };
 
-// What a node's work in a transition came to.
+// The result of a node's work in a transition.
 enum class TransitionResult : std::uint8_t { kSuccess, kFailure, kError };
 
 struct LifecycleTransition {

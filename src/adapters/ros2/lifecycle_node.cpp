@@ -92,7 +92,7 @@ bool LifecycleNode::change_state(const LifecycleTransition* transition) {
   return result == TransitionResult::kSuccess;
 }
 
-// What the transition state that the node is in has to do.
+// Runs the callback of the node's present transition state.
 TransitionResult LifecycleNode::work() {
   const auto run = [](const LifecycleCallbacks::Work& callback) {
     return callback ? callback() : TransitionResult::kSuccess;
@@ -115,7 +115,7 @@ TransitionResult LifecycleNode::work() {
   }
 }
 
-// Only the states, as rcl does: whoever relies on the rest would fail with real nodes.
+// Only the states, as rcl does: a program that relies on the rest would fail with real nodes.
 void LifecycleNode::publish(const LifecycleTransition& step) {
   msg::TransitionEvent event;
   event.start_state = to_message(step.start);

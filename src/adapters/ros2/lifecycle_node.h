@@ -1,7 +1,7 @@
 // A managed node: a node with the lifecycle services and ~/transition_event of rclcpp_lifecycle.
 //
 // - It starts unconfigured. Transitions are asked for through ~/change_state, or by trigger().
-// - The callback of a transition does its work on the executor's thread and says how it went;
+// - The callback of a transition does its work on the executor's thread and returns its result;
 //   during it the node is in the transition state, and nothing else of the process runs, as with
 //   rclcpp's single-threaded executor.
 // - Failure returns to the state before, an error calls on_error, whose success leads to

@@ -15,7 +15,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-// A managed node on a context of its own, that writes down what it was asked to do.
+// A managed node on a context of its own, that records its requests.
 struct Managed {
   explicit Managed(const TestDomain& domain, LifecycleCallbacks callbacks = {})
       : context(domain.options()) {

@@ -21,8 +21,8 @@
 
 namespace culprit::ros2 {
 
-// Options for participants that only hear one another. Aborts the test program when no domain is
-// free.
+// Options for participants that discover only one another. Aborts the test program when no domain
+// is free.
 class TestDomain {
  public:
   ParticipantOptions options() const {

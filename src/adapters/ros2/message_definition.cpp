@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <charconv>
 #include <optional>
 #include <set>
 #include <utility>
 
+#include "base/invariant.h"
 #include "ros2/names.h"
 
 namespace culprit::ros2 {
@@ -127,7 +127,7 @@ class Parser {
     return {};
   }
 
-  // What closes must have been opened; the value itself is never sent.
+  // A bracket or quote that opens must close; the value itself is never sent.
   Expected<void> parse_default(std::string_view value) const {
     if (value.empty() || value.starts_with('#')) return {};
     const char first = value.front();
@@ -230,7 +230,7 @@ std::string to_text(std::string_view type, const MessageDefinitions& definitions
     return text;
   };
   const auto described = definitions.find(type);
-  assert(described != definitions.end());
+  CULPRIT_ASSERT(described != definitions.end());
   std::string text = fields_of(described->second);
   for (const auto& [name, part] : definitions) {
     if (name != type) text += std::string(80, '=') + "\nMSG: " + name + "\n" + fields_of(part);

@@ -1,9 +1,9 @@
-// What a message type looks like, read from the text of its `.msg` file
+// The definition of a message type, read from the text of its `.msg` file
 // (design.ros2.org/articles/legacy_interface_definition.html).
 //
-// Kept is what the wire needs, the fields in order with their types, and the bounds, which are part
-// of a type's identity (type_description.h). Constants, default values and comments are checked for form
-// and dropped, for nothing of them is sent.
+// It keeps what the wire needs: the fields in order with their types, and the bounds, which are
+// part of a type's identity (type_description.h). Constants, default values and comments are
+// checked for form and dropped, for they are never sent.
 #pragma once
 
 #include <cstdint>

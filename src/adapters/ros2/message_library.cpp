@@ -76,8 +76,8 @@ Place place_of(std::string_view type) {
   return {std::string(type) + ".msg"};
 }
 
-// A service as a type of its own, by whose hash it is known (rosidl, from Iron on): what is asked, what is
-// answered, and what is told of a call where it is watched.
+// A service as a type of its own, by whose hash it is known (rosidl, from Iron on): the request,
+// the response, and the event of a call where calls are introspected.
 std::optional<std::string> service_text(std::string_view type) {
   constexpr std::string_view kEvent = "_Event";
   const bool is_event = type.ends_with(kEvent);
@@ -93,7 +93,7 @@ std::optional<std::string> service_text(std::string_view type) {
          "_Response[<=1] response\n";
 }
 
-// What goes to and fro for an action, around its own three messages (rosidl_parser, "implicit" types).
+// The messages of an action around its own three (rosidl_parser, "implicit" types).
 std::optional<std::string> action_text(std::string_view type) {
   if (!is_of_kind(type, "/action/")) return std::nullopt;
   const auto action_before = [&](std::string_view suffix) -> std::optional<std::string> {
@@ -212,7 +212,8 @@ Expected<MessageDefinition> MessageLibrary::load(std::string_view type) const {
                " with --message-path"};
 }
 
-// What is no file, or a very large one, is passed over: others may decide what there is.
+// A path that is no file, or a very large file, is passed over: others may control the folder's
+// content.
 std::optional<std::string> MessageLibrary::read(const std::filesystem::path& path) const {
   const int file = open_below(root_, path);
   if (file < 0) return std::nullopt;

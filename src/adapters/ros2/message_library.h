@@ -20,28 +20,30 @@ class MessageLibrary {
   // In each directory, the first one first: <package>/msg/<Type>.msg, then
   // share/<package>/msg/<Type>.msg; of "package/srv/Type_Request" and "..._Response" the parts of
   // <package>/srv/<Type>.srv, and of "package/action/Type_Goal", "..._Result" and "..._Feedback" those of
-  // <package>/action/<Type>.action. `root`: what directories, and links below them, are meant to
-  // be below (/proc/PID/root for what a process in a container sees); nothing above it is read.
+  // <package>/action/<Type>.action. `root`: the folder that directories, and links below them, must
+  // be below (/proc/PID/root for paths of a process in a container); nothing above it is read.
   explicit MessageLibrary(std::vector<std::filesystem::path> directories = {},
                           std::filesystem::path root = "/");
 
-  // What a recorder or another program keeps of `type`: the text of its .msg file, then those of
-  // the types in it, each after a line of 80 '=' and one "MSG: package/Type"
+  // Adds the definition of `type` that a recorder or another program keeps: the text of its .msg
+  // file, then those of the types in it, each after a line of 80 '=' and one "MSG: package/Type"
   // (mcap.dev/spec/registry, ros2msg). Goes before the directories; the first one of a type counts.
   // Of what is made for a service or an action, as "package/srv/Type_Event", it may be the text of the
   // .srv or .action file, as rosbag2 stores it.
   void learn(std::string_view type, std::string_view text);
 
-  // `type` is "package/msg/Type" or a part as above. What is made of parts is known whether they are or not:
-  // "package/srv/Type" itself, and of an action "..._SendGoal", "..._GetResult", their requests and responses, and
-  // "..._FeedbackMessage" (rosidl). The definition lives as long as the library.
+  // `type` is "package/msg/Type" or a part as above. Types that consist of parts are known whether
+  // their parts are or not: "package/srv/Type" itself, and of an action "..._SendGoal",
+  // "..._GetResult", their requests and responses, and "..._FeedbackMessage" (rosidl). The
+  // definition lives as long as the library.
   Expected<const MessageDefinition*> find(std::string_view type);
 
   // `type` and all types in it. Errors: as find(); more than a thousand of them.
   Expected<MessageDefinitions> with_parts(std::string_view type);
-  // What announces this very type (type_description.h). Errors: as with_parts().
+  // The hash that endpoints of this very type announce (type_description.h). Errors: as
+  // with_parts().
   Expected<std::string> hash_of(std::string_view type);
-  // Makes these the definitions, whatever was known of those types before.
+  // Replaces all earlier definitions of those types.
   void define(const MessageDefinitions& definitions);
 
  private:

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-// A directory of message definitions that is gone after the test.
+// A directory of message definitions that is removed after the test.
 class MessageDirectory {
  public:
   MessageDirectory& with(const std::string& file, const std::string& text) {

@@ -156,7 +156,7 @@ struct Log {
   bool operator==(const Log&) const = default;
 };
 
-// Of a managed node. Ids and labels: lifecycle.h.
+// The state of a lifecycle node. Ids and labels: lifecycle.h.
 struct State {
   static constexpr std::string_view kType = "lifecycle_msgs/msg/State";
   std::uint8_t id = 0;
@@ -184,7 +184,7 @@ struct TransitionDescription {
   bool operator==(const TransitionDescription&) const = default;
 };
 
-// rclcpp fills in start_state and goal_state only. The sample's source timestamp tells when.
+// rclcpp fills in start_state and goal_state only. The sample's source timestamp gives the time.
 struct TransitionEvent {
   static constexpr std::string_view kType = "lifecycle_msgs/msg/TransitionEvent";
   std::uint64_t timestamp = 0;
@@ -210,7 +210,7 @@ enum class ParameterType : std::uint8_t {
   kStringArray = 9
 };
 
-// A flat struct on the wire: every member is always there, `type` says which one counts.
+// A flat struct on the wire: every member is always there, `type` selects one.
 struct ParameterValue {
   static constexpr std::string_view kType = "rcl_interfaces/msg/ParameterValue";
   std::uint8_t type = 0;  // a ParameterType, as far as the sender knows them
@@ -296,11 +296,11 @@ struct ParameterDescriptor {
   bool operator==(const ParameterDescriptor&) const = default;
 };
 
-// ---- what a type looks like, as Jazzy's nodes tell it (type_description_interfaces)
+// ---- definitions of types, as Jazzy's nodes describe them (type_description_interfaces)
 
 struct FieldType {
   static constexpr std::string_view kType = "type_description_interfaces/msg/FieldType";
-  std::uint8_t type_id = 0;           // type_description.h says which is which
+  std::uint8_t type_id = 0;           // numbered in type_description.h
   std::uint64_t capacity = 0;         // of an array, or a bounded sequence
   std::uint64_t string_capacity = 0;  // of a bounded string
   std::string nested_type_name;

@@ -40,7 +40,7 @@ int open_socket() { return socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NON
 }  // namespace
 
 Expected<std::optional<NamedLock>> NamedLock::take(const std::string& name) {
-  constexpr int kWaiting = 64;  // who may ask for the holder between two calls of admit()
+  constexpr int kWaiting = 64;  // requests for the holder between two calls of admit()
   const int fd = open_socket();
   if (fd < 0) return Error{std::string("no Unix socket for a lock: ") + std::strerror(errno)};
   NamedLock lock(fd);

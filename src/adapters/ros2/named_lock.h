@@ -1,8 +1,8 @@
-// A name that one process of this machine has at a time, whoever runs it.
+// A name that one process of this machine holds at a time, whichever user runs it.
 //
 // It is an abstract Unix socket, which the kernel gives to one process only and frees when that
-// process ends, however it ends. There is no file to clean up. Anybody on the machine may take any
-// name; holder() tells whose it is.
+// process exits. There is no file to clean up. Any process on the machine may take any name;
+// holder() gives the process that has it.
 #pragma once
 
 #include <cstdint>
@@ -15,16 +15,16 @@ namespace culprit::ros2 {
 
 class NamedLock {
  public:
-  // By the kernel's word, of when it took the name.
+  // As the kernel recorded it when the process took the name.
   struct Holder {
     int pid = 0;  // 0: in another PID namespace
     std::uint32_t user = 0;
   };
 
-  // Nothing: another process has it. Of a longer `name` than a socket may have, a hash takes the
-  // place of the end.
+  // Nothing: another process has it. If `name` is longer than a socket's name may be, a hash
+  // replaces its end.
   static Expected<std::optional<NamedLock>> take(const std::string& name);
-  // Nothing: nobody has it, or that process has not called admit() for too long.
+  // Nothing: no process has it, or that process has not called admit() for too long.
   static std::optional<Holder> holder(const std::string& name);
 
   NamedLock(NamedLock&& other) noexcept;

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
+
+#include "base/invariant.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -55,13 +56,13 @@ Expected<std::string> resolve_name(std::string_view name, const NodeName& node) 
 }
 
 std::string mangle_topic(Channel channel, std::string_view name) {
-  assert(is_valid_topic_name(name));
+  CULPRIT_ASSERT(is_valid_topic_name(name));
   const Mangling m = mangling(channel);
   return std::string(m.prefix).append(name).append(m.topic_suffix);
 }
 
 std::string mangle_type(Channel channel, std::string_view type) {
-  assert(is_valid_type_name(type));
+  CULPRIT_ASSERT(is_valid_type_name(type));
   const auto first = type.find('/');
   const auto last = type.rfind('/');
   return std::string(type.substr(0, first))

@@ -4,9 +4,9 @@
 //     request of service /a/s  ->  rq/a/sRequest    pkg/srv/Type  ->  pkg::srv::dds_::Type_Request_
 //     reply of service /a/s    ->  rr/a/sReply      pkg/srv/Type  -> pkg::srv::dds_::Type_Response_
 //
-// Every name that comes from the network is data: the demangling functions give nothing for what
-// breaks the grammar of design.ros2.org/articles/topic_and_service_names.html, so whatever they
-// give is safe to print and to compare.
+// Every name from the network is untrusted. The demangling functions give nothing for a name that
+// breaks the grammar of design.ros2.org/articles/topic_and_service_names.html, so their results are
+// safe to print and to compare.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@
 
 namespace culprit::ros2 {
 
-// What a DDS topic carries. Actions are made of these.
+// The content of a DDS topic. Actions are made of these.
 enum class Channel : std::uint8_t { kTopic, kRequest, kReply };
 
 struct RosChannel {
@@ -39,8 +39,8 @@ struct NodeName {
 // "/a/b/node" -> {"/a/b", "node"}.
 Expected<NodeName> parse_node_name(std::string_view full_name);
 
-// What a node means by a topic or service name: "/x" as it is, "x" below its namespace, "~/x" below
-// itself.
+// Resolves a topic or service name as a node does: "/x" as it is, "x" below its namespace, "~/x"
+// below itself.
 Expected<std::string> resolve_name(std::string_view name, const NodeName& node);
 
 // @pre is_valid_topic_name(name), is_valid_type_name(type)

@@ -11,8 +11,8 @@
 //     executor.run();    // until stop()
 //
 // Everything calls back on the executor's thread unless it says otherwise. Parameters belong to
-// that thread (before it runs, to whoever sets the node up). Errors are bad names, or what the
-// middleware refuses.
+// that thread (before it runs, to the thread that sets the node up). Errors are bad names, or what
+// the middleware refuses.
 #pragma once
 
 #include <functional>
@@ -75,8 +75,9 @@ class Client {
 
 class Node {
  public:
-  // Who only looks has a name, and what it creates: nothing of its own that every other process would have
-  // to discover. It says nothing to /rosout, and its parameters are nobody's.
+  // An onlooker has a name, and the endpoints that it creates: no others that every other process
+  // would have to discover. nothing of its own that every other process would have to discover. It
+  // does not publish to /rosout, and serves no parameters.
   enum class Extent : std::uint8_t { kWhole, kOnlooker };
   // The context outlives the node, the node everything that it created.
   static Expected<std::unique_ptr<Node>> create(Context& context, NodeName name,

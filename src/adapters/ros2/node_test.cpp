@@ -181,7 +181,7 @@ TEST(Node, ABusyExecutorDropsTheOldestSamples) {
       [&](const Sample& sample) { raw.add(decode<msg::Float64>(sample.payload)->data); });
   ASSERT_TRUE(subscription);
   ASSERT_TRUE(watcher);
-  // Both are matched when both have heard something.
+  // Both are matched when both have received something.
   do {
     publisher->publish({-1});
     std::this_thread::yield();
@@ -191,7 +191,7 @@ TEST(Node, ABusyExecutorDropsTheOldestSamples) {
   manager.context.run([&] {
     for (const double value : {1, 2, 3, 4, 5, 6}) publisher->publish({value});
     // The receive thread goes on meanwhile. Which reader it serves first is its own affair: where
-    // one has heard the sixth, the other has heard the fifth.
+    // one has received the sixth, the other has received the fifth.
     raw.wait_for_one([](double value) { return value == 6; });
   });
   ASSERT_TRUE(values.wait_for_one([](double value) { return value == 6; }));

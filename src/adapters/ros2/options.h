@@ -1,6 +1,6 @@
-// How a participant joins: which domain, how far it reaches, what it says of itself. The
-// environment variables are those that the robot's own nodes obey, so that culprit started in the
-// same shell meets the same robot.
+// How a participant joins: which domain, its reach, and its announcement. The environment variables
+// are those that the robot's own nodes obey, so that culprit started in the same shell meets the
+// same robot.
 #pragma once
 
 #include <cstdint>
@@ -33,18 +33,19 @@ struct ParticipantOptions {
   std::string enclave = "/";
   std::vector<std::string>
       peers;  // further IPv4 addresses or host names to announce to, where multicast does not reach
-  // Not empty: all that these know is seen (a super client), and nobody else is found.
+  // Not empty: everything that these know is discovered (a super client), and nothing else.
   std::vector<DiscoveryServer> servers{};
-  // What ros_discovery_info is written with. Nothing: as the first peer does.
+  // The form in which ros_discovery_info is written. Nothing: the form of the first peer.
   std::optional<GidSize> gid_size;
-  // Of the UDP sockets; the system's default of 208 kB loses large best effort samples.
-  // net.core.rmem_max caps it.
+  // The size of the UDP sockets' buffers. The system's default of 208 kB loses large best effort
+  // samples; net.core.rmem_max caps it.
   std::uint32_t socket_buffer_bytes = 4 * 1024 * 1024;
   std::optional<Security> security{};  // nothing: in the clear
-  // Others' readers, or writers, of which topics (DDS names) this participant never meets, for it never writes, or
-  // reads, those: what it creates there is refused. They are discovered all the same, but the middleware does not get to
-  // know them, which is most of what it costs to discover a large robot. Without effect in a secured domain and through
-  // servers. Called from any thread. Empty: it may meet all.
+  // Whether this participant never matches others' readers, or writers, of a topic (DDS name), for
+  // it never writes, or reads, there: creating such an endpoint is refused. They are discovered all
+  // the same, but are kept from the middleware, which saves most of the cost of discovering a large
+  // robot. Without effect in a secured domain and through servers. Called from any thread. Empty:
+  // it may match all.
   std::function<bool(std::string_view topic, EndpointRole role)> never_meets{};
 };
 

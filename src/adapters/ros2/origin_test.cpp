@@ -1,4 +1,5 @@
-// A stranger who speaks in the name of a robot's node, on the same machine and for real: what becomes of the node.
+// A stranger that speaks in the name of a robot's node, on the same machine and for real: the
+// effect on the node.
 #include <algorithm>
 #include <memory>
 #include <string>
@@ -20,7 +21,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// The node /camera in a process of its own, which is seen with all that it has.
+// The node /camera in a process of its own, which is discovered with all its endpoints.
 struct Robot {
   explicit Robot(const TestDomain& domain, LiveContext& context)
       : watcher(context), process({CULPRIT_PEER_NODE, std::to_string(domain.number()), "/camera"}) {
@@ -108,7 +109,7 @@ TEST(Origin, FarewellsOfAStrangerDoNotRemoveANodeWhoseProcessIsProven) {
   ASSERT_EQ(sources.size(), 1u);
   EXPECT_EQ(sources[0].pid, robot.process.pid());
   EXPECT_EQ(sources[0].user, getuid());
-  // Its own good-bye counts.
+  // Its own goodbye counts.
   robot.process.end(SIGTERM);
   EXPECT_TRUE(watcher.sees_node_leave("/camera"));
 }
@@ -118,7 +119,7 @@ TEST(Origin, FarewellsThatBeganBeforeItWasSeenDoNotKeepAProcessFromBeingProven) 
   LiveContext listener(domain.options());
   Robot robot(domain, listener);
   ASSERT_TRUE(robot.is_seen);
-  std::vector<UdpAddress> to;  // also where nobody listens yet
+  std::vector<UdpAddress> to;  // also where nothing listens yet
   for (std::uint32_t i = 10; i < 250; ++i)
     to.push_back({{127, 0, 0, 1}, static_cast<std::uint16_t>(7400 + 250 * domain.number() + i)});
   const HostileProcess stranger(robot.farewells(), to, 200ms);
@@ -137,7 +138,7 @@ TEST(Origin, FarewellsThatBeganBeforeItWasSeenDoNotKeepAProcessFromBeingProven) 
   }));
 }
 
-// Fast DDS believes a participant that says that the endpoints of another have ended.
+// Fast DDS believes a participant that announces the end of another's endpoints.
 TEST(Origin, AParticipantTellsOfItselfOnly) {
   const TestDomain domain;
   LiveContext watcher(domain.options());

@@ -5,7 +5,6 @@
 // A pure data structure; node.h gives it its services and events.
 #pragma once
 
-#include <cassert>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include "base/expected.h"
+#include "base/invariant.h"
 #include "base/value.h"
 #include "ros2/messages.h"
 
@@ -32,7 +32,7 @@ class ParameterStore {
   // added.
   using OnSet = std::function<Expected<void>(std::span<const msg::Parameter>)>;
 
-  // What happened is told here: declared (new), set (changed). The stamp is left to the receiver.
+  // Receives each event: declared (new), set (changed). The stamp is left to the receiver.
   using OnEvent = std::function<void(msg::ParameterEvent)>;
 
   // `node` is the full name that events carry.
@@ -58,7 +58,7 @@ class ParameterStore {
   template <class T>
   T get(std::string_view name) const {
     const msg::ParameterValue* value = find(name);
-    assert(value != nullptr);
+    CULPRIT_ASSERT(value != nullptr);
     return std::get<T>(*to_value(*value));
   }
 

@@ -16,7 +16,7 @@ msg::Parameter parameter(std::string name, const Value& value) {
   return {std::move(name), to_parameter_value(value)};
 }
 
-// What setting this one parameter answers: "ok", or the reason why not.
+// The answer to setting this one parameter: "ok", or the reason why not.
 std::string set(ParameterStore& store, const std::string& name, const Value& value) {
   const msg::Parameter change = parameter(name, value);
   const msg::SetParametersResult result = store.set({&change, 1});

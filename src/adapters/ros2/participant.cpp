@@ -97,7 +97,7 @@ class Gate {
   bool open_ CULPRIT_GUARDED_BY(mutex_) = true;
 };
 
-// The writers that one reader hears, which the filter has to know.
+// The writers that one reader receives, which the filter must know.
 class HeardWriters {
  public:
   HeardWriters(DatagramFilter& filter, const Qos& qos, std::function<void()> on_unheard,
@@ -116,9 +116,9 @@ class HeardWriters {
   }
   HeardWriters(const HeardWriters&) = delete;
 
-  // Matches of two threads at once are told as if they were one (Fast DDS 2.9,
-  // DataReaderImpl::update_subscription_matched_status): then it is not clear any more who is heard.
-  // `reader` is always the same.
+  // Matches of two threads at once are reported as one (Fast DDS 2.9,
+  // DataReaderImpl::update_subscription_matched_status): then it is unclear which writers are
+  // matched. `reader` is always the same.
   void note(const Guid& writer, const Guid& reader, int change) {
     const MutexLock lock(mutex_);
     reader_ = reader;
@@ -135,7 +135,7 @@ class HeardWriters {
     for (const Guid& writer : writers_) filter_.end_hearing(writer, reader_);
     writers_.clear();
   }
-  // Who is delivered is heard, whether that was told or not.
+  // A writer whose sample is delivered is matched, whether that was reported or not.
   void delivered(const Guid& writer, const Guid& reader) {
     {
       const MutexLock lock(mutex_);
@@ -162,7 +162,7 @@ class HeardWriters {
   std::optional<DatagramFilter::Change> unclear_ CULPRIT_GUARDED_BY(mutex_);
 };
 
-// Why the middleware may refuse a reader or writer, as far as one can tell.
+// The likely reason why the middleware refused a reader or writer.
 std::string likely_refusal(const std::optional<Security>& security) {
   if (!security) return "";
   return "; do the permissions of the enclave " + security->enclave +
@@ -190,7 +190,7 @@ class Reader::Impl final : public dds::DataReaderListener {
     incoming_.use = options_.payload;
   }
 
-  // The destructor undoes whatever of this succeeded.
+  // The destructor undoes the part of this that succeeded.
   Expected<void> open(const std::string& likely_refusal) {
     const auto topic = topics_.acquire(options_.topic, options_.type, options_.qos.keys);
     if (!topic) return Error{topic.error()};
@@ -239,8 +239,8 @@ class Reader::Impl final : public dds::DataReaderListener {
   const Guid& guid() const { return guid_; }
 
  private:
-  // What has time is handed over without the middleware, which has nothing to add to it: that is most of
-  // what hearing it costs.
+  // If the reader has time, samples bypass the middleware, which would do nothing for them: it
+  // would be most of the cost of receiving them.
   DatagramFilter::OnWhole on_whole(const ReaderOptions& options) {
     const Qos& qos = options.qos;
     const bool is_plain = qos.reliability == Reliability::kBestEffort && qos.keys == Keys::kNone &&
@@ -452,7 +452,7 @@ class Participant::Impl {
   Time receivers_attended() const { return watch_.attended(); }
 
  private:
-  // Who is there announces itself again and again, mostly as it was.
+  // A participant announces itself again and again, mostly unchanged.
   void on_event(DiscoveryEvent event) {
     if (const auto* there = std::get_if<ParticipantInfo>(&event)) {
       reception_.sources->keep(there->guid.prefix());
@@ -519,7 +519,7 @@ DatagramSources::Origin Participant::origin_of(const GuidPrefix& participant) co
   return impl_->sources().of(participant);
 }
 void Participant::prove(const GuidPrefix& participant, int pid) {
-  // What came from elsewhere in its name tells nothing of it.
+  // Datagrams from elsewhere in its name prove nothing about it.
   if (!impl_->origins().prove(participant, pid, origin_of(participant).addresses))
     impl_->forget_sources(participant);
 }

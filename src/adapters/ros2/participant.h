@@ -1,11 +1,11 @@
 // A participant on DDS: it discovers the others, reads and writes payloads as bytes, and knows
 // nothing of ROS but its quality of service. context.h makes a ROS 2 participant of it.
 //
-// Threads. Callbacks run on the thread that receives and on one of the middleware, with its locks
-// held, one at a time for each reader, writer or participant. They copy what they need and leave: they must not create
-// or destroy readers and writers, write, or wait. Everything else here may be called from any
-// thread. Destroying a reader, writer or participant waits for its running callback; so do not do
-// it while holding a mutex which that callback takes, nor from the callback.
+// Threads. Callbacks run on the thread that receives and on one of the middleware's, with its locks
+// held. Each reader, writer or participant gets one at a time. They copy what they need and leave:
+// they must not create or destroy readers and writers, write, or wait. Everything else here may be
+// called from any thread. Destroying a reader, writer or participant waits for its running
+// callback; so do not do it while holding a mutex which that callback takes, nor from the callback.
 //
 // Transport is UDP. Shared memory is off: segments of different Fast DDS versions are incompatible,
 // and meeting an older one there can abort the process; UDP costs a few microseconds more.
@@ -39,12 +39,12 @@ class Origins;
 // By the vendor id that the participant announces (RTPS 2.3 §9.3.1.3).
 enum class Vendor : std::uint8_t { kFastDds, kCyclone, kOther };
 
-// What a remote participant says of itself. Strings are as sent, cut at 1024 bytes.
+// The announcement of a remote participant. Strings are as sent, cut at 1024 bytes.
 struct ParticipantInfo {
   Guid guid;
   Vendor vendor = Vendor::kOther;
-  std::string host;  // its machine; empty when it does not say
-  int pid = 0;       // its process there, as seen by itself; 0 when it does not say
+  std::string host;                     // its machine; empty if not announced
+  int pid = 0;                          // its process, by its own PID namespace; 0 if not announced
   std::vector<UdpAddress> metatraffic;  // where it listens for discovery
   bool shares_memory = false;           // it listens in shared memory, too (Fast DDS)
   bool is_secured = false;              // it has an identity, signed by somebody
@@ -55,14 +55,14 @@ struct ParticipantInfo {
 
 struct ParticipantGone {
   Guid guid;
-  bool was_lost = false;  // it said no good-bye: its lease ran out
+  bool was_lost = false;  // without a goodbye: its lease ran out
 };
 
 // Also sent again when what is known changes, and only then.
 using DiscoveryEvent = std::variant<ParticipantInfo, EndpointInfo, ParticipantGone, EndpointGone>;
 using DiscoveryCallback = std::function<void(DiscoveryEvent)>;
 
-// A sample as it came. `payload` is gone when the callback returns.
+// A sample as it came. `payload` is invalid when the callback returns.
 struct Sample {
   ByteView
       payload;  // with its encapsulation; empty for a reader of headers, cut for one of beginnings
@@ -78,13 +78,13 @@ using SampleCallback = std::function<void(const Sample&)>;
 enum class Match : std::uint8_t { kMade, kLost };
 using MatchCallback = std::function<void(const Guid& remote, Match)>;
 
-// kHeader: for topics whose rate matters and whose size hurts; no payload is copied. Who does not read
-// what is said has time: samples may come by ReceiveThread::kSoon late, for to wake a thread for each
-// is most of what hearing a topic costs. They come before whatever was said later to others.
-// kBeginning: of each payload only so much that a std_msgs/Header at its beginning is whole, unless its
-// frame has an absurd name.
-// kBeginningLater, kWholeLater: as much as without "Later", and samples may come as late as those of kHeader. Not for large
-// ones: what comes meanwhile has to lie in the socket, or it is lost.
+// kHeader: for topics whose rate matters and whose size hurts; no payload is copied. A reader that
+// does not read payloads has time: samples may come by ReceiveThread::kSoon late. Waking a thread
+// for each sample would be most of the cost of a topic. They come before any sample that was sent
+// later to another reader. kBeginning: of each payload only so much that a std_msgs/Header at its
+// beginning is whole, unless its frame has an absurd name. kBeginningLater, kWholeLater: as much as
+// without "Later", and samples may come as late as those of kHeader. Not for large samples: samples
+// that arrive meanwhile must fit into the socket's buffer, or they are lost.
 enum class PayloadUse : std::uint8_t {
   kWhole,
   kWholeLater,
@@ -100,7 +100,7 @@ constexpr bool is_whole(PayloadUse use) {
   return use == PayloadUse::kWhole || use == PayloadUse::kWholeLater;
 }
 inline constexpr std::size_t kBeginningSize = 512;  // bytes
-// So much is given of a payload of `size` bytes.
+// The bytes that a reader gets of a payload of `size` bytes.
 constexpr std::size_t given_of(PayloadUse use, std::size_t size) {
   if (use == PayloadUse::kHeader) return 0;
   return is_whole(use) ? size : std::min(size, kBeginningSize);
@@ -113,9 +113,9 @@ struct ReaderOptions {
   PayloadUse payload = PayloadUse::kWhole;
   std::string user_data;
   MatchCallback on_match;  // may be empty
-  // Of best effort readers: a writer lives and writes, but its samples cannot be put together, for
-  // they are too large, or lost in part, or somebody forged their numbers. May be empty; called
-  // like SampleCallback, once for each such sample, after a few.
+  // For best effort readers: called if a writer is alive and writes, but its samples cannot be
+  // reassembled. They are too large, or lost in part, or somebody forged their numbers. May be
+  // empty; called like SampleCallback, once for each such sample, after the first few.
   std::function<void()> on_unheard{};
 };
 
@@ -175,15 +175,16 @@ class Participant {
 
   const Guid& guid() const;
 
-  // Says nothing more but the goodbye of its end, which tells the others of the end of all its readers
-  // and writers at once: for who has many, and ends. @pre nothing more is created or written.
+  // Sends nothing more but the goodbye at its end, which announces the end of all its readers and
+  // writers at once: for a participant with many endpoints that ends. @pre nothing more is created
+  // or written.
   void leave();
 
-  // While one of these lives nothing is sent. What is created meanwhile is announced together, a tenth of a
-  // second after the next endpoint is created, which the others are told of at once: they ask for what
-  // they missed, and get it in few datagrams instead of one for each endpoint and participant. For who
-  // creates many endpoints in one go, and has time. It must be short. In a secured domain it does
-  // nothing.
+  // While one of these lives, no announcement is sent. Endpoints that are created meanwhile are
+  // announced together, a tenth of a second after the next endpoint, which is announced at once.
+  // The others then ask for the missing ones, and get them in few datagrams instead of one for each
+  // endpoint and participant. For callers that create many endpoints in one go, and have time. Its
+  // life must be short. In a secured domain it does nothing.
   class Hold {
    public:
     explicit Hold(Participant& participant);
@@ -195,8 +196,8 @@ class Participant {
     Impl& participant_;
   };
 
-  // While one of these lives, what comes to readers and writers that have time does not come late. For who waits for
-  // an answer.
+  // While one of these lives, samples to readers and writers that have time do not come late. For a
+  // caller that waits for an answer.
   class Hurry {
    public:
     explicit Hurry(Participant& participant);
@@ -218,13 +219,13 @@ class Participant {
   Origins& origins();
   // When its last one came; kLongAgo: it is not there.
   Time heard_last(const GuidPrefix& participant) const;
-  // Since when nothing of its own came through one of its ports (DatagramSources).
-  // Every second something should.
+  // Since when no own datagram came through one of its ports (DatagramSources). Every second
+  // something should.
   Time own_came_through() const;
   // Whether the thread that receives is at work (ReceiveWatch): looks, and until when it was.
   void look_at_receivers(Time now);
   Time receivers_attended() const;
-  // What came and was kept from the middleware.
+  // The datagrams that were kept from the middleware.
   DatagramFilter::Refused refused() const;
 
   // An error when the middleware refuses: one participant cannot have a topic with two types.

@@ -391,7 +391,7 @@ std::unique_ptr<Participant> join(const ParticipantOptions& options,
   return std::move(*participant);
 }
 
-// Of the endpoints of all others, what is known now.
+// The endpoints of all others, as known now.
 class Known {
  public:
   DiscoveryCallback listener() {
@@ -515,7 +515,7 @@ TEST(Participant, WhoStaysAsItIsIsToldOfOnce) {
   ASSERT_TRUE(told.wait_for_count(1));
   const Time joined = live_now();
   const auto announced = [&] { return watcher->heard_last(other->guid().prefix()); };
-  for (int i = 0; i < 2; ++i) {  // without endpoints it says nothing else
+  for (int i = 0; i < 2; ++i) {  // without endpoints it sends nothing else
     const Time before = std::max(joined, announced());
     const Time end = later(live_now(), kPatience);
     while (later(before, std::chrono::milliseconds(500)) >= announced() && live_now() < end)
@@ -525,11 +525,12 @@ TEST(Participant, WhoStaysAsItIsIsToldOfOnce) {
   EXPECT_EQ(told.all().size(), 1u);
 }
 
-// A port where a participant of this machine may be found (RTPS 2.3 §9.6.1.1), held by somebody who only listens.
+// A port where a participant of this machine may be found (RTPS 2.3 §9.6.1.1), held by a mere
+// listener.
 class Eavesdropper {
  public:
-  // That of `participant`, or the next lower one that nobody has: Fast DDS numbers the participants of a process, with those of
-  // earlier tests, and the one that is listened to may have the first.
+  // Binds the port of `participant`, or the next lower free one. Fast DDS numbers the participants
+  // of a process, with those of earlier tests, and the eavesdropped one may have the first.
   Eavesdropper(std::uint32_t domain, int participant) {
     sockaddr_in address{};
     address.sin_family = AF_INET;

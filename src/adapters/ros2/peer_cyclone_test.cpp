@@ -172,7 +172,7 @@ TEST(PeerCyclone, ServesUsAgainAtOnceAfterItWasKilled) {
     ASSERT_TRUE(manager.sees_process("/cyclone", peer->pid()));
     EXPECT_TRUE(change(*client, 1)) << i;
     peer->end(SIGKILL);
-    // A request that nobody acknowledges: it must neither reach the successor nor spoil the first
+    // A request that is never acknowledged: it must neither reach the successor nor spoil the first
     // one to it.
     EventLog<CallOutcome> outcomes;
     client->call(encode(srv::ChangeState::Request{{9, ""}}), Repeat::kNever, 20ms,

@@ -1,5 +1,5 @@
-// Our own nodes in processes of their own: what a manager sees and does across processes, and when
-// they are killed.
+// Our own nodes in processes of their own: a manager's observations and actions across processes,
+// and when they are killed.
 #include <algorithm>
 #include <memory>
 #include <signal.h>
@@ -53,7 +53,7 @@ TEST(PeerNode, IsSeenWithItsProcess) {
   EXPECT_TRUE(manager.context.sees_process("/ns/peer", peer->pid()));
 }
 
-// As one whose computer was cut off: its lease runs out, and it has said all of itself before.
+// As one whose computer was cut off: its lease runs out, and it has announced everything before.
 TEST(PeerNode, IsSeenAgainWhenItComesBackAfterItsLeaseRanOut) {
   const TestDomain domain;
   Manager manager(domain);

@@ -48,7 +48,7 @@ Candidates sends_from(const UdpAddress& address, const std::vector<UdpSocket>& s
   return found;
 }
 
-// Who it runs as: the real and the effective user.
+// The users that it runs as: the real and the effective one.
 std::vector<unsigned> users_of(const fs::path& process) {
   std::ifstream file(process / "status");
   for (std::string line; std::getline(file, line);) {
@@ -60,7 +60,7 @@ std::vector<unsigned> users_of(const fs::path& process) {
   return {};
 }
 
-// Those of its sockets that are its own: a file of another user's socket may have been given to it.
+// The sockets that it opened itself: a file of another user's socket may have been given to it.
 class Holdings {
  public:
   explicit Holdings(const fs::path& process)
@@ -90,7 +90,7 @@ int to_pid(const fs::path& process) {
   return error == std::errc() && rest == name.data() + name.size() ? pid : 0;
 }
 
-// The latest if it cannot be told.
+// The latest if it is unknown.
 std::uint64_t began(const fs::path& process) { return running_since(process).value_or(UINT64_MAX); }
 
 }  // namespace
@@ -113,14 +113,14 @@ FoundProcess ProcessFinder::find(const ParticipantInfo& participant) const {
   return found;
 }
 
-// A participant keeps the sockets where it listens as long as it lives, and one that it sends from.
-// A new process may get the first ones.
+// A participant keeps its listening sockets until it exits, and one that it sends from. A new
+// process may get the first ones.
 bool ProcessFinder::has_ended(const ParticipantInfo& participant) const {
   const std::vector<UdpAddress>& from = participant.origin.addresses;
   const auto is_here = [](const UdpAddress& each) { return is_local(each.ip); };
   if (!std::all_of(from.begin(), from.end(), is_here)) return false;
   const std::vector<UdpSocket> sockets = udp_sockets(proc_);
-  if (sockets.empty()) return false;  // there is at least the one that this was heard by
+  if (sockets.empty()) return false;  // at least the socket that sent the announcement exists
   const auto is_nobodys = [&](const UdpAddress& each) {
     return bound_to(each, sockets).sockets.empty();
   };
@@ -139,7 +139,7 @@ FoundProcess ProcessFinder::prove(const ParticipantInfo& participant,
     // Every machine with containers has the address of a bridge, and it is the same one.
     if (!is_local(each.ip) && may_be_elsewhere) return {};
     if (!is_local(each.ip))
-      return {0, "it says that it is on this machine, but datagrams in its name come from " +
+      return {0, "it claims to be on this machine, but datagrams in its name come from " +
                      to_text(each)};
     addresses.push_back(each);
   }
@@ -167,8 +167,8 @@ FoundProcess ProcessFinder::prove(const ParticipantInfo& participant,
   std::string all;
   for (const UdpAddress& each : addresses) all += (all.empty() ? "" : ", ") + to_text(each);
   return {0,
-          "no process whose files can be seen holds all of its sockets (" + all +
-              ") alone; of another user's, culprit may see them only with CAP_SYS_PTRACE",
+          "no process with readable files holds all of its sockets (" + all +
+              ") alone; culprit may read another user's only with CAP_SYS_PTRACE",
           false, are_trusted};
 }
 
@@ -190,7 +190,7 @@ int ProcessFinder::speaker(const ParticipantInfo& participant) const {
   });
 }
 
-// Forks of a process hold the same sockets: what it says helps to choose among those.
+// Forks of a process hold the same sockets: the claimed PID helps to choose among those.
 int ProcessFinder::oldest(int said, const std::function<bool(const fs::path&)>& is_it) const {
   if (said > 0 && is_it(proc_ / std::to_string(said))) return said;
   int oldest = 0;

@@ -73,7 +73,7 @@ TEST(ProcessFinder, KnowsNothingOfOtherMachines) {
   info.metatraffic.front().ip = kElsewhere;
   const FoundProcess found = ProcessFinder().find(info);
   EXPECT_EQ(found.pid, 0);
-  EXPECT_EQ(found.missing, "") << "it does not say that it is here";
+  EXPECT_EQ(found.missing, "") << "it does not claim to be here";
 }
 
 // Its bridge for containers has the address that ours has.
@@ -95,11 +95,11 @@ TEST(ProcessFinder, AnAnnouncedPortAloneProvesNothing) {
       ProcessFinder().find(participant(sockets.listens.address(), attacker, getpid()));
   EXPECT_EQ(found.pid, 0);
   EXPECT_EQ(found.missing,
-            "it says that it is on this machine, but datagrams in its name come from "
+            "it claims to be on this machine, but datagrams in its name come from "
             "203.0.113.1:4321");
 }
 
-// Somebody on the network speaks in the name of a participant that is here.
+// A sender on the network speaks in the name of a participant of this machine.
 TEST(ProcessFinder, OneForeignDatagramSpeaksAgainstIt) {
   const Sockets sockets;
   ParticipantInfo info = sockets.participant(getpid());
@@ -116,7 +116,7 @@ TEST(ProcessFinder, APortOfSomebodyElseProvesNothing) {
   const FoundProcess found =
       ProcessFinder().find(participant(announced, sockets.sends.address(), victim.pid()));
   EXPECT_EQ(found.pid, 0);
-  EXPECT_THAT(found.missing, HasSubstr("no process whose files can be seen holds all"));
+  EXPECT_THAT(found.missing, HasSubstr("no process with readable files holds all"));
 }
 
 TEST(ProcessFinder, APortOfAnotherAddressIsAnother) {
@@ -143,7 +143,7 @@ TEST(ProcessFinder, KnowsNothingOfAClosedPort) {
               HasSubstr("no process of this machine has the socket"));
 }
 
-// Whose process is not proven: another user's, or one of which no datagram came.
+// Participants whose process is not proven: another user's, or one that sent no datagram.
 TEST(ProcessFinder, WhoseSocketsAreNobodysAnyMoreHasEnded) {
   auto gone = std::make_unique<Sockets>();
   const Sockets lives;

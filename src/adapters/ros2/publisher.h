@@ -1,4 +1,4 @@
-// What a node publishes: payloads, or messages of a known type. Thread-safe.
+// A node's publishers: of payloads, or of messages of a known type. Thread-safe.
 #pragma once
 
 #include <memory>

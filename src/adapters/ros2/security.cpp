@@ -34,7 +34,7 @@ Expected<std::optional<Security>> security_from_environment(
   const std::string keystore = value("ROS_SECURITY_KEYSTORE");
   if (keystore.empty())
     return Error{
-        "ROS_SECURITY_ENABLE is true, and ROS_SECURITY_KEYSTORE does not say where the keys are"};
+        "ROS_SECURITY_ENABLE is true, and ROS_SECURITY_KEYSTORE does not name the keys' folder"};
   Security security;
   security.enclave = value("ROS_SECURITY_ENCLAVE_OVERRIDE");
   if (security.enclave.empty()) security.enclave = "/culprit";

@@ -1,4 +1,5 @@
-// Security of DDS as ROS 2 uses it (SROS2): who one is, who vouches for it, and what one may do.
+// Security of DDS as ROS 2 uses it (SROS2): one's identity, the authority that signed it, and one's
+// rights.
 //
 // Six files in the enclave's folder of a keystore, as `ros2 security create_enclave` lays them out;
 // sources: DDS Security 1.1, https://design.ros2.org/articles/ros2_security_enclaves.html.
@@ -27,7 +28,7 @@ struct Security {
 Expected<std::optional<Security>> security_from_environment(
     const std::function<const char*(const char* name)>& get);
 
-// What the middleware is told of it.
+// The properties that the middleware receives for it.
 std::vector<std::pair<std::string, std::string>> properties_of(const Security& security);
 
 }  // namespace culprit::ros2

@@ -33,15 +33,16 @@ Expected<std::unique_ptr<ServiceClient>> ServiceClient::create(NodeEntry& node,
                                                                const Qos& qos, Probe probe) {
   auto client = create(node, service, qos);
   if (!client) return client;
-  // Second: what the server learns later proves what it learned before.
+  // Second: data that the server discovers later prove that it discovered the earlier ones.
   if (auto opened = (*client)->open_probe(std::move(probe)); !opened) return Error{opened.error()};
   return client;
 }
 
 ServiceClient::ServiceClient(NodeEntry& node) : node_(node), tasks_(node.context().executor()) {}
 
-// What has time is asked for again by us if it is lost: so answers need no acknowledgements. And only the last
-// request is kept, so that Fast DDS asks for the acknowledgement of each with the request itself.
+// A client with kSoon repeats a request itself if it is lost, so answers need no acknowledgements.
+// And only the last request is kept, so that Fast DDS asks for the acknowledgement of each with the
+// request itself.
 Expected<void> ServiceClient::open(const ServiceName& service, const Qos& qos, Haste haste) {
   if (!is_valid_topic_name(service.name))
     return Error{"'" + printable(service.name) + "' is not the name of a service"};
@@ -126,7 +127,7 @@ void ServiceClient::call(Bytes request, Repeat repeat, Duration timeout, Callbac
   call.repeat = repeat;
   call.callback = std::move(callback);
   if (server_for(repeat) != nullptr) send(number, call);
-  // What came in time may still lie in its socket.
+  // An answer that came in time may still lie in its socket.
   const Duration patience = haste == Haste::kSoon ? timeout + ReceiveThread::kSoon : timeout;
   call.deadline = tasks_.post_at(after(patience), [this, number] { on_deadline(number); });
   if (repeat == Repeat::kUntilAnswered) {
@@ -216,7 +217,7 @@ void ServiceClient::on_reply(const Sample& sample) {
 void ServiceClient::on_request_reader(const Guid& reader, Match match) {
   if (match == Match::kMade) {
     request_readers_.emplace(reader, ++matches_);
-    // What a dead server did not acknowledge must not come between its successor and us
+    // Requests that an exited server did not acknowledge must not delay those to its successor
     // (service_mapping.h).
     const MutexLock lock(mutex_);
     if (request_writer_) request_writer_->forget_unacknowledged();
@@ -261,7 +262,7 @@ void ServiceClient::update_servers() {
       has_new = has_new || !is_known(before, server.participant);
       servers_.push_back(server);
     }
-    // A new server may be the successor of the one that proved to know us, and that one dead.
+    // A new server may be the successor of the one that proved to know us and has exited.
     if (has_new || (proven_ && !is_known(servers_, proven_->participant))) lose_proof();
     for (auto& [number, call] : calls_) {
       if (has_new && call.repeat == Repeat::kUntilAnswered) send(number, call);
@@ -271,7 +272,7 @@ void ServiceClient::update_servers() {
   send_waiting();
 }
 
-// Perhaps it was ours, and dead. If it lives, it will prove it.
+// It may have been ours. If ours still runs, it will prove it.
 void ServiceClient::on_server_left() {
   {
     const MutexLock lock(mutex_);
@@ -280,8 +281,8 @@ void ServiceClient::on_server_left() {
   tasks_.post([this] { start_probe(); });
 }
 
-// Whether both belong to one server. Two services of one name in one process are told apart only on
-// Cyclone.
+// Whether both belong to one server. Two services of one name in one process can be distinguished
+// only on Cyclone.
 bool ServiceClient::is_pair(const Guid& reader, const Guid& writer) const {
   if (reader.prefix() != writer.prefix()) return false;
   const Graph& graph = node_.context().graph();
@@ -313,7 +314,7 @@ void ServiceClient::start_probe() {
     round = proof_round_;
   }
   is_probing_ = true;
-  // Whoever waits for the proof hurries (call()).
+  // A caller that waits for the proof hastens it (call()).
   probe_->call(
       probe_request_, Repeat::kUntilAnswered, kProbeTimeout,
       [this, round](const CallResult& result) {

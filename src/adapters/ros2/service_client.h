@@ -1,8 +1,8 @@
 // Calls a service of another node, without ever blocking.
 //
 // Speaks to servers on Fast DDS and on Cyclone DDS, each in its own mapping (service_mapping.h).
-// What DDS promises is not enough to call safely: "matched" here does not mean matched there, and a
-// request or reply that is sent before the other side has matched is lost. Hence two kinds of
+// The guarantees of DDS are not enough to call safely: "matched" here does not mean matched there,
+// and a request or reply that is sent before the other side has matched is lost. Hence two kinds of
 // request:
 //
 // - one that may run twice (a read) is sent again every 200 ms until it is answered;
@@ -14,8 +14,8 @@
 //
 // A killed server stays matched until its lease ends (20 s), next to its restarted successor:
 // requests go to both, and the newest server, or the one that has proven to be alive, decides the
-// mapping. A proof is good until another server comes, or the graph says that one has left; so
-// whoever hears from the graph that a node is there can call it.
+// mapping. A proof is good until another server comes, or the graph reports that one has left; so a
+// caller that learns from the graph that a node is there can call it.
 #pragma once
 
 #include <cstdint>
@@ -55,12 +55,12 @@ enum class CallOutcome : std::uint8_t {
 struct CallResult {
   CallOutcome outcome = CallOutcome::kUnreachable;
   ByteView reply;     // a payload with its encapsulation; gone when the callback returns
-  GuidPrefix server;  // who answered
+  GuidPrefix server;  // the participant that answered
 };
 
-// Thread-safe. The callback of a call comes once: an answer on a receive thread (participant.h says
-// what is not allowed there), its absence on the executor's thread. When the client is destroyed,
-// calls under way are forgotten.
+// Thread-safe. The callback of a call comes once: an answer on a receive thread (participant.h
+// lists what is not allowed there), its absence on the executor's thread. When the client is
+// destroyed, calls under way are forgotten.
 class ServiceClient {
  public:
   using Callback = std::function<void(const CallResult&)>;
@@ -70,8 +70,9 @@ class ServiceClient {
     Bytes request;
   };
 
-  // The node entry outlives the client. kSoon: for one that asks again and again, and mostly has time, as the client of
-  // a probe; its answers are not sent again by the server if they are lost.
+  // The node entry outlives the client. kSoon: for a client that repeats its requests, and mostly
+  // has time, as the client of a probe; its answers are not sent again by the server if they are
+  // lost.
   static Expected<std::unique_ptr<ServiceClient>> create(NodeEntry& node,
                                                          const ServiceName& service,
                                                          const Qos& qos = qos::kServices,
@@ -138,12 +139,13 @@ class ServiceClient {
   std::optional<Call> take(CallNumber number) CULPRIT_REQUIRES(mutex_);
 
   NodeEntry& node_;
-  // What replies name us by. Copies: a reply may come while reader and writer are being destroyed.
+  // The ids by which replies name us. They are copies: a reply may come while reader and writer are
+  // being destroyed.
   Guid reader_id_;
   Guid writer_id_;
   std::uint64_t header_id_ = 0;  // what Cyclone knows us by
 
-  // Of the executor's thread: the matched endpoints, with the order in which they came.
+  // Used by the executor's thread only: the matched endpoints, with the order in which they came.
   std::map<Guid, std::uint64_t> request_readers_;
   std::map<Guid, std::uint64_t> reply_writers_;
   std::uint64_t matches_ = 0;

@@ -7,15 +7,14 @@
 //   the client and the client's own count of requests. Sixteen bytes, so that the alignment of the
 //   message stays as it was.
 //
-// What a node speaks follows from its vendor. One server can serve both kinds of client at once.
+// The vendor of a node decides its way. One server can serve both kinds of client at once.
 //
-// Where Fast DDS meets Cyclone there is one more trap. As long as a sample of ours is not
-// acknowledged by everybody (and a killed peer does not acknowledge, until its lease ends), Fast
-// DDS lets the first sample to a new reader follow a heartbeat that announces it. Cyclone takes
-// what the first heartbeat announces for history, in which a volatile reader has no interest, and
-// drops the sample. So a client gives up on its old requests when a new server comes, and a server
-// sends a reply to nobody before its first one to a client on Cyclone, and waits until that was
-// acknowledged.
+// Where Fast DDS meets Cyclone there is one more trap. Some peer may not acknowledge a sample of
+// ours (a killed one does not until its lease ends). As long as that is so, Fast DDS first sends a
+// new reader a heartbeat that announces its first sample. Cyclone takes what the first heartbeat
+// announces for history, in which a volatile reader has no interest, and drops the sample. So a
+// client drops its old requests when a new server comes. A server first sends a client on Cyclone a
+// reply that is addressed to no client, and waits until that was acknowledged.
 #pragma once
 
 #include <cstdint>

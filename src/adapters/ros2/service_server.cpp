@@ -13,7 +13,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kLongestWait = 5s;
-// While a killed client does not acknowledge, until its lease ends, nobody can tell when a new one
+// While a killed client does not acknowledge, until its lease ends, it is unknown when a new one
 // did.
 constexpr auto kLongestGreeting = 200ms;
 constexpr auto kBetweenLooks = 1ms;
@@ -142,7 +142,7 @@ void ServiceServer::deliver(Reply reply) {
   if (is_expected(reply) && has_greeted(reply)) return send(reply);
   const std::uint64_t number = next_waiting_++;
   waiting_.emplace(number, std::move(reply));
-  // Then the client has gone, or will never hear of it; nothing is to be done about either.
+  // Then the client has left, or will never receive it; nothing is to be done about either.
   tasks_.post_at(Executor::Clock::now() + kLongestWait, [this, number] { waiting_.erase(number); });
 }
 
@@ -167,8 +167,7 @@ std::optional<ServiceServer::Call> ServiceServer::read_header(const Request& req
   return Call{std::move(split->payload), std::move(reply)};
 }
 
-// Whether the reader that the reply is for has matched, as far as the client said which one that
-// is.
+// Whether the reader that the reply is for has matched, as far as the client named it.
 bool ServiceServer::is_expected(const Reply& reply) const {
   if (const auto* guid = std::get_if<Guid>(&reply.reader)) return reply_readers_.contains(*guid);
   const auto* id = std::get_if<std::string>(&reply.reader);
@@ -181,8 +180,8 @@ bool ServiceServer::is_expected(const Reply& reply) const {
 }
 
 // Whether the first sample to a reader on Cyclone, which may be lost (service_mapping.h), is behind
-// us. It is one for nobody, and the reply follows once it was acknowledged: sent at once, both may
-// be announced by the same heartbeat.
+// us. It is addressed to no client, and the reply follows once it was acknowledged: sent at once,
+// both may be announced by the same heartbeat.
 bool ServiceServer::has_greeted(const Reply& reply) {
   if (!reply.header) return true;
   const auto now = Executor::Clock::now();

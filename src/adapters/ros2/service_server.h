@@ -1,9 +1,9 @@
 // Offers a service to clients on Fast DDS and on Cyclone DDS at once (service_mapping.h).
 //
 // A request is handled on the executor's thread. A reply that is sent before the client's reply
-// reader has matched would be lost, so it waits for that, up to 5 s and without holding anything
-// up. Both rmw implementations wait 100 ms, for they do hold up what comes next; on a busy machine
-// that loses replies.
+// reader has matched would be lost. So it waits for the match, up to 5 s, and delays nothing else.
+// Both rmw implementations wait 100 ms, for they do hold up what comes next; on a busy machine that
+// loses replies.
 #pragma once
 
 #include <deque>
@@ -26,7 +26,7 @@
 
 namespace culprit::ros2 {
 
-// By which the types of a service are known (type_description.h); empty: not announced.
+// The hashes that identify the types of a service (type_description.h); empty: not announced.
 struct ServiceHashes {
   std::string request{};
   std::string response{};
@@ -38,8 +38,8 @@ class ServiceServer {
   // Request payload to reply payload, both with their encapsulation. An empty reply is none: the
   // request was malformed.
   using Handler = std::function<Bytes(ByteView request)>;
-  // For who needs time: the answer is given when it is there, once, from any thread. It may come
-  // when the server is gone, and goes nowhere then.
+  // For a handler that needs time: the answer is given when it is there, once, from any thread. If
+  // it comes after the server was destroyed, it is dropped.
   using Answer = std::function<void(Bytes reply)>;
   using SlowHandler = std::function<void(ByteView request, Answer answer)>;
 
@@ -63,7 +63,7 @@ class ServiceServer {
     Bytes payload;
     SampleIdentity related;               // in the inline mapping
     std::optional<ServiceHeader> header;  // in the other one
-    // Who it is for, as far as the client said: its reader's GUID, or the id in that reader's user
+    // The client's reply reader, as far as the client named it: its GUID, or the id in its user
     // data.
     std::variant<std::monostate, Guid, std::string> reader;
   };
@@ -73,7 +73,7 @@ class ServiceServer {
     Bytes request;
     Reply reply;
   };
-  // The server as those see it who answer late.
+  // The server as late answers see it.
   struct Late {
     Mutex mutex;
     ServiceServer* server CULPRIT_GUARDED_BY(mutex) = nullptr;  // null: it is gone
@@ -106,7 +106,7 @@ class ServiceServer {
   const std::shared_ptr<Late> late_;
   const std::size_t depth_;
 
-  // Of the executor's thread.
+  // Used by the executor's thread only.
   std::set<Guid> reply_readers_;
   bool has_fresh_reader_ = false;  // one that has matched since the last greeting
   // Set while a greeting is on its way.

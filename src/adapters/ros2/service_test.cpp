@@ -89,7 +89,8 @@ TEST(Service, AnswersACall) {
   EXPECT_EQ(answers->all()[0].reply, request("hello"));
 }
 
-// Anybody may offer a service of that name. What he says is no answer, and keeps nobody from the true one.
+// Anybody may offer a service of that name. A stranger's reply is no answer, and does not block the
+// true one.
 TEST(Service, TakesAnswersOnlyOfTheParticipantThatIsMeant) {
   const TestDomain domain;
   Side stranger(domain, "stranger"), robot(domain, "robot"), manager(domain, "manager");
@@ -206,7 +207,7 @@ TEST(Service, AnAnswerThatComesWhenItsServerIsGoneGoesNowhere) {
   server.reset();
   asked.all()[0](request("too late"));
   Echo next(robot.node);
-  ASSERT_TRUE(answers->wait_for_count(1)) << "who comes next answers";
+  ASSERT_TRUE(answers->wait_for_count(1)) << "the successor answers";
   EXPECT_EQ(answers->all()[0].reply, request("hello"));
 }
 
@@ -326,7 +327,7 @@ TEST(Service, ServersMayGoWhileRequestsCome) {
   std::thread asking([&] {
     while (!stop) {
       client->call(request("x"), Repeat::kUntilAnswered, 5ms, [](const CallResult&) {});
-      // Far more than anybody asks, and discovery still gets its share of a busy computer.
+      // Far more than any client sends, and discovery still gets its share of a busy computer.
       std::this_thread::sleep_for(1ms);
     }
   });

@@ -1,4 +1,4 @@
-// What a node subscribes to, in two ways: at once on the receive thread, or in turn on the
+// A node's subscriptions, of two kinds: called at once on the receive thread, or in turn on the
 // executor's.
 #pragma once
 
@@ -20,10 +20,10 @@ namespace culprit::ros2 {
 // The shortest way from the wire to a callback: called on a receive thread, under the rules of
 // participant.h.
 //
-// A best effort reader passes over what it takes for old, so one forged sequence number makes it
-// deaf to a writer for as long as that writer does not come so far. A reader to which samples come
-// that it does not deliver is made anew, after a while that doubles if that does not help: samples
-// that are too large, or lost in part, come to a new reader no better.
+// A best effort reader drops samples that it takes for old. So one forged sequence number makes it
+// deaf to a writer until that writer reaches that number. A reader that receives samples and does
+// not deliver them is replaced, after a delay that doubles if that does not help: samples that are
+// too large, or lost in part, reach a new reader no better.
 class RawSubscription {
  public:
   // `topic` as resolve_name takes it; `type` is "package/msg/Type". The node entry outlives the
@@ -51,7 +51,7 @@ class RawSubscription {
   const SampleCallback on_sample_;
   const std::function<void()> tell_unheard_;
 
-  // Of the reader's callback.
+  // Used by the reader's callback.
   Time next_ = kLongAgo;
   Duration pause_ = kSoonest;
 

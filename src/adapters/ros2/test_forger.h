@@ -1,5 +1,5 @@
-// For tests: a participant that announces, beside its own port, that of another process, and says
-// that it holds that process's node: as anybody on an unsecured domain can.
+// For tests: a participant that announces, beside its own port, that of another process, and claims
+// to hold that process's node: as anybody on an unsecured domain can.
 #pragma once
 
 #include <algorithm>
@@ -92,7 +92,7 @@ inline std::uint16_t free_port() {
 
 class Forger {
  public:
-  // `address`: of the network that it is heard on.
+  // `address`: of the network on which it is discovered.
   Forger(const ParticipantOptions& options, std::uint16_t victims_port,
          const std::string& address = "127.0.0.1") {
     const std::uint16_t decoy = free_port();

@@ -14,9 +14,9 @@ class TestKeystore {
   TestKeystore();
   TestKeystore(const TestKeystore&) = delete;
 
-  // Makes the keys of an enclave ("/culprit") whose members may do what the permissions say.
+  // Makes the keys of an enclave ("/culprit") whose members may do what the permissions allow.
   void add(const std::string& enclave, const std::string& permissions);
-  // Permissions to say and hear everything.
+  // Permissions to publish and subscribe to everything.
   static std::string everything(const std::string& enclave);
 
   std::string path() const { return folder_.string(); }

@@ -1,7 +1,8 @@
 #include "ros2/timer.h"
 
-#include <cassert>
 #include <utility>
+
+#include "base/invariant.h"
 
 namespace culprit::ros2 {
 
@@ -10,7 +11,7 @@ Timer::Timer(Executor& executor, Duration period, std::function<void()> callback
       callback_(std::move(callback)),
       next_(Executor::Clock::now() + period),
       tasks_(executor) {
-  assert(period > Duration::zero());
+  CULPRIT_ASSERT(period > Duration::zero());
   tasks_.post_at(next_, [this] { tick(); });
 }
 

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cstdint>
 #include <limits>
 #include <utility>
 
 #include <openssl/sha.h>
 
+#include "base/invariant.h"
 #include "ros2/names.h"
 
 namespace culprit::ros2 {
@@ -66,7 +66,7 @@ msg::Field describe(const FieldDefinition& field) {
           {}};
 }
 
-// What a message without fields has on the wire, and in its description.
+// The field that a message without fields has on the wire and in its description.
 const FieldDefinition kFiller{.name = "structure_needs_at_least_one_member",
                               .element = Primitive::kUint8};
 
@@ -142,7 +142,7 @@ std::string to_json(const msg::IndividualTypeDescription& description) {
 
 msg::TypeDescription describe(std::string_view type, const MessageDefinitions& definitions) {
   const auto described = definitions.find(type);
-  assert(described != definitions.end());
+  CULPRIT_ASSERT(described != definitions.end());
   msg::TypeDescription out{describe(described->second), {}};
   for (const auto& [name, part] : definitions) {
     if (name != type) out.referenced_type_descriptions.push_back(describe(part));

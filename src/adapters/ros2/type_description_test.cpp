@@ -7,7 +7,7 @@
 namespace culprit::ros2 {
 namespace {
 
-// As `ros2 topic info -v` of Jazzy says them.
+// As `ros2 topic info -v` of Jazzy prints them.
 TEST(TypeHash, IsThatOfIronAndNewer) {
   MessageLibrary library;
   for (const auto& [type, hash] : std::map<std::string, std::string>{

@@ -1,10 +1,11 @@
-// A thread that does one task after the other, in the order in which they came: for what may block, so that who
-// hands it over goes on.
+// A thread that does one task after the other, in the order in which they came: for tasks that may
+// block, so that the caller goes on.
 //
 //     WorkerThread worker(8);
 //     if (!worker.put([answer] { answer(ask_the_disk()); })) refuse("too much waits");
 //
-// Tasks must not throw. What still waits when this ends is not done; the task that is being done is waited for.
+// Tasks must not throw. Tasks that still wait when this ends are dropped; the running task is
+// finished first.
 #pragma once
 
 #include <cstddef>

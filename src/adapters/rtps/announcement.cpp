@@ -32,7 +32,7 @@ enum ParameterId : std::uint16_t {
 // As the middleware has it, whose strings have 255 bytes.
 constexpr std::size_t kLongestName = 255;
 
-// A value: what is read beyond its end is zero, and makes it not ok().
+// A value: a read beyond its end gives zero, and makes it not ok().
 class Announced {
  public:
   Announced(ByteView bytes, Endianness order) : bytes_(bytes), order_(order) {}
@@ -55,7 +55,7 @@ class Announced {
     bytes_ = bytes_.subspan(count);
     return taken;
   }
-  // So many bytes as are said, and the padding behind them.
+  // As many bytes as the length gives, and the padding behind them.
   std::string_view counted() {
     const std::size_t size = u32();
     const ByteView bytes = take(size);
@@ -194,7 +194,7 @@ std::optional<EndpointInfo> read_announcement(ByteView payload, EndpointRole rol
   const auto list = announced_list(payload);
   if (!list) return std::nullopt;
   EndpointInfo info;
-  // What is not said (DDS 1.4 §2.2.3): writers are reliable, readers are not.
+  // The default where none is announced (DDS 1.4 §2.2.3): writers are reliable, readers are not.
   if (role == EndpointRole::kReader) info.qos.reliability = Reliability::kBestEffort;
   bool is_good = true;
   const bool is_whole = for_each_parameter(*list, [&](std::uint16_t id, Announced value) {

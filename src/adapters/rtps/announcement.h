@@ -1,9 +1,10 @@
-// What participants announce of their readers and writers (RTPS 2.3 §8.5.4.3): lists of parameters, each
-// a number, a length and a value of so many bytes (§9.4.2.11), the numbers in §9.6.2.2.2.
+// Decodes a participant's announcements of its readers and writers (RTPS 2.3 §8.5.4.3). They are
+// lists of parameters, each a number, a length and a value of so many bytes (§9.4.2.11), the
+// numbers in §9.6.2.2.2.
 //
-// The middleware reads the same lists. These functions are for announcements that it does not get to see
-// (datagram_filter.h), and find in them what it would: what is left out has the same value here as there.
-// They never read outside of their bytes.
+// The middleware reads the same lists. These functions are for announcements that it does not
+// receive (datagram_filter.h). They give the same result as the middleware's: omitted parameters
+// have the same defaults. They never read outside of their bytes.
 #pragma once
 
 #include <optional>
@@ -22,14 +23,15 @@ std::optional<std::string_view> announced_topic(ByteView payload);
 std::optional<EndpointInfo> read_announcement(ByteView payload, EndpointRole role);
 
 // Which endpoint ends. `parameters` are those of its submessage, whose order of bytes this is; `payload` is
-// its key, with its encapsulation, and may be empty. Nothing: none ends, or it is not said which.
+// its key, with its encapsulation, and may be empty. Nothing: none ends, or none is named.
 std::optional<Guid> read_end(ByteView parameters, Endianness order, ByteView payload);
 
-// Of which participants and endpoints something is announced, or that they have ended: every key that the lists name.
-// `parameters` and `payload` as above. What is damaged is passed over.
+// The participants and endpoints that are announced, or have ended: every key that the lists name.
+// `parameters` and `payload` as above. A damaged list is passed over.
 std::vector<Guid> announced_keys(ByteView parameters, Endianness order, ByteView payload);
 
-// The datagram by which the participant says that it has left, as Fast DDS writes it, with the number `sequence`.
+// The datagram by which the participant announces that it has left, as Fast DDS writes it, with the
+// number `sequence`.
 Bytes farewell_of(const GuidPrefix& participant, std::int64_t sequence);
 
 }  // namespace culprit::ros2

@@ -86,7 +86,7 @@ TEST(Announcement, WhatIsCutIsNotRead) {
                                              .end());
   EXPECT_TRUE(read_announcement(whole, EndpointRole::kWriter));
   for (std::size_t size = 0; size < whole.size(); ++size) {
-    // Of its own, so that reading beyond it is seen.
+    // A copy of its own, so that a read beyond its end is detected.
     const Bytes part(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
     EXPECT_FALSE(read_announcement(part, EndpointRole::kWriter)) << size;
     (void)announced_topic(part);

@@ -1,23 +1,24 @@
 // A transport over another one, which spares a participant some faults of Fast DDS, and writes down
 // where datagrams come from.
 //
-// It is quiet until it can hear. Fast DDS announces a participant while its receivers are still
-// being opened. Whoever answers at once, as every peer on the same machine does, answers into the
-// void, and repeats itself only when a heartbeat comes round, 1 to 3 s later. So nothing is sent
-// before create_participant() has returned; the announcements that follow are the first ones heard.
-// Nor is anything while a participant is taken apart before its goodbye (Participant::leave()).
+// It is silent until it can receive. Fast DDS announces a participant while its receivers are still
+// being opened. A peer on the same machine answers at once. It would answer a closed port, and
+// would repeat itself only with its next heartbeat, 1 to 3 s later. So nothing is sent before
+// create_participant() has returned; the announcements that follow are the first ones that peers
+// receive. Nor is anything sent while a participant is taken apart before its goodbye
+// (Participant::leave()).
 //
-// It receives in a thread of its own (receive_thread.h), the same for all ports, so that what it hears
-// is handed on one datagram at a time. Fast DDS has a thread for each port, and in a secured domain it
-// then frees twice what it knows of whoever leaves: a goodbye comes to a unicast and to a multicast
+// It receives in a thread of its own (receive_thread.h), the same for all ports, so that datagrams
+// are handed on one at a time. Fast DDS has a thread for each port. In a secured domain two of them
+// free the data of a leaving participant twice: a goodbye comes to a unicast and to a multicast
 // port (2.9, SecurityManager::remove_participant).
 //
-// It passes on only what comes from where its participant is (origins.h), and what the filter lets through
-// (datagram_filter.h).
+// It passes on a datagram only if it comes from where its participant is (origins.h), and if the
+// filter admits it (datagram_filter.h).
 //
-// Readers that have time (Haste::kSoon) have a port of their own. It is taken from the upper end of
-// those that RTPS 2.3 §9.6.1 gives to the domain's participants, where the last ones of many on one
-// machine would be.
+// Readers that have time (Haste::kSoon) have a port of their own. Its number is from the upper end
+// of those that RTPS 2.3 §9.6.1 gives to the domain's participants. Only the last of many
+// participants on one machine would have it.
 #pragma once
 
 #include <arpa/inet.h>
@@ -50,16 +51,16 @@
 
 namespace culprit::ros2::fast_dds {
 
-// So many participants of one machine are announced to, as ROS 2 Iron and newer do.
+// The number of participants of one machine that get announcements, as in ROS 2 Iron and newer.
 inline constexpr std::uint32_t kAnnouncedTo = 32;
 
-// What a participant and its transport share.
+// State that a participant and its transport share.
 struct Reception {
   // Whether anything is sent.
   std::shared_ptr<std::atomic<bool>> speaks = std::make_shared<std::atomic<bool>>(false);
-  // Of those who want nothing to be sent for a moment (Participant::Hold).
+  // How many holds forbid sending now (Participant::Hold).
   std::shared_ptr<std::atomic<int>> holds = std::make_shared<std::atomic<int>>(0);
-  // A discovery server may tell of others than itself.
+  // A discovery server may announce others than itself.
   std::shared_ptr<std::atomic<bool>> relays = std::make_shared<std::atomic<bool>>(false);
   std::shared_ptr<DatagramSources> sources = std::make_shared<DatagramSources>();
   std::shared_ptr<Origins> origins = std::make_shared<Origins>();
@@ -79,7 +80,7 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
   CarefulTransport(const eprosima::fastdds::rtps::ChainingTransportDescriptor& descriptor,
                    Reception reception, std::uint32_t domain)
       : ChainingTransport(descriptor), reception_(std::move(reception)), domain_(domain) {}
-  // Whatever of it the middleware left open.
+  // Closes the ports that the middleware left open.
   ~CarefulTransport() override {
     for (const std::uint16_t port : ports_) reception_.thread->close(port);
   }
@@ -105,7 +106,8 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
   bool transform_remote_locator(const Locator& remote, Locator& result) const override {
     if (ChainingTransport::transform_remote_locator(remote, result)) return true;
     if (udp().interfaceWhiteList.empty()) return false;
-    // Of shared memory, which they announce too, it must not be asked whether it is local.
+    // Locators of shared memory are announced too; the test whether one is local must not be made
+    // for them.
     if (!IsLocatorSupported(remote) || !is_local_locator(remote)) return false;
     result = remote;
     return IpLocator::setIPv4(result, udp().interfaceWhiteList.front());
@@ -182,9 +184,10 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
  private:
   using Locators = eprosima::fastdds::rtps::Locators;
 
-  // An announcement goes to each port that a participant of this machine may have, most of which nobody
-  // has; the system needs as long for those as for others. They are left out where it tells who has
-  // which, and knows ours among them. A port that is opened meanwhile is told a moment later.
+  // An announcement goes to each port that a participant of this machine may have, most of which
+  // are unused; the system needs as long for those as for others. Unused ports are left out if the
+  // system lists the used ones, and ours among them. A port that is opened meanwhile gets it a
+  // moment later.
   std::vector<Locator> those_of_somebody(const std::vector<Locator>& all) {
     constexpr Duration kLasts = std::chrono::milliseconds(200);
     const MutexLock lock(mutex_);
@@ -226,11 +229,13 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
     const std::uint16_t port = IpLocator::getPhysicalPort(locator);
     ports_.push_back(port);
     for (const in_addr& address : addresses) {
-      // What is said to all has time, if it is not said to us as well: that somebody is there, again and again.
+      // Multicast datagrams have time: they repeat that a participant is there. A datagram for us
+      // comes by unicast as well.
       const Haste haste = is_multicast ? Haste::kSoon : Haste::kNow;
       ReceiveThread::Place place{address, port, is_multicast, udp().receiveBufferSize, largest,
                                  haste,   {}};
-      // Of what comes to us alone that has time, too, where it is nothing else: at the port for discovery.
+      // Unicast announcements that a participant is still there have time, too, while nothing else
+      // comes to that port: it is the one for discovery.
       if (!is_multicast)
         place.has_time = [sources = reception_.sources](std::span<const std::uint8_t> datagram) {
           return sources->is_still_there(datagram);
@@ -246,7 +251,7 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
     return true;
   }
 
-  // Before there is a reader for it, so that nobody else can take the port until then.
+  // Before there is a reader for it, so that no other process can take the port until then.
   void open_for_patient() {
     constexpr std::uint32_t kFirst = 60;
     constexpr std::uint32_t kLast = 119;
@@ -268,7 +273,7 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
     }
   }
 
-  // Of each interface that is there.
+  // Joins on each existing interface.
   void join(const Locator& group) const {
     const std::uint16_t port = IpLocator::getPhysicalPort(group);
     if (!udp().interfaceWhiteList.empty()) {
@@ -312,8 +317,8 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
     return (IpLocator::getPhysicalPort(local) - 7400 - 250 * domain_) % 2 == 0;  // RTPS 2.3 §9.6.1
   }
 
-  // For the middleware the participant has left, and comes back with its next announcement: nothing that others said in
-  // its name stays.
+  // For the middleware the participant has left, and comes back with its next announcement: earlier
+  // claims of others in its name are dropped.
   void discover_again(Receiver& receiver, const Locator& local) const {
     constexpr std::int64_t kLater = std::int64_t{1} << 30;  // than all that it has written
     const auto doubtful = reception_.origins->take_doubtful();
@@ -350,7 +355,7 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
   std::set<std::uint16_t> bound_
       CULPRIT_GUARDED_BY(mutex_);  // ports of this machine, and since when
   Time bound_at_ CULPRIT_GUARDED_BY(mutex_){};
-  // Of the port for those that have time; written before the receiver.
+  // The port for readers that have time; written before the receiver.
   Locator patient_locator_;
   std::atomic<Receiver*> patient_ = nullptr;
 };

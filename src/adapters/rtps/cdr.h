@@ -1,8 +1,8 @@
 // The wire encoding of every ROS 2 message: XCDR1, PLAIN_CDR (DDS-XTypes 1.3 §7.4, RTPS 2.3 §10).
 //
-// A payload is four bytes of encapsulation (00 00 big endian, 00 01 little endian, two bytes of
-// options), then the fields in order, each aligned to its own size counted from after those four
-// bytes.
+// A payload begins with four bytes of encapsulation (00 00 big endian, 00 01 little endian, two
+// bytes of options). The fields follow in order, each aligned to its own size, counted from after
+// those four bytes.
 //
 // Why not Fast CDR: it throws, and it resizes a container before it checks that the bytes are
 // there, so four hostile bytes can ask for gigabytes. This reader is a cursor over bytes that it
@@ -18,8 +18,8 @@
 //       static void visit(auto& self, auto& each) { each(self.sec, self.nanosec); }
 //     };
 //
-// Two liberties that peers take are tolerated: bytes after the last field (Cyclone pads to a
-// multiple of four), and the absence of the dummy byte that ROS puts in place of an empty struct.
+// Two liberties of peers are tolerated: bytes after the last field (Cyclone pads to a multiple of
+// four), and the absence of the dummy byte that ROS puts in place of an empty struct.
 #pragma once
 
 #include <array>
@@ -146,7 +146,7 @@ Bytes encode(const Message& message, Endianness endianness = Endianness::kLittle
   return writer.take();
 }
 
-// Nothing when `payload` is not a whole `Message`.
+// Gives nothing if `payload` is not a whole `Message`.
 template <class Message>
 std::optional<Message> decode(ByteView payload) {
   CdrReader reader(payload);

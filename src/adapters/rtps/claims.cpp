@@ -18,7 +18,7 @@ using Entity = std::array<std::uint8_t, 4>;
 constexpr std::array<Entity, 6> kAnnouncers = {
     Entity{0x00, 0x01, 0x00, 0xc2}, Entity{0x00, 0x00, 0x03, 0xc2}, Entity{0x00, 0x00, 0x04, 0xc2},
     Entity{0xff, 0x01, 0x01, 0xc2}, Entity{0xff, 0x00, 0x03, 0xc2}, Entity{0xff, 0x00, 0x04, 0xc2}};
-constexpr std::size_t kToParameters = 6;  // where that is said
+constexpr std::size_t kToParameters = 6;  // the place of that offset
 constexpr std::size_t kWriter = 12;
 constexpr std::size_t kLeast = 24;  // bytes of a sample with its header
 

@@ -1,8 +1,8 @@
 // The other participants that a datagram speaks of, in its sender's own name.
 //
-// Each participant announces itself and its own endpoints, and says when they end (RTPS 2.3 §8.5). Fast DDS believes
-// anybody who says that of anybody: it looks at the key, not at the writer. A discovery server alone has a reason to
-// speak of others.
+// Each participant announces itself and its own endpoints, and their end (RTPS 2.3 §8.5). Fast DDS
+// believes any sender's announcement of any participant: it looks at the key, not at the writer. A
+// discovery server alone has a reason to speak of others.
 #pragma once
 
 #include <cstdint>

@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint16_t kSentinel = 1;  // of a list of parameters
 constexpr std::size_t kMostFragments = 1 << 16;
 
-// Of a gap without a bitmap, with its header.
+// The size of a gap without a bitmap, with its header.
 constexpr std::size_t kGapSize = 32;
 
 bool is_header(ByteView datagram) {
@@ -22,13 +22,12 @@ bool is_header(ByteView datagram) {
 }
 
 bool is_builtin(const Guid& writer) { return (writer.bytes[15] & 0xc0) == 0xc0; }
-// What a program made, and no middleware for itself (RTPS 2.3 §9.3.1.2).
+// True for a writer of a program, false for one of the middleware's own (RTPS 2.3 §9.3.1.2).
 bool is_of_user(const Guid& writer) { return (writer.bytes[15] & 0xc0) == 0; }
 
 }  // namespace
 
-// One submessage: a cursor over its body. What is read beyond the end is zero, and makes it not
-// ok().
+// One submessage: a cursor over its body. A read beyond the end gives zero, and makes it not ok().
 class DatagramFilter::Submessage {
  public:
   Submessage(ByteView header, ByteView body, const GuidPrefix& source)
@@ -64,7 +63,7 @@ class DatagramFilter::Submessage {
     const auto low = read<std::uint32_t>();
     return static_cast<std::int64_t>((std::uint64_t{high} << 32) | low);
   }
-  // Nothing: what was sent before does not count, and no other time is said.
+  // Nothing: an earlier timestamp does not count, and there is no other.
   std::optional<SystemTime> read_time() {
     if ((flags & 2) != 0) return std::nullopt;
     const auto seconds = read<std::uint32_t>();
@@ -89,7 +88,7 @@ class DatagramFilter::Submessage {
     return ok();
   }
   // The head of a sample, or of fragments of one (RTPS 2.3 §9.4.5.3, §9.4.5.4), from the beginning of the body
-  // on. What follows is the payload.
+  // on. The payload follows.
   struct Sample {
     Guid writer;
     std::int64_t sequence = 0;
@@ -215,7 +214,8 @@ ByteView DatagramFilter::look_at(std::span<std::uint8_t> datagram, Clock::time_p
     is_for_somebody = is_for_somebody || (is_passed && !rtps::is_about_others(rest[0]));
     is_for_nobody = is_for_nobody || (objection == nullptr && !is_passed);
     if (!is_passed) {
-      // What has no length of its own, or a false one, is cut off; the rest becomes padding.
+      // A submessage without a length of its own, or with a false one, is cut off; the rest becomes
+      // padding.
       if (is_last) {
         end = at;
         break;
@@ -253,8 +253,8 @@ void DatagramFilter::discover(const GuidPrefix& self, NeverMeets never_meets,
       Discovery{self, std::move(never_meets), std::move(on_news)});
 }
 
-// Nothing was objected to it: its lengths fit. For the middleware there is a gap in its place, or the one before
-// becomes longer.
+// It passed all checks: its lengths fit. For the middleware a gap takes its place, or the previous
+// gap becomes longer.
 DatagramFilter::Announcement DatagramFilter::take(std::span<std::uint8_t> submessage,
                                                   const Course& course, Gap& last) {
   const bool is_for_us =
@@ -276,7 +276,8 @@ DatagramFilter::Announcement DatagramFilter::take(std::span<std::uint8_t> submes
     write(last.base, ++last.next, last.is_little);
     return Announcement::kInGapBefore;
   }
-  // Its reader and writer move to the front; then where the gap begins, what follows it, and an empty bitmap.
+  // Its reader and writer move to the front; then the beginning of the gap, the number that follows
+  // it, and an empty bitmap.
   std::copy_n(submessage.begin() + 8, 8, submessage.begin() + 4);
   submessage[0] = rtps::kGap;
   submessage[1] &= 1;
@@ -320,10 +321,10 @@ bool DatagramFilter::tell_of_announcement(const Submessage& submessage) {
   return true;
 }
 
-// ---- who hears what
+// ---- which reader receives which writer
 
-// To the one reader that hears its writer, if it is addressed to all. Gives whether the middleware has a
-// reader for it.
+// Addresses it to the one reader of its writer, if it is addressed to all. Gives whether the
+// middleware has a reader for it.
 bool DatagramFilter::address(std::span<std::uint8_t> submessage, const Course& course,
                              Clock::time_point now) {
   const std::uint8_t kind = submessage[0];
@@ -331,7 +332,7 @@ bool DatagramFilter::address(std::span<std::uint8_t> submessage, const Course& c
   const bool is_of_writer = is_sample || kind == rtps::kHeartbeat || kind == rtps::kGap ||
                             kind == rtps::kHeartbeatFragment;
   if (!is_of_writer) return true;
-  // Nothing was objected to it: it is long enough.
+  // It passed all checks: it is long enough.
   const std::span<std::uint8_t, 4> to{
       submessage.data() + rtps::kSubmessageHeader + (is_sample ? 4 : 0), 4};
   const bool is_addressed = std::ranges::any_of(to, [](std::uint8_t byte) { return byte != 0; });
@@ -358,8 +359,9 @@ bool DatagramFilter::address(std::span<std::uint8_t> submessage, const Course& c
   return false;
 }
 
-// What the middleware would deliver as it is. Whatever is not plain is left to it: what has inline
-// parameters, what disposes of a key, what does not say when it was sent.
+// Hands over a sample that the middleware would deliver as it is. Other samples are left to the
+// middleware: those with inline parameters, those that dispose of a key, those without a source
+// timestamp.
 bool DatagramFilter::hand_over(Readers::Reader& reader, std::span<const std::uint8_t> submessage,
                                const Course& course) {
   constexpr std::uint8_t kMeaning = 0x1e;  // of the flags: all but the order of bytes
@@ -367,7 +369,7 @@ bool DatagramFilter::hand_over(Readers::Reader& reader, std::span<const std::uin
     return false;
   if (course.destination != GuidPrefix{} && course.destination != reader.guid.prefix())
     return false;
-  // Nothing was objected to it: its lengths fit.
+  // It passed all checks: its lengths fit.
   Submessage body(submessage, submessage.subspan(rtps::kSubmessageHeader), course.source);
   const Submessage::Sample sample = body.read_sample();
   if (sample.sequence <= reader.last) return true;  // best effort readers pass over what is older
@@ -511,7 +513,7 @@ const char* DatagramFilter::objection_to_heartbeat(const Submessage& submessage,
   const std::int64_t last = body.read_sequence();
   body.skip(4);
   if (!body.ok()) return "a damaged heartbeat";
-  // Best effort readers do not hear it, and a reliable one counts up to it.
+  // Best effort readers ignore it, and a reliable one counts up to it.
   if (first < 1 || last < first - 1 || is_far(guid, last, now) ||
       (is_reliable(guid) && is_far(guid, first, now)))
     return "a heartbeat with an absurd number";
@@ -524,8 +526,8 @@ const char* DatagramFilter::objection_to_heartbeat(const Submessage& submessage,
   return nullptr;
 }
 
-// The first that a new reader hears of a writer may be the gap of what was before, so a gap may be
-// as far ahead as a heartbeat.
+// A new reader may first receive the gap for all earlier samples of a writer. So a gap may be as
+// far ahead as a heartbeat.
 const char* DatagramFilter::objection_to_gap(const Submessage& submessage, Clock::time_point now) {
   Submessage body = submessage;
   body.skip(4);
@@ -592,7 +594,7 @@ void DatagramFilter::delivered(const Guid& writer) {
   if (found != readers_.end()) found->second.unheard = 0;
 }
 
-// What was reserved of the writer is free again, and nothing is known of it.
+// Frees the writer's reservations, and forgets the writer.
 void DatagramFilter::drop(const Guid& guid) {
   const auto known = writers_.find(guid);
   if (known == writers_.end()) return;
@@ -616,7 +618,7 @@ void DatagramFilter::end_hearing(const Guid& writer, const Guid& reader) {
   if (found == readers_.end()) return;
   Readers readers = found->second;
   std::erase_if(readers.all, [&](const Readers::Reader& each) { return each.guid == reader; });
-  // What was reserved was counted as what it was then.
+  // The reservations were counted for the previous kind of reader.
   if (readers.all.empty() || readers.is_reliable() != found->second.is_reliable()) drop(writer);
   if (readers.all.empty()) {
     readers_.erase(found);

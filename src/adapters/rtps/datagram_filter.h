@@ -1,33 +1,35 @@
-// What a participant's middleware gets to see of the datagrams that come.
+// Decides which datagrams a participant's middleware receives.
 //
-// Fast DDS trusts what claims to come from a known writer. One GAP or HEARTBEAT with an absurd
-// sequence number has it count up to that number with its locks held, so that it is deaf for good
-// and cannot even be ended; a fragment makes it reserve as much memory as the fragment says that
-// its sample has. So each submessage is looked at first. One that no participant sends is replaced
-// by padding, and a datagram that is no RTPS message is dropped. What is refused is (RTPS 2.3 §8.3,
-// §9.4):
+// Fast DDS trusts every datagram that claims to come from a known writer. After one GAP or
+// HEARTBEAT with an absurd sequence number it counts up to that number with its locks held. It is
+// then deaf for good and cannot even be ended. A fragment makes it reserve as much memory as the
+// fragment claims for its sample. So each submessage is checked first. A submessage that no
+// participant sends is replaced by padding, and a datagram that is no RTPS message is dropped.
+// These are refused (RTPS 2.3 §8.3, §9.4):
 //
-//   structure         lengths that do not fit, lists that do not end, bitmaps of more than 256 bits
-//   sequence numbers  further ahead of what the writer was known to have written than it can have
-//                     written since: kAhead, and kPerSecond for each second that it was not heard;
-//                     gaps no further ahead than heartbeats may be
-//   fragments         of samples that are larger than the budgets below, or that contradict what
-//                     was said of the same sample before
+//   structure         lengths that do not fit, lists that do not end, bitmaps of more than 256 bits.
+//   sequence numbers  further ahead of the writer's last known number than it can have written
+//                     since: kAhead, and kPerSecond for each second of silence;
+//                     gaps no further ahead than heartbeats may be.
+//   fragments         of samples that are larger than the budgets below, or that contradict
+//                     earlier fragments of the same sample.
 //
-// What secured submessages contain cannot be seen here; they are proven by their signatures.
+// The content of secured submessages is not checked here: their signatures prove them.
 //
-// And it saves Fast DDS work. Writers address what they say to all readers that hear them, and Fast
-// DDS asks each reader of the participant whether that is it. Here it is known who hears whom: what one
-// reader hears is addressed to that reader. Of a writer that no reader is known to hear most is taken
-// out; a little is passed on, for what is delivered all the same shows who hears it.
+// The filter also saves Fast DDS work. Writers address their samples to all matched readers, and
+// Fast DDS asks each reader of the participant whether it is meant. The filter knows which reader
+// has matched which writer: a sample that one reader receives is addressed to that reader. If no
+// reader is known to receive a writer, most of its samples are taken out. A few are passed on: if
+// one is delivered all the same, its reader is known.
 //
-// Who only wants to know what is said, and when, is handed it here and the middleware never sees it:
-// whole samples to one best effort reader, without inline parameters (OnWhole).
+// A reader that only needs samples and their times gets them here, and the middleware never sees
+// them: whole samples to one best effort reader, without inline parameters (OnWhole).
 //
-// Likewise readers and writers of others that no endpoint of this participant will ever meet
-// (discover()). The middleware would keep all that each of them announced, and compare it with each endpoint of its
-// own: that is most of what it costs to discover a large robot. It is told instead that there is a gap, and so
-// acknowledges the announcement as any other. What ends is told to both.
+// The filter also withholds the announcements of others' readers and writers that no endpoint of
+// this participant will ever match (discover()). The middleware would keep each of them, and
+// compare it with each of its own endpoints: that is most of the cost of discovering a large robot.
+// Fast DDS receives a GAP instead, and so acknowledges the announcement as any other. The end of an
+// endpoint is reported to both.
 #pragma once
 
 #include <algorithm>
@@ -60,29 +62,32 @@ class DatagramFilter {
 
   static constexpr std::int64_t kAhead = 256;
   static constexpr std::int64_t kPerSecond = 10'000;
-  // Of a writer of which nothing is known. A reliable reader counts through what came before.
+  // Limits for a writer that is not known yet. A reliable reader counts through all earlier
+  // numbers.
   static constexpr std::int64_t kFirst = std::int64_t{1} << 40;
   static constexpr std::int64_t kFirstReliable = std::int64_t{1} << 20;
 
-  // Bytes of samples that come in fragments. What reliable readers keep until it is complete, of
-  // one writer and of all; the largest samples of best effort writers, of one and of all.
+  // Limits in bytes for samples that come in fragments: those that reliable readers keep until they
+  // are complete, of one writer and of all; and the largest samples of best effort writers, of one
+  // and of all.
   static constexpr std::size_t kReliableOfOne = 4u << 20;
   static constexpr std::size_t kReliableOfAll = 8u << 20;
   static constexpr std::size_t kLargest = 32u << 20;
   static constexpr std::size_t kLargestOfAll = 32u << 20;
 
-  // What may be passed on of `datagram`, in which it takes out or addresses what has to be; empty if
-  // nothing may. `now` never goes back by much. `received`: when it came, which may be a moment earlier.
+  // Gives the part of `datagram` that may be passed on, after taking out and addressing
+  // submessages; empty: none. `now` never goes back by much. `received`: when it came, which may be
+  // a moment earlier.
   ByteView pass(std::span<std::uint8_t> datagram, Clock::time_point now, SystemTime received);
 
-  // `reader`, of this participant, begins to hear the writer, or ends. Of a writer that no reader
-  // hears nothing is known, and nothing has to be.
+  // `reader`, of this participant, begins to receive the writer, or ends. For a writer without a
+  // reader no state is kept or needed.
   using OnUnheard = std::shared_ptr<const std::function<void()>>;
   static constexpr int kUnheard = 3;
-  // So much is passed on in a second of a writer that no reader is known to hear.
+  // The number of samples in a second that are passed on from a writer without a known reader.
   static constexpr int kTries = 8;
   enum class Reading : std::uint8_t { kBestEffort, kReliable };
-  // A sample that came whole. `payload` is gone when the callback returns.
+  // A sample that came whole. `payload` is invalid when the callback returns.
   struct Whole {
     Guid writer;
     std::int64_t sequence = 0;
@@ -92,14 +97,16 @@ class DatagramFilter {
   };
   using OnWhole = std::shared_ptr<const std::function<void(const Whole&)>>;
   // Best effort: `on_unheard` is called from pass(), without locks, for each further sample of
-  // which something came by after kUnheard others of which none was delivered. So the writer lives.
-  // Likewise `on_whole`, if there is one, for each newer sample that the middleware would hand to this
-  // reader alone, and does not get; what it does get, as fragments, it delivers itself.
+  // which a part arrived, once kUnheard others in a row were not delivered. It proves that the
+  // writer is alive. `on_whole`, if set, is called in the same way for each newer sample that the
+  // middleware would hand to this reader alone; the middleware does not get it. Samples in
+  // fragments are delivered by the middleware.
   void begin_hearing(const Guid& writer, const Guid& reader, Reading how, OnUnheard on_unheard = {},
                      OnWhole on_whole = {});
   void end_hearing(const Guid& writer, const Guid& reader);
-  // From now on it addresses; not before, for in a secured domain it is not clear who hears whom. While
-  // readers are being made or unmade, it is not clear either: then everything stays as it is.
+  // From now on it addresses; not before, for in a secured domain it is unclear which readers have
+  // matched. While readers are being made or unmade, it is not clear either: then everything stays
+  // as it is.
   void begin_to_address();
   class Change {
    public:
@@ -112,15 +119,16 @@ class DatagramFilter {
   };
   // A sample of the writer reached its reader.
   void delivered(const Guid& writer);
-  // From now on `on_news`, from pass(), without locks, tells of the endpoints of other participants that
-  // `never_meets` is true of: once when they are announced, again when they announce something else, and of their end,
-  // but not of the end of their participant. Of more than kMostAnnounced the middleware hears as of all others, and
-  // so of what comes in fragments. Not in a secured domain, where announcements cannot be seen.
+  // From now on `on_news`, from pass(), without locks, reports the endpoints of other participants
+  // for which `never_meets` is true. It does so when they are announced, when their announcement
+  // changes, and when they end, but not at the end of their participant. Endpoints beyond
+  // kMostAnnounced go to the middleware, and so do announcements in fragments. Not in a secured
+  // domain, where announcements cannot be seen.
   static constexpr std::size_t kMostAnnounced = 1 << 16;
   using NeverMeets = std::function<bool(std::string_view topic, EndpointRole role)>;
   void discover(const GuidPrefix& self, NeverMeets never_meets,
                 std::function<void(const EndpointNews&)> on_news);
-  // The participant is there: its discovery is heard. Or it is gone, and what it took is free
+  // The participant is there: its discovery data count. Or it has left, and its memory is free
   // again.
   void know(const GuidPrefix& participant);
   void forget(const GuidPrefix& participant);
@@ -146,7 +154,7 @@ class DatagramFilter {
     std::size_t reserved = 0;                     // bytes
   };
   class Submessage;
-  // What a datagram says of the submessages that follow.
+  // The header data of a datagram for the submessages that follow.
   struct Course {
     GuidPrefix source;
     GuidPrefix destination;  // zero: all
@@ -158,7 +166,7 @@ class DatagramFilter {
       CULPRIT_REQUIRES(mutex_);
   bool address(std::span<std::uint8_t> submessage, const Course& course, Clock::time_point now)
       CULPRIT_REQUIRES(mutex_);
-  // What was made a gap last, in the datagram that is looked at.
+  // The newest gap in the present datagram.
   struct Gap {
     std::span<std::uint8_t> base;  // the number that follows it
     Guid writer;
@@ -183,7 +191,7 @@ class DatagramFilter {
   const char* reserve(const Guid& guid, std::int64_t sequence, const Assembly& wanted,
                       std::uint32_t first, std::uint32_t count) CULPRIT_REQUIRES(mutex_);
 
-  // Of this participant, which hear one writer.
+  // The readers of this participant that receive one writer.
   struct Readers {
     struct Reader {
       Guid guid;
@@ -214,14 +222,14 @@ class DatagramFilter {
   std::size_t& total(const Guid& writer) CULPRIT_REQUIRES(mutex_);
 
   mutable Mutex mutex_;
-  std::unordered_map<Guid, Writer> writers_ CULPRIT_GUARDED_BY(mutex_);  // that are heard
+  std::unordered_map<Guid, Writer> writers_ CULPRIT_GUARDED_BY(mutex_);  // with a reader here
   std::unordered_map<Guid, Readers> readers_
-      CULPRIT_GUARDED_BY(mutex_);  // by writer that they hear
+      CULPRIT_GUARDED_BY(mutex_);  // by the writer that they receive
   std::unordered_set<GuidPrefix> participants_ CULPRIT_GUARDED_BY(mutex_);  // that are there
   std::size_t reserved_reliable_ CULPRIT_GUARDED_BY(mutex_) = 0;
   std::size_t reserved_best_effort_ CULPRIT_GUARDED_BY(mutex_) = 0;
   Refused refused_ CULPRIT_GUARDED_BY(mutex_);
-  // Writers that no reader is known to hear: what was passed on of them in this second.
+  // Writers without a known reader: the samples that were passed on in this second.
   struct Stranger {
     Clock::time_point since;
     int tries = 0;
@@ -242,7 +250,7 @@ class DatagramFilter {
     std::function<void(const EndpointNews&)> on_news;
   };
   std::shared_ptr<const Discovery> discovery_ CULPRIT_GUARDED_BY(mutex_);  // null: not here
-  // In which announcement each endpoint was told of last, or its end: older ones may come later.
+  // The newest announcement of each endpoint, or of its end: older ones may come later.
   std::unordered_map<Guid, std::int64_t> announced_ CULPRIT_GUARDED_BY(mutex_);
   std::vector<EndpointNews> news_ CULPRIT_GUARDED_BY(mutex_);
 };

@@ -56,7 +56,7 @@ class Filter : public testing::Test {
     passed = filter.pass(buffer, now, kReceived);
     return passed.size();
   }
-  // To whom the submessage at `position` of what was passed on is addressed: an entity's number.
+  // The addressee of the submessage at `position` of the passed datagram: an entity's number.
   int addressee(std::size_t position) const {
     const bool is_sample = passed[position] == 0x15 || passed[position] == 0x16;
     return passed[position + 4 + (is_sample ? 4 : 0) + 2];
@@ -92,7 +92,7 @@ TEST_F(Filter, DropsWhatIsNoMessage) {
   EXPECT_EQ(filter.refused().count, 3u);
 }
 
-// A sample and the heartbeat behind it come in one datagram: the sample is heard all the same.
+// A sample and the heartbeat behind it come in one datagram: the sample arrives all the same.
 TEST_F(Filter, TakesOutTheSubmessageAndNotTheRest) {
   EXPECT_EQ(
       pass(from(kCamera).data(kCamera, 1).heartbeat(kCamera, 1, kAbsurd).data(kCamera, 2)),
@@ -155,7 +155,7 @@ TEST_F(Filter, WhatFragmentsTakeIsBounded) {
   for (std::int64_t sequence = 1; sequence <= 600; ++sequence)
     came += passes(from(kDiscovery).fragment(kDiscovery, sequence, 1, 1000, 1'000'000)) ? 1 : 0;
   EXPECT_EQ(came, DatagramFilter::kReliableOfOne / 1'000'000);
-  EXPECT_TRUE(passes(from(kDiscovery).data(kDiscovery, came + 1))) << "it is still heard";
+  EXPECT_TRUE(passes(from(kDiscovery).data(kDiscovery, came + 1))) << "it still passes";
   for (std::uint8_t participant = 3; participant < 200; ++participant) {
     const Guid other = writer_of_kind(0xc2, participant);
     filter.know(other.prefix());
@@ -199,7 +199,7 @@ TEST_F(Filter, AllCamerasTogetherAreBounded) {
   EXPECT_EQ(came, 5);
 }
 
-// It is silent only for us: too large, or lost in part, or behind a forged number.
+// It only seems silent to us: too large, or lost in part, or behind a forged number.
 TEST_F(Filter, AWriterWhoseSamplesAreNotDeliveredIsNotSilent) {
   int signs = 0;
   const Guid lidar = writer_of_kind(0x03, 9);
@@ -258,7 +258,7 @@ TEST_F(Filter, WritersAreKnownByTheirSource) {
   EXPECT_TRUE(passes(datagram));
 }
 
-// ---- who hears what
+// ---- which reader receives which writer
 
 TEST_F(Filter, WhatOneReaderHearsIsAddressedToIt) {
   filter.begin_to_address();
@@ -341,7 +341,7 @@ TEST_F(Filter, NothingIsAddressedWhileReadersChange) {
   EXPECT_EQ(addressee(20), 1);
 }
 
-// A last submessage may have no length of its own: what is before it is passed on.
+// A last submessage may have no length of its own: the submessages before it are passed on.
 TEST_F(Filter, TheLastSubmessageCanBeForNobody) {
   filter.begin_to_address();
   Bytes bytes = from(kCamera).data(kCamera, 1).heartbeat(kCamera, 1, 1).bytes();
@@ -437,7 +437,7 @@ TEST_F(HandingFilter, WhatASecondReaderHearsIsLeftToTheMiddleware) {
   EXPECT_EQ(pass(timed().data(kScan, 2)), 0u);
   filter.end_hearing(kScan, kScans);
   (void)pass(timed().data(kScan, 3));
-  EXPECT_EQ(handed, std::vector<std::int64_t>{2}) << "it hears no more";
+  EXPECT_EQ(handed, std::vector<std::int64_t>{2}) << "it receives no more";
 }
 
 // A forged number made its reader deaf to it.
@@ -501,7 +501,7 @@ class DiscoveringFilter : public Filter {
   TestDatagram announced(std::int64_t sequence, std::uint8_t number, std::string_view topic) const {
     return from(kWriters).announcement(kWriters, sequence, said(endpoint(number), topic));
   }
-  // Of each gap that is passed on: where it begins, and what follows it.
+  // For each gap that is passed on: its beginning, and the number that follows it.
   std::vector<std::pair<int, int>> gaps() const {
     std::vector<std::pair<int, int>> all;
     std::size_t at = 20;
@@ -589,7 +589,7 @@ TEST_F(DiscoveringFilter, AnEndIsToldToBothAndIsFinal) {
 TEST_F(DiscoveringFilter, NobodySpeaksForAnotherParticipant) {
   const Guid other = announcer(EndpointRole::kWriter, 9);
   EXPECT_TRUE(passes(from(other).announcement(other, 1, said(endpoint(1), "never"))))
-      << "who is not known";
+      << "its participant is unknown";
   filter.know(other.prefix());
   EXPECT_TRUE(passes(from(other).announcement(other, 2, said(endpoint(1), "never"))));
   const Guid self = reader(0);
@@ -651,7 +651,7 @@ TEST_F(DiscoveringFilter, NoMoreAreKeptThanIsAllowed) {
     taken += passed[20] == 0x08 ? 1 : 0;
   }
   EXPECT_EQ(taken, DatagramFilter::kMostAnnounced);
-  EXPECT_EQ(told.size(), taken) << "of the others the middleware tells";
+  EXPECT_EQ(told.size(), taken) << "the middleware reports the others";
 }
 
 }  // namespace

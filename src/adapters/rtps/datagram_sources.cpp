@@ -22,7 +22,7 @@ bool announces_participant(std::span<const std::uint8_t> data) {
                     data.begin() + kWriterInData);
 }
 
-// Of the submessage that `bytes` begin with, with its header; nothing: it is not whole.
+// The size of the submessage that `bytes` begin with, with its header; nothing: it is not whole.
 std::optional<std::size_t> size_of_submessage(std::span<const std::uint8_t> bytes) {
   if (bytes.size() < rtps::kSubmessageHeader) return std::nullopt;
   const bool is_little = (bytes[1] & 1) != 0;

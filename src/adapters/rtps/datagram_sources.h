@@ -1,17 +1,17 @@
-// Which sockets the datagrams of each participant come from.
+// Records from which sockets the datagrams of each participant come.
 //
-// What a participant says of itself is a claim, its addresses too. Where its datagrams come from is
-// not: the kernel drops what pretends to come from an address of this machine and comes by the
-// network. So the transport writes down, before the middleware sees a datagram, from which address
+// A participant's announcement is a claim, its addresses too. The source of its datagrams is not:
+// the kernel drops a datagram from the network that pretends to come from an address of this
+// machine. So the transport writes down, before the middleware sees a datagram, from which address
 // it came, under every participant that it speaks for: the one of its header (RTPS 2.3 §8.3.7), and
-// those that INFO_SRC submessages put in its place (§8.3.7.9). Whoever forges a datagram leaves his
-// own address here before it has any effect.
+// those that INFO_SRC submessages put in its place (§8.3.7.9). A forger's own address is recorded
+// here before the datagram has any effect.
 //
-// It is also the witness of the thread that receives: what this participant sends to ports of its
-// own has to come through each of them again and again.
+// It also proves that the receive thread works: the datagrams that this participant sends to its
+// own ports must arrive at each of them again and again.
 //
-// Bounded: participants that were discovered are kept while they are there, of the others the ones
-// heard last. Whoever has too many addresses is known to have too many.
+// Bounded: participants that were discovered are kept while they are there; of the others, the most
+// recent ones. A participant with too many addresses is marked as such.
 #pragma once
 
 #include <array>
@@ -51,13 +51,13 @@ class DatagramSources {
 
   struct Origin {
     std::vector<UdpAddress> addresses;  // in the order of their first datagrams
-    bool is_complete = false;           // false: nothing was heard, or from more than these
+    bool is_complete = false;           // false: nothing came, or from more than these
     bool operator==(const Origin&) const = default;
   };
 
   void heard(std::span<const std::uint8_t> datagram, const UdpAddress& from, Time now);
-  // Whether all that it says is that somebody who was discovered, and is kept, is still there (RTPS 2.3
-  // §8.5.3): the announcement of a participant, in plain. What it announces may have changed.
+  // Whether it only repeats, in plain text, that a participant is there that was discovered, and is
+  // kept (RTPS 2.3 §8.5.3). The content of the announcement may have changed.
   bool is_still_there(std::span<const std::uint8_t> datagram) const;
 
   // It was discovered: it is kept until it is forgotten.
@@ -65,17 +65,17 @@ class DatagramSources {
   void forget(const GuidPrefix& participant);
 
   Origin of(const GuidPrefix& participant) const;
-  // False only of one that was discovered, and is known to have spoken from other addresses alone.
+  // False only for one that was discovered, and is known to have sent from other addresses alone.
   bool may_speak_from(const GuidPrefix& participant, const UdpAddress& from) const;
-  // When the last one came; kLongAgo: nothing was heard, or it is not kept any more.
+  // When the last one came; kLongAgo: nothing came, or it is not kept any more.
   Time last_of(const GuidPrefix& participant) const;
 
   // The participant that receives.
   void begin(const GuidPrefix& self);
   // The middleware has taken what came to this unicast port.
   void came_through(std::span<const std::uint8_t> datagram, std::uint16_t port, Time now);
-  // Of the ports at which datagrams of its own came through at all, the one where none did for
-  // longest: since then. kNever: there is none.
+  // Since when the own datagrams are missing at the port where they have been missing for longest,
+  // of the ports that ever received one. kNever: none did.
   Time own_came_through() const;
 
  private:

@@ -61,7 +61,7 @@ TEST(DatagramSources, AreKnownByTheHeader) {
   sources.heard(from(prefix(1)), kThere, kNow);
   EXPECT_THAT(sources.of(prefix(1)).addresses, ElementsAre(kHere, kThere));
   EXPECT_TRUE(sources.of(prefix(1)).is_complete);
-  EXPECT_FALSE(sources.of(prefix(2)).is_complete) << "nothing was heard of it";
+  EXPECT_FALSE(sources.of(prefix(2)).is_complete) << "no datagram came from it";
 }
 
 TEST(DatagramSources, WhoSpeaksInAnothersNameIsWrittenDownThere) {
@@ -115,7 +115,7 @@ TEST(DatagramSources, StrangersDoNotWashOutWhoIsThere) {
   EXPECT_THAT(sources.of(prefix(2)).addresses, IsEmpty()) << "the oldest makes room";
   sources.keep(prefix(2));
   sources.heard(from(prefix(2)), kHere, kNow);
-  EXPECT_FALSE(sources.of(prefix(2)).is_complete) << "nobody knows what was lost of it";
+  EXPECT_FALSE(sources.of(prefix(2)).is_complete) << "the lost ones are unknown";
   sources.forget(prefix(1));
   EXPECT_THAT(sources.of(prefix(1)).addresses, IsEmpty());
 }
@@ -137,7 +137,7 @@ TEST(DatagramSources, WhoIsStillThereSaysNothingElse) {
   const Guid announcer = writer(1, kOfParticipants);
   DatagramSources sources;
   sources.heard(announced(1).bytes(), kThere, kNow);
-  EXPECT_FALSE(sources.is_still_there(announced(1).bytes())) << "nobody discovered it yet";
+  EXPECT_FALSE(sources.is_still_there(announced(1).bytes())) << "it is not discovered yet";
   sources.keep(prefix(1));
   EXPECT_TRUE(sources.is_still_there(announced(1).bytes()));
   EXPECT_FALSE(sources.is_still_there(announced(2).bytes()));
@@ -178,7 +178,7 @@ TEST(DatagramSources, TellSinceWhenNothingOfOurOwnCameThroughAPort) {
   DatagramSources sources;
   const auto at = [](int seconds) { return Time(std::chrono::seconds(seconds)); };
   sources.came_through(from(prefix(1)), 7410, at(1));
-  EXPECT_EQ(sources.own_came_through(), kNever) << "nobody knows yet who we are";
+  EXPECT_EQ(sources.own_came_through(), kNever) << "our own id is not known yet";
   sources.begin(prefix(1));
   sources.came_through(from(prefix(2)), 7410, at(2));
   sources.came_through({}, 7410, at(2));

@@ -14,15 +14,15 @@ namespace culprit::ros2 {
 
 enum class EndpointRole : std::uint8_t { kReader, kWriter };
 
-// What it says of itself. DDS names; strings as sent, cut at 1024 bytes. History depth is not announced.
+// Its announcement. DDS names; strings as sent, cut at 1024 bytes. History depth is not announced.
 struct EndpointInfo {
   Guid guid;
   std::string topic;
   std::string type;
   std::string user_data;
   Qos qos;
-  // Only who has one in common is heard (DDS 1.4 §2.2.3.13); none is the one that is called "". ROS 2
-  // has no word for it; XML profiles of the middleware have.
+  // Only endpoints with a common partition match (DDS 1.4 §2.2.3.13); none is the one that is
+  // called "". ROS 2 has no partitions; XML profiles of the middleware have.
   std::vector<std::string> partitions{};
   bool operator==(const EndpointInfo&) const = default;
 };
@@ -33,7 +33,7 @@ struct EndpointGone {
 
 using EndpointNews = std::variant<EndpointInfo, EndpointGone>;
 
-// The most that is kept of a string, in bytes, and of partitions.
+// Limits for a string, in bytes, and for partitions.
 inline constexpr std::size_t kLongestSaid = 1024;
 inline constexpr std::size_t kMostPartitions = 32;
 

@@ -1,4 +1,4 @@
-// Who is who on the wire: a participant is twelve bytes, each of its readers and writers four more
+// Ids on the wire: a participant's is twelve bytes, each of its readers and writers has four more
 // (RTPS 2.3 §8.2.4).
 #pragma once
 
@@ -41,8 +41,9 @@ struct SampleIdentity {
   bool operator==(const SampleIdentity&) const = default;
 };
 
-// Of the bytes of an id in two parts, for the tables in which each datagram is looked up. The upper half of
-// a product depends on all bits of its factors. The bytes come from the network: those tables are capped.
+// The hash of an id's bytes in two parts, for the tables in which each datagram is looked up. The
+// upper half of a product depends on all bits of its factors. The bytes come from the network:
+// those tables are capped.
 constexpr std::size_t hash_of(std::uint64_t first, std::uint64_t rest) {
   const std::uint64_t product = (first ^ rest * 0x9e3779b97f4a7c15) * 0xd6e8feb86659fd93;
   return product ^ product >> 32;

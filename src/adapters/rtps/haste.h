@@ -1,5 +1,5 @@
-// Whether what comes is awaited, or may be read a little later together with other things
-// (receive_thread.h), since to wake a thread for each is most of what hearing it costs.
+// Whether a message is awaited, or may be read a little later together with others
+// (receive_thread.h). Waking a thread for each message would be most of the cost of receiving it.
 #pragma once
 
 #include <cstdint>

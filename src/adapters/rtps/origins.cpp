@@ -197,8 +197,8 @@ Origins::Whose Origins::whose(Proven& proven, const UdpAddress& from, Time now) 
   return Whose::kForeign;
 }
 
-// A port that several processes share says little. Middlewares share those for multicast only, and send from
-// others.
+// A port that several processes share proves little. Middlewares share those for multicast only,
+// and send from others.
 Origins::Whose Origins::find(Proven& proven, const UdpAddress& from) {
   bool shares = false;
   for (const Socket& each : proven.sockets) {
@@ -274,7 +274,8 @@ void Origins::check(Time now) {
   }
 }
 
-// Interfaces come and go. If the system tells none but the loopback one, it may have failed to tell.
+// Interfaces come and go. If the system lists none but the loopback one, the list may be
+// incomplete.
 bool Origins::is_of_this_machine(const Ip& ip, Time now) {
   constexpr Duration kSeldom = std::chrono::milliseconds(100);
   constexpr Duration kLasts = std::chrono::seconds(1);
@@ -291,7 +292,7 @@ void Origins::note(const GuidPrefix& participant, const Proven& proven, const Ud
   ForeignSource source{from, std::nullopt, participant, proven.pid};
   if (is_of_this_machine(from.ip, asked_for_own_)) {
     const auto foreign = proven.foreign.find(from);
-    if (foreign == proven.foreign.end()) return;  // it is told of when its socket was looked up
+    if (foreign == proven.foreign.end()) return;  // it is reported once its socket was looked up
     source.user = foreign->second.user;
   }
   note(source);

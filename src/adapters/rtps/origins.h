@@ -1,9 +1,9 @@
-// Which datagrams count: those that come from where the participant in whose name they speak is known to be.
+// Decides which datagrams count: those that come from the known place of the participant in whose name they speak.
 //
 // RTPS does not prove the sender of a datagram. The kernel does, for senders on this machine: its table of sockets
-// shows which process owns the source address. Once the process of a participant is known (prove()), a datagram in
-// the participant's name (header or INFO_SRC, RTPS 2.3 §8.3.7) counts only from a socket of that process. Others are
-// dropped before they have any effect.
+// shows which process owns the source address. Once the process of a participant is known
+// (prove()), a datagram in its name counts only from a socket of that process. (The name is in the
+// header or in INFO_SRC, RTPS 2.3 §8.3.7.) Others are dropped before they have any effect.
 //
 // The process may be unknown: it runs on another computer or in a container. Its participant is bound to the IP
 // addresses that it spoke from and announced; all addresses of this machine count as one. It is bound once it has
@@ -17,18 +17,18 @@
 // This does not stop:
 //   - anything before a process is proven or a participant bound. A process cannot be proven if it belongs to
 //     another user (without CAP_SYS_PTRACE), or to another PID or network namespace (a container). Its participant
-//     is bound to addresses only, and other programs of that computer or container share them
-//   - another machine can write the address of a third one into its datagrams, as nothing on the way forbids it
-//   - root and CAP_NET_RAW can write any source into a datagram on the loopback interface
-//   - the same user can take a socket out of the process (pidfd_getfd), or run code in it (ptrace)
+//     is bound to addresses only, and other programs of that computer or container share them.
+//   - another machine can write the address of a third one into its datagrams, as nothing on the way forbids it.
+//   - root and CAP_NET_RAW can write any source into a datagram on the loopback interface.
+//   - the same user can take a socket out of the process (pidfd_getfd), or run code in it (ptrace).
 //   - a program with thousands of sockets makes the tables slow to read; then a datagram from a socket that was not
-//     looked up counts (see below)
-// So none of this replaces the rule that a claim ends no process: that is for those who act.
+//     looked up counts (see below).
+// So none of this replaces the rule that a claim ends no process; the code that acts must keep it.
 //
 // A process may open sockets later, and others get its old ports. So an unknown address is looked up at once, and
 // the known ones are checked again and again (check()). One look takes a fraction of a millisecond. More than a
-// twentieth of the time is never spent on looks. A datagram whose source cannot be looked up counts: a robot that is
-// not heard is worse than a forged datagram, which culprit asks about before it acts.
+// twentieth of the time is never spent on looks. A datagram whose source cannot be looked up counts: missing a
+// robot's messages is worse than a forged datagram, which culprit asks about before it acts.
 #pragma once
 
 #include <cstdint>
@@ -51,7 +51,7 @@
 
 namespace culprit::ros2 {
 
-// A source of datagrams in somebody else's name, or that tell of somebody else.
+// A source of datagrams in another participant's name, or about another participant.
 struct ForeignSource {
   UdpAddress from;               // of its first one
   std::optional<unsigned> user;  // of this machine, that made its socket, as far as that is known
@@ -66,10 +66,11 @@ class Origins {
   static constexpr Duration kFresh = std::chrono::milliseconds(20);
   static constexpr int kShareOfTime = 20;  // looks take no more than one part in so many
   static constexpr Duration kForeignFor = std::chrono::seconds(1);
-  // So long after the end of a process nobody speaks in its name: leases of participants run that long.
+  // For so long after the end of a process no other one may speak in its name: leases of
+  // participants run that long.
   static constexpr Duration kAfterEnd = std::chrono::seconds(30);
   static constexpr std::size_t kMostAddresses = 64;  // kept of one participant that are not its own
-  static constexpr std::size_t kMostSources = 64;    // told of
+  static constexpr std::size_t kMostSources = 64;    // that are reported
 
   // For a participant whose process is unknown (above).
   static constexpr Duration kAlone = std::chrono::seconds(5);
@@ -83,25 +84,26 @@ class Origins {
                    std::function<Time()> clock = {});
 
   // The participant is of this process of this machine, and spoke from these addresses so far. Gives whether all of
-  // them are of that process. If not, what was said in its name before may be false: it is to be discovered again.
+  // them are of that process. If not, earlier datagrams in its name may be false: it is to be
+  // discovered again.
   bool prove(const GuidPrefix& participant, int pid, std::span<const UdpAddress> spoke_from);
   bool is_proven(const GuidPrefix& participant) const;
   // One that is to be discovered again, once. It is forgotten meanwhile, but not where it speaks from.
   std::optional<GuidPrefix> take_doubtful();
   void forget(const GuidPrefix& participant);
 
-  // Participants are bound to addresses, by what is acknowledged to `self`. Not in a secured domain, where the
-  // middleware has a better proof.
+  // Participants are bound to addresses, by their acknowledgements to `self`. Not in a secured
+  // domain, where the middleware has a better proof.
   void begin_to_bind(const GuidPrefix& self);
   // It was discovered, or announced itself again: at these addresses.
   void discovered(const GuidPrefix& participant, std::span<const UdpAddress> announced, Time now);
 
-  // Whether nobody is known to be the sender who may not speak in the names that the datagram has.
+  // False if its source is known not to be that of the participants in whose names it speaks.
   bool counts(std::span<const std::uint8_t> datagram, const UdpAddress& from, Time now);
 
-  // Whether a datagram from there may tell something of another participant than its sender, in its sender's own name
-  // (claims.h): only from where that one speaks itself, too. `has_spoken`: one in that participant's name came from
-  // there, or that participant is not known.
+  // Whether a datagram from there may announce something of another participant than its sender, in
+  // its sender's own name (claims.h): only from where that one speaks itself, too. `has_spoken`:
+  // one in that participant's name came from there, or that participant is not known.
   bool may_tell_of(const GuidPrefix& other, const UdpAddress& from, bool has_spoken, Time now);
 
   // Looks whether the addresses that are known are still those of their processes. To be called about once a
@@ -110,7 +112,7 @@ class Origins {
 
   // How many datagrams were dropped.
   std::uint64_t dropped() const;
-  // The sources that were not told of yet, each once.
+  // The sources that were not reported yet, each once.
   std::vector<ForeignSource> new_sources();
 
  private:

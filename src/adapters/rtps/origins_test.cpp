@@ -182,7 +182,7 @@ TEST_F(OriginsOfAMachine, AFloodInItsNameDoesNotSilenceIt) {
     EXPECT_FALSE(counts({kLoopback, 50'000}, later(kStart, i * 1ms)));
     EXPECT_TRUE(counts({kOwn, 40'000}, later(kStart, i * 1ms)));
   }
-  EXPECT_EQ(origins.new_sources().size(), 1u) << "each source is told of once";
+  EXPECT_EQ(origins.new_sources().size(), 1u) << "each source is reported once";
   EXPECT_THAT(origins.new_sources(), IsEmpty());
 }
 

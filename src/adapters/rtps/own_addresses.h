@@ -8,7 +8,7 @@
 
 namespace culprit::ros2 {
 
-// IPv4, of all interfaces that have one. Only 127.0.0.1 if the system does not tell.
+// IPv4, of all interfaces that have one. Only 127.0.0.1 if the system lists none.
 std::set<std::array<std::uint8_t, 4>> own_addresses();
 
 }  // namespace culprit::ros2

@@ -1,5 +1,6 @@
-// Which sockets a process of this machine holds, as the kernel's tables tell (proc(5)): /proc/<pid>/fd and
-// /proc/<pid>/stat. Files of another user's process are visible only with CAP_SYS_PTRACE.
+// Which sockets a process of this machine holds, as the kernel's tables show (proc(5)):
+// /proc/<pid>/fd and /proc/<pid>/stat. Files of another user's process are visible only with
+// CAP_SYS_PTRACE.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +11,8 @@
 
 namespace culprit::ros2 {
 
-// The targets of its open files: "socket:[12345]". Empty: there is no such process, or its files may not be seen.
+// The targets of its open files: "socket:[12345]". Empty: there is no such process, or its files
+// are not readable.
 std::set<std::string> descriptors_of(const std::filesystem::path& process);
 
 // When it began, in ticks since the machine was started. Nothing: there is no such process, or it has

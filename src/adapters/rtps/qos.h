@@ -14,14 +14,15 @@ namespace culprit::ros2 {
 
 enum class Reliability : std::uint8_t { kBestEffort, kReliable };
 enum class Durability : std::uint8_t { kVolatile, kTransientLocal };
-// Whether the samples of a topic have keys (`@key` in its type; ROS 2 Kilted and later). It is part of
-// what an endpoint is, and a reader matches no writer of the other kind.
+// Whether the samples of a topic have keys (`@key` in its type; ROS 2 Kilted and later). A reader
+// with keys matches no writer without, nor the reverse.
 enum class Keys : std::uint8_t { kNone, kSome };
 enum class History : std::uint8_t { kKeepLast, kKeepAll };
-// Who says that a publisher lives: the middleware for the whole process, or the publisher itself.
+// How a publisher's liveliness is asserted: by the middleware for the whole process, or by the
+// publisher itself.
 enum class Liveliness : std::uint8_t { kAutomatic, kManualByTopic };
-// Whether a subscriber hears all publishers of a topic, or the strongest only. ROS 2 has no word for it;
-// XML profiles of the middleware have.
+// Whether a subscriber receives all publishers of a topic, or the strongest only. ROS 2 has no
+// setting for it; XML profiles of the middleware have.
 enum class Ownership : std::uint8_t { kShared, kExclusive };
 
 inline constexpr Duration kInfinite = Duration::max();

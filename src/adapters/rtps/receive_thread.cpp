@@ -17,13 +17,15 @@ namespace {
 
 constexpr std::uint32_t kReadable = EPOLLIN;
 constexpr std::uint64_t kToEnd = ~std::uint64_t{0};
-// Of one socket that has time, in one turn: a flood must not keep the others waiting for good.
+// The most batches from one patient socket in one turn: a flood must not keep the others waiting
+// for good.
 constexpr int kMostBatches = 64;
 // More datagrams than this within kWatched: they no longer wake the thread, which looks instead.
 constexpr std::chrono::seconds kWatched{1};
 constexpr std::size_t kMany = 20;
-// Between two looks no more than this share of its room should come to a socket, which has 416 KiB where nobody gave it
-// more (net.core.rmem_max). The kernel counts about kEach for a datagram beside what it says.
+// Between two looks no more than this share of its buffer should arrive at a socket. The buffer has
+// 416 KiB by default (net.core.rmem_max). For each datagram the kernel counts about kEach beside
+// its content.
 constexpr double kMuch = 0.5;
 constexpr std::size_t kEach = 1024;
 
@@ -62,14 +64,14 @@ struct ReceiveThread::Socket {
   Clock::time_point busy = Clock::now();  // when something came last that has no time
   bool is_calm = false;                   // something came since, and has
 
-  // Taken, and not handed on yet. Of the thread.
+  // Taken, and not handed on yet. Used by the thread only.
   struct Kept {
     UdpAddress from;
     SystemTime received;
     std::vector<std::uint8_t> bytes;
   };
   std::deque<Kept> kept;
-  std::size_t kept_bytes = 0;  // with what each takes beside what it says: datagrams may be empty
+  std::size_t kept_bytes = 0;  // with the overhead of each datagram, which may be empty
 
   static std::size_t bytes_of(const Kept& each) { return sizeof(Kept) + each.bytes.size(); }
 
@@ -80,7 +82,8 @@ struct ReceiveThread::Socket {
   }
 };
 
-// What was taken from a socket at once. Its memory is touched only as far as datagrams reach.
+// The datagrams that were taken from a socket at once. Its memory is touched only as far as
+// datagrams reach.
 class ReceiveThread::Batch {
  public:
   Batch() : bytes_(std::make_unique_for_overwrite<std::uint8_t[]>(kBatch * kLargest)) {
@@ -128,7 +131,7 @@ class ReceiveThread::Batch {
   }
 
  private:
-  // What the kernel says beside: when it came, of a socket that has time.
+  // The kernel's timestamp of arrival, for a socket that has time.
   struct Note {
     alignas(cmsghdr) std::array<std::uint8_t, CMSG_SPACE(sizeof(timespec))> bytes;
   };

@@ -3,18 +3,21 @@
 // Fast DDS has a thread for each socket, and a system call for each datagram. Here one thread waits
 // for all of them, and takes what lies in a socket together.
 //
-// Who discovers a robot is sent what all of it has within a moment, more than a socket has room for. What is
-// lost there every peer sends again, to everybody. So all that lies in a socket is taken at once, and kept up
-// to kMostKept until its turn comes: of each socket kBatch datagrams, then of the next one.
+// A participant that discovers a robot receives all announcements at once, more than a socket's
+// buffer holds. Each lost one is sent again by every peer, to everybody. So all datagrams in a
+// socket are taken at once, and kept up to kMostKept until its turn comes: of each socket kBatch
+// datagrams, then of the next one.
 //
-// What costs most is to wake it. So some sockets have time (Haste::kSoon): they are read whenever the
-// thread is awake anyway, and if so much comes that this would be cheaper, every kSoon instead of with
-// each datagram, or as much sooner as more comes, for a socket has little room. What lies in them is always handed on
-// before what came to the other sockets after it: who hears something there has heard all that was said before. When each
-// datagram came is told by the kernel. Who waits for an answer there makes them hurry meanwhile (begin_hurry()).
+// Waking the thread costs most. So some sockets have time (Haste::kSoon): they are read whenever
+// the thread is awake anyway. If so many datagrams come that this is cheaper, they are read every
+// kSoon instead of with each datagram. They are read sooner if more come, for a socket's buffer is
+// small. Their datagrams are always handed on before later ones of the other sockets: after a
+// message there, a reader has received all earlier ones. The kernel gives the time of arrival of
+// each datagram. A caller that waits for an answer there makes them hurry meanwhile
+// (begin_hurry()).
 //
-// One where announcements come has time only while nothing else comes there (Place::has_time): in a robot at
-// rest each participant says again and again that it is there.
+// A socket for announcements has time only while nothing else comes there (Place::has_time): in a
+// robot at rest each participant repeats again and again that it is there.
 #pragma once
 
 #include <chrono>
@@ -49,10 +52,11 @@ class ReceiveThread {
     UdpAddress from;
     SystemTime received;
   };
-  // Called on the thread that receives, one at a time. It may write into what came, which is gone when it returns.
+  // Called on the thread that receives, one at a time. It may write into the datagram, whose memory
+  // is invalid when it returns.
   using OnDatagram = std::function<void(const Datagram&)>;
   using HasTime = std::function<bool(std::span<const std::uint8_t> datagram)>;
-  // Nothing else must have come for so long, and this must have.
+  // For so long, announcements must have come and nothing else.
   static constexpr std::chrono::seconds kCalm{2};
 
   ReceiveThread();
@@ -67,7 +71,7 @@ class ReceiveThread {
     std::uint32_t buffer = 0;  // bytes, which net.core.rmem_max caps; 0: the system's
     std::uint32_t largest = kLargest;  // bytes of a datagram; what is longer is cut
     Haste haste = Haste::kNow;
-    HasTime has_time{};  // empty: always as `haste` says
+    HasTime has_time{};  // empty: always as `haste` sets
   };
   // Errors: the place is taken, or the system refuses. The thread begins with the first socket.
   Expected<void> open(const Place& place, OnDatagram on_datagram);
@@ -75,11 +79,11 @@ class ReceiveThread {
   void close(std::uint16_t port);
   bool is_open(std::uint16_t port) const;
 
-  // What is sent to the group by way of the interface with this address comes to the sockets at the
-  // port, too. Once is enough; what is refused is passed over: interfaces come and go.
+  // Datagrams to the group by way of the interface with this address come to the sockets at the
+  // port, too. Once is enough; refusals are ignored: interfaces come and go.
   void join(std::uint16_t port, in_addr group, in_addr interface);
 
-  // Until each that began has ended, what comes to sockets that have time wakes the thread, too.
+  // Until each that began has ended, datagrams to sockets that have time wake the thread, too.
   void begin_hurry();
   void end_hurry();
 
@@ -96,14 +100,15 @@ class ReceiveThread {
   class Batch;
 
   void run();
-  // Hands on what came to one that waits for nobody, at most kBatch datagrams, and keeps the rest. Before that, all that came to the patient ones.
+  // Hands on the datagrams of a socket without time, at most kBatch, and keeps the rest. Before
+  // that, all that came to the patient ones.
   void take_urgent(Socket& socket, Batch& batch, const Sockets& patient, Batch& patient_batch);
   void take_patient(const Sockets& patient, Batch& batch);
   // Whether they wake the thread, and how often it looks otherwise, depends on how much comes to them.
   void watch_patient(Clock::time_point now) CULPRIT_REQUIRES(mutex_);
   void arm(bool is_armed) CULPRIT_REQUIRES(mutex_);
   void wake_for(const Socket& socket) CULPRIT_REQUIRES(mutex_);
-  // Who has time only while it is calm has it now, or has it no more.
+  // Updates which of the sockets that have time only in calm have it now.
   void calm(Clock::time_point now) CULPRIT_REQUIRES(mutex_);
 
   const int wait_fd_;  // of epoll
@@ -116,7 +121,8 @@ class ReceiveThread {
   std::uint64_t rounds_ CULPRIT_GUARDED_BY(mutex_) = 0;  // odd: one is under way
   bool is_armed_ CULPRIT_GUARDED_BY(mutex_) = true;      // patient sockets wake the thread
   int hurried_ CULPRIT_GUARDED_BY(mutex_) = 0;           // how many wait for an answer
-  // Of the thread: how it looks at patient sockets, and what came to them since `watched_`.
+  // Used by the thread only: how it looks at patient sockets, and what came to them since
+  // `watched_`.
   std::chrono::milliseconds next_look_ = kSoonest;
   std::chrono::milliseconds often_ = kSoonest;
   Clock::time_point watched_{};

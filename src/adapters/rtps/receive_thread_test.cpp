@@ -109,7 +109,7 @@ TEST(ReceiveThread, NothingIsHeardOfAPortThatWasClosed) {
   }
 }
 
-// Whoever hears something has heard all that was said before to those that have time.
+// A reader that receives a message has received all earlier ones to readers that have time.
 TEST(ReceiveThread, WhatHasTimeIsHandedOnBeforeWhatWasSaidLater) {
   Listener ears;
   const Voice speaker;
@@ -140,7 +140,7 @@ TEST(ReceiveThread, WhatHasTimeComesByItself) {
   EXPECT_THAT(ears.heard.all(), SizeIs(100));
 }
 
-// It is as with those that always have time: what lies there is handed on first.
+// It is as with those that always have time: datagrams there are handed on first.
 TEST(ReceiveThread, OneHasTimeWhileNothingElseComesThere) {
   Listener ears;
   const Voice speaker;
@@ -155,7 +155,7 @@ TEST(ReceiveThread, OneHasTimeWhileNothingElseComesThere) {
     is_inside.release();
     may_go_on.acquire();
   }));
-  // Which of two that were said while the thread was busy is heard first.
+  // The one of two datagrams, both sent while the thread was busy, that arrives first.
   const auto heard_first = [&] {
     const std::size_t before = ears.heard.all().size();
     speaker.say(urgent, "wait");
@@ -166,7 +166,7 @@ TEST(ReceiveThread, OneHasTimeWhileNothingElseComesThere) {
     EXPECT_TRUE(ears.heard.wait_for_count(before + 3));
     return ears.heard.all()[before + 1];
   };
-  EXPECT_EQ(heard_first(), "urgent") << "nobody knows yet what comes there";
+  EXPECT_EQ(heard_first(), "urgent") << "the kind of its datagrams is not known yet";
   std::this_thread::sleep_for(ReceiveThread::kCalm);
   (void)heard_first();
   EXPECT_EQ(heard_first(), "calm");

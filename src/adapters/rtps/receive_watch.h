@@ -1,9 +1,9 @@
-// Whether the thread that receives is at work: whether a datagram lies unread in its sockets.
+// Checks that the receive thread works: whether a datagram lies unread in its sockets.
 //
-// What a participant says to itself (hearing.h) does not pass every socket: what comes by multicast
-// goes away with a network interface, and nothing is wrong. So each socket is looked at: one whose
-// first datagram is still the same is not read. Others would seem to be gone for no other reason than
-// that: their announcements come there.
+// A participant's messages to itself (hearing.h) do not pass every socket: multicast datagrams
+// vanish with a network interface, and that is no fault. So each socket is checked: if its first
+// datagram is still the same, it is not read. An unread socket would make other participants seem
+// to have left: their announcements come there.
 #pragma once
 
 #include <cstdint>

@@ -31,7 +31,7 @@ inline constexpr std::uint8_t kHasParameters = 0x02;
 inline constexpr std::uint8_t kHasPayload = 0x04;
 inline constexpr std::uint8_t kHasKey = 0x08;
 
-// It only says how to understand those that follow.
+// It only changes the meaning of those that follow.
 inline bool is_about_others(std::uint8_t kind) {
   return kind == kPad || kind == kInfoTime || (kind >= kInfoSource && kind <= kInfoReply);
 }

@@ -24,7 +24,7 @@ class TestDatagram {
                           std::uint32_t count = 1) {
     return begin(0x07).readers().entity(writer).sequence(first).sequence(last).u32(count).end();
   }
-  // Of first ... base - 1.
+  // The gap from `first` to `base` - 1.
   TestDatagram& gap(const Guid& writer, std::int64_t first, std::int64_t base) {
     return begin(0x08).readers().entity(writer).sequence(first).sequence(base).u32(0).end();
   }
@@ -54,7 +54,8 @@ class TestDatagram {
     append(parameters);
     return end();
   }
-  // That the endpoint, or the participant, has ended, as Fast DDS says it: all of it in inline parameters.
+  // The end of the endpoint, or the participant, as Fast DDS announces it: all of it in inline
+  // parameters.
   TestDatagram& farewell(const Guid& announcer, std::int64_t sequence, const Guid& endpoint) {
     begin(0x15, 2).u16(0).u16(16).readers().entity(announcer).sequence(sequence);
     u16(0x70).u16(16);
@@ -85,7 +86,7 @@ class TestDatagram {
     bytes_[start_ + 3] = static_cast<std::uint8_t>(length >> 8);
     return *this;
   }
-  TestDatagram& readers() { return u32(0); }  // all that hear the writer
+  TestDatagram& readers() { return u32(0); }  // all readers of the writer
   TestDatagram& entity(const Guid& guid) {
     bytes_.insert(bytes_.end(), guid.bytes.begin() + 12, guid.bytes.end());
     return *this;
@@ -110,7 +111,7 @@ class TestDatagram {
   std::size_t start_ = 0;
 };
 
-// What is announced of an endpoint, little endian and without its encapsulation.
+// The announcement of an endpoint, little endian and without its encapsulation.
 class TestParameters {
  public:
   TestParameters& add(std::uint16_t id, Bytes value) {

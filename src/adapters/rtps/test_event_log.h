@@ -19,7 +19,7 @@ template <class Event>
 class EventLog {
  public:
   void add(Event event) {
-    // Notified under the lock: whoever waits may destroy the log as soon as it sees the event.
+    // Notified under the lock: the waiting thread may destroy the log as soon as it sees the event.
     const MutexLock lock(mutex_);
     events_.push_back(std::move(event));
     added_.notify_all();

@@ -46,7 +46,7 @@ inline std::vector<Bytes> farewells(const Guid& participant, const std::vector<G
 
 class HostileProcess {
  public:
-  // It sends all to each address, and waits so long.
+  // It sends all to each address, and then waits for `pause`.
   HostileProcess(const std::vector<Bytes>& datagrams, const std::vector<UdpAddress>& to,
                  std::chrono::milliseconds pause)
       : pid_(fork()) {

@@ -1,8 +1,8 @@
-// For tests of what a bad network does: two computers and the cable between them.
+// For tests with a bad network: two computers and the cable between them.
 //
 // Each computer is a network namespace with a loopback and one Ethernet device; the cable is a
-// thread that carries the frames from one TAP device to the other, and loses, delays, doubles and
-// reorders them as told. (Linux's own netem is not in every kernel.) Needs the right to make
+// thread that carries the frames from one TAP device to the other. It can be set to lose, delay,
+// double and reorder them. (Linux's own netem is not in every kernel.) Needs the right to make
 // network namespaces, and /dev/net/tun.
 #pragma once
 

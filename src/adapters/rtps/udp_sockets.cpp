@@ -12,8 +12,8 @@
 namespace culprit::ros2 {
 namespace {
 
-// "0100007F:1CF2" is 127.0.0.1, port 7410: four bytes at a time, as the machine keeps them. Of IPv6 the
-// last four count: an IPv4 address inside one, or none.
+// "0100007F:1CF2" is 127.0.0.1, port 7410: four bytes at a time, as the machine keeps them. For
+// IPv6 the last four count: an IPv4 address inside one, or none.
 std::optional<UdpAddress> parse_address(std::string_view text) {
   const auto colon = text.find(':');
   if (colon == std::string_view::npos || colon < 8) return std::nullopt;

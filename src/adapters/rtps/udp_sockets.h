@@ -1,5 +1,6 @@
-// The UDP sockets of this machine, as the kernel's tables tell them: /proc/thread-self/net/udp and udp6 (proc(5)).
-// They are those of the calling thread's network namespace; of all of its processes, whoever they run as.
+// The UDP sockets of this machine, from the kernel's tables: /proc/thread-self/net/udp and udp6
+// (proc(5)). They are those of the calling thread's network namespace; of all of its processes,
+// whichever user runs them.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +20,7 @@ struct UdpSocket {
   bool is_ipv6 = false;
 };
 
-// What cannot be read is left out: nothing where there are no such tables.
+// Unreadable lines are left out; without such tables the list is empty.
 std::vector<UdpSocket> udp_sockets(const std::filesystem::path& proc = "/proc");
 
 // The ports that they are bound to.

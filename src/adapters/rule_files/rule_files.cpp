@@ -42,7 +42,7 @@ std::vector<fs::path> below(const fs::path& folder, const std::string& extension
   return all;
 }
 
-// What was probably meant by `file`: one that is beside where it should be.
+// The file that `file` was probably meant to name: one beside its expected place.
 std::string near_file(const fs::path& file, const std::vector<fs::path>& places) {
   for (const fs::path& place : places) {
     std::vector<std::string> names;
@@ -84,7 +84,12 @@ Expected<Source> load(const std::string& file, const std::string& from) {
 
 Expected<Expansion> read(const std::string& path) {
   auto source = Source::read(path);
-  if (!source) return Error{source.error()};
+  if (!source) {
+    std::error_code error;
+    const bool is_there = fs::exists(path, error);
+    const std::string near = is_there ? "" : near_file(path, {fs::absolute(path, error)});
+    return Error{source.error() + (near.empty() ? "" : "; did you mean '" + near + "'?")};
+  }
   return expand(std::move(*source), load);
 }
 

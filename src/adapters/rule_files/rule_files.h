@@ -15,16 +15,16 @@ namespace culprit::rule_files {
 // share/culprit/rules beside the bin of the running program; it need not be there.
 const std::filesystem::path& installed();
 
-// For expand(): one file, as the name says it in an INCLUDE of `from`. Errors: there is none; the
-// message says where it was looked for, and what was probably meant.
+// For expand(): one file, by its name in an INCLUDE of `from`. Errors: there is none; the message
+// lists the folders that were searched, and a similar name.
 Expected<Source> load(const std::string& file, const std::string& from);
 
-// The rules of the file at `path`, put together. Errors: it cannot be read. What is wrong with what it
-// includes are mistakes.
+// The rules of the file at `path`, put together. Errors: it cannot be read. Faults of an included
+// file are mistakes in the result.
 Expected<Expansion> read(const std::string& path);
 
-// What an INCLUDE of `from` could name: in the folder of `from` and below, and what is installed.
-// At most a few hundred, sorted.
+// The names that an INCLUDE of `from` could use: files in the folder of `from` and below, and
+// installed ones. At most a few hundred, sorted.
 std::vector<std::string> includable(const std::string& from);
 
 // The files named *<extension> in `path` and the folders below, sorted; `path` itself if it is no

@@ -1,6 +1,6 @@
-// What a simulated world still has to do, in the order of time.
+// The pending actions of a simulated world, in the order of time.
 //
-// Things due at the same time are done in the order in which they were put down, so that a run is
+// Actions that are due at the same time are done in the order in which they were added. So a run is
 // the same on every machine.
 #pragma once
 

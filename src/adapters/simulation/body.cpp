@@ -1,6 +1,6 @@
 #include "simulation/body.h"
 
-#include <cassert>
+#include "base/invariant.h"
 
 namespace culprit::simulation {
 
@@ -51,8 +51,8 @@ bool Body::set_parameter(const std::string& name, const Value& value) {
 }
 
 Answer Body::answer(const decltype(Command::what)& request) {
-  assert(!std::holds_alternative<StartProcess>(request) &&
-         !std::holds_alternative<StopProcess>(request));
+  CULPRIT_ASSERT(!std::holds_alternative<StartProcess>(request) &&
+                 !std::holds_alternative<StopProcess>(request));
   const auto refusal = [](std::string why) {
     return Answer{Outcome::kRefused, {}, std::move(why)};
   };

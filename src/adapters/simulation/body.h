@@ -1,8 +1,8 @@
 // The body that all virtual robots' components have: a process, a node, a lifecycle, parameters and
 // a mode, and what they answer when they are asked.
 //
-// When things happen, what goes wrong, and who is told, is each robot's own: that of the simulation
-// (node.h), that of rule tests, that of the manager's tests, and that of the root-cause benchmark.
+// The times, the faults and the observers are each robot's own: that of the simulation (node.h),
+// that of rule tests, that of the manager's tests, and that of the root-cause benchmark.
 #pragma once
 
 #include <map>
@@ -31,11 +31,11 @@ struct Body {
   std::map<std::string, Value> parameters;
   std::string mode;
 
-  // Is there anybody who answers what the component is asked?
+  // Does a node answer requests to the component?
   bool can_answer() const { return process == ProcessState::kRunning && is_in_graph && answers; }
   // A new process, which answers; its node is not there yet.
   void start(int new_pid);
-  // The process is gone. Gives whether there was one.
+  // The process has exited. Gives whether there was one.
   bool end();
 
   // Gives whether the transition is possible, and was made.
@@ -45,8 +45,8 @@ struct Body {
   // Gives whether there is such a parameter, of the value's type.
   bool set_parameter(const std::string& name, const Value& value);
 
-  // What one that can answer does about a request, and says. A routine succeeds, and any mode can be
-  // changed to. @pre `request` is neither StartProcess nor StopProcess
+  // The effect of a request on one that can answer, and the answer. A routine succeeds, and any
+  // mode can be changed to. @pre `request` is neither StartProcess nor StopProcess
   Answer answer(const decltype(Command::what)& request);
 };
 

@@ -1,4 +1,4 @@
-// Faults of a simulated robot, as data: what goes wrong, where and when.
+// Faults of a simulated robot, as data: the fault, its place and its time.
 #pragma once
 
 #include <string>
@@ -21,7 +21,7 @@ struct Killed {
 struct Stopped {};    // SIGSTOP
 struct Continued {};  // SIGCONT
 struct Hung {};       // a callback does not come back
-// What `topic` carries comes later, or is lost, from now on. The fault of a network, not of a node.
+// Messages of `topic` come later, or are lost, from now on: the fault of a network, not of a node.
 struct Impaired {
   std::string topic;
   Transport transport;

@@ -1,7 +1,8 @@
 #include "simulation/mode_manager.h"
 
 #include <algorithm>
-#include <cassert>
+
+#include "base/invariant.h"
 
 namespace culprit::simulation {
 namespace {
@@ -29,8 +30,9 @@ ModeManager::ModeManager(World& world, std::string name, modes::Model model, Nod
     : Node(world, std::move(name), traits), model_(std::move(model)), inference_(model_) {
   for (const modes::Entity& entity : model_.entities) {
     if (!entity.is_system) continue;
-    assert(std::none_of(entity.parts.begin(), entity.parts.end(),
-                        [&](const std::string& part) { return model_.find(part)->is_system; }));
+    CULPRIT_ASSERT(
+        std::none_of(entity.parts.begin(), entity.parts.end(),
+                     [&](const std::string& part) { return model_.find(part)->is_system; }));
     world.systems_.emplace(entity.name, this);
   }
   world.watch(*this);
@@ -51,7 +53,7 @@ void ModeManager::on_start() {
 
 bool ModeManager::change_mode(const std::string& system, const std::string& mode) {
   const modes::Entity* found = model_.find(system);
-  assert(found != nullptr);
+  CULPRIT_ASSERT(found != nullptr);
   const modes::Entity& known = *found;
   const modes::Mode* wanted = known.find(mode);
   if (wanted == nullptr) return false;
@@ -68,7 +70,7 @@ void ModeManager::aim(const modes::Entity& node, const modes::Target& target) {
     ask(node.name, [](Node& part) { part.change(Transition::kDeactivate); });
     return;
   }
-  // The state first, then the parameters. Activating what is active fails, and nobody minds.
+  // The state first, then the parameters. Activating an active node fails, and that does no harm.
   ask(node.name, [parameters = node.find(target.mode)->parameters](Node& part) {
     part.change(Transition::kActivate);
     part.post([&part, parameters] {
@@ -117,7 +119,7 @@ void ModeManager::hear_all_of(const Node& node) {
   });
 }
 
-// News come to the executor like everything else: one that hangs hears nothing.
+// News come to the executor like everything else: one that hangs receives none.
 void ModeManager::hear(const std::string& node, std::function<void(modes::Inference&)> news) {
   if (model_.find(node) == nullptr) return;
   post([this, news = std::move(news)] {

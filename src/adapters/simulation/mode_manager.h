@@ -1,11 +1,11 @@
 // The mode manager of system_modes: changes the modes of systems, and infers in which they are.
 //
-// - What is accepted is not done: the parts are told, each in its own time, and nobody waits for
-//   their answers. A mode that the system is in already is not asked for again.
-// - In which mode a system is, is inferred from what the parts announce, as the live one does
+// - An accepted request is not yet done: the parts get requests, each in its own time, and the
+//   manager does not wait for their answers. It does not request a mode that the system has already.
+// - The mode of a system is inferred from its parts' announcements, as in the live manager
 //   (modes/inference.h).
 // - It is a node like others: it has one executor thread, and it can be killed and hang. A new
-//   process asks the parts how they are, for it has heard nothing.
+//   process asks the parts for their state, for it has received nothing.
 // Systems of systems and rules are not modelled, nor requests that are about a plain node.
 #pragma once
 

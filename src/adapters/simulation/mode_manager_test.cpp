@@ -108,7 +108,7 @@ TEST(ModeManager, SeesAPartThatBeganAnew) {
   plant.change("fast");
   plant.pump.kill();
   plant.run(1s);
-  EXPECT_EQ(plant.mode(), "fast");  // nobody told it otherwise
+  EXPECT_EQ(plant.mode(), "fast");  // no request changed it
   plant.pump.launch();
   plant.run(1s);
   EXPECT_EQ(plant.mode(), "off");
@@ -155,7 +155,7 @@ RULE Slow
       ADAPTATION pump change_mode fast 5
 )";
 
-// What the manager resolved within ten seconds, and by what.
+// The failures that the manager resolved within ten seconds, and by which strategy.
 std::vector<std::string> resolved_by(Plant& plant, const std::string& text = kRules) {
   const RuleSet rules = *check(Source("test.rules", text)).rules;
   SimulatedRobot robot(rules, plant.world);
@@ -212,7 +212,7 @@ struct Later {
   std::function<void(Plant&)> what;
 };
 
-// What the manager says while it watches `plant` for `time`.
+// The manager's messages while it watches `plant` for `time`.
 std::vector<std::string> said(Plant& plant, const std::string& text, Duration time,
                               const std::vector<Later>& meanwhile = {}) {
   const RuleSet rules = *check(Source("test.rules", text)).rules;
@@ -252,7 +252,8 @@ RULE NotSix
   EXPECT_EQ(plant.mode(), "slow");
 }
 
-// Killed at any moment of the change: the mode is reached all the same, by a manager begun anew.
+// Killed at any moment of the change: the mode is reached all the same, by a manager that was
+// started again.
 TEST(SimulatedSystem, ReachesItsModeThoughItsModeManagerDiesInBetween) {
   const std::string rules = std::string(kRules) + R"(
 RULE ModesDead
@@ -352,7 +353,7 @@ RULE Dirty
 
 TEST(SimulatedSystem, ThatAcceptsAModeAndDoesNothingIsSaidSo) {
   Plant plant;
-  plant.pump.stop();  // its mode manager tells it, and it never hears
+  plant.pump.stop();  // its mode manager's request never reaches it
   const auto lines = said(plant, R"(
 COMPONENT modes NODE /modes
 COMPONENT pump NODE /pump

@@ -3,7 +3,7 @@
 // Like a real one it has
 // - a process that takes time to start and to stop, that can be killed, stopped and hung, and that
 //   forgets everything when it is gone;
-// - one executor thread: what a callback takes, everything behind it waits for;
+// - one executor thread: while a callback runs, all later ones wait;
 // - a lifecycle, parameters, and topics that it uses while it is configured or active.
 //
 // A model of a node derives from this class and overrides what happens in it.
@@ -41,8 +41,8 @@ class Endpoint;
 
 class Node {
  public:
-  // A killed process says no good-bye: its node stays in the graph until its lease is over (the
-  // default of Fast DDS).
+  // A killed process does not announce its end: its node stays in the graph until its lease is over
+  // (the default of Fast DDS).
   static constexpr Duration kLease = std::chrono::seconds(20);
 
   // `name` is the full name, "/namespace/name". `world` must outlive the node.
@@ -61,9 +61,9 @@ class Node {
   ProcessState process() const { return body_.process; }
   int pid() const { return body_.pid; }
   bool is_in_graph() const { return body_.is_in_graph; }
-  // Starts the process if it is gone. The node comes into the graph after traits().start.
+  // Starts the process if it has exited. The node comes into the graph after traits().start.
   void launch();
-  // Asks the process to end. `done` is called when it is gone, at once if it was.
+  // Asks the process to end. `done` is called when it has exited, at once if it had.
   void terminate(Action done);
   void kill();    // SIGKILL
   void stop();    // SIGSTOP
@@ -100,7 +100,7 @@ class Node {
   bool is_active() const { return body_.state == Lifecycle::kActive; }
 
  protected:
-  // What a model does. Called while the process runs.
+  // The behaviour of a model. Called while the process runs.
   virtual void on_start() {}  // a new process: whatever the old one remembered is forgotten
   virtual void on_configure() {}
   virtual void on_activate() {}
@@ -115,7 +115,7 @@ class Node {
   // A change by the node itself.
   void assign(const std::string& name, Value value);
 
-  // The callback under way takes this long. What it publishes goes out afterwards.
+  // The callback under way takes this long. Its messages go out afterwards.
   void occupy(Duration time);
   // Calls `action` every `period` of robot time while the process lives, on the executor; the first
   // time after `first`.

@@ -14,7 +14,7 @@ namespace {
 using namespace std::chrono_literals;
 using testing::ElementsAre;
 
-// Hears what it is sent, each taking `cost`.
+// Receives messages, each taking `cost`.
 class Listener : public Node {
  public:
   Listener(World& world, Topic<int>& topic, Duration cost, NodeTraits traits = {})

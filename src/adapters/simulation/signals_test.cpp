@@ -1,4 +1,4 @@
-// What a simulated robot tells of fields of topics and of diagnostics.
+// Checks the fields of topics and the diagnostics that a simulated robot reports.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -26,7 +26,7 @@ SimulatedRobot::~SimulatedRobot() { world_.unwatch(*this); }
 
 void SimulatedRobot::index_rules() {
   for (std::size_t t = 0; t < rules_.topics.size(); ++t) {
-    if (rules_.topics[t].publisher) continue;  // its messages do not say who published them
+    if (rules_.topics[t].publisher) continue;  // its messages do not name their publisher
     topics_.emplace(rules_.topics[t].name, TopicId(t));
     if (TopicBase* topic = world_.topic(rules_.topics[t].name)) topic->set_watched(true);
   }
@@ -157,7 +157,7 @@ Node* SimulatedRobot::node_of(ComponentId component) const {
   return world_.node(binding_.node_of(component));
 }
 
-// Who serves the request: the component's node, or, of modes, the mode manager.
+// The node that serves the request: the component's node, or, for modes, the mode manager.
 Node* SimulatedRobot::server_of(const Command& command) const {
   const bool is_about_modes = std::holds_alternative<ChangeMode>(command.what) ||
                               std::holds_alternative<ReadMode>(command.what);
@@ -181,8 +181,8 @@ void SimulatedRobot::execute(const Command& command) {
   }
 }
 
-// A request to a node that is not in the graph has nobody to go to; one that nobody answers is over
-// when the patience is.
+// A request to a node that is not in the graph reaches none; one without an answer ends with the
+// time limit.
 void SimulatedRobot::request(const Command& command, Node& node) {
   world_.after(command.timeout, [this, id = command.id] { reply(id, Outcome::kTimedOut); });
   if (!node.is_in_graph()) {

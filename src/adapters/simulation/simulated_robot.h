@@ -1,8 +1,8 @@
 // The adapter: a simulated world as a robot that a managing system watches and adapts.
 //
-// It tells what a live link would tell (nodes, topics, samples and signals that the rules read,
-// parameters, lifecycle, processes) and carries out requests, which take their way to the node,
-// wait for its executor, and take their way back.
+// It reports the same observations as a live link: nodes, topics, samples and signals that the
+// rules read, parameters, lifecycle, processes. It carries out requests, which take time to reach
+// the node, wait for its executor, and take time to come back.
 //
 // A system of a mode manager is a component like a node: it is there as long as its manager is.
 //
@@ -26,7 +26,7 @@ namespace culprit::simulation {
 
 class SimulatedRobot : public Robot, private Watcher {
  public:
-  // Both must outlive the robot. Tells at once what is in the world already.
+  // Both must outlive the robot. Reports at once what is in the world already.
   SimulatedRobot(const RuleSet& rules, World& world);
   ~SimulatedRobot() override;
 

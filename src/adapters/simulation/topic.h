@@ -1,4 +1,4 @@
-// Topics of a simulated robot, with messages of any type, and who uses them.
+// Topics of a simulated robot, with messages of any type, and their users.
 //
 // A message that is published reaches each subscriber after the topic's latency, or is lost. A
 // subscription keeps the last few that its node had no time for, as ROS 2 does.
@@ -13,7 +13,7 @@
 
 namespace culprit::simulation {
 
-// What becomes of messages on their way.
+// The delay and the loss of messages on their way.
 struct Transport {
   Span latency;
   double loss = 0;  // probability
@@ -46,7 +46,7 @@ class TopicBase {
   Transport transport() const { return transport_; }
   void set_transport(Transport transport) { transport_ = transport; }
 
-  // Whether the world's watchers hear the samples of this topic, and which fields of them.
+  // Whether the world's watchers receive the samples of this topic, and which fields of them.
   void set_watched(bool is_watched) { is_watched_ = is_watched; }
   bool is_watched() const { return is_watched_; }
   void watch_field(const std::string& field);
@@ -70,7 +70,7 @@ class TopicBase {
   Time last_shown_{};
 };
 
-// A node's end of a topic. It tells the watchers when it comes and goes.
+// A node's end of a topic. It reports to the watchers when it comes and goes.
 class Endpoint {
  public:
   // All must outlive the endpoint.
@@ -84,9 +84,9 @@ class Endpoint {
   const std::string& name() const { return name_; }
   bool is_open() const;  // it can send or receive now
 
-  // Tells the watchers if that changed.
+  // Reports to the watchers if that changed.
   void report();
-  // What waits here is lost.
+  // Drops the messages that wait here.
   virtual void forget() {}
 
  protected:
@@ -141,7 +141,7 @@ class Publisher : public Endpoint {
   Publisher(Node& node, Topic<Message>& topic, Use use = Use::kWhileActive)
       : Endpoint(node, EndpointKind::kPublisher, topic.name(), use), topic_(topic) {}
 
-  // Nothing leaves while the endpoint is not open.
+  // While the endpoint is not open, messages are dropped.
   void publish(const Message& message) {
     if (is_open()) topic_.publish(departure(), message);
   }

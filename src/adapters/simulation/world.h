@@ -20,7 +20,7 @@ class ModeManager;
 class Node;
 class TopicBase;
 
-// Who hears of what can be seen of the nodes from outside. Calls come in the order of time.
+// Receives the changes of nodes that are visible from outside. Calls come in the order of time.
 class Watcher {
  public:
   virtual ~Watcher() = default;
@@ -28,7 +28,7 @@ class Watcher {
   virtual void on_endpoint(const Node&, EndpointKind, const std::string& /*name*/,
                            bool /*is_there*/) {}
   virtual void on_sample(const TopicBase&) {}
-  // A field of a sample, right after it, if somebody wants it (TopicBase::watch_field).
+  // A field of a sample, right after it, if a watcher wants it (TopicBase::watch_field).
   virtual void on_field(const TopicBase&, const std::string& /*field*/, const Value&) {}
   virtual void on_diagnostic(std::string_view /*status*/, std::string_view /*key*/, const Value&) {}
   virtual void on_level(std::string_view /*status*/, std::uint8_t /*level*/) {}
@@ -45,8 +45,8 @@ class World {
 
   Time now() const { return now_; }
 
-  // A source of chance of its own for whatever `name` says, so that one more draw in one place
-  // changes nothing elsewhere.
+  // A separate source of random numbers for each `name`, so that one more draw in one place changes
+  // nothing elsewhere.
   Random random(std::string_view name) const;
 
   // Does `action` at `due`, or now if that is past.
@@ -57,7 +57,7 @@ class World {
   bool step(Time until);
   // Does everything that is due not after `until`. Then it is `until`.
   void run(Time until);
-  // It is `time` now. Nothing may be due before.
+  // It is `time` now. No action may be due before.
   void set_time(Time time) { now_ = std::max(now_, time); }
 
   // Null if there is none of this name.

@@ -38,7 +38,7 @@ export class Editor {
     return reply;
   }
 
-  // Applies edits as an editor does, and tells the server.
+  // Applies edits as an editor does, and notifies the server.
   async apply(edits) {
     const text = TextDocument.applyEdits(this.document, edits);
     const version = this.document.version + 1;

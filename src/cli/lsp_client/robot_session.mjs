@@ -4,7 +4,7 @@
 import assert from "node:assert/strict";
 import { Editor } from "./editor.mjs";
 
-// Asks again and again: the robot tells when it likes.
+// Asks again and again: the robot's data arrives at any time.
 async function until(ask, isWanted) {
   for (;;) {
     const answer = await ask();

@@ -6,6 +6,7 @@
 
 #include "diagnose/timing.h"
 #include "knowledge/ambiguity.h"
+#include "knowledge/group_health.h"
 #include "knowledge/undoes.h"
 #include "language/evaluate.h"
 
@@ -15,7 +16,8 @@ namespace {
 bool is_true(const Slot& slot) { return slot.known && slot.b; }
 bool is_false(const Slot& slot) { return slot.known && !slot.b; }
 
-// Whose value it is; of signals and diagnostics nobody knows.
+// May the input's value come from the component? The sources of signals and diagnostics are
+// unknown.
 bool may_be_of(ComponentId component, const Input& input, const Knowledge& knowledge) {
   using Kind = Input::Kind;
   switch (input.kind) {
@@ -229,7 +231,9 @@ void Analyzer::evaluate_trigger(RuleId id, Time now) {
     state.detection.trigger_since = now;
   }
   if (!is_true(value)) state.detection.armed = true;
-  if (is_false(value) && state.left_off && !state.left_off->gone) forget_left_off(id, now);
+  if (is_true(value)) state.cleared_by.reset();
+  if (is_false(value) && state.left_off && !state.left_off->gone && !missing_group(id, now))
+    forget_left_off(id, now);
   if (!state.detection.history.empty()) sample_history(id, now);
   blind_.evaluated(id, now);
 }
@@ -247,7 +251,7 @@ Slot Analyzer::value_of_trigger(RuleId id, Time now) {
   return Slot::of(true);
 }
 
-// What an earlier process left off at went away while nobody looked on.
+// An earlier process left this failure unresolved, and it cleared before this process looked.
 void Analyzer::forget_left_off(RuleId id, Time now) {
   LeftOff& left_off = *write_.states.state(id).left_off;
   left_off.gone = now;
@@ -283,10 +287,43 @@ Duration Analyzer::clearing_time(RuleId id) const {
   return std::max(policies.hold_for, knowledge_.rules.cycle * held);
 }
 
-bool Analyzer::is_gone(RuleId id, Time now) const {
+// The trigger has stayed false.
+bool Analyzer::is_cleared(RuleId id, Time now) const {
   const RuleState& state = knowledge_.states[id];
   return is_false(state.detection.trigger) &&
          now >= later(state.detection.trigger_since, clearing_time(id));
+}
+
+// And its function is there again: a component of a group is of no use while the group is not active.
+bool Analyzer::is_gone(RuleId id, Time now) const {
+  return is_cleared(id, now) && !missing_group(id, now);
+}
+
+std::optional<GroupId> Analyzer::missing_group(RuleId id, Time now) const {
+  for (const GroupId group : knowledge_.rules[id].groups) {
+    if (health_of(knowledge_.rules[group], knowledge_.components, now) != GroupHealth::kActive)
+      return group;
+  }
+  return std::nullopt;
+}
+
+// It brings up a group, or its rule reads the health of one: a member that works proves nothing.
+bool Analyzer::is_about_whole_group(StrategyId id) const {
+  const Strategy& strategy = knowledge_.rules[id];
+  const auto reads_group = [&](InputId input) {
+    const Input& read = knowledge_.rules[input];
+    return read.kind == Input::Kind::kSignal &&
+           std::holds_alternative<GroupId>(knowledge_.rules[read.signal].source);
+  };
+  return std::ranges::any_of(strategy.adaptations,
+                             [](const Adaptation& a) { return a.group.has_value(); }) ||
+         std::ranges::any_of(knowledge_.rules[strategy.rule].inputs, reads_group);
+}
+
+bool Analyzer::is_left_down(GroupId group, const Attempt& attempt, Time now) const {
+  const GroupHealth health = health_of(knowledge_.rules[group], knowledge_.components, now);
+  if (health == GroupHealth::kChanging) return false;
+  return health != GroupHealth::kUnknown || now >= later(attempt.deadline, kLostAfter);
 }
 
 void Analyzer::detect(RuleId id, Time now) {
@@ -308,6 +345,7 @@ void Analyzer::detect(RuleId id, Time now) {
   state.is_advised = state.is_last_resort_advised = false;
   state.tried_alone.reset();
   state.settling.reset();
+  state.cleared_by.reset();
   // It is due anew, also if the failure is the same one.
   state.search.is_at_last_resort = false;
   state.search.last_resort_at = kLongAgo;
@@ -345,7 +383,10 @@ void Analyzer::watch_failing(RuleId id, Time now) {
   if (is_gone(id, now)) {
     if (const auto tried = std::exchange(write_.states.state(id).tried_alone, std::nullopt))
       note_latency(id, *tried);
-    if (const auto helped = last_resort_that_helped(id)) {
+    if (const auto cleared_by = std::exchange(write_.states.state(id).cleared_by, std::nullopt)) {
+      resolve(id, {id, FailureResolved::How::kByStrategy, cleared_by->strategy, {}}, now);
+      outcomes_.judged(*cleared_by, true, now);
+    } else if (const auto helped = last_resort_that_helped(id)) {
       resolve(id, {id, FailureResolved::How::kByStrategy, *helped, {}}, now);
     } else {
       resolve(id, {id, FailureResolved::How::kWithoutStrategy, {}, {}}, now);
@@ -398,18 +439,24 @@ void Analyzer::judge(RuleId id, Time now) {
   const Duration impact =
       std::max(duration_of(knowledge_.rules[attempt.strategy].impact, knowledge_.rules),
                knowledge_.latencies.lateness(id).most);
-  const Time given = std::max(later(attempt.effective, impact), shows_from(attempt));
+  const Time given = std::max({later(attempt.effective, impact), shows_from(attempt),
+                               knowledge_.signals.heard_again_by(id)});
   attempt.deadline = later(given, knowledge_.signals.latency(id));
-  if (knowledge_.rules[id].policies.on_change || is_gone(id, now)) return succeed(id, now);
+  const auto awaited =
+      is_about_whole_group(attempt.strategy) ? missing_group(id, now) : std::nullopt;
+  if (knowledge_.rules[id].policies.on_change || (is_cleared(id, now) && !awaited))
+    return succeed(id, now);
   const bool is_suspended = attempt.stage == Attempt::Stage::kSuspended;
-  if (is_suspended || now < attempt.deadline || is_false(state.detection.trigger)) return;
+  const bool is_clearing =
+      is_false(state.detection.trigger) && !(awaited && is_left_down(*awaited, attempt, now));
+  if (is_suspended || now < attempt.deadline || is_clearing) return;
   if (state.detection.trigger.known || now >= later(attempt.deadline, kLostAfter) ||
       holds_up_more_critical(attempt.strategy))
     fail(id, now);
 }
 
-// What was started has to find what it reads, and to be found by those who read it where the rule is
-// about them.
+// A started component has to discover its publishers; its subscribers have to discover it, too,
+// where the rule reads from them.
 Time Analyzer::shows_from(const Attempt& attempt) const {
   const Strategy& strategy = knowledge_.rules[attempt.strategy];
   const auto is_read = [&](ComponentId component) {
@@ -484,7 +531,7 @@ void Analyzer::succeed(RuleId id, Time now) {
   // As a failure would not count either.
   state.attempt->is_ambiguous |= unheard_behind(*state.attempt).has_value();
   const Attempt attempt = *std::exchange(state.attempt, std::nullopt);
-  // Whoever has its components meanwhile is as likely.
+  // The strategy that reserves its components meanwhile is as likely the cause.
   const bool is_suspended = attempt.stage == Attempt::Stage::kSuspended;
   const bool caused = !is_suspended && !went_away_before(attempt);
   if (caused) couplings_.resolved(attempt, !attempt.is_ambiguous, now);
@@ -493,6 +540,13 @@ void Analyzer::succeed(RuleId id, Time now) {
   // It helped after all, and its rule showed that late.
   if (!caused && !is_suspended && state.tried_alone) note_latency(id, *state.tried_alone);
   state.tried_alone.reset();
+  // Its components are free for what brings up the group.
+  if (!knowledge_.rules[id].policies.on_change && missing_group(id, now)) {
+    ++state.search.attempts;
+    write_.states.set_tried(attempt.strategy, true);
+    if (caused) state.cleared_by = attempt;
+    return write_.states.enter(id, RulePhase::kFailing);
+  }
   if (caused) {
     resolve(id, {id, FailureResolved::How::kByStrategy, attempt.strategy, {}}, now);
   } else {
@@ -536,8 +590,8 @@ std::optional<ComponentId> Analyzer::unheard_behind(const Attempt& attempt) cons
                                           : knowledge_.unheard_behind(strategy.rule);
 }
 
-// It ends without a verdict. What went round the computer that is not heard, and did not help, is not
-// tried once more meanwhile.
+// It ends without a verdict. A strategy that avoided the unreachable computer, and did not help, is
+// not retried meanwhile.
 void Analyzer::excuse(RuleId id, ComponentId unheard, Time now) {
   Attempt& attempt = *write_.states.state(id).attempt;
   const auto& adapted = knowledge_.rules[attempt.strategy].components;
@@ -574,7 +628,7 @@ void Analyzer::forgive_unheard(Time now) {
   const auto forgive = [&](RuleId id) {
     RuleState& state = write_.states.state(id);
     Search& search = state.search;
-    // What an earlier process had tried was tried before.
+    // Attempts of an earlier process began before the computer became unreachable.
     if (state.left_off || !knowledge_.unheard_behind(id)) return;
     search.attempts = search.attempts_before;
     search.round = 0;
@@ -604,10 +658,12 @@ void Analyzer::fail(RuleId id, Time now) {
     state.tried_alone.reset();
     if (!attempt.is_ambiguous && attempt.effective != kNever) state.tried_alone = attempt.effective;
   }
+  const auto group = is_false(state.detection.trigger) ? missing_group(id, now) : std::nullopt;
   const std::string reason = !attempt.obstacle.empty() ? attempt.obstacle
+                             : group ? "group " + knowledge_.rules[*group].name + " is not active"
                              : state.detection.trigger.known
                                  ? "the failure is still there"
-                                 : "nobody can see whether the failure is still there";
+                                 : "it is unknown whether the failure is still there";
   attempt.stage = Attempt::Stage::kUndoing;
   write_.events.tell(now, StrategyFailed{attempt.strategy, reason});
 }
@@ -731,7 +787,7 @@ void Analyzer::judge_last_resort(RuleId id, Time now) {
 void Analyzer::watch_last_resorts(RuleId id, Time now) {
   RuleState& state = write_.states.state(id);
   if (state.phase == RulePhase::kQuiet) return;
-  // What it set in a process is lost with that.
+  // A new process has lost the settings of the old one.
   std::erase_if(state.standing, [&](const RuleState::Standing& each) {
     const bool is_lost =
         std::ranges::any_of(knowledge_.rules[each.strategy].adaptations, [&](const Adaptation& a) {
@@ -765,7 +821,7 @@ void Analyzer::exhaust(RuleId id, Time now) {
   stay_exhausted(id, now);
 }
 
-// What is known to be gone is started again after a while (goes_on()).
+// A process that is known to have exited is started again after a while (goes_on()).
 void Analyzer::stay_exhausted(RuleId id, Time now) {
   Search& search = write_.states.state(id).search;
   const int beyond = search.attempts - knowledge_.rules[id].policies.attempts;
@@ -798,7 +854,8 @@ void Analyzer::schedule(RuleId id, Time now) {
              : later(state.failing_since, knowledge_.rules[*last].within));
   if (state.attempt && state.attempt->stage == Attempt::Stage::kWaiting) {
     want(state.attempt->deadline);
-    // Until nobody waits any longer; a more critical failure may come before.
+    want(later(state.attempt->deadline, kLostAfter));
+    // Until the wait ends; a more critical failure may come before.
     if (!state.detection.trigger.known || shows_from(*state.attempt) > now)
       want(later(now, knowledge_.rules.cycle));
   }

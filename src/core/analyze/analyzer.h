@@ -1,10 +1,10 @@
 // Knowledge -> failures, and verdicts on the strategies under way (paper, "Analyzing").
 //
-// Only rules whose trigger can have changed, or whose own time has come, are looked at. What a rule
-// goes through:
+// Only rules whose trigger can have changed, or whose own time has come, are looked at. The states
+// of a rule:
 //
 //   detected   its trigger held for its policy's time (FOR, HOLD n/k) and its COOLDOWN is over.
-//              Silence that is certain to come, because who would speak is known dead, counts
+//              Silence of a topic whose publisher is known dead is certain to come, so it counts
 //              at once (known_silence.h)
 //   resolved   its trigger was false for its policy's time; unknown is neither true nor false
 //   blind      its trigger has been unknown for a while: neither quiet nor failing (blind_watch.h)
@@ -14,9 +14,9 @@
 //
 // A strategy under way succeeds when its failure is resolved, once its adaptations took effect. It
 // fails at its deadline: its impact in cycles after they took effect, plus the latency of what the
-// trigger reads. The latency of a signal is two of its periods, so that a fresh reading comes
-// first; five seconds while its period is not known. Of what began anew nothing is expected before its
-// middleware can have found what it reads, and who reads it (kInputs at most).
+// trigger reads. The latency of a signal is two of its periods, so that a fresh reading comes first;
+// five seconds while its period is not known. After a start or restart, the deadline allows for
+// discovery of the publishers that the component reads, and of its subscribers (kInputs at most).
 //
 // A round of strategies is followed by a back-off that doubles each time. After ATTEMPTS strategies
 // (or as many rounds without any valid strategy) the rule is exhausted. A process that is known to be gone
@@ -24,7 +24,7 @@
 //
 // LASTRESORT strategies are no part of the rounds. They are due WITHIN their time of the detection,
 // or earlier if no other strategy can begin or help by then, and go beside whatever is under way. They
-// have no verdict: what they changed stays while the failure is there, and the other strategies go on.
+// have no verdict: their changes stay while the failure is there, and the other strategies go on.
 // One that could not be carried out is tried again with back-off, up to ATTEMPTS times. Several follow
 // each other by WITHIN, each after the impact of the one before.
 //
@@ -58,13 +58,14 @@ class Analyzer {
  public:
   static constexpr Duration kFirstBackoff = std::chrono::seconds(1);
   static constexpr Duration kLongestBackoff = std::chrono::seconds(60);
-  // Between two starts of what is known to be gone, once the rule is exhausted: doubled each time.
+  // Between two starts of a process that is known to have exited, once the rule is exhausted:
+  // doubled each time.
   static constexpr Duration kFirstPauseOfStarts = std::chrono::seconds(10);
   static constexpr Duration kLongestPauseOfStarts = std::chrono::minutes(5);
-  // A failing rule whose trigger is unknown for longer is no longer called failing: nobody can see
-  // whether it is.
+  // A failing rule whose trigger is unknown for longer is no longer called failing: whether it is
+  // cannot be known.
   static constexpr Duration kLostAfter = std::chrono::seconds(30);
-  // A verdict on what was started waits for its inputs so long, and not for ever.
+  // The longest time that a verdict on a started component waits for its inputs.
   static constexpr Duration kInputs = std::chrono::seconds(14);
   // A failure that is back within so long may be an effect that its cause brought back.
   static constexpr Duration kRecurs = std::chrono::seconds(5);
@@ -91,11 +92,11 @@ class Analyzer {
   // itself until `discovered`.
   Analyzer(const Knowledge& knowledge, Writes writes, Time start, Time discovered);
 
-  // What earlier processes tried. Before the first advance().
+  // The attempts of earlier processes. Before the first advance().
   void remember(const History& past);
 
-  // Nobody watched until `now`: whatever has to last begins anew (FOR, HOLD, a strategy's waiting
-  // time), and the strategies under way prove nothing, however they end.
+  // culprit did not watch until `now`. Every time that must pass without a break begins anew (FOR,
+  // HOLD, a strategy's waiting time). The strategies under way prove nothing, however they end.
   void restart(Time now);
 
   // Looks at every rule that the monitor touched and at those whose time has come.
@@ -112,8 +113,8 @@ class Analyzer {
   std::vector<RuleId> plannable(Time now) const;
   // Whether anything may have to be done, for steps where nothing is wrong.
   bool anything_to_do(Time now) const;
-  // Is the rule exhausted, and a strategy of it would only start processes that are known to be gone?
-  // That goes on, with back-off.
+  // Is the rule exhausted, and would a strategy of it only start processes that are known to have
+  // exited? Such starts go on, with back-off.
   bool goes_on(RuleId id) const;
   // When the first of these is due; kNever if none is.
   Time next_start() const;
@@ -121,25 +122,24 @@ class Analyzer {
   // The rule's strategy under way ends without a verdict.
   void abandon(RuleId id, Time now);
 
-  // The rule's strategy under way, which has taken effect, leaves its components to `other`. If
-  // what it brought about stays, it is judged when it has them back; else it ends without a
-  // verdict.
+  // The rule's strategy under way, which has taken effect, leaves its components to `other`. If its
+  // changes stay, it is judged when it has the components back; else it ends without a verdict.
   void make_way(RuleId id, StrategyId other, Time now);
 
   // No other strategy of the rule can begin or help in time: its last resorts are due, if it has any.
   void turn_to_last_resort(RuleId id, Time now);
   // The last resort of the rule that has to be begun now.
   std::optional<StrategyId> last_resort_due(RuleId id, Time now) const;
-  // The one that comes next, due or not; nothing: each took effect, or there is none.
+  // The one that comes next, due or not; empty: each took effect, or there is none.
   std::optional<StrategyId> next_last_resort(RuleId id) const;
-  // The last resort under way is left where it is. @pre there is one
+  // The last resort under way is abandoned. @pre there is one
   void abandon_last_resort(RuleId id, Time now);
 
-  // Nothing more may be done about the failure by itself: a person must look.
+  // culprit may not do more about the failure by itself: a person must look.
   void give_up(RuleId id, Time now);
 
-  // A computer is not heard any more: what it explains and was tried in vain shortly before, while nobody
-  // knew, was tried for nothing. That is forgotten, and what is not proven yet is not learned.
+  // A computer became unreachable. Attempts at failures that it explains, made in vain shortly before
+  // that was known, are forgotten; an outcome that is not proven yet is not learned.
   void forgive_unheard(Time now);
 
   // No untried strategy of the rule is valid: its round is over.
@@ -152,7 +152,13 @@ class Analyzer {
   void forget_left_off(RuleId id, Time now);
   void sample_history(RuleId id, Time now);
   bool detects(RuleId id, Time now) const;
+  bool is_cleared(RuleId id, Time now) const;
   bool is_gone(RuleId id, Time now) const;
+  // A group that the rule is about and that is not active; nothing: there is none.
+  std::optional<GroupId> missing_group(RuleId id, Time now) const;
+  bool is_about_whole_group(StrategyId strategy) const;
+  // The group stays as it is, and that is not active: no member is changing.
+  bool is_left_down(GroupId group, const Attempt& attempt, Time now) const;
   Duration clearing_time(RuleId id) const;
 
   void remember(const Event& event);

@@ -29,6 +29,9 @@ bool is_of_signal(const Input& input) {
 
 // The monitor forgets a signal at its STALE, and a window empties by itself.
 bool keeps_last_value(const Input& input, const RuleSet& rules) {
+  // The health of a group follows its members.
+  if (is_of_signal(input) && std::holds_alternative<GroupId>(rules[input.signal].source))
+    return false;
   if (input.kind == Kind::kSignal || input.kind == Kind::kIsNan) return !rules[input.signal].stale;
   return input.kind == Kind::kChanged || input.kind == Kind::kLevel;
 }

@@ -45,7 +45,7 @@ class BlindWatch {
   // The trigger of `rule` was evaluated.
   void evaluated(RuleId rule, Time now);
 
-  // Nobody listened until `now`: no pause from before counts.
+  // culprit did not listen until `now`: no pause from before counts.
   void restart(Time now);
 
   // Looks at the rules whose time has come.

@@ -34,7 +34,7 @@ Duration CouplingWatch::held(RuleId rule) const {
   return duration_of(Cycles{window > 1 ? window : 0}, knowledge_.rules);
 }
 
-// How long `effect` may take to go away after `cause`.
+// How long `effect` may take to clear after `cause`.
 Duration CouplingWatch::delay(RuleId cause, RuleId effect) const {
   const RuleState& of_cause = knowledge_.states[cause];
   const Time cause_came = of_cause.first_detected();
@@ -48,10 +48,11 @@ Duration CouplingWatch::delay(RuleId cause, RuleId effect) const {
   return held(effect) + (recurs ? duration_of(kUsualDelay, knowledge_.rules) : Duration::zero());
 }
 
-// What depends on these components is given the time to show that it is well, now that the failure
-// `cause` is gone. Not what is no effect of it: it is more critical and at the same component, was
-// detected long before it, or only after things had `changed` (and, if that may have come
-// `on_its_way`, later than so after the cause).
+// Failures downstream of these components get the time to clear, now that the failure `cause` has
+// cleared. A failure is no effect of the cause, and gets no time, in three cases: it is more
+// critical and at the same component; it was detected long before; or it was detected only after
+// things had `changed`. If an effect may have come `on_its_way`, it may be detected up to so much
+// later than the cause.
 void CouplingWatch::settle(const std::vector<ComponentId>& repaired, RuleId cause, Time changed,
                            std::optional<Cycles> on_its_way, Time now) {
   std::vector<bool> is_downstream(knowledge_.rules.components.size(), false);
@@ -82,8 +83,8 @@ void CouplingWatch::settle(const std::vector<ComponentId>& repaired, RuleId caus
   }
 }
 
-// When what made a failure go away took effect: the last change upstream since it was detected, or
-// just now if there was none.
+// When the repair of a failure took effect: the last change upstream since it was detected, or just
+// now if there was none.
 Time CouplingWatch::last_change_for(RuleId cleared, Time now) const {
   const Sources sources(knowledge_, cleared);
   const Time detected = knowledge_.states[cleared].failing_since;
@@ -148,15 +149,15 @@ Time CouplingWatch::shown(const Change& change, RuleId rule) const {
   const Time came = knowledge_.states[rule].first_detected();
   if (came < change.begin || !may_hide(knowledge_, cause, rule))
     return later(change.end, delay(cause, rule));
-  // It came to light with the change, which let it through: how late says nothing of how long it
-  // takes to go. A fresh reading tells.
+  // The change revealed it. How late it appeared is no measure of how long it takes to clear. A
+  // fresh reading shows it.
   const Duration usual = held(rule) + duration_of(kUsualDelay, knowledge_.rules);
   return std::max(later(change.end, usual),
                   later(std::min(change.effective, change.end), knowledge_.signals.latency(rule)));
 }
 
-// The same, where what was tried for that failure took down what would have shown it: it begins to
-// show once that is up again.
+// The same, if an attempt at that failure took down components that would have shown the recovery:
+// it can show only once they are up again.
 Time CouplingWatch::shown_after_all(const Change& change, RuleId rule) const {
   Time at = shown(change, rule);
   const Duration delay = at - change.end;
@@ -178,7 +179,7 @@ bool CouplingWatch::is_only_cause(StrategyId strategy, RuleId effect, Time since
                                  sources.have(knowledge_.rules[other].components));
   };
   for (const Change& change : changes_) {
-    // What was tried before for the same failure did not help.
+    // Earlier attempts at the same failure did not help.
     const bool is_own = knowledge_.rules[change.strategy].rule == cause;
     const bool is_over = change.end < since && (is_own || shown(change, effect) <= since);
     if (!is_over && is_rival(change.strategy)) return false;
@@ -201,7 +202,7 @@ bool CouplingWatch::is_echo(const Attempt& attempt) const {
   const Time detected = knowledge_.states[rule].failing_since;
   const Duration latency = knowledge_.signals.latency(rule);
   return std::any_of(changes_.begin(), changes_.end(), [&](const Change& change) {
-    // What was seen only after the change cannot be about to go away with it.
+    // A failure that was detected only after the change cannot be about to clear with it.
     return knowledge_.rules[change.strategy].rule != rule &&
            detected < later(change.effective, latency) &&
            shown_after_all(change, rule) > attempt.first_change &&
@@ -209,7 +210,7 @@ bool CouplingWatch::is_echo(const Attempt& attempt) const {
   });
 }
 
-// Nobody asks about a time before the last `kPatience`, before the first open question and before
+// No query is about a time before all of these: the last `kPatience`, the first open question, and
 // the first attempt under way.
 void CouplingWatch::forget_what_is_settled(Time now) {
   Time horizon = now - kPatience;

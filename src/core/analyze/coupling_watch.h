@@ -1,15 +1,19 @@
-// Which failures go away with which: learns the couplings, and says who is expected to settle.
+// Learns the couplings (which failures clear together), and decides which failures are expected to
+// settle.
 //
-// When a strategy has resolved failure j, every other failure i that is there gets as long as its
-// signals need to show a change, or until the first fresh reading, which planners act on as well.
-// If i is gone by then, it is coupled to j; otherwise it is not. The outcome counts only if nothing
-// but j's strategy can have caused it: no other change of the system between that strategy's first
-// request and the outcome could have resolved i, no change was made for i itself, no earlier change
-// can have taken effect only now, and nothing else upstream of i went away by itself.
+// When a strategy has resolved failure j, every other present failure i gets as long as its signals
+// need to show a change, or until the first fresh reading. Planners act on such a reading as well.
+// If i has cleared by then, it is coupled to j; otherwise it is not. The outcome counts only if
+// nothing but j's strategy can have caused it:
+//   - no other change of the system between that strategy's first request and the outcome could
+//     have resolved i,
+//   - no change was made for i itself,
+//   - no earlier change can have taken effect only now,
+//   - no other failure upstream of i cleared by itself.
 //
 // A failure goes away as slowly as it came: if i was detected some time after j, it is given one
 // and a half times that long to go away after j. Until then i is said to settle, and planners leave
-// it alone. What comes and goes (flapping) may leave effects of an earlier time behind.
+// it alone. A flapping cause may leave effects of an earlier time behind.
 #pragma once
 
 #include <optional>
@@ -21,9 +25,9 @@ namespace culprit {
 
 class CouplingWatch {
  public:
-  // What would show a failure gone may stay silent: nobody waits longer than this.
+  // Signals that would show the recovery may stay silent: the watch ends after this time.
   static constexpr Duration kPatience = std::chrono::seconds(30);
-  // More failures at once than this, and what is learned from them is left to quieter times.
+  // At most this many open questions; outcomes beyond them are not learned.
   static constexpr std::size_t kMostWatched = 1000;
   // An effect that comes or goes later than so long after its cause is taken for none.
   static constexpr Duration kLongestDelay = std::chrono::seconds(5);
@@ -42,20 +46,20 @@ class CouplingWatch {
 
   // `attempt` resolved its failure, which nothing else can have done (`is_proven`), or it may have.
   void resolved(const Attempt& attempt, bool is_proven, Time now);
-  // A failure went away without a strategy of its own.
+  // A failure cleared without a repair of its own.
   void cleared(RuleId rule, Time now);
   void ended(const Attempt& attempt, Time now);
   // Can a change that was made for another failure just before `attempt` have resolved its own?
   bool is_echo(const Attempt& attempt) const;
 
-  // Nobody watched for a while: what went away meanwhile went away with nothing.
+  // culprit did not watch for a while: failures that cleared meanwhile count as coupled to none.
   void restart() { questions_.clear(); }
 
   void advance(Time now);
   Time next_deadline() const;
 
  private:
-  // Is i coupled to j? Open until i goes away, or `due`.
+  // Is i coupled to j? Open until i clears, or `due`.
   struct Question {
     StrategyId strategy;  // that resolved j
     RuleId effect;        // i

@@ -44,7 +44,7 @@ struct Two {
     return settling ? settling->since - kResolved : -1s;
   }
 
-  // Likewise, where the cause went away by itself, and something else had changed before the effect
+  // The same, but the cause cleared by itself, and something else had changed before the effect
   // came.
   Duration settles_after_clearing() {
     Attempt attempt;
@@ -57,7 +57,7 @@ struct Two {
     return settling ? settling->since - (kCame + 4s) : -1s;
   }
 
-  // What the effect's rule reads may be five seconds old.
+  // The inputs of the effect's rule may be five seconds old.
   void read_seldom(Duration latency = 5s) {
     for (const InputId id : rules[kEffect].inputs) knowledge.signals.set_latency(id, latency);
   }

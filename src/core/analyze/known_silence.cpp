@@ -51,7 +51,8 @@ std::optional<ComponentId> KnownSilence::behind(RuleId rule) const {
   return value.known && value.b ? dead : std::nullopt;
 }
 
-// Whoever alone publishes the topic, spoke since its process began, and does so no more.
+// The topic's only publisher, if it published since its process began and cannot do so now: it is
+// known dead, or not received again yet.
 std::optional<ComponentId> KnownSilence::silent_through(TopicId topic, RuleId rule) const {
   const auto component = knowledge_.graph.only_publisher(knowledge_.rules[topic]);
   const auto& heard = knowledge_.signals.rhythm(topic).last;

@@ -1,16 +1,16 @@
 // Silence that is known before it is heard.
 //
-// Of a component that is known dead (ComponentState::known_dead) nothing comes any more. What it
-// alone publishes is silent from now on, so a trigger that silence makes true need not wait until it
-// is heard: it is evaluated as if that had been silent for long. All else that it reads counts as it
-// is, so it becomes true only where the dead one alone explains it.
+// A component that is known dead (ComponentState::known_dead) publishes no more. Topics that it
+// alone publishes are silent from now on, so a trigger that silence makes true need not wait for the
+// timeout: it is evaluated as if those topics had been silent for long. All other inputs count as
+// they are, so the trigger becomes true only where the dead component alone explains it.
 //
-//   who sees it   the rules that can bring the dead one back (redeploy or start it). Others may
-//                 have been written to wait whether that helps; their own silence decides. Where
-//                 no rule can bring it back, all see it
-//   how long      until the component is back; then its own silence decides again. While a strategy
-//                 of the rule is under way, until what it publishes was heard anew: that it could
-//                 begin is no proof that it speaks
+//   which rules   those that can bring the dead component back (redeploy or start it). Others may
+//                 have been written to wait whether that helps; their own timeout decides. Where
+//                 no rule can bring it back, all evaluate it so
+//   how long      until the component is back; then the topics' own silence decides again. While a
+//                 strategy of the rule is under way, until the topics are received again: a
+//                 component that could begin need not publish yet
 //   FOR, HOLD     keep their time, from its end on
 #pragma once
 
@@ -27,7 +27,7 @@ class KnownSilence {
   // `knowledge` must outlive it.
   explicit KnownSilence(const Knowledge& knowledge);
 
-  // The component whose known death makes the trigger of `rule` true. Nothing: none does.
+  // The component whose known death makes the trigger of `rule` true. Empty: none does.
   // @pre what the trigger reads does not make it true by itself
   std::optional<ComponentId> behind(RuleId rule) const;
 

@@ -1,7 +1,7 @@
-// What is nearest to becoming a failure, while it is none.
+// Rules that are nearest to firing, while they are quiet.
 //
-// Only comparisons of one value with a constant are looked at: how near anything else is cannot be
-// told in a number.
+// Only comparisons of one value with a constant are looked at: for anything else no number says how
+// near it is.
 #pragma once
 
 #include <vector>

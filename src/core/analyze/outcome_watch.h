@@ -4,9 +4,9 @@
 //   - before the strategy's deadline something else could have had the same effect,
 //   - a more critical failure that it is connected with is there at the deadline, or appears before
 //     the outcome is due: it hides what the strategy did,
-//   - a failure upstream appears before the outcome is due: a second fault says nothing about the
+//   - a failure upstream appears before the outcome is due: a second fault is no evidence about the
 //     strategy,
-//   - nobody watched for a while before the outcome was due (culprit slept, or was deaf),
+//   - culprit did not watch for a while before the outcome was due (it was suspended, or deaf),
 //   - it is not known whether the failure is there when the outcome is due.
 // The same questions are asked about strategies that helped and that did not, over the same time.
 // If the failure came back by itself, the strategy did not help.
@@ -32,11 +32,12 @@ class OutcomeWatch {
   void judged(const Attempt& attempt, bool has_helped, Time now);
   // A failure came, or came back.
   void detected(RuleId rule, Time now);
-  // Nobody watched for a while: what came out meanwhile counts for nothing.
+  // culprit did not watch for a while: outcomes of that time count for nothing.
   void restart();
-  // A computer is not heard any more: what it explains from now on says nothing of strategies.
+  // A computer became unreachable: failures that it explains from now on are no evidence about
+  // strategies.
   void host_fell_silent();
-  // What an earlier process waited for.
+  // The outcomes that an earlier process waited for.
   void remember(const Event& event);
 
   void advance(Time now);

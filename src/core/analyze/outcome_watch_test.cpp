@@ -1,5 +1,5 @@
-// What is credited must not depend on how it came out: each case is asked of a strategy that helped
-// and of one that did not.
+// The credit must not depend on the outcome: each case is asked of a strategy that helped and of
+// one that did not.
 #include "analyze/outcome_watch.h"
 
 #include <gtest/gtest.h>

@@ -182,7 +182,8 @@ Awaiting Awaited::awaiting(RuleId failure) const {
 }
 
 Time Awaited::fades(RuleId failure, const Past& past, Duration passing) const {
-  // One reading of a common monitor tells of both: whether it settles is seen by that (Settling).
+  // One reading of a common monitor shows both values: it decides whether the failure settles
+  // (Settling).
   const bool is_value = symptom_of(failure, knowledge_) == Symptom::kValue;
   const bool has_echo =
       is_value ? knowledge_.latencies.is_late(failure) : past.symptom == Symptom::kOutage;

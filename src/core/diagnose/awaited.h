@@ -47,13 +47,13 @@ class Awaited {
   // For `failures`, those to be decided about. `knowledge` must outlive it.
   Awaited(const Knowledge& knowledge, std::span<const RuleId> failures);
 
-  // What can still come for one of them; nothing: all that can come is there.
+  // The evidence that can still come for one of them; empty: all of it has come.
   std::optional<Awaiting> of(RuleId failure) const;
 
  private:
   struct Best {
     Duration within{};
-    std::optional<RuleId> rule;  // nothing: none
+    std::optional<RuleId> rule;  // empty: none
   };
   // The best and the second best of another rule: a failure does not wait for itself.
   struct Two {
@@ -77,7 +77,7 @@ class Awaited {
   void carry();
   void look_at(RuleId failure);
   Awaiting awaiting(RuleId failure) const;
-  // What is over, and may still be seen: a failure that cleared, or a component that was down.
+  // A past event that may still show effects: a failure that cleared, or a component that was down.
   struct Past {
     RuleId rule;  // that cleared, or of the strategy
     std::optional<ComponentId> begun_anew{};

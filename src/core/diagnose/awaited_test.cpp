@@ -95,7 +95,7 @@ TEST_F(TwoMonitors, AnOldFailureMayBeAnEcho) {
   EXPECT_TRUE(awaited(9min));
 }
 
-// A began after B: whether it is gone says nothing of B.
+// A began after B: its recovery is no evidence about B.
 TEST_F(TwoMonitors, WhatBeganLaterHasNoEchoInAnEarlierFailure) {
   scene_.fail("A", 9s);
   state("A").onset = Onset{scene_->now - 1500ms, scene_->now - 1s};

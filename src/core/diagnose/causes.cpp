@@ -1,9 +1,9 @@
 #include "diagnose/causes.h"
 
 #include <algorithm>
-#include <cassert>
 #include <iterator>
 
+#include "base/invariant.h"
 #include "diagnose/imminent.h"
 
 namespace culprit::diagnose {
@@ -50,7 +50,7 @@ bool may_be_broken(RuleId rule, const RuleSet& rules) {
       });
 }
 
-// As a cause, what comes and goes began with its first detection; as an effect, with its last.
+// As a cause, a flapping failure began with its first detection; as an effect, with its last.
 Onset onset_of_node(RuleId failure, const Knowledge& knowledge) {
   const Onset onset = onset_of(failure, knowledge);
   return {std::min(onset.earliest, first_onset_of(failure, knowledge)), onset.latest};
@@ -207,9 +207,9 @@ void Causes::connect_learned(const Knowledge& knowledge, std::size_t i) {
   }
 }
 
-// By level: what is less critical and no outage, and is only ever reconfigured. That is no cause: its
-// author finds nothing broken there, and what is bad may be old, for a publisher of better values is
-// out.
+// Leaves out, by level, less critical failures of values that are only ever reconfigured. Such a
+// failure is no cause: its author finds nothing broken there, and the bad value may be old, because a
+// publisher of better values exited.
 void Causes::leave_out_slight(const Knowledge& knowledge) {
   const RuleSet& rules = knowledge.rules;
   BitRows slight(kLevels, size());
@@ -287,7 +287,7 @@ void Causes::find_loops(const BitRows& effects) {
 }
 
 std::size_t Causes::index_of(RuleId rule) const {
-  assert(holds(rule));
+  CULPRIT_ASSERT(holds(rule));
   return places_[rule.index];
 }
 

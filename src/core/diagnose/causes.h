@@ -1,4 +1,4 @@
-// What is wrong now, and what may be the cause of what.
+// Nodes that are wrong now, and which of them may cause which others.
 //
 // Nodes are
 //   - failures: rules that fired, also exhausted ones whose trigger is true;
@@ -7,13 +7,13 @@
 //   - inputs without a supplier: a failing rule that never saw its function work, of a component
 //     that reads a topic or calls a service that no node offers.
 //
-// Node j may be the cause of node i if a component of j is upstream of one of i, by a way that i can
-// have taken (paths.h), however critical either is (but a bad value that is only ever reconfigured is
-// no cause of a more critical one): the effects decide how bad a cause is (plan/bayes/levels.h). Two
-// failures that were seen to clear together count as if they were connected, although the graph shows
-// no edge. A cause begins before its effect (timing.h). Nodes that may be the causes of each other,
-// directly or through others, form a feedback loop; that needs no loop in the graph, because a rule
-// may touch several components.
+// Node j may be the cause of node i if a component of j is upstream of one of i, along a path that
+// the effect can have taken (paths.h). Criticality does not matter: the effects decide how bad a
+// cause is (plan/bayes/levels.h). One exception: a bad value that is only ever reconfigured is no
+// cause of a more critical failure. Two failures that were seen to clear together count as if they
+// were connected, although the graph shows no edge. A cause begins before its effect (timing.h).
+// Nodes that may be the causes of each other, directly or through others, form a feedback loop. That
+// needs no loop in the graph, because a rule may touch several components.
 //
 // Rules are in the order of their names, components in that of theirs, so that nothing depends on the
 // order of declarations.
@@ -61,14 +61,14 @@ class Causes {
   std::size_t size() const { return nodes_.size(); }
   const CauseNode& operator[](std::size_t i) const { return nodes_[i]; }
   bool holds(RuleId rule) const { return places_[rule.index] != kAbsent; }
-  // Of a failure or an imminent rule. @pre holds(rule)
+  // For a failure or an imminent rule. @pre holds(rule)
   std::size_t index_of(RuleId rule) const;
 
   // The possible causes of node i outside its own loop.
   std::span<const Word> causes(std::size_t i) const { return causes_[i]; }
   // Is j a possible cause of i only because of what was learned?
   bool is_learned(std::size_t j, std::size_t i) const { return has(learned_[i], j); }
-  // How likely i is an effect of j although it was well for so long while j was there, relative to one
+  // How likely i is an effect of j although it stayed well for this long beside j, relative to one
   // that came in the usual time: 0..1.
   double timely(std::size_t j, std::size_t i) const;
 

@@ -63,8 +63,8 @@ class Diagnosis {
   // told which was first there, so the members need not take turns. None if a process of i's own is
   // dead.
   std::optional<std::size_t> dead_in_loop(std::size_t i) const;
-  // Of the part 1 - R_i that others explain, what falls to node j: in proportion to
-  // kappa(j -> i) g(j -> i) R_j.
+  // The part of 1 - R_i (which others explain) that falls to node j: in proportion to kappa(j -> i)
+  // g(j -> i) R_j.
   double share(std::size_t j, std::size_t i) const;
   // The same for all causes of i outside its loop: calls visit(j, share).
   template <class Visit>

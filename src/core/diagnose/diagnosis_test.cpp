@@ -35,7 +35,7 @@ TEST(Reach, CountsWhoDependsOnAComponent) {
   EXPECT_EQ(reach.dependents(reach.place_of(scene.component("c"))), 0u);
 }
 
-// However many read it: what is ill of them speaks for the way, not against it.
+// However many nodes read it: failures of its readers are evidence for the path, not against it.
 TEST(Paths, AManyReadTopicCarriesFailuresWhereAllOfItsReadersAreIll) {
   std::string rules = failure_of("producer", "P") + failure_of("aside", "X");
   for (char c = 'a'; c < 'k'; ++c) rules += failure_of({c}, "R" + std::string(1, c));
@@ -135,7 +135,7 @@ TEST(Diagnosis, SharesTheExplainedPart) {
   EXPECT_EQ(r.share(2, 0), 0);
 }
 
-// Nobody needs a rule about a supplier: a consumer of one in trouble is an effect.
+// A supplier needs no rule: a consumer of one in trouble is an effect.
 TEST(Diagnosis, ASupplierCountsWithoutARule) {
   Scene scene("COMPONENT a NODE /a\n" + failure_of("b", "B"));
   scene.link("a", "b").fail("B");

@@ -41,7 +41,7 @@ class Collector {
     const double explained = diagnosis_.explained(i);
     for (const ComponentId c : touched_by(causes_[i].rule, knowledge_)) {
       if (is_known_down(causes_[i].rule, knowledge_) && is_known_down(c, knowledge_))
-        add(EvidenceSource::kKernel, name(c) + " is gone or stopped",
+        add(EvidenceSource::kKernel, name(c) + " exited or is stopped",
             knowledge_.components[c].process_since, logit(kKnownDown));
     }
     if (explained <= 0) {
@@ -88,8 +88,8 @@ class Collector {
     const double kappa = diagnosis_.kappa(j, i);
     if (kappa != Coupling::kUsual)
       add(EvidenceSource::kLearned,
-          kappa > Coupling::kUsual ? "they went away together before"
-                                   : "one stayed before when the other went away",
+          kappa > Coupling::kUsual ? "they cleared together before"
+                                   : "one stayed before when the other cleared",
           kLongAgo, std::log(kappa / Coupling::kUsual));
     return heaviest_first();
   }

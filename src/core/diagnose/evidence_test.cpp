@@ -56,7 +56,7 @@ TEST_F(EvidenceFor, AProcessThatIsGoneIsProof) {
   scene_.process("b", ProcessState::kGone);
   const auto own = of("B", "B");
   EXPECT_EQ(own.front().source, EvidenceSource::kKernel);
-  EXPECT_EQ(own.front().text, "b is gone or stopped");
+  EXPECT_EQ(own.front().text, "b exited or is stopped");
   EXPECT_GT(own.front().log_odds, 2);
 }
 
@@ -77,7 +77,7 @@ TEST_F(EvidenceFor, WhatWasLearnedCounts) {
   scene_->couplings.set(scene_.rule("A"), scene_.rule("B"), {1, 9});
   const auto upstream = of("A", "B");
   ASSERT_EQ(upstream.size(), 2u);
-  EXPECT_EQ(upstream.back().text, "one stayed before when the other went away");
+  EXPECT_EQ(upstream.back().text, "one stayed before when the other cleared");
   EXPECT_LT(upstream.back().log_odds, 0);
 }
 

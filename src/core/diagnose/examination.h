@@ -19,8 +19,8 @@ class Examination {
   Examination(const Knowledge& knowledge, std::span<const RuleId> failures);
   Examination(const Examination&) = delete;
 
-  // The components that matter: those that failures and imminent rules touch, or end with these; those
-  // in trouble; and those on a host that is not heard.
+  // The components that matter: those that failures and imminent rules touch, or that end with these;
+  // those in trouble; and those on an unreachable host.
   const Reach& reach() const { return reach_; }
   std::span<const RuleId> imminent() const { return imminent_; }
   std::span<const std::optional<TroubleSeen>> troubles() const { return troubles_; }

@@ -12,7 +12,7 @@
 
 namespace culprit::diagnose {
 
-// The value that the input takes if its topic stays silent; nothing: silence does not decide it. A
+// The value that the input takes if its topic stays silent; empty: silence does not decide it. A
 // rate ends at 0; an age or a suspicion beyond all constants, if it is compared with nothing else.
 std::optional<Slot> after_long_silence(const Input& input);
 

@@ -8,7 +8,7 @@ namespace {
 
 using Vertex = DependencyGraph::Vertex;
 
-// What is known of a component.
+// The quiet rules and the failures of a component, by symptom.
 struct Signs {
   std::array<bool, 2> is_watched{};  // by a quiet rule of each kind
   std::array<bool, 2> has_ill{};     // a rule of that kind is not quiet, or imminent
@@ -30,7 +30,8 @@ bool is_ill(const RuleState& state) {
          (seen.history.empty() && seen.trigger.known && seen.trigger.b);
 }
 
-// Was each topic of a quiet rule heard since culprit could hear again? Until then it says nothing.
+// Was each topic of a quiet rule received since culprit can receive again? Until then the rule
+// gives no evidence.
 bool has_heard(RuleId rule, const Knowledge& knowledge) {
   const auto& inputs = knowledge.rules[rule].inputs;
   return std::all_of(inputs.begin(), inputs.end(), [&](InputId id) {

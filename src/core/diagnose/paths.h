@@ -1,4 +1,4 @@
-// The paths along which a failure can have spread: the graph without what is seen to be well.
+// The paths along which a failure can have spread: the graph without the healthy parts.
 //
 // A chain of effects does not go through a component that shows none. Left out, for failures of one
 // kind of symptom (an outage, or a bad value), are
@@ -11,8 +11,8 @@
 // A failure for which evidence can still come (awaited.h) has the whole graph: a quiet rule between
 // may only not have fired yet.
 //
-// This separates causes from what is merely upstream: on a robot with feedback loops, or with topics
-// that everybody reads, everything is upstream of everything.
+// This separates causes from components that are merely upstream: on a robot with feedback loops, or
+// with topics that all nodes read, everything is upstream of everything.
 #pragma once
 
 #include <array>
@@ -45,7 +45,7 @@ class Paths {
   const Knowledge& knowledge_;
   const Reach& whole_;
   const Awaited& awaited_;
-  std::array<std::optional<Reach>, 2> narrowed_;  // by Symptom; nothing: nothing is left out
+  std::array<std::optional<Reach>, 2> narrowed_;  // by Symptom; empty: nothing is left out
 };
 
 }  // namespace culprit::diagnose

@@ -32,7 +32,7 @@ std::vector<Time> last_signs(const Knowledge& knowledge) {
   return signs;
 }
 
-// Could it answer? Not what is known to be dead, lost, or not heard.
+// Could it answer a probe? Not if it is known to be dead, lost, or on an unreachable computer.
 bool can_be_asked(ComponentId component, const Knowledge& knowledge) {
   const ComponentState& state = knowledge.components[component];
   return knowledge.sightings.has(component) && state.in_graph &&

@@ -16,7 +16,7 @@ std::vector<ComponentId> each_once(std::vector<ComponentId> components) {
 }
 
 // For each of 64 bits, in how many words it was set: 32 numbers' worth of binary digits, to which
-// words are added two at a time. So what is carried on does not depend on what they are.
+// words are added two at a time. So the number of carries does not depend on the words.
 class BitCounts {
  public:
   void add(Word bits, std::uint32_t times) {

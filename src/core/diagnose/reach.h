@@ -1,12 +1,12 @@
-// Who is upstream of whom among a few components of a large graph.
+// Which of a few components of a large graph are upstream of which others.
 //
 // One pass over the condensed graph, producers first, carries 64 components at once to all their
 // consumers: with e edges and n components that is e * n / 64 steps, whatever the paths are.
 #pragma once
 
-#include <cassert>
 #include <vector>
 
+#include "base/invariant.h"
 #include "diagnose/bit_rows.h"
 #include "knowledge/condensation.h"
 #include "knowledge/knowledge.h"
@@ -25,11 +25,11 @@ class Reach {
   ComponentId operator[](std::size_t place) const { return components_[place]; }
   // @pre it is one of the components
   std::size_t place_of(ComponentId component) const {
-    assert(places_[component.index] != kAbsent);
+    CULPRIT_ASSERT(places_[component.index] != kAbsent);
     return places_[component.index];
   }
 
-  // The places of those that `place` depends on: itself only through a circle.
+  // The places of those that `place` depends on: itself only through a loop.
   std::span<const Word> upstream(std::size_t place) const { return upstream_[place]; }
   std::span<const Word> downstream(std::size_t place) const { return downstream_[place]; }
 

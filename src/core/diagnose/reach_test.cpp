@@ -12,7 +12,7 @@ namespace {
 using plan::failure_of;
 using plan::Scene;
 
-// More than a word's worth of them, with circles.
+// More than a word's worth of them, with loops.
 TEST(Reach, AgreesWithTheGraphAboutEachComponent) {
   constexpr std::size_t kComponents = 200;
   std::string text;

@@ -1,5 +1,5 @@
-// What is left of a failure's cause after some strategies were tried in vain (plan/bayes/
-// strategy_chances.h defines v and q).
+// The probability that a failure's cause remains after some strategies were tried in vain
+// (plan/bayes/strategy_chances.h defines v and q).
 #pragma once
 
 #include "knowledge/knowledge.h"
@@ -11,8 +11,7 @@ inline double luck_of(double chance, double own) {
   return own < 1 ? (chance - own) / (1 - own) : 0;
 }
 
-// The probability that what is wrong would still be there after all that was tried at the rule's
-// component:
+// The probability that the fault would still be there after all attempts at the rule's component:
 //
 //     (1 - sum_{t tried} v_t) prod_{t tried} (1 - q_t) (prod_t (1 - P_t))^rounds
 //

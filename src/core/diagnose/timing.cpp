@@ -16,7 +16,7 @@ bool watches_a_component(const Input& input) {
   return input.kind == Kind::kAlive || input.kind == Kind::kLifecycle;
 }
 
-// The onset of a silence or a death that the input shows now; nothing: it shows none.
+// The onset of a silence or a death that the input shows now; empty: it shows none.
 std::optional<Onset> outage_of(const Input& input, Time now, const Knowledge& knowledge) {
   if (watches_a_topic(input)) {
     const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(input.topic);

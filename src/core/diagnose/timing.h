@@ -15,9 +15,9 @@
 //
 // where t is the time from which the trigger has been true (HOLD n/k: the detection; k cycles more for
 // e_r and E_r, n - 1 cycles less for l_r), `gap` the usual pause of the topic, `reading` the period of
-// the signal; `silent since` is the last sample, or the time when culprit heard again after a gap; and the
-// lateness is that of knowledge/latencies.h. If a trigger reads several, what is silent or down decides
-// before values.
+// the signal; `silent since` is the last sample, or the time when culprit received again after a gap; and
+// the lateness is that of knowledge/latencies.h. If a trigger reads several inputs, silent topics and dead
+// components decide before values.
 //
 // Rule u can be the cause of failure i only if it began before it: e_u <= l_i. While
 //
@@ -31,7 +31,7 @@
 
 namespace culprit::diagnose {
 
-// What a rule sees of a failure.
+// The kind of symptom that a rule detects.
 enum class Symptom : std::uint8_t {
   kOutage,  // its trigger reads topics' ages, rates, or what is alive
   kValue    // it reads the value of a signal, a parameter or a diagnostic
@@ -46,7 +46,7 @@ inline constexpr Duration kLongestEvidence = std::chrono::seconds(10);
 // Is the topic silent at `now` for longer than it usually is? Not while its rhythm is unknown.
 bool is_silent(TopicId topic, Time now, const Knowledge& knowledge);
 
-// Of a component that hangs, or did not answer what it was asked: it may have begun right after its
+// For a component that hangs, or did not answer a probe: its failure may have begun right after its
 // last answer.
 Onset onset_of_hang(const ComponentState& state);
 // The onset of what the rule sees, if its failure is detected at `now`.
@@ -62,8 +62,8 @@ Duration presumed_lateness(RuleId failure, const Knowledge& knowledge);
 // trigger is unknown, it is in its COOLDOWN, or its nodes must be asked.
 Duration evidence_within(RuleId quiet, Time onset, const Knowledge& knowledge);
 
-// How long after its cause is gone the failure may still be shown: the readings, the lateness and
-// the HOLD of its rule.
+// How long the failure may still be shown after its cause has cleared: the readings, the lateness
+// and the HOLD of its rule.
 Duration clears_within(RuleId failure, const Knowledge& knowledge);
 
 }  // namespace culprit::diagnose

@@ -1,7 +1,7 @@
-// What is wrong with a component itself, whatever the rules say of it.
+// Troubles of a component itself, which count without any rule.
 //
-// A supplier counts without a rule: a consumer of a component that exited, hangs or is inactive is
-// an effect of that, also if nobody wrote a rule about the supplier.
+// A consumer of a component that exited, hangs or is inactive is an effect of that, also if no rule
+// is about the supplier.
 #pragma once
 
 #include <optional>
@@ -29,8 +29,8 @@ struct TroubleSeen {
   Onset onset;
 };
 
-// The worst that is known of the component now; nothing: no trouble is known. What is on a computer
-// that is not heard is not in trouble: nothing is known of it.
+// The worst known trouble of the component now; empty: no trouble is known. A component on an
+// unreachable computer has none, because its state is unknown.
 std::optional<TroubleSeen> trouble_of(ComponentId component, const Knowledge& knowledge);
 
 // By component, for all of them.

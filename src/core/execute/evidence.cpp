@@ -9,7 +9,7 @@ namespace {
 
 constexpr Duration kOverdue = std::chrono::milliseconds(450);  // it is asked every 400 ms
 
-// What is silent, if the rule is about nothing but who is there and who is heard.
+// The topics that the rule reads, if it reads only ages, rates and what is alive; empty otherwise.
 std::optional<std::vector<TopicId>> silent_topics(const Rule& rule, const RuleSet& rules) {
   std::vector<TopicId> topics;
   for (const InputId id : rule.inputs) {
@@ -34,7 +34,7 @@ bool is_at_work(const ComponentState& state) {
          state.alive == true;
 }
 
-// A topic that nobody else publishes, and that came when it was due.
+// A topic that only this component publishes, and that came when it was due.
 std::optional<TopicId> heard_topic(ComponentId component, const Knowledge& knowledge, Time now) {
   constexpr Duration kSlack = std::chrono::milliseconds(100);
   for (std::size_t t = 0; t < knowledge.rules.topics.size(); ++t) {
@@ -81,7 +81,7 @@ std::optional<std::string> contradiction(const Strategy& strategy, const Knowled
     if (adaptation.type != AdaptationType::kRedeploy ||
         !is_at_work(knowledge.components[component]))
       continue;
-    // Its own outage, or one of nobody knows whom, speaks against it.
+    // Its own outage, or one without any publisher, speaks against it.
     const bool is_suspect = std::any_of(silent->begin(), silent->end(), [&](TopicId topic) {
       return knowledge.graph.publishes(component, rules[topic]) ||
              knowledge.graph.publisher_count(rules[topic]) == 0;
@@ -89,7 +89,7 @@ std::optional<std::string> contradiction(const Strategy& strategy, const Knowled
     const auto heard = is_suspect ? std::nullopt : heard_topic(component, knowledge, now);
     if (heard)
       return rules[component].name + " runs and publishes " + rules.label(*heard) +
-             "; what is silent is not its";
+             "; it does not publish the silent topic";
   }
   return std::nullopt;
 }
@@ -100,7 +100,7 @@ bool owes_answer(const ComponentState& state, Time now) {
 
 std::optional<AnswerToCome> answer_to_come(const Strategy& strategy, const Knowledge& knowledge,
                                            Time now) {
-  // That it hangs is told by two questions, or three, that were not answered within 500 ms (Monitor).
+  // Two or three unanswered probes, 500 ms each, show that it hangs (Monitor).
   constexpr Duration kVerdict = std::chrono::milliseconds(1900);
   // Less than it takes to be asked again.
   constexpr Duration kWakes = std::chrono::milliseconds(250);
@@ -113,13 +113,14 @@ std::optional<AnswerToCome> answer_to_come(const Strategy& strategy, const Knowl
     const auto silent =
         silent_since(adaptation.component, knowledge.rules[strategy.rule], knowledge, now);
     Duration patience{};
-    // What has just answered may have been busy: its thread, which works again, publishes next.
+    // A component that has just answered may have been busy: its thread works again, and publishes
+    // next.
     if (silent) patience = kWakes;
     if (owes_answer(state, now) || (silent && state.answered <= *silent)) patience = kVerdict;
     const Time until = later(state.answered, patience);
     if (now < until)
       return AnswerToCome{
-          "it is seen whether " + knowledge.rules[adaptation.component].name + " still answers",
+          "culprit checks whether " + knowledge.rules[adaptation.component].name + " still answers",
           until};
   }
   return std::nullopt;

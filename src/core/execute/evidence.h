@@ -14,20 +14,21 @@
 
 namespace culprit {
 
-// Why a component that the strategy redeploys is not what is broken; nothing if nothing says so.
+// The reason why a component that the strategy redeploys is not broken; empty if there is none.
 //
-// Only an outage needs agreement: a rule whose trigger reads a value (a quality, a diagnostic, a
-// parameter) has seen for itself that something works badly, and names who is to be redeployed for
-// it. Nor does a last resort, or `stop`, accuse anybody: it is what is wanted then.
+// Only an outage needs agreement. A rule whose trigger reads a value (a quality, a diagnostic, a
+// parameter) has itself measured that something works badly, and its author names the component to
+// redeploy. A last resort and `stop` blame no component, so they need none either.
 std::optional<std::string> contradiction(const Strategy& strategy, const Knowledge& knowledge,
                                          Time now);
 
-// It is asked whether it is there, answered before, and its answer is overdue.
+// It is probed, answered before, and its answer is overdue.
 bool owes_answer(const ComponentState& state, Time now);
 
-// Whether a component that the strategy ends, or takes through its lifecycle, hangs will be known soon: its
-// answer is overdue, or it did not answer since what the rule is about fell silent. What hangs is not asked politely, and for nothing else; what was ended politely
-// can hardly be told from it any more. Nothing: it answers, or is never asked. A last resort does not wait.
+// It will be known soon whether a component hangs that the strategy ends or takes through its
+// lifecycle: its answer is overdue, or it did not answer since the rule's topics fell silent. A
+// component that hangs gets no SIGTERM first, and no other request; after a SIGTERM it is too late
+// to find out. Empty: it answers, or is never asked. A last resort does not wait.
 struct AnswerToCome {
   std::string reason;
   Time until;
@@ -35,13 +36,13 @@ struct AnswerToCome {
 std::optional<AnswerToCome> answer_to_come(const Strategy& strategy, const Knowledge& knowledge,
                                            Time now);
 
-// Why it would start what was never seen (knowledge/sightings.h); nothing if it does not. Absent is
-// not dead, and only people and `run --launch` start what was not there.
+// The reason if it would start a component that was never seen (knowledge/sightings.h); else empty.
+// Absent is not dead, and only people and `run --launch` start components that were not there.
 std::optional<std::string> launch_of_the_unseen(const Strategy& strategy,
                                                 const Knowledge& knowledge);
 
-// Why nobody knows for sure which node the strategy would hit; nothing if that is clear. Requests
-// go to a name, signals to a process.
+// The reason if it is uncertain which node the strategy would hit; else empty. Requests go to a
+// name, signals to a process.
 std::optional<std::string> doubt_of_identity(const Strategy& strategy, const Knowledge& knowledge);
 
 }  // namespace culprit

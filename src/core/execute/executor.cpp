@@ -1,9 +1,9 @@
 #include "execute/executor.h"
 
 #include <algorithm>
-#include <cassert>
 #include <utility>
 
+#include "base/invariant.h"
 #include "execute/limits.h"
 #include "knowledge/ambiguity.h"
 
@@ -18,10 +18,11 @@ Executor::Executor(const Knowledge& knowledge, Writes writes)
 Executor::~Executor() = default;
 
 void Executor::begin(StrategyId strategy, Time now) {
-  [[maybe_unused]] const Strategy& begun = knowledge_.rules[strategy];
-  assert(begun.is_last_resort ||
-         std::none_of(begun.components.begin(), begun.components.end(),
-                      [&](ComponentId c) { return knowledge_.states.reservation(c) != nullptr; }));
+  const Strategy& begun = knowledge_.rules[strategy];
+  CULPRIT_ASSERT(begun.is_last_resort ||
+                 std::none_of(begun.components.begin(), begun.components.end(), [&](ComponentId c) {
+                   return knowledge_.states.reservation(c) != nullptr;
+                 }));
   write_.attempts.begin(strategy, now);
   add_run(strategy);
 }
@@ -39,7 +40,8 @@ Executor::Run& Executor::add_run(StrategyId strategy) {
 }
 
 void Executor::resume(Interrupted interrupted, Time now, Time from) {
-  assert(std::all_of(runs_.begin(), runs_.end(), [](const Run& r) { return r.interrupted; }));
+  CULPRIT_ASSERT(
+      std::all_of(runs_.begin(), runs_.end(), [](const Run& r) { return r.interrupted; }));
   write_.attempts.resume(interrupted.strategy, now);
   Run& run = add_run(interrupted.strategy);
   // An answer to a request of the earlier process must not be taken for one to ours.
@@ -106,7 +108,7 @@ bool Executor::is_of_present_process(const Question& question) const {
   return knowledge_.components[question.component].questioned.is_open;
 }
 
-// Who cannot be asked, and who never answered, may be well all the same.
+// A component that could not be asked, or that never answered, may work all the same.
 void Executor::note_answer(const Question& question, Outcome outcome) {
   if (!is_of_present_process(question)) return;
   ComponentState& state = write_.components[question.component];
@@ -194,7 +196,16 @@ bool Executor::next_goal(Run& run, Time now) {
   while (run.adaptation < adaptations.size()) {
     const Adaptation& adaptation = adaptations[run.adaptation];
     if (run.goals.empty()) {
-      auto goals = execute::goals_of(adaptation, knowledge_);
+      if (const auto other = deactivated_meanwhile(run)) {
+        write_.attempts.make_ambiguous(run.strategy);
+        const std::string reason = knowledge_.rules[*other].name +
+                                   " was deactivated meanwhile, by something else: a person, or "
+                                   "the manager";
+        obstruct(run, reason, reason, now);
+        return false;
+      }
+      auto goals =
+          is_managed_still(run) ? std::vector<Goal>() : execute::goals_of(adaptation, knowledge_);
       if (!goals) {
         obstruct(run, goals.error(), goals.error(), now);
         return false;
@@ -218,6 +229,7 @@ bool Executor::next_goal(Run& run, Time now) {
     }
     write_.events.tell(now, AdaptationDone{run.strategy, run.adaptation, run.remark});
     note_begun_anew(run, now);
+    if (adaptation.group) run.brought_up.push_back({adaptation.component, now});
     run.goals.clear();
     run.remark.clear();
     ++run.adaptation;
@@ -227,7 +239,29 @@ bool Executor::next_goal(Run& run, Time now) {
   return false;
 }
 
-// What others see of it meanwhile is shown later than it is over.
+// A member of a group that was brought up, and is not up any more though its process lives: to bring it up
+// again would be a fight with whoever did that.
+std::optional<ComponentId> Executor::deactivated_meanwhile(const Run& run) const {
+  for (const Run::BroughtUp& each : run.brought_up) {
+    const ComponentState& state = knowledge_.components[each.component];
+    const bool is_down =
+        state.lifecycle == Lifecycle::kInactive || state.lifecycle == Lifecycle::kUnconfigured;
+    if (is_down && state.alive == true && state.lifecycle_since > each.at &&
+        state.node_seen <= each.at)
+      return each.component;
+  }
+  return std::nullopt;
+}
+
+// The manager of a group in which nothing had to be changed: it has brought up all of them by itself.
+bool Executor::is_managed_still(const Run& run) const {
+  const Adaptation& adaptation = knowledge_.rules[run.strategy].adaptations[run.adaptation];
+  return adaptation.group && adaptation.type == AdaptationType::kRedeploy &&
+         knowledge_.components[adaptation.component].alive == true &&
+         attempt_of(run)->first_change == kNever;
+}
+
+// Consumers may show the gap of a restart after it is over.
 void Executor::note_begun_anew(const Run& run, Time now) {
   const Adaptation& adaptation = knowledge_.rules[run.strategy].adaptations[run.adaptation];
   if (adaptation.type != AdaptationType::kRestart && adaptation.type != AdaptationType::kRedeploy)
@@ -270,9 +304,10 @@ bool Executor::start_again(Run& run, Time now) {
 void Executor::finish_goal(Run& run, Time now) {
   const Pursuit& pursuit = *run.pursuit;
   const Adaptation& adaptation = knowledge_.rules[run.strategy].adaptations[run.adaptation];
-  // A last resort is to last: whether the failure is gone is not what it is for.
+  // A last resort is to last, even after its failure has cleared.
   const bool is_to_last = knowledge_.rules[run.strategy].is_last_resort;
-  if (!is_to_last && pursuit.has_changed_anything()) note_undo(run);
+  // Members that are up stay up: a part of the group is better than nothing.
+  if (!is_to_last && !adaptation.group && pursuit.has_changed_anything()) note_undo(run);
   if (pursuit.is_reached()) {
     // Where it was brought last counts; a restart takes it through another state.
     const auto rest = run.goals.begin() + static_cast<std::ptrdiff_t>(run.goal) + 1;
@@ -282,7 +317,9 @@ void Executor::finish_goal(Run& run, Time now) {
     if (is_last) note_lifecycle(pursuit, now);
     if (const auto* parameter = std::get_if<execute::ParameterGoal>(&pursuit.goal()))
       forget_owed(pursuit.component(), parameter->name);
-    if (launches(adaptation) || is_first_rise(pursuit)) note_coming_up(pursuit, now);
+    // The manager of a group goes on being the driver of its members.
+    if (launches(adaptation) || (!adaptation.group && is_first_rise(pursuit)))
+      note_coming_up(pursuit, now);
     if (!pursuit.remark().empty()) run.remark = pursuit.remark();
     note_mode(pursuit, now);
     ++run.goal;
@@ -395,8 +432,8 @@ bool Executor::is_held_by_last_resort(const execute::Undo& undo) const {
   return is_held;
 }
 
-// Nobody is there who could be asked. What starts next in its place may be as the last one was left:
-// many nodes keep their parameters.
+// No process is there to be asked. The next process may start with the values of the last one: many
+// nodes keep their parameters.
 void Executor::undo_at_next_start(StrategyId strategy, const execute::Undo& undo, Time now) {
   if (const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&undo.goal)) {
     write_.components.intend_lifecycle(undo.component, lifecycle->target, now, write_.events);
@@ -406,7 +443,7 @@ void Executor::undo_at_next_start(StrategyId strategy, const execute::Undo& undo
   }
 }
 
-// What has to be undone in a process that `adaptation` starts becomes the last of its goals.
+// Values to be undone in a process that `adaptation` starts become its last goals.
 void Executor::take_owed(const Adaptation& adaptation, std::vector<execute::Goal>& goals) {
   if (adaptation.type != AdaptationType::kRedeploy && adaptation.type != AdaptationType::kStart)
     return;
@@ -417,8 +454,8 @@ void Executor::take_owed(const Adaptation& adaptation, std::vector<execute::Goal
   });
 }
 
-// What somebody else started is as that one wants it, and a person may have changed it since. What
-// waits is told to people, and not set at some redeploy much later.
+// A process that somebody else started has the values that they want, and a person may have changed
+// them since. So culprit reports the pending undo, and does not set it at some redeploy much later.
 void Executor::forget_what_others_started(Time now) {
   std::erase_if(owed_, [&](const Owed& owed) {
     const ComponentId component = owed.undo.component;
@@ -445,7 +482,7 @@ void Executor::finish_undo(Run& run, Time now) {
   // A mode that is back by itself was set back, and that is remembered.
   if (std::holds_alternative<execute::ModeGoal>(pursuit.goal()) && pursuit.has_changed_anything())
     write_.rivals.forget(pursuit.component());
-  // What came back by itself was not undone.
+  // A value that came back by itself was not undone.
   if (!reached || pursuit.has_changed_anything()) {
     const std::string what =
         knowledge_.rules[pursuit.component()].name + ": " + describe(pursuit.goal());
@@ -469,7 +506,7 @@ void Executor::note_lifecycle(const Pursuit& pursuit, Time now) {
     write_.components.intend_lifecycle(pursuit.component(), lifecycle->target, now, write_.events);
 }
 
-// It stayed unconfigured until a rule had culprit bring it up: nobody else does.
+// It stayed unconfigured until a rule had culprit bring it up: it has no other driver.
 bool Executor::is_first_rise(const Pursuit& pursuit) const {
   const auto& before = pursuit.before();
   const auto* state = before ? std::get_if<Lifecycle>(&before->value) : nullptr;
@@ -494,7 +531,7 @@ void Executor::note_coming_up(const Pursuit& pursuit, Time now) {
   write_.components.note_coming_up(pursuit.component(), how, now, write_.events);
 }
 
-// What takes too long once is given more time when it is started the next time.
+// A component that once took too long gets more time at its next start.
 void Executor::note_too_long(const Pursuit& pursuit, Time now) {
   const ComponentState& state = knowledge_.components[pursuit.component()];
   ComingUp how = state.coming_up;
@@ -506,7 +543,7 @@ void Executor::note_too_long(const Pursuit& pursuit, Time now) {
   write_.components.note_coming_up(pursuit.component(), how, now, write_.events);
 }
 
-// A node may tell nothing of a transition before it is over.
+// A node may not report a transition before it is over.
 void Executor::note_transition(const Pursuit& pursuit, const Pursuit::Request& request, Time now) {
   if (!std::holds_alternative<ChangeLifecycle>(request)) return;
   ComponentState& state = write_.components[pursuit.component()];

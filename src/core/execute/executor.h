@@ -2,10 +2,10 @@
 //
 // A strategy's adaptations are carried out in the order they are written, each to its proof
 // (goal.h), before the next begins. If one cannot be carried out, or the verdict is that the
-// strategy failed, what was changed is undone in reverse order where it can be. A component that was
+// strategy failed, its changes are undone in reverse order where they can be. A component that was
 // taken down while another one was adapted is not brought up again where that one is down. From its choice to
 // the end of its undoing a strategy has its components to itself, but for last resorts: these go
-// beside it, are not undone, and what they changed is not undone by others either.
+// beside it and are not undone, and no other undoing touches their changes.
 #pragma once
 
 #include <optional>
@@ -44,19 +44,19 @@ class Executor {
   // @pre nothing was begun yet
   void resume(Interrupted interrupted, Time now, Time from);
 
-  // Answers until `now` could not be heard: every goal under way has its whole time again, and
+  // Answers until `now` could not be received: every goal under way has its whole time again, and
   // looks before it acts. For kUnsure no question counts as unanswered.
   void restart(Time now);
 
   // Asks the component whether it answers, before the strategy is begun. It has `timeout` to do so.
   void ask(ComponentId component, StrategyId strategy, Duration timeout, Time now,
            std::vector<Command>& commands);
-  // Answers to what was asked so prove nothing: nobody could hear them.
+  // Open questions prove nothing: culprit could not receive the answers.
   void forget_questions();
   // The component that `reply` proves to answer; before answered().
   std::optional<ComponentId> proven_by(const Reply& reply) const;
 
-  // An answer; one that nobody waits for any more is ignored.
+  // An answer; it is ignored if the request is no longer open.
   void answered(const Reply& reply, Time now);
 
   // Takes every attempt as far as it goes, and appends the requests that are due. Touches the rules
@@ -79,7 +79,12 @@ class Executor {
     std::vector<execute::Undo> undo;
     Time started = kNever;  // the first process that it started
     int starts = 0;         // that its process ended after it had been there
-    // Of a resumed one, until the robot was given time to show itself.
+    struct BroughtUp {
+      ComponentId component;
+      Time at{};
+    };
+    std::vector<BroughtUp> brought_up{};  // of a group
+    // For a resumed run, until the robot had the time to show itself.
     std::optional<Interrupted> interrupted;
     Time from = kLongAgo;
   };
@@ -96,6 +101,8 @@ class Executor {
   bool next_goal(Run& run, Time now);
   bool start_again(Run& run, Time now);
   bool is_first_rise(const execute::Pursuit& pursuit) const;
+  std::optional<ComponentId> deactivated_meanwhile(const Run& run) const;
+  bool is_managed_still(const Run& run) const;
   void note_begun_anew(const Run& run, Time now);
   void note_undo(Run& run);
   bool next_undo(Run& run, Time now);
@@ -127,8 +134,8 @@ class Executor {
   const Knowledge& knowledge_;
   Writes write_;
   std::vector<Run> runs_;
-  // Parameters that were to be undone in processes that were gone by then; until the process is there
-  // again, whoever started it.
+  // Parameters to be undone in processes that had exited by then; kept until the process is there
+  // again, whoever starts it.
   struct Owed {
     StrategyId strategy;  // whose change it was
     execute::Undo undo;

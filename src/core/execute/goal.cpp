@@ -25,8 +25,9 @@ Value negated(const Value& value) {
   return -std::get<double>(value);
 }
 
-// Where rules say that the component's lifecycle must be: a trigger that is true now if it were
-// inactive and not if it were active, or the other way round. Nothing if none says so.
+// The lifecycle state that rules demand of the component: a trigger that is true now would be true
+// if it were inactive and not if it were active, or the other way round. Empty if no rule demands
+// one.
 std::optional<Lifecycle> demanded(ComponentId component, const Knowledge& knowledge) {
   const RuleSet& rules = knowledge.rules;
   const auto fires = [&](const Rule& rule, std::string_view state) {
@@ -58,14 +59,14 @@ PresentGoal present(const Adaptation& adaptation, const Knowledge& knowledge) {
   const Duration impact = duration_of(adaptation.impact, knowledge.rules);
   goal.patience = std::max<Duration>(
       {goal.patience, impact, std::min<Duration>(4 * joining, PresentGoal::kMost)});
-  // Who loads it answers when it has been made.
+  // The container that loads it answers when it has been made.
   if (knowledge.rules[adaptation.component].composed)
     goal.answer = std::max(goal.answer, goal.patience);
   goal.longest = joining > Duration::zero() ? goal.patience : std::max(goal.longest, goal.patience);
   return goal;
 }
 
-// What is no number is no value that could be set and read back.
+// NaN cannot be set and read back.
 bool is_nan(const Value& value) {
   const auto* number = std::get_if<double>(&value);
   return number != nullptr && std::isnan(*number);
@@ -93,11 +94,11 @@ Duration loading_of(const ComingUp& before, const Knowledge& knowledge) {
   return std::clamp<Duration>(2 * (before.joining + before.rising), kLeastLoading, kMostLoading);
 }
 
-// Who does it, in this order: the rule file says so; somebody was seen to; culprit did it before. Where
-// nothing is known, culprit watches first. A driver gets as long as the start took to show itself, until the
-// impact is over if that is later, and twice the time that nodes take to find each other at least: two who
-// take one node through its lifecycle make one another fail. In a simulated robot, where nothing has to be
-// found, a rule that says where the node must be is reason enough to act at once.
+// Decides who brings it up. In this order: the rule file says so; somebody was seen to do it; culprit did it
+// before. Where nothing is known, culprit watches first: two drivers of one node's lifecycle make each other
+// fail. Another driver gets as long as the start took to show itself; at least until the impact is over, and
+// at least twice the time of discovery. In a simulated robot no discovery is needed, so a rule that demands
+// the state is reason enough to act at once.
 LifecycleGoal bringing_up(const Adaptation& adaptation, Lifecycle target,
                           const Knowledge& knowledge) {
   constexpr Duration kLongestGrace = 60s;
@@ -130,8 +131,58 @@ LifecycleGoal bringing_up(const Adaptation& adaptation, Lifecycle target,
   return goal;
 }
 
+// The manager of its group brings it up, or else start_group does: whoever waits here for that would keep it
+// from start_group.
+bool is_left_to_group(ComponentId component, const Knowledge& knowledge) {
+  const LifecycleDriver driver = knowledge.rules[component].lifecycle;
+  return (driver == LifecycleDriver::kLauncher || driver == LifecycleDriver::kUndeclared) &&
+         std::ranges::any_of(knowledge.rules.groups, [&](const Group& group) {
+           return std::ranges::find(group.members, component) != group.members.end();
+         });
+}
+
+namespace {
+
+// The process is ended, and another one is there.
+std::vector<Goal> replacing(const Adaptation& adaptation, const Knowledge& knowledge) {
+  const ComponentState& state = knowledge.components[adaptation.component];
+  GoneGoal gone;
+  PresentGoal back = present(adaptation, knowledge);
+  // A process that took its place meanwhile is not ended. systemd may be faster than the news of the
+  // end; and a container may be replaced for one of those that it loads.
+  const Component& component = knowledge.rules[adaptation.component];
+  if (component.has_owner() || component.composed || state.known_pid() != 0 ||
+      is_container(adaptation.component, knowledge.rules)) {
+    gone.pid = state.known_pid();
+    back.instead_of = gone.pid;
+    if (!component.host().empty()) back.instead_of_seen = state.node_seen;
+  }
+  return {gone, back};
+}
+
+// A member of a group is brought up past the manager, whoever does that when it starts.
+Expected<std::vector<Goal>> bringing_up_member(const Adaptation& adaptation,
+                                               const Knowledge& knowledge) {
+  const ComponentState& state = knowledge.components[adaptation.component];
+  std::vector<Goal> goals;
+  if (state.alive == false) {
+    if (!knowledge.rules[adaptation.component].can_start_again())
+      return Error{"it is not alive, and has no LAUNCH command"};
+    goals = replacing(adaptation, knowledge);
+  }
+  LifecycleGoal up{Lifecycle::kActive, {}};
+  up.patience = std::max(longest_transition({}), longest_transition(state.coming_up));
+  up.loading = loading_of(state.coming_up, knowledge);
+  goals.emplace_back(up);
+  return goals;
+}
+
+}  // namespace
+
 Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowledge& knowledge) {
   const ComponentState& state = knowledge.components[adaptation.component];
+  const bool is_member = adaptation.group && adaptation.type == AdaptationType::kActivate;
+  if (is_member) return bringing_up_member(adaptation, knowledge);
   switch (adaptation.type) {
     case AdaptationType::kSetParameter:
     case AdaptationType::kIncreaseParameter:
@@ -159,21 +210,12 @@ Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowled
       return std::vector<Goal>{LifecycleGoal{Lifecycle::kInactive, {}},
                                LifecycleGoal{Lifecycle::kActive, {}}};
     case AdaptationType::kRedeploy: {
-      GoneGoal gone;
-      PresentGoal back = present(adaptation, knowledge);
-      // A process that took its place meanwhile is not ended. systemd may be faster than the news of the
-      // end; and a container may be replaced for one of those that it loads.
-      const Component& component = knowledge.rules[adaptation.component];
-      if (component.has_owner() || component.composed || state.known_pid() != 0 ||
-          is_container(adaptation.component, knowledge.rules)) {
-        gone.pid = state.known_pid();
-        back.instead_of = gone.pid;
-        if (!component.host().empty()) back.instead_of_seen = state.node_seen;
-      }
-      std::vector<Goal> goals{gone, back};
+      std::vector<Goal> goals = replacing(adaptation, knowledge);
       // A managed node comes back unconfigured unless it brings itself up: it is brought to where
       // it was, or to where a rule says that it must be.
-      if (state.intended_lifecycle == Lifecycle::kUnknown) return goals;
+      if (state.intended_lifecycle == Lifecycle::kUnknown ||
+          is_left_to_group(adaptation.component, knowledge))
+        return goals;
       const Lifecycle target =
           demanded(adaptation.component, knowledge).value_or(state.intended_lifecycle);
       if (target == Lifecycle::kActive || target == Lifecycle::kInactive)
@@ -183,7 +225,8 @@ Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowled
     case AdaptationType::kStart: {
       if (state.alive == true) return std::vector<Goal>{};  // somebody else was there first
       std::vector<Goal> goals{present(adaptation, knowledge)};
-      if (state.intended_lifecycle != Lifecycle::kUnknown)
+      if (state.intended_lifecycle != Lifecycle::kUnknown &&
+          !is_left_to_group(adaptation.component, knowledge))
         goals.push_back(bringing_up(adaptation, Lifecycle::kActive, knowledge));
       return goals;
     }
@@ -192,6 +235,8 @@ Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowled
       return std::vector<Goal>{GoneGoal{}};
     case AdaptationType::kChangeMode:
       return std::vector<Goal>{ModeGoal{adaptation.subject}};
+    case AdaptationType::kStartGroup:  // a rule set holds its parts instead
+      return std::vector<Goal>{};
     case AdaptationType::kCall:
       return std::vector<Goal>{ServiceGoal{
           service_of(adaptation.subject, knowledge.graph.node_name(adaptation.component)),
@@ -227,7 +272,7 @@ std::optional<Look> look_for(const Goal& goal) {
 }
 
 std::optional<Goal> undoing(const Goal& goal, AdaptationType type, const Reply& before) {
-  // What is set in a new process was undone before, and only now reaches it.
+  // The value in a new process was undone before, and only now reaches it.
   if (type == AdaptationType::kRedeploy || type == AdaptationType::kStart) return std::nullopt;
   if (const auto* parameter = std::get_if<ParameterGoal>(&goal)) {
     const auto* value = std::get_if<Value>(&before.value);

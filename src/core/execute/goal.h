@@ -1,8 +1,8 @@
-// What adaptations are made of: states of a component that are to be reached.
+// The goals of adaptations: states of a component that are to be reached.
 //
 // A goal is pursued in three steps: look (is it reached already?), change (one request, never
-// repeated), look again until it is reached or the patience is over. What counts is what is read
-// back, not what the request was answered: a late or lost reply is settled by looking.
+// repeated), look again until it is reached or the patience is over. Only the value that is read
+// back counts, not the answer to the request: a late or lost reply is settled by looking.
 #pragma once
 
 #include <optional>
@@ -30,17 +30,17 @@ struct LifecycleGoal {
   Duration grace{};
   bool is_left_to_others = false;              // it is never told to
   Duration patience = longest_transition({});  // beyond the grace, for each transition
-  // Of a node that was just started: for so long it is asked again if it does not answer, or is not there
-  // to be asked. It may still be loading.
+  // For a node that was just started: it may still be loading. For this long it is asked again if it does
+  // not answer, or is not there to be asked.
   Duration loading{};
-  // It was not seen that culprit is who brings it up. Such a node comes up unconfigured; if it is found
-  // further on, somebody else is at it.
+  // culprit was not yet seen to bring it up. Such a node comes up unconfigured; if it is found further
+  // on, another program drives it.
   bool may_have_driver = false;
 };
 struct ModeGoal {
   std::string mode;
 };
-// Nothing to look at: the routine says itself whether it succeeded.
+// No state to look at: the routine's answer says whether it succeeded.
 struct ServiceGoal {
   std::string service;
   std::string request{};
@@ -52,8 +52,8 @@ struct GoneGoal {
 };
 // `instead_of`: set if the process may have been started already. Then one with another pid will
 // do; otherwise one that appears from now on is wanted.
-// `instead_of_seen`: likewise of a process on another computer, of which nothing is seen but when its
-// node joined the graph.
+// `instead_of_seen`: the same for a process on another computer, of which only the time is seen when
+// its node joined the graph.
 struct PresentGoal {
   static constexpr Duration kMost = std::chrono::minutes(5);
 
@@ -82,7 +82,10 @@ Duration patience(const Goal& goal);
 LifecycleGoal bringing_up(const Adaptation& adaptation, Lifecycle target,
                           const Knowledge& knowledge);
 
-// The goals of an adaptation, in order. An error if they cannot be told: the new value of a
+// Whether a member of a GROUP that is started is not waited for beyond its process.
+bool is_left_to_group(ComponentId component, const Knowledge& knowledge);
+
+// The goals of an adaptation, in order. An error if they cannot be computed: the new value of a
 // parameter is unknown now.
 Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowledge& knowledge);
 
@@ -96,8 +99,8 @@ std::vector<Goal> starting_again(const Adaptation& stop, Lifecycle before,
 using Look = std::variant<ReadParameter, ReadLifecycle, ReadMode>;
 std::optional<Look> look_for(const Goal& goal);
 
-// The goal that brings back what was read before the change; nothing if a change of this kind is
-// not undone, or what was read is no state to go back to: an unknown mode, a number that is none.
+// The goal that restores the value from before the change. Empty if a change of this kind is not
+// undone, or if that value is no state to go back to: an unknown mode, a number that is none.
 std::optional<Goal> undoing(const Goal& goal, AdaptationType type, const Reply& before);
 
 // Whether both are about the same state: one parameter, the lifecycle, the mode.

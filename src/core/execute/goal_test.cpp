@@ -1,4 +1,4 @@
-// What an adaptation is to reach, and what brings it back.
+// The goals of an adaptation, and the goals that undo it.
 #include "execute/goal.h"
 
 #include <cmath>

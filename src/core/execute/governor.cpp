@@ -1,8 +1,8 @@
 #include "execute/governor.h"
 
 #include <algorithm>
-#include <cassert>
 
+#include "base/invariant.h"
 #include "execute/evidence.h"
 #include "knowledge/awaited_container.h"
 #include "knowledge/describe.h"
@@ -41,7 +41,7 @@ Governor::Held in_words(const Departures::Departure& departure, const std::strin
     case What::kIsEnding:
       if (departure.launcher == 0)
         return {Restraint::kLeaving,
-                component + " ended in an orderly way; its owner is asked whether it was told to",
+                component + " exited cleanly; culprit asks its owner whether that was ordered",
                 departure.until};
       return {Restraint::kLeaving,
               "the launch of " + launcher + " is being ended, " + component + " with it",
@@ -120,8 +120,13 @@ std::optional<std::string> Governor::objection(const Order& order, Autonomy auto
                  if (o.is_on != (autonomy == Autonomy::kAdvise)) return std::nullopt;
                  return o.is_on ? "the dry run is on already" : "the dry run is off already";
                },
-               [&](const Approve& o) { return about_question(o.strategy); },
+               [&](const Approve& o) {
+                 const Objection none = about_question(o.strategy);
+                 if (none || !question_of(o.strategy)->is_proposed) return none;
+                 return objection_to_run(o.strategy, autonomy);
+               },
                [&](const Refuse& o) { return about_question(o.strategy); },
+               [&](const Propose& o) { return objection_to_propose(o.strategy); },
                [&](const Silence& o) -> Objection {
                  if (!exists(o.what, rules)) return "there is no such component or rule";
                  if (o.lasts && *o.lasts <= Duration::zero()) return "a silence takes some time";
@@ -149,6 +154,29 @@ std::optional<std::string> Governor::objection(const Order& order, Autonomy auto
                  return std::nullopt;
                }},
       order.what);
+}
+
+std::optional<std::string> Governor::objection_to_propose(StrategyId id) const {
+  const RuleSet& rules = knowledge_.rules;
+  if (id.index >= rules.strategies.size()) return "there is no such strategy";
+  if (options_.approval == Approval::kNone)
+    return "culprit would ask nobody; it has to run with --approve";
+  const Rule& rule = rules[rules[id].rule];
+  const RuleState& state = knowledge_.states[rules[id].rule];
+  if (state.phase != RulePhase::kFailing && state.phase != RulePhase::kExhausted)
+    return rule.name + " needs no strategy now";
+  if (question_of(id) != nullptr) return rules[id].name + " waits for approval already";
+  if (refused_[id.index] == state.failing_since)
+    return "a person refused " + rules[id].name + " for this failure";
+  return std::nullopt;
+}
+
+std::optional<StrategyId> Governor::begun_by(const Order& order) const {
+  if (const auto* run = std::get_if<RunStrategy>(&order.what)) return run->strategy;
+  const auto* approved = std::get_if<Approve>(&order.what);
+  const Question* question = approved == nullptr ? nullptr : question_of(approved->strategy);
+  return question != nullptr && question->is_proposed ? std::optional(question->strategy)
+                                                      : std::nullopt;
 }
 
 // A person's word goes before the limits, not before what keeps the robot safe.
@@ -191,14 +219,20 @@ void Governor::obey(const Order& order, Time now) {
       Overload{[&](const Pause&) { is_paused_ = true; }, [&](const Resume&) { is_paused_ = false; },
                [&](const Approve& o) {
                  Question* const question = question_of(o.strategy);
-                 assert(question != nullptr);
+                 CULPRIT_ASSERT(question != nullptr);
                  question->is_approved = true;
                },
                [&](const Refuse& o) {
-                 assert(question_of(o.strategy) != nullptr);
+                 CULPRIT_ASSERT(question_of(o.strategy) != nullptr);
                  const Question& question = *question_of(o.strategy);
                  refused_[o.strategy.index] = question.failing_since;
                  questions_.erase(questions_.begin() + (&question - questions_.data()));
+               },
+               [&](const Propose& o) {
+                 const Time since =
+                     knowledge_.states[knowledge_.rules[o.strategy].rule].failing_since;
+                 questions_.push_back({o.strategy, since, false, true});
+                 write_.events.tell(now, ApprovalAsked{o.strategy, {}, {}});
                },
                [&](const Silence& o) {
                  std::erase_if(silences_, [&](const ActiveSilence& s) { return s.what == o.what; });
@@ -297,8 +331,9 @@ std::optional<Governor::Held> Governor::restraint_on_last_resort(StrategyId id, 
     return Held{Restraint::kIdentity, std::move(*doubt), kNever};
   if (auto reason = launch_of_the_unseen(strategy, knowledge_))
     return Held{Restraint::kNeverSeen, std::move(*reason), kNever};
-  return std::ranges::any_of(strategy.adaptations, launches) ? departure(strategy, now)
-                                                             : std::nullopt;
+  const auto may_launch = [](const Adaptation& a) { return launches(a) || a.group; };
+  return std::ranges::any_of(strategy.adaptations, may_launch) ? departure(strategy, now)
+                                                               : std::nullopt;
 }
 
 std::vector<StrategyId> Governor::last_resorts_behind(const Order& order) const {
@@ -385,11 +420,11 @@ bool Governor::awaits_approval(const ApprovalAsked& choice, Time now) {
   const RuleId rule = knowledge_.rules[choice.strategy].rule;
   // The question about another strategy of the same failure is no longer the question.
   std::erase_if(questions_, [&](const Question& question) {
-    const bool is_old = knowledge_.rules[question.strategy].rule == rule;
+    const bool is_old = !question.is_proposed && knowledge_.rules[question.strategy].rule == rule;
     if (is_old) write_.events.tell(now, ApprovalLapsed{question.strategy});
     return is_old;
   });
-  questions_.push_back({choice.strategy, knowledge_.states[rule].failing_since, false});
+  questions_.push_back({choice.strategy, knowledge_.states[rule].failing_since});
   write_.events.tell(now, choice);
   return true;
 }
@@ -413,6 +448,7 @@ void Governor::began(StrategyId strategy, Time now) {
 bool Governor::is_open(const Question& question) const {
   const RuleState& state = knowledge_.states[knowledge_.rules[question.strategy].rule];
   const bool is_open = state.phase == RulePhase::kFailing ||
+                       (state.phase == RulePhase::kExhausted && question.is_proposed) ||
                        (state.phase == RulePhase::kExhausted &&
                         knowledge_.only_starts_the_gone(knowledge_.rules[question.strategy]));
   return is_open && state.failing_since == question.failing_since;

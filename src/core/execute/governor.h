@@ -1,8 +1,8 @@
-// Decides whether what was planned may be done now (docs/governor.md).
+// Decides whether the planned strategies may begin now (docs/governor.md).
 //
-// It chooses nothing and does nothing by itself: it says yes, or no with a reason. A reason is
-// about everything (paused, a storm), or about one strategy; then the next best one may be tried.
-// A person's orders go through it too.
+// It chooses nothing and does nothing by itself: it permits, or refuses with a reason. A reason is
+// about everything (paused, a storm), or about one strategy; then the next best one may be tried. A
+// person's orders go through it, too.
 #pragma once
 
 #include <optional>
@@ -37,8 +37,8 @@ class Governor {
     // A launch that ends so soon after a crash that it may have ended because of that is started again.
     bool revives_in_doubt = false;
 
-    // Nothing is limited unless it is asked for: a study measures the planner. This is what a
-    // robot is run with; why these numbers, says docs/governor.md.
+    // By default nothing is limited, because a study measures the planner. These are the limits for
+    // a robot; docs/governor.md gives the reasons for the numbers.
     static Options recommended();
   };
   struct ActiveSilence {
@@ -58,33 +58,39 @@ class Governor {
   // `knowledge` must outlive the governor.
   Governor(const Knowledge& knowledge, Writes writes, Options options, Time start);
 
-  // What earlier processes spent, and what people told them. Before the first advance().
+  // The budgets that earlier processes spent, and the orders that people gave them. Before the
+  // first advance().
   void remember(const History& past);
 
   // ---- orders
 
   // Why the order cannot be followed; nothing if it can.
   std::optional<std::string> objection(const Order& order, Autonomy autonomy) const;
-  // What the order changes here. @pre there is no objection to it
+  // Applies the order. @pre there is no objection to it
   void obey(const Order& order, Time now);
 
   bool is_paused() const { return is_paused_; }
   const std::optional<StormWatch::Storm>& storm() const { return storm_.storm(); }
   const std::vector<ActiveSilence>& silences() const { return silences_; }
+  // The strategy that the order begins at once: one that a person runs, or approves after a program
+  // proposed it; empty: none.
+  std::optional<StrategyId> begun_by(const Order& order) const;
+
   // The strategies that wait for approval.
   std::vector<StrategyId> asked() const;
 
   // ---- plans
 
-  // Before each plan: what was withheld may be allowed by now.
+  // Before each plan: strategies that were withheld may be allowed by now.
   void begin_planning();
   // Whether the strategy may not be begun although others may. If so, it is marked
-  // (Knowledge::withheld), so that a new plan finds what else there is, and told.
+  // (Knowledge::withheld), so that a new plan finds the alternatives, and an event reports it.
   bool withholds(StrategyId strategy, Time now);
-  // Whether everything has to wait now, the strategy that was chosen too. If so, that is told.
+  // Whether everything has to wait now, the strategy that was chosen too. If so, an event reports
+  // it.
   bool holds_back(StrategyId strategy, Time now);
   // Whether the last resort has to wait: for a person who paused or muted, or because of `obstacle`,
-  // which keeps it from being carried out. No limit holds it. If so, that is told.
+  // which keeps it from being carried out. No limit holds it. If so, an event reports it.
   bool holds_last_resort_back(StrategyId strategy, std::optional<std::string> obstacle, Time now);
   // The last resorts that the order holds back: a pause all, a silence those that it is about.
   std::vector<StrategyId> last_resorts_behind(const Order& order) const;
@@ -98,7 +104,7 @@ class Governor {
   // ---- time
 
   void advance(Time now);
-  // What happened in the step that is over.
+  // The events of the step that is over.
   void note(std::span<const Event> events);
   Time next_deadline() const;
 
@@ -111,8 +117,10 @@ class Governor {
     StrategyId strategy;
     Time failing_since = kNever;
     bool is_approved = false;
+    bool is_proposed = false;  // by a program, not by the planner
   };
 
+  std::optional<std::string> objection_to_propose(StrategyId id) const;
   std::optional<std::string> objection_to_run(StrategyId id, Autonomy autonomy) const;
   std::optional<Held> restraint_on(StrategyId strategy, Time now) const;
   std::optional<Held> restraint_on_last_resort(StrategyId strategy, Time now) const;
@@ -123,7 +131,7 @@ class Governor {
   std::optional<Held> container_to_come(const Strategy& strategy) const;
   bool stays_anything_down() const;
   std::optional<Held> lack_of_evidence(const Strategy& strategy, Time now) const;
-  // What no person can order either.
+  // Holds against a person's order, too.
   std::optional<Held> interlock() const;
   void tell(StrategyId strategy, const Held& held, Time now);
   Question* question_of(StrategyId strategy);

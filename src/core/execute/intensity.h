@@ -12,8 +12,8 @@ struct Intensity {
   Duration period{};
 };
 
-// What was spent of an intensity. No interval [t, t + period) ever holds more than `most`, unless
-// more is spent than was available.
+// The budget of an intensity. No interval [t, t + period) ever holds more than `most`, unless more
+// is spent than was available.
 class IntensityBudget {
  public:
   explicit IntensityBudget(Intensity limit) : limit_(limit) {}
@@ -30,7 +30,7 @@ class IntensityBudget {
     if (spent_.size() > static_cast<std::size_t>(limit_.most)) spent_.pop_front();
   }
 
-  // What was spent last was spent for nothing.
+  // Returns the last one to the budget: it was not needed.
   void give_back() {
     if (!spent_.empty()) spent_.pop_back();
   }

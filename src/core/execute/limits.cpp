@@ -31,7 +31,7 @@ bool begins_anew(const Adaptation& adaptation) {
   return restarts(adaptation) && adaptation.type != AdaptationType::kStop;
 }
 
-// What there were so many of.
+// The noun for a number of strategies.
 struct Words {
   std::string one;
   std::string many;
@@ -49,7 +49,7 @@ Words words(StrategyKind kind) {
   return {};
 }
 
-// Nothing while one more is available.
+// Empty while one more is available.
 std::optional<Limits::Limit> exceeded(const IntensityBudget& budget, Restraint restraint,
                                       const Words& what, Time now) {
   if (budget.available() <= now) return std::nullopt;
@@ -114,7 +114,7 @@ std::optional<Limits::Limit> Limits::on(StrategyId id, Time now) const {
     const bool was_told = knowledge_.states[strategy.rule].search.is_exhausted;
     if (limit && was_told && launches(adaptation) &&
         knowledge_.is_known_gone(adaptation.component)) {
-      // A person was told, and its start harms nothing: it is only delayed.
+      // A person was notified, and its start harms nothing: it is only delayed.
       limit->restraint = Restraint::kBackoff;
       limit->until = std::min(limit->until, later(state.restarted, kStartsOfTheGone));
       if (limit->until <= now) limit.reset();
@@ -157,7 +157,7 @@ std::optional<Limits::Limit> Limits::quiet(ComponentId component, Time now) cons
                  until};
   };
   const auto producers = knowledge_.graph.upstream(component);
-  // What is known to be dead waits for nobody.
+  // A component that is known dead need not wait.
   const bool is_dead = knowledge_.components[component].alive == false;
   const bool finds_others = !is_dead && knowledge_.graph.reads_others(component);
   const Duration own_quiet = finds_others

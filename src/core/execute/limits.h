@@ -1,8 +1,8 @@
 // How often strategies may be begun: in total, of each kind, at each component; how often a
 // component may be restarted; and how long it is left alone after that.
 //
-// What is asked for and what is spent are two steps: may_begin() has no effect. Strategies that a
-// person ran by hand are spent like any other.
+// Asking and spending are two steps: may_begin() has no effect. Strategies that a person ran by
+// hand are spent like any other.
 #pragma once
 
 #include <array>
@@ -40,13 +40,13 @@ class Limits {
     Intensity overall{};
     Intensity per_kind{};
     Intensity per_component{};
-    // Of a component, by whatever strategies. Beyond, a person must look; a process that is known to be
-    // gone is started every five minutes.
+    // Per component, by whatever strategies. Beyond it a person must look; a process that is known to
+    // have exited is started every five minutes.
     Intensity restarts{};
     Backoff backoff{};
     Duration quiet_after_launch{};  // for a component that was started
-    // For what depends on a component that was started, or came back by other hands: it has to find the
-    // new process first.
+    // For components that depend on one that was started, or that came back without culprit: they have
+    // to discover the new process first.
     Duration quiet_downstream{};
   };
   struct Limit {
@@ -61,9 +61,9 @@ class Limits {
   std::optional<Limit> on_all(Time now) const;
   std::optional<Limit> on(StrategyId strategy, Time now) const;
   void began(StrategyId strategy, Time now);
-  // What earlier processes spent.
+  // The budgets that earlier processes spent.
   void remember(const History& past);
-  // Of the step that is over.
+  // An event of the step that is over.
   void note(const Event& event);
 
  private:

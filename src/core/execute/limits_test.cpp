@@ -76,7 +76,8 @@ TEST(Limits, LeaveWhatDependsOnALaunchAloneUntilItPublishesAgain) {
   EXPECT_FALSE(limits.on(two.strategy("down_again"), kStart + 5s));
 }
 
-// Whoever started it again: what depends on it has to find the new process first.
+// Whether culprit or another program started it again: its consumers have to discover the new
+// process first.
 TEST(Limits, LeaveWhatDependsOnWhatCameBackAloneUntilItIsFound) {
   Two two;
   Limits::Options options;

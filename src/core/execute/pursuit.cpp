@@ -1,10 +1,10 @@
 #include "execute/pursuit.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 #include "base/duration_words.h"
+#include "base/invariant.h"
 #include "base/value_list.h"
 #include "execute/evidence.h"
 
@@ -172,7 +172,7 @@ bool Pursuit::must_insist(const Knowledge& knowledge) const {
 }
 
 std::optional<Pursuit::Request> Pursuit::advance(const Knowledge& knowledge, Time now) {
-  assert(is_under_way());
+  CULPRIT_ASSERT(is_under_way());
   if (is_lost(knowledge)) {
     const ComponentState& state = knowledge.components[component_];
     took_too_long_ = state.hangs() && has_changed_anything();
@@ -214,12 +214,12 @@ std::optional<Pursuit::Request> Pursuit::decide(const Knowledge& knowledge, Time
   const ComponentState& state = knowledge.components[component_];
   if (std::holds_alternative<ModeGoal>(goal_) && has_changed_anything() &&
       !state.alive.value_or(true))
-    return give_up("whoever changes its mode is gone");
+    return give_up("the node that changes its mode is not alive");
   if (const auto* gone = std::get_if<GoneGoal>(&goal_)) return pursue(*gone, knowledge, now);
   if (const auto* present = std::get_if<PresentGoal>(&goal_))
     return pursue(*present, knowledge, now);
   if (const auto* service = std::get_if<ServiceGoal>(&goal_)) return pursue(*service, now);
-  // The change was not sent, for there was nobody to send it to.
+  // The change was not sent, because no node was there to receive it.
   if (answer_ && answer_->outcome == Outcome::kUnreachable) {
     if (now >= std::min(loads_until_, deadline_)) return give_up(why(*answer_));
     sent_.pop_back();
@@ -227,8 +227,8 @@ std::optional<Pursuit::Request> Pursuit::decide(const Knowledge& knowledge, Time
     return look_again(now);
   }
   if (did_not_come(*seen_)) {
-    // Before the change: nobody there to change, unless it is still coming up. After it: the answer
-    // may just be late.
+    // Before the change: no node is there to change, unless it is still coming up. After it: the
+    // answer may just be late.
     const bool may_come =
         now < std::max(held_until_, loads_until_) || ++unanswered_ < most_unanswered(knowledge);
     if (now >= deadline_ || (!has_changed_anything() && !may_come)) return give_up(why(*seen_));
@@ -276,7 +276,7 @@ std::optional<Pursuit::Request> Pursuit::pursue(const ParameterGoal& goal, Time 
   }
   if (is_there) return reach();
   if (answer_->outcome == Outcome::kRefused) return give_up(why(*answer_));
-  // Some parameters start a routine and reset themselves. Whether it helped, the symptom tells.
+  // Some parameters start a routine and reset themselves. The symptom shows whether it helped.
   if (answer_->outcome == Outcome::kDone)
     return reach("accepted, but it reads back " + to_string(*present));
   return look_again(now);
@@ -293,9 +293,10 @@ std::optional<Pursuit::Request> Pursuit::pursue(const LifecycleGoal& goal, Time 
   if (has_moved && has_changed_anything() && present == Lifecycle::kUnconfigured)
     return give_up("it fell back to unconfigured when asked to " +
                    to_string(Command{{}, {}, sent_.back(), {}}));
-  // What was not asked for, or was refused and is so all the same, somebody else did: two who take
-  // one node through its lifecycle make one another fail. It is left to him for a while.
-  // A node that is just started and is found beyond *unconfigured* was taken there by somebody.
+  // A transition that culprit did not request, or that was refused, and that happened all the same,
+  // has another driver. Two drivers of one node's lifecycle make each other fail, so culprit leaves
+  // it to the other one for a while. A node that is just started and is found beyond *unconfigured*
+  // was taken there by another driver.
   const bool is_led = goal.may_have_driver && last_ == Lifecycle::kUnknown &&
                       present == Lifecycle::kInactive && !has_changed_anything();
   if (is_led) held_until_ = std::max(held_until_, later(now, goal.patience / 2));
@@ -422,7 +423,7 @@ std::optional<Pursuit::Request> Pursuit::look_again(Time now) {
     const bool was_accepted = answer_ && answer_->outcome == Outcome::kDone;
     return give_up((was_accepted ? "it accepted and did nothing: not " : "not ") + describe(goal_) +
                    " after " + in_words(now - (sent_.empty() ? begun_ : changed_)) +
-                   (is_left() ? "; who is to bring it up did not (LIFECYCLE)" : ""));
+                   (is_left() ? "; its driver did not bring it up (LIFECYCLE)" : ""));
   }
   wake_ = std::min(later(now, kPause), deadline_);
   step_ = Step::kPausing;

@@ -55,7 +55,7 @@ class Pursuit {
   // It was given up because something else sets back what it sets.
   bool met_rival() const { return met_rival_; }
 
-  // What was read before anything was changed.
+  // The value that was read before the first change.
   const std::optional<Reply>& before() const { return before_; }
   bool has_changed_anything() const { return !sent_.empty(); }
 

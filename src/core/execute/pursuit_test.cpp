@@ -125,7 +125,8 @@ TEST(PursuitOfAProcess, SaysOfWhatHangsThatItDoes) {
   EXPECT_TRUE(std::get<StopProcess>(*request).hangs);
 }
 
-// A node that is asked to end at kStart, when it had not answered for so long; half a second later it is known to hang.
+// A node that gets SIGTERM at kStart, when it had not answered for `unanswered`; half a second later it is known to
+// hang.
 struct Ended {
   explicit Ended(Duration unanswered) {
     one.runs(7, true);
@@ -188,7 +189,7 @@ TEST(PursuitOfAProcess, EndsNoneThatHasTakenTheOldOnesPlace) {
   EXPECT_TRUE(pursuit.is_reached());
 }
 
-// systemd may have started another one before it is heard that the old one has ended.
+// systemd may have started another process before its report arrives that the old one has ended.
 TEST(PursuitOfAProcess, IsOverWhenAnotherHasTakenThePlaceOfTheOneThatWasEnded) {
   One one;
   one.runs(7, true);
@@ -202,7 +203,7 @@ TEST(PursuitOfAProcess, IsOverWhenAnotherHasTakenThePlaceOfTheOneThatWasEnded) {
   EXPECT_TRUE(pursuit.is_reached());
 }
 
-// systemd knows the processes of a unit, also those of other users, which nobody else may see.
+// systemd knows the processes of a unit, also those of other users, which culprit may not see.
 TEST(PursuitOfAProcess, EndsAUnitOfWhichTheProcessIsNotKnown) {
   One one;
   one.runs(0, true);
@@ -242,7 +243,7 @@ TEST(PursuitOfAProcess, IsOverWhenAComposedNodeHasLeftTheGraph) {
   EXPECT_TRUE(pursuit.is_reached());
 }
 
-// As a culprit did that was killed before it heard so.
+// An earlier culprit loaded it, and was killed before the answer arrived.
 TEST(PursuitOfAProcess, BelievesAContainerThatAComposedNodeIsLoadedAlready) {
   One one;
   one.rules.components[0].composed = Composition{"/box", "p", "p::C"};

@@ -32,8 +32,8 @@ std::vector<Goal> goals_of_process(const Sent& sent, const Adaptation& adaptatio
   const auto* stop = last_of<StopProcess>(sent);
   const bool is_started = last_of<StartProcess>(sent) != nullptr;
   const int old_pid = stop != nullptr ? std::get<StopProcess>(stop->command.what).pid : 0;
-  // Whether another process took its place on another computer nobody sees from here: who runs it
-  // there was asked for both, and is not asked again.
+  // culprit cannot see from here whether another process took its place on another computer. Its
+  // owner there was asked to end and to start it, and is not asked again.
   const bool is_elsewhere = !knowledge.rules[adaptation.component].host().empty();
   const bool is_to_stop = adaptation.type == AdaptationType::kStop;
   std::vector<Goal> goals;
@@ -43,6 +43,11 @@ std::vector<Goal> goals_of_process(const Sent& sent, const Adaptation& adaptatio
   PresentGoal back{old_pid};
   if (is_elsewhere) back.instead_of_seen = kLongAgo;
   goals.push_back(back);
+  if (adaptation.group && adaptation.type == AdaptationType::kActivate) {
+    goals.push_back(LifecycleGoal{Lifecycle::kActive, {}});
+    return goals;
+  }
+  if (is_left_to_group(adaptation.component, knowledge)) return goals;
   const auto* was = std::get_if<Lifecycle>(&sent.front()->command.purpose.before);
   if (was != nullptr && (*was == Lifecycle::kActive || *was == Lifecycle::kInactive))
     goals.push_back(bringing_up(adaptation, *was, knowledge));
@@ -83,7 +88,7 @@ Resumption resumption_of(const Interrupted& interrupted, const Knowledge& knowle
     resumption.obstacle = last.outcome
                               ? to_string(last.command) + " failed before culprit ended"
                               : "culprit ended while it asked to " + to_string(last.command) +
-                                    "; nobody knows whether that was done";
+                                    "; it is unknown whether that was done";
   }
   return resumption;
 }
@@ -95,6 +100,7 @@ std::vector<Undo> undo_of(const Interrupted& interrupted, const Knowledge& knowl
     const Command& command = request.command;
     if (command.purpose.undoes) continue;
     const Adaptation& adaptation = adaptations[command.purpose.adaptation];
+    if (adaptation.group) continue;
     if (std::holds_alternative<StopProcess>(command.what) &&
         is_started_again(command.purpose.adaptation, adaptations)) {
       const auto* was = std::get_if<Lifecycle>(&command.purpose.before);

@@ -1,9 +1,9 @@
 // How to go on with a strategy that an earlier process of culprit did not live to end.
 //
-// Nothing is asked for twice that may have been carried out already and does harm then: states are
-// looked at first, an increase is brought to the value it was meant to reach, a process is started
-// only if no other one is there, and a routine of which nobody knows whether it ran is not called
-// again.
+// No request is repeated that may have been carried out already and would do harm the second time.
+// States are looked at first; an increase is brought to the value that it was meant to reach; a
+// process is started only if no other one is there. A routine is not called again if it may have
+// run.
 #pragma once
 
 #include <string>
@@ -22,7 +22,8 @@ struct Resumption {
 
 Resumption resumption_of(const Interrupted& interrupted, const Knowledge& knowledge);
 
-// What has to be brought back if the strategy does not help, in the order in which it was changed.
+// A goal that undoes a change if the strategy does not help. Undos are kept in the order of the
+// changes.
 struct Undo {
   ComponentId component;
   Goal goal;

@@ -53,7 +53,8 @@ TEST(Resumption, BeginsWhenTheRobotHadTheTimeToShowItself) {
   EXPECT_EQ(executor.next_deadline(), Time(12s));
 }
 
-// Nobody saw what happened meanwhile, so nothing is learned of it; its failure is what it is for.
+// No outcome is learned from it, because culprit did not watch meanwhile; its failure stays the
+// same.
 TEST(Resumption, IsAnAttemptAtItsFailureOfWhichNothingIsLearned) {
   Left left;
   Executor executor = left.executor();

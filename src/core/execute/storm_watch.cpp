@@ -59,7 +59,7 @@ std::optional<StormWatch::Storm> StormWatch::look() {
   if (knowledge_.states.active().size() < static_cast<std::size_t>(options_.least)) return {};
   const std::size_t ill = ill_roots();
   if (is_much(ill))
-    return Storm{Restraint::kStorm, count(ill) + " are ill at once, and none explains the others"};
+    return Storm{Restraint::kStorm, count(ill) + " failed at once, and none explains the others"};
   return std::nullopt;
 }
 

@@ -1,10 +1,10 @@
-// Is so much ill at once that acting on it would do more harm than good?
+// Have so many components failed at once that acting would do more harm than good?
 //
-// A storm: components that nothing upstream explains are ill, many of them (NodeHealthCheck's
-// minHealthy, with the dependency graph taken into account: a dead camera and all that needs it is
-// no storm; nor are dead processes, whose cause is clear). A graph in doubt: nodes vanished from
+// A storm: many components have failed that nothing upstream explains. (NodeHealthCheck's
+// minHealthy, with the dependency graph taken into account: a dead camera with all its consumers is
+// no storm; nor are dead processes, whose cause is clear.) A graph in doubt: nodes vanished from
 // the graph although their processes run, or those of other computers do not answer although these
-// are heard. Then the network is more likely to be ill than all of them.
+// are reachable. Then the network is more likely at fault than all of the nodes.
 #pragma once
 
 #include <optional>

@@ -6,7 +6,7 @@ namespace culprit {
 
 namespace {
 
-// They, and what was found from them; by component.
+// Marks these components, and the ones that the search found from them.
 std::vector<bool> marked(const Knowledge& knowledge, const std::vector<ComponentId>& components,
                          const std::vector<ComponentId>& found) {
   std::vector<bool> is_marked(knowledge.rules.components.size(), false);
@@ -20,7 +20,7 @@ bool is_any(const std::vector<ComponentId>& components, const std::vector<bool>&
                      [&](ComponentId c) { return is_marked[c.index]; });
 }
 
-// Does it do more than reconfigure something for the sake of what is less critical than `rule`?
+// Does it do more than reconfigure something, for a rule that is less critical than `rule`?
 bool weighs_on(const Knowledge& knowledge, StrategyId strategy, RuleId rule) {
   const Strategy& other = knowledge.rules[strategy];
   const bool is_lesser =

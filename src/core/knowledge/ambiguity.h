@@ -8,8 +8,8 @@
 
 namespace culprit {
 
-// Where a failure can be made to go away: the components that its rule touches, and all that they
-// depend on. The graph is asked once.
+// The components where a failure can be cleared: those that its rule touches, and all their
+// dependencies. The graph is searched once.
 class Sources {
  public:
   Sources(const Knowledge& knowledge, RuleId rule);
@@ -20,8 +20,7 @@ class Sources {
   std::vector<bool> is_source_;  // by component
 };
 
-// The other way round: which failures adapting some components can make go away. Of many rules it is
-// asked with one search.
+// The inverse: the failures that adapting some components can clear. One search serves many rules.
 class Effects {
  public:
   Effects(const Knowledge& knowledge, const std::vector<ComponentId>& adapted);
@@ -31,7 +30,7 @@ class Effects {
   std::vector<bool> is_reached_;  // by component
 };
 
-// Can adapting these components make the failure of `rule` go away?
+// Can adapting these components clear the failure of `rule`?
 bool can_resolve(const Knowledge& knowledge, const std::vector<ComponentId>& adapted, RuleId rule);
 
 // Does the strategy restart, replace, start or stop anything?

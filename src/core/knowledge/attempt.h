@@ -12,7 +12,7 @@ namespace culprit {
 struct Attempt {
   enum class Stage : std::uint8_t {
     kAdapting,   // its adaptations are being carried out and read back
-    kWaiting,    // all took effect; does the symptom go away?
+    kWaiting,    // all took effect; does the symptom clear?
     kSuspended,  // all took effect, and a more critical failure has the component: judged later
     kUndoing,    // it failed; what can be undone is being undone
     kOver        // nothing of it is left to do

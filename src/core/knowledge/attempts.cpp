@@ -1,19 +1,20 @@
 #include "knowledge/attempts.h"
 
-#include <cassert>
 #include <utility>
+
+#include "base/invariant.h"
 
 namespace culprit {
 
 void Attempts::begin(StrategyId strategy, Time now) {
   const RuleId rule = states_.rules()[strategy].rule;
   auto& slot = states_.slot_of(strategy);
-  assert(!slot);
+  CULPRIT_ASSERT(!slot);
   slot.emplace();
   slot->strategy = strategy;
   slot->chosen = now;
   slot->has_no_failure = states_[rule].phase == RulePhase::kQuiet;
-  // That a start beyond all attempts does not help is no news.
+  // A start beyond all attempts is expected to fail, so its outcome teaches nothing.
   slot->is_ambiguous = states_[rule].search.is_exhausted;
   if (!states_.rules()[strategy].is_last_resort) states_.enter(rule, RulePhase::kAttempting);
 }
@@ -55,7 +56,7 @@ void Attempts::undone(StrategyId strategy) { of(strategy).stage = Attempt::Stage
 
 Attempt& Attempts::of(StrategyId strategy) {
   auto& attempt = states_.slot_of(strategy);
-  assert(attempt && attempt->strategy == strategy);
+  CULPRIT_ASSERT(attempt && attempt->strategy == strategy);
   return *attempt;
 }
 

@@ -19,7 +19,7 @@ class Attempts {
 
   // @pre none of the rule is under way
   void begin(StrategyId strategy, Time now);
-  // One that an earlier process began; nobody saw what happened meanwhile. @pre as begin()'s
+  // One that an earlier process began; culprit did not watch meanwhile. @pre as begin()'s
   void resume(StrategyId strategy, Time now);
 
   // Each of these: @pre the strategy is under way.
@@ -27,7 +27,7 @@ class Attempts {
   void change_begins(StrategyId strategy, Time now);
   // The last adaptation has taken effect.
   void took_effect(StrategyId strategy, Time now);
-  // What it had started ended, and is started again.
+  // A process that it had started exited, and is started again.
   void adapts_again(StrategyId strategy);
   // An adaptation could not be carried out.
   void obstruct(StrategyId strategy, std::string obstacle);
@@ -35,7 +35,7 @@ class Attempts {
   void make_ambiguous(StrategyId strategy);
   // An earlier process found that it failed: it is being undone.
   void undo(StrategyId strategy);
-  // Nothing of it is left to do.
+  // Its undo is complete.
   void undone(StrategyId strategy);
 
  private:

@@ -40,7 +40,7 @@ std::optional<ComponentId> awaited_container(ComponentId component, const Knowle
   if (is_being_replaced(*container, knowledge)) return container;
   if (home.process != ProcessState::kRunning)
     return is_to_be_replaced(*container, home.process_since, knowledge) ? container : std::nullopt;
-  // One process has ended, and that of the container is told next.
+  // The component's process has ended, and the report that the container's did follows.
   const bool is_one_process =
       own.process == ProcessState::kGone && own.known_pid() == home.known_pid();
   if (is_one_process)

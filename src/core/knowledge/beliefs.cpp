@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/invariant.h"
+
 namespace culprit {
 
 namespace {
@@ -52,6 +54,7 @@ bool Beliefs::begin_from(StrategyId id, Belief prior) {
 
 void Beliefs::learn(StrategyId id, Belief outcome) {
   Belief& belief = beliefs_[id.index];
+  CULPRIT_ASSERT(outcome.alpha >= 0 && outcome.beta >= 0 && outcome.alpha + outcome.beta <= 1);
   belief.alpha = faded(belief.alpha, forgetting_) + outcome.alpha;
   belief.beta = faded(belief.beta, forgetting_) + outcome.beta;
 }

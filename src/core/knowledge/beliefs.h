@@ -10,8 +10,8 @@
 // (pooled_prior.h).
 //
 // A pseudo-count that would start at 0 starts at 0.5 instead, so that a designer's 100 % can still
-// be unlearned (the paper notes that its own update never converges there). All others are what the
-// designer said. None is forgotten to less than 0.05, or than what it started with.
+// be unlearned. (The paper notes that its own update never converges there.) All others start at
+// the designer's numbers. Forgetting never takes one below 0.05, or below its start if that is less.
 #pragma once
 
 #include <vector>
@@ -31,8 +31,8 @@ struct Belief {
 // The designer's belief: success probability and confidence c_p > 0.
 Belief initial_belief(Probability success, double confidence);
 
-// `belief` as if it had grown from another prior: what was counted stays. None comes to less than
-// forgetting would bring it to.
+// `belief` as if it had grown from another prior: the counted outcomes stay. Neither count falls
+// below the floor of forgetting.
 Belief regrown(const Belief& belief, const Belief& from, const Belief& onto);
 
 class Beliefs {
@@ -45,13 +45,13 @@ class Beliefs {
   void set_forgetting(double forgetting) { forgetting_ = forgetting; }
   void set(StrategyId id, Belief belief) { beliefs_[id.index] = belief; }
 
-  // What `id` was believed before anything was counted: the designer's belief, unless said
-  // otherwise.
+  // The belief in `id` before any outcome: the designer's, unless another prior was set.
   const Belief& prior(StrategyId id) const { return priors_[id.index]; }
-  // For what was learned in an earlier run.
+  // For a belief from an earlier run.
   void set(StrategyId id, Belief belief, Belief prior);
-  // Begins from another prior; what was counted stays. With forgetting, what outcomes have moved
-  // stays as it is: nobody knows how much of the old prior is left in it. Whether anything changed.
+  // Begins from another prior; the counted outcomes stay. With forgetting, a change by outcomes
+  // stays as it is, because the share of the old prior that is left in it is unknown. Gives whether
+  // anything changed.
   bool begin_from(StrategyId id, Belief prior);
   // Back to the prior.
   void forget(StrategyId id) { beliefs_[id.index] = priors_[id.index]; }

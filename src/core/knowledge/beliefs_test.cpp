@@ -79,7 +79,7 @@ TEST(Beliefs, KeepWhatWasCountedWhenTheyBeginFromAnotherPrior) {
   EXPECT_EQ(beliefs[s], (Belief{6, 6}));
 }
 
-// How much of the old prior is left in it, nobody knows.
+// The share of the old prior that is left is unknown.
 TEST(Beliefs, ThatForgetKeepWhatOutcomesMadeOfThem) {
   const StrategyId s(0);
   Beliefs beliefs(one_strategy());

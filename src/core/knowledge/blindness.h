@@ -19,7 +19,7 @@
 
 namespace culprit {
 
-// What keeps a trigger from having a value.
+// The reason why a trigger has no value.
 enum class Unseen : std::uint8_t {
   kNeverSeen,   // the robot never had the component, topic, diagnostic, parameter or value
   kStale,       // no new value comes, and the last one is too old to count
@@ -49,7 +49,7 @@ class Blindness {
         has_required_(std::any_of(rules.components.begin(), rules.components.end(),
                                   [](const Component& c) { return c.is_required; })) {}
 
-  // Nothing: the rule can see, or did not have its time yet.
+  // Empty: the rule can see, or did not have its time yet.
   const std::optional<Blind>& operator[](RuleId id) const { return by_rule_[id.index]; }
   std::size_t count() const { return count_; }
   // No rule can see; or there is none, and no REQUIRED component either. Nothing is watched.

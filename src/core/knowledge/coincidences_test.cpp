@@ -38,7 +38,7 @@ TEST_F(CoincidencesOfThree, OnceMayBeChance) {
   EXPECT_THAT(coincidences_.of(c_), IsEmpty());
 }
 
-// Of ten failures each, two began together: that is no common cause.
+// Two of ten failures each began together: that is no common cause.
 TEST_F(CoincidencesOfThree, RareCoincidencesMeanNothing) {
   for (int k = 0; k < 8; ++k) {
     coincidences_.began(a_, {});

@@ -10,14 +10,15 @@
 namespace culprit {
 
 struct ComingUp {
-  // Who took it through its lifecycle. kOther: itself, its launcher, a lifecycle manager.
+  // The driver that took it through its lifecycle. kOther: itself, its launcher, a lifecycle
+  // manager.
   enum class Driver : std::uint8_t { kUnknown, kOther, kCulprit };
   Driver driver = Driver::kUnknown;
-  // From the order to start it until its node was there; 0: not measured. What was given up because
-  // it took too long counts with that time: the next start is given more.
+  // From the request to start it until its node was discovered; 0: not measured. A start that was
+  // given up because it took too long counts with that time: the next start is given more.
   Duration joining{};
-  // Until its lifecycle was where it should be, likewise: from when it was there, or from culprit's
-  // first request if that brought it up.
+  // Until its lifecycle was where it should be; 0 and too long as above. From the discovery of its
+  // node, or from culprit's first request if that brought it up.
   Duration rising{};
 
   bool operator==(const ComingUp&) const = default;

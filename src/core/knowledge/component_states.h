@@ -1,4 +1,4 @@
-// What is known of each component itself: its process, its lifecycle, its parameters.
+// The state of each component itself: its process, its lifecycle, its parameters.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@ namespace culprit {
 // "unconfigured", "inactive", "active", "finalized", "unknown", "in transition".
 std::string_view to_string(Lifecycle state);
 
-// What came of asking a component whether it answers (Probe), since its process began.
+// The result of the probes whether a component answers (Probe), since its process began.
 struct Questioned {
   Time at = kLongAgo;                // when it was asked last
   bool is_open = false;              // an answer to that can still come
@@ -53,16 +53,18 @@ struct ComponentState {
   Lifecycle lifecycle = Lifecycle::kUnknown;
   Time lifecycle_since = kLongAgo;  // when it was read first in that state
   bool was_active = false;          // it was read as active once
+  // Its group was inactive as a whole, which is a pause, and no member was active since.
+  bool is_paused = false;
   Time changes_until = kNever;     // when a transition under way hangs; kNever: none is known to be
   Duration transition_patience{};  // that culprit has with each, if more than it needed before
-  // Where its lifecycle should be: where it was last while no strategy was at it, or where one
-  // brought it on purpose. A process that takes the place of another is brought there; the state
-  // that it comes up in is nobody's intention.
+  // The lifecycle state where it should be: the last one while no strategy adapted it, or the one
+  // that a strategy brought it to. A process that takes the place of another is brought there,
+  // because the state that it comes up in was not chosen.
   Lifecycle intended_lifecycle = Lifecycle::kUnknown;
-  ComingUp coming_up;              // of the last process that was seen to come up, or as told
+  ComingUp coming_up;              // of the last process that was seen to come up, or as remembered
   bool is_rising = false;          // it was seen unconfigured, and is not active yet
   Time culprit_raised = kLongAgo;  // when culprit took it through its lifecycle last
-  Time worked = kLongAgo;          // when its process was said to work last (ProcessWorked)
+  Time worked = kLongAgo;          // when its process was last reported to work (ProcessWorked)
   std::optional<BegunAnew> begun_anew{};  // the last time
   bool took_place = false;  // its process took another's place, and its lifecycle was not read yet
 
@@ -71,15 +73,15 @@ struct ComponentState {
 
   std::vector<ComponentId> ends_with;  // other components whose processes end with its (EndsWith)
 
-  // Does it work as a process and as a node? Nothing until something is known of it.
+  // Does it work as a process and as a node? Empty until something is known of it.
   std::optional<bool> alive;
   Time alive_since = kLongAgo;  // when that changed last
   bool is_missed = false;       // it was never seen, and had its time to show itself
 
   // The other computer that its node ran on last (LivesOn); empty: it was this one, or is not known.
   std::string host;
-  // Since when nothing is heard of that computer (HostHeard), and for a while after it is heard again:
-  // its nodes have to be heard, too, and what they say. Set by ComponentStates::set_host_silent().
+  // Since when that computer is unreachable (HostHeard). Kept for a while after it is reachable again,
+  // until its nodes and their messages are received, too. Set by ComponentStates::set_host_silent().
   std::optional<Time> host_silent{};
   // The computer that runs it cannot be asked (HostReached). Set by ComponentStates::set_out_of_reach().
   bool is_out_of_reach = false;
@@ -98,9 +100,9 @@ class ComponentStates {
   ComponentState& operator[](ComponentId id) { return components_[id.index]; }
   const ComponentState& operator[](ComponentId id) const { return components_[id.index]; }
 
-  // Sets ComponentState::intended_lifecycle, and tells if it is another.
+  // Sets ComponentState::intended_lifecycle, and reports it if it changed.
   void intend_lifecycle(ComponentId component, Lifecycle state, Time at, EventLog& events);
-  // Sets ComponentState::coming_up, and tells if it is another.
+  // Sets ComponentState::coming_up, and reports it if it changed.
   void note_coming_up(ComponentId component, const ComingUp& how, Time at, EventLog& events);
 
   void set_known_dead(ComponentId component, std::optional<Time> since);
@@ -108,8 +110,8 @@ class ComponentStates {
 
   void set_host_silent(ComponentId component, std::optional<Time> since);
   void set_out_of_reach(ComponentId component, bool is_out_of_reach);
-  // Of a component that is not alive, whether that tells of its computer and not of itself
-  // (Knowledge::is_unheard).
+  // Does any component count as not alive because of its computer, not because of itself
+  // (Knowledge::is_unheard)?
   bool is_any_unreached() const { return unreached_ > 0; }
 
   // The last value that was read of a parameter; nothing while none was, or since its process began

@@ -81,7 +81,7 @@ class Traversal {
 
   void lower(Vertex v, std::uint32_t to) { low_[v] = std::min(low_[v], to); }
 
-  // From `root` on, what is open is an SCC. All that it depends on is in one now.
+  // From `root` on, the open vertices are an SCC. All its dependencies are in one now.
   void close(Vertex root) {
     const auto scc = static_cast<Condensation::Scc>(found_.first_producer.size() - 1);
     const auto first = std::find(open_.rbegin(), open_.rend(), root).base() - 1;

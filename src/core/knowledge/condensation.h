@@ -1,5 +1,4 @@
-// The dependency graph with every circle condensed into one node, to answer questions about many
-// components at once.
+// The dependency graph with every feedback loop condensed into one node, to answer questions about many components at once.
 //
 // An SCC is a node, or several that all depend on each other (a strongly connected component). The
 // SCCs are numbered so that each comes after all that it depends on: one pass from the first to
@@ -43,13 +42,13 @@ class Condensation {
 
   std::size_t size() const { return sccs_.first_producer.size() - 1; }
   Scc scc_of(Vertex vertex) const { return sccs_.of[vertex]; }
-  // What an SCC depends on directly: lower numbers, possibly more than once.
+  // The direct dependencies of an SCC: lower numbers, possibly more than once.
   std::span<const Scc> producers(Scc scc) const {
     const auto& first = sccs_.first_producer;
     return std::span(sccs_.producers).subspan(first[scc], first[scc + 1] - first[scc]);
   }
 
-  // What the search finds.
+  // The result of the search.
   struct Sccs {
     std::vector<Scc> of;                        // by vertex
     std::vector<std::uint32_t> first_producer;  // by SCC, and the end

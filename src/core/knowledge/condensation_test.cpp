@@ -31,7 +31,7 @@ TEST(Condensation, EndsOnALongChain) {
   EXPECT_EQ(Condensation(200'000, edges).size(), 200'000u);
 }
 
-// Who is reached from `from`, the slow way; itself only through a circle.
+// The vertices that are reached from `from`, found the slow way; itself only through a loop.
 std::set<Condensation::Vertex> reached(Condensation::Vertex from, const Edges& edges) {
   std::set<Condensation::Vertex> found;
   for (bool grows = true; grows;) {

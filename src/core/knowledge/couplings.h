@@ -1,14 +1,14 @@
-// How surely a failure goes away when another one is resolved: kappa(j -> i), learned for each
-// ordered pair of rules (docs/planning.md, which also says what its truth is).
+// How surely a failure clears when another one is resolved: kappa(j -> i), learned for each ordered
+// pair of rules (docs/planning.md, which also defines its true value).
 //
 //     kappa(j -> i) = (n0 kappa0 + cleared) / (n0 + cleared + stayed)
 //
-//   cleared  how often i went away after a strategy had resolved j, without one of its own
-//   stayed   how often it was still there when it could have shown that
-//   kappa0   what is expected before anything was seen: kUsual if i depends on j, kRare otherwise
+//   cleared  how often i cleared after a strategy had resolved j, without a repair of its own
+//   stayed   how often it was still there when its signals could have shown the recovery
+//   kappa0   the expectation before any outcome: kUsual if i depends on j, kRare otherwise
 //   n0       how many outcomes that expectation weighs: kWeight
 //
-// What is kept are the counts: whether i depends on j is asked of the graph at the time.
+// Only the counts are stored: whether i depends on j is asked of the graph at the time.
 #pragma once
 
 #include <span>
@@ -34,7 +34,7 @@ struct Coupling {
 
 class Couplings {
  public:
-  // With forgetting below 1, what was counted before weighs that much less with each new outcome.
+  // With forgetting below 1, earlier outcomes weigh that much less with each new outcome.
   explicit Couplings(const RuleSet& rules);
   void set_forgetting(double forgetting) { forgetting_ = forgetting; }
 
@@ -46,7 +46,7 @@ class Couplings {
     RuleId cause;
     Coupling coupling;
   };
-  // All that was learned of what `effect` goes away with, by cause.
+  // All causes that `effect` was seen to clear with, or not.
   std::span<const Learned> of(RuleId effect) const { return by_effect_[effect.index]; }
   // Nothing learned: both counts are zero.
   Coupling of(RuleId cause, RuleId effect) const;

@@ -9,7 +9,7 @@
 
 namespace culprit {
 
-// Nothing allocates after construction; set and clear cost O(log n).
+// Never allocates after construction; set and clear cost O(log n).
 class Deadlines {
  public:
   explicit Deadlines(std::size_t count);

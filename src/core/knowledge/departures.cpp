@@ -36,7 +36,7 @@ void Departures::arrived(ComponentId component, int pid, Time at) {
     member.has_left = false;
     return;
   }
-  // Of a launch that ended unseen there may be a new one, which has been there for long.
+  // A launch whose end was not seen may have a successor that has run for long.
   const bool is_back = member.down && member.down != StaysDown::Why::kUnseen;
   member = {.is_there = true, .has_owner = member.has_owner};
   if (is_back) member.back = at;

@@ -4,7 +4,7 @@
 // them get the same signal, and end one after the other, each in its own time. A component that culprit
 // starts while its launcher runs stands in for the launch: it belongs to the launch, and ends with it.
 //
-//   one component leaves politely      the others may be about to: it is kept back for kAlone
+//   one component exits cleanly        the others may be about to: it is held back for kAlone
 //   several do                         they leave together, until none has for kTogether
 //   the launcher ends with them        the launch has ended. Its components stay down until a person
 //                                      starts one again, or orders so (Revive)
@@ -41,11 +41,11 @@ class Departures {
   // A launch that ends in doubt is taken for one that broke: its components may be started again.
   void revive_in_doubt() { revives_ = true; }
 
-  // ---- what is seen
+  // ---- observations
 
   // A process of the component began.
   void arrived(ComponentId component, int pid, Time at);
-  // culprit started that process; told before it arrives.
+  // culprit started that process; reported before it arrives.
   void started_here(const StartedHere& seen, Time at);
   // Another process, `launcher`, which is no supervisor, started it.
   void launched(ComponentId component, int launcher);
@@ -56,23 +56,23 @@ class Departures {
   void fell(ComponentId component, Time at);
   // culprit ended it.
   void ended_here(ComponentId component, Time at);
-  // It is gone, and it is not known why.
+  // It is gone for an unknown reason.
   void lost(ComponentId component);
-  // A person told its owner to end it (systemctl stop, docker stop), or shut its node down.
+  // A person had its owner stop it (systemctl stop, docker stop), or shut its node down.
   void ended_by_order(ComponentId component, StaysDown::Why why);
   // Its node is not shut down any more.
   void is_up(ComponentId component);
 
-  // ---- what people order
+  // ---- orders
 
-  // Nothing stays down for what happened until now; of one component, or of all.
+  // Clears the mark "stays down" for all events until now; for one component, or for all.
   void revive(std::optional<ComponentId> component = {});
   // Every component whose process culprit started stays down.
   void end_started();
 
   // ---- what follows
 
-  // What is decided now of launches that have ended.
+  // The launches that were found to have ended.
   struct Settled {
     std::vector<StaysDown> down;  // the components that stay down from now on
     std::vector<int>
@@ -80,7 +80,7 @@ class Departures {
   };
   Settled settle(Time now);
   Time next_settling() const { return settles_at_; }
-  // What an earlier run told.
+  // A StaysDown event of an earlier run.
   void remember(const StaysDown& told);
 
   enum class What : std::uint8_t {
@@ -94,7 +94,7 @@ class Departures {
     Time until = kNever;
     StaysDown::Why why = StaysDown::Why::kPerson;  // kStaysDown
   };
-  // Nothing: it may be adapted.
+  // Empty: it may be adapted.
   std::optional<Departure> of(ComponentId component, Time now) const;
   bool stays_down(ComponentId component) const {
     return members_[component.index].down.has_value();
@@ -117,8 +117,8 @@ class Departures {
   struct Verdict {
     enum class What : std::uint8_t {
       kOpen,    // until then, or until more is seen
-      kGoesOn,  // it is no launch any more, and what is left of it is as any other
-      kBroken,  // likewise, and it ended because one of its components had
+      kGoesOn,  // it is no launch any more, and its remaining members are as any others
+      kBroken,  // as above, and it ended because one of its components had
       kEnded
     } what = What::kOpen;
     Time until = kNever;

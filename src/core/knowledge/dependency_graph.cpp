@@ -420,7 +420,7 @@ const std::vector<ComponentId>& DependencyGraph::reach(std::span<const Component
       if (visit(declared)) return found_;
     }
     for (const ChannelId channel_id : up ? here.consumes : here.produces) {
-      // Whoever shares a channel with many is led on by it once.
+      // The search passes each channel once, however many nodes share it.
       std::uint32_t& passed = visited_[nodes_.size() + channel_id.index];
       if (passed == search_) continue;
       const Channel& channel = channels_[channel_id.index];

@@ -1,18 +1,18 @@
-// Who depends on whom: the live graph of the managed system (paper, "Knowledge base").
+// Which nodes depend on which: the live graph of the managed system (paper, "Knowledge base").
 //
 // A node depends on another if it subscribes to a topic that the other publishes, is a client of a
 // service that the other serves, or is declared to depend on it. Nodes are joined through their
 // channels (topics and services), so a channel with p producers and c consumers costs p + c, not p
 // * c.
 //
-// Some topics carry no data that anybody waits for: heartbeats (a topic called `bond`, as Nav2's servers
-// and managers have one), and any topic that all its nodes both publish and subscribe to. They make
-// no edges.
+// Some topics carry no data that a node waits for: heartbeats (a topic called `bond`, as Nav2's servers
+// and managers have one), and any topic that all its nodes both publish and subscribe to. They make no
+// edges.
 //
-// The graph remembers what it must not forget in a failure: a node that is gone still is what its
-// consumers wait for. So a vanished end of a channel goes on counting while its node is gone, and a
-// vanished producer also while nobody else produces on that channel. A change that a living node
-// made (a subscription moved elsewhere) counts at once.
+// The graph must not forget dependencies in a failure: a consumer still waits for a node that has
+// exited. So a vanished end of a channel goes on counting while its node is gone. A vanished
+// producer counts until another node produces on that channel. A change that a living node made (a
+// subscription moved elsewhere) counts at once.
 #pragma once
 
 #include <functional>
@@ -48,10 +48,10 @@ class DependencyGraph {
   bool endpoint_appeared(const std::string& node, EndpointKind kind, const std::string& name);
   bool endpoint_vanished(const std::string& node, EndpointKind kind, const std::string& name);
 
-  // What an earlier run saw of the component, which is not in the graph until it appears: it counts
-  // as if its node had been there and gone.
+  // The ends that an earlier run saw of the component, which is not in the graph until it appears:
+  // they count as if its node had been there and left.
   void remember(ComponentId component, const std::vector<KnownRobot::End>& ends);
-  // What counts of it now.
+  // The component's ends that count now.
   std::vector<KnownRobot::End> ends_of(ComponentId component) const;
   // Another number whenever a node or an end came or went.
   std::uint64_t changes() const { return changes_; }
@@ -81,7 +81,7 @@ class DependencyGraph {
   bool reads_others(ComponentId component) const;
 
   // A topic that the component's node subscribes to, or a service that it is a client of, that no node
-  // offers; the first by name. Nothing: all that it reads is offered.
+  // offers; the first by name. Empty: all that it reads is offered.
   std::optional<std::string> unsupplied_input(ComponentId component) const;
 
   // How many nodes publish `topic`, as far as was seen and is not ignored, and whether the
@@ -102,10 +102,10 @@ class DependencyGraph {
   // The components that `component` depends on, directly or through any nodes between; not itself.
   // The reference is valid until the next call.
   const std::vector<ComponentId>& upstream(ComponentId component) const;
-  // The components that depend on it, likewise.
+  // The components that depend on it, directly or through any nodes between; not itself.
   const std::vector<ComponentId>& downstream(ComponentId component) const;
-  // Of several at once, in one search: what any of them depends on, or depends on any of them; not
-  // they themselves.
+  // For several components at once, in one search: those that any of them depends on, or that
+  // depend on any of them, without themselves.
   const std::vector<ComponentId>& upstream(std::span<const ComponentId> components) const;
   const std::vector<ComponentId>& downstream(std::span<const ComponentId> components) const;
   // The first of upstream(), or downstream(), that is it, without a look at those behind it. `is_it`
@@ -114,14 +114,14 @@ class DependencyGraph {
   std::optional<ComponentId> first_upstream(ComponentId component, const Predicate& is_it) const;
   std::optional<ComponentId> first_downstream(ComponentId component, const Predicate& is_it) const;
 
-  // All that counts now, with circles drawn together. Found anew when it is asked for after a change
+  // All that counts now, with each loop condensed. Found anew when it is asked for after a change
   // (docs/performance.md says what that costs); the reference is valid until the next change.
   const Condensation& condensation() const;
-  // Nothing while the component was not seen and is not declared to depend on another.
+  // Empty while the component was not seen and is not declared to depend on another.
   std::optional<Condensation::Scc> scc_of(ComponentId component) const;
 
   using Vertex = std::uint32_t;
-  // Nodes as numbers below size(). Nothing as for scc_of().
+  // Nodes as numbers below size(). Empty as for scc_of().
   std::size_t size() const { return nodes_.size(); }
   std::optional<Vertex> vertex_of(ComponentId component) const {
     const auto node = nodes_of_components_[component.index];
@@ -210,9 +210,9 @@ class DependencyGraph {
 
   std::uint64_t changes_ = 0;
 
-  mutable std::optional<Whole> whole_;  // nothing: something changed
+  mutable std::optional<Whole> whole_;  // empty: something changed
 
-  // Scratch of reach(): who was visited in which search; first the nodes, then the channels.
+  // Scratch of reach(): the search that visited each last; first the nodes, then the channels.
   mutable std::vector<std::uint32_t> visited_;
   mutable std::uint32_t search_ = 0;
   mutable std::vector<NodeId> frontier_;

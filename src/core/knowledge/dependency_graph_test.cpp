@@ -151,7 +151,7 @@ TEST(DependencyGraph, LeadsThroughNodesThatAreNoComponents) {
   EXPECT_EQ(graph.upstream("seg"), Names{"camera"});
 }
 
-// Whoever looks now and then sees by the number that something changed, also if it is as it was.
+// A periodic reader sees by the number that something changed, even if it changed back.
 TEST(DependencyGraph, CountsEachChangeOnce) {
   Graph graph(kThree);
   graph.node("/camera").link("/camera", "/a", "/relay");
@@ -236,7 +236,7 @@ TEST(DependencyGraph, FindsUndeclaredComponentsByTheNameOfTheirNode) {
   EXPECT_EQ(graph.upstream("fusion"), Names{"lidar"});
 }
 
-// What the condensation says of the components, and what one of the same graph from nothing says.
+// Compares the graph's condensation with one that is built from scratch.
 void check_condensation(const RuleSet& rules, const DependencyGraph& graph) {
   ChannelEdges edges(graph.size());
   graph.for_each_channel([&](auto producers, auto consumers) { edges.add(producers, consumers); });
@@ -255,7 +255,7 @@ void check_condensation(const RuleSet& rules, const DependencyGraph& graph) {
   }
 }
 
-// What a search from several finds, and what searches from each find; both ways.
+// Compares one search from several components with a search from each; both ways.
 void check_searches(const RuleSet& rules, const DependencyGraph& graph) {
   std::vector<ComponentId> several;
   for (std::size_t c = 0; c < rules.components.size(); c += 3) several.emplace_back(c);

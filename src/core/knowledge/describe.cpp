@@ -33,10 +33,11 @@ class Describer {
   std::string operator()(const FailureResolved& e) const {
     const std::string after = " after " + two_decimals(seconds(e.reaction)) + " s";
     if (e.strategy) return rules_[e.rule].name + " resolved by " + rules_[*e.strategy].name + after;
-    return rules_[e.rule].name + " went away without a strategy of its own" + after;
+    return rules_[e.rule].name + " cleared without a repair of its own" + after;
   }
   std::string operator()(const FailureLost& e) const {
-    return rules_[e.rule].name + " can no longer be seen: what its trigger reads is unknown";
+    return rules_[e.rule].name +
+           " can no longer be evaluated: the inputs of its trigger are unknown";
   }
   std::string operator()(const StrategyChosen& e) const {
     const Strategy& strategy = rules_[e.strategy];
@@ -61,8 +62,8 @@ class Describer {
   }
   std::string operator()(const FailureHeldBack& e) const {
     if (e.candidates.empty()) return "";
-    // What it really waits for: a strategy that was tried or makes no sense would not be next in
-    // any case.
+    // The reason why it waits: a strategy that was tried or makes no sense would not be next in any
+    // case.
     const auto is_out = [](const Candidate& c) {
       return c.excluded == Condition::kTried || c.excluded == Condition::kInvalid;
     };
@@ -103,7 +104,7 @@ class Describer {
   std::string operator()(const RuleExhausted& e) const {
     const Rule& rule = rules_[e.rule];
     if (rule.strategies.empty())
-      return rule.name + ": nothing is done about it, a person must look";
+      return rule.name + ": culprit does nothing about it, a person must look";
     return rule.name + " is exhausted: nothing helped, a person must look";
   }
   std::string operator()(const LastResortReached& e) const {
@@ -128,7 +129,7 @@ class Describer {
     const bool is_component = std::holds_alternative<ComponentId>(e.what);
     return std::visit([this](auto id) { return unseen(id); }, e.what) +
            (e.near.empty() ? "." : "; did you mean '" + e.near + "'?") +
-           (is_component ? " Nothing is done about it" : " What rules read of it is unknown");
+           (is_component ? " culprit does nothing about it" : " Rules read it as unknown");
   }
   std::string operator()(const RuleBlind& e) const {
     return rules_[e.rule].name + " is blind: " + describe(e.blind);
@@ -139,6 +140,9 @@ class Describer {
   }
   std::string operator()(const LifecycleIntended&) const { return ""; }
   std::string operator()(const CameUp&) const { return ""; }
+  std::string operator()(const IncidentOpened&) const { return ""; }
+  std::string operator()(const IncidentChanged&) const { return ""; }
+  std::string operator()(const IncidentClosed&) const { return ""; }
   std::string operator()(const RivalSeen& e) const {
     return "something else sets the mode of " + rules_[e.component].name +
            " back; it is left alone";
@@ -162,7 +166,7 @@ class Describer {
     return with_rule(e.strategy) + " needs no approval any more";
   }
   std::string operator()(const StrategyAbandoned& e) const {
-    return with_rule(e.strategy) + " is left where it is: " + e.reason;
+    return with_rule(e.strategy) + " is abandoned: " + e.reason;
   }
   std::string operator()(const OrderCarriedOut& e) const {
     return with_rule(e.strategy) + " was carried out";
@@ -170,35 +174,32 @@ class Describer {
   std::string operator()(const OutcomePending&) const { return ""; }
   std::string operator()(const OutcomeCounted&) const { return ""; }
   std::string operator()(const FailureFlaps& e) const {
-    return rules_[e.rule].name + " comes and goes: detected " + std::to_string(e.times) +
-           " times, and counted as one failure until it stays away";
+    return rules_[e.rule].name + " is flapping: detected " + std::to_string(e.times) +
+           " times, and counted as one failure until it stays cleared";
   }
   std::string operator()(const SilenceEnded& e) const {
     return name_of(e.what) + " is no longer silenced";
   }
   std::string operator()(const StormBegan& e) const {
-    return "nothing more is done, a person must look: " + e.reason;
+    return "culprit does nothing more, a person must look: " + e.reason;
   }
   std::string operator()(const StormEnded&) const { return "action is allowed again"; }
   std::string operator()(const JudgementSuspended& e) const {
-    return "nothing is judged until the robot can be heard again: " + e.reason;
+    return "culprit judges nothing until the robot can be heard again: " + e.reason;
   }
   std::string operator()(const JudgementResumed&) const {
-    return "the robot can be heard again; what was silent has a moment to be heard";
+    return "the robot can be heard again; silent topics get a grace period";
   }
   std::string operator()(const SleepNoticed& e) const {
-    return "culprit stood still for " + in_words(e.time) +
-           "; what was silent has a moment to be heard";
+    return "culprit stood still for " + in_words(e.time) + "; silent topics get a grace period";
   }
   std::string operator()(const HostSilent& e) const {
     std::vector<std::string> names;
     for (const ComponentId c : e.components) names.push_back(rules_[c].name);
-    return "nothing is heard of " + e.host + ", where " + listed(names) +
-           " ran: it is down, or cut off. Nothing is started in their place until it is heard "
-           "again" +
-           (e.is_last
-                ? ". Nothing is heard of any other computer: it may be this one that is cut off"
-                : "");
+    return e.host + ", where " + listed(names) +
+           " ran, is unreachable: it is down, or cut off. culprit starts nothing in their "
+           "place until it is reachable again" +
+           (e.is_last ? ". No other computer is reachable either: this one may be cut off" : "");
   }
   std::string operator()(const StaysDown& e) const {
     std::vector<std::string> names;
@@ -212,7 +213,7 @@ class Describer {
       case StaysDown::Why::kPerson:
         return who + "a person ended the launch of " + launcher + remedy;
       case StaysDown::Why::kDoubt:
-        return who + "the launch of " + launcher + " ended " + to_string(e.after) + " after " +
+        return who + "the launch of " + launcher + " ended " + in_words(e.after) + " after " +
                (e.fell ? rules_[*e.fell].name : "a component") +
                " crashed; a person may have ended it, or its on_exit=Shutdown()" + remedy +
                ". To start it again at once next time: culprit run --revive";
@@ -224,11 +225,11 @@ class Describer {
       case StaysDown::Why::kShutDown:
         return who + "its node was shut down" + remedy;
       case StaysDown::Why::kOrder:
-        return who + "a person ended what culprit had started" + remedy;
+        return who + "a person ended the processes that culprit had started" + remedy;
     }
     return who;
   }
-  std::string operator()(const HostBack& e) const { return e.host + " is heard again"; }
+  std::string operator()(const HostBack& e) const { return e.host + " is reachable again"; }
   std::string operator()(const ValueUnknown& e) const {
     const Input& input = rules_[e.input];
     if (e.why == WhyUnknown::kOverflow) {
@@ -238,13 +239,14 @@ class Describer {
     }
     const bool is_signal = input.kind != Input::Kind::kParameter;
     return (is_signal ? rules_[input.signal].name : describe(input, rules_)) +
-           " is not a number (NaN): what rules read of it is unknown" +
+           " is not a number (NaN): rules read it as unknown" +
            (is_signal ? ", except isnan(" + rules_[input.signal].name + ")" : "");
   }
   std::string operator()(const PriorsAdopted& e) const {
-    return "what is believed of " + std::to_string(e.priors.size()) +
-           (e.priors.size() == 1 ? " strategy" : " strategies") + " begins from what " +
-           (e.source.empty() ? "the rules say" : e.source + " learned");
+    return (e.priors.size() == 1
+                ? "the belief in 1 strategy begins"
+                : "the beliefs in " + std::to_string(e.priors.size()) + " strategies begin") +
+           " from the priors of " + (e.source.empty() ? "the rule file" : e.source);
   }
 
   std::string operator()(const Pause&) const { return "pause"; }
@@ -254,8 +256,9 @@ class Describer {
   }
   std::string operator()(const Approve& o) const { return with_rule(o.strategy) + " is approved"; }
   std::string operator()(const Refuse& o) const { return with_rule(o.strategy) + " is refused"; }
+  std::string operator()(const Propose& o) const { return "propose " + with_rule(o.strategy); }
   std::string operator()(const Silence& o) const {
-    return name_of(o.what) + " is silenced" + (o.lasts ? " for " + to_string(*o.lasts) : "");
+    return name_of(o.what) + " is silenced" + (o.lasts ? " for " + in_words(*o.lasts) : "");
   }
   std::string operator()(const LiftSilence& o) const {
     return "the silence of " + name_of(o.what) + " is lifted";
@@ -303,11 +306,13 @@ class Describer {
   }
   std::string unseen(SignalId id) const {
     const Signal& signal = rules_[id];
+    if (std::holds_alternative<GroupId>(signal.source))
+      return "group " + signal.name + " was never whole: of some component in it no state was read";
     const auto* key = std::get_if<DiagnosticKey>(&signal.source);
     const std::string source = key == nullptr || key->status == "*"
                                    ? "it"
                                    : "the key '" + key->key + "' of status '" + key->status + "'";
-    return "signal " + signal.name + " was never seen: nothing tells " + source;
+    return "signal " + signal.name + " was never seen: no message carries " + source;
   }
   std::string unseen(ParameterId id) const {
     const Parameter& parameter = rules_[id];
@@ -315,7 +320,8 @@ class Describer {
            " was never seen: no value was read";
   }
   std::string unseen(DiagnosticId id) const {
-    return "diagnostic " + rules_.diagnostics[id.index].name + " was never seen: nobody tells it";
+    return "diagnostic " + rules_.diagnostics[id.index].name +
+           " was never seen: no node publishes it";
   }
 
   // " (62 %; 38 %: fusion, by FusionDead)"; empty if nobody else is suspected.
@@ -514,7 +520,7 @@ std::string_view to_string(Criticality criticality) {
 
 namespace {
 
-// Who is asked to end and to start it, where culprit does neither.
+// The owner that ends and starts it, where culprit does neither.
 std::string by_whom(const Component& component) {
   using Engine = EngineContainer::Engine;
   const std::string where = component.host().empty() ? ")" : " on " + component.host() + ")";
@@ -621,11 +627,9 @@ std::string describe_exclusion(const Candidate& candidate, const RuleSet& rules)
     case Condition::kSettling:
       if (!candidate.remark.empty())
         return "it may only show that " + component + " " + candidate.remark;
-      return "it is expected to go away now that " + rules[*candidate.failure].name +
-             " is resolved";
+      return "it is expected to clear now that " + rules[*candidate.failure].name + " is resolved";
     case Condition::kInTheWay:
-      return strategy + " would be in the way of what is done about " +
-             rules[*candidate.failure].name;
+      return strategy + " would be in the way of the repair of " + rules[*candidate.failure].name;
     case Condition::kWithheld:
       return strategy + " is withheld: " + candidate.remark;
     case Condition::kUnheard: {

@@ -27,7 +27,7 @@ std::string to_string(Probability probability);
 // "a, b and c"
 std::string listed(const std::vector<std::string>& items);
 
-// "camera is silenced for 10min", "restart_camera is approved"
+// "camera is silenced for 10 min", "restart_camera is approved"
 std::string describe(const Order& order, const RuleSet& rules);
 
 // "restart camera", "set exposure of camera"

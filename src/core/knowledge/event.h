@@ -1,4 +1,5 @@
-// What the manager did and why, for people, for the journal, for explanations.
+// The manager's decisions and actions with their reasons, for people, for the journal, for
+// explanations.
 #pragma once
 
 #include <optional>
@@ -8,6 +9,7 @@
 
 #include "knowledge/blindness.h"
 #include "knowledge/coming_up.h"
+#include "knowledge/incident.h"
 #include "knowledge/stays_down.h"
 #include "knowledge/why_unknown.h"
 #include "language/rule_set.h"
@@ -24,24 +26,24 @@ enum class Condition : std::uint8_t {
   kAffected,    // 4: a component of it is affected by a strategy chosen just now
   kDependency,  // 5: a component of it depends on a component that may be the cause
   kOneEach,     // another strategy was chosen for the same failure
-  // Of the bayes planner only:
+  // Only from the bayes planner:
   kDownstream,  // a component of it depends on one that is being adapted
   kSuspect,     // a component of it depends on one that may still prove to be the cause
-  kSettling,    // the failure is expected to go away with one that was just resolved
-  kInTheWay,    // it would be in the way of what is to be done about another failure
+  kSettling,    // the failure is expected to clear with one that was just resolved
+  kInTheWay,    // it would be in the way of the repair of another failure
   // Of both planners:
   kWithheld,  // the governor does not allow it now
-  // Its component, or one that may be the cause (bayes), is on a computer that is not heard.
+  // Its component, or one that may be the cause (bayes), is on an unreachable computer.
   kUnheard
 };
 
 struct Candidate {
   StrategyId strategy;
   double cost = 0;                    // paper, Eq. 1; bayes: expected (plan/bayes/value.h)
-  std::optional<Condition> excluded;  // nothing: chosen
+  std::optional<Condition> excluded;  // empty: chosen
   ComponentId component;              // that the condition is about
   std::optional<RuleId> failure;      // kDependency: what `component` may be the cause of;
-                                      // likewise kSuspect, kSettling, kInTheWay: the other failure
+                                      // also kSuspect, kSettling, kInTheWay: the other failure
   std::string remark;                 // kInvalid, kWithheld, kUnheard, kDependency or kSuspect
                                       // without a failure: why
   // Of a planner that weighs them (bayes) and only if nothing excludes it beforehand.
@@ -53,7 +55,7 @@ struct Candidate {
 
 enum class EvidenceSource : std::uint8_t {
   kKernel,    // the operating system says so
-  kMeasured,  // culprit heard it, or did not
+  kMeasured,  // culprit received it, or did not
   kAlarm,     // a rule fires
   kGraph,     // the graph or the lifecycle of nodes
   kLearned,   // earlier failures
@@ -62,7 +64,7 @@ enum class EvidenceSource : std::uint8_t {
 // "kernel", "measured", "alarm", "graph", "learned", "model".
 std::string_view to_string(EvidenceSource source);
 
-// What speaks for a suspect, or against it (diagnose/evidence.h).
+// A piece of evidence for a suspect, or against it (diagnose/evidence.h).
 struct Evidence {
   EvidenceSource source = EvidenceSource::kModel;
   std::string text;             // "camera exited"
@@ -74,7 +76,7 @@ struct Evidence {
 // "camera exited 1.20 s ago (kernel, +2.9)"
 std::string describe(const Evidence& evidence);
 
-// Who may be responsible for a failure.
+// A component that may be responsible for a failure.
 struct Suspect {
   ComponentId component;
   RuleId failure;                    // that points at it: the failure itself, or one upstream
@@ -85,17 +87,17 @@ struct Suspect {
 // A failure was detected.
 struct FailureDetected {
   RuleId rule;
-  // What the trigger reads does not show it yet: this component, which alone publishes that, is
-  // known dead. `how` it ended: "killed by signal 9".
+  // The trigger's inputs do not show it yet: this component, the only publisher of them, is known
+  // dead. `how` it exited: "killed by signal 9".
   std::optional<ComponentId> known_dead{};
   std::string how{};
 };
 
-// A failure is gone.
+// A failure cleared.
 struct FailureResolved {
   enum class How : std::uint8_t {
     kByStrategy,      // the strategy under way resolved it
-    kWithoutStrategy  // it went away without one of its own: another repair, or by itself
+    kWithoutStrategy  // it cleared without one of its own: another repair, or by itself
   };
   RuleId rule;
   How how = How::kWithoutStrategy;
@@ -103,7 +105,7 @@ struct FailureResolved {
   Duration reaction{};  // since it was detected
 };
 
-// What the rule reads cannot be seen any more, so nobody knows whether the failure is still there.
+// The rule's inputs are not received any more, so it is unknown whether the failure is still there.
 struct FailureLost {
   RuleId rule;
 };
@@ -111,9 +113,9 @@ struct FailureLost {
 struct StrategyChosen {
   StrategyId strategy;
   std::vector<Candidate> candidates;  // all of the same failure, this one included, by cost
-  std::vector<RuleId> explains;  // failures downstream that are expected to go away with this one
-  bool dry_run = false;          // it is only said, not done
-  std::vector<Suspect> suspects{};        // likeliest first; of a planner that weighs them
+  std::vector<RuleId> explains;     // failures downstream that are expected to clear with this one
+  bool dry_run = false;             // it is only said, not done
+  std::vector<Suspect> suspects{};  // likeliest first; of a planner that weighs them
   std::vector<ComponentId> also_ended{};  // components whose processes end with it, besides its own
 };
 
@@ -164,12 +166,12 @@ struct LastResortReached {
   RuleId rule;
 };
 
-// A last resort took effect. What it changed stays as long as the failure is there.
+// A last resort took effect. Its changes stay as long as the failure is there.
 struct LastResortDone {
   StrategyId strategy;
 };
 
-// Nothing is left to try. A person must look.
+// All strategies were tried. A person must look.
 struct RuleExhausted {
   RuleId rule;
 };
@@ -191,7 +193,7 @@ struct NeverSeen {
   std::string near;  // a name of the robot that may be meant; empty: none is near
 };
 
-// The trigger of the rule has had no value for a while, so culprit cannot tell whether its failure is
+// The trigger of the rule has had no value for a while, so it is unknown whether its failure is
 // present (blindness.h). Reported once, until the rule can see again.
 struct RuleBlind {
   RuleId rule;
@@ -204,13 +206,14 @@ struct RuleSees {
 };
 
 // Another state of its lifecycle is the intended one now (ComponentState::intended_lifecycle). Not
-// said to people: it is for the process of culprit that comes next.
+// reported to people: it is for the next process of culprit.
 struct LifecycleIntended {
   ComponentId component;
   Lifecycle state = Lifecycle::kUnknown;
 };
 
-// A process of it came up otherwise than the last one (ComponentState::coming_up). Likewise.
+// A process of it came up otherwise than the last one (ComponentState::coming_up). Not reported
+// either.
 struct CameUp {
   ComponentId component;
   ComingUp how;
@@ -232,7 +235,7 @@ struct ValueUnknown {
   WhyUnknown why = WhyUnknown::kNotANumber;  // or kOverflow
 };
 
-// What became of a person's order.
+// The answer to a person's order.
 struct OrderAccepted {
   Order order;
   std::vector<StrategyId>
@@ -256,7 +259,7 @@ enum class Restraint : std::uint8_t {
   kComponentIntensity,  // too many strategies lately at this component
   kClassIntensity,      // too many strategies of this kind lately
   kBackoff,             // it was restarted a short while ago
-  kIdentity,            // nobody knows for sure which process it would hit
+  kIdentity,            // it is uncertain which process it would hit
   kEvidence,            // the process that it would end runs and publishes, or may hang
   kNeverSeen,           // it would start what was never seen
   kLeaving,             // what was started together is being ended together
@@ -266,12 +269,12 @@ enum class Restraint : std::uint8_t {
   kImpossible           // a last resort that cannot be carried out in the robot's present state
 };
 
-// A strategy was chosen and is not begun. Told again only when the reason is another one.
+// A strategy was chosen and is not begun. Reported again only when the reason is another one.
 struct ActionHeldBack {
   StrategyId strategy;
   Restraint restraint = Restraint::kPaused;
   std::string reason;
-  Time until = kNever;  // when the reason may be gone; kNever: nobody knows
+  Time until = kNever;  // when the reason may end; kNever: unknown
 };
 
 // The strategy waits for a person to approve or refuse it. The question lapses when the failure is
@@ -296,26 +299,25 @@ struct OrderCarriedOut {
   StrategyId strategy;
 };
 
-// The verdict on a strategy is in, and stands for proof until `due` (outcomes.h). Not said to
-// people.
+// The verdict on a strategy is in, and pending until `due` (outcomes.h). Not reported to people.
 struct OutcomePending {
   StrategyId strategy;
   bool has_helped = false;
   Time due;
 };
 
-// The outcome of a strategy is learned from, or from no longer (outcomes.h). Not said to people.
+// The outcome of a strategy is learned, or dropped (outcomes.h). Not reported to people.
 struct OutcomeCounted {
   enum class As : std::uint8_t {
     kSuccess,
     kFailure,
-    kNothing  // something else can have had the same effect, or nobody can see it
+    kNothing  // something else can have had the same effect, or it cannot be seen
   };
   StrategyId strategy;
   As as = As::kNothing;
 };
 
-// The failure comes and goes: it is one, until it stayed away for long enough to be proven gone.
+// The failure is flapping: it counts as one until it stayed away for long enough to be proven gone.
 struct FailureFlaps {
   RuleId rule;
   int times = 0;  // that it came
@@ -333,33 +335,48 @@ struct StormBegan {
 };
 struct StormEnded {};
 
-// Nothing is judged from now on, since nobody knows what would have been heard.
+// culprit judges nothing from now on, since it cannot know which messages it misses.
 struct JudgementSuspended {
   std::string reason;
 };
 // All ages, and all times that something has to last, begin anew.
 struct JudgementResumed {};
-// Likewise, after culprit stood still for so long.
+// The same, after culprit stood still for so long.
 struct SleepNoticed {
   Duration time{};
 };
 
-// Nothing is heard of another computer where components ran: it is down, or cut off. One cause, however
-// many rules fail because of it.
+// Another computer where components ran became unreachable: it is down, or cut off. It is one cause,
+// however many rules fail because of it.
 struct HostSilent {
   std::string host;
   std::vector<ComponentId> components;  // that ran there
-  bool is_last = false;  // nothing is heard of any other computer, of which there are several
+  bool is_last = false;  // no other computer is reachable either, and there are several
 };
 struct HostBack {
   std::string host;
 };
 
-// What is believed of strategies begins from what the robots of a fleet learned, or again from what
-// the rules say, where nobody learned anything (empty `source`).
+// Beliefs now begin from priors that the robots of a fleet learned. If `source` is empty, no fleet
+// has any, and they begin from the rule file's priors again.
 struct PriorsAdopted {
   std::vector<PriorsTold::Prior> priors;
   std::string source;
+};
+
+// Incidents (incidents/incidents.h). Without a sentence: the events above tell people what happened.
+struct IncidentOpened {
+  Incident incident;
+};
+// Something about it is different now, but for times that pass.
+struct IncidentChanged {
+  Incident incident;
+};
+struct IncidentClosed {
+  std::string id;
+  RuleId root;
+  IncidentEnd how = IncidentEnd::kResolved;
+  std::string into{};  // kMerged: the id of the other one
 };
 
 // One of these happened. To copy and to destroy a variant of so many is compiled once (event.cpp), not into every file that
@@ -373,7 +390,8 @@ class EventWhat
           OrderCarriedOut, SilenceEnded, StormBegan, StormEnded, LastResortReached,
           LifecycleIntended, CameUp, OutcomePending, OutcomeCounted, FailureFlaps,
           JudgementSuspended, JudgementResumed, SleepNoticed, NeverSeen, PriorsAdopted, HostSilent,
-          HostBack, ValueUnknown, LastResortDone, RuleBlind, RuleSees, StaysDown> {
+          HostBack, ValueUnknown, LastResortDone, RuleBlind, RuleSees, StaysDown, IncidentOpened,
+          IncidentChanged, IncidentClosed> {
  public:
   using Variant = variant;
   using variant::variant;

@@ -66,6 +66,9 @@ constexpr std::array<EventWords, kKinds> kWords = [] {
       row<HostSilent>("host_silent", "HOST DOWN", kError, Tone::kAlarm, kStrong),
       row<HostBack>("host_back", "host back", kInfo, Tone::kRelief),
       row<ValueUnknown>("value_unknown", "unknown", kWarning, Tone::kWarning),
+      row<IncidentOpened>("incident_opened", "incident", kInfo, Tone::kAside),
+      row<IncidentChanged>("incident_changed", "incident", kInfo, Tone::kAside),
+      row<IncidentClosed>("incident_closed", "incident", kInfo, Tone::kAside),
       row<PriorsAdopted>("priors_adopted", "fleet", kInfo, Tone::kAside),
   };
   static_assert(std::size(kRows) == kKinds, "an event without words, or one that is there twice");

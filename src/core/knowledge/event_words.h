@@ -1,4 +1,4 @@
-// What each event is called wherever it is told: in the journal, at the terminal, on the page, to
+// The name of each event wherever it is reported: in the journal, at the terminal, on the page, on
 // /rosout.
 //
 //     words_of(event).label                    // "decided"
@@ -20,9 +20,9 @@ namespace culprit {
 
 enum class EventSeverity : std::uint8_t { kInfo, kWarning, kError };
 
-// What people are to see it as at first glance; a colour, say.
+// The colour, for example, in which people see it at first glance.
 enum class Tone : std::uint8_t {
-  kAside,    // nothing happens, or nobody is told
+  kAside,    // no action, or not reported
   kAlarm,    // something is broken, or stays broken
   kWarning,  // something did not go as it should
   kRelief,   // something is well again
@@ -58,7 +58,7 @@ const EventWords& words_of() {
   return words_of(kKindOf<What>);
 }
 
-// Nothing if no event is called so.
+// Empty if no event has this name.
 std::optional<EventKind> kind_named(std::string_view name);
 
 // Its severity in the table, and an error if it is about a REQUIRED component that is not there.

@@ -8,7 +8,8 @@
 namespace culprit {
 namespace {
 
-// That each event has words, and a name of its own, is checked where the table is compiled.
+// The compiler checks that each event has words, and a name of its own, where it compiles the
+// table.
 TEST(EventWords, AreFoundByEventByTypeAndByName) {
   const Event event{{}, StrategyChosen{}};
   EXPECT_EQ(words_of(event).name, "strategy_chosen");

@@ -1,5 +1,5 @@
-// The names that the robot's diagnostics and parameters really have, as far as they were heard: to
-// suggest them to somebody who misspelled one (named.h).
+// The names that the robot's diagnostics and parameters really have, as far as they were received:
+// suggestions for a misspelt name (named.h).
 #pragma once
 
 #include <map>

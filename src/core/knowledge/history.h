@@ -1,17 +1,17 @@
-// What earlier processes of culprit did on this robot, as far as it still counts: what they told,
-// oldest first.
+// The events of earlier processes of culprit on this robot, as far as they still count, oldest
+// first.
 //
-//   StrategyChosen, StrategyResumed, OrderAccepted of RunStrategy    what was spent of the budgets
+//   StrategyChosen, StrategyResumed, OrderAccepted of RunStrategy    budgets that were spent
 //   FailureDetected, FailureResolved, FailureLost, AdaptationDone    health, launches, cooldowns
-//   OutcomePending, OutcomeCounted                                   verdicts that do not count yet
-//   StrategyFailed, RoundSpent, LastResortReached, LastResortDone, RuleExhausted     what was tried
+//   OutcomePending, OutcomeCounted                                   pending verdicts
+//   StrategyFailed, RoundSpent, LastResortReached, LastResortDone, RuleExhausted     attempts
 //   OrderAccepted of Silence and LiftSilence                         silences
-//   ComponentFound                                                   which process it last ran in
-//   LifecycleIntended                                                where a new process is brought
-//   CameUp                                                           how long it is waited for
+//   ComponentFound                                                   the process of the last run
+//   LifecycleIntended                                                the state for a new process
+//   CameUp                                                           the patience with its start
 //   StaysDown, OrderAccepted of Revive                               what a person ended
 //
-// Events of other kinds say nothing here.
+// Events of other kinds are ignored here.
 #pragma once
 
 #include <vector>

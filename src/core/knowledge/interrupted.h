@@ -1,5 +1,5 @@
-// A strategy that an earlier process of culprit began and did not live to end: what is known of it,
-// and all that is needed to finish it (execute/resumption.h).
+// A strategy that an earlier process of culprit began and did not finish: its known progress, and
+// the data that are needed to finish it (execute/resumption.h).
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@ struct Interrupted {
   // A request that changes something. It went out, or was about to.
   struct Request {
     Command command;
-    std::optional<Outcome> outcome;  // nothing: it is not known how it ended
+    std::optional<Outcome> outcome;  // empty: it is not known how it ended
   };
 
   StrategyId strategy;

@@ -175,7 +175,7 @@ std::string Knowledge::host_of(ComponentId component) const {
 
 std::string Knowledge::why_unheard(ComponentId component) const {
   return "is on " + host_of(component) +
-         (rules[component].has_owner() ? ", which cannot be asked" : ", of which nothing is heard");
+         (rules[component].has_owner() ? ", which cannot be asked" : ", which is unreachable");
 }
 
 bool Knowledge::is_older_than_silence(RuleId rule, ComponentId unheard) const {

@@ -27,8 +27,8 @@ namespace culprit {
 struct Knowledge {
   // `rule_set` must outlive the knowledge and keep its address.
   explicit Knowledge(const RuleSet& rule_set);
-  // What `other` knows, for `rule_set`: a copy of its rules. Its events, and the names that only
-  // reports need, are left out.
+  // A copy of `other` for `rule_set`, which is a copy of its rules. Its events, and the names that
+  // only reports need, are left out.
   Knowledge(const RuleSet& rule_set, const Knowledge& other);
   Knowledge(const Knowledge&) = delete;
   ~Knowledge();
@@ -46,7 +46,7 @@ struct Knowledge {
   Couplings couplings;
   Latencies latencies;
   Coincidences coincidences;
-  // What the governor does not allow now.
+  // The governor's reason against an action now.
   struct Withheld {
     std::string reason;        // empty: it is allowed
     Time until = kNever;       // kNever: until somebody does something, or more is known
@@ -60,16 +60,16 @@ struct Knowledge {
   Time now{};          // of the step under way
   EventLog events;
 
-  // What the run that comes next should know. Changes only with the graph's changes and the counts
-  // of sightings.
+  // The make-up of the robot, for the next run. Changes only with the graph's changes and the
+  // counts of sightings.
   KnownRobot known_robot() const;
 
-  // The operating system says that its process is gone.
+  // The operating system reports that its process exited.
   bool is_known_gone(ComponentId component) const;
   // Does the strategy start such processes, and nothing else? That harms nothing.
   bool only_starts_the_gone(const Strategy& strategy) const;
 
-  // Since when culprit cannot tell whether the rule's failure is present; nothing: the rule can see.
+  // Since when it is unknown whether the rule's failure is present; empty: the rule can see.
   std::optional<Time> blind_since(RuleId rule) const {
     const auto& blind = blindness[rule];
     return blind ? std::optional(blind->since) : std::nullopt;
@@ -78,22 +78,24 @@ struct Knowledge {
   // When the component, or something that it depends on, last joined the graph.
   Time began(ComponentId component) const;
 
-  // It was seen, and its computer is not heard, or was not until a moment ago; or whoever runs it there
-  // cannot be asked, and it is not known to work. Nobody knows what became of it: nothing is done about
-  // it, and nothing learned from it.
+  // It was seen, and its computer is unreachable, or was until a moment ago; or its owner there cannot
+  // be asked, and it is not known to work. Its state is unknown: culprit does nothing about it, and
+  // learns nothing from it.
   bool is_unheard(ComponentId component) const;
-  // That computer, for people: "rover2".
+  // The name of that computer, for people: "rover2".
   std::string host_of(ComponentId component) const;
-  // Why nobody knows, of such a component: "is on rover2, of which nothing is heard".
+  // Why the state of such a component is unknown: "is on rover2, which is unreachable".
   std::string why_unheard(ComponentId component) const;
-  // The unheard component that the rule is about, or that what it is about depends on; nothing: there is
-  // none, or the failure was there long before, or the operating system knows a death of its own.
+  // The component on an unreachable computer that the rule touches, or that a component of the rule
+  // depends on. Empty: there is none, or the failure was there long before, or the operating system
+  // reports a crash of its own.
   std::optional<ComponentId> unheard_behind(RuleId rule) const;
-  // Was the failure detected so long before that computer fell silent that this cannot be its cause?
+  // Was the failure detected so long before that computer became unreachable that this cannot be its
+  // cause?
   bool is_older_than_silence(RuleId rule, ComponentId unheard) const;
 
-  // When a message of what each of the components reads can have come at the latest, since it or what it
-  // depends on began anew: its middleware has to find them first, and they have to publish again.
+  // When the inputs of each of the components can have arrived at the latest, since it or its
+  // dependencies began anew: its middleware has to discover them first, and they have to publish again.
   // kNever: one of those is not there. kLongAgo: none of them reads anything.
   Time can_hear_from(std::span<const ComponentId> components) const;
 };

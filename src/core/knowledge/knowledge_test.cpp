@@ -40,7 +40,7 @@ Time can_hear_from(const Knowledge& knowledge, ComponentId component) {
   return later(from, knowledge.finding);
 }
 
-// With circles, and with components that are not there: each is missed by the others only.
+// With loops, and with components that are not there: each is missed by the others only.
 RC_GTEST_PROP(Knowledge, SeveralCanHearWhenTheLastOfThemCan, ()) {
   const int size = *rc::gen::inRange(1, 8);
   std::string text;

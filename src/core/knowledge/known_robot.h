@@ -1,5 +1,5 @@
-// What a run of culprit knows of the make-up of its robot, by name, for the run that comes next: so
-// that what died in between is known to have died, and who depends on it.
+// The make-up of the robot by name, as one run of culprit saw it. The next run reads it, so that it
+// knows the dependencies, and which components exited in between.
 #pragma once
 
 #include <map>

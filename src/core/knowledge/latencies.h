@@ -41,7 +41,7 @@ class Latencies {
 
   // Does the rule read a value of a monitor of its own? Only then it has a lateness.
   bool is_late(RuleId rule) const { return is_late_[rule.index]; }
-  // What was learned of the rule; or else what the rule file states.
+  // The lateness that was learned for the rule; or else the one that the rule file states.
   Range lateness(RuleId rule) const;
 
   // A proven repair took effect, and the rule's trigger was false so long `after` that. Ignored for

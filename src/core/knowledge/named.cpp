@@ -91,7 +91,7 @@ std::string nearest_status(const std::string& name, const HeardNames& heard) {
   return closest(name, known);
 }
 
-// A key of this status or, if nobody has heard of it, a status. "*": of any.
+// The nearest key of this status or, if the status was not received, the nearest status. "*": of any.
 std::string nearest_key(const std::string& status, const std::string& key,
                         const HeardNames& heard) {
   std::vector<std::string_view> keys;
@@ -121,6 +121,7 @@ std::string nearest_source(const Signal& signal, const Knowledge& knowledge) {
     return nearest_parameter(rules[*parameter], knowledge.heard_names);
   if (const auto* key = std::get_if<DiagnosticKey>(&signal.source))
     return nearest_key(key->status, key->key, knowledge.heard_names);
+  if (std::holds_alternative<GroupId>(signal.source)) return "";
   return nearest_key("*", signal.name, knowledge.heard_names);
 }
 

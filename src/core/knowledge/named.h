@@ -1,4 +1,5 @@
-// What the rules name of the robot, and whether the robot has it as far as was seen.
+// The names in the rules that stand for parts of the robot, and whether the robot has them as far
+// as was seen.
 #pragma once
 
 #include <string>
@@ -18,9 +19,9 @@ struct Named {
 // Every component, and what the triggers and conditions read, each once.
 std::vector<Named> named_by_rules(const Knowledge& knowledge);
 
-// What was probably meant by a name that was not seen: the full name of a node that is there or of a
-// topic that is published, the name, hardware id or key of a diagnostic status that was heard, a
-// parameter that the component has. Empty if nothing is near.
+// Suggests the name that was probably meant by one that was not seen: the full name of a node that
+// is there or of a topic that is published; the name, hardware id or key of a diagnostic status that
+// was received; a parameter that the component has. Empty if nothing is near.
 std::string nearest_name(const Nameable& name, const Knowledge& knowledge);
 
 }  // namespace culprit

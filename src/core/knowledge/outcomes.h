@@ -1,10 +1,10 @@
 // Verdicts that do not count yet, and how long they have to stand.
 //
-// What helped for a second did not help. So a verdict is learned from only once the time is over in
-// which the failure comes back if nothing was mended: `healthy` (--healthy) after the strategy's
-// deadline. A strategy that failed waits as long as one that helped, and whatever keeps an outcome
-// from counting is asked of both alike: what is credited must not depend on how it came out, or the
-// beliefs miss the true rates for good.
+// A failure that clears for a second is not repaired. So a verdict is learned from only once the
+// time is over in which an unrepaired failure comes back: `healthy` (--healthy) after the
+// strategy's deadline. A strategy that failed waits as long as one that helped, and the same
+// questions are asked about both. Otherwise the credit would depend on the outcome, and the beliefs
+// would miss the true rates for good.
 #pragma once
 
 #include <vector>

@@ -45,12 +45,12 @@ double correlation(const RobotOutcomes& sums) {
   const double msw = (sums.helped - sums.spread) / within;
   const double n0 = (sums.tried - sums.square / sums.tried) / degrees;
   const double total = msb + (n0 - 1) * msw;
-  // All outcomes are the same: nothing tells robots apart.
+  // All outcomes are the same: the robots do not differ.
   const double seen = total > 1e-12 ? std::clamp((msb - msw) / total, 0.0, kMostCorrelation) : 0;
   return (kCorrelationWeight * kUsualCorrelation + degrees * seen) / (kCorrelationWeight + degrees);
 }
 
-// In outcomes of a robot that nobody has seen yet.
+// In outcomes of a robot that has none yet.
 double worth(const RobotOutcomes& sums, double rho) {
   const double size = std::max(1.0, sums.square / sums.tried);
   return sums.tried / (1 + (size - 1) * rho);
@@ -65,8 +65,13 @@ struct Mean {
   }
 };
 
-// log of the Beta function.
-double log_beta(double a, double b) { return std::lgamma(a) + std::lgamma(b) - std::lgamma(a + b); }
+// std::lgamma writes a global variable, which threads would share.
+double log_gamma(double x) {
+  int sign = 0;
+  return lgamma_r(x, &sign);
+}
+
+double log_beta(double a, double b) { return log_gamma(a) + log_gamma(b) - log_gamma(a + b); }
 
 }  // namespace
 
@@ -144,7 +149,7 @@ double agreement(const Belief& prior, double helped, double failed) {
   }
   const double scale = log_beta(prior.alpha, prior.beta);
   const auto log_probability = [&](double s) {
-    return std::lgamma(tried + 1) - std::lgamma(s + 1) - std::lgamma(tried - s + 1) +
+    return log_gamma(tried + 1) - log_gamma(s + 1) - log_gamma(tried - s + 1) +
            log_beta(prior.alpha + s, prior.beta + tried - s) - scale;
   };
   constexpr double kTie = 1e-9;

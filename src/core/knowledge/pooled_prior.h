@@ -1,18 +1,19 @@
-// What the outcomes of a fleet say of a robot that has few of its own: the belief that it begins
-// with, and whether its own outcomes are another's.
+// The evidence that the outcomes of a fleet give for a robot that has few of its own: the belief
+// that it begins with, and whether its own outcomes differ from the others'.
 //
 // Robots of one model are alike and not the same. Robot i tried a strategy n_i times, of which s_i
 // helped; its true rate is drawn from a Beta distribution with mean mu and precision k. How much
-// robots differ is told by the intraclass correlation rho = 1 / (k + 1), estimated by the analysis
-// of variance of binary outcomes (Ridout, Demetrio and Firth, Biometrics 55, 1999):
+// robots differ is measured by the intraclass correlation rho = 1 / (k + 1), estimated by the
+// analysis of variance of binary outcomes (Ridout, Demetrio and Firth, Biometrics 55, 1999):
 //
 //     N = sum n_i   S = sum s_i   Q = sum s_i^2 / n_i   R = sum n_i^2   over r robots
 //     MSB = (Q - S^2 / N) / (r - 1)      MSW = (S - Q) / (N - r)      n0 = (N - R / N) / (r - 1)
 //     rho = (MSB - MSW) / (MSB + (n0 - 1) MSW)
 //
 // drawn towards kUsualCorrelation as if that many robots more had been seen (kCorrelationWeight).
-// What a group of robots knows of its mean is worth N / (1 + (R / N - 1) rho) outcomes (the design
-// effect): a thousand outcomes of one robot say little of the next one.
+// A group of robots with N outcomes gives as much information on its mean as N / (1 + (R / N - 1)
+// rho) independent outcomes (the design effect): a thousand outcomes of one robot predict little of
+// the next one.
 //
 //     fleet:  mean of the designer's belief and of each other model, each worth its outcomes and at
 //             most kModelWeight

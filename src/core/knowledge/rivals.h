@@ -1,9 +1,9 @@
-// Who else steers the robot: modes that something else sets back.
+// Rivals of culprit: other programs that set a mode back.
 //
-// A mode was set back if a strategy is to change it again and finds it as it was before the last
-// time, though nobody of ours undid that, and neither the component nor anything that it depends on
-// began anew since. After two times in a row it is left alone, until the component begins anew: two
-// managers that set a mode by turns would never end.
+// A mode was set back if a strategy is to change it again and finds its value from before the last
+// change. It was not set back if culprit undid the change, or if the component, or anything that it
+// depends on, began anew since. After two times in a row culprit leaves it alone, until the
+// component begins anew: two managers that set a mode by turns would never end.
 //
 // Parameters are not watched so: routines reset their own, and people bring back what they had once
 // the failure is over.

@@ -3,8 +3,8 @@
 //
 // And the health of components that follows from it. Health is a set: a component is as sick as the
 // most critical failing rule that touches it, and one rule's recovery never wipes another's. An
-// exhausted rule is none of these: nothing more will be done about it. But while its trigger is
-// true it still is the cause of what it explains, which waits for a person with it.
+// exhausted rule is none of these: culprit does nothing more about it. But while its trigger is
+// true, its failure is still the cause of its effects, which wait for a person with it.
 #pragma once
 
 #include <algorithm>
@@ -27,11 +27,11 @@ enum class RulePhase : std::uint8_t {
   kExhausted    // the failure is there, and nothing is left to try
 };
 
-// A failure is expected to go away with another one that was just resolved.
+// A failure is expected to clear with another one that was just resolved.
 struct Settling {
   RuleId with;
-  Time since = kNever;  // from when on a fresh reading says whether it did
-  Time until = kNever;  // when what its trigger reads would have shown it
+  Time since = kNever;  // a fresh reading after this shows whether it did
+  Time until = kNever;  // when the inputs of its trigger would have shown it
 };
 
 // How far the search for a strategy that helps has come.
@@ -44,21 +44,21 @@ struct Search {
   std::vector<bool> tried;    // in this round, by place in Rule::strategies
   bool is_exhausted = false;  // nothing is left, until it is proven gone
 
-  // The last resorts, which are no part of the rounds. Of each, `tried` says that it took effect, or
-  // could not be carried out ATTEMPTS times.
+  // The last resorts, which are no part of the rounds. `tried` means for each of them that it took
+  // effect, or could not be carried out ATTEMPTS times.
   bool is_at_last_resort = false;  // the first of them is due, since nothing else helps in time
   Time last_resort_at = kLongAgo;  // the next of them is not begun before
   int last_resort_obstacles = 0;   // how often in a row it could not be carried out
 };
 
-// Where an earlier process of culprit came to.
+// The progress that an earlier process of culprit left.
 struct LeftOff {
   Time since{};  // when the failure was detected
   Search search;
-  std::optional<Time> gone;  // it went away then, which is not proven yet
+  std::optional<Time> gone;  // it cleared then, which is not proven yet
 };
 
-// What the rule's trigger says, and how far its policies are satisfied.
+// The value of the rule's trigger, and how far its policies are satisfied.
 struct Detection {
   Slot trigger;                   // as last evaluated
   Time trigger_since = kLongAgo;  // since when it has that value
@@ -71,8 +71,8 @@ struct Detection {
   int true_in_history = 0;
   Time sampled = kLongAgo;
 
-  // The trigger is true although what it reads does not say so yet: who published that is known
-  // dead. Nothing: it says so itself, or is not true.
+  // The trigger is true although its inputs do not show it yet: their publisher is known dead.
+  // Empty: the inputs show it, or it is not true.
   struct KnownDeath {
     ComponentId component;
     Time since{};
@@ -85,17 +85,17 @@ struct RuleState {
   Detection detection;
   Time failing_since = kNever;    // when the failure was detected
   std::optional<Onset> onset;     // when it began, as far as known when it was detected
-  Time first_onset = kNever;      // the latest onset of its first detection, if it comes and goes
+  Time first_onset = kNever;      // the latest onset of its first detection, if it is flapping
   Time worked_until = kLongAgo;   // when it was seen to be well last before that; kLongAgo: never
-  Time recurring_since = kNever;  // if it went away and is back: when it was detected first
-  Time gone_since = kLongAgo;     // when it went away last
+  Time recurring_since = kNever;  // if it cleared and is back: when it was detected first
+  Time gone_since = kLongAgo;     // when it cleared last
   Time quiet_until = kLongAgo;    // COOLDOWN
 
   Search search;
   std::optional<Attempt> attempt;
   std::optional<Attempt> last_resort;  // of a last resort, beside that one
-  // The last resorts that took effect for the failure, and when. What they changed stays as long as
-  // it is there.
+  // The last resorts that took effect for the failure, and when. Their changes stay as long as it
+  // is there.
   struct Standing {
     StrategyId strategy;
     Time since{};
@@ -103,10 +103,12 @@ struct RuleState {
   std::vector<Standing> standing;
   // When the last attempt that failed took effect, if nothing else can have helped since.
   std::optional<Time> tried_alone;
-  bool is_advised = false;              // dry run: what would be done was said
-  bool is_last_resort_advised = false;  // likewise
+  // The attempt that made the trigger false, while a group that the rule is about is not active yet.
+  std::optional<Attempt> cleared_by;
+  bool is_advised = false;              // dry run: the decision was reported
+  bool is_last_resort_advised = false;  // the same for the last resort
   std::optional<Settling> settling;
-  std::optional<LeftOff> left_off;  // nobody has seen the failure gone since
+  std::optional<LeftOff> left_off;  // the failure was not seen to clear since
 
   // Since when the failure is there, with pauses or without.
   Time first_detected() const { return std::min(failing_since, recurring_since); }
@@ -129,11 +131,11 @@ class RuleStates {
   // Was it tried in this round?
   bool is_tried(StrategyId id) const;
   void set_tried(StrategyId id, bool tried);
-  // Dry run: what would be done about the failure was said; or is to be said anew.
+  // Dry run: the decision about the failure was reported; or is to be reported anew.
   void advise(RuleId id) { states_[id.index].is_advised = true; }
   void advise_last_resort(RuleId id) { states_[id.index].is_last_resort_advised = true; }
   void advise_anew();
-  // The failure is expected to go away with another one.
+  // The failure is expected to clear with another one.
   void expect_to_settle(RuleId id, Settling settling) { states_[id.index].settling = settling; }
   // The search for a strategy begins: anew, or where an earlier process left off.
   void begin_search(RuleId id, Time now);

@@ -1,12 +1,12 @@
-// What of the robot was seen at all: in this run, or in an earlier one on the same robot.
+// The parts of the robot that were ever seen: in this run, or in an earlier one on the same robot.
 //
-// Absent is not dead. What was never seen may be a name that no robot has, or a node that comes
-// later: what triggers read of it is unknown, so nothing is done about it.
+// Absent is not dead. A name that was never seen may be one that no robot has, or a node that comes
+// later: triggers read it as unknown, so nothing is done about it.
 //
 //   a component  was seen once its node was in the graph
 //   a topic      once a node published it, or a message came on it
 //
-// And what was heard of it, for the run that comes next (known_robot.h).
+// Also the messages and values that were received, for the next run (known_robot.h).
 #pragma once
 
 #include <map>
@@ -31,7 +31,7 @@ class Sightings {
         parameters_(rules.parameters.size()),
         lifecycles_(rules.components.size()) {}
 
-  // Since when it is known. Of what an earlier run saw: since this one began.
+  // The time since when it is known. If only an earlier run saw it: since this one began.
   std::optional<Time> first(ComponentId id) const { return components_[id.index]; }
   std::optional<Time> first(TopicId id) const { return topics_[id.index]; }
   bool has(ComponentId id) const { return components_[id.index].has_value(); }
@@ -41,7 +41,7 @@ class Sightings {
   bool note(ComponentId id, Time at) { return note(components_[id.index], at); }
   bool note(TopicId id, Time at) { return note(topics_[id.index], at); }
 
-  // Whose word about a diagnostic status counts, by status (PublisherKnown).
+  // The node that publishes a diagnostic status, by status (PublisherKnown).
   const std::map<std::string, std::string>& publishers() const { return publishers_; }
   void note_publisher(const std::string& status, const std::string& node) {
     constexpr std::size_t kMost = 1000;  // earlier rules may have named others
@@ -54,7 +54,7 @@ class Sightings {
 
   // A message came, or a value.
   void hear(TopicId id) { mark(heard_, id.index); }
-  // Who published it is gone, or another process.
+  // Its publisher left, or is another process.
   void unhear(TopicId id) {
     if (heard_[id.index]) ++heard_count_;
     heard_[id.index] = false;

@@ -75,6 +75,18 @@ Duration SignalStore::latency(RuleId id) const {
   return latency;
 }
 
+Time SignalStore::heard_again_by(RuleId id) const {
+  using Kind = Input::Kind;
+  Time by = kLongAgo;
+  for (const InputId each : rules_[id].inputs) {
+    const Input& input = rules_[each];
+    const bool is_rhythm = input.kind == Kind::kAge || input.kind == Kind::kRate ||
+                           input.kind == Kind::kPhi || input.kind == Kind::kLoss;
+    if (is_rhythm) by = std::max(by, rhythm(input.topic).heard_again_by);
+  }
+  return by;
+}
+
 bool SignalStore::is_read_since(RuleId id, Time since) const {
   const auto& inputs = rules_[id].inputs;
   return std::all_of(inputs.begin(), inputs.end(),

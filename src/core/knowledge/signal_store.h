@@ -49,6 +49,10 @@ class SignalStore {
   Duration latency(RuleId id) const;
   void set_latency(InputId id, Duration latency) { latencies_[id.index] = latency; }
 
+  // After a gap of hearing: when the topics of a rule would have had a sample again. Before that its trigger
+  // proves nothing about the present.
+  Time heard_again_by(RuleId id) const;
+
   // When a signal was read last; kLongAgo for inputs that no reading brings.
   Time read_at(InputId id) const { return read_at_[id.index]; }
   void set_read_at(InputId id, Time at) { read_at_[id.index] = at; }
@@ -72,20 +76,21 @@ class SignalStore {
   bool is_unusual(InputId id) const { return is_unusual_[id.index]; }
   void set_unusual(InputId id, bool unusual) { is_unusual_[id.index] = unusual; }
 
-  // When a topic was heard last, how often it is on average, and how long it usually is silent in
-  // between: longer, if it comes in bursts. Zero: not known yet.
+  // The time of a topic's last sample, the average interval, and the usual pause in between:
+  // longer, if the topic comes in bursts. Zero: not known yet.
   struct Rhythm {
     std::optional<Time> last;
     Duration interval{};
     Duration gap{};
     Duration longest{};  // the longest pause that ended by itself
-    // Of what was sent lately, the share that was lost on the way here, 0 to 1; 0, too, while too little
-    // was sent to tell.
+    // The share of the recently published messages that was lost on the way here, 0 to 1; also 0 while
+    // too few were published to measure it.
     double loss = 0;
-    double loss_at_most = 0;  // what the link may lose in truth; 0 where nothing was lost
-    // Since `last` there was a time in which it could not be heard: since when it would be silent, had it been heard all
-    // the time until now. May be a little ahead.
+    double loss_at_most = 0;  // the upper bound of the link's true loss; 0 where nothing was lost
+    // Since `last` there was a time in which it could not be received: since when it would be silent, had culprit
+    // received all the time until now. May be a little ahead.
     Time resumed = kLongAgo;
+    Time heard_again_by = kLongAgo;  // after that time: when a sample would have come at the latest
 
     // Since when its silence counts. @pre last
     Time silent_since() const { return std::max(*last, resumed); }

@@ -1,4 +1,4 @@
-// Does one strategy take back what another has brought about?
+// Does one strategy take back the effect of another?
 //
 //   - Replacing or ending a process undoes what was set and called in it; culprit brings its
 //     lifecycle back to where it was.

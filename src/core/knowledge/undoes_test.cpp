@@ -7,7 +7,7 @@
 namespace culprit {
 namespace {
 
-// Of a strategy with the adaptation `after`, that comes after one with `before`.
+// Does a strategy with the adaptation `after` undo one with `before`?
 bool takes_back(const std::string& after, const std::string& before) {
   const RuleSet rules =
       *check(Source("x.rules",

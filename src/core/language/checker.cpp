@@ -56,6 +56,7 @@ class Checker {
     infer();
     for (std::size_t s = 0; s < rules_.signals.size(); ++s) declare_signal_type(SignalId(s));
     interlocks();
+    drills();
     forget_other_cycle();
     for (const syntax::Rule& rule : file_.rules) {
       if (rule.name.text.empty()) continue;  // its line was broken
@@ -167,7 +168,7 @@ class Checker {
     containers();
   }
 
-  // What lives in a container goes down with it, and comes after it.
+  // A component in a container exits with it, and starts after it: it depends on the container.
   void containers() {
     for (std::size_t part = 0; part < rules_.components.size(); ++part) {
       const auto& composed = rules_.components[part].composed;
@@ -185,7 +186,38 @@ class Checker {
     }
   }
 
+  void drills() {
+    for (const syntax::Interlock& written : file_.aborts) {
+      if (boolean(written.condition, "an ABORT")) rules_.aborts.push_back(written.text);
+    }
+    for (const syntax::Drill& written : file_.drills) {
+      DrillLine line{symbols_.component(written.component),
+                     written.what,
+                     written.subject.text,
+                     {},
+                     written.times};
+      if (written.value) {
+        const auto value = constant_value({written.subject, *written.value});
+        if (!value) continue;
+        if (std::holds_alternative<Duration>(*value)) {
+          report(Code::kTypeMismatch, written.value->span, "a parameter is no duration",
+                 "write a number, a text, true or false");
+          continue;
+        }
+        std::visit(
+            [&](const auto& each) {
+              if constexpr (!std::is_same_v<std::decay_t<decltype(each)>, Duration>)
+                line.value = each;
+            },
+            *value);
+      }
+      rules_.drills.push_back(std::move(line));
+    }
+  }
+
   void infer() {
+    for (const syntax::Interlock& abort : file_.aborts)
+      infer_types(abort.condition, Type::kBool, symbols_);
     for (const syntax::Interlock& interlock : file_.interlocks)
       infer_types(interlock.condition, Type::kBool, symbols_);
     for (const syntax::Rule& rule : file_.rules) {
@@ -218,7 +250,7 @@ class Checker {
 
   // ---- What is remembered
 
-  // What an impact of so many cycles lasts is part of what rules mean.
+  // The cycle is part of a rule's meaning, because it sets how long an impact lasts.
   void forget_other_cycle() {
     if (memory_ == nullptr || std::exchange(memory_->cycle, rules_.cycle) == rules_.cycle) return;
     for (auto& [text, rule] : memory_->known) rule.meaning.reset();
@@ -234,14 +266,14 @@ class Checker {
     const std::string_view text = text_of(written);
     const auto known = memory_->known.find(text);
     if (known == memory_->known.end()) return add_and_remember(written, text);
-    // Of two that are the same one is remembered.
+    // If two rules have the same text, one is remembered.
     if (known->second.check == memory_->check) return add_rule(written);
     if (recall(written, known->second)) return;
     memory_->known.erase(known);
     add_and_remember(written, text);
   }
 
-  // Adds the rule as it was checked before. False if what is known of its names is not what it was.
+  // Adds the rule as it was checked before. False if its names do not mean the same as before.
   bool recall(const syntax::Rule& written, RememberedRule& remembered) {
     if (remembered.has_broken_part != written.has_broken_part ||
         !symbols_.answers_the_same(remembered.uses))
@@ -341,7 +373,7 @@ class Checker {
     }
   }
 
-  // What a rule means is worth a thought once all of them can be read: a warning that follows from
+  // The meaning of rules is checked only once all of them can be read: a warning that follows from
   // an error would be one too many.
   void check_meaning() {
     const bool failed = std::any_of(diagnostics_.begin(), diagnostics_.end(),
@@ -395,7 +427,7 @@ class Checker {
     report(Code::kIncomplete, rule.name.span,
            "rule '" + rule.name.text + "' is incomplete: no " + missing,
            "a rule says how critical the failure is (POLICIES), when it is there (TRIGGER) and "
-           "what may help (STRATEGY), or that a person is told (POLICIES ... REPORT)");
+           "what may help (STRATEGY), or that a person is notified (POLICIES ... REPORT)");
   }
 
   void policies(const syntax::Policies& written, const syntax::Rule& rule, Policies& policies) {
@@ -408,7 +440,7 @@ class Checker {
     if (written.attempts) {
       if (written.attempts->count < 1 || written.attempts->count > kMaxCount) {
         report(Code::kPolicyRange, written.attempts->span, "ATTEMPTS is a number from 1 to 1000",
-               "");
+               "leave it out for the default: three rounds");
       } else {
         policies.attempts = static_cast<int>(written.attempts->count);
       }
@@ -438,13 +470,14 @@ class Checker {
     if (!in_percent(written.probability)) {
       report(Code::kProbabilityRange, written.probability.span,
              "a success probability is above 0 and at most 100 percent",
-             written.probability.value == 0 ? "a strategy that never helps need not be written down"
-                                            : "");
+             written.probability.value == 0
+                 ? "a strategy that never helps need not be written down"
+                 : "write how often it helps, in percent, for example 80");
     }
     if (written.probability.value > 0 && written.probability.value < 1) {
       diagnostics_.push_back({Code::kProbabilityRange, Severity::kWarning, written.probability.span,
                               "this success probability is less than one percent",
-                              "probabilities are in percent: write 90 for 0.9",
+                              percent_remedy(written.probability),
                               in_percent_fix(written.probability)});
     }
     if (!in_percent(written.confidence)) {
@@ -466,11 +499,20 @@ class Checker {
     }
     strategy.adaptations.reserve(written.adaptations.size());
     strategy.components.reserve(written.adaptations.size());
-    for (const syntax::Adaptation& adaptation : written.adaptations)
-      add_adaptation(adaptation, strategy);
+    for (const syntax::Adaptation& adaptation : written.adaptations) {
+      const auto first = strategy.adaptations.size();
+      adaptation.type == AdaptationType::kStartGroup ? add_group(adaptation, strategy)
+                                                     : add_adaptation(adaptation, strategy);
+      for (auto i = first; i < strategy.adaptations.size(); ++i)
+        strategy.adaptations[i].written =
+            static_cast<std::uint32_t>(&adaptation - written.adaptations.data());
+    }
     const auto begins_step = steps_of(written);
-    for (std::size_t i = 0; i < begins_step.size(); ++i)
-      strategy.adaptations[i].begins_step = begins_step[i];
+    for (std::size_t i = 0; i < strategy.adaptations.size(); ++i) {
+      Adaptation& each = strategy.adaptations[i];
+      const bool is_next_of_group = i > 0 && strategy.adaptations[i - 1].written == each.written;
+      each.begins_step = is_next_of_group || begins_step[each.written];
+    }
     strategy.impact = impact_of(strategy.adaptations);
     check_contradictions(written, diagnostics_);
 
@@ -494,7 +536,12 @@ class Checker {
     return {whole.count + step.count};
   }
 
-  // Nothing where a hundred times as much is no whole percent either.
+  // Empty if a hundred times the fraction is no whole percentage either.
+  static std::string percent_remedy(const syntax::Number& fraction) {
+    const auto fix = in_percent_fix(fraction);
+    return "probabilities are in percent" + (fix ? ": write " + fix->text : "");
+  }
+
   static std::optional<Edit> in_percent_fix(const syntax::Number& fraction) {
     if (fraction.value < 0.01) return std::nullopt;
     char text[32];
@@ -511,13 +558,7 @@ class Checker {
     if (written.request) adaptation.request = written.request->text;
     if (syntax::names_parameter(written.type))
       adaptation.parameter = symbols_.parameter(adaptation.component, adaptation.subject);
-    if (!written.impact.whole || written.impact.value < 1 || written.impact.value > kMaxImpact) {
-      report(Code::kImpactRange, written.impact.span,
-             "an impact is a whole number of cycles, at least 1",
-             "count how many cycles it takes until the failure is gone");
-    } else {
-      adaptation.impact = {static_cast<std::int64_t>(written.impact.value)};
-    }
+    adaptation.impact = impact_of(written);
     if (written.value) {
       if (auto typed = type_expression(*written.value, symbols_, diagnostics_)) {
         adaptation_value(written, std::move(*typed), adaptation);
@@ -525,6 +566,36 @@ class Checker {
     }
     strategy.components.push_back(adaptation.component);
     strategy.adaptations.push_back(std::move(adaptation));
+  }
+
+  // Zero: it was reported.
+  Cycles impact_of(const syntax::Adaptation& written) {
+    if (written.impact.whole && written.impact.value >= 1 && written.impact.value <= kMaxImpact)
+      return {static_cast<std::int64_t>(written.impact.value)};
+    report(Code::kImpactRange, written.impact.span,
+           "an impact is a whole number of cycles, at least 1",
+           "count how many cycles it takes until the failure is gone");
+    return {};
+  }
+
+  // start_group: each member in its order, as steps; then its manager, where somebody can start that.
+  // The last one has the impact.
+  void add_group(const syntax::Adaptation& written, Strategy& strategy) {
+    const Cycles impact = impact_of(written);
+    const auto id = symbols_.group(written.component);
+    if (!id || rules_[*id].members.empty()) return;
+    const Group& group = rules_[*id];
+    const auto add = [&](ComponentId component, AdaptationType type) {
+      Adaptation adaptation;
+      adaptation.component = component;
+      adaptation.type = type;
+      adaptation.group = *id;
+      strategy.components.push_back(component);
+      strategy.adaptations.push_back(std::move(adaptation));
+    };
+    for (const ComponentId member : group.members) add(member, AdaptationType::kActivate);
+    if (rules_[group.manager].can_start_again()) add(group.manager, AdaptationType::kRedeploy);
+    strategy.adaptations.back().impact = impact;
   }
 
   void adaptation_value(const syntax::Adaptation& written, Typed typed, Adaptation& adaptation) {
@@ -570,6 +641,38 @@ class Checker {
     }
     sort_unique(rule.inputs);
     for (const InputId input : rule.inputs) rules_.inputs[input.index].readers.push_back(id);
+    link_groups(id);
+  }
+
+  // It is about a group if it reads the group, or a member, or adapts one.
+  void link_groups(RuleId id) {
+    Rule& rule = rules_.rules[id.index];
+    rule.groups.clear();
+    for (std::size_t g = 0; g < rules_.groups.size(); ++g) {
+      const Group& group = rules_.groups[g];
+      const auto is_member = [&](ComponentId component) {
+        return std::ranges::find(group.members, component) != group.members.end();
+      };
+      const auto is_of_group = [&](InputId input_id) {
+        const Input& input = rules_[input_id];
+        const bool is_of_component =
+            input.kind == Input::Kind::kAlive || input.kind == Input::Kind::kLifecycle;
+        const auto* source = input.kind == Input::Kind::kSignal
+                                 ? std::get_if<GroupId>(&rules_[input.signal].source)
+                                 : nullptr;
+        return (is_of_component && is_member(input.component)) ||
+               (source != nullptr && *source == GroupId(g));
+      };
+      if (std::ranges::none_of(rule.components, is_member) &&
+          std::ranges::none_of(rule.inputs, is_of_group))
+        continue;
+      rule.groups.emplace_back(g);
+      Input health;
+      health.type = Type::kString;
+      health.signal = group.health;
+      auto& readers = rules_.inputs[symbols_.input(health).index].readers;
+      if (std::ranges::find(readers, id) == readers.end()) readers.push_back(id);
+    }
   }
 
   template <class T>
@@ -593,13 +696,13 @@ class Checker {
   std::vector<RememberedRule*> remembered_;  // by RuleId; null: it is not
 };
 
-// What is wrong in a template is wrong in each USE of it.
+// A mistake in a template repeats in each USE of it; one report is enough.
 void say_once(std::vector<Diagnostic>& diagnostics, const Source& source) {
   std::set<std::tuple<std::uint32_t, std::uint32_t, Code, std::string>> said;
   std::erase_if(diagnostics, [&](const Diagnostic& d) {
     const Origin origin = source.origin(d.span);
     const Place& place = origin.place;
-    // What others may include declares more than each of them needs.
+    // An included file may declare more than each including file needs.
     if (d.code == Code::kUnused && (place.file != 0 || !origin.steps.empty())) return true;
     return !said.emplace(place.file, place.span.begin, d.code, d.cause).second;
   });

@@ -25,20 +25,20 @@ struct Checked {
   std::optional<RuleSet> rules;         // nothing if there is any error
   std::vector<Diagnostic> diagnostics;  // errors and warnings, in the order of the text
   syntax::File file{};                  // the tree of the rules; empty if they were parsed already
-  // What triggers and WHENs were reasoned about with; they point into the tree. Destroying so many
-  // small things takes long: who ends anyway need not.
+  // The typed conditions (triggers and WHENs) that the checks used; they point into the tree.
+  // Destroying so many small objects takes long: a process that exits anyway need not.
   std::vector<RuleConditions> conditions{};
 };
 
 Checked check(const Source& source, Strictness strictness = Strictness::kLenient);
-// Of rules that were put together (reuse/expansion.h).
+// Checks rules that were put together (reuse/expansion.h).
 Checked check(const Expansion& rules, Strictness strictness = Strictness::kLenient);
 // The same of a text that is parsed already, and has no INCLUDE, TEMPLATE or USE.
 Checked check(const Parsed& whole, Strictness strictness = Strictness::kLenient);
 
-// The same as a lenient check of `whole`, which takes from `memory` what an earlier one has left
-// there, whatever that was of, and leaves there what the next one may take. The rule set that the
-// earlier one gave has to be given back with RuleMemory::take(), if it gave one.
+// The same as a lenient check of `whole`, but faster: it takes results of an earlier check from
+// `memory`, whatever text that had, and leaves its own there for the next. If the earlier check
+// gave a rule set, the caller must first give that back with RuleMemory::take().
 Checked check_again(const Parsed& whole, RuleMemory& memory);
 // `whole` is of `rules.source`.
 Checked check_again(const Expansion& rules, const Parsed& whole, RuleMemory& memory);

@@ -22,7 +22,7 @@ std::string golden_text(const std::filesystem::path& path) {
   return std::string(std::istreambuf_iterator<char>(in), {});
 }
 
-// What golden files include.
+// Loads the files that golden files include.
 Expected<Source> load_golden(const std::string& file, const std::string&) {
   const auto path = std::filesystem::path("src/core/language/golden") / file;
   if (!std::filesystem::exists(path)) return Error{"there is no '" + file + "'"};
@@ -198,7 +198,7 @@ RULE R
   EXPECT_EQ(type("later"), Type::kDouble);  // learned from a comparison that comes after
 }
 
-// However far away the rule is that tells of it.
+// However far away the rule is that gives the type.
 TEST(Checker, LearnsTypesAlongChainsOfComparisons) {
   constexpr int kRules = 1000;
   std::string text;
@@ -258,9 +258,9 @@ TEST(Checker, SplitsLaunchCommandsWithoutAShell) {
             (std::vector<std::string>{"prog", "--name", "two words", "a b", "$HOME", ";", "rm"}));
 }
 
-// Each file in golden/ holds mistakes, and beside it what is said about them.
-// strict_* are checked strictly, live_* against example_robot(); newcomer_* are what people write
-// who come from elsewhere. CULPRIT_WRITE_GOLDEN=1 writes what is said now, for a person to read and
+// Each file in golden/ holds mistakes, and beside it are the diagnostics. strict_* are checked
+// strictly, live_* against example_robot(); newcomer_* hold the mistakes of people who come from
+// elsewhere. CULPRIT_WRITE_GOLDEN=1 writes the present diagnostics, for a person to read and
 // commit.
 TEST(Checker, SaysWhatTheGoldenFilesSay) {
   const std::filesystem::path folder = "src/core/language/golden";

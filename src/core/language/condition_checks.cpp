@@ -58,7 +58,7 @@ bool has_declared_range(InputId id, const RuleSet& rules) {
   }
 }
 
-// What is known of the input, for a message; empty if the message can say nothing more.
+// The known facts about the input, for a message; empty if the message can say nothing more.
 std::string known_of(InputId id, const RuleSet& rules) {
   if (has_declared_range(id, rules)) {
     const Signal& signal = rules[rules[id].signal];
@@ -84,6 +84,10 @@ std::string known_of(InputId id, const RuleSet& rules) {
       return ": loss is a share from 0 to 1";
     case Input::Kind::kLevel:
       return ": a level is 0, 1, 2 or 3";
+    case Input::Kind::kSignal:
+      return std::holds_alternative<GroupId>(rules[rules[id].signal].source)
+                 ? ": a group is active, half_up, inactive, down or changing"
+                 : "";
     case Input::Kind::kLifecycle:
       return ": the states are unconfigured, inactive, active and finalized";
     default:
@@ -106,7 +110,7 @@ void find_constant_parts(const Typed& condition, const RuleSet& rules,
   const std::size_t before = findings.size();
   const bool is_conjunction = condition.op == Op::kAnd;
   if (is_connective(condition)) {
-    // What can be true together can be true one by one.
+    // If the whole conjunction can be true, so can each part.
     const auto of_part = is_conjunction && known == false ? known : std::nullopt;
     for (const Typed& child : condition.children)
       find_constant_parts(child, rules, findings, of_part);
@@ -165,7 +169,7 @@ bool tells_of_life(Input::Kind kind) {
          kind == Input::Kind::kAlive;
 }
 
-// Everything that tells of life falls silent for good.
+// Assumes that all signs of life stop for good.
 void fall_silent(const Typed& e, const RuleSet& rules, Facts& facts) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (const Typed& child : e.children) fall_silent(child, rules, facts);
@@ -192,8 +196,8 @@ bool reads_life(const Typed& e, const RuleSet& rules) {
                      [&](const Typed& c) { return reads_life(c, rules); });
 }
 
-// Whether some part of the trigger that silence alone decides speaks for it. `truth` is what the
-// part has to be for that.
+// Whether silence alone decides some part of the trigger, and so makes the trigger true. `truth` is
+// the value that the part needs for that.
 bool silence_speaks_for(const Typed& e, bool truth, const Facts& silent, const RuleSet& rules) {
   if (e.op == Op::kNot) return silence_speaks_for(e.children[0], !truth, silent, rules);
   if (is_connective(e)) {
@@ -256,7 +260,7 @@ void check_true_when_well(const RuleConditions& rule, const RuleSet& rules,
   diagnostics.push_back(
       {Code::kTrueWhenWell, Severity::kWarning, rule.trigger.span,
        "this is true while all is well: everything is there, and messages come",
-       "a trigger says what is wrong, as in age(/topic) > 1s; a rule that waits for something to "
+       "a trigger describes a failure, as in age(/topic) > 1s; a rule that waits for something to "
        "come has ON_CHANGE among its policies"});
 }
 
@@ -286,7 +290,7 @@ void check_last_resort(const RuleConditions& rule, const RuleSet& rules,
   const Rule& checked = rules[rule.rule];
   const auto can_be_launched = [&](ComponentId c) { return rules[c].can_start_again(); };
   const auto launches = [&](const Adaptation& a) {
-    return a.type == AdaptationType::kRedeploy || a.type == AdaptationType::kStart;
+    return a.type == AdaptationType::kRedeploy || a.type == AdaptationType::kStart || a.group;
   };
   const auto helps_a_hung_process = [&](StrategyId s) {
     const auto& adaptations = rules[s].adaptations;

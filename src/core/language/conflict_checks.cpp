@@ -1,12 +1,12 @@
 #include "language/conflict_checks.h"
 
 #include <algorithm>
-#include <cassert>
 #include <map>
 #include <optional>
 #include <set>
 #include <unordered_map>
 
+#include "base/invariant.h"
 #include "language/compiler.h"
 #include "language/evaluate.h"
 #include "language/facts.h"
@@ -14,8 +14,8 @@
 namespace culprit {
 namespace {
 
-// So many of one kind are compared with each other: more would only make checking slow, and nobody
-// reads so many warnings.
+// At most this many of one kind are compared with each other: more would only make checking slow,
+// and give too many warnings to read.
 constexpr std::size_t kMaxCompared = 64;
 
 // Whether the two can be so at the same time.
@@ -54,7 +54,7 @@ bool covers(const RuleConditions& strong, const RuleConditions& weak, const Rule
          !is_possible(weak.trigger, true, strong.trigger, false, rules);
 }
 
-// What an adaptation leaves behind: a state of one thing that another adaptation can change.
+// The effect of an adaptation: a state of one thing that another adaptation can change.
 struct Effect {
   std::string thing;
   std::string state;
@@ -127,7 +127,7 @@ std::vector<Doing> doings_of(const RuleConditions& rule, const RuleSet& rules) {
       std::erase_if(doings, [&](const Doing& earlier) {
         return earlier.strategy == strategy && earlier.effect.thing == effect->thing;
       });
-      const Span span = rule.strategies[s]->adaptations[i].span;
+      const Span span = rule.strategies[s]->adaptations[adaptations[i].written].span;
       doings.push_back({&rule, strategy, adaptations[i].component, span, std::move(*effect)});
     }
   }
@@ -171,7 +171,7 @@ bool set_off_one_another(const Doing& a, const Doing& b, const RuleSet& rules) {
 
 // @pre both are about the same thing
 bool undo_one_another(const Doing& a, const Doing& b, const RuleSet& rules) {
-  assert(a.effect.thing == b.effect.thing);
+  CULPRIT_ASSERT(a.effect.thing == b.effect.thing);
   return a.rule != b.rule && a.effect.state != b.effect.state &&
          (take_turns(*a.rule, *b.rule, rules) || set_off_one_another(a, b, rules));
 }
@@ -223,7 +223,7 @@ void check_covered_rules(const std::vector<RuleConditions>& conditions, const Ru
     for (const RuleConditions* weak : group) {
       const auto strong = std::find_if(group.begin(), group.end(), [&](const auto* candidate) {
         if (candidate == weak || !covers(*candidate, *weak, rules)) return false;
-        // Of two that cover each other the second one is one too many.
+        // If two cover each other, only the second one is reported.
         return candidate->rule < weak->rule || !covers(*weak, *candidate, rules);
       });
       if (strong == group.end()) continue;
@@ -273,9 +273,10 @@ void check_interlocks(const std::vector<RuleConditions>& conditions, const RuleS
         });
         if (interlock == rules.interlocks.end()) continue;
         diagnostics.push_back(
-            {Code::kMovesInterlock, Severity::kWarning, rule.strategies[s]->adaptations[a].span,
+            {Code::kMovesInterlock, Severity::kWarning,
+             rule.strategies[s]->adaptations[changed.written].span,
              "last resort '" + strategy.name + "' changes what INTERLOCK " + interlock->text +
-                 " reads: it says then what culprit set, and not how the robot is",
+                 " reads: it then shows the setting of culprit, not the state of the robot",
              "let the INTERLOCK read a measurement, such as a speed"});
       }
     }

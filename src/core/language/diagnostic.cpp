@@ -22,7 +22,7 @@ std::string blanks_like(std::string_view text) {
   return out;
 }
 
-// Control characters would act on the terminal of whoever reads the message.
+// Control characters would act on the reader's terminal.
 std::string printable(std::string_view text) {
   std::string out(text);
   std::replace_if(
@@ -72,19 +72,60 @@ std::vector<Diagnostic> as_written(std::vector<Diagnostic> diagnostics, const So
 
 namespace {
 
+// Where `text` has its character number `count`; its end if it has fewer.
+std::size_t offset_of_character(std::string_view text, std::size_t count) {
+  std::size_t at = 0;
+  for (; at < text.size(); ++at) {
+    const bool begins = (static_cast<unsigned char>(text[at]) & 0xC0) != 0x80;
+    if (begins && count-- == 0) break;
+  }
+  return at;
+}
+
+// Of a long line the part around the mistake, so that it fits on a screen.
+struct Excerpt {
+  Span shown;   // of the source
+  Span marked;  // in it
+  bool is_cut_before = false, is_cut_behind = false;
+};
+
+constexpr std::size_t kWidth = 120;  // characters; lines that are not longer are shown whole
+constexpr std::size_t kBefore = 40;  // of a longer one, in front of the mistake
+
+Excerpt excerpt(const Source& source, Span line, Span marked) {
+  if (line.end - line.begin <= kWidth || character_count(source.text(line)) <= kWidth)
+    return {line, marked};
+  Excerpt out{line, marked};
+  const std::string_view text = source.text(line);
+  const std::size_t first = character_count(text.substr(0, marked.begin - line.begin));
+  if (first > kBefore) {
+    out.is_cut_before = true;
+    out.shown.begin += static_cast<std::uint32_t>(offset_of_character(text, first - kBefore));
+  }
+  const std::string_view rest = source.text(out.shown);
+  const std::size_t length = offset_of_character(rest, kWidth);
+  out.is_cut_behind = length < rest.size();
+  out.shown.end = out.shown.begin + static_cast<std::uint32_t>(length);
+  out.marked.end = std::clamp(marked.end, marked.begin, std::max(marked.begin, out.shown.end));
+  return out;
+}
+
 // "file:3:5: what", the line with carets under the span, and the remedy, if there is one.
 std::string shown(const Source& source, Span span, const std::string& what, std::string_view mark,
                   std::string_view remedy, const Paint& paint) {
   const Position at = source.position(span.begin);
   const Span line = source.line(at.line);
-  const Span marked{span.begin, std::clamp(span.end, span.begin, std::max(span.begin, line.end))};
+  const auto [part, marked, is_cut_before, is_cut_behind] = excerpt(
+      source, line, {span.begin, std::clamp(span.end, span.begin, std::max(span.begin, line.end))});
+  const std::string_view before = is_cut_before ? "... " : "";
   const std::string number = std::to_string(at.line);
   const std::string margin(std::max<std::size_t>(number.size(), 4), ' ');
   std::string out = source.name() + ":" + number + ":" + std::to_string(at.column) + ": " + what;
   out += "\n" + std::string(paint.place) + margin.substr(number.size()) + number + " | " +
-         std::string(paint.off) + printable(source.text(line)) + "\n";
-  out += std::string(paint.place) + margin + " | " + std::string(paint.off) +
-         blanks_like(source.text({line.begin, marked.begin})) + std::string(mark) +
+         std::string(paint.off) + std::string(before) + printable(source.text(part)) +
+         (is_cut_behind ? " ..." : "") + "\n";
+  out += std::string(paint.place) + margin + " | " + std::string(paint.off) + blanks_like(before) +
+         blanks_like(source.text({part.begin, marked.begin})) + std::string(mark) +
          std::string(std::max<std::size_t>(character_count(source.text(marked)), 1), '^') +
          std::string(paint.off) + "\n";
   if (remedy.empty()) return out;

@@ -1,4 +1,4 @@
-// What a check says about a rule file: one mistake, one diagnostic.
+// A mistake that a check found in a rule file: one diagnostic each.
 #pragma once
 
 #include <optional>
@@ -55,6 +55,7 @@ enum class Code : std::uint16_t {
   kTwoOwners = 44,
   kTrueWhenWell = 45,
   kNoShell = 46,
+  kBadGroup = 47,
   kMovesInterlock = 49,
   kAlwaysTrue = 50,
   kNeverTrue = 51,
@@ -66,7 +67,7 @@ enum class Code : std::uint16_t {
   kWhenNeverTrue = 57,
   kWhenContradictsTrigger = 58,
   kNoLastResort = 59,
-  // What the robot at hand has not
+  // Names that do not exist on the robot at hand
   kNoSuchNode = 60,
   kNoSuchTopic = 61,
   kNoSuchParameter = 62,
@@ -103,10 +104,10 @@ struct Diagnostic {
   Code code;
   Severity severity = Severity::kError;
   Span span;
-  std::string cause;   // one line: what is wrong
-  std::string remedy;  // one line: what to do about it; may be empty where the cause says it
+  std::string cause;   // one line: the mistake
+  std::string remedy;  // one line: the action; may be empty where the cause implies it
   // The remedy for programs: after this edit the diagnostic is gone. Only where it is one exact
-  // edit, and where nothing else is as likely to be meant.
+  // edit, and where no other one is as likely to be meant.
   std::optional<Edit> fix = std::nullopt;
   bool operator==(const Diagnostic&) const = default;
 };
@@ -122,10 +123,11 @@ struct LocatedDiagnostic {
   std::optional<Edit> fix;  // of that file; nothing also where the edit is not of one place
 };
 LocatedDiagnostic located(const Diagnostic& diagnostic, const Source& source);
-// Of a text that was put together from one file: the same, as that file has them.
+// For a text that was put together from one file: the same diagnostics, with the places of that
+// file.
 std::vector<Diagnostic> as_written(std::vector<Diagnostic> diagnostics, const Source& source);
 
-// What the edit does, for people who choose it: "change 'robot' to 'ROBOT'".
+// The edit in words, for people who choose it: "change 'robot' to 'ROBOT'".
 std::string title_of(const Edit& edit, const Source& source);
 
 enum class Colour : std::uint8_t { kOff, kOn };

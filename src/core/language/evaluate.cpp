@@ -1,9 +1,10 @@
 #include "language/evaluate.h"
 
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <cstring>
+
+#include "base/invariant.h"
 
 namespace culprit {
 namespace {
@@ -57,7 +58,7 @@ Slot unary(Op op, const Slot& a) {
 
 // @pre both known
 Slot arithmetic(Op op, const Slot& a, const Slot& b) {
-  assert(a.known && b.known);
+  CULPRIT_ASSERT(a.known && b.known);
   switch (op) {
     case Op::kAddInt:
       return exact<add>(a.i, b.i);
@@ -102,7 +103,7 @@ Slot arithmetic(Op op, const Slot& a, const Slot& b) {
 
 // @pre both known
 Slot comparison(Op op, const Slot& a, const Slot& b) {
-  assert(a.known && b.known);
+  CULPRIT_ASSERT(a.known && b.known);
   switch (op) {
     case Op::kLessInt:
       return Slot::of(a.i < b.i);

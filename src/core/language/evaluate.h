@@ -12,7 +12,7 @@ namespace culprit {
 // @pre `program` came from the compiler together with the rule set that `inputs` belongs to.
 Slot evaluate(const Program& program, std::span<const Slot> inputs);
 
-// Likewise, as if some inputs were something else.
+// The same, as if some inputs had other values.
 struct Assumed {
   InputId input;
   Slot value;

@@ -6,7 +6,7 @@
 namespace culprit {
 namespace {
 
-// What surrounds the line that an example is about.
+// The rule around the line that an example is about.
 std::string rule_with(std::string_view trigger, std::string_view policies = "ERROR",
                       std::string_view strategy = "STRATEGY restart 50 10",
                       std::string_view adaptation = "ADAPTATION camera restart 5") {
@@ -26,7 +26,9 @@ std::vector<Explanation> syntax_explanations() {
   return {
       {Code::kUnknownStatement, "a line begins with a word that is no statement",
        "Every line is one statement, and its first word says which: ROBOT, CYCLE, CONST, "
-       "COMPONENT, DEPENDENCY, IGNORE, INTERLOCK, SIGNAL, RULE, POLICIES, TRIGGER, STRATEGY, "
+       "COMPONENT, DEPENDENCY, GROUP, IGNORE, INTERLOCK, ABORT, DRILL, SIGNAL, RULE, POLICIES, "
+       "TRIGGER, "
+       "STRATEGY, "
        "ADAPTATION, INCLUDE, TEMPLATE, END or USE, in upper case. The line counts for nothing "
        "until the word is right.",
        "robot sunset\n", "ROBOT sunset\n"},
@@ -35,15 +37,15 @@ std::vector<Explanation> syntax_explanations() {
        "what belongs to the place under the carets; docs/rule-language.md shows each statement "
        "whole.",
        "CYCLE 200\n", "CYCLE 200ms\n"},
-      {Code::kBadToken, "this is no word, number or text of the language",
+      {Code::kBadToken, "unrecognized token",
        "A text without its closing quote, a number with letters behind it, or a character that the "
        "language does not use. culprit does not read the rest of the line.",
        "COMPONENT camera LAUNCH \"camera_driver --fps 30\n",
        "COMPONENT camera LAUNCH \"camera_driver --fps 30\"\n"},
       {Code::kExtraText, "the line goes on after its statement has ended",
-       "What follows would be ignored, and it may have been meant to do something: && for 'and', "
-       "== to compare, or a comment that lacks its #.",
-       rule_with("entropy > 0.5 and exposure < 3"), rule_with("entropy > 0.5 && exposure < 3")},
+       "culprit would ignore the rest of the line, which may have been meant to do something: an "
+       "operator is missing, or a comment lacks its #.",
+       rule_with("entropy > 0.5 exposure < 3"), rule_with("entropy > 0.5 && exposure < 3")},
       {Code::kOutOfPlace, "this line is not inside what it belongs to",
        "POLICIES, TRIGGER and STRATEGY belong to the RULE line before them, one POLICIES and one "
        "TRIGGER each; an ADAPTATION belongs to the STRATEGY line before it. INCLUDE, TEMPLATE, END "
@@ -77,7 +79,7 @@ std::vector<Explanation> name_explanations() {
       {Code::kDuplicateName, "a name is given twice",
        "Constants, components and signals share one set of names, rules have theirs, and each "
        "rule's strategies have theirs. With two things of one name, neither a reader nor a message "
-       "could tell which is meant.",
+       "could distinguish them.",
        "CONST limit = 0.5\nCONST limit = 0.7\n", "CONST limit = 0.5\nCONST high_limit = 0.7\n"},
       {Code::kUnknownName, "an undeclared name is nearly a declared one",
        "Names that a file does not declare are looked up on the robot, so a slip of the fingers is "
@@ -103,8 +105,8 @@ std::vector<Explanation> name_explanations() {
       {Code::kUnknownAdaptation, "there is no adaptation of this name",
        "An adaptation is one of the things that culprit can do to a component: set_parameter, "
        "increase_parameter, decrease_parameter, change_communication, activate, deactivate, "
-       "restart, redeploy, start, stop, change_mode and call. For a routine of the component's "
-       "own, use call.",
+       "restart, redeploy, start, stop, change_mode and call, or start_group for a GROUP. For a "
+       "routine of the component's own, use call.",
        rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY reboot 50 10",
                  "ADAPTATION camera reboot 5"),
        rule_with("rate(/robot/image) < 1")},
@@ -122,11 +124,11 @@ std::vector<Explanation> name_explanations() {
        "and underscores between slashes. There is no namespace that a relative name could be "
        "relative to.",
        rule_with("rate(image) < 1"), rule_with("rate(/robot/image) < 1")},
-      {Code::kUnused, "nothing is about a component",
-       "It is declared, and no trigger, strategy, signal or dependency has it: whatever happens to "
-       "it, nothing is done and nobody is told. In a file that others include that is no mistake, "
-       "and "
-       "nothing is said.",
+      {Code::kUnused, "no rule uses this component",
+       "It is declared, but no trigger, strategy, signal or dependency uses it: if it fails, "
+       "culprit "
+       "does nothing and reports nothing. In a file that others include this is no mistake, and is "
+       "not reported.",
        "COMPONENT lidar NODE /lidar\n" + rule_with("rate(/robot/image) < 1"),
        "COMPONENT lidar NODE /lidar REQUIRED\n" + rule_with("rate(/robot/image) < 1")},
   };
@@ -139,10 +141,10 @@ std::vector<Explanation> value_explanations() {
        "the two kinds of numbers. A duration has a unit, a text has quotes, a trigger is true or "
        "false.",
        rule_with("age(/robot/image) > 0.5"), rule_with("age(/robot/image) > 500ms")},
-      {Code::kUnknownType, "nothing tells what kind of value this is",
+      {Code::kUnknownType, "cannot infer the type of this value",
        "Signals and parameters get their kind from their use: compared with 0.5 it is a number, "
-       "with \"docked\" a text, alone it is true or false. Where two unknown ones meet, neither "
-       "tells about the other. Often a text merely lacks its quotes.",
+       "with \"docked\" a text, alone it is true or false. Two unknown ones give no "
+       "information on each other. Often a text merely lacks its quotes.",
        rule_with("mode == docked"), rule_with("mode == \"docked\"")},
       {Code::kArguments, "a function is called with the wrong arguments",
        "Each function takes what its usage line says; the message repeats it.",
@@ -214,9 +216,9 @@ std::vector<Explanation> value_explanations() {
 std::vector<Explanation> rule_explanations() {
   return {
       {Code::kContradiction, "a strategy contradicts itself",
-       "All adaptations of one step are applied together. One that undoes or repeats another, or "
-       "that reconfigures a process which the same step ends, cannot have been meant: the "
-       "robot would be left in whichever state came last. A restart beside a redeploy of the same "
+       "All adaptations of one step are applied together. An adaptation that undoes or repeats "
+       "another, or that reconfigures a process which the same step ends, is a mistake: the robot "
+       "would be left in whichever state came last. A restart beside a redeploy of the same "
        "component is in vain. A component may be started again after it was stopped. THEN begins a "
        "step: a later step may take back what an earlier one did, as in deactivate THEN redeploy "
        "another component THEN activate. Without THEN culprit takes such a strategy for steps, and "
@@ -245,27 +247,26 @@ std::vector<Explanation> rule_explanations() {
        "COMPONENT camera NODE /robot/camera LAUNCH \"ros2 run my_cameras driver\"\n" +
            rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY redeploy 90 10",
                      "ADAPTATION camera redeploy 10")},
-      {Code::kStopsRequired, "a strategy stops what is REQUIRED",
-       "REQUIRED says that a person is told when the component is not there. A strategy that stops "
-       "it, and does not start it again, brings just that about. A last resort may: it is a safe "
-       "stop, and a person is told of it anyway.",
+      {Code::kStopsRequired, "a strategy stops a REQUIRED component",
+       "With REQUIRED, culprit notifies a person when the component is not there. A strategy that "
+       "stops it, and does not start it again, causes just that. A last resort may: it is a safe "
+       "stop, and culprit notifies a person of it anyway.",
        "COMPONENT camera NODE /robot/camera REQUIRED\n" + rule_with("rate(/robot/image) < 1",
                                                                     "ERROR", "STRATEGY quiet 50 10",
                                                                     "ADAPTATION camera stop 5"),
        "COMPONENT camera NODE /robot/camera REQUIRED\n" + rule_with("rate(/robot/image) < 1")},
       {Code::kTwoOwners, "it is not clear who starts and ends a component",
-       "Who starts a component is asked to end it, too: culprit itself (LAUNCH), systemd (UNIT), "
+       "The owner that starts a component also ends it: culprit itself (LAUNCH), systemd (UNIT), "
        "a container engine (CONTAINER), a component container (IN) or a launcher that respawns it "
        "(RESPAWNED). Two of them would start it twice; and a unit that runs two components cannot "
        "be restarted for one of them.",
        "COMPONENT camera NODE /robot/camera UNIT camera.service LAUNCH \"camera_driver\"\n",
        "COMPONENT camera NODE /robot/camera UNIT camera.service\n"},
       {Code::kTrueWhenWell, "a trigger is true while all is well",
-       "A trigger says what is wrong. This one is true while every component lives and every topic "
-       "sends: the rule would adapt a robot that is well, and rest when it is ill. Most often a "
-       "comparison is the wrong way round. A rule that waits for something to come, and acts once, "
-       "has "
-       "ON_CHANGE among its policies.",
+       "A trigger describes a failure. This one is true while every component is alive and every "
+       "topic is received: the rule would adapt a healthy robot, and do nothing about a failed "
+       "one. Most often a comparison is the wrong way round. A rule that waits for something to "
+       "come, and acts once, has ON_CHANGE among its policies.",
        rule_with("age(/robot/image) < 500ms"), rule_with("age(/robot/image) > 500ms")},
       {Code::kNoShell, "a LAUNCH command is written for a shell",
        "A launch command is an argument vector: no shell reads it. Clauses do what a shell would "
@@ -275,12 +276,21 @@ std::vector<Explanation> rule_explanations() {
        "cameras driver\"\n",
        "COMPONENT camera NODE /robot/camera LAUNCH \"ros2 run cameras driver\" SETUP "
        "/opt/ros/humble/setup.bash\n"},
+      {Code::kBadGroup, "a group cannot be what its line says",
+       "GROUP names components that one lifecycle manager starts, in the order in which it starts "
+       "them, and that manager. Each is declared by a COMPONENT line and named once, and the "
+       "manager "
+       "is none of them. start_group takes the name of such a group.",
+       "COMPONENT planner NODE /planner_server\nCOMPONENT manager NODE /lifecycle_manager\n"
+       "GROUP navigation { planner, controler } MANAGER manager\n"
+       "COMPONENT controller NODE /controller_server\n",
+       "COMPONENT planner NODE /planner_server\nCOMPONENT manager NODE /lifecycle_manager\n"
+       "GROUP navigation { planner, controller } MANAGER manager\n"
+       "COMPONENT controller NODE /controller_server\n"},
       {Code::kMovesInterlock, "a last resort changes what an INTERLOCK reads",
        "A last resort does not wait for an interlock, and often opens it: the robot stands, and "
-       "the "
-       "repair can begin. That is safe only if the interlock reads how the robot is. If it reads "
-       "the "
-       "parameter that the last resort sets, it opens before the robot has stopped.",
+       "the repair can begin. That is safe only if the interlock reads the state of the robot. If "
+       "it reads the parameter that the last resort sets, it opens before the robot has stopped.",
        "INTERLOCK parameter(base, max_speed) < 0.1\nCOMPONENT base NODE /robot/base\n" +
            rule_with("rate(/robot/image) < 1", "ERROR",
                      "STRATEGY restart 50 10\n      ADAPTATION camera restart 5\n"
@@ -300,8 +310,8 @@ std::vector<Explanation> rule_explanations() {
        "A trigger that reads no signal, topic or component says the same whatever the robot does: "
        "this failure would never be detected.",
        rule_with("1 > 2"), rule_with("1 > rate(/robot/image)")},
-      {Code::kCircularDependency, "declared dependencies lead in a circle",
-       "DEPENDENCY a ON b says that failures of b show at a. In a circle every component could be "
+      {Code::kCircularDependency, "declared dependencies form a loop",
+       "DEPENDENCY a ON b says that failures of b show at a. In a loop every component could be "
        "blamed on every other, and the search for the culprit could not begin anywhere.",
        "COMPONENT camera\nCOMPONENT fusion\nDEPENDENCY fusion ON camera\n"
        "DEPENDENCY camera ON fusion\n",
@@ -328,12 +338,11 @@ std::vector<Explanation> meaning_explanations() {
   const std::string camera = "COMPONENT camera NODE /robot/camera LAUNCH \"camera_driver\"\n";
   return {
       {Code::kOscillation, "strategies of two rules undo one another",
-       "One rule's strategy sets what the other's resets, and nothing keeps them from taking "
-       "turns: both triggers can be true together, one of them always is, or the parameter that "
-       "each sets "
-       "makes the other's true. The robot could flip "
-       "between the two for ever. Leave a band between the triggers, as a thermostat does, or make "
-       "both strategies alternatives of one rule, which remembers what it tried.",
+       "One rule's strategy sets what the other's resets, and they can take turns: both triggers "
+       "can be true together, one of them always is, or the parameter that each sets makes the "
+       "other's true. The robot could flip between the two for ever. Leave a band between the "
+       "triggers, as a thermostat does, or make both strategies alternatives of one rule, which "
+       "remembers what it tried.",
        lights("0.2"), lights("0.7")},
       {Code::kAlwaysTrueInRange, "a condition is always true",
        "For every value that its inputs can have, by their RANGE or by what they are, this "
@@ -365,7 +374,7 @@ std::vector<Explanation> meaning_explanations() {
        rule_with("rate(/robot/image) < 1", "ERROR",
                  "STRATEGY restart 50 10 WHEN rate(/robot/image) > 0.1")},
       {Code::kNoLastResort, "no strategy helps if the process hangs",
-       "The rule fires when something falls silent, and a hung process is silent. It answers no "
+       "The rule fires when a topic falls silent, and a hung process is silent. It answers no "
        "lifecycle request and no parameter call, so all of the rule's strategies would fail, "
        "though a LAUNCH command is there. A strategy that redeploys is the last resort; it costs "
        "nothing while cheaper ones help.",
@@ -393,12 +402,12 @@ std::vector<Explanation> robot_explanations() {
   return {
       against_robot(Code::kNoSuchNode, "no node of the robot is this component",
                     "The graph of the robot was read, and it holds no node of this name: it is not "
-                    "started, it died, or its name or namespace is another one. Nothing can be "
-                    "observed of the component and nothing asked of it.",
+                    "started, it exited, or its name or namespace is another one. culprit can "
+                    "neither observe the component nor send it requests.",
                     "COMPONENT camera NODE /camera\n", camera),
-      against_robot(Code::kNoSuchTopic, "nobody publishes this topic",
+      against_robot(Code::kNoSuchTopic, "no node publishes this topic",
                     "Its rate would be 0, its age and its fields unknown for ever; a node that is "
-                    "told to read it would hear nothing.",
+                    "switched to it would receive no message.",
                     rule_with("rate(/robot/imag) < 1"), rule_with("rate(/robot/image) < 1")),
       against_robot(
           Code::kNoSuchParameter, "the node has no such parameter",
@@ -407,13 +416,13 @@ std::vector<Explanation> robot_explanations() {
           camera + rule_with("parameter(camera, exposre) > 1"),
           camera + rule_with("parameter(camera, exposure) > 1")),
       against_robot(
-          Code::kNoSuchDiagnostic, "no such diagnostic was heard",
-          "Nothing on /diagnostics carried this status or key while culprit listened, so "
+          Code::kNoSuchDiagnostic, "no such diagnostic was received",
+          "No message on /diagnostics carried this status or key while culprit listened, so "
           "the signal would stay unknown and its rule quiet. Status messages that come seldom "
           "need a longer --wait.",
           "SIGNAL entropy DIAGNOSTIC camera KEY entropi\n",
           "SIGNAL entropy DIAGNOSTIC camera KEY entropy\n"),
-      against_robot(Code::kNoSuchService, "nobody offers the service that this needs",
+      against_robot(Code::kNoSuchService, "no node offers the service that this needs",
                     "A call needs its service, a lifecycle adaptation the node's change_state, a "
                     "mode its change_mode, a parameter its set_parameters. Without it the "
                     "adaptation is unreachable whenever it is tried.",
@@ -429,9 +438,10 @@ std::vector<Explanation> robot_explanations() {
                     "COMPONENT camera NODE /robot/camera UNIT camra.service\n",
                     "COMPONENT camera NODE /robot/camera UNIT camera.service\n"),
       against_robot(Code::kCannotLaunch, "culprit could not start this LAUNCH",
-                    "There is no such program, its SETUP is not there or could be changed "
-                    "by others than culprit's user and root, or its CWD is no folder. Nothing "
-                    "would be ended when the rule fires, for it could not be started again.",
+                    "There is no such program, its SETUP is not there or could be changed by "
+                    "others than culprit's user and root, or its CWD is no folder. When the rule "
+                    "fires, culprit would not end the component, because it could not start it "
+                    "again.",
                     "COMPONENT camera NODE /robot/camera LAUNCH \"camera_driver\" "
                     "SETUP /opt/ros/humbel/setup.bash\n",
                     "COMPONENT camera NODE /robot/camera LAUNCH \"camera_driver\" "
@@ -439,14 +449,14 @@ std::vector<Explanation> robot_explanations() {
       against_robot(
           Code::kRunsOtherwise, "the component runs otherwise than its LAUNCH says",
           "The robot's node runs with other arguments or parameters than its LAUNCH says, or its "
-          "program or a parameter file was changed or removed since it was started. A "
-          "redeploy would start something else than what is well now.",
+          "program or a parameter file was changed or removed since it was started. A redeploy "
+          "would start another program than the one that works now.",
           "COMPONENT lidar NODE /robot/camera LAUNCH \"scan_driver --fps 15\"\n",
           "COMPONENT lidar NODE /robot/camera LAUNCH \"/opt/lidar/driver --fps 30\"\n"),
       against_robot(Code::kNoSuchField, "the messages of this topic have no such field",
                     "Their type has none of this name, or it is not known what the type looks "
-                    "like: no .msg file of it was found, and the publisher's node did not tell it. "
-                    "So the signal would stay unknown and its rule quiet.",
+                    "like: no .msg file of it was found, and the publisher's node did not describe "
+                    "it. So the signal would stay unknown and its rule quiet.",
                     "SIGNAL lines TOPIC /robot/image FIELD heigt\n",
                     "SIGNAL lines TOPIC /robot/image FIELD height\n"),
       against_robot(Code::kSeveralNodes, "several nodes of the robot have this component's name",
@@ -464,15 +474,16 @@ std::vector<Explanation> robot_explanations() {
           "anything.",
           "COMPONENT camera NODE /robot/camera UNIT camera.service HOST robot@rovr2\n",
           "COMPONENT camera NODE /robot/camera UNIT camera.service HOST robot@rover2\n"),
-      against_robot(Code::kBadRequest, "the service would not understand this call",
-                    "What a call asks has to fit the type of the service that the robot offers: "
-                    "every field that is written has to be one of the request's, and of its type. "
-                    "A field that is left out is 0, false or empty. Found by asking the robot for "
-                    "the type; one of which no .srv file is found cannot be called either.",
-                    rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY light 50 10",
-                              "ADAPTATION camera call ~/light \"on: true\" 5"),
-                    rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY light 50 10",
-                              "ADAPTATION camera call ~/light \"data: true\" 5")),
+      against_robot(
+          Code::kBadRequest, "the service would not understand this call",
+          "The fields of a call have to fit the type of the service that the robot offers: every "
+          "field that is written has to be one of the request's, and of its type. A field that is "
+          "left out is 0, false or empty. Found by asking the robot for the type. A service whose "
+          ".srv file is not found cannot be called either.",
+          rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY light 50 10",
+                    "ADAPTATION camera call ~/light \"on: true\" 5"),
+          rule_with("rate(/robot/image) < 1", "ERROR", "STRATEGY light 50 10",
+                    "ADAPTATION camera call ~/light \"data: true\" 5")),
   };
 }
 
@@ -501,8 +512,8 @@ std::vector<Explanation> reuse_explanations() {
        "end.",
        template_with("USE silent(/robot/image, 10)"), template_with("USE silent(/robot/image)")},
       {Code::kUnknownParameter, "a template has no such parameter",
-       "In a template, {name} stands for what a USE gives for the parameter 'name'. One that the "
-       "first line of the template does not have stands for nothing.",
+       "In a template, {name} stands for what a USE gives for the parameter 'name'. A parameter "
+       "that is not in the first line of the template has no value.",
        template_with("USE silent(/robot/image)", "age({topik}) > 1s"),
        template_with("USE silent(/robot/image)")},
       {Code::kEndlessTemplate, "templates would go on without end",

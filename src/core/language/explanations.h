@@ -1,4 +1,4 @@
-// What each diagnostic means: the pages of `culprit explain` and docs/diagnostics.md.
+// The explanation of each diagnostic: the pages of `culprit explain` and docs/diagnostics.md.
 #pragma once
 
 #include <string>

@@ -50,6 +50,7 @@ bool exists(Code code) {
     case Code::kTwoOwners:
     case Code::kTrueWhenWell:
     case Code::kNoShell:
+    case Code::kBadGroup:
     case Code::kMovesInterlock:
     case Code::kAlwaysTrue:
     case Code::kNeverTrue:

@@ -1,6 +1,7 @@
 #include "language/expression_parser.h"
 
 #include <array>
+#include <utility>
 
 #include "language/functions.h"
 
@@ -72,7 +73,10 @@ class ExpressionParser {
     while (const BinaryOperator* found = binary_operator(scanner_.peek())) {
       if (found->precedence < min_precedence) break;
       if (++length + depth > kMaxNesting) return too_deep();
-      scanner_.next();
+      const Token op = scanner_.next();
+      if (const Token& second = scanner_.peek(); op.span.end == second.span.begin) {
+        if (auto slip = doubled(op, second)) return fail(std::move(*slip));
+      }
       auto right = binary(found->precedence + 1, depth + length);
       if (!right) return std::nullopt;
       Expression e;
@@ -82,7 +86,86 @@ class ExpressionParser {
       adopt(e, std::move(*left), std::move(*right));
       left = std::move(e);
     }
+    if (auto slip = foreign_operator()) return fail(std::move(*slip));
     return left;
+  }
+
+  static Diagnostic wrong_operator(Span span, const std::string& written,
+                                   const std::string& meant) {
+    return {Code::kSyntax,    Severity::kError, span, "'" + written + "' is no operator",
+            "write " + meant, Edit{span, meant}};
+  }
+
+  // "<>", ">>", "===", "**": two symbols that other languages write as one.
+  static std::optional<Diagnostic> doubled(const Token& first, const Token& second) {
+    struct Slip {
+      std::string_view first, second, meant;
+    };
+    constexpr std::array<Slip, 7> kSlips = {{{"<", ">", "!="},
+                                             {">", ">", ">"},
+                                             {"<", "<", "<"},
+                                             {"==", "=", "=="},
+                                             {"!=", "=", "!="},
+                                             {">=", "=", ">="},
+                                             {"<=", "=", "<="}}};
+    for (const Slip& slip : kSlips) {
+      if (first.is(slip.first) && second.is(slip.second))
+        return wrong_operator({first.span.begin, second.span.end},
+                              std::string(slip.first).append(slip.second), std::string(slip.meant));
+    }
+    if (!first.is("*") || !second.is("*")) return std::nullopt;
+    return Diagnostic{Code::kSyntax,
+                      Severity::kError,
+                      {first.span.begin, second.span.end},
+                      "'**' is no operator",
+                      "write pow(base, exponent)"};
+  }
+
+  // An operator of another language behind a value.
+  std::optional<Diagnostic> foreign_operator() {
+    const Token& token = scanner_.peek();
+    if (token.is("=")) {
+      Scanner ahead = scanner_;
+      ahead.next();
+      const Token& second = ahead.peek();
+      const bool adjoins = second.span.begin == token.span.end;
+      if (adjoins && (second.is(">") || second.is("<")))
+        return wrong_operator({token.span.begin, second.span.end}, "=" + std::string(second.text),
+                              std::string(second.text) + "=");
+      auto slip = wrong_operator(token.span, "=", "==");
+      slip.remedy += " to compare";
+      return slip;
+    }
+    if (token.kind != Token::Kind::kIdentifier) return std::nullopt;
+    struct Word {
+      std::string_view word, meant;
+    };
+    constexpr std::array<Word, 12> kWords = {{{"and", "&&"},
+                                              {"AND", "&&"},
+                                              {"or", "||"},
+                                              {"OR", "||"},
+                                              {"is", "=="},
+                                              {"IS", "=="},
+                                              {"equals", "=="},
+                                              {"eq", "=="},
+                                              {"gt", ">"},
+                                              {"lt", "<"},
+                                              {"ge", ">="},
+                                              {"le", "<="}}};
+    for (const auto& [word, meant] : kWords) {
+      if (token.text != word) continue;
+      Scanner ahead = scanner_;
+      ahead.next();
+      const Token& second = ahead.peek();
+      const bool is_negated = meant == "==" && (second.text == "not" || second.text == "NOT");
+      if (is_negated)
+        return wrong_operator({token.span.begin, second.span.end},
+                              std::string(word) + " " + std::string(second.text), "!=");
+      auto slip = wrong_operator(token.span, std::string(word), std::string(meant));
+      slip.remedy += " for '" + std::string(word) + "'";
+      return slip;
+    }
+    return std::nullopt;
   }
 
   std::optional<Expression> unary(int depth) {
@@ -121,8 +204,14 @@ class ExpressionParser {
           e.literal = token.value();
           return e;
         }
-        if (token.text == "not" && continues(scanner_.peek())) {
-          return fail(Code::kSyntax, token.span, "'not' is no operator",
+        if (token.text == "True" || token.text == "TRUE" || token.text == "False" ||
+            token.text == "FALSE") {
+          const std::string meant = token.text.front() == 'T' ? "true" : "false";
+          return fail(Code::kSyntax, token.span, "'" + std::string(token.text) + "' is no value",
+                      "write " + meant, Edit{token.span, meant});
+        }
+        if ((token.text == "not" || token.text == "NOT") && continues(scanner_.peek())) {
+          return fail(Code::kSyntax, token.span, "'" + std::string(token.text) + "' is no operator",
                       "write ! for 'not', as in !docked",
                       Edit{{token.span.begin, scanner_.position()}, "!"});
         }
@@ -133,12 +222,8 @@ class ExpressionParser {
         if (token.is("(")) return parenthesis(token, depth);
         if (token.is("/")) return topic_for_value(token);
         break;
-      case Token::Kind::kBad: {
-        const auto [cause, fix] = complaint_about(token);
-        const bool is_unclosed = token.flaw == Token::Flaw::kUnclosed;
-        return fail(Code::kBadToken, token.span, cause,
-                    is_unclosed ? "write a '\"' where the text ends" : "", fix);
-      }
+      case Token::Kind::kBad:
+        return bad(token);
       case Token::Kind::kEnd:
         break;
     }
@@ -171,7 +256,7 @@ class ExpressionParser {
     const std::string topic = "/" + rest.text;
     return fail(Code::kSyntax, {slash.span.begin, rest.span.end}, "'" + topic + "' is no value",
                 "of a topic there are age(" + topic + "), rate(" + topic + ") and phi(" + topic +
-                    "); what its messages say is a SIGNAL: SIGNAL name TOPIC " + topic +
+                    "); a field of its messages is a SIGNAL: SIGNAL name TOPIC " + topic +
                     " FIELD field");
   }
 
@@ -185,6 +270,7 @@ class ExpressionParser {
     auto inner = conditional(depth + 1);
     if (!inner) return std::nullopt;
     const Token close = scanner_.next();
+    if (close.kind == Token::Kind::kBad) return bad(close);
     if (!close.is(")")) return not_closed(open, close.kind, inner->span.end);
     inner->span = {open.span.begin, close.span.end};
     return inner;
@@ -193,7 +279,8 @@ class ExpressionParser {
   std::optional<Expression> call(Expression e, int depth) {
     const FunctionInfo* function = find_function(e.name.text);
     if (function == nullptr) {
-      const std::string near = closest(e.name.text, function_names());
+      std::string near = function_of_other_tools(e.name.text);
+      if (near.empty()) near = closest(e.name.text, function_names());
       return fail(Code::kUnknownFunction, e.name.span, "there is no function '" + e.name.text + "'",
                   near.empty() ? "known functions: rate age phi loss alive lifecycle parameter "
                                  "level mean min max stddev "
@@ -205,7 +292,11 @@ class ExpressionParser {
     e.kind = Kind::kCall;
     const Token open = scanner_.next();
     while (!scanner_.peek().is(")")) {
-      if (!e.children.empty() && !expect(",", "',' or ')'")) return std::nullopt;
+      if (!e.children.empty() && binary_operator(scanner_.peek()) != nullptr)
+        return not_closed(open, Token::Kind::kEnd, e.children.back().span.end);
+      if (!e.children.empty() &&
+          !expect(",", "',' or ')'", "usage: " + std::string(function->usage)))
+        return std::nullopt;
       auto argument = this->argument(*function, e.children.size(), depth);
       if (!argument) return std::nullopt;
       e.children.push_back(std::move(*argument));
@@ -218,6 +309,27 @@ class ExpressionParser {
                   "usage: " + std::string(function->usage));
     }
     return e;
+  }
+
+  // As other tools call it.
+  static std::string function_of_other_tools(std::string_view word) {
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kWords = {
+        {{"hz", "rate"},
+         {"freq", "rate"},
+         {"frequency", "rate"},
+         {"avg", "mean"},
+         {"average", "mean"},
+         {"std", "stddev"},
+         {"stdev", "stddev"},
+         {"timeout", "age"},
+         {"elapsed", "age"},
+         {"param", "parameter"},
+         {"state", "lifecycle"},
+         {"running", "alive"}}};
+    for (const auto& [theirs, ours] : kWords) {
+      if (theirs == word) return std::string(ours);
+    }
+    return "";
   }
 
   std::optional<Expression> argument(const FunctionInfo& function, std::size_t index, int depth) {
@@ -247,11 +359,21 @@ class ExpressionParser {
     return e;
   }
 
-  bool expect(std::string_view symbol, std::string_view what) {
+  bool expect(std::string_view symbol, std::string_view what, std::string remedy = "") {
     const Token token = scanner_.next();
     if (token.is(symbol)) return true;
-    fail(Code::kSyntax, token.span, "expected " + std::string(what), "");
+    if (token.kind == Token::Kind::kBad)
+      bad(token);
+    else
+      fail(Code::kSyntax, token.span, "expected " + std::string(what), std::move(remedy));
     return false;
+  }
+
+  std::nullopt_t bad(const Token& token) {
+    auto [cause, fix, remedy] = complaint_about(token);
+    if (remedy.empty() && token.flaw == Token::Flaw::kNumber)
+      remedy = "a unit is one of ns, us, ms, s, min and h, as in 500ms";
+    return fail(Code::kBadToken, token.span, cause, remedy, fix);
   }
 
   // `next` is what stands where the ')' was missed, `end` where it would have come.
@@ -264,6 +386,11 @@ class ExpressionParser {
   std::nullopt_t too_deep() {
     return fail(Code::kTooDeep, scanner_.rest(), "this expression is nested too deeply",
                 "split it into several rules, or name parts of it with CONST");
+  }
+
+  std::nullopt_t fail(Diagnostic diagnostic) {
+    diagnostics_.push_back(std::move(diagnostic));
+    return std::nullopt;
   }
 
   std::nullopt_t fail(Code code, Span span, std::string cause, std::string remedy,

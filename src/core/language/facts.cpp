@@ -1,7 +1,8 @@
 #include "language/facts.h"
 
 #include <algorithm>
-#include <cassert>
+
+#include "base/invariant.h"
 
 namespace culprit {
 namespace {
@@ -69,8 +70,15 @@ Interval first_interval(const Input& input, const RuleSet& rules) {
 
 bool is_number(Type type) { return type != Type::kBool && type != Type::kString; }
 
+bool is_group(const Input& input, const RuleSet& rules) {
+  return input.kind == Input::Kind::kSignal &&
+         std::holds_alternative<GroupId>(rules[input.signal].source);
+}
+
 ValueSet first_values(const Input& input, const RuleSet& rules) {
   if (is_number(input.type)) return first_interval(input, rules);
+  if (is_group(input, rules))
+    return TextSet{{"active", "half_up", "inactive", "down", "changing"}, false};
   if (input.kind != Input::Kind::kLifecycle) return all_values(input.type);
   return TextSet{{"unconfigured", "inactive", "active", "finalized", "unknown", "in transition"},
                  false};
@@ -101,7 +109,7 @@ void enter(InputId input, Set values, std::vector<std::pair<InputId, Set>>& know
   known.emplace_back(input, std::move(values));
 }
 
-// What holds if either is so.
+// Keeps the facts that hold if either set of facts holds.
 template <class Set>
 void keep_joint(std::vector<std::pair<InputId, Set>>& known,
                 const std::vector<std::pair<InputId, Set>>& other) {
@@ -133,7 +141,7 @@ void Facts::know(InputId input, ValueSet values) {
 void Facts::know(InputId number, const Interval& interval) { enter(number, interval, numbers_); }
 
 bool Facts::assume(const Typed& e, bool truth) {
-  assert(e.type == Type::kBool);
+  CULPRIT_ASSERT(e.type == Type::kBool);
   const auto child = [&](std::size_t i, bool t) {
     return [&e, i, t](Facts& f) { return f.assume(e.children[i], t); };
   };
@@ -249,7 +257,7 @@ bool Facts::narrow(const Typed& e, const ValueSet& set) {
   return possible;
 }
 
-// Most of what is known is of numbers, which need no set that might be of something else.
+// Most facts are about numbers, which need no set that might be of another type.
 bool Facts::narrow(const Typed& e, const Interval& interval) {
   const Typed& leaf = e.op == Op::kIntToDouble ? e.children[0] : e;
   if (leaf.op != Op::kInput) return !is_empty(intersection(interval_of(e), interval));
@@ -295,7 +303,7 @@ bool is_never(bool truth, const Typed& condition, const RuleSet& rules) {
   if (!is_small_enough(condition)) return false;
   Facts facts(rules);
   if (!facts.assume(condition, truth)) return true;
-  // What the second part of a condition says may rule out a case of the first: look twice.
+  // The second part of a condition may rule out a case of the first: look twice.
   const bool has_parts = std::any_of(condition.children.begin(), condition.children.end(),
                                      [](const Typed& c) { return c.type == Type::kBool; });
   return has_parts && !facts.assume(condition, truth);

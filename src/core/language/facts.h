@@ -1,9 +1,10 @@
-// What can be true: reasoning about expressions before anything runs.
+// Expressions that can be true: reasoning before anything runs.
 //
-// Facts are the possible values of inputs. At first they are what the input's kind says (a rate is
-// not negative) and its signal's RANGE; assuming that an expression is true or false narrows them.
-// Where nothing is left, the assumption is certainly wrong. The reverse does not hold: what cannot
-// be decided counts as possible, so a message that rests on an impossibility is never mistaken.
+// Facts are the possible values of inputs. At first they are what the input's kind allows (a rate
+// is not negative) and its signal's RANGE; assuming that an expression is true or false narrows
+// them. If no value is left, the assumption is certainly wrong. The reverse does not hold: a case
+// that cannot be decided counts as possible, so a message that rests on an impossibility is never
+// mistaken.
 //
 // Unknown values need no case of their own: a trigger fires only on true, and these are the values
 // for which an expression is known to be true or false.
@@ -50,8 +51,8 @@ class Facts {
   Interval interval_of(const Typed& expression) const;
 
   const RuleSet* rules_;
-  // Of inputs of which more is known than at first: of numbers, and of all others. They are few, for
-  // expressions are small.
+  // Inputs with narrower facts than at first: numbers, and all others. They are few, for expressions
+  // are small.
   template <class Set>
   using Known = std::vector<std::pair<InputId, Set>>;
   Known<Interval> numbers_;

@@ -18,7 +18,7 @@ std::string rule(const std::string& trigger) {
                      "\n    STRATEGY s 50 10\n      ADAPTATION c restart 5\n");
 }
 
-// What is said about the trigger: "never: <text>" or "always: <text>", in the order of the text.
+// The findings about the trigger: "never: <text>" or "always: <text>", in the order of the text.
 std::vector<std::string> said_about(const std::string& trigger) {
   const Source source("test.rules", rule(trigger));
   const Checked checked = check(source);

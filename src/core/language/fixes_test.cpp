@@ -109,7 +109,7 @@ TEST(Fixes, RemoveWhatTheyAreOfferedFor) {
       ++applied;
       ASSERT_LE(d.fix->span.begin, d.fix->span.end) << render(d, source);
       ASSERT_LE(d.fix->span.end, source.text().size()) << render(d, source);
-      // What stands before the diagnostic stays, so it would be at the same place.
+      // Text before the diagnostic does not change, so the diagnostic would be at the same place.
       ASSERT_GE(d.fix->span.begin, d.span.begin) << render(d, source);
       const Source after(source.name(), with(*d.fix, source));
       const auto left = checked(after).diagnostics;

@@ -1,7 +1,8 @@
 // Rule text -> the same rules in the one canonical layout, for people to read.
 //
-// What is included or used stays as it is written. Only what stands between the tokens changes: numbers, durations, names, texts and comments stay
-// as they are written, and so do parentheses and the order of everything.
+// Only the white space between the tokens changes. Numbers, durations, names, texts, comments,
+// parentheses and the order of everything stay as they are written. Included and used files stay,
+// too.
 //   - Indentation: RULE and declarations 0, POLICIES and TRIGGER 2, STRATEGY 4, ADAPTATION 6; between
 //     TEMPLATE and END 2 more.
 //   - One space around binary operators, none inside parentheses.

@@ -33,8 +33,8 @@ enum class Function : std::uint8_t {
   kSqrt
 };
 
-// What stands at an argument's place. Names of topics, components, parameters and diagnostics are
-// written bare; they are no expressions.
+// The kind of argument. Names of topics, components, parameters and diagnostics are written bare;
+// they are no expressions.
 enum class Argument : std::uint8_t {
   kTopic,
   kComponent,

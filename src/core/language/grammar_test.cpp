@@ -70,13 +70,13 @@ const Grammar& grammar() {
   return all;
 }
 
-// What the parser finds wrong with the form of `text`; empty: nothing.
+// The mistake that the parser finds in the form of `text`; empty: none.
 std::string complaint(const std::string& text) {
   const Source source("sentence.rules", text);
   std::vector<Diagnostic> diagnostics;
   parse(source, diagnostics);
   for (const Diagnostic& d : diagnostics) {
-    // That a clause stands once on its line is not in the grammar.
+    // The grammar allows a clause twice on a line; the parser does not.
     const bool is_repeated = d.cause.ends_with(" is given twice");
     if (d.code < Code::kDuplicateName && !is_repeated) return render(d, source) + "in:\n" + text;
   }
@@ -90,7 +90,7 @@ Grammar::Productions productions_of_sentences() {
   return all;
 }
 
-// What only templates hold, into which no sentence that is made puts a parameter.
+// Productions that only templates hold; generated sentences have no parameters.
 bool is_holed(const std::string& production) { return production.starts_with("Hole"); }
 
 TEST(Grammar, MakesSentencesThatTheParserTakes) {
@@ -147,7 +147,7 @@ TEST(Grammar, ReservesTheWordsThatTheParserReserves) {
     Grammar::Productions used;
     words.insert(grammar().sentence("ReservedWord", 1, random, used));
   }
-  EXPECT_EQ(words.size(), 47u);
+  EXPECT_EQ(words.size(), 51u);
   for (const std::string& word : words) {
     std::vector<Diagnostic> diagnostics;
     parse(Source("", "CONST " + word + " = 1\n"), diagnostics);

@@ -1,15 +1,14 @@
-// Rules for components that nobody wrote one for, from what the components offer (culprit run
-// --improvise).
+// Rules for components that have none, from what the components offer (culprit run --improvise).
 //
-// A component that no strategy adapts is watched for what any component can show: that its process
-// or node is gone or hangs, or that its lifecycle fell back to unconfigured or is finalized.
+// A component that no strategy adapts is watched for failures that any component can have: its
+// process or node exited or hangs, or its lifecycle fell back to unconfigured or is finalized.
 //   - redeploy, if culprit knows how to launch it;
 //   - restart, while its lifecycle is unconfigured: that configures and activates it again.
-// They are believed in as little as possible (half, confidence 2), give up after three attempts and
-// stand back behind every rule that somebody wrote: NON_CRITICAL.
+// Their beliefs are as weak as possible (half, confidence 2). They give up after three attempts and
+// stand back behind every rule of a rule file: NON_CRITICAL.
 //
 // They are written in the rule language, so that everything that reads rules (the journal, replays,
-// explanations, the web) has them as they were. What they are called says what they are: rules and
+// explanations, the web) has them as they were. Their names mark them: rules and
 // strategies begin with "improvised_".
 #pragma once
 

@@ -16,7 +16,8 @@ Type type_of_literal(const syntax::Literal& literal) {
   return kTypes[literal.index()];
 }
 
-// What an expression has told of its type so far: nothing, the type, or whose type it is.
+// The type of an expression as far as it is inferred: unknown, the type, or the variable that it
+// shares.
 using Inferred = std::variant<std::monostate, Type, TypeClasses::Variable>;
 
 bool is_duration(const Inferred& inferred) { return inferred == Inferred(Type::kDuration); }

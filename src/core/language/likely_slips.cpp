@@ -28,6 +28,14 @@ bool sets_variable(std::string_view word) {
              "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_0123456789") == equals;
 }
 
+// $NAME, anywhere in it
+bool names_variable(std::string_view word) {
+  const auto dollar = word.find('$');
+  if (dollar == std::string_view::npos || dollar + 1 == word.size()) return false;
+  const char first = word[dollar + 1];
+  return (first >= 'A' && first <= 'Z') || (first >= 'a' && first <= 'z') || first == '_';
+}
+
 struct ShellWord {
   std::string word;  // that only a shell understands; empty: there is none
   std::string remedy;
@@ -38,7 +46,7 @@ ShellWord shell_word(const std::vector<std::string>& command) {
   if (is_shell(program)) return {};
   if (is_one_of(program, {"source", "."}))
     return {program,
-            "what is sourced first is a clause of its own: SETUP /opt/ros/humble/setup.bash"};
+            "a file to source first is a clause of its own: SETUP /opt/ros/humble/setup.bash"};
   if (program == "cd")
     return {program, "the folder to run in is a clause of its own: CWD /a/folder"};
   if (program == "export" || sets_variable(program))
@@ -47,6 +55,12 @@ ShellWord shell_word(const std::vector<std::string>& command) {
     if (is_one_of(word, {"&&", "||", ";", "|", "&", ">", ">>", "<", "2>&1"}) ||
         word.starts_with("$(") || word.starts_with("${"))
       return {word, "leave it out, or ask for a shell: LAUNCH \"bash -c '...'\""};
+    if (word == "~" || word.starts_with("~/"))
+      return {word, "write the full path of the home folder: /home/robot" + word.substr(1)};
+    if (names_variable(word))
+      return {word, "write its value, or ask for a shell: LAUNCH \"bash -c '...'\""};
+    if (word.find('*') != std::string::npos && word.find(':') == std::string::npos)
+      return {word, "name each file, or ask for a shell: LAUNCH \"bash -c '...'\""};
   }
   return {};
 }
@@ -98,7 +112,7 @@ void check_shell(const syntax::Component& written, const Component& component,
 
 void check_unused(const syntax::File& file, const RuleSet& rules,
                   std::vector<Diagnostic>& diagnostics) {
-  // What is misspelt may be about it.
+  // A misspelt name may refer to the unused component.
   const bool is_misspelt = std::ranges::any_of(
       diagnostics, [](const Diagnostic& d) { return d.code == Code::kUnknownName; });
   if (rules.rules.empty() || is_misspelt) return;
@@ -116,6 +130,10 @@ void check_unused(const syntax::File& file, const RuleSet& rules,
   for (const Topic& topic : rules.topics) {
     if (topic.publisher) use(*topic.publisher);
   }
+  for (const Group& group : rules.groups) {
+    for (const ComponentId member : group.members) use(member);
+    use(group.manager);
+  }
   for (const Parameter& parameter : rules.parameters) use(parameter.component);
   for (const Dependency& dependency : rules.dependencies) {
     use(dependency.consumer);
@@ -125,10 +143,11 @@ void check_unused(const syntax::File& file, const RuleSet& rules,
   for (std::size_t i = 0; i < file.components.size(); ++i) {
     const Component& component = rules.components[i];
     if (is_used[i] || component.is_required) continue;
-    diagnostics.push_back({Code::kUnused, Severity::kWarning, file.components[i].name.span,
-                           "nothing in these rules is about component '" + component.name + "'",
-                           "write a rule about it, or add REQUIRED, so that a person is told if it "
-                           "is not there"});
+    diagnostics.push_back(
+        {Code::kUnused, Severity::kWarning, file.components[i].name.span,
+         "no rule uses component '" + component.name + "'",
+         "write a rule for it, remove this line, or add REQUIRED: culprit then reports if it is "
+         "missing"});
   }
 }
 

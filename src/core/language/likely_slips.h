@@ -1,4 +1,4 @@
-// Design-time checks of what is allowed and was hardly meant. All are warnings.
+// Design-time checks of text that is allowed but was hardly meant. All are warnings.
 #pragma once
 
 #include <vector>

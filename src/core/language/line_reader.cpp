@@ -10,14 +10,15 @@ namespace {
 
 using syntax::Name;
 
-constexpr std::array<std::string_view, 47> kReservedWords = {
+constexpr std::array<std::string_view, 51> kReservedWords = {
     "ROBOT",     "CYCLE",      "CONST",    "COMPONENT", "DEPENDENCY", "IGNORE",  "SIGNAL",
     "RULE",      "POLICIES",   "TRIGGER",  "STRATEGY",  "NODE",       "LAUNCH",  "ON",
     "TOPIC",     "FIELD",      "STALE",    "RANGE",     "KEY",        "FOR",     "DIAGNOSTIC",
     "PARAMETER", "HOLD",       "COOLDOWN", "ATTEMPTS",  "ON_CHANGE",  "WHEN",    "ADAPTATION",
     "INTERLOCK", "LASTRESORT", "REQUIRED", "LIFECYCLE", "RESPAWNED",  "UNIT",    "USER",
     "ENV",       "SETUP",      "CWD",      "IN",        "PLUGIN",     "PACKAGE", "PARAMETERS",
-    "REMAP",     "CONTAINER",  "HOST",     "WITHIN",    "READY"};
+    "REMAP",     "CONTAINER",  "HOST",     "WITHIN",    "READY",      "GROUP",   "MANAGER",
+    "ABORT",     "DRILL"};
 
 bool is_reserved(std::string_view word) {
   // Most names have something else in them.
@@ -48,21 +49,12 @@ std::string filled(std::string_view name) {
   return out;
 }
 
-std::string upper_case(std::string_view word) {
-  std::string text(word);
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return std::toupper(c); });
-  return text;
-}
-
 // `word` in lower case, or with a slip of the fingers.
 bool is_nearly(const Token& token, std::string_view word) {
   const std::string upper = upper_case(token.text);
   return token.kind == Token::Kind::kIdentifier &&
          (upper == word || !closest(upper, {word}).empty());
 }
-
-constexpr const char* kCloseIt = "write a '\"' where the text ends";
 
 bool is_unclosed(const Token& token) { return token.flaw == Token::Flaw::kUnclosed; }
 
@@ -72,6 +64,13 @@ bool is_component_reference(std::string_view name) {
   return name.starts_with('/')
              ? is_ros_name(name)
              : is_ros_name("/" + std::string(name)) && name.find('/') == std::string_view::npos;
+}
+
+std::string upper_case(std::string_view word) {
+  std::string text(word);
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return std::toupper(c); });
+  return text;
 }
 
 std::span<const std::string_view> reserved_words() { return kReservedWords; }
@@ -141,9 +140,16 @@ std::optional<Duration> LineReader::duration(Scanner& s, std::string_view what) 
   std::optional<Edit> fix;
   const Token unit = s.peek();
   const std::string one_word = std::string(source_.text(token.span)).append(unit.text);
+  const std::string number(source_.text(token.span));
   if (unit.kind == Token::Kind::kIdentifier && parse_duration(one_word)) {
     remedy = "write " + one_word + ", without the blank";
     fix = {{token.span.begin, unit.span.end}, one_word};
+  } else if (token.kind == Token::Kind::kNumber && !duration_unit(unit.text).empty()) {
+    const std::string meant = number + std::string(duration_unit(unit.text));
+    remedy = "write " + meant;
+    fix = {{token.span.begin, unit.span.end}, meant};
+  } else if (token.kind == Token::Kind::kNumber) {
+    remedy = "add the unit: " + number + "s or " + number + "ms";
   }
   fail_token(token, what, std::move(remedy), std::move(fix));
   return std::nullopt;
@@ -175,6 +181,9 @@ std::optional<syntax::Number> LineReader::number(Scanner& s, std::string_view wh
     const bool separates = s.position() == token.span.end;  // the next number follows at once
     fix = {token.span, separates ? " " : ""};
   }
+  if (token.is("-")) remedy = "write a positive number";
+  if (token.kind == Token::Kind::kDuration && remedy.empty())
+    remedy = "write a number without a unit";
   fail_token(token, what, std::move(remedy), std::move(fix));
   return std::nullopt;
 }
@@ -201,8 +210,39 @@ bool LineReader::expect_word(Scanner& s, std::string_view word) {
   const Token token = s.next();
   if (token.text == word) return true;
   std::optional<Edit> fix;
-  if (is_nearly(token, word)) fix = {token.span, std::string(word)};
-  return fail_token(token, word, "", std::move(fix));
+  std::string remedy = "write " + std::string(word) + " here";
+  if (is_nearly(token, word)) {
+    fix = {token.span, std::string(word)};
+    remedy = "did you mean " + std::string(word) + "?";
+  }
+  return fail_token(token, word, std::move(remedy), std::move(fix));
+}
+
+bool LineReader::is_one_word(const Scanner& s, const Name& name,
+                             std::span<const std::string_view> followers) {
+  Scanner ahead = s;
+  std::uint32_t end = name.span.end;
+  bool has_dash = false;
+  while (!ahead.at_end()) {
+    const Token& token = ahead.peek();
+    const bool adjoins = token.span.begin == end;
+    const bool is_dash = token.is("-") && adjoins;
+    const bool is_word = token.kind == Token::Kind::kIdentifier && !is_reserved(token.text);
+    const bool is_number = token.kind == Token::Kind::kNumber && adjoins;
+    if (token.has_hole || (!is_dash && !is_word && !is_number)) break;
+    has_dash = has_dash || is_dash;
+    end = ahead.next().span.end;
+  }
+  const auto follows = std::find(followers.begin(), followers.end(), ahead.peek().text);
+  if (end == name.span.end || (!followers.empty() && follows == followers.end())) return true;
+  const Span span{name.span.begin, end};
+  std::string meant;
+  for (const char c : source_.text(span)) {
+    const bool is_break = c == '-' || is_blank(c);
+    if (!is_break || !meant.ends_with('_')) meant += is_break ? '_' : c;
+  }
+  return fail(Code::kSyntax, span, has_dash ? "a name has no '-' in it" : "a name is one word",
+              "write " + meant, Edit{span, meant});
 }
 
 bool LineReader::expect_symbol(Scanner& s, std::string_view symbol) {
@@ -220,8 +260,8 @@ bool LineReader::fail(Code code, Span span, std::string cause, std::string remed
 bool LineReader::fail_token(const Token& token, std::string_view expected, std::string remedy,
                             std::optional<Edit> fix) {
   if (token.kind == Token::Kind::kBad) {
-    if (is_unclosed(token)) remedy = kCloseIt;
-    const auto [cause, its_fix] = complaint_about(token);
+    const auto [cause, its_fix, its_remedy] = complaint_about(token);
+    if (!its_remedy.empty()) remedy = its_remedy;
     return fail(Code::kBadToken, token.span, cause, std::move(remedy), its_fix);
   }
   const std::string got = token.kind == Token::Kind::kEnd
@@ -246,8 +286,12 @@ bool LineReader::unexpected_clause(const Token& token, std::vector<std::string_v
   const std::string got = token.kind == Token::Kind::kEnd
                               ? ""
                               : ", not '" + std::string(source_.text(token.span)) + "'";
-  return fail(code, token.span, "expected one of " + list + got, std::move(remedy),
-              replacement(token.span, near));
+  auto fix = replacement(token.span, near);
+  if (token.is("=") || token.is(":")) {
+    remedy = "remove the '" + std::string(token.text) + "'";
+    fix = Edit{token.span, ""};
+  }
+  return fail(code, token.span, "expected one of " + list + got, std::move(remedy), fix);
 }
 
 bool LineReader::line_ends(Scanner& s) {
@@ -257,20 +301,33 @@ bool LineReader::line_ends(Scanner& s) {
   struct Slip {
     std::string_view written, meant, remedy;
   };
-  constexpr std::array<Slip, 7> kSlips = {
+  constexpr std::array<Slip, 5> kSlips = {
       {{"when", "WHEN", "write WHEN in upper case"},
        {"lastresort", "LASTRESORT", "write LASTRESORT in upper case"},
        {"within", "WITHIN", "write WITHIN in upper case"},
-       {"=", "==", "write == to compare"},
        {":", "", "remove the ':'"},
-       {"and", "&&", "write && for 'and'"},
-       {"or", "||", "write || for 'or'"}}};
+       {")", "", "remove the ')', which closes nothing"}}};
   constexpr std::string_view kCause = "this text does not belong to the line";
   for (const Slip& slip : kSlips) {
     if (token.text == slip.written)
-      return fail(Code::kExtraText, s.rest(), std::string(kCause), std::string(slip.remedy),
+      return fail(Code::kExtraText, token.span, std::string(kCause), std::string(slip.remedy),
                   Edit{token.span, std::string(slip.meant)});
   }
+  const std::string_view text = source_.text();
+  const auto is_digit = [&](std::uint32_t at) {
+    return at < text.size() && text[at] >= '0' && text[at] <= '9';
+  };
+  if (token.is(",") && token.span.begin > 0 && is_digit(token.span.begin - 1) &&
+      is_digit(token.span.end))
+    return fail(Code::kExtraText, token.span, "a number has a point, and no comma", "write a '.'",
+                Edit{token.span, "."});
+  if (is_hertz(token.text))
+    return fail(Code::kExtraText, token.span, "a rate is a number of Hz, without a unit",
+                "remove it", Edit{token.span, ""});
+  if (is_reserved(token.text))
+    return fail(Code::kExtraText, token.span,
+                std::string(token.text) + " has no place in this line",
+                "begin a new line with it if it is a statement, or remove it");
   return fail(Code::kExtraText, s.rest(), std::string(kCause),
               "remove it, or begin a comment with #");
 }

@@ -1,10 +1,9 @@
 // The pieces that statements are made of, read off one line.
 //
-// A reader that does not find its piece says what it expected, at the place where it looked, and
-// gives nothing; the statement is then given up, so each line is complained about at most once.
-// `what` names the piece for the message. In the lines of a template a parameter may stand for any
-// piece but the words of the language and the quotes of a text; what is given then is no more than
-// some value that is right.
+// A reader that does not find its piece reports what it expected, at the place where it looked, and
+// gives nothing; the statement is then given up, so each line has at most one diagnostic. `what`
+// names the piece for the message. In the lines of a template a parameter may stand for any piece
+// but the words of the language and the quotes of a text; the reader then gives any valid value.
 #pragma once
 
 #include <cstdint>
@@ -23,6 +22,8 @@ namespace culprit {
 
 // The words that nothing can be named by.
 std::span<const std::string_view> reserved_words();
+
+std::string upper_case(std::string_view word);
 
 // A component's own name, or the full name of its node.
 bool is_component_reference(std::string_view name);
@@ -51,8 +52,12 @@ class LineReader {
   std::optional<syntax::Expression> expression(Scanner& s);
 
   bool expect_word(Scanner& s, std::string_view word);
+  // Whether `name` is all of a name: not so in "front camera NODE", where NODE is one of the words
+  // that may follow it. Any may if there are none. Takes nothing.
+  bool is_one_word(const Scanner& s, const syntax::Name& name,
+                   std::span<const std::string_view> followers = {});
   bool expect_symbol(Scanner& s, std::string_view symbol);
-  // Nothing but a comment is left.
+  // Does the line end here, except for a comment?
   bool line_ends(Scanner& s);
 
   // Complaints. All give false, for `return fail(...)`.
@@ -62,6 +67,13 @@ class LineReader {
                   std::optional<Edit> fix = {});
   bool unexpected_clause(const Token& token, std::vector<std::string_view> known,
                          std::string remedy = "", Code code = Code::kSyntax);
+
+  // Of a line whose first mistake was reported, all that follows from it.
+  std::size_t complaints() const { return diagnostics_.size(); }
+  void forget_since(std::size_t complaints) {
+    diagnostics_.erase(diagnostics_.begin() + static_cast<std::ptrdiff_t>(complaints),
+                       diagnostics_.end());
+  }
 
  private:
   const Source& source_;

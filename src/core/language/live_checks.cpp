@@ -74,10 +74,9 @@ class LiveChecks {
       for (std::size_t i = 0; i < file_.rules[r].strategies.size(); ++i) {
         const syntax::Strategy& written = file_.rules[r].strategies[i];
         const Strategy& strategy = rules_[rules_.rules[r].strategies[i]];
-        for (std::size_t a = 0; a < written.adaptations.size(); ++a) {
-          services(written.adaptations[a]);
-          type_of_parameter(written.adaptations[a], strategy.adaptations[a]);
-        }
+        for (const syntax::Adaptation& each : written.adaptations) services(each);
+        for (const Adaptation& each : strategy.adaptations)
+          type_of_parameter(written.adaptations[each.written], each);
       }
     }
     return std::move(found_);
@@ -168,7 +167,7 @@ class LiveChecks {
     warn(Code::kNoSuchNode, name, cause, remedy, node, {name.end, name.end});
   }
 
-  // Without NODE: one of several that are no other component's, and nobody can say which.
+  // Without NODE: one of several nodes that are no other component's, and it is unknown which.
   void several_nodes(const syntax::Component& written) {
     const Component* c = component_of(written.name.text);
     if (c == nullptr || !c->node.empty()) return;
@@ -255,7 +254,7 @@ class LiveChecks {
          "start its server, or correct the name", closest_full_name(name, routines));
   }
 
-  // What every node of its kind offers.
+  // Services that every node of its kind offers.
   void services(const syntax::Adaptation& a) {
     using enum AdaptationType;
     switch (a.type) {
@@ -345,7 +344,7 @@ class LiveChecks {
       known.push_back(s.hardware_id);
     }
     if (!is_first(OccurrenceKind::kDiagnostic, o.name)) return;
-    warn(Code::kNoSuchDiagnostic, o.span, "no diagnostic status '" + o.name + "' was heard",
+    warn(Code::kNoSuchDiagnostic, o.span, "no diagnostic status '" + o.name + "' was received",
          kListenLonger, as_written(closest(o.name, known)));
   }
 
@@ -390,8 +389,9 @@ class LiveChecks {
         if (is_identifier(key)) known.push_back(key);
       }
     }
-    warn(Code::kNoSuchDiagnostic, o.span, "no diagnostic with the key '" + o.name + "' was heard",
-         kListenLonger, closest(o.name, known));
+    warn(Code::kNoSuchDiagnostic, o.span,
+         "no diagnostic with the key '" + o.name + "' was received", kListenLonger,
+         closest(o.name, known));
   }
 
   // ---- tools
@@ -451,7 +451,7 @@ class LiveChecks {
 
 bool comes_before(const Diagnostic& a, const Diagnostic& b) { return a.span.begin < b.span.begin; }
 
-// What is missing where nothing is wrong already.
+// Finds names that are missing on the robot, at places that have no diagnostic yet.
 std::vector<Diagnostic> find_missing(const syntax::File& file, const RuleSet& rules,
                                      const LiveInventory& robot,
                                      const std::vector<Diagnostic>& said) {

@@ -1,8 +1,8 @@
-// Rule file x robot -> warnings: what the file names and this robot has not.
+// Rule file x robot -> warnings: names in the file that do not exist on this robot.
 //
-// A thing is reported once, where it is named first (a node where it is declared), and nothing that
-// follows from it: the parameters of a node that is not there are missing for no reason of theirs.
-// All are warnings, for a robot changes: a node may only not be started yet.
+// A thing is reported once, where it is named first (a node where it is declared), without its
+// consequences: the parameters of a missing node are not reported as well. All are warnings, for a
+// robot changes: a node may only not be started yet.
 #pragma once
 
 #include <vector>
@@ -15,15 +15,15 @@
 
 namespace culprit {
 
-// Adds to `diagnostics`, which are those of check(), and keeps them in the order of the text. Where
-// something is wrong already, nothing is added.
+// Adds to `diagnostics`, which are those of check(), and keeps them in the order of the text.
+// Places that have a diagnostic already get none.
 void check_live(const syntax::File& file, const RuleSet& rules, const LiveInventory& robot,
                 std::vector<Diagnostic>& diagnostics);
 
-// Only what check_live() would add: what the robot has not.
+// Only the diagnostics that check_live() would add.
 std::vector<Diagnostic> missing_on(const LiveInventory& robot, const Source& source);
 
-// Of the launch commands of `rules`, which are those of `file`, the ones that have these troubles.
+// The launch commands of `rules`, whose tree is `file`, that have these troubles.
 std::vector<Diagnostic> cannot_launch(const syntax::File& file, const RuleSet& rules,
                                       const std::vector<LiveInventory::LaunchTrouble>& troubles);
 

@@ -52,6 +52,7 @@ std::optional<Value> LiveInventory::value_of(const Signal& signal, const RuleSet
     const Parameter& wanted = rules[*parameter];
     return value_of_parameter(node_of(rules[wanted.component]), wanted.name);
   }
+  if (std::holds_alternative<GroupId>(signal.source)) return std::nullopt;  // it is of many nodes
   for (const Status& status : diagnostics) {
     const auto* declared = std::get_if<DiagnosticKey>(&signal.source);
     const bool is_other = declared != nullptr && !status.is_called(declared->status);

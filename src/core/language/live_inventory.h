@@ -1,5 +1,5 @@
-// What a robot has at the moment, as far as rules can name it. An adapter sees it, checks and
-// editors compare it with what rule files say.
+// The parts of a robot that rules can name, as they are at the moment. An adapter collects them,
+// checks and editors compare them with the names in rule files.
 #pragma once
 
 #include <map>
@@ -15,20 +15,20 @@ namespace culprit {
 
 struct LiveInventory {
   struct Node {
-    // By name; without a value where it is an array or not set. Nothing while the node has not told
-    // them.
+    // By name; lists are texts (base/value_list.h), and unset ones have no value. Empty while the node has
+    // not listed them.
     std::optional<std::map<std::string, std::optional<Value>>> parameters;
     std::string lifecycle;  // "active"; empty where it is not managed, or has not told
     int pid = 0;            // on this machine; 0: it is not proven which
-    // Who runs it where the rules do not say so, and what to declare: "systemd as lidar.service: UNIT
-    // lidar.service". Empty: they do, or nobody can be told.
+    // The owner that runs it where the rules name none, and the clause to declare: "systemd as
+    // lidar.service: UNIT lidar.service". Empty: the rules name it, or it is unknown.
     std::string owner{};
     bool operator==(const Node&) const = default;
   };
   struct Topic {
     std::string type;                  // "sensor_msgs/msg/Image"
     std::set<std::string> publishers;  // the nodes, by their full names
-    // Of topics that are watched only.
+    // Only for topics that are watched.
     std::optional<double> rate;  // Hz
     std::map<std::string, Value> fields;
     std::map<std::string, std::string> unreadable;  // fields that it has not, with the reason
@@ -65,14 +65,14 @@ struct LiveInventory {
     bool operator==(const ContainerTrouble&) const = default;
   };
   std::vector<ContainerTrouble> container_troubles{};
-  // Likewise the computers that they are on.
+  // The same for the computers that they are on.
   struct HostTrouble {
     std::string host;
     std::string why;
     bool operator==(const HostTrouble&) const = default;
   };
   std::vector<HostTrouble> host_troubles{};
-  // What of the rules cannot be asked of the services that the robot has.
+  // A call in the rules that does not fit the services on the robot.
   struct RequestTrouble {
     std::string service;  // by its full name
     std::string request;
@@ -80,7 +80,7 @@ struct LiveInventory {
     bool operator==(const RequestTrouble&) const = default;
   };
   std::vector<RequestTrouble> request_troubles{};
-  // What of the rules could not be started: launch commands, and classes of containers.
+  // A clause of the rules that could not be started: launch commands, and classes of containers.
   struct LaunchTrouble {
     // kRunning: it could be started, and would then run otherwise than it does now.
     enum class Clause : std::uint8_t { kLaunch, kSetup, kFolder, kPlugin, kParameters, kRunning };
@@ -98,13 +98,13 @@ struct LiveInventory {
   // The full name of the component's node, empty if it is not there: the NODE that it is declared
   // with, or else the first one whose own name is the component's.
   std::string node_of(const Component& component) const;
-  // What a signal reads now. Nothing if there is nothing to read, or nobody watches it.
+  // The present value of a signal. Empty if there is none to read, or the signal is not watched.
   std::optional<Value> value_of(const Signal& signal, const RuleSet& rules) const;
   std::optional<Value> value_of_parameter(const std::string& node,
                                           const std::string& parameter) const;
 };
 
-// What of a robot somebody cares for: to look at more would disturb it for nothing.
+// The parts of a robot that are of interest: reading more would disturb it for nothing.
 struct LiveInterest {
   std::set<std::string> nodes;  // whose parameters and state are read; by full or own name
   std::map<std::string, std::set<std::string>> fields_of_topics;  // watched, also without a field
@@ -113,7 +113,7 @@ struct LiveInterest {
   bool includes_node(const std::string& full_name) const;
 };
 
-// What the rules name.
+// The interest in all parts that the rules name.
 LiveInterest interest_of(const RuleSet& rules);
 
 }  // namespace culprit

@@ -21,6 +21,7 @@ class Collector {
     own_ = constants_;
     for (const syntax::Component& component : file.components) own_.insert(component.name.text);
     for (const syntax::Signal& signal : file.signals) own_.insert(signal.name.text);
+    for (const syntax::Group& group : file.groups) own_.insert(group.name.text);
   }
 
   std::vector<Occurrence> collect() {
@@ -43,8 +44,18 @@ class Collector {
       add(OccurrenceKind::kComponent, d.consumer);
       for (const syntax::Name& producer : d.producers) add(OccurrenceKind::kComponent, producer);
     }
+    for (const syntax::Group& g : file_.groups) {
+      add(OccurrenceKind::kSignal, g.name, true);
+      for (const syntax::Name& member : g.members) add(OccurrenceKind::kComponent, member);
+      add(OccurrenceKind::kComponent, g.manager);
+    }
     for (const syntax::Name& topic : file_.ignored_topics) add(OccurrenceKind::kTopic, topic);
     for (const syntax::Interlock& i : file_.interlocks) expression(i.condition);
+    for (const syntax::Interlock& a : file_.aborts) expression(a.condition);
+    for (const syntax::Drill& d : file_.drills) {
+      add(OccurrenceKind::kComponent, d.component);
+      if (d.value) expression(*d.value);
+    }
     for (const syntax::Signal& s : file_.signals) signal(s);
     for (const syntax::Rule& r : file_.rules) rule(r);
     for (const syntax::Include& i : file_.includes) add(OccurrenceKind::kFile, i.file);
@@ -98,7 +109,8 @@ class Collector {
   }
 
   void adaptation(const syntax::Adaptation& a) {
-    add(OccurrenceKind::kComponent, a.component);
+    const bool is_group = a.type == syntax::AdaptationType::kStartGroup;
+    add(is_group ? OccurrenceKind::kSignal : OccurrenceKind::kComponent, a.component);
     if (syntax::names_parameter(a.type))
       add(OccurrenceKind::kParameter, a.subject, false, a.component.text);
     if (a.type == syntax::AdaptationType::kCall)

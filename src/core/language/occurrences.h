@@ -39,8 +39,8 @@ struct Occurrence {
 };
 
 // In the order of the text. A name in an expression that the file declares as a constant is that
-// constant, any other one is a signal. What a template declares has the template for its scope; names
-// with parameters in them are left out.
+// constant, any other one is a signal. A declaration in a template has the template for its scope;
+// names with parameters in them are left out.
 std::vector<Occurrence> occurrences(const syntax::File& file);
 // The same, with the parameters of templates. `file` is the tree of `source`.
 std::vector<Occurrence> occurrences(const syntax::File& file, const Source& source);

@@ -1,7 +1,8 @@
 #include "language/origins.h"
 
 #include <algorithm>
-#include <cassert>
+
+#include "base/invariant.h"
 
 namespace culprit {
 namespace {
@@ -33,7 +34,7 @@ std::vector<Step> up_from(std::uint32_t step, const std::vector<Step>& steps) {
 
 Origin origin_of(Span span, const std::vector<Piece>& pieces, const std::vector<Step>& steps,
                  std::uint32_t size) {
-  assert(!pieces.empty() && span.begin <= span.end && span.end <= size);
+  CULPRIT_ASSERT(!pieces.empty() && span.begin <= span.end && span.end <= size);
   const std::size_t first = piece_at(span.begin, pieces);
   const std::size_t last = piece_at(span.end > span.begin ? span.end - 1 : span.begin, pieces);
   const Piece& begin = pieces[first];
@@ -47,7 +48,7 @@ Origin origin_of(Span span, const std::vector<Piece>& pieces, const std::vector<
   Origin out;
   out.place = {begin.written.file, {begin_in(begin, span.begin), 0}};
   out.steps = up_from(begin.step, steps);
-  // What reaches over several files is where it begins.
+  // A span over several files gets the place where it begins.
   const bool is_one = end.written.file == begin.written.file && end.step == begin.step;
   const Piece& closing = is_one ? end : begin;
   out.place.span.end = std::max(out.place.span.begin, end_in(closing, is_one ? span.end : size));

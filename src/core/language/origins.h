@@ -37,13 +37,14 @@ struct Piece {
   Place written;
   bool is_verbatim = true;  // byte for byte as written; else it stands for all of `written`
   std::uint32_t step = Step::kNone;
-  // What a USE gives for the parameter at `written`, and by which step that USE came.
+  // The argument that a USE gives for the parameter at `written`, and the step that brought that
+  // USE.
   std::optional<Place> argument{};
   bool is_argument_verbatim = true;
   std::uint32_t argument_step = Step::kNone;
 };
 
-// What a person is told of where a part of the text comes from.
+// The origin of a part of the text, for messages to a person.
 struct Origin {
   Place place;                   // where to look first, and what to change
   bool is_exact = true;          // the part stands there byte for byte

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <utility>
 
 #include "language/line_reader.h"
@@ -13,9 +14,16 @@ namespace {
 
 using syntax::Name;
 
+constexpr std::array<std::string_view, 17> kComponentClauses = {
+    "NODE",      "LAUNCH",    "ENV",      "SETUP",  "CWD",      "UNIT",
+    "CONTAINER", "HOST",      "IN",       "PLUGIN", "PACKAGE",  "PARAMETERS",
+    "REMAP",     "RESPAWNED", "REQUIRED", "READY",  "LIFECYCLE"};
+constexpr std::array<std::string_view, 1> kEqualsSign = {"="};
+constexpr std::array<std::string_view, 3> kSignalSources = {"DIAGNOSTIC", "TOPIC", "PARAMETER"};
+
 class Parser {
  public:
-  // What is read is put behind what `file` has already.
+  // Appends the parsed lines to `file`.
   Parser(const Source& source, syntax::File& file, std::vector<Diagnostic>& diagnostics,
          std::vector<Lexeme>* lexemes)
       : source_(source), read_(source, diagnostics), lexemes_(lexemes), file_(file) {}
@@ -52,8 +60,11 @@ class Parser {
         Statement{"CONST", &Parser::constant},
         Statement{"COMPONENT", &Parser::component},
         Statement{"DEPENDENCY", &Parser::dependency},
+        Statement{"GROUP", &Parser::group},
         Statement{"IGNORE", &Parser::ignore},
         Statement{"INTERLOCK", &Parser::interlock},
+        Statement{"ABORT", &Parser::abort},
+        Statement{"DRILL", &Parser::drill},
         Statement{"SIGNAL", &Parser::signal},
         Statement{"RULE", &Parser::rule},
         Statement{"POLICIES", &Parser::policies},
@@ -68,39 +79,71 @@ class Parser {
     };
     const Token head = s.next();
     if (head.kind == Token::Kind::kBad) {
-      const auto [cause, fix] = complaint_about(head);
-      read_.fail(Code::kBadToken, head.span, cause, "", fix);
+      read_.fail_token(head, "a statement", "");
       return broken();
     }
-    const char first = head.text.empty() ? '\0' : head.text.front();  // which most differ in
-    for (const Statement& candidate : kStatements) {
-      if (candidate.keyword.front() != first || candidate.keyword != head.text) continue;
-      keyword_ = head.span;
-      const Scanner behind_keyword = s;
-      if (has_placeholder(s) || has_colon(s) || !(this->*candidate.parse)(s) ||
-          !read_.line_ends(s)) {
-        broken();
-        broken_declaration(candidate.keyword, behind_keyword);
+    const auto known = [](std::string_view word) -> const Statement* {
+      const char first = word.empty() ? '\0' : word.front();  // which most differ in
+      for (const Statement& candidate : kStatements) {
+        if (candidate.keyword.front() == first && candidate.keyword == word) return &candidate;
       }
-      return;
+      return nullptr;
+    };
+    const Statement* meant = known(head.text);
+    const std::size_t complaints = read_.complaints() + 1;
+    if (meant == nullptr) {
+      std::vector<std::string_view> keywords;
+      for (const Statement& each : kStatements) keywords.push_back(each.keyword);
+      const std::string near = meant_keyword(head, keywords);
+      if (!foreign_comment(head, s)) unknown_statement(head, near);
+      // A word of another tool may stand for a line that the rule has as well.
+      const bool is_foreign = near != "RULE" && near == word_of_other_tools(upper_case(head.text));
+      meant = is_foreign ? nullptr : known(near);
+      if (meant == nullptr) return broken();
     }
-    std::vector<std::string_view> keywords;
-    for (const Statement& known : kStatements) keywords.push_back(known.keyword);
-    std::string upper(head.text);
-    std::transform(upper.begin(), upper.end(), upper.begin(),
-                   [](unsigned char c) { return std::toupper(c); });
-    const bool lower_case = std::find(keywords.begin(), keywords.end(), upper) != keywords.end();
-    std::string near = lower_case ? upper : closest(upper, keywords);
-    if (near.empty()) near = word_of_other_tools(upper);
+    keyword_ = head.span;
+    bool is_good_head = meant->keyword == head.text && !has_placeholder(s);
+    if (has_colon(s)) is_good_head = false;  // it is taken, so that the line can be read
+    const Scanner behind_keyword = s;
+    const bool is_good = (this->*meant->parse)(s) && read_.line_ends(s);
+    // One mistake, one message: the statement is read as it was meant, so that the lines that
+    // follow stand where they belong; its own other mistakes show once its first word is right.
+    if (!is_good_head) read_.forget_since(complaints);
+    if (is_good && is_good_head) return;
+    broken();
+    broken_declaration(meant->keyword, behind_keyword);
+  }
+
+  static std::string meant_keyword(const Token& head,
+                                   const std::vector<std::string_view>& keywords) {
+    const std::string upper = upper_case(head.text);
+    if (std::find(keywords.begin(), keywords.end(), upper) != keywords.end()) return upper;
+    const std::string near = closest(upper, keywords);
+    return near.empty() ? word_of_other_tools(upper) : near;
+  }
+
+  void unknown_statement(const Token& head, const std::string& near) {
     const std::string word(source_.text(head.span));
     read_.fail(Code::kUnknownStatement, head.span, "no statement begins with '" + word + "'",
-               !near.empty() ? "did you mean " + near + "?"
-                             : "a line begins with one of ROBOT CYCLE CONST COMPONENT DEPENDENCY "
-                               "IGNORE INTERLOCK SIGNAL RULE POLICIES TRIGGER STRATEGY ADAPTATION "
-                               "THEN INCLUDE TEMPLATE END USE",
+               !near.empty()
+                   ? "did you mean " + near + "?"
+                   : "a line begins with one of ROBOT CYCLE CONST COMPONENT DEPENDENCY "
+                     "GROUP IGNORE INTERLOCK ABORT DRILL SIGNAL RULE POLICIES TRIGGER STRATEGY "
+                     "ADAPTATION THEN INCLUDE TEMPLATE END USE",
                replacement(head.span, near));
-    broken();
-    broken_declaration(near, s);
+  }
+
+  // A line that is a comment elsewhere.
+  bool foreign_comment(const Token& head, Scanner& s) {
+    const Token& second = s.peek();
+    const bool adjoins = second.span.begin == head.span.end;
+    const bool is_comment =
+        adjoins && ((head.is("-") && second.is("-")) || (head.is("/") && second.is("*")));
+    if (!is_comment) return false;
+    const Span both{head.span.begin, second.span.end};
+    return !read_.fail(Code::kUnknownStatement, both,
+                       "no comment begins with '" + std::string(source_.text(both)) + "'",
+                       "begin each line of a comment with #", Edit{both, "#"});
   }
 
   // Where people who know alerting or behaviour tools look first.
@@ -124,22 +167,30 @@ class Parser {
     if (!token.is(":")) return false;
     read_.fail(Code::kExtraText, token.span, "no ':' stands behind the word of a statement",
                "remove the ':'", Edit{token.span, ""});
+    s.next();
     return true;
   }
 
   // The name that the line was about to declare, so that its uses are not called undeclared.
   void broken_declaration(std::string_view keyword, Scanner s) {
     using Broken = syntax::BrokenDeclaration::Kind;
-    const Token name = s.next();
-    if (name.kind != Token::Kind::kIdentifier) return;
-    if (keyword == "CONST")
-      into_->broken_declarations.push_back(
-          {Broken::kConstant, {std::string(name.text), name.span}});
-    if (keyword == "COMPONENT")
-      into_->broken_declarations.push_back(
-          {Broken::kComponent, {std::string(name.text), name.span}});
-    if (keyword == "SIGNAL")
-      into_->broken_declarations.push_back({Broken::kSignal, {std::string(name.text), name.span}});
+    const auto declare = [&](const Token& name) {
+      if (keyword == "CONST")
+        into_->broken_declarations.push_back(
+            {Broken::kConstant, {std::string(name.text), name.span}});
+      if (keyword == "COMPONENT")
+        into_->broken_declarations.push_back(
+            {Broken::kComponent, {std::string(name.text), name.span}});
+      if (keyword == "SIGNAL" || keyword == "GROUP")
+        into_->broken_declarations.push_back(
+            {Broken::kSignal, {std::string(name.text), name.span}});
+    };
+    // All words of a name with blanks in it: each may be how the rules call it.
+    for (Token name = s.next(); name.kind == Token::Kind::kIdentifier; name = s.next()) {
+      const auto reserved = reserved_words();
+      if (std::find(reserved.begin(), reserved.end(), name.text) != reserved.end()) return;
+      declare(name);
+    }
   }
 
   // The paper's and our own documentation write <name> where a name is to be put in; people copy
@@ -169,7 +220,7 @@ class Parser {
 
   bool robot(Scanner& s) {
     const auto name = read_.identifier(s, "the robot's name");
-    if (!name) return false;
+    if (!name || !read_.is_one_word(s, *name)) return false;
     if (into_->robot)
       return read_.fail(Code::kDuplicateName, name->span, "the robot has a name already",
                         "keep one ROBOT line");
@@ -192,16 +243,27 @@ class Parser {
 
   bool constant(Scanner& s) {
     auto name = read_.declared_name(s, "the constant's name");
-    if (!name || !read_.expect_symbol(s, "=")) return false;
+    if (!name || !read_.is_one_word(s, *name, kEqualsSign) || !equals_sign(s, *name)) return false;
     auto value = read_.expression(s);
     if (!value || !read_.line_ends(s)) return false;
     into_->constants.push_back({std::move(*name), std::move(*value)});
     return true;
   }
 
+  bool equals_sign(Scanner& s, const Name& constant) {
+    const Token token = s.next();
+    if (token.is("=")) return true;
+    const bool is_assignment = token.is(":") && s.peek().is("=");
+    return read_.fail_token(
+        token, "'='", "write CONST " + constant.text + " = 0.5",
+        is_assignment ? Edit{token.span, ""} : Edit{{token.span.begin, token.span.begin}, "= "});
+  }
+
   bool component(Scanner& s) {
     auto name = read_.declared_name(s, "the component's name");
     if (!name) return false;
+    if (is_clause_far(s, kComponentClauses) && !read_.is_one_word(s, *name, kComponentClauses))
+      return false;
     syntax::Component component{std::move(*name), {}, {}};
     while (!s.at_end()) {
       const Token& clause = s.peek();
@@ -241,7 +303,7 @@ class Parser {
         if (!component.engine_container) return false;
       } else if (clause.text == "HOST" && !component.host) {
         s.next();
-        component.host = read_.name_or_text(s, "the computer that runs it, as ssh is told");
+        component.host = read_.name_or_text(s, "the computer that runs it, as for ssh");
         if (!component.host) return false;
       } else if (clause.text == "IN" && !component.container) {
         s.next();
@@ -279,14 +341,21 @@ class Parser {
         s.next();
         if (!lifecycle(s, component)) return false;
       } else {
-        return read_.unexpected_clause(
-            clause,
-            {"NODE", "LAUNCH", "ENV", "SETUP", "CWD", "UNIT", "CONTAINER", "HOST", "IN", "PLUGIN",
-             "PACKAGE", "PARAMETERS", "REMAP", "RESPAWNED", "REQUIRED", "READY", "LIFECYCLE"});
+        return read_.unexpected_clause(clause,
+                                       {kComponentClauses.begin(), kComponentClauses.end()});
       }
     }
     into_->components.push_back(std::move(component));
     return true;
+  }
+
+  // Whether the next word is none of these `clauses` nor one of them written wrong.
+  static bool is_clause_far(const Scanner& s, std::span<const std::string_view> clauses) {
+    const Token& token = s.peek();
+    if (std::find(clauses.begin(), clauses.end(), token.text) != clauses.end()) return false;
+    const std::string upper = upper_case(token.text);
+    return std::find(clauses.begin(), clauses.end(), upper) == clauses.end() &&
+           closest(upper, {clauses.begin(), clauses.end()}).empty();
   }
 
   // The other nodes of the same process.
@@ -309,9 +378,9 @@ class Parser {
     } else if (driver.text == "launcher") {
       component.lifecycle = kLauncher;
     } else {
-      return read_.fail_token(driver, "who takes it through its lifecycle",
+      return read_.fail_token(driver, "the driver of its lifecycle",
                               "write self (the node does), managed (culprit does) or launcher "
-                              "(whoever starts it does)");
+                              "(the program that starts it does)");
     }
     return true;
   }
@@ -329,6 +398,29 @@ class Parser {
     return true;
   }
 
+  bool group(Scanner& s) {
+    auto name = read_.declared_name(s, "the group's name");
+    if (!name) return false;
+    syntax::Group group{std::move(*name), {}, {}};
+    if (!s.take('{'))
+      return read_.fail_token(s.next(), "'{'",
+                              "write the components in braces: GROUP navigation { planner, "
+                              "controller } MANAGER lifecycle_manager");
+    do {
+      auto member = read_.identifier(s, "a component of the group");
+      if (!member) return false;
+      group.members.push_back(std::move(*member));
+    } while (s.take(','));
+    if (!s.take('}'))
+      return read_.fail_token(s.next(), "',' or '}'", "commas stand between the components");
+    if (!read_.expect_word(s, "MANAGER")) return false;
+    auto manager = read_.identifier(s, "the component that manages the group");
+    if (!manager) return false;
+    group.manager = std::move(*manager);
+    into_->groups.push_back(std::move(group));
+    return true;
+  }
+
   bool ignore(Scanner& s) {
     if (!read_.expect_word(s, "TOPIC")) return false;
     do {
@@ -339,17 +431,53 @@ class Parser {
     return true;
   }
 
-  bool interlock(Scanner& s) {
+  bool interlock(Scanner& s) { return condition(s, into_->interlocks); }
+  bool abort(Scanner& s) { return condition(s, into_->aborts); }
+
+  bool condition(Scanner& s, std::vector<syntax::Interlock>& all) {
     auto condition = read_.expression(s);
     if (!condition || !read_.line_ends(s)) return false;
     std::string text(source_.text(condition->span));
-    into_->interlocks.push_back({std::move(*condition), std::move(text)});
+    all.push_back({std::move(*condition), std::move(text)});
+    return true;
+  }
+
+  bool drill(Scanner& s) {
+    using What = syntax::Drill::What;
+    auto component = read_.component_reference(s);
+    if (!component) return false;
+    syntax::Drill drill{.component = std::move(*component)};
+    const Token word = s.next();
+    if (word.text == "set_parameter") {
+      drill.what = What::kSetParameter;
+      auto parameter = read_.name_or_text(s, "the parameter");
+      if (!parameter) return false;
+      drill.subject = std::move(*parameter);
+      drill.value = read_.expression(s);
+      if (!drill.value || !read_.line_ends(s)) return false;
+    } else if (word.text == "without") {
+      drill.what = What::kWithout;
+      const Token fault = s.next();
+      const auto known = syntax::drill_faults();
+      if (std::ranges::find(known, fault.text) == known.end())
+        return read_.unexpected_clause(fault, known);
+      drill.subject = {std::string(fault.text), fault.span};
+    } else if (word.text == "limit") {
+      const auto times = read_.whole_number(s, "how often it is broken at most");
+      if (!times) return false;
+      drill.times = *times;
+    } else {
+      return read_.unexpected_clause(word, {"set_parameter", "without", "limit"});
+    }
+    into_->drills.push_back(std::move(drill));
     return true;
   }
 
   bool signal(Scanner& s) {
     auto name = read_.declared_name(s, "the signal's name");
     if (!name) return false;
+    if (is_clause_far(s, kSignalSources) && !read_.is_one_word(s, *name, kSignalSources))
+      return false;
     syntax::Signal signal{std::move(*name), {}, {}, {}};
     if (!signal_source(s, signal)) return false;
     while (!s.at_end()) {
@@ -390,7 +518,7 @@ class Parser {
       if (!parameter) return false;
       signal.source = syntax::ParameterSource{std::move(*component), std::move(*parameter)};
     } else {
-      return read_.unexpected_clause(kind, {"DIAGNOSTIC", "TOPIC", "PARAMETER"});
+      return read_.unexpected_clause(kind, {kSignalSources.begin(), kSignalSources.end()});
     }
     return true;
   }
@@ -485,8 +613,8 @@ class Parser {
     into_->rules.back().has_broken_part = std::exchange(stray_part_, false);
     auto name = read_.declared_name(s, "the rule's name");
     if (!name) return false;
-    into_->rules.back().name = std::move(*name);
-    return true;
+    into_->rules.back().name = *name;
+    return read_.is_one_word(s, *name);
   }
 
   bool policies(Scanner& s) {
@@ -511,7 +639,7 @@ class Parser {
       // The nearest word would be NON_CRITICAL.
       return read_.fail(Code::kSyntax, level.span,
                         "there is no criticality " + std::string(level.text),
-                        "did you mean ERROR? It is the highest", Edit{level.span, "ERROR"});
+                        "did you mean ERROR, the highest one?", Edit{level.span, "ERROR"});
     }
     if (level.text == "ERROR" || level.text == "FAILURE") {
       policies.criticality = kError;
@@ -578,7 +706,7 @@ class Parser {
     rule.strategies.emplace_back();
     rule.strategies.back().has_broken_adaptation = true;  // until the line is understood
     auto name = read_.identifier(s, "the strategy's name");
-    if (!name) return false;
+    if (!name || !read_.is_one_word(s, *name)) return false;
     const auto probability = read_.number(s, "the success probability in percent");
     if (!probability) return false;
     const auto confidence = read_.number(s, "the confidence in it (1 to 100)");
@@ -635,6 +763,7 @@ class Parser {
     if (!component) return false;
     const Token word = s.next();
     const auto type = syntax::adaptation_type(word.text);
+    if (!type && syntax::adaptation_type(component->text)) return lacks_component(*component, word);
     if (!type) return unknown_adaptation(word);
     syntax::Adaptation adaptation;
     adaptation.component = std::move(*component);
@@ -660,6 +789,10 @@ class Parser {
       case kIncreaseParameter:
       case kDecreaseParameter:
         if (!take_name(adaptation.subject, "the parameter")) return false;
+        if (const Token& sign = s.peek(); sign.is("="))
+          return read_.fail(Code::kSyntax, sign.span,
+                            "no '=' stands between a parameter and its value", "remove the '='",
+                            Edit{sign.span, ""});
         adaptation.value = read_.expression(s);
         return adaptation.value.has_value();
       case kChangeCommunication:
@@ -678,6 +811,7 @@ class Parser {
       case kRedeploy:
       case kStart:
       case kStop:
+      case kStartGroup:
         return true;
     }
     return false;
@@ -685,10 +819,47 @@ class Parser {
 
   // Where one number is there, it was read as the value.
   static std::string impact_remedy(const syntax::Adaptation& adaptation, Scanner& s) {
-    if (!adaptation.value || !s.at_end()) return "";
+    if (s.peek().kind == Token::Kind::kDuration)
+      return "an impact counts cycles, not time: write it without a unit";
+    if (!adaptation.value) return s.at_end() ? "add it at the end: a usual impact is 10" : "";
+    if (!s.at_end()) return "";
     const std::string word(keyword(adaptation.type));
     return "the value and the impact stand at the end: " + word + " " + adaptation.subject.text +
            (adaptation.type == syntax::AdaptationType::kSetParameter ? " true 2" : " 0.5 2");
+  }
+
+  // "ADAPTATION redeploy camera 10", or no component at all
+  bool lacks_component(const Name& type, const Token& word) {
+    const bool is_swapped = word.kind == Token::Kind::kIdentifier;
+    const std::string component = is_swapped ? std::string(word.text) : "component";
+    const std::string right = component + " " + type.text;
+    const Span span{type.span.begin, is_swapped ? word.span.end : type.span.end};
+    return read_.fail(Code::kSyntax, span, "the component stands in front of what to do with it",
+                      "write ADAPTATION " + right,
+                      is_swapped ? std::optional(Edit{span, right}) : std::nullopt);
+  }
+
+  // As other tools call it.
+  static std::string adaptation_of_other_tools(std::string_view word) {
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 14> kWords = {
+        {{"reboot", "redeploy"},
+         {"respawn", "redeploy"},
+         {"relaunch", "redeploy"},
+         {"reload", "redeploy"},
+         {"kill", "redeploy"},
+         {"reset", "redeploy"},
+         {"launch", "start"},
+         {"run", "start"},
+         {"terminate", "stop"},
+         {"shutdown", "stop"},
+         {"set", "set_parameter"},
+         {"set_param", "set_parameter"},
+         {"remap", "change_communication"},
+         {"call_service", "call"}}};
+    for (const auto& [theirs, ours] : kWords) {
+      if (theirs == word) return std::string(ours);
+    }
+    return "";
   }
 
   bool unknown_adaptation(const Token& word) {
@@ -698,14 +869,14 @@ class Parser {
     std::transform(plain.begin(), plain.end(), plain.begin(),
                    [](unsigned char c) { return std::tolower(c); });
     if (plain.starts_with("action_")) plain.erase(0, 7);  // as in the reference's dialect
-    const std::string near =
-        syntax::adaptation_type(plain) ? plain : closest(plain, syntax::adaptation_keywords());
+    std::string near = syntax::adaptation_type(plain) ? plain : adaptation_of_other_tools(plain);
+    if (near.empty()) near = closest(plain, syntax::adaptation_keywords());
     return read_.fail(
         Code::kUnknownAdaptation, word.span,
         "there is no adaptation '" + std::string(word.text) + "'",
         near.empty()
             ? "known: set_parameter increase_parameter decrease_parameter change_communication "
-              "activate deactivate restart redeploy start stop change_mode call"
+              "activate deactivate restart redeploy start stop change_mode call start_group"
             : "did you mean '" + near + "'?",
         replacement(word.span, near));
   }
@@ -746,6 +917,28 @@ class Parser {
   Span template_keyword_;
 };
 
+// As editors of old computers end lines. A carriage return is a blank elsewhere.
+bool has_line_of_a_carriage_return(std::string_view text) {
+  for (auto at = text.find('\r'); at != std::string_view::npos; at = text.find('\r', at + 1)) {
+    if (at + 1 < text.size() && text[at + 1] >= 'A' && text[at + 1] <= 'Z') return true;
+  }
+  return false;
+}
+
+// Text of a kind that has no lines for us: each of them would be a mistake.
+std::optional<Diagnostic> foreign_text(const Source& source) {
+  const std::string_view text = source.text();
+  const Span begin{0, std::min<std::uint32_t>(1, static_cast<std::uint32_t>(text.size()))};
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
+    return Diagnostic{Code::kBadToken, Severity::kError, begin, "this file is UTF-16",
+                      "save it as UTF-8"};
+  if (text.find('\n') == std::string_view::npos && has_line_of_a_carriage_return(text))
+    return Diagnostic{Code::kBadToken, Severity::kError, begin,
+                      "the lines of this file end with a carriage return only",
+                      "save it with Unix line ends (LF)"};
+  return std::nullopt;
+}
+
 // For what large files have many of: a vector that grows moves all that it has, again and again.
 void reserve(syntax::File& file, const Source& source) {
   std::size_t components = 0, dependencies = 0, signals = 0, rules = 0;
@@ -767,6 +960,10 @@ void reserve(syntax::File& file, const Source& source) {
 syntax::File parse(const Source& source, std::vector<Diagnostic>& diagnostics,
                    std::vector<Lexeme>* lexemes) {
   syntax::File file;
+  if (const auto foreign = foreign_text(source)) {
+    diagnostics.push_back(*foreign);
+    return file;
+  }
   reserve(file, source);
   Parser(source, file, diagnostics, lexemes).parse(0, [](std::uint32_t, bool) { return false; });
   return file;

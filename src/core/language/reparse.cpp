@@ -58,6 +58,12 @@ class Mover {
     move(consumer);
     move(producers);
   }
+  void move(syntax::Group& g) const {
+    auto& [name, members, manager] = g;
+    move(name);
+    move(members);
+    move(manager);
+  }
   void move(syntax::DiagnosticSource& s) const {
     auto& [status, key] = s;
     move(status);
@@ -118,6 +124,12 @@ class Mover {
     auto& [condition, text] = i;
     move(condition);
   }
+  void move(syntax::Drill& d) const {
+    auto& [component, what, subject, value, times] = d;
+    move(component);
+    move(subject);
+    move(value);
+  }
   void move(syntax::BrokenDeclaration& b) const { move(b.name); }
   void move(syntax::Include& i) const {
     auto& [file, span] = i;
@@ -145,15 +157,18 @@ class Mover {
     move(lines);
   }
   void move(syntax::File& f) const {
-    auto& [robot, cycle, constants, components, dependencies, ignored_topics, interlocks, signals,
-           rules, broken_declarations, includes, templates, uses] = f;
+    auto& [robot, cycle, constants, components, dependencies, groups, ignored_topics, interlocks,
+           aborts, drills, signals, rules, broken_declarations, includes, templates, uses] = f;
     move(robot);
     move(cycle);
     move(constants);
     move(components);
     move(dependencies);
+    move(groups);
     move(ignored_topics);
     move(interlocks);
+    move(aborts);
+    move(drills);
     move(signals);
     move(rules);
     move(broken_declarations);
@@ -185,6 +200,7 @@ std::uint32_t place_of(const syntax::Name& name) { return name.span.begin; }
 std::uint32_t place_of(const syntax::File::Cycle& cycle) { return cycle.span.begin; }
 std::uint32_t place_of(const syntax::Dependency& d) { return place_of(d.consumer); }
 std::uint32_t place_of(const syntax::Interlock& i) { return i.condition.span.begin; }
+std::uint32_t place_of(const syntax::Drill& d) { return place_of(d.component); }
 std::uint32_t place_of(const syntax::Rule& r) { return r.begin; }
 std::uint32_t place_of(const syntax::Include& i) { return i.span.begin; }
 std::uint32_t place_of(const syntax::Template& t) { return t.span.begin; }
@@ -195,8 +211,7 @@ std::uint32_t place_of(const Declaration& d) {
   return place_of(d.name);
 }
 
-// Parts are in the order of the text. What stands at `place` and behind it goes from `from` to the
-// end of `to`.
+// Parts are in the order of the text. Moves the parts from `place` on to the end of `to`.
 template <class T>
 void cut(std::vector<T>& from, std::uint32_t place, std::vector<T>& to) {
   const auto tail = std::partition_point(from.begin(), from.end(),
@@ -209,15 +224,18 @@ void cut(std::optional<T>& from, std::uint32_t place, std::optional<T>& to) {
   if (from && place_of(*from) >= place) to = std::exchange(from, std::nullopt);
 }
 void cut(syntax::File& from, std::uint32_t place, syntax::File& to) {
-  auto& [robot, cycle, constants, components, dependencies, ignored_topics, interlocks, signals,
-         rules, broken_declarations, includes, templates, uses] = from;
+  auto& [robot, cycle, constants, components, dependencies, groups, ignored_topics, interlocks,
+         aborts, drills, signals, rules, broken_declarations, includes, templates, uses] = from;
   cut(robot, place, to.robot);
   cut(cycle, place, to.cycle);
   cut(constants, place, to.constants);
   cut(components, place, to.components);
   cut(dependencies, place, to.dependencies);
+  cut(groups, place, to.groups);
   cut(ignored_topics, place, to.ignored_topics);
   cut(interlocks, place, to.interlocks);
+  cut(aborts, place, to.aborts);
+  cut(drills, place, to.drills);
   cut(signals, place, to.signals);
   cut(rules, place, to.rules);
   cut(broken_declarations, place, to.broken_declarations);
@@ -241,8 +259,8 @@ Common common(std::string_view a, std::string_view b) {
   return {static_cast<std::uint32_t>(front), static_cast<std::uint32_t>(back)};
 }
 
-// Where a tree can be cut: the parser is at the begin of such a line what it is at the begin of a
-// text, or becomes the same whatever it was.
+// Places where a tree can be cut: at the begin of such a line the parser is in the same state as at
+// the begin of a text, or comes to the same state from any.
 class Cuts {
  public:
   // Up to `plain_end` no rule and no template has begun, and no part of a rule stands there.
@@ -307,9 +325,9 @@ Parsed reparse(Parsed before, Source source) {
   cut(before.file, begin, rest.file);
   cut(before.said, begin, rest.said);
 
-  // A line is known if the tree can be cut there, and that line and all behind it are what they
-  // were; the line end in front of it, too. What it says of a second ROBOT or CYCLE does not change
-  // as long as there was a first one before, or still is none.
+  // A line is known if the tree can be cut there, and the line and all after it are unchanged; the
+  // line end before it, too. A report about a second ROBOT or CYCLE stays the same as long as there
+  // was a first one before, or there is still none.
   const bool has_robot = before.file.robot.has_value();
   const bool has_cycle = before.file.cycle.has_value();
   const auto was_set_before = [](const auto& part, std::uint32_t place) {

@@ -3,10 +3,10 @@
 //     Parsed parsed = parse_whole(Source(name, text));
 //     parsed = reparse(std::move(parsed), Source(name, text_after_a_keystroke));
 //
-// A RULE line begins anew whatever the lines before it said, and so does each line in front of the
-// first one, so the tree can be cut there: what is in front of the change stays as it is, what is
-// behind it is moved to where it stands now, and only the lines between are parsed. The result is
-// in every part that of a parse of the whole text; what the names mean is not looked at here.
+// A RULE line begins anew whatever the lines before it contain, and so does each line in front of
+// the first one, so the tree can be cut there. Parts in front of the change stay as they are; parts
+// behind it are moved to where they stand now; only the lines between are parsed. The result is the
+// same in every part as a parse of the whole text. The meaning of names is not checked here.
 #pragma once
 
 #include <vector>

@@ -64,8 +64,8 @@ const char* contradiction(const Adaptation& first, const Adaptation& second) {
 }
 
 // The starts and stops of one component in a strategy. They are carried out in their order, so they
-// may take turns (paper: a node is not added twice "without removing it"): start, stop, start. What
-// is the opposite in the end of what it was in the beginning was not meant.
+// may take turns (paper: a node is not added twice "without removing it"): start, stop, start. A
+// strategy whose last one is the opposite of its first was not meant.
 class Presence {
  public:
   // Why `next` cannot follow; null if it can.
@@ -89,8 +89,8 @@ class Presence {
   const Adaptation* last_ = nullptr;
 };
 
-// What a strategy has done to one component so far: of adaptations that contradict the same ones,
-// the first.
+// The adaptations of one component in a strategy so far. Of several that contradict the same others
+// it keeps the first.
 class Done {
  public:
   // Why the earliest of those that contradict `next` does so; null if none does.
@@ -119,7 +119,7 @@ class Done {
 
  private:
   Presence presence_;
-  std::array<const Adaptation*, static_cast<std::size_t>(kCall) + 1> of_type_{};
+  std::array<const Adaptation*, static_cast<std::size_t>(kStartGroup) + 1> of_type_{};
   std::map<std::string_view, const Adaptation*> by_parameter_;
 };
 
@@ -165,7 +165,8 @@ bool takes_back(const std::vector<Adaptation>& all, std::size_t place) {
   return false;
 }
 
-// Of all components, one behind the other: a list for each would be thousands of small blocks.
+// The producers of all components, in one array: a list for each would be thousands of small
+// blocks.
 class Producers {
  public:
   explicit Producers(const RuleSet& rules)
@@ -247,6 +248,9 @@ void check_contradictions(const syntax::Strategy& strategy, std::vector<Diagnost
 void check_launches(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
                     std::vector<Diagnostic>& diagnostics) {
   std::vector<Diagnostic> impossible;
+  std::set<std::string> components;        // that lack it
+  std::vector<std::size_t> misspelt;       // diagnostics
+  std::size_t failing = 0;                 // strategies
   auto written = rule.strategies.begin();  // in the same order, but for those without a name
   for (const StrategyId s : rules[id].strategies) {
     const Strategy& strategy = rules[s];
@@ -254,8 +258,19 @@ void check_launches(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
     const auto missing = std::find_if(strategy.adaptations.begin(), strategy.adaptations.end(),
                                       [&](const auto& a) { return lacks_launch(a, rules); });
     if (missing == strategy.adaptations.end()) continue;
-    const auto place = static_cast<std::size_t>(missing - strategy.adaptations.begin());
+    const std::size_t place = missing->written;
+    ++failing;
+    // A misspelt name is the mistake; the component that is meant may well have a LAUNCH.
+    const Span name = written->adaptations[place].component.span;
+    const auto its = std::find_if(diagnostics.begin(), diagnostics.end(), [&](const auto& d) {
+      return d.code == Code::kUnknownName && d.span == name;
+    });
+    if (its != diagnostics.end()) {
+      misspelt.push_back(static_cast<std::size_t>(its - diagnostics.begin()));
+      continue;
+    }
     const bool is_ended = missing->type == kRedeploy;
+    components.insert(rules[missing->component].name);
     impossible.push_back({Code::kNoLaunch, Severity::kWarning, written->adaptations[place].span,
                           "strategy '" + strategy.name + "' can never run: component '" +
                               rules[missing->component].name + "' has no LAUNCH command",
@@ -263,14 +278,22 @@ void check_launches(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
                                       "or UNIT if systemd runs it") +
                               (is_ended ? ", or RESPAWNED if its launcher starts it again" : "")});
   }
-  if (!impossible.empty() && impossible.size() == rules[id].strategies.size()) {
+  const bool is_never_valid = failing > 0 && failing == rules[id].strategies.size();
+  if (is_never_valid && !misspelt.empty()) {
+    for (const std::size_t place : misspelt) diagnostics[place].severity = Severity::kError;
+    return;
+  }
+  if (is_never_valid) {
     // One mistake, one message: this one says what those of the strategies would.
+    const bool is_one = components.size() == 1;
     diagnostics.push_back({Code::kNeverValid, Severity::kError, rule.name.span,
-                           "no strategy of rule '" + rule.name.text +
-                               "' can ever run: the components that they start have no LAUNCH "
-                               "command",
-                           "add LAUNCH \"program arguments\" to their COMPONENT lines, or a "
-                           "strategy that needs none"});
+                           "no strategy of rule '" + rule.name.text + "' can ever run: " +
+                               (is_one ? "component '" + *components.begin() + "' has"
+                                       : "the components that they start have") +
+                               " no LAUNCH command",
+                           std::string("add LAUNCH \"program arguments\" to ") +
+                               (is_one ? "its COMPONENT line" : "their COMPONENT lines") +
+                               ", or a strategy that needs none"});
     return;
   }
   diagnostics.insert(diagnostics.end(), impossible.begin(), impossible.end());
@@ -290,9 +313,8 @@ void check_required(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
         return later.type == kStart && later.component == stop->component;
       });
       if (is_back) continue;
-      const auto place = static_cast<std::size_t>(stop - all.begin());
       diagnostics.push_back({Code::kStopsRequired, Severity::kWarning,
-                             written->adaptations[place].span,
+                             written->adaptations[stop->written].span,
                              "strategy '" + strategy.name + "' stops '" +
                                  rules[stop->component].name + "', which is REQUIRED",
                              "redeploy it, make the strategy a LASTRESORT, or take REQUIRED from "
@@ -353,7 +375,7 @@ void check_circles(const syntax::File& file, const RuleSet& rules,
     if (in_circle.erase(consumer.index) == 0) continue;
     diagnostics.push_back({Code::kCircularDependency, Severity::kError, d.consumer.span,
                            "the declared dependencies of '" + d.consumer.text + "' lead back to it",
-                           "remove the DEPENDENCY that closes the circle"});
+                           "remove the DEPENDENCY that closes the loop"});
   }
 }
 

@@ -23,7 +23,7 @@ void check_contradictions(const syntax::Strategy& strategy, std::vector<Diagnost
 void check_launches(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
                     std::vector<Diagnostic>& diagnostics);
 
-// Strategies that stop, and leave stopped, what is REQUIRED. A last resort may.
+// Strategies that stop a REQUIRED component, and leave it stopped. A last resort may.
 void check_required(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
                     std::vector<Diagnostic>& diagnostics);
 
@@ -31,7 +31,7 @@ void check_required(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
 void check_constant_trigger(const syntax::Rule& rule, const Program& trigger,
                             std::vector<Diagnostic>& diagnostics);
 
-// Declared dependencies that lead in a circle.
+// Declared dependencies that form a loop.
 void check_circles(const syntax::File& file, const RuleSet& rules,
                    std::vector<Diagnostic>& diagnostics);
 

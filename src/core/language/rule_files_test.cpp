@@ -23,7 +23,7 @@ std::vector<std::filesystem::path> rule_files(const std::filesystem::path& folde
   return files;
 }
 
-// What they include is beside them.
+// The included files are beside them.
 Expected<Source> load(const std::string& file, const std::string& from) {
   const auto path = (std::filesystem::path(from).parent_path() / file).lexically_normal();
   if (!std::filesystem::exists(path)) return Error{"there is no " + path.string()};

@@ -1,10 +1,10 @@
-// What a check remembers of each rule, for the next check of a text that is nearly the same.
+// Remembers the results of a check for each rule, for the next check of a text that is nearly the
+// same.
 //
-// What a check makes of a rule follows from the rule's own bytes and from what its names mean: so a
-// rule whose bytes are those of one before, and of whose names the same is known (Symbols::Uses),
-// is not typed, compiled and reasoned about again. What is left of it is moved to where the rule
-// stands now, and its ids become those of now. Names that are declared, types that are found by
-// use, and what rules do to one another are looked at anew each time.
+// The result for a rule depends only on the rule's own bytes and on the meaning of its names. So a
+// rule is not typed, compiled and reasoned about again if its bytes are unchanged and its names
+// mean the same (Symbols::Uses). Its result is moved to where the rule stands now, with the ids of
+// now. Declared names, inferred types, and conflicts between rules are checked anew each time.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ struct RememberedRule {
   std::uint32_t begin = 0;  // where it stood
   Symbols::Uses uses;
   std::vector<Diagnostic> said;  // while it was checked by itself
-  // Of what it means; nothing: that was not looked at, for there was some mistake in the file.
+  // Diagnostics about its meaning; empty: not checked, because the file had a mistake.
   std::optional<std::vector<Diagnostic>> meaning;
   std::uint64_t check = 0;                // the number of the last one that met it
   std::size_t rule = 0;                   // index of RuleMemory::rules
@@ -45,7 +45,7 @@ struct RuleMemory {
   };
   // By their text: from the RULE line to the next one that is in no TEMPLATE.
   std::unordered_map<std::string, RememberedRule, TextHash, std::equal_to<>> known;
-  // What was made of them, with the ids of then.
+  // The results for them, with the ids of that check.
   std::vector<Rule> rules;
   std::vector<Strategy> strategies;
   std::vector<RuleConditions> conditions;
@@ -63,7 +63,7 @@ struct RenewedRule {
   std::optional<RuleConditions> conditions;
 };
 
-// Nothing if its components have another order now: what is said of them goes by it.
+// Empty if its components have another order now: the diagnostics depend on it.
 // @pre `remembered.uses` was asked again (Symbols::ask_again), `written` has the bytes that it had
 std::optional<RenewedRule> renewed(RememberedRule& remembered, const syntax::Rule& written,
                                    RuleId id, StrategyId first, RuleMemory& memory);

@@ -87,7 +87,7 @@ std::string all_of(const Checked& checked, const Source& source) {
 // Somebody who changes a text, and has it checked each time.
 class Session {
  public:
-  // What the check gives; beside it what one gives that remembers nothing.
+  // The results of the check with memory, and of one without.
   std::pair<std::string, std::string> change(const std::string& text) {
     const Parsed parsed = parse_whole(Source("test.rules", text));
     if (checked_.rules) memory_.take(*checked_.rules);

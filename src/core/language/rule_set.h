@@ -15,6 +15,7 @@
 #include "base/ids.h"
 #include "base/seldom.h"
 #include "base/units.h"
+#include "base/value.h"
 #include "language/program.h"
 #include "language/syntax.h"
 
@@ -28,7 +29,7 @@ using syntax::LifecycleDriver;
 struct SystemdUnit {
   std::string name;         // "lidar.service"
   bool is_of_user = false;  // of the user's own systemd, not of the system's
-  std::string host{};       // the computer, as ssh is told: "robot@rover2"; empty: this one
+  std::string host{};       // the computer, as for ssh: "robot@rover2"; empty: this one
   bool operator==(const SystemdUnit&) const = default;
 };
 
@@ -58,13 +59,16 @@ struct Component {
   std::string node;  // full name; empty: the node of the graph whose own name is `name`
   std::vector<std::string> launch;  // argument vector; empty: culprit cannot start it
   bool declared = true;             // by a COMPONENT line
-  bool is_required = false;  // a person is told if it is not there, also if no rule is about that
+  bool is_required =
+      false;  // a person is notified if it is not there, also if no rule is about that
   LifecycleDriver lifecycle = LifecycleDriver::kUndeclared;
-  bool is_respawned = false;  // whoever started it starts it again: culprit ends it and waits
+  bool is_respawned =
+      false;  // the program that started it starts it again: culprit ends it and waits
   // Starts that end within so long of the first are tries of one start. 0: each is one.
   Duration ready{};
 
-  // What its launch command needs beside culprit's own environment and folder. All paths are whole.
+  // Needs of its launch command beyond culprit's own environment and folder. All paths are
+  // absolute.
   std::string setup{};                     // a file of shell that is sourced first; may be empty
   std::vector<std::string> environment{};  // "NAME=value"
   std::string folder{};                    // where it runs; empty: where culprit does
@@ -83,14 +87,14 @@ struct Component {
 
   Seldom<EngineContainer> engine{};  // that runs it: its engine is asked likewise
 
-  // Whether somebody else runs it, whose word of its process is proof.
+  // Whether an owner runs it, whose report on its process is proof.
   bool has_owner() const { return unit || engine; }
-  // The computer where that one is asked, over ssh; empty: this one.
+  // The computer where the owner is asked, over ssh; empty: this one.
   std::string host() const { return unit ? unit->host : engine ? engine->host : ""; }
 
-  // Whether it can be told to start.
+  // Whether culprit can start it.
   bool can_start() const { return has_owner() || composed || !launch.empty(); }
-  // Whether somebody starts it again after its end.
+  // Whether it can be started again after its end, by culprit or another program.
   bool can_start_again() const { return is_respawned || can_start(); }
 };
 
@@ -103,6 +107,15 @@ struct Topic {
 struct Parameter {
   ComponentId component;
   std::string name;
+};
+
+// Components that one lifecycle manager takes through their lifecycles. Its health is a signal that has
+// its name (knowledge/group_health.h).
+struct Group {
+  std::string name;
+  std::vector<ComponentId> members;  // in the order in which they are started
+  ComponentId manager;
+  SignalId health;
 };
 
 // A diagnostic status whose level the rules read; `name` is its name or its hardware id.
@@ -123,7 +136,7 @@ struct LookedUp {};
 
 struct Signal {
   std::string name;
-  std::variant<DiagnosticKey, TopicField, ParameterId, LookedUp> source;
+  std::variant<DiagnosticKey, TopicField, ParameterId, LookedUp, GroupId> source;
   Type type = Type::kDouble;
   std::optional<Duration> stale;  // older values are unknown
   struct Range {
@@ -183,13 +196,16 @@ struct Input {
 struct Adaptation {
   ComponentId component;
   AdaptationType type = AdaptationType::kSetParameter;
-  std::string subject;       // parameter, mode or service (absolute, or relative to the node)
-  ParameterId parameter;     // the same parameter; where there is one
-  Program value;             // set, increase and decrease parameter
-  std::string topic;         // change_communication
-  std::string request{};     // call: what the service is asked, "data: true"; empty: nothing
-  Cycles impact;             // paper: i_exec,a
-  bool begins_step = false;  // THEN, or it takes back what was done for the one above
+  std::string subject;        // parameter, mode or service (absolute, or relative to the node)
+  ParameterId parameter;      // the same parameter; where there is one
+  Program value;              // set, increase and decrease parameter
+  std::string topic;          // change_communication
+  std::string request{};      // call: what the service is asked, "data: true"; empty: nothing
+  Cycles impact;              // paper: i_exec,a
+  bool begins_step = false;   // THEN, or it takes back what was done for the one above
+  std::uint32_t written = 0;  // the place of its line among those of the strategy
+  // start_group: this one brings up a member (activate), or begins the manager anew (redeploy).
+  std::optional<GroupId> group{};
 };
 
 struct Strategy {
@@ -199,7 +215,8 @@ struct Strategy {
   double confidence = 1;  // paper: c_p, in pseudo-counts
   Program when;           // empty: always
   bool is_last_resort = false;
-  Duration within{};  // of a last resort: what the rule's other strategies have from the detection
+  Duration
+      within{};  // of a last resort: the time that the rule's other strategies have from the detection
   std::vector<Adaptation> adaptations;
   // paper: i_exec,s, the maximum over the adaptations. With steps, the sum of their maxima.
   Cycles impact;
@@ -227,13 +244,25 @@ struct Rule {
   std::vector<StrategyId> strategies;   // in file order
   std::vector<ComponentId> components;  // that its strategies adapt, each once, ascending
   std::vector<InputId> inputs;          // that its trigger reads
-  syntax::Name declaration;             // where it stands
+  // Groups that it is about: its failure is resolved only while each of them is active.
+  std::vector<GroupId> groups{};
+  syntax::Name declaration;  // where it stands
 };
 
-// Nothing is begun while the condition is not true.
+// No strategy begins while the condition is not true.
 struct Interlock {
   Program condition;
   std::string text;  // as written
+};
+
+// A checked DRILL line.
+struct DrillLine {
+  using What = syntax::Drill::What;
+  ComponentId component;
+  What what = What::kLimit;
+  std::string subject{};  // parameter, or fault
+  Value value{};          // kSetParameter
+  std::int64_t times = 0;
 };
 
 struct Dependency {
@@ -248,6 +277,7 @@ struct RuleSet {
   std::vector<Topic> topics;  // that rules watch
   std::vector<Parameter> parameters;
   std::vector<StatusLevel> diagnostics;
+  std::vector<Group> groups;
   std::vector<Signal> signals;
   std::vector<Input> inputs;
   std::vector<Rule> rules;
@@ -255,6 +285,8 @@ struct RuleSet {
   std::vector<Dependency> dependencies;
   std::vector<std::string> ignored_topics;
   std::vector<Interlock> interlocks;
+  std::vector<DrillLine> drills;
+  std::vector<std::string> aborts;  // conditions that end a drill, as written
 
   Cycles heaviest;  // paper: i_max, the highest impact of any strategy
 
@@ -267,6 +299,7 @@ struct RuleSet {
 
   const Component& operator[](ComponentId id) const { return components[id.index]; }
   const Topic& operator[](TopicId id) const { return topics[id.index]; }
+  const Group& operator[](GroupId id) const { return groups[id.index]; }
   const Parameter& operator[](ParameterId id) const { return parameters[id.index]; }
   const Signal& operator[](SignalId id) const { return signals[id.index]; }
   const Input& operator[](InputId id) const { return inputs[id.index]; }
@@ -283,7 +316,7 @@ inline bool is_container(ComponentId component, const RuleSet& rules) {
          });
 }
 
-// The component that loads it; nothing: it lives in no container, or no component has that node.
+// The component that loads it; empty: it lives in no container, or no component has that node.
 inline std::optional<ComponentId> container_of(ComponentId component, const RuleSet& rules) {
   const auto& composed = rules[component].composed;
   if (!composed) return std::nullopt;

@@ -35,7 +35,7 @@ Lexeme::Kind lexeme_kind(Token::Kind kind) {
   return kind == Token::Kind::kSymbol ? Lexeme::Kind::kSymbol : Lexeme::Kind::kLiteral;
 }
 
-// Of the symbol that `text`, one or two characters, begins with; 0 if with none.
+// The length of the symbol that `text`, one or two characters, begins with; 0 if with none.
 std::uint32_t symbol_length(std::string_view text) {
   const char first = text[0];
   const char second = text.size() == 2 ? text[1] : '\0';
@@ -74,54 +74,174 @@ std::string unescaped(std::string_view text) {
 Complaint unclosed(std::uint32_t begin, std::string_view rest) {
   while (rest.size() > 1 && is_blank(rest.back())) rest.remove_suffix(1);
   const auto end = begin + static_cast<std::uint32_t>(rest.size());
-  return {"this string has no closing '\"'", Edit{{end, end}, "\""}};
+  return {"this string has no closing '\"'", Edit{{end, end}, "\""},
+          "write a '\"' where the text ends"};
+}
+
+// What keyboards, word processors and web pages make of the quotes of a text.
+constexpr std::array<std::string_view, 9> kForeignQuotes = {
+    "'", "`", "\u201c", "\u201d", "\u201e", "\u2018", "\u2019", "\u00ab", "\u00bb"};
+
+std::size_t foreign_quote_length(std::string_view text) {
+  for (const std::string_view quote : kForeignQuotes) {
+    if (text.starts_with(quote)) return quote.size();
+  }
+  return 0;
 }
 
 // The same text in the quotes that the language has; nothing if it does not end, or needs escapes.
 std::optional<Edit> in_double_quotes(std::uint32_t begin, std::string_view rest) {
-  const auto close = rest.find('\'', 1);
-  if (close == std::string_view::npos) return std::nullopt;
-  const std::string_view inside = rest.substr(1, close - 1);
+  const std::size_t open = foreign_quote_length(rest);
+  std::size_t close = open;
+  while (close < rest.size() && foreign_quote_length(rest.substr(close)) == 0) ++close;
+  if (close == rest.size()) return std::nullopt;
+  const std::string_view inside = rest.substr(open, close - open);
   if (inside.find_first_of("\"\\") != std::string_view::npos) return std::nullopt;
-  return Edit{{begin, begin + static_cast<std::uint32_t>(close) + 1},
-              "\"" + std::string(inside) + "\""};
+  const std::size_t end = close + foreign_quote_length(rest.substr(close));
+  return Edit{{begin, begin + static_cast<std::uint32_t>(end)}, "\"" + std::string(inside) + "\""};
+}
+
+struct LookAlike {
+  std::string_view written, meant;
+};
+constexpr std::array<LookAlike, 17> kLookAlikes = {{{"\u2265", ">="},
+                                                    {"\u2264", "<="},
+                                                    {"\u2260", "!="},
+                                                    {"\u2212", "-"},
+                                                    {"\u2013", "-"},
+                                                    {"\u2014", "-"},
+                                                    {"\u00d7", "*"},
+                                                    {"\u00b7", "*"},
+                                                    {"\u00f7", "/"},
+                                                    {"\u2227", "&&"},
+                                                    {"\u2228", "||"},
+                                                    {"\u00ac", "!"},
+                                                    {"\u2192", ""},
+                                                    {"\u2026", ".."},
+                                                    {"~=", "!="},
+                                                    {"&", "&&"},
+                                                    {"|", "||"}}};
+
+// Blanks that no keyboard shows: no-break space and the like, and those without a width.
+constexpr std::array<std::string_view, 8> kForeignBlanks = {"\u00a0", "\u2002", "\u2003", "\u2009",
+                                                            "\u202f", "\u3000", "\u200b", "\ufeff"};
+
+// Whether `character`, which has all its continuation bytes, is UTF-8.
+bool is_utf8(std::string_view character) {
+  const auto lead = static_cast<unsigned char>(character[0]);
+  const std::size_t expected = lead < 0x80   ? 1
+                               : lead < 0xc2 ? 0
+                               : lead < 0xe0 ? 2
+                               : lead < 0xf0 ? 3
+                               : lead < 0xf5 ? 4
+                                             : 0;
+  return character.size() == expected;
 }
 
 Complaint meaningless(Span span, std::string_view rest) {
+  const std::string_view character = rest.substr(0, span.end - span.begin);
   const auto first = static_cast<unsigned char>(rest[0]);
-  if (first < 0x20 || first == 0x7f) return {"a control character has no place in a rule file"};
-  const std::string cause =
-      "'" + std::string(rest.substr(0, span.end - span.begin)) + "' means nothing here";
+  if (first < 0x20 || first == 0x7f)
+    return {"a control character has no place in a rule file", Edit{span, ""}, "remove it"};
+  if (!is_utf8(character))
+    return {"this character is not UTF-8", std::nullopt, "save the file as UTF-8"};
+  const std::string cause = "'" + std::string(character) + "' means nothing here";
+  if (foreign_quote_length(rest) > 0)
+    return {cause, in_double_quotes(span.begin, rest), "a text stands in double quotes"};
+  for (const std::string_view blank : kForeignBlanks) {
+    if (character == blank)
+      return {"this character looks like a blank, and is another one", Edit{span, " "},
+              "write an ordinary blank"};
+  }
+  for (const auto& [written, meant] : kLookAlikes) {
+    if (!rest.starts_with(written)) continue;
+    if (meant.empty()) break;
+    const auto end = span.begin + static_cast<std::uint32_t>(written.size());
+    return {"'" + std::string(written) + "' is no operator",
+            Edit{{span.begin, end}, std::string(meant)}, "write " + std::string(meant)};
+  }
+  if (first >= 0x80)
+    return {"'" + std::string(character) + "' stands only in texts and comments", std::nullopt,
+            "names are made of the letters a to z and A to Z, digits and '_'"};
   switch (first) {
-    case '\'':
-      return {cause + "; a text stands in double quotes: \"active\"",
-              in_double_quotes(span.begin, rest)};
     case '{':
     case '}':
       return {cause + "; a parameter in braces stands for something in a TEMPLATE only"};
-    case '&':
-      return {cause + "; write && for 'and'", Edit{span, "&&"}};
-    case '|':
-      return {cause + "; write || for 'or'", Edit{span, "||"}};
+    case ';':
+      return {cause, Edit{span, ""}, "remove it: a statement ends with its line"};
+    case '[':
+    case ']':
+      return {cause, std::nullopt, "write parentheses: ( and )"};
+    case '^':
+      return {cause, std::nullopt, "write pow(base, exponent)"};
     default:
-      return {cause};
+      return {cause, std::nullopt, "remove it, or begin a comment with #"};
   }
 }
 
+// `text`: digits, and letters that are no unit.
+Complaint not_a_number(Span span, std::string_view text) {
+  std::size_t end = 0;
+  while (end < text.size() && (is_digit(text[end]) || text[end] == '.')) ++end;
+  const std::string number(text.substr(0, end));
+  const std::string_view letters = text.substr(end);
+  const std::string cause = "'" + std::string(text) + "' is neither a number nor a duration";
+  if (is_hertz(letters))
+    return {cause, Edit{span, number}, "rates are in Hz and have no unit: write " + number};
+  if (letters == "m")
+    return {cause, std::nullopt, "write " + number + "min for minutes, or " + number + "ms"};
+  const std::string_view unit = duration_unit(letters);
+  if (unit.empty()) return {cause};
+  const std::string meant = number + std::string(unit);
+  return {cause, Edit{span, meant}, "write " + meant};
+}
+
+std::string lower_case(std::string_view word) {
+  std::string text(word);
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
 }  // namespace
+
+std::string_view duration_unit(std::string_view word) {
+  struct Unit {
+    std::string_view unit;
+    std::array<std::string_view, 6> words;
+  };
+  static constexpr std::array<Unit, 6> kUnits = {
+      {{"s", {"s", "sec", "secs", "second", "seconds"}},
+       {"ms", {"ms", "msec", "msecs", "millis", "millisecond", "milliseconds"}},
+       {"min", {"min", "mins", "minute", "minutes"}},
+       {"h", {"h", "hr", "hrs", "hour", "hours"}},
+       {"us", {"us", "usec", "usecs", "micros", "microsecond", "microseconds"}},
+       {"ns", {"ns", "nsec", "nsecs", "nanos", "nanosecond", "nanoseconds"}}}};
+  if (word.empty()) return "";
+  const std::string lower = lower_case(word);
+  for (const auto& [unit, words] : kUnits) {
+    if (std::find(words.begin(), words.end(), lower) != words.end()) return unit;
+  }
+  return "";
+}
+
+bool is_hertz(std::string_view word) {
+  const std::string lower = lower_case(word);
+  return lower == "hz" || lower == "hertz" || lower == "fps";
+}
 
 Complaint complaint_about(const Token& bad) {
   const auto rest = std::get<std::string_view>(bad.literal);
   switch (bad.flaw) {
     case Token::Flaw::kLongName:
-      return {"this name is longer than 255 characters"};
+      return {"this name is longer than 255 characters", std::nullopt, "shorten it"};
     case Token::Flaw::kBrace:
       return {"a parameter stands in braces, as in {name}"};
     case Token::Flaw::kNumber:
-      return {"'" + std::string(rest.substr(0, bad.span.end - bad.span.begin)) +
-              "' is neither a number nor a duration"};
+      return not_a_number(bad.span, rest.substr(0, bad.span.end - bad.span.begin));
     case Token::Flaw::kWholeNumber:
-      return {"this whole number does not fit in 64 bits"};
+      return {"this whole number does not fit in 64 bits", std::nullopt,
+              "write it with a decimal point"};
     case Token::Flaw::kRange:
       return {"this number is out of range"};
     case Token::Flaw::kEscape:
@@ -313,6 +433,15 @@ Token Scanner::symbol(std::uint32_t at) const {
   while (end < end_ && (static_cast<unsigned char>(text_[end]) & 0xC0) == 0x80)
     ++end;  // one whole character
   return bad({at, end}, Token::Flaw::kMeaningless);
+}
+
+bool Scanner::take(char symbol) {
+  const std::uint32_t at = skip_blanks();
+  if (at == end_ || text_[at] != symbol) return false;
+  peeked_.reset();
+  at_ = at + 1;
+  enter(Lexeme::Kind::kSymbol, {at, at_});
+  return true;
 }
 
 syntax::Name Scanner::next_name() {

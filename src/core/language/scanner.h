@@ -1,9 +1,9 @@
 // Source text -> tokens, one line at a time and on demand.
 //
 // The language is line-oriented, so a scanner stands in one line and never leaves it: a mistake
-// cannot spread to the next line. What a '/' or a '.' means depends on the place (division or topic
-// name, decimal point or parameter name), so the parser asks for the kind of token that it can use
-// there. Comments (# and //) and line ends look the same.
+// cannot spread to the next line. The meaning of a '/' or a '.' depends on the place (division or
+// topic name, decimal point or parameter name), so the parser asks for the kind of token that it
+// can use there. Comments (# and //) and line ends look the same.
 #pragma once
 
 #include <cstdint>
@@ -52,7 +52,7 @@ struct Token {
   Flaw flaw = Flaw::kNone;
 
   bool is(std::string_view symbol) const { return kind == Kind::kSymbol && text == symbol; }
-  // What a literal, true or false stands for.
+  // The value of a literal, true or false.
   syntax::Literal value() const;
 };
 // Tokens come and go for every word of a file, so they own nothing.
@@ -61,9 +61,15 @@ static_assert(std::is_trivially_copyable_v<Token>);
 struct Complaint {
   std::string cause;
   std::optional<Edit> fix = std::nullopt;  // that makes the token a good one
+  std::string remedy = "";                 // empty where it depends on the place
 };
 // @pre it is a kBad
 Complaint complaint_about(const Token& bad);
+
+// The unit of the language that people mean by `word`, as "s" by "seconds"; empty if none.
+std::string_view duration_unit(std::string_view word);
+// Whether it names hertz, in which rates are counted without a unit.
+bool is_hertz(std::string_view word);
 
 // A piece of a line as its reader took it, for those who care how the text was written.
 struct Lexeme {
@@ -90,7 +96,7 @@ class Scanner {
   // The longest name that is accepted, as in DDS (topic names are string<255>).
   static constexpr std::size_t kMaxName = 255;
 
-  // What is taken off the line is also entered into `record`, if there is one.
+  // Each token that is taken off the line is also appended to `record`, if there is one.
   Scanner(std::string_view text, Span line, std::vector<Lexeme>* record = nullptr,
           Holes holes = Holes::kNone)
       : text_(text), at_(line.begin), end_(line.end), record_(record), holes_(holes) {}
@@ -104,6 +110,9 @@ class Scanner {
   // topic, node, parameter or mode name. A quoted string is taken as a name too. Empty at the end
   // of the line.
   syntax::Name next_name();
+
+  // Takes `symbol`, one character that no expression has, as a brace is. False: another one is next.
+  bool take(char symbol);
 
   bool allows_holes() const { return holes_ == Holes::kAllowed; }
   bool at_end() const;
@@ -138,11 +147,11 @@ class Scanner {
   mutable std::optional<Token> peeked_;
 };
 
-// What stands between the tokens of a line.
+// Is it white space between the tokens of a line?
 inline bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
 }
-// `text` without what it begins with of that.
+// `text` without the blanks that it begins with.
 inline std::string_view unindented(std::string_view text) {
   while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
   return text;

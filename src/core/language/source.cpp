@@ -66,6 +66,8 @@ Expected<Source> Source::read(const std::string& path) {
   if (kind == std::filesystem::file_type::fifo || kind == std::filesystem::file_type::socket ||
       kind == std::filesystem::file_type::character || kind == std::filesystem::file_type::block)
     return Error{"'" + path + "' is a pipe, a socket or a device; a rule file is a regular file"};
+  if (kind == std::filesystem::file_type::directory)
+    return Error{"'" + path + "' is a folder; name a rule file in it"};
   std::ifstream file(path, std::ios::binary);
   if (!file) return Error{"cannot read rule file '" + path + "': " + std::strerror(errno)};
   std::string text;
@@ -78,8 +80,7 @@ Expected<Source> Source::read(const std::string& path) {
     if (text.size() > kMaxSize)
       return Error{"rule file '" + path + "' is larger than 64 MiB; is it a rule file?"};
   }
-  if (file.bad() || !file.eof())
-    return Error{"cannot read rule file '" + path + "': is it a directory?"};
+  if (file.bad() || !file.eof()) return Error{"cannot read rule file '" + path + "' to its end"};
   return Source(path, std::move(text));
 }
 

@@ -47,7 +47,7 @@ class Source {
   const Source& file(std::uint32_t index) const;
   // Where a part of the text is written.
   Origin origin(Span span) const;
-  // The same with `text` behind it, which nobody has written in a file.
+  // The same with `text` behind it, which is in no file.
   Source followed_by(std::string text) const;
 
   std::size_t line_count() const { return line_starts_.size(); }

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <cassert>
 #include <utility>
+
+#include "base/invariant.h"
 
 namespace culprit {
 namespace {
@@ -128,6 +129,9 @@ void Symbols::declare(const syntax::File& file) {
     if (first_declaration(s.name, "signal")) declare_signal(s);
   }
   for (const syntax::BrokenDeclaration& broken : file.broken_declarations) declare_broken(broken);
+  for (const syntax::Group& g : file.groups) {
+    if (first_declaration(g.name, "group")) declare_group(g);
+  }
   for (const auto& [constant, value] : constants_) declared_values_.push_back(constant);
 }
 
@@ -255,7 +259,7 @@ void Symbols::declare_launch(const syntax::Component& written, Component& compon
   }
 }
 
-// Only who can be asked over ssh to start and to end it can be asked on another computer.
+// On another computer only an owner can start and end it that can be asked over ssh.
 std::string Symbols::declared_host(const syntax::Component& written) {
   if (!written.host) return "";
   const std::string& host = written.host->text;
@@ -275,17 +279,17 @@ std::string Symbols::declared_host(const syntax::Component& written) {
                         (at + 1 < host.size() && host.find('@', at + 1) == std::string::npos &&
                          std::isalnum(static_cast<unsigned char>(host[at + 1])) != 0));
   if (!is_name)
-    report("this is no computer that ssh could be told",
+    report("this is no host name for ssh",
            "write HOST computer or HOST user@computer; what else it needs, as a port, is for "
            "~/.ssh/config");
   if (!written.unit && !written.engine)
     report("component '" + written.name.text +
-               "' has a HOST, and nobody there who could be asked to start and to end it",
+               "' has a HOST, but no owner there that could start and end it",
            "declare its UNIT or its CONTAINER on that computer, or leave HOST out");
   return host;
 }
 
-// One container runs one component, and nobody else does.
+// One container runs one component, which has no other owner.
 void Symbols::declare_engine(const syntax::Component& written, Component& component) {
   if (!written.engine) return;
   const syntax::Name& name = *written.engine_container;
@@ -395,7 +399,7 @@ void Symbols::declare_composition(const syntax::Component& written, Component& c
   component.composed = std::move(composed);
 }
 
-// One unit runs one component, and nobody else does.
+// One unit runs one component, which has no other owner.
 SystemdUnit Symbols::declared_unit(const syntax::Component& written) {
   const syntax::Name& name = *written.unit;
   const auto report = [&](Code code, std::string cause, std::string remedy) {
@@ -444,6 +448,69 @@ void Symbols::declare_signal(const syntax::Signal& s) {
   add_signal(std::move(signal), s.range ? std::optional(Type::kDouble) : std::nullopt);
 }
 
+// Nothing: the file does not declare it, which is an error here. A group is started in an order, so what
+// belongs to it has to be certain.
+std::optional<ComponentId> Symbols::declared_part(const syntax::Name& name,
+                                                  const std::string& what) {
+  const auto known = known_component(name.text);
+  if (known && rules_[*known].declared) return known;
+  const std::string near = near_name(name.text, declared_components_);
+  diagnostics_.push_back(
+      {Code::kBadGroup, Severity::kError, name.span, what + " '" + name.text + "' is not declared",
+       near.empty() ? "declare it: COMPONENT " + name.text + " NODE /" + name.text
+                    : "did you mean '" + near + "'?",
+       replacement(name.span, near)});
+  return std::nullopt;
+}
+
+void Symbols::declare_group(const syntax::Group& written) {
+  const auto report = [&](const syntax::Name& where, std::string cause, std::string remedy) {
+    diagnostics_.push_back(
+        {Code::kBadGroup, Severity::kError, where.span, std::move(cause), std::move(remedy)});
+  };
+  Group group{written.name.text, {}, {}, {}};
+  for (const syntax::Name& name : written.members) {
+    const auto member = declared_part(name, "component");
+    if (!member) continue;
+    if (std::ranges::find(group.members, *member) != group.members.end()) {
+      report(name, "'" + name.text + "' is twice in group '" + group.name + "'",
+             "name each component once, in the order in which the manager starts them");
+      continue;
+    }
+    group.members.push_back(*member);
+  }
+  if (const auto manager = declared_part(written.manager, "the manager")) {
+    group.manager = *manager;
+    if (std::ranges::find(group.members, *manager) != group.members.end())
+      report(written.manager,
+             "'" + written.manager.text + "' manages group '" + group.name + "' and is in it",
+             "take it out of the braces");
+  }
+  declared_values_.push_back(written.name.text);
+  group.health =
+      add_signal({group.name, GroupId(rules_.groups.size()), Type::kString, {}, {}}, Type::kString);
+  rules_.groups.push_back(std::move(group));
+}
+
+std::optional<GroupId> Symbols::group(const syntax::Name& name) {
+  if (uses_ != nullptr) uses_->has_report = true;  // what a group is made of is not remembered
+  std::vector<std::string_view> groups;
+  for (std::size_t g = 0; g < rules_.groups.size(); ++g) {
+    if (rules_.groups[g].name == name.text) return GroupId(g);
+    groups.push_back(rules_.groups[g].name);
+  }
+  if (broken_signals_.contains(name.text)) return std::nullopt;  // it may have been declared as one
+  const std::string near = near_name(name.text, groups);
+  diagnostics_.push_back(
+      {Code::kBadGroup, Severity::kError, name.span, "'" + name.text + "' is no group",
+       !near.empty() ? "did you mean '" + near + "'?"
+       : known_component(name.text)
+           ? "it is a component: name the group that it belongs to, or activate it"
+           : "declare it: GROUP " + name.text + " { planner, controller } MANAGER manager",
+       replacement(name.span, near)});
+  return std::nullopt;
+}
+
 // There is an error, so the rule set will not be used; only the names have to be there.
 void Symbols::declare_broken(const syntax::BrokenDeclaration& broken) {
   using Broken = syntax::BrokenDeclaration::Kind;
@@ -455,10 +522,11 @@ void Symbols::declare_broken(const syntax::BrokenDeclaration& broken) {
     case Broken::kComponent:
       if (place_of(name, rules_.components, components_)) return;
       declared_components_.push_back(name);
-      // Whether it has a LAUNCH command is not known, so nobody may miss it.
+      // Whether it has a LAUNCH command is not known, so no check may report it as missing.
       add_component({name, "", {""}, true});
       return;
     case Broken::kSignal:
+      broken_signals_.insert(name);
       if (!known_signal(name)) add_signal({name, LookedUp{}, Type::kDouble, {}, {}});
       return;
   }
@@ -677,7 +745,7 @@ template <class Use, class Id>
 Id now_of(const std::vector<Use>& uses, Id was) {
   const auto use =
       std::find_if(uses.begin(), uses.end(), [was](const Use& u) { return u.was == was; });
-  assert(use != uses.end());
+  CULPRIT_ASSERT(use != uses.end());
   return use->id;
 }
 
@@ -695,7 +763,7 @@ bool Symbols::answers_the_same(const Uses& uses) const {
     const auto owner =
         std::find_if(uses.components.begin(), uses.components.end(),
                      [&](const Uses::OfComponent& c) { return c.id == p.component; });
-    assert(owner != uses.components.end());
+    CULPRIT_ASSERT(owner != uses.components.end());
     const auto component = known_component(owner->name.text);
     if (!component) return std::nullopt;
     const auto found = known_parameter(*component, p.name);

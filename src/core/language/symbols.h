@@ -24,8 +24,8 @@ enum class Strictness : std::uint8_t { kLenient, kStrict };
 
 class Symbols {
  public:
-  // So many names are compared with one another to find what was meant. A file with more has
-  // thousands of names that it does not declare: those are no slips.
+  // At most this many comparisons of names to suggest the one that was meant. A file that needs
+  // more has thousands of undeclared names, which are no slips.
   static constexpr std::size_t kMaxComparisons = 200'000;
 
   Symbols(RuleSet& rules, Strictness strictness, std::vector<Diagnostic>& diagnostics)
@@ -34,18 +34,18 @@ class Symbols {
   // Enters what the file declares. Duplicates are reported; the first one counts.
   void declare(const syntax::File& file);
 
-  // What a bare name in an expression means.
+  // The meaning of a bare name in an expression.
   struct Constant {
     syntax::Literal value;
     bool broken = false;  // it was reported; what uses it stays silent
   };
 
-  // What a rule asked for and was told. As long as it would be told the same, a check says the same
-  // of the rule. The ids may be others by then: `was` is the one before.
+  // The look-ups of a rule, with their answers. As long as the answers are the same, so are the
+  // diagnostics of the rule. The ids may be others by then: `was` is the one before.
   struct Uses {
     struct OfConstant {
       std::string name;
-      std::optional<Constant> answer;  // nothing: it is none
+      std::optional<Constant> answer;  // empty: it is none
     };
     struct OfComponent {
       syntax::Name name;
@@ -96,12 +96,12 @@ class Symbols {
     std::vector<OfDiagnostic> diagnostics;
     std::vector<OfParameter> parameters;
     std::vector<OfInput> inputs;
-    // Something was said of a name in passing, or taken back: what the next one is told may be
-    // something else.
+    // A diagnostic was reported or withdrawn during a look-up: the next look-up may give another
+    // answer.
     bool has_report = false;
 
     std::size_t size() const;
-    // What stands for the same thing now. @pre it is one of those.
+    // The id that stands for the same thing now. @pre it is one of those.
     ComponentId now(ComponentId id) const;
     TopicId now(TopicId id) const;
     SignalId now(SignalId id) const;
@@ -121,6 +121,8 @@ class Symbols {
   void define_constant(const syntax::Name& name, Constant value);
 
   ComponentId component(const syntax::Name& name);
+  // The group that start_group is for; nothing: it was reported.
+  std::optional<GroupId> group(const syntax::Name& name);
   SignalId signal(const syntax::Name& name);
   // A signal that the file uses and does not declare, in a lenient check; a strict one has said so.
   bool is_looked_up(const std::string& signal);
@@ -155,6 +157,8 @@ class Symbols {
   void declare_composition(const syntax::Component& written, Component& component);
   SystemdUnit declared_unit(const syntax::Component& written);
   void declare_signal(const syntax::Signal& signal);
+  void declare_group(const syntax::Group& group);
+  std::optional<ComponentId> declared_part(const syntax::Name& name, const std::string& what);
   void report_undeclared(const syntax::Name& name, const char* what,
                          const std::vector<std::string_view>& declared);
   const std::vector<std::string_view>& sorted_values();
@@ -173,14 +177,15 @@ class Symbols {
   Strictness strictness_;
   std::vector<Diagnostic>& diagnostics_;
   std::unordered_map<std::string, Constant> constants_;
-  // Of the tables of rules_.
+  std::set<std::string> broken_signals_;  // and groups
+  // Indexes into the tables of rules_.
   PlaceIndex components_, signals_, topics_, level_names_;  // by name
   PlaceIndex components_by_node_;                           // of those that are declared, the first
   PlaceIndex components_by_launch_;                         // likewise
   PlaceIndex parameters_;                                   // by component and name
   PlaceIndex inputs_;                                       // by all but type and use
   std::unordered_map<std::string, ComponentId> by_owner_;   // a unit or a container
-  // What undeclared names may have been meant to be; views into the tree and the keys above.
+  // Candidates for misspelt names; views into the tree and the keys above.
   std::vector<std::string_view> declared_components_;
   std::vector<std::string_view> declared_values_;  // constants and signals
   bool are_values_sorted_ = false;                 // they are once somebody asks

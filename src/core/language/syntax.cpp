@@ -3,6 +3,10 @@
 #include <array>
 
 namespace culprit::syntax {
+
+std::vector<std::string_view> drill_faults() {
+  return {"kill", "hang", "slow", "deactivate", "restart"};
+}
 namespace {
 
 struct AdaptationKeyword {
@@ -22,6 +26,7 @@ constexpr std::array kAdaptations = {
     AdaptationKeyword{AdaptationType::kStop, "stop"},
     AdaptationKeyword{AdaptationType::kChangeMode, "change_mode"},
     AdaptationKeyword{AdaptationType::kCall, "call"},
+    AdaptationKeyword{AdaptationType::kStartGroup, "start_group"},
 };
 
 }  // namespace

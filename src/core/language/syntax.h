@@ -1,8 +1,7 @@
 // The syntax tree: a rule file as it is written, before any name or type is looked up.
 //
 // Every part knows its place in the text. A part that was missing or broken in the text is left out
-// or left empty; the parser has said so, and whoever reads the tree stays silent about it (one
-// mistake, one message).
+// or left empty. The parser has reported it, so later stages must not (one mistake, one message).
 #pragma once
 
 #include <cstdint>
@@ -75,12 +74,12 @@ struct Constant {
   Expression value;
 };
 
-// Who takes a managed node through its lifecycle when it starts.
+// The driver that takes a managed node through its lifecycle when it starts.
 enum class LifecycleDriver : std::uint8_t {
   kUndeclared,
   kSelf,     // the node itself: culprit waits, and never drives a start
   kManaged,  // culprit, at once
-  kLauncher  // who starts it, or a lifecycle manager of its own: as kSelf
+  kLauncher  // the program that starts it, or a lifecycle manager of its own: as kSelf
 };
 
 struct Component {
@@ -97,7 +96,7 @@ struct Component {
   bool is_users_unit = false;
   Seldom<Name> engine{};  // "docker" or "podman"
   Seldom<Name> engine_container{};
-  Seldom<Name> host{};       // the computer that runs it, as ssh is told: "robot@rover2"
+  Seldom<Name> host{};       // the computer that runs it, as for ssh: "robot@rover2"
   Seldom<Name> container{};  // the node that loads it
   Seldom<Name> plugin{};
   Seldom<Name> package{};
@@ -110,6 +109,13 @@ struct Component {
 struct Dependency {
   Name consumer;
   std::vector<Name> producers;
+};
+
+// Components that one lifecycle manager takes through their lifecycles, in this order.
+struct Group {
+  Name name;
+  std::vector<Name> members;
+  Name manager;
 };
 
 struct DiagnosticSource {
@@ -149,7 +155,8 @@ enum class AdaptationType : std::uint8_t {
   kStart,
   kStop,
   kChangeMode,
-  kCall
+  kCall,
+  kStartGroup  // of a group, which stands in the place of the component
 };
 std::string_view keyword(AdaptationType type);
 std::optional<AdaptationType> adaptation_type(std::string_view keyword);
@@ -198,7 +205,7 @@ struct Policies {
   };
   std::optional<Attempts> attempts;
   bool on_change = false;
-  bool is_report = false;  // REPORT: nothing is done about it, a person is told
+  bool is_report = false;  // REPORT: culprit does nothing about it, a person is notified
   Span span;
 };
 
@@ -216,6 +223,22 @@ struct Interlock {
   Expression condition;
   std::string text;
 };
+
+// A DRILL line: a limit on what a drill does to a component (docs/drill.md).
+struct Drill {
+  enum class What : std::uint8_t {
+    kSetParameter,  // also injects this value: subject, value
+    kWithout,       // never injects this fault: subject
+    kLimit          // breaks it so often at most: times
+  };
+  Name component;
+  What what = What::kLimit;
+  Name subject{};
+  Seldom<Expression> value{};
+  std::int64_t times = 0;
+};
+// Faults that WITHOUT may name.
+std::vector<std::string_view> drill_faults();
 
 // A line that declares something and does not parse: what uses the name is not at fault.
 struct BrokenDeclaration {
@@ -255,12 +278,15 @@ struct File {
   std::vector<Constant> constants;
   std::vector<Component> components;
   std::vector<Dependency> dependencies;
+  std::vector<Group> groups;
   std::vector<Name> ignored_topics;
   std::vector<Interlock> interlocks;
+  std::vector<Interlock> aborts;  // conditions that end a drill
+  std::vector<Drill> drills;
   std::vector<Signal> signals;
   std::vector<Rule> rules;
   std::vector<BrokenDeclaration> broken_declarations;
-  // What expand() (reuse/expansion.h) puts other text in place of.
+  // Statements that expand() (reuse/expansion.h) replaces with other text.
   std::vector<Include> includes;
   std::vector<Template> templates;
   std::vector<Use> uses;
@@ -269,7 +295,7 @@ struct File {
 };
 
 // Statements with parameters: in `body`, "{name}" stands for, or within, names, numbers, durations
-// and texts. What the numbers and durations of such parts are is not known there.
+// and texts. The values of numbers and durations with parameters are not known there.
 struct Template {
   Name name;
   std::vector<TemplateParameter> parameters;

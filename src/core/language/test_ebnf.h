@@ -20,7 +20,7 @@ class Grammar {
   // What a special sequence, ? like this ?, stands for.
   struct Special {
     std::vector<std::string> samples;  // none: it is in no sentence that is made
-    // How many bytes at `at` it is; nothing: it is not.
+    // How many bytes at `at` it is; empty: it is not.
     std::optional<std::size_t> (*match)(const std::string& text, std::size_t at);
   };
   using Specials = std::map<std::string, Special>;

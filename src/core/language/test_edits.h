@@ -1,4 +1,4 @@
-// What people do to a rule file while they write it.
+// Edits of a rule file as people make them while they write it.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace culprit {
 std::string random_start();
 
 // `text` after one more edit: a keystroke, a line that comes, goes, is copied, split or joined, a
-// part that is pasted or cut. What comes of it may be no rules at all, and no UTF-8.
+// part that is pasted or cut. The result may be no rules at all, and no UTF-8.
 std::string edited(std::string text);
 
 }  // namespace culprit

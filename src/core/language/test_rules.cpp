@@ -186,7 +186,12 @@ std::string signal_line() {
 }
 
 std::string declaration() {
-  switch (below(6)) {
+  switch (below(9)) {
+    case 8:
+      return words({"GROUP", identifier(),
+                    "{" + maybe_blanks() + identifier() + maybe_blanks() +
+                        maybe("," + maybe_blanks() + identifier() + maybe_blanks()) + "}",
+                    "MANAGER", identifier()});
     case 0:
       return words({"CONST", identifier() + maybe_blanks() + "=" + maybe_blanks() + expression(2)});
     case 1:
@@ -197,6 +202,11 @@ std::string declaration() {
       return words({"IGNORE", "TOPIC", ros_name(), maybe(ros_name())});
     case 4:
       return words({"INTERLOCK", expression(2)});
+    case 5:
+      return words({"ABORT", expression(2)});
+    case 6:
+      return words(
+          {"DRILL", component(), pick({"set_parameter gain 0.5", "without hang", "limit 3"})});
     default:
       return signal_line();
   }

@@ -11,7 +11,7 @@ struct RuleText {
   std::vector<std::string> comments;  // that are in it, in order, without trailing blanks
 };
 
-// Well-formed: it parses without a complaint. What it says makes no sense. To be called within a
+// Well-formed: it parses without a diagnostic. Its content makes no sense. To be called within a
 // property.
 RuleText random_rule_text();
 

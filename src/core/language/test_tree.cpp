@@ -53,6 +53,7 @@ class Writer {
         c.other_nodes);
   }
   void put(const syntax::Dependency& d) { all(d.consumer, d.producers); }
+  void put(const syntax::Group& g) { all(g.name, g.members, g.manager); }
   void put(const DiagnosticSource& s) { all(s.status, s.key); }
   void put(const TopicSource& s) { all(s.topic, s.field); }
   void put(const ParameterSource& s) { all(s.component, s.parameter); }
@@ -71,6 +72,9 @@ class Writer {
         s.has_broken_adaptation);
   }
   void put(const syntax::Interlock& i) { put(i.condition); }  // its text is how it is written
+  void put(const syntax::Drill& d) {
+    all(d.component, static_cast<std::int64_t>(d.what), d.subject, d.value, d.times);
+  }
   void put(const syntax::Policies::Hold& h) { all(h.needed, h.window, h.span); }
   void put(const syntax::Policies::Attempts& a) { all(a.count, a.span); }
   void put(const syntax::Policies& p) {
@@ -87,8 +91,8 @@ class Writer {
   void put(const Use& u) { all(u.pattern, u.arguments, u.in, u.span); }
   void put(const Template& t) { all(t.name, t.parameters, t.body, t.span, t.lines); }
   void put(const File& f) {
-    all(f.robot, f.cycle, f.constants, f.components, f.dependencies, f.ignored_topics, f.interlocks,
-        f.signals, f.rules, f.includes, f.templates, f.uses);
+    all(f.robot, f.cycle, f.constants, f.components, f.dependencies, f.groups, f.ignored_topics,
+        f.interlocks, f.aborts, f.drills, f.signals, f.rules, f.includes, f.templates, f.uses);
     if (places_ == Places::kShown) put(f.broken_declarations);
   }
 

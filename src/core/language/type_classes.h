@@ -1,8 +1,8 @@
-// The types of signals and parameters, as they come out one use after the other.
+// Infers the types of signals and parameters from their uses.
 //
-// A use tells the type of a variable, or that two variables have one type, whichever it is: those
-// make one class, and what is learned of one of them is learned of all (union-find, by size). So
-// one walk over the rules finds every type, in whatever order they tell of it.
+// A use gives the type of a variable, or shows that two variables have one type, whichever it is.
+// Such variables make one class, and a type that is learned for one holds for all (union-find, by
+// size). So one walk over the rules finds every type, in whatever order the uses come.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ class TypeClasses {
 
   std::optional<Type> type_of(Variable v) const { return nodes_[root(v)].type; }
 
-  // What is known stays; the first use counts. Numbers are all doubles, and none are durations.
+  // A known type stays; the first use counts. Numbers are all doubles, and none are durations.
   void learn(Variable v, Type type);
   // Two that are known to differ stay apart.
   void unify(Variable a, Variable b);

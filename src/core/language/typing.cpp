@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 
 #include "language/compiler.h"
 #include "language/evaluate.h"
@@ -124,7 +125,7 @@ class Typer {
                   "did you mean '" + near + "'?", Edit{e.span, near});
     }
     if (names_broken_constant(whole_)) return std::nullopt;  // which would have told
-    return fail(Code::kUnknownType, e.span, "nothing tells what kind of value this is",
+    return fail(Code::kUnknownType, e.span, "cannot infer the type of this value",
                 "compare it with a constant; a text needs quotes: \"" + e.name.text + "\"");
   }
 
@@ -555,14 +556,45 @@ class Typer {
     std::string remedy;
     const bool duration_and_number = (left == Type::kDuration && is_numeric(right)) ||
                                      (right == Type::kDuration && is_numeric(left));
-    if (duration_and_number) remedy = "give the number a unit, as in 500ms or 2s";
-    if (left == Type::kString || right == Type::kString)
-      remedy = "texts compare with texts: \"active\"";
+    if (duration_and_number) remedy = unit_remedy(e, left == Type::kDuration ? 1 : 0);
+    if (verb == "compare" && (left == Type::kString || right == Type::kString))
+      remedy = text_remedy(e, left == Type::kString ? 1 : 0);
     if (verb == "compare" && is_comparison(e.children[0]))
       remedy = "to test a range, write a < x && x < b";
     return fail(Code::kTypeMismatch, e.span,
                 "cannot " + verb + " " + describe(left) + " and " + describe(right),
                 std::move(remedy));
+  }
+
+  // `number`: which side of `e` is none of a duration.
+  static std::string unit_remedy(const Expression& e, std::size_t number) {
+    const Expression& side = e.children[number];
+    if (side.kind == Kind::kCall && side.name.text == "rate")
+      return "a rate is a number in Hz: write the number without a unit";
+    const auto* whole =
+        side.kind == Kind::kLiteral ? std::get_if<std::int64_t>(&*side.literal) : nullptr;
+    if (whole != nullptr)
+      return "add a unit to the number: " + std::to_string(*whole) + "s or " +
+             std::to_string(*whole) + "ms";
+    return "give the number a unit, as in 500ms or 2s";
+  }
+
+  // `other`: which side of `e` is no text.
+  static std::string text_remedy(const Expression& e, std::size_t other) {
+    const Expression& side = e.children[other];
+    const Expression& text = e.children[1 - other];
+    const auto* written =
+        text.kind == Kind::kLiteral ? std::get_if<std::string>(&*text.literal) : nullptr;
+    if (written == nullptr)
+      return "this side is a text: compare it with a text in quotes, as in \"active\"";
+    if (*written == "true" || *written == "false") return "write " + *written + " without quotes";
+    double number = 0;
+    const char* end = written->data() + written->size();
+    const auto read = std::from_chars(written->data(), end, number);
+    if (read.ec == std::errc() && read.ptr == end) return "write " + *written + " without quotes";
+    const std::string name =
+        side.kind == Kind::kName ? "'" + side.name.text + "'" : "the other side";
+    return "\"" + *written + "\" is a text, and " + name + " is not: compare values of one type";
   }
 
   std::nullopt_t fail(Code code, Span span, std::string cause, std::string remedy,

@@ -37,7 +37,7 @@ void infer_types(const syntax::Expression& expression, std::optional<Type> wante
 std::optional<Typed> type_expression(const syntax::Expression& expression, Symbols& symbols,
                                      std::vector<Diagnostic>& diagnostics);
 
-// `typed` as a `wanted`: itself, or a whole number as a number. Nothing if that cannot be.
+// `typed` as a `wanted`: itself, or a whole number as a number. Empty if that cannot be.
 std::optional<Typed> converted(Typed typed, Type wanted);
 
 // For messages: "a number", "true or false".

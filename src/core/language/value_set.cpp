@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
+
+#include "base/invariant.h"
 
 namespace culprit {
 namespace {
@@ -148,13 +149,13 @@ bool is_empty(const ValueSet& set) {
 Interval intersection(const Interval& a, const Interval& b) { return meet(a, b); }
 
 ValueSet intersection(const ValueSet& a, const ValueSet& b) {
-  assert(a.index() == b.index());
+  CULPRIT_ASSERT(a.index() == b.index());
   return std::visit([&]<class Set>(const Set& s) { return ValueSet(meet(s, std::get<Set>(b))); },
                     a);
 }
 
 ValueSet hull(const ValueSet& a, const ValueSet& b) {
-  assert(a.index() == b.index());
+  CULPRIT_ASSERT(a.index() == b.index());
   return std::visit([&]<class Set>(const Set& s) { return ValueSet(join(s, std::get<Set>(b))); },
                     a);
 }

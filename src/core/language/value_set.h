@@ -1,7 +1,7 @@
 // The values that an expression can have, as far as is known before anything runs.
 //
-// Each set holds at least the values that are possible, and may hold more: what is not in the set
-// is certainly impossible. Every operation keeps that promise.
+// Each set holds at least the values that are possible, and may hold more: a value that is not in
+// the set is certainly impossible. Every operation keeps that promise.
 #pragma once
 
 #include <limits>

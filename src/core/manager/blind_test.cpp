@@ -188,8 +188,8 @@ TEST(Blind, AFailureWhoseTriggerBecomesUnknownIsNotResolved) {
   robot.run_for(120s);
   EXPECT_EQ(robot.count("Low is blind: no new value of battery comes"), 1u) << transcript(robot);
   EXPECT_EQ(robot.count("resolved"), 0u) << transcript(robot);
-  EXPECT_EQ(robot.count("went away"), 0u) << transcript(robot);
-  EXPECT_EQ(robot.count("Low can no longer be seen"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("cleared without a repair"), 0u) << transcript(robot);
+  EXPECT_EQ(robot.count("Low can no longer be evaluated"), 1u) << transcript(robot);
   EXPECT_TRUE(blind(robot)) << "it reads as blind, not as quiet";
   robot.order({2, "Ann", "", LiftSilence{RuleId(0)}});
   robot.run_for(60s);
@@ -226,7 +226,7 @@ TEST(Blind, AWindowThatIsNotCoveredYetIsNoReason) {
   EXPECT_EQ(robot.count("is blind"), 0u) << transcript(robot);
 }
 
-// What could not be heard is not missing.
+// A message that could not be received is not missing.
 TEST(Blind, DeafnessMakesNoRuleBlind) {
   TestRobot robot(rules_with("SIGNAL battery DIAGNOSTIC power KEY charge", "battery < 0.2"));
   show_driver(robot);

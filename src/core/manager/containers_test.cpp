@@ -51,7 +51,7 @@ void kill_all(TestRobot& robot, const std::vector<std::string>& order) {
   for (const std::string& name : order) robot.kill(name);
 }
 
-// As whoever starts the container does.
+// As the program that starts the container does.
 void load_parts_when_it_is_up(TestRobot& robot, Duration load) {
   for (int i = 0; i < 500 && !robot.works("box"); ++i) robot.run_for(10ms);
   ASSERT_TRUE(robot.works("box")) << transcript(robot);
@@ -79,8 +79,8 @@ TEST(AContainer, ThatIsKilledIsOneFaultAndOneRepair) {
         EXPECT_FALSE(robot.was_asked("tracker: stop")) << transcript(robot);
         EXPECT_EQ(robot.count("is held responsible"), 1u) << transcript(robot);
         EXPECT_EQ(robot.count("box is held responsible"), 1u) << transcript(robot);
-        EXPECT_EQ(robot.count("ADetectorGone went away"), 1u) << transcript(robot);
-        EXPECT_EQ(robot.count("ZTrackerGone went away"), 1u) << transcript(robot);
+        EXPECT_EQ(robot.count("ADetectorGone cleared"), 1u) << transcript(robot);
+        EXPECT_EQ(robot.count("ZTrackerGone cleared"), 1u) << transcript(robot);
       }
     }
   }

@@ -8,7 +8,7 @@
 namespace culprit::test {
 namespace {
 
-// Two failures of one component; what is done about the lesser is the adaptation `focus`.
+// Two failures of one component; the adaptation against the lesser one is `focus`.
 std::string rules(const std::string& focus) {
   return R"(
 COMPONENT camera NODE /camera LAUNCH "camera"
@@ -71,11 +71,11 @@ RULE Dark
   ASSERT_EQ(robot.count("set angle of lamp: done"), 1u) << transcript(robot);
   robot.signal("brightness", Value(0.2));
   robot.run_for(100ms);
-  ASSERT_EQ(robot.count("Blurred.focus is left where it is: camera is needed for Dark"), 1u)
+  ASSERT_EQ(robot.count("Blurred.focus is abandoned: camera is needed for Dark"), 1u)
       << transcript(robot);
   robot.signal("blur", Value(0.0));
   robot.run_for(1s);
-  EXPECT_EQ(robot.count("Blurred went away without a strategy of its own"), 1u)
+  EXPECT_EQ(robot.count("Blurred cleared without a repair of its own"), 1u)
       << "the light may have helped" << transcript(robot);
 }
 
@@ -87,7 +87,7 @@ TEST(Criticality, LetsNoErrorWaitForAVerdictOnALesserFailure) {
   robot.run_for(100ms);
   ASSERT_EQ(robot.count("set angle of camera: done"), 1u) << transcript(robot);
   robot.signal("brightness", Value(0.2));
-  EXPECT_EQ(robot.count("Blurred.focus is left where it is: camera is needed for Dark"), 1u)
+  EXPECT_EQ(robot.count("Blurred.focus is abandoned: camera is needed for Dark"), 1u)
       << transcript(robot);
   EXPECT_EQ(robot.count("camera is held responsible for Dark"), 1u) << transcript(robot);
   EXPECT_EQ(robot.manager().knowledge().beliefs[focus], before) << "nobody saw whether it helped";
@@ -213,14 +213,13 @@ RULE Dead
     robot.run_for(200ms);
   }
   EXPECT_EQ(robot.count("fusion is held responsible for Bad"), 1u) << transcript(robot);
-  robot.signal("silence", Value(1.0));  // so nobody hears of the entropy any longer
+  robot.signal("silence", Value(1.0));  // so the entropy is not received any longer
   robot.run_for(3s);
-  EXPECT_EQ(robot.count("recalibrate did not resolve Bad: nobody can see"), 1u)
-      << transcript(robot);
+  EXPECT_EQ(robot.count("recalibrate did not resolve Bad: it is unknown"), 1u) << transcript(robot);
   EXPECT_EQ(robot.count("fusion is held responsible for Dead"), 1u) << transcript(robot);
 }
 
-// A camera that nobody misses for a second, and what makes the robot blind at once.
+// A camera that no consumer misses for a second, and a rule by which the robot is blind at once.
 constexpr const char* kBlind = R"(
 COMPONENT camera       NODE /camera       LAUNCH "camera"
 COMPONENT segmentation NODE /segmentation LAUNCH "segmentation"
@@ -257,7 +256,8 @@ TEST(Criticality, OfACauseIsThatOfTheWorstFailureThatItExplains) {
   EXPECT_FALSE(robot.was_asked("segmentation:")) << "it was never ill" << transcript(robot);
 }
 
-// They take 300 ms each, and what is upstream is back before the verdict on what depends on it.
+// They take 300 ms each, and the upstream one is back before the verdict on the one that depends on
+// it.
 TEST(Criticality, LetsTheDeadBeReplacedSideBySide) {
   TestRobot robot = blind();
   robot.kill("camera");

@@ -1,4 +1,4 @@
-// The manager's promise: what it does depends on the observations and their times, not on when it
+// The manager's promise: its decisions depend on the observations and their times, not on when it
 // happens to be stepped.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -1,4 +1,4 @@
-// What becomes of the failures that an exhausted one explains: they wait for a person with it.
+// Failures that an exhausted one explains wait for a person with it.
 #include <gtest/gtest.h>
 
 #include "manager/test_robot.h"
@@ -43,10 +43,10 @@ TEST_P(ExhaustedCause, LeavesItsEffectsToThePersonToo) {
   robot["c0"].fault.clear();
   robot.run_for(10s);
   EXPECT_TRUE(robot.works("c4"));
-  EXPECT_EQ(robot.count("went away without a strategy of its own"), 5u) << transcript(robot);
+  EXPECT_EQ(robot.count("cleared without a repair of its own"), 5u) << transcript(robot);
 }
 
-// What it explains may have a fault of its own, which shows once the person was there.
+// An effect may have a fault of its own, which shows once the cause is repaired.
 TEST_P(ExhaustedCause, LetsItsEffectsBeRepairedOnceItIsGone) {
   TestRobot robot(rule(0) + rule(1), GetParam()());
   robot.add("c0", {}, "/c0");
@@ -88,7 +88,7 @@ TEST_P(ExhaustedCause, IsNotWhoeverWaitsUntilItsComponentIsRepaired) {
   }
 }
 
-// Nobody is at work on c1, so whoever needs it is told to a person.
+// No strategy repairs c1, so the exhaustion of its consumers is reported to a person.
 TEST_P(ExhaustedCause, IsWhoeverNeedsWhatNobodyRepairs) {
   TestRobot robot(
       "COMPONENT c1 NODE /c1\nRULE Blurred\nPOLICIES NON_CRITICAL ATTEMPTS 2\nTRIGGER blur > "
@@ -129,7 +129,7 @@ TEST(Exhausted, LetsAReconfigurationBeTriedThatMadeNoSenseBefore) {
   EXPECT_EQ(robot.count_asked("c1: set angle to 1"), 1u) << transcript(robot);
 }
 
-// Whoever made way for what waits for a person would wait as long, and nobody would have said so.
+// Yielding to a failure that awaits a human would block this one silently.
 TEST(Exhausted, WhatWaitsForAPersonHoldsUpNoLesserFailure) {
   TestRobot robot(rule(0) + rule(2) + "COMPONENT c1 NODE /c1\n" + kBlurred);
   robot.add("c0", {}, "/c0");
@@ -147,7 +147,7 @@ TEST(Exhausted, WhatWaitsForAPersonHoldsUpNoLesserFailure) {
   EXPECT_TRUE(robot.was_asked("c1: set angle to 1")) << transcript(robot);
 }
 
-// A circle of three, one of which dies and does not come up again.
+// A feedback loop of three, one of which dies and does not come up again.
 TEST(Exhausted, LeavesTheCircleOfWhatIsDeadToThePersonToo) {
   TestRobot robot(rule(0) + rule(1) + rule(2));
   robot.add("c0", {"c2"}, "/c0").dies_at_start = true;
@@ -162,7 +162,7 @@ TEST(Exhausted, LeavesTheCircleOfWhatIsDeadToThePersonToo) {
   EXPECT_FALSE(robot.was_asked("c2:")) << transcript(robot);
 }
 
-// The robot stops at once when nobody can help the camera any more.
+// The robot stops at once when no strategy is left for the camera.
 TEST_P(ExhaustedCause, MakesTheRobotStopSafely) {
   TestRobot robot(rule(0) +
                       "COMPONENT drive NODE /drive\nRULE Blind\nPOLICIES ERROR\nTRIGGER "

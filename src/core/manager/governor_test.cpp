@@ -1,4 +1,4 @@
-// What may be done now (docs/governor.md): limits, storms, interlocks.
+// The governor (docs/governor.md): limits, storms, interlocks.
 #include <gtest/gtest.h>
 
 #include "execute/evidence.h"
@@ -174,7 +174,7 @@ TEST(Storm, WhenMostIsIllAtOnceNothingIsDoneUntilItIsOver) {
   TestRobot robot = five(false);
   for (const char* c : {"a", "b", "c", "d"}) robot[c].fault = "redeploy";
   robot.run_for(20s);
-  EXPECT_EQ(robot.count("a person must look: 4 of 5 components are ill at once"), 1u)
+  EXPECT_EQ(robot.count("a person must look: 4 of 5 components failed at once"), 1u)
       << transcript(robot);
   EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
   robot["a"].fault.clear();
@@ -268,7 +268,7 @@ Governor::Options with_evidence() {
   return options;
 }
 
-// A camera, and a fusion that needs it. What is done about the fusion's silence is done to the
+// A camera, and a fusion that needs it. The strategy against the fusion's silence adapts the
 // camera.
 TestRobot camera_and_fusion(const std::string& trigger, const Governor::Options& governor) {
   Manager::Options options;
@@ -329,7 +329,7 @@ RULE Silent
   EXPECT_EQ(robot.count_asked("camera: start process"), 1u) << transcript(robot);
 }
 
-// What hangs is not asked politely, which would take seconds.
+// A hung component gets no SIGTERM first, which would take seconds.
 TEST(Evidence, IsAwaitedWhereAnAnswerIsOverdue) {
   for (const bool hangs : {true, false}) {
     TestRobot robot = one_camera(with_evidence());
@@ -397,8 +397,8 @@ TEST(Evidence, WhatRunsAndPublishesIsNotEndedBecauseSomethingElseIsSilent) {
   robot["fusion"].fault = "a person";
   robot.run_for(20s);
   EXPECT_FALSE(robot.was_asked("camera: ")) << transcript(robot);
-  EXPECT_EQ(robot.count("Fused.redeploy is held back: camera runs and publishes /rgb; what is "
-                        "silent is not its"),
+  EXPECT_EQ(robot.count("Fused.redeploy is held back: camera runs and publishes /rgb; it does "
+                        "not publish the silent topic"),
             1u)
       << transcript(robot);
   robot.order({1, "Ann", "", RunStrategy{StrategyId(0)}});

@@ -77,7 +77,7 @@ TEST(ProvenHealth, ACrashLoopIsNoSuccessAndReachesAPerson) {
   TestRobot robot = robot_that_is_well(20s);
   let_crash_again(robot, "camera", 1s, 60s);
   EXPECT_EQ(robot.count("CameraSilent is exhausted"), 1u) << transcript(robot);
-  EXPECT_EQ(robot.count("CameraSilent comes and goes"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("CameraSilent is flapping"), 1u) << transcript(robot);
   EXPECT_LE(robot.count_asked("camera: activate") + robot.count_asked("camera: start"), 4u)
       << transcript(robot);
   robot.run_for(60s);
@@ -95,7 +95,7 @@ TEST(ProvenHealth, WhatComesAndGoesByItselfIsOneFailureUntilItStaysAway) {
     robot.run_for(3s);
   }
   EXPECT_EQ(robot.count("CameraSilent is exhausted"), 1u) << transcript(robot);
-  EXPECT_EQ(robot.count("CameraSilent comes and goes"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("CameraSilent is flapping"), 1u) << transcript(robot);
   // Well for long enough: the next one is another.
   robot.run_for(25s);
   robot["camera"].fault = "restart";
@@ -115,7 +115,7 @@ TEST(ProvenHealth, ASecondFaultUpstreamBlamesNobody) {
   EXPECT_EQ(belief(robot, "restart"), (Belief{6, 5})) << transcript(robot);
 }
 
-// What is credited must not depend on how it came out.
+// The credit must not depend on the outcome.
 TEST(ProvenHealth, ASecondFaultUpstreamIsAskedForWhateverCameOut) {
   TestRobot robot = robot_that_is_well(20s);
   robot["fusion"].fault = "a person";
@@ -152,7 +152,7 @@ TEST(ProvenHealth, WhatWaitsForItsProofIsForgottenWithWhatWasLearned) {
   }
 }
 
-// The next process of culprit, which knows what the one before told, and nothing else.
+// The next process of culprit, which knows only the events of the one before.
 void crash_and_go_on(TestRobot& robot, Duration healthy) {
   Manager::Options options = healthy_after(healthy);
   options.start = robot.now;
@@ -177,7 +177,7 @@ TEST(ProvenHealth, WhatWaitedForItsProofStillDoesAfterACrash) {
   EXPECT_EQ(belief(robot, "restart"), (Belief{6, 5})) << "counted once";
 }
 
-// Nobody knows whether it lasted.
+// It is unknown whether the repair lasted.
 TEST(ProvenHealth, WhatWasNotHeardWhileItWaitedForItsProofCountsAsNothing) {
   TestRobot robot = robot_that_is_well(20s);
   robot["camera"].fault = "restart";
@@ -220,7 +220,7 @@ TEST(ProvenHealth, WhatComesAndGoesIsToldAcrossCrashesOfCulprit) {
   for (int i = 0; i < Analyzer::kFlaps; ++i) {
     robot["camera"].fault = "restart";
     robot.run_for(4s);
-    EXPECT_EQ(robot.count("CameraSilent comes and goes"), i + 1 < Analyzer::kFlaps ? 0u : 1u)
+    EXPECT_EQ(robot.count("CameraSilent is flapping"), i + 1 < Analyzer::kFlaps ? 0u : 1u)
         << transcript(robot);
     crash_and_go_on(robot, 20s);
     robot.run_for(1s);

@@ -1,5 +1,5 @@
-// Silence counts only while the robot would have been heard: after a sleep, and while it is deaf,
-// the manager judges nothing.
+// Silence counts only while the robot's messages would have been received: after a sleep, and while
+// it is deaf, the manager judges nothing.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ TestRobot robot() {
   return robot;
 }
 
-// All stands still for so long: the robot, and culprit with it.
+// Suspends the robot, and culprit with it, for this time.
 void freeze(TestRobot& robot, Duration time) {
   robot.freeze(time);
   robot.tell(Overslept{time});
@@ -98,7 +98,7 @@ TEST(Hearing, NothingThatIsDeadIsFoundToWorkByASleep) {
   }
   EXPECT_EQ(robot.count("resolved"), 0u) << transcript(robot);
   for (const std::string rule : {"CameraSilent", "LidarSlow"}) {
-    EXPECT_EQ(robot.count(rule + " went away"), 0u) << transcript(robot);
+    EXPECT_EQ(robot.count(rule + " cleared"), 0u) << transcript(robot);
     EXPECT_EQ(robot.count(rule + " detected"), 1u) << transcript(robot);
   }
 }
@@ -131,7 +131,7 @@ RULE LidarDead
   EXPECT_EQ(robot.count("LidarDead detected"), 1u) << transcript(robot);
 }
 
-// Likewise while its lifecycle changes.
+// The same while its lifecycle changes.
 TEST(Hearing, NobodyIsFoundToHangWhoseLifecycleHasJustChanged) {
   TestRobot robot(R"(
 COMPONENT lidar NODE /lidar LAUNCH "lidar"
@@ -165,7 +165,7 @@ TEST(Hearing, AStarvedManagerDecidesNothing) {
   EXPECT_EQ(robot.count("detected"), 0u) << transcript(robot);
 }
 
-// Leases run out while nobody announces itself, and that is noticed at waking.
+// Leases expire while no participant announces itself, and culprit notices that when it wakes.
 TEST(Hearing, ANodeWhoseLeaseRanOutInASleepIsNotDead) {
   TestRobot robot = test::robot();
   freeze(robot, 20s);
@@ -239,6 +239,24 @@ TEST(Hearing, AStrategyUnderWayIsNotBlamedForWhatWasNotHeard) {
   const Belief after = robot.manager().knowledge().beliefs[StrategyId(0)];
   EXPECT_EQ(after.alpha, before.alpha) << "its outcome proves nothing";
   EXPECT_EQ(after.beta, before.beta);
+}
+
+// The strategy helped, and culprit slept over the proof: until the camera would have been received
+// again, the silence from before proves nothing.
+TEST(Hearing, AVerdictWaitsUntilTheRobotWouldHaveBeenReceivedAgain) {
+  TestRobot robot = test::robot();
+  robot["camera"].fault = "redeploy";
+  while (!robot.works("camera")) robot.run_for(50ms);
+  robot.tell(HearingLost{"nothing came back"});
+  robot["camera"].fault = "deaf";  // as culprit sees it
+  robot.run_for(1s);
+  robot.tell(HearingRegained{});
+  robot.run_for(2100ms);  // later than the strategy's deadline, and in time for the first sample
+  EXPECT_EQ(robot.count("did not help"), 0u) << transcript(robot);
+  robot["camera"].fault = "";
+  robot.run_for(10s);
+  EXPECT_EQ(robot.count("did not help"), 0u) << transcript(robot);
+  EXPECT_EQ(robot.count("CameraSilent.redeploy"), 1u) << transcript(robot);
 }
 
 TEST(Hearing, NothingIsRunByHandWhileDeaf) {

@@ -1,5 +1,5 @@
-// A computer that is not heard is one cause: nothing is done there, what fails because of it waits, and
-// nothing is learned from what nobody could know.
+// An unreachable computer is one cause: culprit does nothing there, failures because of it wait, and
+// culprit learns nothing from them.
 #include <algorithm>
 
 #include <gmock/gmock.h>
@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// Camera and lidar run on rover2; what reads them, and a lamp, on this computer.
+// Camera and lidar run on rover2; their consumers, and a lamp, on this computer.
 constexpr const char* kHostRules = R"(
 COMPONENT camera NODE /camera LAUNCH "camera"
 COMPONENT lidar  NODE /lidar  LAUNCH "lidar"
@@ -74,7 +74,7 @@ struct TwoComputers {
     ADD_FAILURE() << name;
     return RulePhase::kQuiet;
   }
-  // Nothing was learned of the strategies of these rules.
+  // No belief in the strategies of these rules has changed.
   void expect_nothing_learned(const std::vector<std::string>& of) {
     const RuleSet& rules = robot.rules();
     for (std::size_t s = 0; s < before.size(); ++s) {
@@ -97,11 +97,11 @@ TEST(Hosts, ThatAreNotHeardAreOneCauseAndNothingIsDoneThere) {
   two.robot.asked.clear();
   two.robot.run_for(300s);
   EXPECT_TRUE(two.robot.asked.empty()) << transcript(two.robot);
-  EXPECT_EQ(two.robot.count("nothing is heard of rover2, where camera and lidar ran"), 1u)
+  EXPECT_EQ(two.robot.count("rover2, where camera and lidar ran, is unreachable"), 1u)
       << transcript(two.robot);
   for (const char* rule : {"CameraGone", "LidarSilent", "FusionSilent"})
     EXPECT_EQ(two.phase(rule), RulePhase::kFailing) << rule << transcript(two.robot);
-  EXPECT_GE(two.robot.count("CameraGone waits: camera is on rover2, of which nothing is heard"), 1u)
+  EXPECT_GE(two.robot.count("CameraGone waits: camera is on rover2, which is unreachable"), 1u)
       << transcript(two.robot);
   EXPECT_EQ(two.robot.count("CameraGone is exhausted"), 0u) << transcript(two.robot);
   two.expect_nothing_learned({"CameraGone", "LidarSilent", "FusionSilent"});
@@ -130,7 +130,7 @@ TEST(Hosts, ThatAreHeardAgainGoOnAsBefore) {
     two.robot.asked.clear();
     two.robot.run_for(3s);
     EXPECT_TRUE(two.robot.asked.empty()) << transcript(two.robot);
-    EXPECT_EQ(two.robot.count("rover2 is heard again"), 1u) << transcript(two.robot);
+    EXPECT_EQ(two.robot.count("rover2 is reachable again"), 1u) << transcript(two.robot);
     for (const char* rule : {"CameraGone", "LidarSilent", "FusionSilent"})
       EXPECT_EQ(two.phase(rule), RulePhase::kQuiet) << rule << transcript(two.robot);
     two.robot.run_for(120s);
@@ -139,7 +139,7 @@ TEST(Hosts, ThatAreHeardAgainGoOnAsBefore) {
   }
 }
 
-// It had the time to be heard again.
+// It had the time to be received again.
 TEST(Hosts, WhatDidNotComeBackWithItsComputerIsTriedThen) {
   TwoComputers two;
   two.begin();
@@ -166,13 +166,13 @@ TEST(Hosts, WhatBreaksHereMeanwhileIsHealed) {
   EXPECT_TRUE(two.robot.was_asked("fusion: start")) << transcript(two.robot);
 }
 
-// One that is silent while another one of its computer is heard is itself ill.
+// A node that is silent while another one of its computer is received has a fault of its own.
 TEST(Hosts, AreNotBlamedForOneOfTheirNodes) {
   TwoComputers two;
   two.begin();
   two.robot["lidar"].fault = "a person";
   two.robot.run_for(30s);
-  EXPECT_EQ(two.robot.count("nothing is heard"), 0u) << transcript(two.robot);
+  EXPECT_EQ(two.robot.count("is unreachable"), 0u) << transcript(two.robot);
   EXPECT_EQ(two.phase("LidarSilent"), RulePhase::kExhausted) << transcript(two.robot);
 }
 
@@ -219,10 +219,10 @@ TEST(Hosts, OfWhichNothingIsKnownAreNotBlamed) {
   two.robot["fusion"].fault = "restart";
   two.robot.run_for(30s);
   EXPECT_TRUE(two.robot.works("fusion")) << transcript(two.robot);
-  EXPECT_EQ(two.robot.count("nothing is heard"), 0u) << transcript(two.robot);
+  EXPECT_EQ(two.robot.count("is unreachable"), 0u) << transcript(two.robot);
 }
 
-// HOST names a computer that nobody has, and no node was ever seen there.
+// HOST names a computer that does not exist, and no node was ever seen there.
 TEST(Hosts, AMistypedOneExplainsNothing) {
   TestRobot robot(R"(
 COMPONENT lidar NODE /lidar UNIT lidar.service HOST rovr2
@@ -253,10 +253,11 @@ TEST(Hosts, AllAtOnceMayBeThisOneThatIsCutOff) {
   two.robot.cut("rover3");
   two.robot.run_for(6s);
   EXPECT_EQ(two.robot.count("it may be this one"), 1u) << transcript(two.robot);
-  EXPECT_EQ(two.robot.count("nothing is heard of rover3, where lidar ran"), 1u);
+  EXPECT_EQ(two.robot.count("rover3, where lidar ran, is unreachable"), 1u);
 }
 
-// Whoever may not act on what it hears does not tell of silence either, and nobody judges.
+// A deaf culprit, which must not act on the messages that it still receives, reports no silent
+// computer either and judges nothing.
 TEST(Hosts, AreNotJudgedByOneThatIsDeaf) {
   TwoComputers two;
   two.begin();
@@ -269,7 +270,7 @@ TEST(Hosts, AreNotJudgedByOneThatIsDeaf) {
   two.robot.tell(HearingRegained{});
   two.robot.run_for(30s);
   EXPECT_FALSE(two.robot.was_asked("camera:")) << transcript(two.robot);
-  EXPECT_EQ(two.robot.count("nothing is heard of"), 0u) << transcript(two.robot);
+  EXPECT_EQ(two.robot.count("is unreachable"), 0u) << transcript(two.robot);
 }
 
 // Whenever it is cut, for how long and how often, and whatever dies on this side meanwhile.

@@ -1,4 +1,4 @@
-// Improvised rules on a robot: what nobody wrote a rule for is repaired too, and only then.
+// Improvised rules on a robot: components without a rule are repaired, too, and only these.
 #include "language/improvise.h"
 
 #include <gtest/gtest.h>

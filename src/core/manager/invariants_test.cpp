@@ -1,4 +1,4 @@
-// What holds on every robot, whatever breaks: on random ones, in virtual time, with the bayes
+// Invariants on every robot, whatever breaks: on random ones, in virtual time, with the bayes
 // planner.
 #include <algorithm>
 #include <set>
@@ -19,7 +19,7 @@ struct Broken {
   std::string fault;  // as TestRobot's, or "kill", "stop", "hang", "" (none)
 };
 
-// Components that need earlier ones, and hear any others: circles through which no failure goes.
+// Components that need earlier ones, and subscribe to any others: loops that no failure takes.
 std::vector<Broken> random_components() {
   std::vector<Broken> all;
   const int count = *rc::gen::inRange(1, 7);
@@ -140,8 +140,8 @@ RC_GTEST_PROP(Invariants, NoStrategyWorksWhereAnotherDoesOrDownstreamOfIt, ()) {
   robot.run_for(60s);
 }
 
-// "At once" is the decision after its detection: what it does not wait for is a verdict on others,
-// what they may explain, or a more critical failure.
+// "At once" is the decision after its detection: it must not wait for a verdict on others, for
+// failures that these may explain, or for a more critical failure.
 RC_GTEST_PROP(Invariants, TheRepairOfWhatIsKnownToBeDeadBeginsAtOnceWhateverTheLevels, ()) {
   const auto all = random_components();
   TestRobot robot(rules_of(all));

@@ -1,4 +1,5 @@
-// What is known is not waited for; and what is somebody's wish is not fought.
+// A failure of a process that is known to have exited is planned at once; a person's shutdown is
+// respected.
 #include <set>
 
 #include <gtest/gtest.h>
@@ -31,7 +32,7 @@ TestRobot robot_with(const std::string& rules, const Manager::Options& options =
   return robot;
 }
 
-// Of `rule`, after the end of a component at `ended`.
+// The time from the end of a component at `ended` to the detection of `rule`.
 std::optional<Duration> detected_after(const TestRobot& robot, const std::string& rule,
                                        Time ended) {
   for (const Event& event : robot.events) {
@@ -144,7 +145,7 @@ TEST(KnownDead, OnlyWhereTheDeadOneAloneExplainsIt) {
   EXPECT_TRUE(is_seen_at_once("phi(/image) > 8"));
   EXPECT_TRUE(is_seen_at_once("rate(/image, 2s) / rate(/fused, 2s) < 0.5"));
   EXPECT_TRUE(is_seen_at_once("age(/image) > 5s && age(/fused) < 1s"));
-  // What it does not publish, though it is silent soon.
+  // A topic that it does not publish, though that is silent soon.
   EXPECT_FALSE(is_seen_at_once("age(/fused) > 5s"));
   EXPECT_FALSE(is_seen_at_once("age(/image) > 5s && age(/fused) > 5s"));
   // Silence that does not last is none that is known.
@@ -182,7 +183,7 @@ RULE CameraGone
       << transcript(alone);
 }
 
-// It began, and needs a while until it speaks: that is neither success nor failure.
+// It began, and needs a while until its first message: that is neither success nor failure.
 TEST(KnownDead, IsResolvedWhenItIsHeardAgain) {
   TestRobot robot = robot_with(kPatientRules);
   robot.kill("camera");
@@ -190,7 +191,7 @@ TEST(KnownDead, IsResolvedWhenItIsHeardAgain) {
   robot.run_for(1s);
   EXPECT_EQ(robot.count("redeploy camera: done"), 1u) << transcript(robot);
   EXPECT_EQ(robot.count("CameraSilent resolved"), 0u) << transcript(robot);
-  EXPECT_EQ(robot.count("CameraSilent went away"), 0u) << transcript(robot);
+  EXPECT_EQ(robot.count("CameraSilent cleared"), 0u) << transcript(robot);
   robot["camera"].fault = "";
   robot.run_for(2s);
   EXPECT_EQ(robot.count("CameraSilent resolved by redeploy"), 1u) << transcript(robot);
@@ -314,7 +315,7 @@ TEST(ALaunch, OfFiveThatSomebodyEndsIsNotStartedAgain) {
   EXPECT_TRUE(robot.works("b")) << transcript(robot);
 }
 
-// What does not end when it is asked is killed by its launcher.
+// A process that ignores SIGTERM is killed by its launcher.
 TEST(ALaunch, ThatSomebodyEndsMayHaveToKill) {
   TestRobot robot = launch_of_five();
   for (const std::string name : {"a", "b", "c", "d"}) robot.leave(name);
@@ -339,7 +340,7 @@ TEST(ALaunch, OfWhichOneAloneEndedIsCompletedAgain) {
   EXPECT_GE(chosen->at - left, Departures::kAlone);
 }
 
-// on_exit=Shutdown(), or a person who was quick.
+// on_exit=Shutdown(), or a quick person.
 TEST(ALaunch, ThatEndsSoonAfterACrashStaysDownAndSaysWhy) {
   TestRobot robot = launch_of_five();
   robot.kill("a");
@@ -348,7 +349,7 @@ TEST(ALaunch, ThatEndsSoonAfterACrashStaysDownAndSaysWhy) {
   robot.run_for(200ms);
   end_launcher(robot);
   robot.run_for(100ms);
-  EXPECT_EQ(robot.count("stay down: the launch of process 50 ended 500ms after a crashed"), 1u)
+  EXPECT_EQ(robot.count("stay down: the launch of process 50 ended 500 ms after a crashed"), 1u)
       << transcript(robot);
   EXPECT_TRUE(robot.manager().knowledge().departures.stays_down(robot.id("a")));
   const std::size_t asked = robot.asked.size();
@@ -411,7 +412,8 @@ TEST(ALaunch, OfOthersThatEndsSoonAfterACrashStaysDown) {
   EXPECT_EQ(robot.count("a stays down: the launch of process 50"), 1u) << transcript(robot);
 }
 
-// What culprit started in place of one of a launch ends with the launch, whenever that is.
+// A process that culprit started in place of a member of a launch ends with the launch, whenever
+// that is.
 TEST(ALaunch, TakesWhatStandsInForOneOfItAlong) {
   for (const Duration after : {Duration(500ms), Duration(3s), Duration(8s), Duration(30s)}) {
     TestRobot robot = launch_of_five();
@@ -470,7 +472,7 @@ TEST(ALaunch, WhoseLauncherCrashesRunsOn) {
   }
 }
 
-// A strategy that has begun is left where it is.
+// A strategy that has begun is abandoned.
 TEST(ALaunch, ThatEndsWhileOneOfItIsBroughtBackIsNotStartedAgain) {
   TestRobot robot = launch_of_five();
   robot["a"].start_time = 4s;
@@ -479,7 +481,7 @@ TEST(ALaunch, ThatEndsWhileOneOfItIsBroughtBackIsNotStartedAgain) {
   for (const std::string name : {"b", "c", "d", "e"}) robot.leave(name);
   end_launcher(robot);
   robot.run_for(100ms);
-  EXPECT_EQ(robot.count("A.redeploy_a is left where it is: a stays down"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("A.redeploy_a is abandoned: a stays down"), 1u) << transcript(robot);
   robot.run_for(1min);
   EXPECT_EQ(robot.count_asked("start process"), 1u) << transcript(robot);
   EXPECT_EQ(robot.manager().knowledge().departures.to_end(robot.id("a")), robot["a"].pid);
@@ -502,7 +504,7 @@ TEST(ALaunch, IsNotTakenForAnEarlierOneWithItsNumber) {
   EXPECT_TRUE(robot.works("a")) << transcript(robot);
 }
 
-// What an earlier culprit told counts, until a person orders otherwise.
+// Events of an earlier culprit count, until a person orders otherwise.
 TEST(ALaunch, ThatWasEndedStaysDownForTheNextCulprit) {
   TestRobot robot = launch_of_five();
   for (const std::string& name : kFive) robot.leave(name);
@@ -527,7 +529,7 @@ TEST(ALaunch, ThatWasEndedStaysDownForTheNextCulprit) {
   EXPECT_TRUE(robot.works("c")) << transcript(robot);
 }
 
-// What a culprit that was killed had started stands in for a launch that has ended since.
+// A process that a killed culprit had started stands in for a launch that has ended since.
 TEST(ALaunch, ThatEndedWhileNoCulpritRanTakesItsStandInAlong) {
   for (const bool are_others_there : {false, true}) {
     TestRobot robot = launch_of_five();
@@ -560,7 +562,7 @@ TEST(ALaunch, WhatCulpritStartedIsEndedOnAPersonsOrder) {
   robot.run_for(5s);
   robot.order({2, "anna", "", EndStarted{}});
   robot.run_for(100ms);
-  EXPECT_EQ(robot.count("a stays down: a person ended what culprit had started"), 1u)
+  EXPECT_EQ(robot.count("a stays down: a person ended the processes that culprit had started"), 1u)
       << transcript(robot);
   EXPECT_EQ(robot.manager().knowledge().departures.to_end(robot.id("a")), robot["a"].pid);
   robot.leave("a");
@@ -569,7 +571,7 @@ TEST(ALaunch, WhatCulpritStartedIsEndedOnAPersonsOrder) {
   EXPECT_EQ(robot.manager().knowledge().departures.stays_down(robot.id("b")), false);
 }
 
-// ---- what its owner was told to end, and what was shut down
+// ---- components that a person had their owner stop, or shut down
 
 TEST(AnOwner, ThatWasToldToEndItsProcessIsNotToldToStartItAgain) {
   std::string rules = kPatientRules;
@@ -633,7 +635,7 @@ const std::vector<std::string> kTriggers = {"age(/a) > 400ms",
                                             "age(/b) > 800ms",
                                             "age(/a) > 1s && age(/a) < 2s"};
 
-// When each rule was detected, of a robot that nobody repairs.
+// When each rule was detected, on a robot without repairs.
 std::vector<std::optional<Duration>> detections(const std::vector<std::string>& triggers,
                                                 const std::string& policy, Cause cause,
                                                 Duration killed_at) {

@@ -1,5 +1,5 @@
-// The first seconds of a run on a robot that an earlier run knew: what that one saw is expected, and
-// nobody is taken for silent before all of it is there.
+// The first seconds of a run on a robot that an earlier run knew: its parts are expected, and no
+// topic counts as silent before all of them are there.
 #include <gtest/gtest.h>
 
 #include "manager/test_robot.h"
@@ -19,7 +19,7 @@ constexpr const char* kTwoCameras =
     "STRATEGY right_restart 90 10\nADAPTATION right restart 2\n";
 
 // Two cameras, of which the left one falls silent while its process runs on; culprit is killed then,
-// and another one begins. What that one sees is up to the test.
+// and another one begins. The test decides which messages that one receives.
 struct KnownStart : testing::Test {
   KnownStart() {
     for (const char* name : {"left", "right"}) robot.add(name);
@@ -49,7 +49,7 @@ struct KnownStart : testing::Test {
       if (robot.rules().topics[t].name == topic) robot.tell(ListenerKnown{TopicId(t)});
     }
   }
-  // The right one speaks.
+  // The right one publishes.
   void run_for(Duration time) {
     for (Time end = robot.now + time; robot.now < end;) {
       robot.run_for(100ms);
@@ -111,7 +111,7 @@ TEST_F(KnownStart, WhatSpeaksInTimeIsNotSilent) {
   EXPECT_EQ(detected(), 0u) << transcript(robot);
 }
 
-// It may not have been told yet that it is listened to, and speak all the time.
+// It may not know its subscriber yet, and publish all the time.
 TEST_F(KnownStart, WhoHasNotProvenToKnowItsListenerMaySpeakUnheard) {
   begin(known());
   show_both();
@@ -124,7 +124,7 @@ TEST_F(KnownStart, WhileAnythingIsMissingAllSilenceWaits) {
   show("left", 11);
   read_motor();
   know_listener("/left_image");
-  right_speaks = false;  // it is discovered late, or died: nobody knows
+  right_speaks = false;  // it is discovered late, or died: that is unknown
   expect_full_wait();
 }
 
@@ -246,7 +246,7 @@ TEST_F(KnownStart, WhoSleepsAtTheBeginningExpectsNothing) {
   EXPECT_EQ(detected(), 0u) << transcript(robot);
 }
 
-// Whoever is started anew by a person in the moment of the verdict has its time.
+// A component that a person starts anew in the moment of the verdict gets its grace period.
 TEST_F(KnownStart, WhoIsStartedAnewAfterwardsHasItsTime) {
   begin(known());
   show_both();
@@ -275,7 +275,7 @@ TEST_F(KnownStart, WhatWasNeverSeenWaitsAsEver) {
   EXPECT_EQ(robot.count("right was never seen"), 1u) << transcript(robot);
 }
 
-// ---- what is told to the run that comes next
+// ---- knowledge for the next run
 
 TEST_F(KnownStart, TellsTheNextRunWhatWasHeardAndOfWhom) {
   show_both();
@@ -291,7 +291,8 @@ TEST_F(KnownStart, TellsTheNextRunWhatWasHeardAndOfWhom) {
   EXPECT_EQ(told.parts[1].pid, 12);
 }
 
-// Else the one that came up a moment before culprit was killed would be expected to speak at once.
+// Else the one that came up a moment before culprit was killed would be expected to publish at
+// once.
 TEST_F(KnownStart, WhatAnotherProcessSaidWasNotHeardOfThisOne) {
   show_both();
   run_for(6s);

@@ -182,7 +182,7 @@ std::string lidar_rule() {
          "TRIGGER age(/scan) > 350ms\nSTRATEGY redeploy 90 10\nADAPTATION lid redeploy 5\n";
 }
 
-// What it depends on waits for a person, or is being repaired: that is no reason either.
+// Its cause waits for a person, or is being repaired: that is no reason either.
 TEST_P(LastResort, DoesNotWaitForTheCauseOfItsFailure) {
   for (const std::string fault : {"a person", "redeploy"}) {
     TestRobot robot("COMPONENT loc NODE /loc LAUNCH \"loc\"\nCOMPONENT base NODE /base\n" +
@@ -204,7 +204,7 @@ TEST_P(LastResort, DoesNotWaitForTheCauseOfItsFailure) {
   }
 }
 
-// On a computer of which nothing is heard.
+// On an unreachable computer.
 TEST_P(LastResort, DoesNotWaitForAHost) {
   TestRobot robot(
       "COMPONENT loc NODE /loc LAUNCH \"loc\"\nCOMPONENT base NODE /base\n" + loc_lost(),
@@ -250,7 +250,8 @@ TEST_P(LastResort, GoesToAComponentThatIsBeingAdapted) {
   EXPECT_EQ(robot["base"].parameters["fan"], Value(std::int64_t{1})) << transcript(robot);
 }
 
-// What would set the same makes way, is not undone afterwards, and does not come back while it stands.
+// A strategy that would set the same thing yields; it is not undone afterwards, and does not come back
+// while the last resort stands.
 TEST_P(LastResort, StaysAgainstOtherStrategies) {
   TestRobot robot = driving(loc_lost() +
                             "RULE Late\nPOLICIES ERROR\nTRIGGER delay > 5\nSTRATEGY faster 60 10\n"

@@ -1,5 +1,5 @@
-// Who takes a node through its lifecycle when a process of it begins, and how long it is waited
-// for.
+// The driver that takes a node through its lifecycle when its process begins, and the time that it
+// gets for that.
 #include <gtest/gtest.h>
 
 #include "manager/manager.h"
@@ -40,7 +40,7 @@ TEST(Lifecycles, ADeclaredDriverThatNeverComesIsAFailureThatSaysSo) {
   robot.kill("camera");
   robot.run_for(40s);
   EXPECT_FALSE(robot.was_asked("camera: configure")) << transcript(robot);
-  EXPECT_GE(robot.count("who is to bring it up did not (LIFECYCLE)"), 1u) << transcript(robot);
+  EXPECT_GE(robot.count("its driver did not bring it up (LIFECYCLE)"), 1u) << transcript(robot);
 }
 
 TEST(Lifecycles, AManagedNodeIsNotWaitedFor) {
@@ -50,7 +50,7 @@ TEST(Lifecycles, AManagedNodeIsNotWaitedFor) {
   EXPECT_TRUE(robot.works("camera")) << transcript(robot);
 }
 
-// Nothing is known of it: it is activated after the impact, and its own timer then fails.
+// Its driver is unknown: culprit activates it after the impact, and its own timer then fails.
 TEST(Lifecycles, ANodeThatActivatesItselfCrashesOnceAtMost) {
   TestRobot robot = robot_of(camera_with(""), 4s);
   robot.kill("camera");
@@ -72,7 +72,7 @@ std::string active_camera_with(const std::string& clause) {
          "    STRATEGY activate 90 10\n      ADAPTATION camera activate 5\n";
 }
 
-// Nobody was seen to drive it, for culprit came later.
+// Its driver was not seen, for culprit came later.
 TEST(Lifecycles, ANodeThatActivatesItselfWithinTheImpactNeverCrashes) {
   TestRobot robot = robot_of(camera_with(""), 1500ms);
   for (int kills = 1; kills <= 3; ++kills) {
@@ -156,7 +156,7 @@ TEST(Lifecycles, WhatIsWronglyDeclaredManagedIsToldWithWhatToDeclare) {
   }
 }
 
-// As a node in Python does: how its process ends is seen after culprit has told it to.
+// As a node in Python does: how its process exits is seen after culprit has ended it.
 TEST(Lifecycles, ANodeThatLeavesTheGraphBeforeItsProcessEndsCrashesOnceAtMostToo) {
   TestRobot robot = robot_of(camera_with(""), 4s);
   robot["camera"].leaves_before_it_ends = true;

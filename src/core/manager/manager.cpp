@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/invariant.h"
 #include "diagnose/questions.h"
 #include "knowledge/undoes.h"
 #include "plan/allowed.h"
@@ -22,7 +23,7 @@ bool same_reasons(const std::vector<Candidate>& a, const std::vector<Candidate>&
                     });
 }
 
-// Of all that was left to try, the governor withholds everything until a person has looked.
+// Does the governor withhold all strategies that were left to try until a person has looked?
 bool is_given_up(const Decision& decision, const Knowledge& knowledge) {
   bool is_any = false;
   for (const Candidate& candidate : decision.candidates) {
@@ -69,6 +70,7 @@ Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, O
                              knowledge_.outcomes, knowledge_.rivals, knowledge_.events}),
       governor_(knowledge_, {knowledge_.withheld, knowledge_.events}, options.governor,
                 options.start),
+      incidents_(std::move(options.incidents)),
       autonomy_(options.autonomy),
       discovered_(later(options.start, options.discovery)),
       now_(options.start),
@@ -113,7 +115,25 @@ std::vector<Command> Manager::step(Time now, std::span<const Observation> observ
   }
   if (hears_) analyzer_.look_for_blind(now_);
   governor_.note(knowledge_.events);
+  follow_incidents();
+  check(commands);
   return commands;
+}
+
+// A command that changes the robot against these would do harm.
+void Manager::check(std::span<const Command> commands) const {
+  CULPRIT_ASSERT(hears_ || commands.empty());
+  for (const Command& command : commands) {
+    CULPRIT_ASSERT(command.component.index < knowledge_.rules.components.size());
+    CULPRIT_ASSERT(is_read(command) || !governor_.is_paused());
+    CULPRIT_ASSERT(command.timeout > Duration::zero());
+  }
+}
+
+void Manager::follow_incidents() {
+  const bool is_due = std::exchange(is_incident_due_, false) && incidents_.is_any_open();
+  if (!is_due && knowledge_.events.empty()) return;
+  incidents_.advance(knowledge_, {governor_.is_paused(), governor_.asked()}, knowledge_.events);
 }
 
 void Manager::take_in(Time now, std::span<const Observation> observations) {
@@ -139,7 +159,9 @@ void Manager::take_in(Time now, std::span<const Observation> observations) {
     if (const auto* reply = std::get_if<Reply>(&observation.what)) answered(*reply, now_);
     if (const auto* order = std::get_if<Order>(&observation.what)) obey(*order, now_);
     if (const auto* told = std::get_if<PriorsTold>(&observation.what)) adopt(*told, now_);
-    news_ |= is_news(observation);
+    const bool is_new = is_news(observation);
+    news_ |= is_new;
+    is_incident_due_ |= is_new;
     if (hears_) analyzer_.advance(now_);
   }
   now_ = std::max(now_, now);
@@ -151,14 +173,15 @@ void Manager::take_in(Time now, std::span<const Observation> observations) {
   news_ |= !knowledge_.events.empty();
 }
 
-// What is asked in order to plan tells of the component as any other question does.
+// An answer to the planner's question is evidence about the component as any other answer is.
 void Manager::answered(const Reply& reply, Time now) {
   if (const auto component = executor_.proven_by(reply))
     monitor_.observe({now, Probed{*component, true}}, now);
   executor_.answered(reply, now);
 }
 
-// Nobody listened from `since` until `now`, so that no gap, no delay and no late answer proves anything.
+// culprit did not listen from `since` until `now`, so that no gap, no delay and no late answer proves
+// anything.
 void Manager::restart(Time since, Time now) {
   monitor_.restart(since, now);
   analyzer_.restart(now);
@@ -183,9 +206,9 @@ void Manager::react(std::vector<Command>& commands) {
 }
 
 void Manager::obey(const Order& order, Time now) {
-  if (const auto* run = std::get_if<RunStrategy>(&order.what))
-    refresh_conditions(run->strategy, now);
-  if (!hears_ && std::holds_alternative<RunStrategy>(order.what))
+  const auto begun = governor_.begun_by(order);
+  if (begun) refresh_conditions(*begun, now);
+  if (!hears_ && begun)
     return knowledge_.events.tell(now, OrderRefused{order, "the robot cannot be heard"});
   if (auto reason = governor_.objection(order, autonomy_))
     return knowledge_.events.tell(now, OrderRefused{order, std::move(*reason)});
@@ -196,11 +219,11 @@ void Manager::obey(const Order& order, Time now) {
   } else if (const auto* dry_run = std::get_if<SetDryRun>(&order.what)) {
     autonomy_ = dry_run->is_on ? Autonomy::kAdvise : Autonomy::kAct;
     knowledge_.states.advise_anew();
-  } else if (const auto* run = std::get_if<RunStrategy>(&order.what)) {
-    for (const ComponentId component : knowledge_.rules[run->strategy].components)
+  } else if (begun) {
+    for (const ComponentId component : knowledge_.rules[*begun].components)
       knowledge_.departures.revive(component);
-    if (knowledge_.rules[run->strategy].is_last_resort) go_before_others(run->strategy, now);
-    begin(run->strategy, now);
+    if (knowledge_.rules[*begun].is_last_resort) go_before_others(*begun, now);
+    begin(*begun, now);
   } else if (const auto* forgotten = std::get_if<Forget>(&order.what)) {
     forget(forgotten->rule);
   } else if (std::holds_alternative<Revive>(order.what)) {
@@ -228,7 +251,7 @@ void Manager::forget(std::optional<RuleId> rule) {
   }
 }
 
-// What is no belief is left out: it comes from a network.
+// Invalid counts are left out: they come from a network.
 void Manager::adopt(const PriorsTold& told, Time now) {
   PriorsAdopted adopted{{}, told.source};
   constexpr double kMost = 1e9;
@@ -279,8 +302,8 @@ void Manager::abandon_what_stays_down(Time now) {
   }
 }
 
-// Whoever only waits for a verdict gives way to a more critical failure, and learns nothing. It is
-// judged afterwards, unless what it did is taken back.
+// An attempt that only waits for its verdict gives way to a more critical failure, and teaches
+// nothing. It is judged afterwards, unless its change is undone.
 void Manager::make_way_for(StrategyId strategy, Time now) {
   const RuleId rule = knowledge_.rules[strategy].rule;
   for (const ComponentId component : knowledge_.rules[strategy].components) {
@@ -303,14 +326,15 @@ void Manager::plan(Time now, std::vector<Command>& commands) {
   for (const Decision& decision : allowed_plan(failures, now)) {
     ask(decision, now, commands);
     if (decision.chosen) {
-      // What was allowed when the plan was made may have been the last of its kind.
+      // A strategy of this plan may have spent the last budget of its kind.
       const bool has_to_wait = governor_.holds_back(*decision.chosen, now) ||
                                governor_.withholds(*decision.chosen, now) ||
                                is_beside_last_resort(*decision.chosen);
       if (!has_to_wait) carry_out(decision, now);
     } else if (decision.is_spent && !plan::awaits_repair(decision, knowledge_)) {
       hold_back(decision, now);
-      // What was tried in vain while a computer explains the failure is tried again when that is heard.
+      // While an unreachable computer explains the failure, attempts in vain are repeated once it is
+      // reachable again.
       if (knowledge_.unheard_behind(decision.rule))
         analyzer_.turn_to_last_resort(decision.rule, now);
       else
@@ -399,7 +423,7 @@ void Manager::begin_last_resort(StrategyId strategy, Time now) {
   }
 }
 
-// Whoever would change the same thing is left where it is; else both go on side by side.
+// Abandons the strategies that would change the same thing; all others go on beside it.
 void Manager::go_before_others(StrategyId strategy, Time now) {
   const Strategy& last_resort = knowledge_.rules[strategy];
   const std::vector<RuleId> active = knowledge_.states.active();
@@ -446,7 +470,7 @@ bool Manager::is_help_possible(RuleId rule, Time limit, Time now) const {
   });
 }
 
-// What has to be true for the strategy to be begun.
+// Reads the conditions of the strategy anew: its WHEN and the interlocks.
 void Manager::refresh_conditions(StrategyId strategy, Time now) {
   if (strategy.index < knowledge_.rules.strategies.size())
     monitor_.refresh(knowledge_.rules[strategy].when, now);
@@ -510,6 +534,13 @@ void Manager::hold_back(const Decision& decision, Time now) {
   said = {since, decision.candidates};
   knowledge_.events.tell(now,
                          FailureHeldBack{decision.rule, decision.candidates, decision.suspects});
+}
+
+Incidents::Course Manager::course_of(const Incident& incident) const {
+  const auto halt = !hears_                 ? Incidents::Halt::kDeaf
+                    : governor_.is_paused() ? Incidents::Halt::kPaused
+                                            : Incidents::Halt::kNone;
+  return incidents_.course_of(incident, knowledge_, halt);
 }
 
 std::optional<std::string> Manager::held_back() const {

@@ -21,6 +21,7 @@
 #include "analyze/analyzer.h"
 #include "execute/executor.h"
 #include "execute/governor.h"
+#include "incidents/incidents.h"
 #include "knowledge/knowledge.h"
 #include "manager/managing_system.h"
 #include "monitor/monitor.h"
@@ -35,12 +36,12 @@ class Manager : public ManagingSystem {
 
   struct Options {
     Autonomy autonomy = Autonomy::kAct;
-    Time start{};  // when watching begins
-    Duration discovery =
-        kDiscovery;  // for so long nothing is called absent because it was not seen
-    // What was learned n outcomes ago weighs forgetting^n; 1: nothing is forgotten.
+    Time start{};                     // when watching begins
+    Duration discovery = kDiscovery;  // grace period; nothing is reported absent before it ends
+    // Discount factor per outcome (1 = never forget).
     double forgetting = 1;
     Governor::Options governor{};
+    IncidentIds incidents{};
   };
 
   // `rules` must outlive the manager and keep its address.
@@ -54,7 +55,7 @@ class Manager : public ManagingSystem {
   const Knowledge& knowledge() const { return knowledge_; }
   const Governor& governor() const { return governor_; }
   Autonomy autonomy() const { return autonomy_; }
-  // Whether the robot would be heard if it spoke. If not, nothing is judged.
+  // Whether culprit would receive the robot's messages. If not, it judges nothing.
   bool hears() const { return hears_; }
   // When the robot has had its time to show itself (Options::discovery).
   Time discovered() const { return discovered_; }
@@ -64,6 +65,10 @@ class Manager : public ManagingSystem {
 
   // Why nothing at all is begun now, whatever was planned; nothing if it is.
   std::optional<std::string> held_back() const;
+
+  // The open incidents, as after the last step.
+  const Incidents& incidents() const { return incidents_; }
+  Incidents::Course course_of(const Incident& incident) const;
 
   // For what was learned in an earlier run.
   void set_belief(StrategyId id, Belief belief) { knowledge_.beliefs.set(id, belief); }
@@ -76,16 +81,18 @@ class Manager : public ManagingSystem {
   void set_latency(RuleId rule, const Latencies::Learned& learned) {
     knowledge_.latencies.set(rule, learned);
   }
-  // What earlier processes did counts: budgets, back-offs, silences and what was tried last on.
+  // Restores the state that earlier processes left: budgets, back-offs, silences, and the last
+  // attempts.
   // Before the first step, and before resume().
   void remember(const History& past);
-  // What earlier runs saw of this robot counts as seen.
+  // Components and topics that earlier runs saw on this robot count as seen.
   void remember(const KnownRobot& known) { monitor_.remember(known); }
   // A strategy that an earlier process left in the middle is finished, once the robot had the time
   // of discovery to show itself. Before the first step; one for each rule at most.
   void resume(Interrupted interrupted);
 
  private:
+  void check(std::span<const Command> commands) const;
   void take_in(Time now, std::span<const Observation> observations);
   void answered(const Reply& reply, Time now);
   void restart(Time since, Time now);
@@ -108,6 +115,7 @@ class Manager : public ManagingSystem {
   void begin(StrategyId strategy, Time now);
   void carry_out(const Decision& decision, Time now);
   void hold_back(const Decision& decision, Time now);
+  void follow_incidents();
   Time next_planning(Time now) const;
 
   Knowledge knowledge_;
@@ -116,18 +124,20 @@ class Manager : public ManagingSystem {
   std::unique_ptr<const Planner> planner_;
   Executor executor_;
   Governor governor_;
+  Incidents incidents_;
   Autonomy autonomy_;
   Time discovered_;  // until then nothing is called absent
   Time now_;
   bool hears_ = true;
   Time deaf_since_ = kLongAgo;
-  bool news_ = false;        // something a plan depends on changed since the last plan
-  Time next_plan_ = kNever;  // while failures are held back
+  bool is_incident_due_ = false;  // something that incidents are made of may have changed
+  bool news_ = false;             // something a plan depends on changed since the last plan
+  Time next_plan_ = kNever;       // while failures are held back
   struct Said {
     Time failing_since = kNever;
     std::vector<Candidate> candidates;
   };
-  std::vector<Said> held_back_;  // by rule: what was said last about why it waits
+  std::vector<Said> held_back_;  // by rule: the reason that was reported last
 };
 
 }  // namespace culprit

@@ -53,7 +53,7 @@ std::unique_ptr<const Planner> without_dependencies() {
   return std::make_unique<PaperPlanner>(PaperSwitches{.dependencies = false});
 }
 
-// What has to hold whoever plans.
+// Behaviour that holds with every planner.
 class ManagerWith : public testing::TestWithParam<PlannerFactory> {
  protected:
   TestRobot pipeline(Autonomy autonomy = Autonomy::kAct) const {
@@ -70,7 +70,7 @@ TEST_P(ManagerWith, RestartsTheRootCauseAndNothingElse) {
   EXPECT_TRUE(robot.works("segmentation"));
   EXPECT_EQ(robot.count("detected"), 3u) << transcript(robot);
   EXPECT_EQ(robot.count("CameraDead resolved by restart"), 1u) << transcript(robot);
-  EXPECT_EQ(robot.count("FusionDead went away without a strategy of its own"), 1u);
+  EXPECT_EQ(robot.count("FusionDead cleared without a repair of its own"), 1u);
   EXPECT_FALSE(robot.was_asked("fusion:"));
   EXPECT_FALSE(robot.was_asked("segmentation:"));
   EXPECT_EQ(robot.count_asked("camera: deactivate"), 1u);
@@ -99,7 +99,7 @@ TEST_P(ManagerWith, NumbersItsCommandsUpwards) {
   EXPECT_TRUE(std::is_sorted(numbers.begin(), numbers.end(), std::less_equal<>()));
 }
 
-// Nothing comes from this robot any more that would wake the manager.
+// No message from this robot wakes the manager any more.
 TEST(Manager, WakesByItselfToTryAnewAfterAPause) {
   TestRobot robot(
       "COMPONENT camera NODE /camera\n"
@@ -113,7 +113,7 @@ TEST(Manager, WakesByItselfToTryAnewAfterAPause) {
   EXPECT_GE(robot.count("camera is held responsible"), 2u) << transcript(robot);
 }
 
-// Its clock is not ours: what comes from the future is of now.
+// Its clock is not ours: a time in the future counts as now.
 TEST_P(ManagerWith, IsNotCarriedIntoTheFutureByAnObservation) {
   TestRobot robot = pipeline();
   const Observation early{robot.now + 1h, NodeAppeared{"/somebody", 0}};
@@ -199,8 +199,7 @@ TEST_P(ManagerWith, GivesUpAfterItsAttempts) {
   EXPECT_EQ(robot.count_asked("camera:"), asked) << "nothing is tried after exhaustion";
   robot["camera"].fault.clear();
   robot.run_for(2s);
-  EXPECT_EQ(robot.count("CameraDead went away"), 1u)
-      << "an exhausted failure that heals is reported";
+  EXPECT_EQ(robot.count("CameraDead cleared"), 1u) << "an exhausted failure that heals is reported";
 }
 
 TEST_P(ManagerWith, LearnsFromVerdicts) {
@@ -223,7 +222,7 @@ TEST(Manager, LearnsNothingFromOutcomesWithTwoCauses) {
   EXPECT_EQ(robot.manager().knowledge().beliefs[StrategyId(4)], before) << transcript(robot);
 }
 
-// ---- What goes away with what.
+// ---- Couplings.
 
 Coupling coupling(TestRobot& robot, std::size_t cause, std::size_t effect) {
   return robot.manager().knowledge().couplings.of(RuleId(cause), RuleId(effect));
@@ -289,7 +288,7 @@ RULE Blurred
   EXPECT_EQ(coupling(robot, 0, 1), (Coupling{1, 0})) << transcript(robot);
 }
 
-// A reading comes every two seconds: the next one tells, and not the next cycle.
+// A reading comes every two seconds: the next one decides, and not the next cycle.
 TEST(Couplings, WaitForTheReadingsOfTheEffect) {
   TestRobot robot(R"(
 COMPONENT lamp   NODE /lamp
@@ -476,8 +475,8 @@ RULE Unsure
       ADAPTATION fusion change_communication input /filtered 2
 )";
 
-// Whatever was to be undone in it while it was gone: many nodes keep their parameters when they are
-// started again, and culprit brings them to where they are meant to be.
+// Even if a value was to be undone while its process was not there: many nodes keep their
+// parameters when they are started again, and culprit brings them to their intended values.
 TEST(Manager, UndoesWhatItSetInAProcessThatIsGoneOnceThatIsBack) {
   for (const char* victim : {"fusion", "filter"}) {
     for (Duration killed = 0s; killed < 3s; killed += 50ms) {
@@ -680,7 +679,7 @@ RULE FusionDead
   robot.run_for(100ms);
   robot.signal("blur", Value(0.0));
   robot.run_for(1s);
-  EXPECT_EQ(robot.count("Focus went away"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("Focus cleared"), 1u) << transcript(robot);
   robot.signal("silent", Value(1.0));
   robot.run_for(2s);
   EXPECT_FALSE(robot.was_asked("fusion:")) << "the camera is still sick" << transcript(robot);

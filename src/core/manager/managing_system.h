@@ -23,7 +23,7 @@ class ManagingSystem {
   // When step wants to be called even if nothing arrives.
   virtual Time next_deadline() const = 0;
 
-  // What happened in the last step. Valid until the next.
+  // The events of the last step. Valid until the next.
   virtual std::span<const Event> events() const = 0;
 };
 

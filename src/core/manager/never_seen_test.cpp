@@ -1,4 +1,4 @@
-// Absent is not dead: nothing is done about what was never seen.
+// Absent is not dead: culprit does nothing about components and topics that were never seen.
 #include <gtest/gtest.h>
 
 #include "manager/test_robot.h"
@@ -61,7 +61,7 @@ TEST(NeverSeen, AUnitThatFailedIsStartedThoughItsNodeWasNeverThere) {
   EXPECT_EQ(robot.count("camera is there"), 1u) << transcript(robot);
 }
 
-// What it could not even begin has no process. Somebody may run its node by hand, though.
+// A unit that could not even begin has no process. A person may run its node by hand, though.
 TEST(NeverSeen, AUnitThatNeverHadAProcessIsStartedUnlessItsNodeIsThere) {
   for (const bool is_there : {false, true}) {
     TestRobot robot(
@@ -80,7 +80,7 @@ TEST(NeverSeen, AUnitThatNeverHadAProcessIsStartedUnlessItsNodeIsThere) {
   }
 }
 
-// What a status, a key or a parameter is really called is known only if the robot was heard.
+// The right name of a status, a key or a parameter is known only if the robot was heard.
 TEST(NeverSeen, ATypingMistakeInADiagnosticOrAParameterIsTold) {
   TestRobot robot(
       "COMPONENT camera NODE /front/camera LAUNCH \"camera\"\n"
@@ -96,13 +96,15 @@ TEST(NeverSeen, ATypingMistakeInADiagnosticOrAParameterIsTold) {
   robot.tell(ParametersListed{ComponentId(0), {"exposure", "gain", "names"}});
   robot.run_for(60s);
   for (const char* line :
-       {"signal hot was never seen: nothing tells the key 'temperature' of status 'moter'; did you "
+       {"signal hot was never seen: no message carries the key 'temperature' of status 'moter'; "
+        "did you "
         "mean 'motor'?",
-        "signal slow was never seen: nothing tells the key 'sped' of status 'motor'; did you mean "
+        "signal slow was never seen: no message carries the key 'sped' of status 'motor'; did you "
+        "mean "
         "'speed'?",
-        "signal dark was never seen: nothing tells it; did you mean 'exposure'?",
-        "signal curent was never seen: nothing tells it; did you mean 'current'?",
-        "diagnostic lense was never seen: nobody tells it; did you mean 'lens'?",
+        "signal dark was never seen: no message carries it; did you mean 'exposure'?",
+        "signal curent was never seen: no message carries it; did you mean 'current'?",
+        "diagnostic lense was never seen: no node publishes it; did you mean 'lens'?",
         "parameter gian of camera was never seen: no value was read; did you mean 'gain'?",
         "parameter names of camera was never seen: no value was read. What"})
     EXPECT_EQ(robot.count(line), 1u) << line << transcript(robot);
@@ -252,8 +254,8 @@ TEST(Storm, ProcessesThatAreKnownToBeDeadAreNone) {
     EXPECT_TRUE(five.robot.works(c)) << c << transcript(five.robot);
 }
 
-// c0 dies before it ever spoke, so its silence can be judged only once the robot had time to show
-// itself. It is known to be dead, and c1 is not replaced for it meanwhile.
+// c0 dies before its first message, so its silence can be judged only once the robot had time to
+// show itself. It is known to be dead, and c1 is not replaced for it meanwhile.
 TEST(NeverSeen, WhoDiesBeforeItsFirstWordIsNotTakenOutOnItsEffects) {
   TestRobot robot(
       "COMPONENT c0 NODE /c0 LAUNCH \"c0\"\nCOMPONENT c1 NODE /c1 LAUNCH \"c1\"\n"

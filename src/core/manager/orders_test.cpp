@@ -1,4 +1,4 @@
-// What people tell the manager, and what becomes of it.
+// Orders of people to the manager, and their results.
 #include <gtest/gtest.h>
 
 #include "manager/runtime.h"
@@ -60,7 +60,7 @@ TEST(Orders, PauseStopsAtOnceWhatIsUnderWayAndResumeGoesOn) {
   const std::size_t asked = r.asked.size();
   r.run_for(20s);
   EXPECT_EQ(r.asked.size(), asked) << transcript(r);
-  EXPECT_EQ(r.count("CameraDead.restart is left where it is: paused by Ann"), 1u) << transcript(r);
+  EXPECT_EQ(r.count("CameraDead.restart is abandoned: paused by Ann"), 1u) << transcript(r);
   EXPECT_EQ(r.count("is held back: paused by a person"), 1u) << "said once" << transcript(r);
   r.order(order(Resume{}));
   r.run_for(10s);
@@ -182,7 +182,8 @@ TEST(Orders, WhatAPersonRefusedHoldsUpNoLesserFailure) {
   Manager::Options options;
   options.governor.approval = Approval::kEach;
   std::string rules = kRules;
-  rules.replace(rules.find("light 90"), 8, "light 80");  // what is sure waits for nobody anyway
+  rules.replace(rules.find("light 90"), 8,
+                "light 80");  // a sure strategy waits for no other anyway
   TestRobot r(rules, std::make_unique<BayesPlanner>(), options);
   r.add("lamp").parameters["on"] = Value(std::int64_t{0});
   r.add("camera", {"lamp"}, "/rgb");
@@ -235,6 +236,56 @@ RULE Blind
   EXPECT_TRUE(r.manager().governor().asked().empty()) << "no restart of it" << transcript(r);
 }
 
+TEST(Orders, AProposedStrategyBeginsOnlyOnceAPersonApprovesIt) {
+  TestRobot r = robot(Approval::kEach);
+  r["camera"].fault = "redeploy";
+  r.run_for(1s);
+  r.order(order(Propose{kRedeploy}));  // the planner asks for the restart
+  r.run_for(30s);
+  EXPECT_TRUE(r.asked.empty()) << transcript(r);
+  r.order(order(Approve{kRedeploy}));
+  r.run_for(5s);
+  EXPECT_FALSE(r.was_asked("camera: deactivate")) << transcript(r);
+  EXPECT_TRUE(r.works("camera")) << transcript(r);
+}
+
+TEST(Orders, AProposalIsRefusedWhereItMakesNoSense) {
+  TestRobot alone = robot();
+  alone["camera"].fault = "never";
+  alone.run_for(500ms);
+  alone.order(order(Propose{kLight}));
+  EXPECT_EQ(alone.count("it has to run with --approve"), 1u) << transcript(alone);
+
+  TestRobot r = robot(Approval::kEach);
+  r.order(order(Propose{kRedeploy}));
+  EXPECT_EQ(r.count("CameraDead needs no strategy now"), 1u) << transcript(r);
+  r.order(order(Propose{StrategyId(99)}));
+  EXPECT_EQ(r.count("there is no such strategy"), 1u) << transcript(r);
+  r["camera"].fault = "redeploy";
+  r.run_for(1s);
+  r.order(order(Propose{kRedeploy}));
+  r.order(order(Propose{kRedeploy}));
+  EXPECT_EQ(r.count("waits for approval already"), 1u) << transcript(r);
+  r.order(order(Refuse{kRedeploy}));
+  r.order(order(Propose{kRedeploy}));
+  EXPECT_EQ(r.count("a person refused redeploy for this failure"), 1u) << transcript(r);
+  r.run_for(30s);
+  EXPECT_TRUE(r.asked.empty()) << transcript(r);
+}
+
+// A pause, and a dry run, hold what a person approves, too.
+TEST(Orders, AnApprovedProposalIsHeldByAPause) {
+  TestRobot r = robot(Approval::kEach);
+  r["camera"].fault = "redeploy";
+  r.run_for(1s);
+  r.order(order(Propose{kRedeploy}));
+  r.order(order(Pause{}));
+  r.order(order(Approve{kRedeploy}));
+  r.run_for(5s);
+  EXPECT_TRUE(r.asked.empty()) << transcript(r);
+  EXPECT_EQ(r.count("it is paused; resume first"), 1u) << transcript(r);
+}
+
 TEST(Orders, AQuestionLapsesWithItsFailure) {
   TestRobot r = robot(Approval::kEach);
   r.signal("brightness", Value(0.2));
@@ -260,7 +311,7 @@ TEST(Orders, AStrategyRunByHandActsWithoutItsFailureAndTeachesNothing) {
   EXPECT_EQ(r.count("Dark detected"), 1u) << transcript(r);
 }
 
-// What failed is known to have failed before anything else is decided: c1, whose silence it
+// A strategy that failed is known to have failed before the next decision: c1, whose silence it
 // explains, is not replaced meanwhile.
 TEST(Orders, AStrategyRunByHandThatFailsLeavesItsFailureBehindAtOnce) {
   const auto rule = [](const std::string& node) {

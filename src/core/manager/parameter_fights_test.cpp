@@ -63,7 +63,7 @@ TEST_P(ParameterFight, IsSeenHoweverSoonTheFailureIsBack) {
   EXPECT_EQ(fight.robot.count("TooNoisy is exhausted"), 1u) << transcript(fight.robot);
 }
 
-// Its process keeps no parameters: what was learned of the old one's values is over.
+// Its process keeps no parameters: a new process makes the memory of the old one's values void.
 TEST_P(ParameterFight, BeginsAnewWithTheProcess) {
   Fight fight(GetParam()(), "WARNING");
   fight.run_for(60s);

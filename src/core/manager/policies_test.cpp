@@ -1,4 +1,4 @@
-// What the policies of a rule do: FOR, HOLD, COOLDOWN, ON_CHANGE, ATTEMPTS.
+// The policies of a rule: FOR, HOLD, COOLDOWN, ON_CHANGE, ATTEMPTS.
 #include <gtest/gtest.h>
 
 #include "manager/test_robot.h"

@@ -1,4 +1,4 @@
-// What a fleet learned, told to a manager while it runs.
+// Priors of a fleet that reach a manager while it runs.
 #include <cmath>
 
 #include <gtest/gtest.h>

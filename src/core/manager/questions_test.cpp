@@ -7,7 +7,7 @@
 namespace culprit::test {
 namespace {
 
-// The map serves what navigation asks for; nothing tells that it works.
+// The map serves navigation's requests; no topic shows that it works.
 constexpr const char* kRulesOfNavigation = R"(
 CYCLE 100ms
 COMPONENT map NODE /map LAUNCH "map"
@@ -129,7 +129,7 @@ TEST(Questions, ALostAnswerIsNotAwaitedForLong) {
   EXPECT_TRUE(robot.was_asked("nav: stop process")) << transcript(robot);
 }
 
-// Nobody could hear an answer meanwhile.
+// culprit could not receive an answer meanwhile.
 TEST(Questions, ProveNothingWhileTheRobotCannotBeHeard) {
   Navigation navigation;
   navigation.answers_at_first();

@@ -17,8 +17,8 @@ std::optional<std::string> objection(StrategyId id, const Knowledge& knowledge) 
 
 }  // namespace
 
-// What is known is copied only where something is withheld: that is seldom, and what-if questions
-// ask for very many plans.
+// The knowledge is copied only where the governor withholds something: that is seldom, and what-if
+// questions ask for very many plans.
 std::vector<Decision> RestrainedPlanner::plan(std::span<const RuleId> failures,
                                               const Knowledge& knowledge) const {
   std::vector<Decision> decisions = planner_.plan(failures, knowledge);

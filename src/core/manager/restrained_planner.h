@@ -1,8 +1,8 @@
 // A planner that chooses what a manager would begin: a strategy that the governor withholds because
 // of the robot's state (several nodes of one name, evidence) makes room for the next best.
 //
-// It answers what would be decided (culprit plan, what-if). Budgets and back-offs do not count
-// here, because they come from what was done before.
+// It answers questions about decisions (culprit plan, what-if). Budgets and back-offs do not count
+// here, because they come from earlier actions.
 #pragma once
 
 #include "plan/planner.h"

@@ -1,4 +1,4 @@
-// What is asked about is what would be begun.
+// The governor is asked about exactly the strategies that would begin.
 #include "manager/restrained_planner.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ RULE LidarSilent
       ADAPTATION lidar redeploy 5
 )";
 
-// What is chosen for a camera that is silent.
+// The strategy that is chosen for a silent camera.
 std::string choice(bool has_namesake) {
   TestRobot robot(kRules, std::make_unique<Onlooker>());
   robot.add("camera", {}, "/rgb");
@@ -54,7 +54,7 @@ TEST(RestrainedPlanner, ChoosesNoRedeployThatTheEvidenceSpeaksAgainst) {
   EXPECT_EQ(choice(false), "restart") << "the lidar runs and is heard";
 }
 
-// What may be begun for one failure does not let another one be begun.
+// The permission for one strategy is not valid for another one.
 TEST(RestrainedPlanner, AsksOfEachThatIsChosen) {
   TestRobot robot(kRules, std::make_unique<Onlooker>());
   robot.add("camera", {}, "/rgb");

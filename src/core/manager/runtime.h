@@ -7,6 +7,23 @@
 //     Runtime runtime(manager, robot);
 //     runtime.on_events = [&](std::span<const Event> events) { print(events); };
 //     runtime.run(stop);    // elsewhere: stop = true; robot.interrupt();
+// A host that drives the managing system by itself (examples/t02_robot_behind_the_port) has the same
+// duties:
+//
+//  1. Time does not go back. `now` of a step is at least that of the step before, and at least the
+//     time of each observation in it.
+//  2. Step at once when something was observed, when an order came, and when next_deadline() has passed.
+//  3. Carry out the commands of a step in their order, each exactly once, and none of an earlier process
+//     of the manager. Reads may be repeated on the wire.
+//  4. Give each command one Reply with its number, kTimedOut after its timeout at the latest.
+//  5. Write what has to survive before the commands go out (before_commands): after a crash the journal
+//     must not know less than the robot has seen.
+//  6. Say when nothing could be heard: Overslept after a step that came more than kLate after its time,
+//     HearingLost and HearingRegained around deafness. Else silence counts as the robot's.
+//  7. Report the end of a process only with proof, by the operating system or by the whole time of a
+//     lease.
+//  8. Never drop an observation of a process or of the graph. Samples may be thinned; the newest stays.
+//  9. One thread at a time calls the managing system.
 #pragma once
 
 #include <atomic>
@@ -21,8 +38,9 @@ namespace culprit {
 
 class Runtime {
  public:
-  // Whoever comes round so much later than it was asked to stood still, or was kept from the
-  // processor: the manager is told (Overslept). Less is within what rules can be written for.
+  // If the host loop comes this much later than it was asked to, the process was suspended or did
+  // not get the processor, and the manager is told so (Overslept). Less is within the times that
+  // rules can be written for.
   static constexpr Duration kLate = std::chrono::milliseconds(250);
 
   // Both must outlive the runtime.
@@ -44,22 +62,22 @@ class Runtime {
   // the observations.
   std::function<void(const Step&)> on_step;
 
-  // When a step is wanted though the manager has no reason for one; nothing: never. Called on the
+  // When a step is wanted though the manager has no reason for one; null: never. Called on the
   // thread of run().
   std::function<Time()> next_look;
 
   // Called after every step in which something happened, on the thread of run(). It must not block.
   std::function<void(std::span<const Event>)> on_events;
 
-  // Runs until `stop` is set, or the robot's clock has come to `end`. Whoever sets `stop` also has
-  // to interrupt the robot's waiting.
+  // Runs until `stop` is set, or the robot's clock has come to `end`. The thread that sets `stop`
+  // also has to interrupt the robot's waiting.
   void run(const std::atomic<bool>& stop, Time end = kNever);
 
-  // One step, with what was observed otherwise.
+  // One step, with observations from another source.
   void step(std::vector<Observation>& observations);
 
   // Gives the managing system an order, with its next step, which comes at once. From any thread,
-  // as long as the runtime lives; what is submitted while run() does not run waits for it.
+  // as long as the runtime lives; orders that are submitted while run() does not run wait for it.
   void submit(Order order);
 
  private:

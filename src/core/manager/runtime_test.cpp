@@ -13,7 +13,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// A robot of which nothing is ever heard.
+// A robot that never sends a message.
 class SilentRobot : public Robot {
  public:
   Time now() const override { return now_; }

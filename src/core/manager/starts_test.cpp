@@ -1,5 +1,5 @@
-// Processes that do not come up at once: what is known to be gone is started again and again, and with
-// READY several tries are one start.
+// Processes that do not come up at once: a process that is known to have exited is started again and
+// again, and with READY several tries are one start.
 #include <gtest/gtest.h>
 
 #include "manager/test_robot.h"
@@ -32,7 +32,7 @@ INSTANTIATE_TEST_SUITE_P(EachPlanner, Starts, testing::Values(paper_that_starts,
 
 std::size_t starts_of(const TestRobot& robot) { return robot.count_asked("camera: start process"); }
 
-// As Kubernetes does: at most five minutes apart, for ever; a person is told once.
+// As Kubernetes does: at most five minutes apart, for ever; a person is notified once.
 TEST_P(Starts, OfADeadProcessGoOnForEver) {
   TestRobot robot = driver();
   robot["camera"].dies_at_start = true;

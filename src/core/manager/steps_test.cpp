@@ -1,4 +1,5 @@
-// Strategies in steps (THEN): what is taken down for a repair, and when it comes up again.
+// Strategies in steps (THEN): components that are taken down for a repair, and when they come up
+// again.
 #include <algorithm>
 
 #include <gtest/gtest.h>

@@ -75,7 +75,7 @@ ComponentId TestRobot::id(const std::string& name) const {
   return {};
 }
 
-// All that it needs works, however far upstream; there may be circles.
+// All that it needs works, however far upstream; there may be loops.
 bool TestRobot::works(const std::string& name) const {
   std::vector<std::string> needed{name};
   for (std::size_t next = 0; next < needed.size(); ++next) {

@@ -68,8 +68,8 @@ class TestRobot {
   void leave(const std::string& name);          // it says good-bye and ends, as after Ctrl-C
   void start_by_hand(const std::string& name);  // a person does
   void run_for(Duration time);
-  // Nothing comes from that computer any more, and it is told as the link does it: that it is silent
-  // after some seconds, that its nodes left the graph when their leases ran out.
+  // Cuts that computer off, and reports it as the link does: that it is silent after some seconds,
+  // and that its nodes left the graph when their leases expired.
   void cut(const std::string& host);
   void mend(const std::string& host);
   // All stands still, the manager too.
@@ -90,7 +90,7 @@ class TestRobot {
   Manager& manager() { return *manager_; }
   const RuleSet& rules() const { return *rules_; }
 
-  // What the manager said, in words, and what it asked for: "camera: activate".
+  // The manager's events in words, and its commands: "camera: activate".
   std::vector<std::string> said;
   std::vector<std::string> asked;
   std::vector<Event> events;

@@ -53,8 +53,8 @@ TEST(Verdicts, DoNotWaitForEverForASignalThatFellSilent) {
   EXPECT_EQ(robot.count("focus did not resolve Blurred"), 1u) << transcript(robot);
 }
 
-// Whether it helped cannot be seen for the moment, and after half a minute it did not. Such a failure is looked at
-// in each cycle from when it could not be seen any longer: so that one of those is at the very end, STALE is what it is.
+// Whether it helped is unknown for half a minute, and then it did not. Such a failure is looked at in each cycle from
+// the moment when it is unknown: STALE is chosen so that one of those looks is at the very end.
 TEST(Verdicts, WaitHalfAMinuteForASignalThatIsNotKnownAnyLonger) {
   TestRobot robot(R"(
 CYCLE 40ms

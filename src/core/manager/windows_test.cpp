@@ -137,7 +137,7 @@ TEST(Windows, AValueThatRepeatsItselfIsFrozen) {
   EXPECT_THAT(played.detected, ElementsAre(std::pair("Frozen", 6900ms)));
 }
 
-// Nor is one that was heard for a shorter time, or that changes.
+// Nor is one that was received for a shorter time, or that changes.
 TEST(Windows, ASilentSignalIsNotFrozen) {
   Played played(
       "SIGNAL x TOPIC /x FIELD data STALE 500ms\n"

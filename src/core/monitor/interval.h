@@ -8,7 +8,7 @@
 
 namespace culprit::monitor {
 
-// What comes seldom tells little about how fast it would show a change.
+// A topic with a longer interval shows little about how fast it would show a change.
 constexpr Duration kLongestLatency = std::chrono::seconds(5);
 
 // A new interval counts for an eighth, as in TCP's round-trip estimate.
@@ -16,8 +16,8 @@ inline Duration smoothed(Duration before, Duration now) {
   return before == Duration::zero() ? now : before + (now - before) / 8;
 }
 
-// How long it is usually silent in between: what comes in bursts pauses longer than it does on
-// average. A longer pause counts at once, but no outage is taken for a pause; a shorter one counts
+// The usual pause between two samples: a topic that comes in bursts pauses longer than its average
+// interval. A longer pause counts at once, but no outage is taken for a pause; a shorter one counts
 // for an eighth.
 inline Duration usual_gap(Duration before, Duration now) {
   return now > before && before > Duration::zero() ? std::min(now, 2 * before)

@@ -3,10 +3,11 @@
 #pragma once
 
 #include <algorithm>
-#include <cassert>
 #include <cstddef>
 #include <memory>
 #include <vector>
+
+#include "base/invariant.h"
 
 namespace culprit::monitor {
 
@@ -30,7 +31,7 @@ class LongQueue {
 
   // @pre !full()
   void push_back(const T& item) {
-    assert(!full());
+    CULPRIT_ASSERT(!full());
     const std::size_t place = first_ + size_;
     if (place / kPiece == pieces_.size()) grow();
     Piece& piece = pieces_[slot(place)];
@@ -40,7 +41,7 @@ class LongQueue {
   }
   // @pre !empty()
   void pop_front() {
-    assert(!empty());
+    CULPRIT_ASSERT(!empty());
     --size_;
     if (++first_ < kPiece) return;
     // The piece that is used up will be needed next behind the last one.
@@ -52,7 +53,7 @@ class LongQueue {
   }
   // Leaves the `count` oldest. @pre count <= size()
   void truncate(std::size_t count) {
-    assert(count <= size_);
+    CULPRIT_ASSERT(count <= size_);
     size_ = count;
   }
   void clear() { size_ = 0; }
@@ -73,7 +74,7 @@ class LongQueue {
   }
 
   std::size_t limit_;
-  std::vector<Piece> pieces_;  // a circle that begins with `head_`; null: not needed yet
+  std::vector<Piece> pieces_;  // a ring that begins with `head_`; null: not needed yet
   std::size_t head_ = 0;
   std::size_t first_ = 0;  // of the first piece
   std::size_t size_ = 0;

@@ -52,7 +52,8 @@ Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time dis
       parameter_inputs_(knowledge.rules.parameters.size()),
       parameter_signals_(knowledge.rules.parameters.size()),
       diagnostic_inputs_(knowledge.rules.diagnostics.size()),
-      deadlines_(knowledge.rules.inputs.size() + 3 + 3 * knowledge.rules.components.size()) {
+      deadlines_(knowledge.rules.inputs.size() + 3 + 3 * knowledge.rules.components.size() +
+                 knowledge.rules.groups.size()) {
   const RuleSet& rules = knowledge.rules;
   for (std::size_t i = 0; i < rules.inputs.size(); ++i) {
     const Input& input = rules.inputs[i];
@@ -153,6 +154,10 @@ void Monitor::advance(Time now) {
       look_at_expected(now);
       continue;
     }
+    if (*due > look_at_expected_slot()) {
+      update_group(GroupId(*due - look_at_expected_slot() - 1), now);
+      continue;
+    }
     if (*due >= return_of(ComponentId(0))) {
       write_.components.set_host_silent(ComponentId(*due - return_of(ComponentId(0))), {});
       continue;
@@ -205,7 +210,7 @@ void Monitor::remember(const KnownRobot& known) {
   expect(known);
 }
 
-// Those of the rules that are what `publisher` publishes as `name`; nothing: a node that is none.
+// Those of the rules that are what `publisher` publishes as `name`; empty: a node that is none.
 std::vector<TopicId> Monitor::topics_of(std::optional<ComponentId> publisher,
                                         const std::string& name) const {
   std::vector<TopicId> topics;

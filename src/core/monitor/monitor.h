@@ -32,9 +32,9 @@ class Monitor {
   // A component is lost after this many unanswered ones; one whose process is known only if it is
   // silent too (is_silent).
   static constexpr int kMissedProbes = 2;
-  // What takes a node through its lifecycle later than that does not belong to its start.
+  // A later lifecycle transition does not belong to the node's start.
   static constexpr Duration kStart = std::chrono::seconds(60);
-  // What a signal usually is: its last readings, once there are enough.
+  // The usual value of a signal is taken from its last readings, once there are enough.
   static constexpr std::size_t kReadings = 32;
   static constexpr std::size_t kLeastReadings = 4;
   // A node that began anew may take so long to make the publishers and subscribers it had.
@@ -47,16 +47,17 @@ class Monitor {
   static constexpr Duration kGrace = std::chrono::seconds(5);
   // How often it is looked whether all is there that an earlier run saw.
   static constexpr Duration kLook = std::chrono::milliseconds(50);
-  // Who ends in an orderly way says good-bye first. That comes another way than the word of the
-  // operating system, and may come after it.
+  // A node that shuts down cleanly leaves the graph first. That news takes another way than the
+  // operating system's report, and may come after it.
   static constexpr Duration kFarewell = std::chrono::milliseconds(10);
 
-  // When a computer is heard again, so long for each of its nodes: it may have to be discovered anew.
+  // When a computer is reachable again, the grace period for each of its nodes: it may have to be
+  // discovered anew.
   static constexpr Duration kReturn = std::chrono::seconds(10);
   // And so long for what such a node says, from when it answers.
   static constexpr Duration kSpeaks = std::chrono::milliseconds(3500);
 
-  // A value that becomes NaN again is reported again if it was none for so long.
+  // A value that becomes NaN again is reported again if it was a number for at least this long.
   static constexpr Duration kTellAgain = std::chrono::seconds(60);
 
   // What it writes; all else it only reads.
@@ -70,26 +71,26 @@ class Monitor {
     EventLog& events;
   };
 
-  // `knowledge` must outlive the monitor. Watching begins at `start`. What was never seen
-  // (knowledge/sightings.h) is unknown; when `discovered`, that is told. What an earlier run saw may
-  // still be discovered until `discovered`, from then on it is absent: a component that is not there
-  // is not alive, a topic is silent. A topic that is seen later has as long to speak, from when its
-  // publisher came. Where all is there that an earlier run saw, that is known before `discovered`
-  // (monitor_start.cpp).
+  // `knowledge` must outlive the monitor. Watching begins at `start`. A part that was never seen
+  // (knowledge/sightings.h) is unknown, and reported when `discovered`. A part that an earlier run
+  // saw may still be discovered until `discovered`. From then on it is absent: a component that is
+  // not there is not alive, a topic is silent. A topic that is seen later gets as long for its first
+  // message, from the discovery of its publisher. If all parts that an earlier run saw are there,
+  // that is known before `discovered` (monitor_start.cpp).
   Monitor(const Knowledge& knowledge, Writes writes, Time start, Time discovered);
 
-  // What earlier processes of culprit knew of lifecycles. Before the first observation.
+  // The lifecycles that earlier processes of culprit knew. Before the first observation.
   void remember(const History& past);
-  // What they saw. Before the first observation.
+  // The parts of the robot that they saw. Before the first observation.
   void remember(const KnownRobot& known);
 
   // Takes in an observation as of `at`, which never goes back.
   void observe(const Observation& observation, Time at);
 
-  // What was not heard from `since` until `now` could not have been heard, as when nobody listened. A topic that comes again
-  // has its usual gap and kSpeaksAgain for that; until then its silence is as long as it was at `since`, and then it goes
-  // on, so that nothing is found to work by that. For kGrace, a node that leaves the graph is not taken for dead
-  // unless the operating system says so: it may only have to be discovered anew. For kUnsure, none is found to hang.
+  // culprit received nothing from `since` until `now`, as when it was suspended. A topic has its usual gap and kSpeaksAgain
+  // to be received again. Until then its silence is as long as it was at `since`, and then it goes on, so that no recovery
+  // is concluded from the pause. For kGrace, a node that leaves the graph is not taken for dead unless the operating system
+  // says so: it may only have to be discovered anew. For kUnsure, no component is found to hang.
   void restart(Time since, Time now);
 
   // Lets time pass: updates every value whose deadline has come.
@@ -109,7 +110,7 @@ class Monitor {
   };
   struct Goals {
     std::unordered_map<std::uint64_t, Goal> all;  // that the server remembers
-    bool is_heard = false;                        // it told of them
+    bool is_heard = false;                        // it reported them
   };
   struct Topic {
     Goals goals;  // of the status of an action
@@ -120,17 +121,17 @@ class Monitor {
     monitor::LossMeter loss;
     std::vector<InputId> inputs;
     bool needs_phi = false;
-    // There was a gap in hearing since the last sample: until then its silence is as long as it was.
+    // There was a gap in reception since the last sample: until then its silence is as long as it
+    // was.
     struct Resumes {
       Time at;
       Duration silence{};
     };
     std::optional<Resumes> resumes;
-    Time heard_again_by = kLongAgo;  // until then it had time for that
-    bool is_known_silent = false;    // since who publishes it was known dead, nothing came
-    std::optional<Time> listened;    // since when who publishes it knows that it is listened to
-    // It is certain that nothing came since then, though `discovered` is still ahead; and who would
-    // have spoken.
+    bool is_known_silent = false;  // no sample came since its publisher was known dead
+    std::optional<Time> listened;  // since when its publisher knows its subscriber
+    // It is certain that no sample came since then, though `discovered` is still ahead; and the
+    // component that would have published one.
     std::optional<Time> silent_since;
     ComponentId silent_one;
   };
@@ -141,7 +142,7 @@ class Monitor {
     std::optional<WhyUnknown> unusable;  // why its last reading is no number
     std::optional<Time> nan;             // when it was NaN last
   };
-  // What an input of a topic or of a signal window keeps, by InputId.
+  // The state of an input of a topic or of a signal window, by InputId.
   struct Derived {
     monitor::SlidingCount count{Duration(1)};
     std::optional<monitor::ValueWindow> values;  // kMean, kMin, kMax, kStddev
@@ -274,14 +275,17 @@ class Monitor {
   bool is_silent(ComponentId component, Time now) const;
   void note_silent(const std::string& host, Time at);
   void update_alive(ComponentId component, Time at, const std::string& remark);
-  void update_alive_inputs(ComponentId component, const Slot& value);
+  void update_alive_inputs(ComponentId component, Time now, const Slot& value);
+  void update_groups_of(ComponentId component, Time now);
+  void note_pause(const Group& group, Time now);
+  void update_group(GroupId group, Time now);
 
   const Knowledge& knowledge_;
   Writes write_;
   // Since when a window of values counts that began at `since`.
   Time heard_since(Time since) const { return std::max(since, awake_); }
 
-  // What an earlier run saw, until all of it is there or there was time for more.
+  // The parts that an earlier run saw, until all of them are there or discovery is over.
   struct Expected {
     struct Part {
       ComponentId component;
@@ -328,9 +332,9 @@ class Monitor {
   }
 
   // By InputId; then `discovered_`, then `graced_`; then ComponentState::awaits_ends_until by
-  // component; then, by component, until when its good-bye may still come;
-  // then, by component, until when it may have to be heard again after its computer was; then when
-  // to look at `expected_`.
+  // component; then, by component, until when its farewell may still come; then, by component,
+  // until when it may have to be discovered again after its computer was unreachable; then when to
+  // look at `expected_`; then when the health of a group may change, by GroupId.
   Deadlines deadlines_;
 };
 

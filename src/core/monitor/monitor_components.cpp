@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "knowledge/group_health.h"
 #include "monitor/monitor.h"
 
 namespace culprit {
@@ -16,10 +17,10 @@ bool has_crashed(const std::string& remark) {
          (remark.starts_with("exit code ") && remark != "exit code 0");
 }
 
-// Of what somebody else takes through its lifecycle, and how long that takes was never seen.
+// For a component with another driver, whose transition time was never seen.
 constexpr Duration kUnknownTransition = std::chrono::minutes(1);
 
-// Of a node whose process runs, and of which nothing else is heard: a busy one misses some.
+// For a node that shows no sign of life but its running process: a busy one misses some.
 constexpr int kMissedAlone = 5;
 
 // It alone publishes a topic that rules watch, with a rhythm that is known.
@@ -73,13 +74,13 @@ void Monitor::on(Time at, const NodeAppeared& seen) {
   if (!state.in_graph) return;  // the others have as long to come as its ends
   const bool was_alive = state.alive == true;
   update_alive(*component, at, "");
-  // A mode manager offers services in the node's name, and may be seen before the node is: then it is the node's
-  // process that counts, and people are told so.
+  // A mode manager offers services in the node's name, and may be seen before the node is: then the node's
+  // process counts, and an event reports it.
   if (was_another && was_alive && state.alive == true)
     write_.events.tell(at, ComponentFound{*component, seen.pid});
 }
 
-// Who reads what it published goes on depending on it until then.
+// Its consumers count as depending on it until then.
 void Monitor::await_ends(ComponentId component, Time at) {
   write_.components[component].awaits_ends_until = later(at, kEndsAwaited);
   deadlines_.set(knowledge_.rules.inputs.size() + 2 + component.index, later(at, kEndsAwaited));
@@ -116,12 +117,13 @@ void Monitor::on(Time at, const NodeVanished& seen) {
   if (!component) return;
   if (knowledge_.graph.has_several_nodes(*component) && knowledge_.graph.has_any_node(*component))
     return note_part_vanished(*component, seen.node, at);
-  // A process in Python leaves the graph before it ends; how it ends is not known yet, and by then it
-  // may have been told to.
+  // A process in Python leaves the graph before it ends. Its exit is not known yet, and by then
+  // culprit may have ended it.
   if (knowledge_.states.reservation(*component) == nullptr) note_end_of_start(*component, at);
   note_farewell(*component, at);
   forget_process(*component, at);
-  // Of several the graph tells next which it is from now on, perhaps in another step.
+  // If there are several, the graph reports next which one it is from now on, perhaps in another
+  // step.
   if (knowledge_.components[*component].namesakes > 0) return;
   update_alive(*component, at, "its node left the graph");
 }
@@ -207,9 +209,41 @@ void Monitor::update_lifecycle_inputs(ComponentId component, Time now) {
     if (knowledge_.rules[id].kind == Kind::kLifecycle)
       write_.signals.set(id, is_unknown ? Slot() : Slot::of(to_string(state)));
   }
+  update_groups_of(component, now);
 }
 
-// Somebody brought it up who is not culprit: itself, its launcher, a lifecycle manager.
+void Monitor::update_groups_of(ComponentId component, Time now) {
+  for (std::size_t g = 0; g < knowledge_.rules.groups.size(); ++g) {
+    const auto& members = knowledge_.rules.groups[g].members;
+    if (std::ranges::find(members, component) != members.end()) update_group(GroupId(g), now);
+  }
+}
+
+// A manager that stops half-way leaves no group inactive as a whole: one server is down, or still active.
+void Monitor::note_pause(const Group& group, Time now) {
+  const bool is_up = std::ranges::any_of(group.members, [&](ComponentId member) {
+    return knowledge_.components[member].lifecycle == Lifecycle::kActive;
+  });
+  if (!is_up && health_of(group, knowledge_.components, now) != GroupHealth::kInactive) return;
+  for (const ComponentId member : group.members) write_.components[member].is_paused = !is_up;
+}
+
+void Monitor::update_group(GroupId id, Time now) {
+  const Group& group = knowledge_.rules[id];
+  note_pause(group, now);
+  const GroupHealth health = health_of(group, knowledge_.components, now);
+  const bool is_known = health != GroupHealth::kUnknown;
+  if (is_known) write_.sightings.read(group.health);
+  for (const InputId input : signals_[group.health.index].inputs) {
+    if (knowledge_.rules[input].kind != Kind::kSignal) continue;
+    write_.signals.set(input, is_known ? Slot::of(to_string(health)) : Slot());
+    if (is_known) write_.signals.set_read_at(input, now);
+  }
+  deadlines_.set(look_at_expected_slot() + 1 + id.index,
+                 settles_at(group, knowledge_.components, now));
+}
+
+// A driver other than culprit brought it up: itself, its launcher, a lifecycle manager.
 void Monitor::note_rise(ComponentId component, Lifecycle now, Time at) {
   ComponentState& state = write_.components[component];
   if (now == Lifecycle::kUnconfigured) state.is_rising = true;
@@ -226,7 +260,7 @@ void Monitor::note_rise(ComponentId component, Lifecycle now, Time at) {
 // time the next time: as long as it lived.
 void Monitor::note_end_of_start(ComponentId component, Time at) {
   const ComponentState& state = knowledge_.components[component];
-  // What came up before culprit watched (`run --launch`, an earlier culprit) is seen only afterwards.
+  // A start before culprit watched (`run --launch`, an earlier culprit) is seen only afterwards.
   const Time began = std::min(state.node_seen, state.culprit_raised);
   if (!state.in_graph || began == kLongAgo || at > later(began, kStart)) return;
   ComingUp how = state.coming_up;
@@ -243,11 +277,11 @@ void Monitor::note_end_of_start(ComponentId component, Time at) {
 
 void Monitor::on(Time at, const ProcessSeen& seen) {
   ComponentState& state = write_.components[seen.component];
-  // What systemd says of its unit is proof, also if its node was never seen.
+  // systemd's report on its unit is proof, also if its node was never seen.
   if (knowledge_.rules[seen.component].has_owner()) write_.sightings.note(seen.component, at);
-  // A word about a process that the node no longer runs in says nothing about the node.
+  // A report about a process that the node no longer runs in is no evidence about the node.
   const int present = state.node_pid != 0 ? state.node_pid : state.pid;
-  // Of what an owner could not even begin there is no process.
+  // A component that its owner could not even start has no process.
   const bool is_other =
       seen.pid != present && (seen.pid != 0 || knowledge_.rules[seen.component].has_owner());
   if (is_other && state.in_graph && seen.state != ProcessState::kRunning) return;
@@ -353,7 +387,7 @@ void Monitor::on(Time at, const StartBarred& seen) {
                             "; culprit starts it when that is there"});
 }
 
-// What was known of another computer does not hold of this one.
+// Reachability of another computer does not hold for this one.
 void Monitor::on(Time, const LivesOn& seen) {
   if (knowledge_.components[seen.component].host == seen.host) return;
   write_.components[seen.component].host = seen.host;
@@ -374,7 +408,7 @@ void Monitor::on(Time at, const HostHeard& seen) {
   }
 }
 
-// Only where something ran that was seen: of a name that nobody has there is nothing to say.
+// Only for a host where a component was seen to run: for an unknown name there is no report.
 void Monitor::note_silent(const std::string& host, Time at) {
   HostSilent silent{host, {}, true};
   bool are_several = false;
@@ -406,7 +440,7 @@ void Monitor::on(Time, const EndsWith& seen) {
 
 void Monitor::on(Time at, const LinkTrouble& seen) { write_.events.tell(at, Trouble{seen.text}); }
 
-// The node or its process is gone or is another now: what was known of it does not hold any more.
+// The node or its process exited or is another now: the knowledge about it is void.
 void Monitor::forget_process(ComponentId component, Time at) {
   ComponentState& state = write_.components[component];
   if (state.in_graph) expect_no_more();
@@ -432,9 +466,9 @@ bool Monitor::hangs_in_transition(ComponentId component, Time now) const {
   return knowledge_.components[component].changes_until <= now;
 }
 
-// A node may have one thread, which answers nothing while it changes its lifecycle.
-// While what it publishes comes, or pauses as it did when it was well, it is at work. Of a node whose
-// process is known to run, only one that answered before can cease to.
+// A node may have one thread, which answers nothing while it changes its lifecycle. While its topics
+// are received, or pause as they did when it was well, it is at work. If its process is known to run,
+// it can only be found to hang if it answered before.
 bool Monitor::does_not_answer(ComponentId component, Time now) const {
   const ComponentState& state = knowledge_.components[component];
   if (state.missed_probes < kMissedProbes) return false;
@@ -472,12 +506,12 @@ void Monitor::update_alive(ComponentId component, Time at, const std::string& re
   const bool is_part_hung = has_hung_part(component) && at >= later(awake_, kUnsure);
   const bool answers = !does_not_answer(component, at) && !is_part_hung;
   const bool is_alive = state.in_graph && state.process == ProcessState::kRunning && answers;
-  if (!knowledge_.sightings.has(component)) return;           // it may be a name that nobody has
+  if (!knowledge_.sightings.has(component)) return;           // it may be a wrong name
   if (!is_alive && !state.alive && at < discovered_) return;  // it may still be discovered
   const bool may_be_unheard = is_deaf_ || at < graced_ || state.is_out_of_reach;
   if (!is_alive && may_be_unheard && state.process == ProcessState::kRunning) {
     state.alive.reset();
-    return update_alive_inputs(component, Slot());
+    return update_alive_inputs(component, at, Slot());
   }
   if (state.alive == is_alive) return;
   state.alive = is_alive;
@@ -490,13 +524,14 @@ void Monitor::update_alive(ComponentId component, Time at, const std::string& re
     write_.events.tell(
         at, ComponentLost{component, is_host ? "it " + knowledge_.why_unheard(component) : remark});
   }
-  update_alive_inputs(component, Slot::of(is_alive));
+  update_alive_inputs(component, at, Slot::of(is_alive));
 }
 
-void Monitor::update_alive_inputs(ComponentId component, const Slot& value) {
+void Monitor::update_alive_inputs(ComponentId component, Time now, const Slot& value) {
   for (const InputId id : component_inputs_[component.index]) {
     if (knowledge_.rules[id].kind == Kind::kAlive) write_.signals.set(id, value);
   }
+  update_groups_of(component, now);
 }
 
 }  // namespace culprit

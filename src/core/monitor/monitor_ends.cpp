@@ -59,7 +59,7 @@ void Monitor::note_end(const ProcessSeen& seen, Time at) {
     deadlines_.set(farewell_of(component), later(at, kFarewell));
 }
 
-// Of a node that leaves the graph while its process runs, or the moment after it ended.
+// Handles a node that leaves the graph while its process runs, or the moment after it ended.
 void Monitor::note_farewell(ComponentId component, Time at) {
   const bool is_running = knowledge_.components[component].process == ProcessState::kRunning &&
                           knowledge_.components[component].in_graph;

@@ -12,7 +12,7 @@ namespace {
 
 using Kind = Input::Kind;
 
-// A number, also one that a diagnostic has as a text. Nothing: it is no number.
+// A number, also one that a diagnostic has as a text. Empty: it is no number.
 std::optional<double> number_in(const Value& value) {
   if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
   if (const auto* number = std::get_if<double>(&value)) return *number;
@@ -131,10 +131,10 @@ void Monitor::note_arrival(InputId id, Time at) {
 }
 
 Duration Monitor::latency_of(SignalId signal) const {
-  // Nodes tell at once when a parameter changes.
+  // Nodes report at once when a parameter changes.
   if (std::holds_alternative<ParameterId>(knowledge_.rules[signal].source))
     return knowledge_.rules.cycle;
-  // After one reading nobody knows when the next will come.
+  // After one reading the time of the next one is unknown.
   const Duration interval = signals_[signal.index].interval;
   return interval > Duration::zero() ? usual_latency(interval) : monitor::kLongestLatency;
 }
@@ -225,12 +225,12 @@ void Monitor::update_changed(InputId id, Time now) {
   deadlines_.set(id.index, next);
 }
 
-// Longer than that between two samples, and nobody knows what the value was meanwhile.
+// If a pause between two samples is longer, the value in between is unknown.
 Duration Monitor::pause_of(const Input& input) const {
   return knowledge_.rules[input.signal].stale.value_or(input.window);
 }
 
-// Only what is read again and again shows that its value stands still: what does not come is silent.
+// Only repeated readings show that a value is frozen: a signal without readings is silent.
 void Monitor::update_frozen(InputId id, Time now) {
   const Input& input = knowledge_.rules[id];
   const Derived& derived = derived_[id.index];

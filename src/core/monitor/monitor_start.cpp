@@ -1,21 +1,20 @@
-// The monitor's part about the first seconds: what an earlier run saw of the robot is expected, and
-// once all of it is there nobody has to wait for more.
+// The monitor's part about the first seconds: it expects the parts of the robot that an earlier run
+// saw, and ends discovery once all of them are there.
 //
 // Until `discovered` absence is not knowledge (monitor.h). But a run that comes soon after another one
 // knows what there is to discover (KnownRobot). All of it is there once
 //
 //   components   their nodes are in the graph, each alone, with the ends that they had
-//   topics       those that it saw, and those that are published now, were heard
+//   topics       those that it saw, and those that are published now, were received
 //   values       all that it read was read: signals, diagnostics, parameters, lifecycles
 //
-// or, of a topic that is not heard, once it is certain that it would be: the earlier run heard it, one
-// component published it, and does so now, still in the same process, which has proven since that it
-// knows that it is listened to (ListenerKnown). From that proof on its silence counts.
+// or if it is certain that a silent topic would be received: the earlier run received it; one
+// component published it, and does so now, still in the same process; and that process has proven
+// since that it knows its subscriber (ListenerKnown). From that proof on its silence counts.
 //
-// While anything at all is missing, all silence waits until `discovered`, as in a first run: what is
-// missing may only be late, and may be the cause of the rest. It waits, too, if a component leaves
-// meanwhile, or if nothing could be heard for a while: then it is another robot than the one that was
-// expected.
+// While any part is missing, all silence waits until `discovered`, as in a first run: a missing part
+// may only be late, and may be the cause of the rest. It waits, too, if a component leaves meanwhile,
+// or if culprit was deaf for a while: then the robot is not the expected one.
 #include <algorithm>
 
 #include "monitor/monitor.h"
@@ -111,7 +110,7 @@ bool Monitor::is_there(TopicId topic) const {
   const Topic& state = topics_[topic.index];
   const bool is_awaited =
       expected_->seen[topic.index] || knowledge_.graph.publisher_count(knowledge_.rules[topic]) > 0;
-  // Of a topic whose rhythm nobody asks for only the fields are read, which are values.
+  // A topic whose rhythm is not read has only fields, which are values.
   return state.inputs.empty() || !is_awaited || state.last || certainly_silent(topic);
 }
 
@@ -122,11 +121,13 @@ bool Monitor::is_there(InputId id) const {
   if (input.kind == Kind::kLifecycle || input.kind == Kind::kParameter ||
       input.kind == Kind::kLevel)
     return knowledge_.signals[id].known;
-  const auto* field = std::get_if<TopicField>(&knowledge_.rules[input.signal].source);
+  const auto& source = knowledge_.rules[input.signal].source;
+  if (std::holds_alternative<GroupId>(source)) return knowledge_.signals[id].known;
+  const auto* field = std::get_if<TopicField>(&source);
   return signals_[input.signal.index].last || (field != nullptr && certainly_silent(field->topic));
 }
 
-// Who alone would publish it.
+// The only publisher of the topic, if the topic is certainly silent.
 std::optional<ComponentId> Monitor::certainly_silent(TopicId topic) const {
   const culprit::Topic& rule_topic = knowledge_.rules[topic];
   if (!expected_->heard[topic.index] || !topics_[topic.index].listened) return std::nullopt;
@@ -139,7 +140,7 @@ std::optional<ComponentId> Monitor::certainly_silent(TopicId topic) const {
   return std::nullopt;
 }
 
-// Its process is gone, or is another now, which has all the time that it needs.
+// Its process exited, or is another now, which has all the time that it needs.
 void Monitor::forget_what_was_heard_of(ComponentId component, Time now) {
   for (const KnownRobot::End& end : knowledge_.graph.ends_of(component)) {
     if (end.kind != EndpointKind::kPublisher) continue;

@@ -48,7 +48,8 @@ struct Oracle {
     if (readings.empty() || readings.back().first + 70ms <= now) return std::nullopt;
     return readings.back().second;
   }
-  // Of the last 50 ms, if they are covered: no pause of 70 ms (STALE), and readings from their beginning.
+  // The readings of the last 50 ms, if they are covered: no pause of 70 ms (STALE), and readings from
+  // their beginning.
   std::vector<double> window(Time now) const {
     if (!signal(now)) return {};
     std::size_t first = readings.size() - 1;
@@ -94,8 +95,8 @@ Monitor::Writes writes(Knowledge& knowledge) {
           knowledge.sightings, knowledge.heard_names, knowledge.events};
 }
 
-// Every comparison that the rules make must come out as it would with the true value, at every
-// moment, although the monitor is only woken by observations and by its own deadlines.
+// Every comparison in the rules must give the same result as with the true value, at every moment,
+// although the monitor is only woken by observations and by its own deadlines.
 RC_GTEST_PROP(Monitor, KeepsEveryComparisonTrueWithoutPolling, ()) {
   const Checked checked = check(Source("test.rules", kRules));
   Knowledge knowledge(*checked.rules);
@@ -326,7 +327,7 @@ TEST(Monitor, ARateCountsOnceItsWindowIsCoveredAndAgainAfterAGap) {
   EXPECT_TRUE(rate().known) << "nothing came for a whole window";
 }
 
-// What was silent stays silent, what spoke is not silent yet, and then time goes on.
+// A silent topic stays silent, and one that was received is not silent yet; then time goes on.
 TEST(Monitor, ASilenceStandsStillUntilTheTopicHadTimeToBeHeardAgain) {
   Watched watched(rule("age(/t) > 1s && phi(/t) > 8"));
   const auto age = [&] { return Duration(watched.knowledge.signals[InputId(0)].i); };
@@ -378,10 +379,9 @@ TEST(Monitor, WhatIsNotANumberIsUnknownAndTold) {
   EXPECT_TRUE(signals[InputId(1)].b);
   read(2200ms, std::string("nan"));
   EXPECT_TRUE(signals[InputId(1)].b) << "as a diagnostic has it";
-  EXPECT_THAT(
-      told_unknown(watched),
-      testing::ElementsAre("x is not a number (NaN): what rules read of it is unknown, except "
-                           "isnan(x)"));
+  EXPECT_THAT(told_unknown(watched),
+              testing::ElementsAre("x is not a number (NaN): rules read it as unknown, except "
+                                   "isnan(x)"));
   for (int i = 0; i < 10; ++i) read(2300ms + 100ms * i, 0.5);
   EXPECT_EQ(signals.why_unknown(InputId(2)), WhyUnknown::kNotCovered);
   read(3300ms, 0.5);

@@ -47,13 +47,14 @@ void Monitor::on(Time at, const SampleArrived& seen) {
                                    : input.kind == Kind::kLoss ? 2 * monitor::LossMeter::kSpan
                                                                : usual_latency(rhythm.interval));
     update(id, at);
-    // What was known to be silent made triggers true without any change of what they read.
+    // A topic that was known to be silent made triggers true without any change of their inputs.
     if (topic.is_known_silent) write_.signals.touch(id);
   }
   if (!knowledge_.components.is_any_known_dead()) topic.is_known_silent = false;
 }
 
-// Whoever publishes it, or something that it depends on: either keeps it from speaking for a while.
+// Did its publisher, or something that this depends on, begin anew? Either keeps the topic silent
+// for a while.
 bool Monitor::has_begun_since(Time before, TopicId topic) const {
   const auto is_new = [&](ComponentId component) {
     return knowledge_.components[component].node_seen >= before;
@@ -83,7 +84,7 @@ Time Monitor::silent_from(TopicId topic) const {
   return first ? later(std::max(*first, start_), discovered_ - start_) : kNever;
 }
 
-// Of a topic that was seen and has not spoken.
+// For a topic that was seen and from which no message has come.
 Time Monitor::listened_since(TopicId topic) const {
   return topics_[topic.index].silent_since.value_or(
       std::max(*knowledge_.sightings.first(topic), start_));
@@ -95,9 +96,9 @@ Time Monitor::zero_from(const Input& input) const {
   return since ? later(heard_since(*since), input.window) : silent_from(input.topic);
 }
 
-// From when on its window is covered: culprit listened all the time, and the topic had spoken, or is
-// known to be silent. A topic that speaks again in time after a gap in hearing is as one that is heard
-// for the first time.
+// The time from which its window is covered: culprit listened all the time, and the topic had its
+// first sample, or is known to be silent. A topic that is received again in time after a gap in
+// reception counts as one that is received for the first time.
 Time Monitor::rate_known_from(InputId id) const {
   const Input& input = knowledge_.rules[id];
   const Topic& topic = topics_[input.topic.index];
@@ -106,14 +107,15 @@ Time Monitor::rate_known_from(InputId id) const {
     return topic.resumes ? std::max(from, topic.resumes->at) : from;
   }
   Time since = heard_since(*topic.first);
-  const Time by = std::max(later(awake_, input.window), topic.heard_again_by);
+  const Time by =
+      std::max(later(awake_, input.window), knowledge_.signals.rhythm(input.topic).heard_again_by);
   if (since == awake_ && topic.regained && *topic.regained < by) since = *topic.regained;
   if (const auto& overflowed = derived_[id.index].overflowed) since = std::max(since, *overflowed);
   const Time from = later(since, input.window);
   return topic.resumes ? std::max(from, topic.resumes->at) : from;
 }
 
-// How long nothing came that would have been heard. @pre it spoke, or was seen
+// How long no sample came although it would have been received. @pre it had a sample, or was seen
 Duration Monitor::silence_of(TopicId id, Time now) const {
   const Topic& topic = topics_[id.index];
   if (topic.resumes)
@@ -126,8 +128,8 @@ void Monitor::resume(TopicId id, Time since, Time now) {
   if (!topic.last && !topic.silent_since && !knowledge_.sightings.first(id)) return;
   SignalStore::Rhythm rhythm = knowledge_.signals.rhythm(id);
   const Duration silence = std::max(silence_of(id, since), Duration::zero());
-  topic.heard_again_by = later(now, rhythm.gap + kSpeaksAgain);
-  topic.resumes = Topic::Resumes{topic.heard_again_by, silence};
+  rhythm.heard_again_by = later(now, rhythm.gap + kSpeaksAgain);
+  topic.resumes = Topic::Resumes{rhythm.heard_again_by, silence};
   topic.phi.restart(topic.resumes->at, silence);
   rhythm.resumed = topic.resumes->at - silence;
   write_.signals.set_rhythm(id, rhythm);
@@ -176,7 +178,7 @@ void Monitor::count_goal(TopicId topic, GoalStatus outcome, Time at) {
   }
 }
 
-// Its server is gone, and its goals with it. The next one tells of its own.
+// Its server exited, and its goals with it. The next one reports its own.
 void Monitor::forget_goals(TopicId topic, Time now) {
   Goals& goals = topics_[topic.index].goals;
   if (goals.all.empty()) return;
@@ -184,7 +186,7 @@ void Monitor::forget_goals(TopicId topic, Time now) {
   for (const InputId id : topics_[topic.index].inputs) update(id, now);
 }
 
-// How long it has been listened to the status of the action; nothing: its server was never seen.
+// How long it has been listened to the status of the action; empty: its server was never seen.
 std::optional<Time> Monitor::goals_known_since(TopicId topic) const {
   const auto first = knowledge_.sightings.first(topic);
   return first ? std::optional(heard_since(std::max(*first, start_))) : std::nullopt;
@@ -207,7 +209,7 @@ Slot Monitor::goal_age(TopicId topic, Time now) const {
   return Slot::of(oldest ? now - heard_since(*oldest) : Duration::zero());
 }
 
-// When the oldest goal that is not over began; nothing: none runs.
+// When the oldest goal that is not over began; empty: none runs.
 std::optional<Time> Monitor::oldest_goal(TopicId topic) const {
   std::optional<Time> oldest;
   for (const auto& [id, goal] : topics_[topic.index].goals.all) {

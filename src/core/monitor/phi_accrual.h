@@ -32,10 +32,11 @@ class PhiAccrual {
   // `count` messages came at `at`, evenly spread since the last ones. Times never go back.
   void add(Time at, std::uint32_t count);
 
-  // Nobody could listen for a while: until `until` the gap counts as `silence`, and then goes on. Its length tells nothing.
+  // culprit could not listen for a while: until `until` the gap counts as `silence`, and then goes on. Its length is no
+  // sample.
   void restart(Time until, Duration silence);
 
-  // Nothing while the rhythm is unknown.
+  // Empty while the rhythm is unknown.
   std::optional<double> phi(Time now) const;
 
   // How many standard deviations beyond the mean an interval is whose phi is `phi`.

@@ -1,11 +1,12 @@
-// A queue in a circle: grows up to its limit and then stays as it is, so that nothing allocates in
+// A ring buffer: grows up to its limit and then stays as it is, so that nothing allocates in
 // steady state.
 #pragma once
 
 #include <algorithm>
-#include <cassert>
 #include <cstddef>
 #include <vector>
+
+#include "base/invariant.h"
 
 namespace culprit::monitor {
 
@@ -27,14 +28,14 @@ class Ring {
 
   // @pre !full()
   void push_back(const T& item) {
-    assert(!full());
+    CULPRIT_ASSERT(!full());
     if (size_ == items_.size()) grow();
     ++size_;
     back() = item;
   }
   // @pre !empty()
   void pop_front() {
-    assert(!empty());
+    CULPRIT_ASSERT(!empty());
     first_ = (first_ + 1) % items_.size();
     --size_;
   }

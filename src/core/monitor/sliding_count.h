@@ -4,9 +4,9 @@
 // count, and the arrival with which it will fall below a number, are found without adding up.
 #pragma once
 
-#include <cassert>
 #include <cstdint>
 
+#include "base/invariant.h"
 #include "base/time.h"
 #include "language/rule_set.h"
 #include "monitor/long_queue.h"
@@ -18,7 +18,7 @@ class SlidingCount {
   // Keeps `limit` arrivals at different times at most; 16 bytes each. @pre window > 0, limit > 0
   explicit SlidingCount(Duration window, std::size_t limit = kMaxWindowSamples)
       : window_(window), arrivals_(limit) {
-    assert(window > Duration::zero());
+    CULPRIT_ASSERT(window > Duration::zero());
   }
 
   // `count` messages came at `at`. Times never go back. False: the window would hold more arrivals

@@ -86,7 +86,7 @@ double SlidingMoments::value() const {
     return std::isfinite(variance) ? std::sqrt(variance) : std::numeric_limits<double>::quiet_NaN();
   }
   const double mean = all.first / n;
-  // What the division left over counts, too: so the mean of equal values is their value.
+  // The remainder of the division counts, too: so the mean of equal values is their value.
   return std::isfinite(mean) ? mean + (std::fma(-mean, n, all.first) + all.second) / n : mean;
 }
 

@@ -202,7 +202,7 @@ ValueWindow filled(Of of, Duration length, Duration period, int count, double (*
   return window;
 }
 
-// What 4,096 values were too few for.
+// A window for which 4,096 values were too few.
 TEST(ValueWindow, SeesAllOfALongWindowOfAFastSignal) {
   const auto step = [](int i) { return i < 600 ? 0.0 : 1.0; };
   const auto after = [&](Of of, Duration time) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/invariant.h"
+
 namespace culprit::monitor {
 namespace {
 
@@ -24,11 +26,11 @@ std::variant<SlidingMoments, SlidingExtreme> values_for(ValueWindow::Of of, std:
 
 ValueWindow::ValueWindow(Of of, Duration window, Duration longest_pause, std::size_t limit)
     : window_(window), longest_pause_(longest_pause), values_(values_for(of, limit)) {
-  assert(window > Duration::zero() && longest_pause > Duration::zero() && limit > 0);
+  CULPRIT_ASSERT(window > Duration::zero() && longest_pause > Duration::zero() && limit > 0);
 }
 
 bool ValueWindow::add(Time at, double value) {
-  assert(!std::isnan(value));
+  CULPRIT_ASSERT(!std::isnan(value));
   if (since_ && later(last_, longest_pause_) < at) begin_anew();
   const auto put = [&](auto& values) {
     values.forget_until(at - window_);

@@ -5,7 +5,6 @@
 // first sample after it. Adding a sample takes constant time on average, and never long.
 #pragma once
 
-#include <cassert>
 #include <cstdint>
 #include <optional>
 #include <variant>

@@ -1,8 +1,9 @@
-// What a strategy ends besides the components that it is about.
+// The components that a strategy ends besides those that it is about.
 //
-// To redeploy or to stop a component is to end its process, with whatever lives in it and with what
-// that started: the other nodes of a launch file, or of a component container. They go down as it
-// does, so they count as it does: in what it costs, and in what must not be done meanwhile.
+// To redeploy or to stop a component is to end its process. With it end the nodes that live in that
+// process and those that it started: the other nodes of a launch file, or of a component container.
+// They are down as long as the component, so they count as it does, in the cost of the strategy and
+// in its conflicts.
 #pragma once
 
 #include <vector>

@@ -39,7 +39,8 @@ bool is_under_repair(ComponentId component, const Knowledge& knowledge) {
 
 bool awaits_repair(const Decision& decision, const Knowledge& knowledge) {
   if (decision.candidates.empty()) return false;
-  // What was tried and what makes no sense for another reason is as in any other round.
+  // Tried strategies, and strategies that are invalid for another reason, count as in any other
+  // round.
   return std::all_of(decision.candidates.begin(), decision.candidates.end(),
                      [](const Candidate& c) { return c.excluded == Condition::kInvalid; }) &&
          std::any_of(decision.candidates.begin(), decision.candidates.end(),

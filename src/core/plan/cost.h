@@ -1,4 +1,4 @@
-// What a strategy costs before it is chosen (paper, Eq. 1).
+// The cost of a strategy before it is chosen (paper, Eq. 1).
 //
 //     Cost_s = (1 - P_s) + i_exec,s / i_max
 //

@@ -1,5 +1,5 @@
-// A plan with its reasons: what is decided about each failure, what is expected of it, and what
-// would have changed it.
+// A plan with its reasons: the decision about each failure, its expected effect, and the changes
+// that would have led to another one.
 #pragma once
 
 #include <string>
@@ -15,12 +15,12 @@ inline constexpr std::size_t kMostFlipped = 20;
 
 struct ExplainedDecision {
   Decision decision;
-  std::vector<RuleId> explains;  // failures that are expected to go away with it
+  std::vector<RuleId> explains;  // failures that are expected to clear with it
   std::vector<std::vector<Change>>
       flips;  // by candidate; empty: chosen, none found, or none sought
 };
 
-// What `planner` decides about `failures`, in the order of the decisions.
+// The decisions of `planner` about `failures`, in the order in which it made them.
 std::vector<ExplainedDecision> decide(const Planner& planner, std::vector<RuleId> failures,
                                       const Knowledge& knowledge);
 

@@ -1,4 +1,4 @@
-// Which failures are expected to go away with a strategy that is meant for another one.
+// Failures that are expected to clear with a strategy that is meant for another one.
 #pragma once
 
 #include <vector>

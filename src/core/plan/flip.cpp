@@ -1,9 +1,9 @@
 #include "plan/flip.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
+#include "base/invariant.h"
 #include "plan/ties.h"
 
 namespace culprit::plan {
@@ -41,7 +41,7 @@ FlipFinder::FlipFinder(const Planner& planner, std::vector<RuleId> failures,
       decisions_(planner.plan(failures_, what_if_.knowledge())) {}
 
 std::vector<Change> FlipFinder::flips(StrategyId loser) {
-  assert(std::any_of(decisions_.begin(), decisions_.end(), [&](const Decision& decision) {
+  CULPRIT_ASSERT(std::any_of(decisions_.begin(), decisions_.end(), [&](const Decision& decision) {
     const auto& all = decision.candidates;
     return decision.chosen != loser && std::any_of(all.begin(), all.end(), [&](const Candidate& c) {
              return c.strategy == loser;
@@ -146,7 +146,7 @@ std::optional<Change> FlipFinder::resolved(const Outcome& now, StrategyId loser)
   return change;
 }
 
-// What could make a difference; whether it does is to be tried.
+// Changes that could make a difference; whether they do is to be tried.
 std::vector<Change> FlipFinder::circumstances(const Outcome& now, StrategyId loser) const {
   if (now.excluded == Condition::kTried) return {TriedChange{loser, false}};
   if (now.excluded == Condition::kInvalid) {

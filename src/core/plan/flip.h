@@ -11,14 +11,14 @@
 
 namespace culprit::plan {
 
-// Copies what is known once, and plans once for each change that it tries: some fifty times for
+// Copies the knowledge once, and plans once for each change that it tries: some fifty times for
 // each strategy that is asked about.
 class FlipFinder {
  public:
   // `failures` as for Planner::plan(). `planner` must outlive the finder.
   FlipFinder(const Planner& planner, std::vector<RuleId> failures, const Knowledge& knowledge);
 
-  // What is decided without any change.
+  // The decisions without any change.
   const std::vector<Decision>& decisions() const { return decisions_; }
 
   // The changes with which `loser` is chosen. First those of numbers, the smallest first: a change

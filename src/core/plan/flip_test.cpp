@@ -58,7 +58,7 @@ class Situation {
     }
     throw std::logic_error("no such strategy");
   }
-  // What would make the strategy win, in words, one line each.
+  // The changes with which the strategy would win, in words, one line each.
   std::string flips(const std::string& name) const {
     std::string out;
     FlipFinder finder(kPlanner, failures(), knowledge_);
@@ -310,7 +310,7 @@ std::string summary(const std::vector<ExplainedDecision>& decisions) {
   return out;
 }
 
-// A little less of the change, where there is less of it; nothing: less is none.
+// A little less of the change, where there is less of it; empty: less is none.
 std::optional<Change> a_step_less(const Change& change, const Knowledge& knowledge) {
   if (const auto* success = std::get_if<SuccessChange>(&change)) {
     const double now = knowledge.beliefs[success->strategy].mean().value;
@@ -358,7 +358,7 @@ RC_GTEST_PROP(Flips, LeaveWhatIsKnownAsItIs, ()) {
   const auto s = random_situation();
   const std::string before = summary(s->decide());
   RC_ASSERT(summary(s->decide()) == before);
-  // What the finder assumed it took back: asked twice, it says the same.
+  // The finder takes back its assumptions: asked twice, it gives the same answer.
   FlipFinder finder(kPlanner, s->failures(), s->knowledge());
   for (const Decision& decision : finder.decisions()) {
     for (const Candidate& candidate : decision.candidates) {

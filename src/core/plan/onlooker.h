@@ -1,5 +1,5 @@
-// A planner that decides nothing: for whoever wants to know what a manager sees, and that it does
-// nothing about it.
+// A planner that decides nothing: for programs and tests that only need the manager's view of the
+// robot.
 #pragma once
 
 #include "plan/planner.h"

@@ -52,8 +52,8 @@ void PaperPlanner::select(std::span<const RuleId> failures, Criticality level,
     candidate.strategy = option.strategy;
     candidate.cost = option.cost;
     examine(candidate, level, knowledge, affected, decision);
-    // What is affected by the strategy chosen for the same failure is rather excluded by that
-    // choice itself.
+    // A candidate that is affected by the strategy chosen for the same failure is rather excluded
+    // by that choice itself.
     const bool is_free = !candidate.excluded || candidate.excluded == Condition::kAffected;
     if (is_free && decision.chosen) candidate.excluded = Condition::kOneEach;
     if (!candidate.excluded) {

@@ -27,15 +27,15 @@
 
 namespace culprit {
 
-// What is to be done about one failure.
+// The decision about one failure.
 struct Decision {
   RuleId rule;
-  std::optional<StrategyId> chosen;  // nothing: the failure has to wait, or nothing is left
+  std::optional<StrategyId> chosen;  // empty: the failure has to wait, or nothing is left
   bool is_spent = false;             // no untried strategy is valid now: the round is over
   std::vector<Candidate>
       candidates;                   // every strategy of the rule, best first, with what excluded it
   std::vector<Suspect> suspects{};  // likeliest first; of a planner that weighs them
-  // Whose answer to the question whether they answer is to be known first.
+  // The components whose answers to probes are to be known first.
   std::vector<ComponentId> asks{};
 };
 
@@ -50,7 +50,7 @@ class Planner {
                                      const Knowledge& knowledge) const = 0;
 };
 
-// For whoever needs several of a kind.
+// For callers that need several planners of a kind.
 using PlannerFactory = std::function<std::unique_ptr<const Planner>()>;
 
 }  // namespace culprit

@@ -8,15 +8,16 @@
 // the other way.
 #pragma once
 
-#include <cassert>
 #include <cmath>
 #include <cstdint>
+
+#include "base/invariant.h"
 
 namespace culprit::plan {
 
 // @pre |number| < 2^30
 inline std::int64_t parts(double number) {
-  assert(std::abs(number) < 0x1p30);
+  CULPRIT_ASSERT(std::abs(number) < 0x1p30);
   return std::llround(number * 0x1p30);
 }
 

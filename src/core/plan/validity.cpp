@@ -23,16 +23,23 @@ bool is_of_process(AdaptationType type) {
          type == AdaptationType::kStop;
 }
 
+// A member of a group that start_group has to start first.
+bool starts_member(const Adaptation& adaptation, const Knowledge& knowledge) {
+  return adaptation.group && adaptation.type == AdaptationType::kActivate &&
+         knowledge.components[adaptation.component].alive == false;
+}
+
 bool cannot_be_reached(const Adaptation& adaptation, const Knowledge& knowledge) {
   return knowledge.is_unheard(adaptation.component) ||
-         (is_of_process(adaptation.type) &&
+         ((is_of_process(adaptation.type) || starts_member(adaptation, knowledge)) &&
           knowledge.components[adaptation.component].is_out_of_reach);
 }
 
-// What its start needs and is not there; empty: nothing is known to be missing.
+// The thing that its start needs and that is not there; empty: none is known to be missing.
 std::string missing_for(const Adaptation& adaptation, const Knowledge& knowledge) {
-  const bool starts =
-      adaptation.type == AdaptationType::kRedeploy || adaptation.type == AdaptationType::kStart;
+  const bool starts = adaptation.type == AdaptationType::kRedeploy ||
+                      adaptation.type == AdaptationType::kStart ||
+                      starts_member(adaptation, knowledge);
   const std::string& missing = knowledge.components[adaptation.component].start_missing;
   return starts && !missing.empty() ? "cannot be started: " + missing : "";
 }
@@ -42,6 +49,8 @@ std::string obstacle(const Adaptation& adaptation, const Knowledge& knowledge) {
   const ComponentState& state = knowledge.components[adaptation.component];
   const bool is_alive = state.alive.value_or(false);
   const Component& component = knowledge.rules[adaptation.component];
+  if (starts_member(adaptation, knowledge))
+    return component.can_start_again() ? "" : "is not alive, and has no LAUNCH command";
   switch (adaptation.type) {
     case AdaptationType::kRedeploy:
       return component.can_start_again() ? "" : "has no LAUNCH command";
@@ -57,7 +66,7 @@ std::string obstacle(const Adaptation& adaptation, const Knowledge& knowledge) {
   if (is_left_alone(adaptation, knowledge)) return "is set back by something else";
   switch (adaptation.type) {
     case AdaptationType::kActivate:
-      if (state.lifecycle == Lifecycle::kActive) return "is active already";
+      if (state.lifecycle == Lifecycle::kActive) return adaptation.group ? "" : "is active already";
       return has_lifecycle(state.lifecycle) ? "" : "has no known lifecycle state";
     case AdaptationType::kDeactivate:
       return state.lifecycle == Lifecycle::kActive ? "" : "is not active";
@@ -140,6 +149,19 @@ std::optional<Invalid> held_by_last_resort(const Strategy& strategy, const Knowl
   return invalid;
 }
 
+// It starts a group of which all members are active, and whose manager is there or cannot be started.
+std::optional<Invalid> needless_start(const Strategy& strategy, const Knowledge& knowledge) {
+  const auto is_needless = [&](const Adaptation& a) {
+    const ComponentState& state = knowledge.components[a.component];
+    return a.group && state.alive == true &&
+           (a.type == AdaptationType::kRedeploy || state.lifecycle == Lifecycle::kActive);
+  };
+  if (!std::ranges::all_of(strategy.adaptations, is_needless)) return std::nullopt;
+  const Adaptation& first = strategy.adaptations.front();
+  return Invalid{first.component,
+                 "all of " + knowledge.rules[*first.group].name + " are active already"};
+}
+
 }  // namespace
 
 std::optional<Invalid> invalidity(const Strategy& strategy, const Knowledge& knowledge) {
@@ -148,7 +170,7 @@ std::optional<Invalid> invalidity(const Strategy& strategy, const Knowledge& kno
   const bool is_exhausted = knowledge.states[strategy.rule].search.is_exhausted;
   if (is_exhausted && !knowledge.only_starts_the_gone(strategy))
     return Invalid{strategy.adaptations.front().component,
-                   "its rule is exhausted, and only what is gone is started again"};
+                   "its rule is exhausted, and only exited processes are started again"};
   if (auto held = held_by_last_resort(strategy, knowledge)) return held;
   if (auto barred = barred_by_another(strategy, knowledge)) return barred;
   return impossibility(strategy, knowledge);
@@ -162,14 +184,15 @@ std::optional<Invalid> impossibility(const Strategy& strategy, const Knowledge& 
     if (!when.b)
       return Invalid{strategy.adaptations.front().component, "its WHEN condition is false"};
   }
+  if (auto needless = needless_start(strategy, knowledge)) return needless;
   for (std::size_t i = 0; i < strategy.adaptations.size(); ++i) {
     const Adaptation& adaptation = strategy.adaptations[i];
     bool is_changed_before = false;
     for (std::size_t before = 0; before < i; ++before) {
       is_changed_before |= strategy.adaptations[before].component == adaptation.component;
     }
-    // What an earlier adaptation of the same strategy brings about is not known yet: start, then
-    // set a parameter.
+    // The effect of an earlier adaptation of the same strategy is not known yet: start, then set a
+    // parameter.
     if (is_changed_before) continue;
     if (cannot_be_reached(adaptation, knowledge))
       return Invalid{adaptation.component, knowledge.why_unheard(adaptation.component), true};

@@ -10,13 +10,12 @@
 //   - redeploy: it has a LAUNCH command;
 //   - start: it has a LAUNCH command and is not there;
 //   - stop: it is there.
-// Of a component on a computer that is not heard, or cannot be asked, nothing can be done. A redeploy or
-// a start waits while something that the start needs is missing (StartBarred).
-// For an exhausted rule only the start of what is known to be gone makes sense.
-// A strategy is valid if each of its adaptations is, given the ones before it, its WHEN condition
-// is true, no last resort whose failure is still there has set the same thing, and it was not seen to bring back a
-// more critical failure (analyze/parameter_fights.h). A last resort is never
-// valid for a planner: the manager begins it.
+// A component on a computer that is unreachable, or cannot be asked, cannot be adapted. A redeploy or a start
+// waits while a thing that the start needs is missing (StartBarred). For an exhausted rule only the start of a
+// process that is known to have exited is valid. A strategy is valid if each of its adaptations is, given the ones
+// before it, and its WHEN condition is true. Further, no last resort whose failure is still there may have set the
+// same thing, and it must not have brought back a more critical failure (analyze/parameter_fights.h). A last
+// resort is never valid for a planner: the manager begins it.
 #pragma once
 
 #include <optional>
@@ -29,15 +28,16 @@ namespace culprit::plan {
 struct Invalid {
   ComponentId component;  // what it is about; for a WHEN condition the strategy's first
   std::string reason;
-  // Nobody knows what became of it (Knowledge::is_unheard), or can do it now: it is waited for, and
-  // uses up no attempt.
+  // Its state is unknown (Knowledge::is_unheard), or it cannot be asked now: the strategy waits,
+  // and uses up no attempt.
   bool is_unheard = false;
 };
 
-// Nothing if the strategy is valid.
+// Empty if the strategy is valid.
 std::optional<Invalid> invalidity(const Strategy& strategy, const Knowledge& knowledge);
 
-// Likewise of what alone keeps a last resort: it cannot be carried out, or its WHEN is not true.
+// The same for a last resort, which has only two obstacles: it cannot be carried out, or its WHEN
+// is not true.
 std::optional<Invalid> impossibility(const Strategy& strategy, const Knowledge& knowledge);
 
 }  // namespace culprit::plan

@@ -8,7 +8,7 @@
 namespace culprit::plan {
 namespace {
 
-// What an earlier adaptation brings about is not known yet.
+// The effect of an earlier adaptation is not known yet.
 TEST(Validity, AsksOfEachComponentOnlyWhatItsFirstAdaptationNeeds) {
   Scene scene(
       "COMPONENT camera NODE /camera LAUNCH \"camera\"\nCOMPONENT lamp NODE /lamp\n"

@@ -1,4 +1,5 @@
-// A copy of what the manager knows, to be changed: what would be decided if ...?
+// A copy of the manager's knowledge that can be changed, to ask for the decision in another
+// situation.
 #pragma once
 
 #include <functional>
@@ -44,7 +45,7 @@ struct WhenChange {
 using Change = std::variant<SuccessChange, ImpactChange, TriedChange, ResolvedChange,
                             ComponentChange, WhenChange>;
 
-// Stays where it is: what is known refers to the copied rules.
+// Never moves: the knowledge refers to the copied rules.
 class WhatIf {
  public:
   explicit WhatIf(const Knowledge& knowledge);

@@ -1,4 +1,4 @@
-// What a robot is told: the only way out for adaptations.
+// Commands to the robot: the only way out for adaptations.
 //
 // A command is one request that an adapter carries out without being asked twice; its Reply carries
 // the same number. Reads may be repeated on the wire until they are answered; the others go out
@@ -58,12 +58,13 @@ struct StopProcess {
 // is seen there.
 struct StartProcess {};
 
-// What a command is for, for whoever has to finish it or bring back what it changed.
+// The purpose of a command, for the part that has to finish it or to undo its change.
 struct Purpose {
   StrategyId strategy;
   std::uint32_t adaptation = 0;  // index in Strategy::adaptations
   bool undoes = false;           // it brings back what an earlier command changed
-  // What it is going to change, as read before; of a redeploy the lifecycle state to come back to.
+  // The value that it is going to change, as read before; for a redeploy the lifecycle state to
+  // restore.
   decltype(Reply::value) before{};
 };
 
@@ -80,7 +81,7 @@ struct Command {
 // Whether it only looks.
 bool is_read(const Command& command);
 
-// What is asked, in words: "set exposure to 0.5".
+// The request in words: "set exposure to 0.5".
 std::string to_string(const Command& command);
 
 }  // namespace culprit

@@ -2,7 +2,7 @@
 //
 // A component with a NODE is that node; one with several is all of them. One without is the first node seen whose own name
 // ("/ns/camera": camera) is the component's; if a second such node shows up (/r1/camera, /r2/camera),
-// nobody can say which of them is meant.
+// it is unknown which of them is meant.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
-// Where the adapters of a live robot put what they observe, from any thread, and the runtime takes
-// it out.
+// The queue of observations: the adapters of a live robot fill it, from any thread, and the runtime
+// empties it.
 #pragma once
 
 #include <vector>
@@ -10,19 +10,20 @@
 
 namespace culprit {
 
-// Whether somebody should act on it at once. A sample of a topic that speaks anyway changes nothing
-// by itself: such observations are handed over together, when all are there that came with it, so that
-// thousands a second do not wake a thread each.
+// Whether an observation needs a reaction at once. A sample of a topic that is not silent changes
+// nothing by itself. Such observations are handed over together, once all that came together are
+// there, so that thousands a second do not wake a thread each.
 enum class Urgency : std::uint8_t { kNow, kSoon };
 
 // All members may be called from any thread.
 class Inbox {
  public:
-  // What is not urgent is handed over no more often.
+  // Observations that are not urgent are handed over no more often than this.
   static constexpr Duration kSoon = std::chrono::milliseconds(20);
 
-  // Observations beyond this many that nobody took are dropped, oldest first: a flood must not eat
-  // the memory. Replies are never dropped.
+  // If so many observations wait, the older half of the samples is dropped: a flood must not eat the
+  // memory. take() then reports how many. Observations of processes, of the graph, replies and orders are
+  // never dropped; the adapters limit how many a source can cause.
   static constexpr std::size_t kMaxWaiting = 1 << 16;
 
   // Stamps what was observed with the present time.
@@ -32,7 +33,8 @@ class Inbox {
   }
   void put(Observation observation, Urgency urgency);
 
-  // All is there that came together: whoever waits gets what is not urgent, too. Call it again and again.
+  // All observations that came together are there: a waiting take() gets the ones that are not urgent,
+  // too. Call it again and again.
   void hand_over();
 
   // Waits until something urgent is there or was handed over, `until` has come, or interrupt() was called,
@@ -42,16 +44,15 @@ class Inbox {
   // Lets the present or the next take() return at once.
   void interrupt();
 
-  // How many observations were dropped so far.
-  std::size_t dropped() const;
-
  private:
-  mutable Mutex mutex_;
+  void drop_samples() CULPRIT_REQUIRES(mutex_);
+
+  Mutex mutex_;
   ConditionVariable something_came_;
   std::vector<Observation> waiting_ CULPRIT_GUARDED_BY(mutex_);
   bool is_due_ CULPRIT_GUARDED_BY(mutex_) = false;  // something of it
   Time handed_over_ CULPRIT_GUARDED_BY(mutex_) = kLongAgo;
-  std::size_t dropped_ CULPRIT_GUARDED_BY(mutex_) = 0;
+  std::size_t dropped_ CULPRIT_GUARDED_BY(mutex_) = 0;  // and not reported
   bool is_interrupted_ CULPRIT_GUARDED_BY(mutex_) = false;
 };
 

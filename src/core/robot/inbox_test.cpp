@@ -86,17 +86,33 @@ TEST(Inbox, CanBeInterruptedBeforeOrWhileItWaits) {
   EXPECT_TRUE(taken.empty());
 }
 
-TEST(Inbox, DropsTheOldestInAFloodButNeverAReply) {
+TEST(Inbox, DropsSamplesAloneInAFloodAndReportsHowMany) {
   Inbox inbox;
-  inbox.put(Reply{{7}, Outcome::kDone, {}, ""});
-  for (std::size_t i = 0; i < Inbox::kMaxWaiting + 10; ++i)
-    inbox.put(SampleArrived{TopicId(0), 1}, Urgency::kSoon);
-  inbox.hand_over();
-  EXPECT_EQ(inbox.dropped(), 11u);
+  inbox.put(NodeVanished{"/camera"});
+  for (std::size_t i = 0; i < Inbox::kMaxWaiting; ++i) inbox.put(SampleArrived{TopicId(0), 1});
+  inbox.put(Reply{});
   std::vector<Observation> taken;
   inbox.take(kNever, taken);
-  EXPECT_EQ(taken.size(), Inbox::kMaxWaiting);
-  EXPECT_TRUE(std::holds_alternative<Reply>(taken[0].what));
+  EXPECT_LE(taken.size(), Inbox::kMaxWaiting);
+  EXPECT_TRUE(std::holds_alternative<NodeVanished>(taken[0].what));
+  EXPECT_TRUE(std::holds_alternative<Reply>(taken[taken.size() - 2].what));
+  const auto* told = std::get_if<LinkTrouble>(&taken.back().what);
+  ASSERT_NE(told, nullptr);
+  const std::size_t dropped = Inbox::kMaxWaiting + 3 - taken.size();  // one of `taken` reports them
+  EXPECT_NE(told->text.find("dropped " + std::to_string(dropped) + " messages"), std::string::npos)
+      << told->text;
+  taken.clear();
+  inbox.put(Reply{});
+  inbox.take(kNever, taken);
+  EXPECT_EQ(taken.size(), 1u) << "it is reported once";
+}
+
+TEST(Inbox, KeepsEveryObservationOfTheGraph) {
+  Inbox inbox;
+  for (std::size_t i = 0; i < Inbox::kMaxWaiting + 10; ++i) inbox.put(NodeVanished{"/n"});
+  std::vector<Observation> taken;
+  inbox.take(kNever, taken);
+  EXPECT_EQ(taken.size(), Inbox::kMaxWaiting + 10);
 }
 
 }  // namespace

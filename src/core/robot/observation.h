@@ -1,4 +1,4 @@
-// What a robot tells: the only way in for facts about the managed system.
+// Observations of the robot: the only way in for facts about the managed system.
 //
 // Adapters (ros2, process, simulation, recorded bags) produce observations, the monitor consumes
 // them; people's orders come the same way. Things that the rule set names come with their number in
@@ -31,8 +31,8 @@ struct NodeVanished {
   std::string node;
 };
 
-// How many other nodes there are with the name of this one, that may be alive. Whoever speaks to
-// that name does not know whom it reaches.
+// How many other nodes have the name of this one and may be alive. A request to that name may reach
+// any of them.
 struct NamesakesSeen {
   std::string node;
   int others = 0;
@@ -53,8 +53,8 @@ struct EndpointVanished {
 };
 
 // A message came on a watched topic. `published` is how many its publisher sent since the last one
-// that reached us, this one included: more than 1 where the way here lost some (RTPS sequence
-// numbers tell).
+// that reached us, this one included: more than 1 if some were lost on the way (by RTPS sequence
+// numbers).
 struct SampleArrived {
   TopicId topic;
   std::uint32_t published = 1;
@@ -102,18 +102,17 @@ enum class ProcessState : std::uint8_t {
   kGone      // exited, killed, or never started
 };
 
-// Whether it was somebody's wish that a process ended or was stopped, as far as the operating system
-// tells.
+// Whether a process ended or was stopped on purpose, as far as the operating system reports.
 enum class Cause : std::uint8_t {
   kUnknown,
-  kFault,  // a signal that nobody ends a process with politely, or another exit code than 0; it was
-           // stopped, and who started it was not
+  kFault,  // a signal that is no usual request to end, or another exit code than 0; it was stopped,
+           // and the program that started it was not
   kWish,   // exit code 0, SIGINT, SIGTERM or SIGHUP; culprit ended it; it was stopped with its
            // launcher
   kOrder   // its owner ended it in an orderly way, as systemctl stop and docker stop do
 };
 
-// What the operating system says about the process behind a component.
+// The state of a component's process, as the operating system reports it.
 struct ProcessSeen {
   ComponentId component;
   ProcessState state = ProcessState::kGone;
@@ -122,7 +121,8 @@ struct ProcessSeen {
   Cause cause = Cause::kUnknown;  // of kStopped and kGone
 };
 
-// Who started the component's process, where that was not culprit: a launch file, a shell.
+// The program that started the component's process, if that was not culprit: a launch file, a
+// shell.
 struct LauncherSeen {
   ComponentId component;
   int pid = 0;
@@ -140,8 +140,8 @@ struct StartedHere {
   Duration runs_for{};  // until now
 };
 
-// A process whose node is still awaited did something since it was started, or since this was told
-// last: it used the processor, or its memory grew.
+// A process whose node is still awaited used the processor, or its memory grew, since it was
+// started or since this was last reported.
 struct ProcessWorked {
   ComponentId component;
   int pid = 0;
@@ -165,8 +165,8 @@ struct GoalsSeen {
   std::vector<Goal> goals;
 };
 
-// The computer that runs a component (HOST) cannot be asked, or can be again. Of a component that is
-// not heard of meanwhile nobody knows whether it works.
+// The computer that runs a component (HOST) cannot be asked, or can be again. While nothing is
+// received from a component there, it is unknown whether it works.
 struct HostReached {
   ComponentId component;
   bool is_reached = false;
@@ -179,8 +179,9 @@ struct LivesOn {
   std::string host;
 };
 
-// Nothing at all is heard of another computer any more, of no process there: it is down, or cut off.
-// Or it is heard again. Told only while we hear ourselves (HearingLost).
+// Another computer became unreachable: no process there is received any more, because it is down or
+// cut off. Or it is reachable again. Reported only while culprit receives its own messages
+// (HearingLost).
 struct HostHeard {
   std::string host;
   bool is_heard = false;
@@ -224,8 +225,8 @@ struct Reply {
   std::string text;
 };
 
-// A diagnostic status was heard for the first time, while one that the rules name was not: that one
-// may be meant. Each status once, of many the first ones.
+// A diagnostic status was received for the first time, while one that the rules name was not: that
+// one may be meant. Each status once, of many the first ones.
 struct StatusHeard {
   std::string name;
   std::string hardware_id;
@@ -244,22 +245,22 @@ struct LinkTrouble {
   std::string text;
 };
 
-// What we say to ourselves, on the way that the robot's messages take, does not come back, or the
-// time of a simulated robot stands still: nothing that is missing from now on is missing on the
-// robot. Until HearingRegained.
+// culprit does not receive its own messages, which take the same way as the robot's, or the time of
+// a simulated robot stands still. From now on a missing message does not show a fault of the robot.
+// Until HearingRegained.
 struct HearingLost {
   std::string reason;
 };
 struct HearingRegained {};
 
-// Whoever drives the manager came round this much later than the manager asked for: culprit, or the
-// whole computer, stood still.
+// The manager's host loop called it this much later than it had asked for: culprit, or the whole
+// computer, stood still.
 struct Overslept {
   Duration by{};
 };
 
-// What the robots of a fleet learned of strategies: what is believed of each begins from there. Where
-// they learned nothing it is what the rule file says. Pseudo-counts, above zero.
+// Priors that a fleet learned of strategies: each belief begins from there. A strategy without
+// outcomes has the rule file's prior. Pseudo-counts, above zero.
 struct PriorsTold {
   struct Prior {
     StrategyId strategy;
@@ -267,23 +268,23 @@ struct PriorsTold {
     double beta = 1;
   };
   std::vector<Prior> priors;
-  std::string source;  // for people: who learned it; empty: nobody
+  std::string source;  // for people: the fleet that learned it; empty: none
 };
 
-// A node that was seen to publish the topic, alone, has proven that it knows that the topic is
-// listened to: what it publishes from now on is heard.
+// The only publisher of the topic has proven that it knows its subscriber: its messages are
+// received from now on.
 struct ListenerKnown {
   TopicId topic;
 };
 
-// The component cannot be started now, for something that its start needs is not there: a program, a file
-// of parameters, a container. Sent again, with nothing missing, once it is.
+// The component cannot be started now, because something that its start needs is not there: a program, a
+// file of parameters, a container. Sent again, with nothing missing, once it is.
 struct StartBarred {
   ComponentId component;
   std::string missing;  // "there is no program '/opt/robot/driver'"; empty: it can be started
 };
 
-// From now on this node is the publisher of a diagnostic status that the rules name: nobody else's word counts.
+// From now on this node is the only accepted publisher of a diagnostic status that the rules name.
 struct PublisherKnown {
   std::string status;
   std::string node;

@@ -1,8 +1,9 @@
-// What a person tells the manager: wait, go on, leave this alone, do that.
+// Orders of a person to the manager: wait, go on, leave this alone, do that.
 //
-// An order reaches the manager as an observation, so that a recorded run replays together with
-// what people did to it. What became of it is an event (OrderAccepted, OrderRefused). A person's
-// word goes before the manager's own, but not before the robot's safety: docs/governor.md.
+// An order reaches the manager as an observation, so that a recorded run replays together with its
+// orders. An event reports whether the order was accepted (OrderAccepted, OrderRefused). A person's
+// order goes before the manager's own decision, but not before the robot's safety:
+// docs/governor.md.
 #pragma once
 
 #include <cstdint>
@@ -34,11 +35,18 @@ struct Refuse {
   StrategyId strategy;
 };
 
-// Nothing is begun that adapts the component, or about the rule. It goes on being watched.
+// A program proposes a strategy for a failure that is present (culprit propose, culprit mcp). It waits for
+// a person's approval like one that culprit chose, and begins only with that.
+struct Propose {
+  StrategyId strategy;
+};
+
+// No strategy begins that adapts the component, or that belongs to the rule. culprit goes on
+// watching it.
 using Silenceable = std::variant<ComponentId, RuleId>;
 struct Silence {
   Silenceable what;
-  std::optional<Duration> lasts{};  // nothing: until it is lifted
+  std::optional<Duration> lasts{};  // empty: until it is lifted
 };
 struct LiftSilence {
   Silenceable what;
@@ -49,8 +57,8 @@ struct RunStrategy {
   StrategyId strategy;
 };
 
-// What was learned of the rule's strategies, and of what goes away with it, is as the rules say
-// again. Nothing: of all rules.
+// Resets the rule's beliefs in its strategies, and its couplings, to the rule file's priors.
+// Without a rule: those of all rules.
 struct Forget {
   std::optional<RuleId> rule{};
 };
@@ -65,8 +73,8 @@ struct Order {
   std::uint64_t number = 0;  // of the sender's choosing, for it to know the answer by
   std::string author;        // who says so, for the record
   std::string reason;        // may be empty
-  std::variant<Pause, Resume, SetDryRun, Approve, Refuse, Silence, LiftSilence, RunStrategy, Forget,
-               Revive, EndStarted>
+  std::variant<Pause, Resume, SetDryRun, Approve, Refuse, Propose, Silence, LiftSilence, RunStrategy,
+               Forget, Revive, EndStarted>
       what;
 };
 

@@ -11,7 +11,8 @@
 namespace culprit::lab {
 namespace {
 
-// Of one play, whatever its order: how fast the processes of a real machine are shifts it.
+// The outcome of one play without its order, which depends on the speed of a real machine's
+// processes.
 struct Story {
   std::set<std::string> failures;
   std::set<std::string> strategies;  // and by them the components that were blamed
@@ -36,8 +37,8 @@ Story of_the_model(const study::SunsetStudy& model, const sunset::Scenario& scen
   return story;
 }
 
-// What comes late on a busy machine can be one failure more or one less, so a story that differs is
-// played again. One that the model does not know differs every time.
+// On a busy machine a late message can add or remove a failure, so a story that differs is played
+// again. A story that the model does not know differs every time.
 constexpr int kPlays = 3;
 
 class Agreement : public testing::Test {

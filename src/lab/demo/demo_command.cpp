@@ -166,6 +166,15 @@ std::vector<web::Route> web_routes(SunsetDemo& demo, web::Hub& hub, const web::M
   return routes;
 }
 
+void print_how_to_break(const std::string& address, std::uint32_t domain) {
+  say(stdout,
+      "  in the browser             {}\n"
+      "  a crash                    pkill -f 'sunset-node camera'\n"
+      "  a hang                     pkill -STOP -f 'sunset-node segmentation'\n"
+      "  and see what culprit does  culprit status --domain {}\n",
+      address, domain);
+}
+
 int demo_sunset(const DemoOptions& options) {
   const auto plays = plays_for(options);
   if (!plays) {
@@ -219,6 +228,7 @@ int demo_sunset(const DemoOptions& options) {
                                         std::move(local), hub);
   if (options.stay) {
     say(stdout, "Break it in the browser, and see what becomes of it; Ctrl-C ends it.\n");
+    print_how_to_break((*server)->address(), (*demo)->domain());
     signals.wait_until_stopped();
     return kOk;
   }
@@ -249,8 +259,8 @@ int demo_sunset(const DemoOptions& options) {
   }
   const bool is_watched = isatty(STDIN_FILENO) != 0 && isatty(STDOUT_FILENO) != 0;
   if (is_watched && !options.ends) {
-    say(stdout, "\nThe robot flies on: break it in the browser ({}). Ctrl-C ends it.\n",
-        (*server)->address());
+    say(stdout, "\nThe robot flies on; Ctrl-C ends it. Break it yourself:\n");
+    print_how_to_break((*server)->address(), (*demo)->domain());
     signals.wait_until_stopped();
   }
   return all_healed ? kOk : kFailed;
@@ -283,25 +293,25 @@ void add_demo(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<DemoOptions>();
   CLI::App* command = app.add_subcommand(
       "demo",
-      "Let culprit heal a live robot: SUNSET, a drone's segmentation pipeline of real processes.\n"
+      "Demonstrate a repair on a live robot: SUNSET, a drone's segmentation pipeline of real "
+      "processes.\n"
       "Plays three scenarios, each with an ERROR, a WARNING and a NON_CRITICAL fault at once.\n"
       "Then it goes on until Ctrl-C if a person watches.\n"
       "With --robot suave: an underwater robot that must find a pipeline in murky water, and loses "
       "a thruster.");
-  command->add_option("--robot", options->robot, "Which robot")
+  command->add_option("--robot", options->robot, "Robot")
       ->check(CLI::IsMember({"sunset", "suave"}))
       ->capture_default_str();
   command->add_option(
       "--scenario", options->scenario,
-      "One scenario instead: 001 to 018, a name such as image_shift+gpu_failure, 'random', or what "
-      "happens to "
-      "processes: kill:camera, stop:depth, crash:segmentation, kill:camera+segmentation");
+      "One scenario instead: 001 to 018, a name such as image_shift+gpu_failure, 'random', or "
+      "faults of processes: kill:camera, stop:depth, crash:segmentation, kill:camera+segmentation");
   command->add_flag(
       "--extended", options->is_extended,
-      "With --robot suave: the battery runs low as well, and what dies is started anew");
-  command->add_option("--seed", options->seed, "Of the flight or dive, and of 'random'")
+      "With --robot suave: the battery runs low as well, and killed processes are started again");
+  command->add_option("--seed", options->seed, "Seed of the flight or dive, and of 'random'")
       ->capture_default_str();
-  command->add_option("--speed", options->speed, "How much faster than real time the robot lives")
+  command->add_option("--speed", options->speed, "Speed relative to real time")
       ->check(CLI::Range(0.1, 20.0))
       ->capture_default_str();
   command
@@ -310,10 +320,9 @@ void add_demo(CLI::App& app, int& exit_code) {
       ->type_name("FILE");
   command
       ->add_option("--domain", options->domain,
-                   "The DDS domain (default: the first from 1 on that nobody on this machine uses)")
+                   "The DDS domain (default: the first from 1 on that is free on this machine)")
       ->check(CLI::Range(0, 101));
-  command->add_flag("--end", options->ends,
-                    "End after the scenarios also where a person watches, at a terminal");
+  command->add_flag("--end", options->ends, "End after the scenarios, also at a terminal");
   command
       ->add_flag("--stay", options->stay,
                  "Play no scenario: go on until Ctrl-C, and break the robot in the browser")

@@ -1,4 +1,4 @@
-// What the demonstrations have in common: a world of their own for a live robot.
+// Base of all demonstrations: a world of its own for a live robot.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ RuleSet embedded_rules(const char* name, const char* text);
 // A new folder for logs and state.
 Expected<std::filesystem::path> make_state_folder();
 
-// A DDS domain on loopback that nobody else uses, as long as the lock lives: this one, or any. Sets
+// A DDS domain on loopback that is free, as long as the lock lives: this one, or any. Sets
 // ROS_DOMAIN_ID and ROS_LOCALHOST_ONLY of this process, so call it before there are threads that
 // read the environment.
 Expected<ros2::DomainLock> make_own_domain(std::optional<std::uint32_t> wanted);

@@ -1,4 +1,4 @@
-// What happened between breaking a robot and its recovery, counted from the manager's events.
+// The events between breaking a robot and its recovery, counted from the manager's events.
 #pragma once
 
 #include <optional>

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "terminal/help.h"
 #include "terminal/manual.h"
 #include "terminal/program.h"
 
@@ -14,11 +15,11 @@ const Manual kManual{
     .description = {"Demonstrations on live exemplars, studies on models of them and on random "
                     "robots, and torture. "
                     "`culprit demo`, `culprit study` and `culprit torture` start it."},
-    .files = {{"~/.local/state/culprit", "What demonstrations and studies leave behind."}},
+    .files = {{"~/.local/state/culprit", "The data of demonstrations and studies."}},
     .environment = {},
     .examples = {{"culprit-lab demo", "A robot of real processes is broken and healed."},
                  {"culprit-lab study sunset", "The paper's tables beside ours."},
-                 {"culprit-lab torture --seeds 100", "Random robots with everything going wrong."}},
+                 {"culprit-lab torture --seeds 100", "Random robots with all kinds of faults."}},
     .see_also = "culprit(1)"};
 
 }  // namespace
@@ -34,6 +35,7 @@ int run_culprit_lab(const std::string& version,
   app.set_version_flag("--version", "culprit-lab " + version);
   const auto add = [&](int& exit_code) {
     add_commands(app, exit_code);
+    add_help(app, exit_code);
     for (CLI::App* command : app.get_subcommands({})) {
       // The page of culprit calls that one.
       command->group(command->get_name() == "play-again" ? "" : "Commands");

@@ -1,4 +1,4 @@
-// What a demonstration breaks: one of the exemplar's scenarios, or what can happen to processes.
+// A demonstration's fault: one of the exemplar's scenarios, or a fault of processes.
 #pragma once
 
 #include <string>
@@ -27,8 +27,8 @@ struct Play {
 // at once: "kill:camera+segmentation".
 Expected<Play> find_play(std::string_view name);
 
-// What `culprit demo` plays unless told otherwise: an ERROR, a WARNING and a NON_CRITICAL fault at
-// once, three times.
+// The default plays of `culprit demo`: an ERROR, a WARNING and a NON_CRITICAL fault at once, three
+// times.
 std::vector<Play> default_plays();
 
 }  // namespace culprit::lab

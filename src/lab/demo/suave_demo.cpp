@@ -32,7 +32,7 @@ const char* rule_file(bool is_extended) {
   return is_extended ? "suave-extended.rules" : "suave.rules";
 }
 
-// What the rules can start are the exemplar's nodes; here these are our own.
+// The rules can start the exemplar's nodes; here they must start our own.
 RuleSet rules_of(bool is_extended, const std::filesystem::path& modes) {
   RuleSet rules = embedded_rules(rule_file(is_extended), rule_text(is_extended));
   for (Component& component : rules.components) {
@@ -96,7 +96,7 @@ Expected<void> SuaveDemo::open() {
   robot.supervisor = demo_processes(state_);
   how_ = demo_session(rule_file(options_.is_extended), std::move(robot), options_.planner, state_);
 
-  // Who watches is there before the mission can begin.
+  // The observer must be there before the mission can begin.
   auto observer = suave::MissionObserver::start(options_.speed, *participant);
   if (!observer) return Error{observer.error()};
   observer_ = std::move(*observer);

@@ -7,7 +7,7 @@
 
 namespace culprit::lab {
 
-// Flies one mission, tells what happens and how it went; `json` names a file for the outcome, or is
+// Flies one mission, reports its events and result; `json` names a file for the outcome, or is
 // empty. Gives the exit code: 0 if the pipeline was found.
 int demo_suave(SuaveDemo::Options options, const std::string& json);
 

@@ -130,7 +130,7 @@ Expected<PlayOutcome> SunsetDemo::play(const Play& play) {
   return outcome;
 }
 
-// What adaptations leave behind (an enhancement that is on) and what no failure showed (depth
+// Effects of adaptations (an enhancement that is on) and faults that no failure showed (depth
 // noise) would change the next play.
 Expected<void> SunsetDemo::clear() {
   {

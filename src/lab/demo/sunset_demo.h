@@ -45,7 +45,7 @@ class SunsetDemo : private live::Listener {
     // Called for each event of the manager, on its thread, with its time since the start of the
     // demo.
     std::function<void(const Event&, const RuleSet&, Time start)> on_event{};
-    // Looks on, and outlives the demo; null: nobody does.
+    // Observes the demo, and must outlive it; null: none.
     live::Observer* observer = nullptr;
   };
 
@@ -62,8 +62,8 @@ class SunsetDemo : private live::Listener {
   // between plays, or `stop` was set.
   Expected<PlayOutcome> play(const Play& play);
 
-  // What the browser can break: the faults of the scenarios, and processes that are killed or
-  // stopped ("kill:camera").
+  // The faults that the browser can inject: those of the scenarios, and processes that are killed
+  // or stopped ("kill:camera").
   Expected<void> inject(const std::string& fault);
   // Removes what was injected. Does not wait until the robot is well.
   Expected<void> clear_faults() { return world_->experiment().clear(); }

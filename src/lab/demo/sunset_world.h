@@ -1,13 +1,13 @@
 // A live SUNSET in a world of its own: its own DDS domain on loopback, its own state folder, and
-// nothing left behind. Who manages it is up to others.
+// nothing left behind. Its manager is not part of it.
 #pragma once
 
-#include <cassert>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 
+#include "base/invariant.h"
 #include "exemplars/sunset/experiment.h"
 #include "live/live_robot.h"
 #include "ros2/domain_lock.h"
@@ -35,16 +35,16 @@ class SunsetWorld {
   // Starts the seven processes. Those of the robot are the components of `rules` and belong to
   // `robot`, which must live until end(). Errors: the domain cannot be joined.
   Expected<void> begin(owners::Supervisor& robot, const RuleSet& rules);
-  // Ends every process. Whoever drives the robot has ended before.
+  // Ends every process. The manager must have ended before.
   void end();
-  // Likewise, and removes the state folder, unless keep_state() was called.
+  // Ends every process, and removes the state folder unless keep_state() was called.
   ~SunsetWorld();
 
   // How the robot is joined. Errors: the environment is wrong.
   Expected<live::LiveRobot::Options> robot() const;
   // @pre begin() succeeded
   sunset::Experiment& experiment() {
-    assert(experiment_);
+    CULPRIT_ASSERT(experiment_);
     return *experiment_;
   }
   std::uint32_t domain() const { return domain_.domain(); }
@@ -59,7 +59,7 @@ class SunsetWorld {
   const std::filesystem::path state_;
   bool keeps_state_ = false;
 
-  // The bag player and the evaluator: processes that nobody manages.
+  // The bag player and the evaluator: processes without a manager.
   RuleSet extras_rules_;
   Inbox extras_inbox_;
   std::unique_ptr<owners::Supervisor> extras_;

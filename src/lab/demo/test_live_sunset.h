@@ -1,4 +1,4 @@
-// For tests with a live robot that outlives whoever manages it.
+// For tests with a live robot that outlives its manager.
 #pragma once
 
 #include <memory>
@@ -21,7 +21,7 @@ class LiveSunset {
   ~LiveSunset();
 
   std::vector<int> processes(sunset::Member member) const;
-  // What is wrong with it just now; empty if nothing is.
+  // Its current fault; empty if it is well.
   std::string complaint() const;
   // False if it does not get well in time.
   bool is_well_within(Duration patience) const;

@@ -9,7 +9,8 @@
 
 namespace culprit {
 
-// What one of the programs takes. Beside a name, --speed and --seed each has one option of its own.
+// The arguments of one of the programs. Beside a name, --speed and --seed each has one option of
+// its own.
 struct NodeCommandLine {
   std::string about;                   // "One process of the SUNSET exemplar's robot."
   std::vector<std::string> names;      // of the processes
@@ -28,8 +29,7 @@ struct NodeArguments {
   std::string option;  // the value of the program's own one
 };
 
-// Nothing if the program is to end: it was asked for --help, or given what it does not know, which is told. Then
-// `exit_code` is with what.
+// Empty if the program must exit: after --help, or after an unknown argument, which is reported. Then `exit_code` is set.
 std::optional<NodeArguments> parse(const NodeCommandLine& line, int argc, char** argv,
                                    int& exit_code);
 

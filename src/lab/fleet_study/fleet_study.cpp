@@ -129,7 +129,7 @@ std::vector<FleetRow> study_fleet(const FleetWorld& world, const FleetCampaign& 
 
 double draw_rate(double mean, double precision, const std::function<double()>& next) {
   if (mean <= 0 || mean >= 1) return mean;
-  // Of a Gamma distribution (Marsaglia and Tsang, ACM TOMS 26, 2000).
+  // A sample of a Gamma distribution (Marsaglia and Tsang, ACM TOMS 26, 2000).
   const auto gamma = [&](double shape) {
     double boost = 1;
     if (shape < 1) {

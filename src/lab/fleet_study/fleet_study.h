@@ -1,5 +1,5 @@
-// What a fleet's prior is worth to a new robot: how many strategies fail for it in its first
-// failures, beside a robot of the same kind that begins with what the rule file guesses.
+// The value of a fleet's prior for a new robot: how many strategies fail in its first failures,
+// compared with a robot of the same kind that begins with the rule file's guesses.
 //
 // Robots of one model differ: each has rates of its own, drawn around those of its model. Some have
 // been at work; what they counted is pooled (knowledge/pooled_prior.h) for one that has not. A robot
@@ -18,7 +18,7 @@
 
 namespace culprit::study::fleet {
 
-// What happened in one episode.
+// The result of one episode.
 struct Episode {
   int failures = 0;  // detected
   int failed = 0;    // strategies that did not help
@@ -37,7 +37,7 @@ class FleetWorld {
  public:
   virtual ~FleetWorld() = default;
   virtual std::string name() const = 0;
-  // What the rule file of this model says. All models have the same strategies.
+  // The rule file's guesses for this model. All models have the same strategies.
   virtual std::vector<Belief> guesses(std::uint64_t model) const = 0;
   // Robot `number` of that model. The same numbers give the same robot with the same luck; `life`
   // gives it other luck.

@@ -30,7 +30,7 @@ std::string contents_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// `command` in the folder of `world`, to its end, as whoever begins the small campaign. Gives what it printed.
+// Runs `command` in the folder of `world` to its end, like a user who begins the small campaign. Returns its output.
 std::string begin_campaign(const TestWorld& world, const std::string& command) {
   TestProgram program(world, {"sh", "-c",
                               "cd '" + world.folder().string() + "' && exec env HOME=. CULPRIT='" +

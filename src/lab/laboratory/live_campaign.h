@@ -1,9 +1,9 @@
 // The runs of a campaign on the live robot: each in a process of its own, several at once.
 //
-// A process for each run, because a world of SUNSET takes the environment of its process, and so
-// that a run which dies or hangs takes no other with it. What it started ends with it, and it ends
-// with us, however we end. A run that fails is told and played again; the third failure ends the
-// campaign.
+// Each run has a process of its own, because a world of SUNSET changes the environment of its
+// process, and so that a run that exits or hangs affects no other. The processes of a run end with
+// it, and it ends with us, however we end. A failed run is reported and played again; the third
+// failure ends the campaign.
 #pragma once
 
 #include <atomic>
@@ -25,8 +25,8 @@ class LiveCampaign {
   ~LiveCampaign();
   LiveCampaign(LiveCampaign&& other) noexcept;
 
-  // From several threads. `seed` is of this run (SunsetStudy::seed_of). An error tells why it
-  // failed the last time, or that `stop` was set.
+  // From several threads. `seed` is of this run (SunsetStudy::seed_of). An error is the reason of
+  // the last failure, or that `stop` was set.
   Expected<study::RunMetrics> play(const study::Configuration& configuration, std::uint32_t run,
                                    std::uint64_t seed, const std::atomic<bool>& stop) const;
 

@@ -153,7 +153,7 @@ void LiveRun::measure() {
   if (!run_.is_recovered) {
     run_.recovery = run_.end - run_.begin;
   } else if (last_unwell_ != kLongAgo) {
-    // What was unwell is called so until it was well for a while.
+    // A robot counts as unwell until it was well for a while.
     const Duration calm = from_seconds(sunset::kCalmSec);
     run_.recovery = std::max(Duration::zero(), last_unwell_ - calm - run_.begin);
   }

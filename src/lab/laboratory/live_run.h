@@ -1,5 +1,5 @@
 // One run of the SUNSET study on the live robot: real processes, real DDS, real pixels, in a world
-// of its own that is gone afterwards. What is measured is what is measured on the model.
+// of its own that is gone afterwards. It measures the same as on the model.
 #pragma once
 
 #include <atomic>

@@ -1,5 +1,5 @@
-// One run of a campaign, played again with all that was told of it, for people who look at it
-// moment by moment.
+// One run of a campaign, played again with all reported events, for people who look at it moment by
+// moment.
 //
 // It depends on nothing but its campaign and its number, so nothing of it has to be kept.
 #pragma once
@@ -14,8 +14,7 @@
 namespace culprit::lab {
 
 // `study` and `campaign` are what a result says (sunset_study/json.h, suave_study/report.h,
-// rca_study/report.h), of whatever origin. Errors: what is wrong with the campaign; it has no such
-// run.
+// rca_study/report.h), of whatever origin. Errors: the campaign is invalid; it has no such run.
 Expected<study::SingleRun> play_again(std::string_view study, const Json& campaign,
                                       study::RunId id);
 

@@ -25,13 +25,14 @@ Json to_json(const study::TimelineEntry& incident) {
   return json;
 }
 
-// As the live stream has them. What nobody has words for is left out, as there.
+// As the live stream has them. Events without a text are left out, as there.
 Json to_json(const study::SingleRun& run) {
   std::vector<Json> events;
   for (const study::TimelineEntry& incident : run.incidents) events.push_back(to_json(incident));
   for (const Event& event : run.events) {
     Json json = web::to_json(event, run.rules, Time{});
-    if (!json["text"].get_ref<const std::string&>().empty()) events.push_back(std::move(json));
+    const bool is_told = !json["text"].get_ref<const std::string&>().empty();
+    if (is_told || json.contains("incident")) events.push_back(std::move(json));
   }
   std::stable_sort(events.begin(), events.end(), [](const Json& a, const Json& b) {
     return a["t"].get<double>() < b["t"].get<double>();

@@ -156,7 +156,7 @@ Expected<std::vector<study::LearningCurve>> learn(const StudyOptions& options, P
                       [&](std::uint64_t done) { progress.show(before + done); });
 }
 
-// Of the paper's full configuration, or of the first row if it has no such.
+// The row of the paper's full configuration, or the first if there is none.
 std::uint32_t told_row(const study::Campaign& campaign) {
   const auto row = std::find_if(campaign.rows.begin(), campaign.rows.end(),
                                 [](const auto& each) { return each.switches == PaperSwitches{}; });
@@ -274,23 +274,21 @@ void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
       "sunset", "The paper's evaluation on SUNSET, in virtual time; without a choice, all of it");
   command->add_flag("--ablation", options->ablation, "Eight configurations of D, C and S");
   command->add_flag("--robustness", options->robustness,
-                    "Success probabilities that are 20 % off, beside ideal ones");
+                    "Compare success probabilities that are 20 % off with ideal ones");
   command->add_flag(
       "--learning", options->learning,
-      "What is learned of each strategy, by the first planner that can (paper, bayes)");
+      "Show the learned rates of each strategy; uses the first learning planner (paper, bayes)");
   command
       ->add_option(
           "--planner", options->planners,
-          "paper (Algorithm 1 as meant), reference (the authors' public code with its "
-          "slips), bayes (culprit's own); bt, metacontrol, rosa (others': one failure and one "
-          "strategy at a time), rebet, ac-ros, vogel, ghahremani (others': each failure for "
-          "itself); "
-          "oracle (knows each fault at once, and what ends it: a bound); "
-          "several, one after the other")
+          "paper (Algorithm 1 as meant), reference (the authors' public code with its slips), "
+          "bayes (culprit's own); bt, metacontrol, rosa (others': one failure and one strategy at "
+          "a time), rebet, ac-ros, vogel, ghahremani (others': each failure for itself); oracle "
+          "(knows each fault and its remedy at once: a bound); several, one after the other")
       ->capture_default_str();
   command
       ->add_option("--objective", options->objectives,
-                   "What bayes spares most; several, one after the other")
+                   "Cost that bayes minimizes; several, one after the other")
       ->delimiter(',')
       ->check(CLI::IsMember({"balanced", "downtime", "adaptations", "redeployments"}))
       ->capture_default_str();
@@ -305,9 +303,9 @@ void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
       ->excludes(live);
   command
       ->add_option("--detectors", options->detectors,
-                   "How outages are seen: own (the profile's: SUNSET's monitoring as in the paper; "
-                   "of live, age), age (three messages missed), phi (a silence out of its "
-                   "rhythm) or known (the fault at once: a bound); several, one after the other")
+                   "Detection of outages: own (the profile's: SUNSET's monitoring as in the paper; "
+                   "of live, age), age (three messages missed), phi (a silence out of its rhythm) "
+                   "or known (the fault at once: a bound); several, one after the other")
       ->delimiter(',')
       ->check(CLI::IsMember({"own", "age", "phi", "known"}))
       ->capture_default_str()
@@ -317,14 +315,13 @@ void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
       ->capture_default_str();
   command
       ->add_option("--experiments", options->experiments,
-                   "Of each series that is learned from; the paper has 162")
+                   "Experiments of each learning series; the paper has 162")
       ->check(CLI::Range(1U, 1'000'000U))
       ->capture_default_str();
-  command->add_option("--repetitions", options->repetitions, "Of the series that is learned from")
+  command->add_option("--repetitions", options->repetitions, "Number of learning series")
       ->check(CLI::Range(1U, 1'000'000U))
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "Of all that is left to chance")
-      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Seed of all random numbers")->capture_default_str();
   command
       ->add_option("--jobs", options->jobs_asked,
                    "Threads; the results do not depend on it. With --live, robots at once, each in "
@@ -333,8 +330,7 @@ void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
   options->shard.add_to(*command);
   auto* run = command->add_option(
       "--run", options->single_run,
-      "With --explain: one run, from 0, and what happened in it. With --live: one run, its metrics "
-      "as JSON");
+      "With --explain: the run to explain, from 0. With --live: the run to play, metrics as JSON");
   command->add_flag("--explain")->needs(run)->excludes(live);
   command->add_option("--switches", options->switches, "With --run: of this configuration")
       ->capture_default_str();
@@ -352,8 +348,7 @@ void add_merge(CLI::App& study, int& exit_code) {
     StudyOutput output;
   };
   auto options = std::make_shared<MergeOptions>();
-  CLI::App* command = study.add_subcommand(
-      "merge", "Put the shards of a campaign together, of whichever study they are");
+  CLI::App* command = study.add_subcommand("merge", "Merge the shards of a campaign, of any study");
   command->add_option("FILES", options->files, "All shard files")->type_name("FILE")->required();
   options->output.add_to(*command);
   command->callback([options, &exit_code] { exit_code = merge(options->files, options->output); });

@@ -69,22 +69,23 @@ int study_fleet(const FleetStudyOptions& options) {
 void add_study_fleet(CLI::App& study, int& exit_code) {
   auto options = std::make_shared<FleetStudyOptions>();
   CLI::App* command = study.add_subcommand(
-      "fleet", "How many failed strategies what a fleet learned spares a new robot");
+      "fleet", "Failed strategies that a fleet's experience spares a new robot");
   const auto number = [&](const char* name, std::uint32_t& value, const char* help) {
     command->add_option(name, value, help)->check(CLI::Range(1U, 100'000U))->capture_default_str();
   };
   number("--models", options->campaign.models, "Kinds of robots, each with rates of its own");
-  number("--robots", options->campaign.robots, "Of each model, at work before the new one");
+  number("--robots", options->campaign.robots,
+         "Experienced robots of each model before the new one");
   number("--experience", options->campaign.experience, "Faults that each of them had");
   number("--first", options->campaign.first, "Failures of the new robot that count");
   command
       ->add_option("--most", options->campaign.pooling.most,
-                   "What a prior weighs at most, in outcomes")
+                   "Maximum weight of a prior, in outcomes")
       ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();
   command->add_option("--profile", options->profile, "Which SUNSET: paper, head, october or live")
       ->capture_default_str();
-  command->add_option("--seed", options->campaign.seed, "Of all that is left to chance")
+  command->add_option("--seed", options->campaign.seed, "Seed of all random numbers")
       ->capture_default_str();
   command->add_option("--jobs", options->jobs, "Threads; the results do not depend on it")
       ->check(CLI::Range(1U, 1024U));

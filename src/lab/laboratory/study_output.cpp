@@ -51,7 +51,7 @@ void StudyOutput::add_to(CLI::App& command) {
          "text (tables, ours beside the paper's), markdown, latex, csv (each mean), "
          "effects-csv (each pairwise effect) or json",
          {"text", "markdown", "latex", "csv", "effects-csv", "json"});
-  command.add_option("--html", html, "Also write a report: one page that needs nothing else")
+  command.add_option("--html", html, "Also write a report, as one self-contained page")
       ->type_name("FILE");
   command.add_option("--svg", plot_folder, "Also write each plot into this folder, for papers")
       ->type_name("FOLDER");

@@ -2,6 +2,7 @@
 #include "laboratory/study_rca_command.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <thread>
 
@@ -10,6 +11,7 @@
 
 #include "base/text_file.h"
 #include "laboratory/commands.h"
+#include "rca_study/export.h"
 #include "rca_study/learning_report.h"
 #include "rca_study/regret.h"
 #include "rca_study/repair_process.h"
@@ -57,12 +59,14 @@ struct RcaOptions {
   bool untold = false;
   std::string html;  // a report on learning; empty: none
   std::string version;
-  std::string scenario_output;  // empty: the episodes are played
+  std::string scenario_output;   // empty: the episodes are played
+  std::string cases_output;      // a folder; empty: no cases are exported
+  study::rca::CaseExport cases;  // their numbers and the hidden seed
 
   Times times() const { return timing ? Times::kShown : Times::kLeftOut; }
 };
 
-// Of one file, or of every combination of what was asked for.
+// One file's, or every combination of the options.
 Expected<RcaCampaign> campaign_of(const RcaOptions& options) {
   RcaCampaign campaign;
   if (!options.scenario.empty()) {
@@ -172,6 +176,67 @@ int study_learning(const RcaOptions& options) {
   return page ? kOk : fail(page.error(), kFailed);
 }
 
+// Options that were not given: those of the small set of docs/study-rca.md.
+void use_small_set(const CLI::App& command, RcaOptions& options) {
+  const auto is_given = [&](const char* name) { return command.get_option(name)->count() > 0; };
+  if (!is_given("--components")) options.components = {12, 16, 20};
+  if (!is_given("--faults")) options.faults = {1, 2, 3};
+  RcaFactors& factors = options.factors;
+  if (!is_given("--detector-latency")) factors.detector_latency_s = {0, 3};
+  if (!is_given("--unwatched")) factors.unwatched = 0.2;
+  if (!is_given("--hidden")) factors.hidden = 0.1;
+  if (!is_given("--false-alarms")) factors.false_alarms = 0.5;
+}
+
+// As a line that makes the public cases.
+std::string command_of(const RcaOptions& options) {
+  const auto flag = [](bool is_set, const char* name) { return is_set ? name : ""; };
+  return fmt::format(
+      "culprit {}: `culprit-lab study rca --export-cases DIR --cases {} --components {} --faults "
+      "{} --noise {:g}{}{}{}{}{}{} --objective {} --seed {}`",
+      options.version, options.cases.cases, fmt::join(options.components, ","),
+      fmt::join(options.faults, ","), fmt::join(options.noise, ","),
+      flag(options.cyclic, " --cyclic"), flag(options.mixed_levels, " --mixed-levels"),
+      flag(options.flapping, " --flapping"), flag(options.unfixable, " --unfixable"),
+      flag(options.ignore, " --ignore"), study::rca::options_of(options.factors), options.objective,
+      options.seed);
+}
+
+int export_cases(const RcaOptions& options, const RcaCampaign& campaign) {
+  namespace fs = std::filesystem;
+  study::rca::CaseExport wanted = options.cases;
+  wanted.settings = campaign.settings;
+  wanted.objective = campaign.objective;
+  wanted.seed = options.seed;
+  wanted.command = command_of(options);
+  if (wanted.hidden_seed == wanted.seed)
+    return fail("--hidden-seed is the seed of the public cases; choose a random 64-bit number",
+                kUsage);
+  const fs::path folder = options.cases_output;
+  std::error_code error;
+  if (fs::exists(folder, error) && !fs::is_empty(folder, error))
+    return fail(fmt::format("{}: is not an empty folder; choose a new one", folder.string()),
+                kUsage);
+  const StopSignals signals;
+  std::optional<Progress> progress;
+  const auto written = study::rca::export_cases(
+      wanted,
+      [&](const std::string& path, const std::string& text) -> Expected<void> {
+        const fs::path file = folder / path;
+        if (fs::create_directories(file.parent_path(), error); error)
+          return Error{fmt::format("{}: {}", file.parent_path().string(), error.message())};
+        return write_text(file.string(), text);
+      },
+      [&](std::uint64_t done, std::uint64_t total) {
+        if (!progress) progress.emplace(0, total);
+        progress->show(done);
+        return !signals.stopped();
+      });
+  progress.reset();
+  if (written) return kOk;
+  return fail(fmt::format("{} ({} is incomplete)", written.error(), folder.string()), kFailed);
+}
+
 template <class T>
 T value_or_usage_error(const std::string& option, const Expected<T>& read) {
   if (!read) throw CLI::ValidationError(option, read.error());
@@ -204,7 +269,7 @@ void add_share(CLI::App& command, const std::string& name, double& share, double
       ->default_str(usual);
 }
 
-// What differs from robot to robot (rca_study/factors.h).
+// The properties that differ from robot to robot (rca_study/factors.h).
 void add_factors(CLI::App& command, RcaFactors& factors) {
   add_range(command, "--detector-latency", factors.detector_latency_s, "0..0.4s",
             "Time until a detector shows a change");
@@ -236,11 +301,36 @@ void add_factors(CLI::App& command, RcaFactors& factors) {
       ->capture_default_str();
 }
 
+// Of the public benchmark (rca_study/export.h).
+void add_cases(CLI::App& command, RcaOptions& options) {
+  auto* output =
+      command
+          .add_option("--export-cases", options.cases_output,
+                      "Write cases for other methods there, and play nothing (docs/study-rca.md)")
+          ->type_name("DIR");
+  for (const std::string other :
+       {"--scenario", "--write-scenario", "--explain", "--planner", "--faults-before"})
+    output->excludes(other);
+  command.add_option("--cases", options.cases.cases, "Number of public cases")
+      ->check(CLI::Range(std::size_t{1}, study::rca::CaseExport::kMostCases))
+      ->capture_default_str()
+      ->needs(output);
+  auto* hidden = command
+                     .add_option("--hidden-seed", options.cases.hidden_seed,
+                                 "Also write hidden cases, of this seed; keep it secret")
+                     ->needs(output);
+  command.add_option("--hidden-cases", options.cases.hidden_cases, "Number of hidden cases")
+      ->check(CLI::Range(std::size_t{1}, study::rca::CaseExport::kMostCases))
+      ->capture_default_str()
+      ->needs(hidden);
+}
+
 int study_rca(const RcaOptions& options) {
   if (options.learned) return study_learning(options);
   if (options.regret) return study_regret(options);
   const auto campaign = campaign_of(options);
   if (!campaign) return fail(campaign.error(), kUsage);
+  if (!options.cases_output.empty()) return export_cases(options, *campaign);
   if (!options.scenario_output.empty()) {
     const auto first = study::rca::scenario_of(*campaign, campaign->settings.front(), 0);
     const auto written = write_text(options.scenario_output, study::rca::to_json(first));
@@ -278,7 +368,7 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
       ->delimiter(',')
       ->check(CLI::Range(std::size_t{2}, std::size_t{10'000}))
       ->capture_default_str();
-  command->add_option("--faults", options->faults, "How many come at once")
+  command->add_option("--faults", options->faults, "Number of faults at once")
       ->delimiter(',')
       ->check(CLI::Range(std::size_t{1}, std::size_t{10}))
       ->capture_default_str();
@@ -288,12 +378,12 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
       ->delimiter(',')
       ->check(CLI::Range(0.0, 0.4))
       ->capture_default_str();
-  command->add_flag("--cyclic", options->cyclic, "With feedback topics, so that there are circles");
+  command->add_flag("--cyclic", options->cyclic, "Add feedback topics, for feedback loops");
   command->add_flag("--mixed-levels", options->mixed_levels,
                     "Each rule's criticality is any (default: all are ERROR)");
   command->add_flag("--flapping", options->flapping, "Every fault comes and goes");
   command->add_flag("--unfixable", options->unfixable,
-                    "Nothing that the rules have helps against one of the faults");
+                    "No strategy of the rules repairs one of the faults");
   command->add_flag("--ignore", options->ignore,
                     "The rules IGNORE the infrastructure topics, as a user's would");
   add_factors(*command, options->factors);
@@ -320,15 +410,14 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
                    "Write the first episode's scenario there, and play nothing")
       ->type_name("FILE");
   command->add_option("--explain", options->explained,
-                      "Tell what happened in this episode, from 0, with each planner");
-  auto* learn =
-      command
-          ->add_option(
-              "--learn", options->learned,
-              "Let bayes learn from so many faults on one robot, and measure on as many or "
-              "more how true that is")
-          ->check(CLI::Range(1U, 1'000'000U))
-          ->excludes(scenario);
+                      "Explain this episode, from 0, with each planner");
+  add_cases(*command, *options);
+  auto* learn = command
+                    ->add_option("--learn", options->learned,
+                                 "Faults that bayes learns from on one robot, before its accuracy "
+                                 "is measured on as many or more")
+                    ->check(CLI::Range(1U, 1'000'000U))
+                    ->excludes(scenario);
   // It counts every rule as that of the component with its number, and every effect as one that
   // illness came to.
   for (const std::string factor : {"--unwatched", "--common-causes", "--false-alarms"})
@@ -338,37 +427,37 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
       ->capture_default_str()
       ->needs(learn);
   command
-      ->add_flag("--drift", options->drift,
-                 "What helps changes for the last quarter of what is learned from")
+      ->add_flag("--drift", options->drift, "Success rates change in the last quarter of learning")
       ->needs(learn);
-  auto* regret = command->add_flag("--regret", options->regret,
-                                   "How far bayes is from the optimum, for each objective, on "
-                                   "random robots of up to four components");
+  auto* regret = command->add_flag(
+      "--regret", options->regret,
+      "Measure bayes' regret for each objective, on random robots of up to four components");
   regret->excludes(scenario)->excludes(learn);
+  for (CLI::Option* other : {learn, regret}) other->excludes("--export-cases");
   for (const std::string& factor : factors) regret->excludes(factor);
-  command->add_option("--systems", options->systems, "So many robots")
+  command->add_option("--systems", options->systems, "Number of robots")
       ->check(CLI::Range(1U, 1'000'000U))
       ->capture_default_str()
       ->needs(regret);
   command
       ->add_flag("--untold", options->untold,
-                 "Robots that differ from what the rules say, as those of the benchmark do")
+                 "Use robots that differ from the rules, as those of the benchmark do")
       ->needs(regret);
   command->add_option("--html", options->html, "Also a page with calibration plots")
       ->type_name("FILE")
       ->needs(learn);
-  command->add_option("--objective", options->objective, "What the bayes planner spares most")
+  command->add_option("--objective", options->objective, "Cost that the bayes planner minimizes")
       ->check(CLI::IsMember({"balanced", "downtime", "adaptations", "redeployments"}))
       ->capture_default_str();
-  command->add_option("--episodes", options->episodes, "Of each setting and planner")
+  command->add_option("--episodes", options->episodes, "Episodes of each setting and planner")
       ->check(CLI::Range(1U, 1'000'000U))
-      ->capture_default_str();
-  command->add_option("--seed", options->seed, "Of all that is left to chance")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->excludes("--export-cases");
+  command->add_option("--seed", options->seed, "Seed of all random numbers")->capture_default_str();
   command->add_option("--jobs", options->jobs, "Threads; the results do not depend on it")
       ->check(CLI::Range(1U, 1024U));
   command->add_flag("--timing", options->timing,
-                    "Also how long a plan takes on this machine: never the same twice");
+                    "Also measure the planning time on this machine: never the same twice");
   command->add_option("--format", options->format, "text, markdown, latex, csv or json")
       ->check(CLI::IsMember({"text", "markdown", "latex", "csv", "json"}))
       ->capture_default_str();
@@ -376,7 +465,10 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
       "--json", [options] { options->format = "json"; }, "The same as --format json");
   command->add_option("-o,--output", options->output, "Write there (default: the terminal)")
       ->type_name("FILE");
-  command->callback([options, &exit_code] { exit_code = study_rca(*options); });
+  command->callback([options, command, &exit_code] {
+    if (!options->cases_output.empty()) use_small_set(*command, *options);
+    exit_code = study_rca(*options);
+  });
 }
 
 }  // namespace culprit::lab

@@ -24,9 +24,9 @@ void ShardOptions::add_to(CLI::App& command) {
           "or GNU parallel says (examples/cluster)")
       ->capture_default_str();
   command
-      .add_option("--shard-file", file,
-                  "Keep each run there as it ends, and go on from there if interrupted; % in it "
-                  "is the shard's number")
+      .add_option(
+          "--shard-file", file,
+          "Keep finished runs in this file, and resume from it; % stands for the shard's number")
       ->type_name("FILE");
 }
 

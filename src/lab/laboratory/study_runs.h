@@ -25,7 +25,7 @@ struct ShardOptions {
   std::string file;
 
   bool is_sharded() const { return shard != "1/1" || !file.empty(); }
-  // Which one this is. Errors: nobody says so.
+  // Which one this is. Errors: no shard is named.
   Expected<study::Shard> which() const;
   // The file of `its`: "%" stands for its number.
   std::string file_of(const study::Shard& its) const;
@@ -81,7 +81,8 @@ Expected<study::ShardWriter<C>> open_shard(const std::string& file,
   if (writer) return writer;
   const auto aside = study::set_damage_aside<C>(file, header);
   if (!aside) return writer;
-  fmt::print(stderr, "culprit: {} was damaged; it is kept as {}, and what was lost is done anew\n",
+  fmt::print(stderr,
+             "culprit: {} was damaged; it is kept as {}, and the lost runs are played again\n",
              file, aside->string());
   return study::ShardWriter<C>::open(file, header);
 }

@@ -126,7 +126,7 @@ std::string settings_of_command(const study::SuaveCampaign& campaign) {
   return text;
 }
 
-// What makes the campaign again.
+// The command that repeats the campaign.
 std::string command_of(const study::SuaveCampaign& campaign, const std::string& vehicle) {
   const std::string mission(campaign.plan->name);
   return fmt::format("culprit study suave {}--managers {} --generation {} --runs {} --seed {}{}{}",
@@ -216,11 +216,12 @@ void add_settings(CLI::App& command, SettingTexts& settings) {
       "Mission settings (where A..B: another value in each run; A,B,C: these by turns)";
   command
       .add_option("--visibility-period", settings.visibility_period,
-                  "In which the water clears and dims, in s (default: 80)")
+                  "Period of the water's visibility, in s (default: 80)")
       ->group(kGroup);
   command
-      .add_option("--visibility-shift", settings.visibility_shift,
-                  "How far it is when the mission begins, in s, A..B or A,B,C (default: 0)")
+      .add_option(
+          "--visibility-shift", settings.visibility_shift,
+          "Phase of the visibility at the mission's begin, in s, A..B or A,B,C (default: 0)")
       ->group(kGroup);
   command
       .add_option("--visibility", settings.visibility,
@@ -235,11 +236,12 @@ void add_settings(CLI::App& command, SettingTexts& settings) {
       ->excludes(thruster)
       ->group(kGroup);
   command
-      .add_option(
-          "--start", settings.start,
-          "Where a run begins across the pipeline, y in m, A..B or A,B,C (default: as fitted)")
+      .add_option("--start", settings.start,
+                  "Start position across the pipeline, y in m, A..B or A,B,C (default: as fitted)")
       ->group(kGroup);
-  command.add_option("--time-limit", settings.time_limit, "Of the mission, in s (default: 300)")
+  command
+      .add_option("--time-limit", settings.time_limit,
+                  "Time limit of the mission, in s (default: 300)")
       ->group(kGroup);
 }
 
@@ -292,8 +294,7 @@ void add_study_suave(CLI::App& study, const std::string& version, int& exit_code
   command->add_option("--runs", options->runs, "Of each manager")
       ->check(CLI::Range(1U, 1'000'000U))
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "Of all that is left to chance")
-      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Seed of all random numbers")->capture_default_str();
   command->add_option("--jobs", options->jobs, "Threads; the results do not depend on it")
       ->check(CLI::Range(1U, 1024U));
   add_settings(*command, options->settings);

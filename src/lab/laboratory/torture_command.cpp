@@ -39,9 +39,9 @@ void add_torture(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<TortureOptions>();
   CLI::App* command = app.add_subcommand(
       "torture",
-      "Run culprit on random simulated robots with everything going wrong, and check what must "
-      "always hold.\nThe same seed gives the same run; one that fails is made smaller and shown.");
-  command->add_option("--seeds", options->seeds, "How many")
+      "Run culprit on random simulated robots with all kinds of faults, and check its invariants.\n"
+      "The same seed gives the same run; a failed one is reduced and shown.");
+  command->add_option("--seeds", options->seeds, "Number of seeds")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
       ->capture_default_str();
   command->add_option("--from", options->first, "The first seed")->capture_default_str();

@@ -37,7 +37,7 @@ Routine BtManager::tick() {
   }
 }
 
-// What is not known yet counts as fine.
+// Unknown values count as fine.
 bool BtManager::is_charged() const {
   return !has_battery() ||
          static_cast<float>(number("battery", 1)) >= static_cast<float>(kLowBattery);

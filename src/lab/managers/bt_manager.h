@@ -2,8 +2,8 @@
 //
 // Where its delays come from: the tree is ticked, then sleeps 100 ms, and each action under way
 // sleeps 50 ms within the tick; before a mode is changed it is read. Numbers are read with single
-// precision, in which the battery is not below a quarter when it is in double precision. What the
-// blackboard says was set is not set again.
+// precision, in which the battery is not below a quarter when it is in double precision. A mode
+// that the blackboard already has is not set again.
 #pragma once
 
 #include "managers/suave_manager.h"

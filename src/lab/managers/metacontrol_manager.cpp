@@ -8,7 +8,7 @@ namespace {
 namespace modes = suave::model::modes;
 
 constexpr double kPeriodSec = 1.5;
-// Of the inference by Pellet, in a process of its own.
+// Duration of the inference by Pellet, in a process of its own.
 constexpr double kInferenceSec = 0.6;
 constexpr double kInferenceSpreadSec = 0.25;
 

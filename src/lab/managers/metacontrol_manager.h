@@ -19,7 +19,8 @@ class MetacontrolManager : public SuaveManager {
   Routine follow_tasks();
   Routine reason();
   Routine reason_once();
-  // The best design of a function, by what is known of components and was measured; empty: none.
+  // The best design of a function, by the known states of components and the measurements; empty:
+  // none.
   std::string best_design(const std::string& function, bool is_thruster_failed) const;
 
   std::map<std::string, std::string> objectives_;  // by function, its design; empty: ungrounded

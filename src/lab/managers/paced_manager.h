@@ -1,8 +1,8 @@
 // A managing system that looks at the robot at its own pace, and takes time to decide.
 //
-// It sees what was observed since when its next look is due, or an answer comes that it waits for;
-// without a period it sees everything at once. What it decides at a look goes out after the time
-// that deciding takes.
+// It processes observations when its next look is due, or when an awaited answer arrives; without a
+// period it processes everything at once. A decision's requests go out after the time that deciding
+// takes.
 #pragma once
 
 #include <deque>
@@ -21,8 +21,8 @@ struct Pace {
   simulation::Span decision;  // how long it takes
 };
 
-// Of the baselines of the SUAVE study (their headers say where the figures are from) and of ReBeT.
-// Null for another name.
+// For the baselines of the SUAVE study (their headers name the sources of the figures) and of
+// ReBeT. Null for another name.
 const Pace* find_pace(std::string_view baseline);
 
 class PacedManager : public ManagingSystem {

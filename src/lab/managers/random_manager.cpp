@@ -11,7 +11,7 @@ constexpr std::array kFollow = {modes::kDefault, modes::kFollow, modes::kOff};
 
 }  // namespace
 
-// The version of the published figures reads a parameter that nobody sets, and takes its default.
+// The version of the published figures reads a parameter that is never set, and takes its default.
 RandomManager::RandomManager(const Setting& setting)
     : SuaveManager(setting),
       period_(std::chrono::seconds(setting.generation.name == "new" ? 30 : 15)) {

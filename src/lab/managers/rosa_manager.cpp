@@ -106,7 +106,7 @@ Routine RosaManager::execute() {
   }
 }
 
-// What is obsolete goes first. What cannot be done stays to be done.
+// Obsolete nodes are deactivated first. A change that fails is tried again with the next plan.
 Routine RosaManager::apply(Configuration wanted) {
   for (const bool is_activation : {false, true}) {
     for (const auto& [name, is_active] : wanted.is_active) {

@@ -4,9 +4,9 @@
 // Where its delays come from: every access to the knowledge base is a handful of database
 // transactions, and one service call is served at a time. A message is inserted, then the planner
 // queries, then a configuration is selected, then the executor fetches the plan, and only then the
-// robot is asked; each waits for whoever is served before. Even where nothing is to change, every
-// message is planned for. The tree asks before each action whether it is feasible.
-// It changes lifecycle states and parameters of the nodes itself, without system modes.
+// robot is asked. Each waits for the one that is served before. Even where nothing is to change,
+// every message is planned for. The tree asks before each action whether it is feasible. It changes
+// lifecycle states and parameters of the nodes itself, without system modes.
 #pragma once
 
 #include "managers/suave_manager.h"
@@ -18,7 +18,7 @@ class RosaManager : public SuaveManager {
   explicit RosaManager(const Setting& setting);
 
  private:
-  // What the robot should do or does: the nodes that are active, and the altitude of the search.
+  // The robot's target or current state: the nodes that are active, and the altitude of the search.
   struct Configuration {
     std::map<std::string, bool> is_active;
     std::optional<double> altitude;

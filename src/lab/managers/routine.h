@@ -1,4 +1,4 @@
-// What a thread of a program does, written down as it does it, in virtual time: a coroutine.
+// A program's thread as a coroutine in virtual time.
 //
 // It goes on until it has to wait (ScriptedManager has what it can wait for) and is taken up again
 // where it was. A routine that awaits another one goes on when that one is done.
@@ -40,7 +40,7 @@ class [[nodiscard]] Routine {
     if (handle_) handle_.destroy();
   }
 
-  // Begins it. For routines that nobody awaits.
+  // Begins it. For routines without a co_await.
   void begin() const { handle_.resume(); }
 
   bool await_ready() const noexcept { return false; }

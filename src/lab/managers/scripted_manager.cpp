@@ -35,7 +35,7 @@ void ScriptedManager::observe(const Observation& observation) {
   }
 }
 
-// Whoever can go on does, in the order in which that came about.
+// Resumes every waiting routine that can go on, in the order in which it became ready.
 void ScriptedManager::resume_all() {
   for (;;) {
     if (!ready_.empty()) {

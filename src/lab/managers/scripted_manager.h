@@ -22,7 +22,7 @@ class ScriptedManager : public ManagingSystem {
  public:
   std::vector<Command> step(Time now, std::span<const Observation> observations) override;
   Time next_deadline() const override;
-  // It tells nothing of itself.
+  // It reports no events.
   std::span<const Event> events() const override { return {}; }
 
  protected:
@@ -81,7 +81,7 @@ class ScriptedManager : public ManagingSystem {
   // Asks the component, and waits for its answer at most for `timeout`.
   Answer ask(const std::string& component, Request what, Duration timeout);
 
-  // What only one thread may be in at a time; they get in in the order of their coming.
+  // A mutex whose waiting threads enter in the order of their arrival.
   struct Gate {
     bool is_taken = false;
     std::deque<std::coroutine_handle<>> waiting;

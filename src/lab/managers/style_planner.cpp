@@ -25,7 +25,7 @@ double value_of(RuleId rule, const Knowledge& knowledge) {
   return (1 + static_cast<double>(wrong.policies.criticality)) * depending;
 }
 
-// What keeps a strategy from being executed now, but for what is chosen beside it.
+// Finds the reason why a strategy cannot be executed now, apart from the other chosen strategies.
 void examine(Candidate& candidate, const std::vector<ComponentId>& affected,
              const Knowledge& knowledge) {
   const Strategy& strategy = knowledge.rules[candidate.strategy];

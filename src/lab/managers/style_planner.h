@@ -25,7 +25,7 @@ namespace culprit::study {
 
 enum class Style : std::uint8_t { kRebet, kAcRos, kVogel, kGhahremani };
 
-// Nothing for another name.
+// Empty for another name.
 std::optional<Style> find_style(std::string_view name);
 
 class StylePlanner : public Planner {
@@ -37,7 +37,7 @@ class StylePlanner : public Planner {
  private:
   // The failure that one of `rule` waits for.
   std::optional<RuleId> comes_first(RuleId rule, const Knowledge& knowledge) const;
-  // Of a strategy, or of all that a failure has: the higher the earlier.
+  // The value of a strategy, or of all strategies of a failure: the higher, the earlier.
   double worth(StrategyId id, const Knowledge& knowledge) const;
 
   Style style_;

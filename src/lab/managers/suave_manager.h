@@ -1,5 +1,5 @@
-// What the managers that SUAVE is compared with have in common: what they call its functions and
-// signals, and how modes are changed.
+// Base of the managers that SUAVE is compared with: their names for its functions and signals, and
+// their way to change modes.
 #pragma once
 
 #include <memory>
@@ -32,10 +32,10 @@ class SuaveManager : public ScriptedManager {
 
   bool has_battery() const { return has_battery_; }
   bool is_thruster_failed() const { return failed_thrusters_ > 0; }
-  // What the mission is at, as it says itself; empty before it says anything.
+  // The mission's task as it reports it; empty before the first report.
   std::string task() const;
 
-  // Asks for a mode. `is_done` (null: nobody cares) is whether that was accepted.
+  // Asks for a mode. `is_done` (null: not needed) is whether that was accepted.
   Routine change_mode(std::string system, std::string mode, bool* is_done = nullptr);
 
   void on_signal(const std::string& name, const Value& value) override;
@@ -46,7 +46,7 @@ class SuaveManager : public ScriptedManager {
   std::ptrdiff_t failed_thrusters_ = 0;
 };
 
-// What managing SUAVE has been tried with. Each is told with the sources of its delays.
+// A baseline for SUAVE. Each comes with the sources of its delays.
 struct SuaveBaseline {
   std::string_view name;
   std::string_view summary;

@@ -1,8 +1,9 @@
 #include "rca_study/calibration.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
+
+#include "base/invariant.h"
 
 namespace culprit::study::rca {
 
@@ -12,7 +13,7 @@ void Calibration::add(double forecast, bool came_true) {
 }
 
 void Calibration::add(std::size_t bin, double forecast, bool came_true) {
-  assert(bin < bins_.size());
+  CULPRIT_ASSERT(bin < bins_.size());
   bins_[bin].forecast.add(forecast);
   bins_[bin].outcome.add(came_true ? 1 : 0);
 }

@@ -99,12 +99,12 @@ std::uint64_t robots_of(const RcaCampaign& campaign) {
   return campaign.scenario ? 1 : campaign.episodes;
 }
 
-// Of the rows of one setting. Where a robot is too large there is none.
+// Computes the regrets of one setting's rows. For a robot that is too large there is none.
 bool find_regrets(const RcaCampaign& campaign, unsigned jobs, Count& count,
                   std::span<RcaRow> rows) {
   const RcaSetting& setting = rows.front().setting;
   const std::uint64_t robots = robots_of(campaign);
-  // Of robots whose detectors err, or whose faults are not any of all, it is not known.
+  // It is unknown for robots with faulty detectors, and for faults that are restricted in kind.
   const bool is_known = setting.noise <= 0 && !setting.is_flapping && !setting.has_unfixable &&
                         setting.components <= RepairProcess::kMostComponents;
   Costs sum{0, std::vector<double>(rows.size(), 0)};

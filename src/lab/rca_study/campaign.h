@@ -42,7 +42,7 @@ struct RcaCampaign {
   std::size_t rows() const { return settings.size() * planners.size(); }
 };
 
-// Of one planner in one setting: shares and means over the episodes.
+// The results of one planner in one setting: shares and means over the episodes.
 struct RcaRow {
   std::string planner;
   RcaSetting setting;

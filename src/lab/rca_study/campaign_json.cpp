@@ -83,7 +83,7 @@ std::vector<std::string> planners(JsonFields& campaign) {
   return planners;
 }
 
-// What its setting is follows from it.
+// Its setting follows from the scenario.
 void take_scenario(RcaCampaign& campaign, JsonFields& fields) {
   (void)fields.array("settings");
   auto scenario = scenario_from_json(to_line(fields.object("scenario")));

@@ -18,7 +18,7 @@ namespace culprit::study::rca {
 
 Json to_json(const RcaCampaign& campaign);
 
-// What is missing, unknown, out of range or does not fit together is an error that says where.
+// A field that is missing, unknown, out of range or inconsistent is an error that names the place.
 Expected<RcaCampaign> campaign_from_json(const Json& json);
 
 }  // namespace culprit::study::rca

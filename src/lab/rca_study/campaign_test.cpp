@@ -87,7 +87,8 @@ TEST(RcaCampaign, IgnoresTheInfrastructureWhereTheRulesSaySo) {
   EXPECT_LT(rows->at(0).unresolved.mean(), rows->at(1).unresolved.mean());
 }
 
-// What waits with it is not replaced: its own fault is all that remains, and nobody else is tried.
+// Effects of the unfixable fault are not replaced: only that fault remains, and no other component
+// is tried.
 TEST(RcaCampaign, LeavesWhatNothingFixesToAPerson) {
   RcaCampaign campaign;
   RcaSetting setting{12, 2, 0, false};
@@ -110,7 +111,7 @@ TEST(RcaCampaign, HasFaultsThatAllComeAndGo) {
     EXPECT_EQ(fault.kind, FaultKind::kFlapping);
 }
 
-// A chain with a fault at its head: whoever looks at the graph repairs the head alone.
+// A chain with a fault at its head: a planner that uses the graph repairs the head alone.
 TEST(RcaEpisode, TellsTheCauseFromItsEffects) {
   RcaScenario scenario = generate({4, 1, 0, false}, 1);
   scenario.topics.clear();

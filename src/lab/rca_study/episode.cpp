@@ -38,7 +38,7 @@ class TimedPlanner : public Planner {
   EpisodeResult& result_;
 };
 
-// What of the manager's doing is right, by the truth at the time.
+// Judges the manager's actions by the truth at the time.
 class Judge {
  public:
   Judge(const RcaScenario& scenario, const RuleSet& rules, const Plant& plant,
@@ -85,7 +85,7 @@ class Judge {
     for (const Candidate& candidate : held.candidates) {
       if (candidate.excluded != Condition::kDependency || !candidate.failure) continue;
       const std::size_t cause = rules_[*candidate.failure].components.front().index;
-      // What is repaired already may still be said to fail.
+      // A repaired component may still be reported as failing.
       if (!plant_.is_ill(cause)) break;
       grounded_[held.rule] = plant_.passes(cause, effect);
       return;

@@ -20,8 +20,8 @@ struct EpisodeResult {
   // does not count.
   bool is_exact = false;
   bool is_first_right = false;  // the component adapted first had a fault then
-  // Of the failures that were only effects and waited for another: how many there were, and how
-  // many of them waited for one that illness came from.
+  // Failures that were only effects and waited for another one: their number, and how many waited
+  // for a component that did make them ill.
   std::int32_t effects = 0;
   std::int32_t grounded = 0;
   std::int32_t strategies = 0;       // executed
@@ -36,7 +36,7 @@ struct EpisodeResult {
   double planning_us = 0;  // wall time in all plans
 };
 
-// What was learned in earlier episodes on the same robot: how late each rule is. Empty: nothing.
+// The latencies of each rule, learned in earlier episodes on the same robot. Empty: nothing.
 using Experience = std::vector<Latencies::Learned>;
 
 // `planner` decides. The same scenario and planner, the same result but for `planning_us`.

@@ -39,7 +39,7 @@ struct RcaFactors {
   bool operator==(const RcaFactors&) const = default;
 };
 
-// "0..3s", "500ms..2s", "1s". Errors say what is wrong with it and what to write instead.
+// "0..3s", "500ms..2s", "1s". Errors name the mistake and the remedy.
 Expected<RangeOfSeconds> parse_range(std::string_view text);
 // "30%" or "0.3". Errors as above, also if it is more than `most`.
 Expected<double> parse_share(std::string_view text, double most);

@@ -195,8 +195,7 @@ TEST(FalseAlarms, ComeAsOftenAsTheyAreSaidTo) {
   EXPECT_NEAR(alarms, 2900 / 13, 45);
 }
 
-// Detectors that are up to 3 s late, which nobody stated: what other faults taught makes it act on the
-// right components.
+// Detectors that are up to 3 s late, which the rules do not state: lessons from other faults make it act on the right components.
 TEST(Factors, LatenciesThatEarlierFaultsTaughtCount) {
   const auto exact = [](std::size_t faults_before) {
     RcaCampaign campaign;

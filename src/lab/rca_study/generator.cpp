@@ -19,7 +19,7 @@ constexpr double kCycle_s = 0.2;         // of the rules
 constexpr double kShortestCause_s = 5;   // how long a common cause lasts
 constexpr double kLongestCause_s = 15;
 
-// What helps against what, by Repair and FaultKind. No source publishes such rates; these say that
+// How well each Repair helps against each FaultKind. No source publishes such rates; these say that
 // a process that is gone or hangs needs a new one, and that most of the rest yields to a restart.
 constexpr std::array<std::array<double, kFaultKinds>, kRepairs> kHelps = {{
     // silent, slow, degraded, flapping, crash, hang, wrong parameter

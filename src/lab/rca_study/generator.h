@@ -21,8 +21,8 @@ struct RcaSetting {
   double noise = 0;  // of each reading: the probability of a miss, and of a false alarm
   bool is_cyclic = false;
   bool has_mixed_levels = false;  // each rule's criticality is any; else all are ERROR
-  // What planners are told is true: everything helps as often as the rules say, every subscription
-  // passes failures on as often as any other, and none is redundant.
+  // The planners' information is true: every strategy helps as often as the rules say, every
+  // subscription passes failures on as often as any other, and none is redundant.
   bool is_as_told = false;
   bool is_flapping = false;       // every fault comes and goes; else any is of any kind
   bool has_unfixable = false;     // nothing helps against one of the faults

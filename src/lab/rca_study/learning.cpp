@@ -89,7 +89,7 @@ class Learner {
   }
 
  private:
-  // Of one strategy (learning.h).
+  // The truth about one strategy (learning.h).
   struct Truth {
     int executed = 0;
     int helped = 0;
@@ -155,8 +155,8 @@ class Learner {
         if (effect == resolved->rule || state.attempt ||
             !plant.passes(resolved->rule.index, effect.index))
           continue;
-        // Kappa is of a cause that is alone (diagnose/diagnosis.h). What has no fault of its
-        // own stands in a chain from it, or goes away by itself.
+        // Kappa is defined for a cause that is alone (diagnose/diagnosis.h). A component without a
+        // fault of its own is in a chain from it, or recovers by itself.
         const auto& active = knowledge.states.active();
         const bool is_alone = std::none_of(active.begin(), active.end(), [&](RuleId other) {
           return other != effect && other != resolved->rule &&
@@ -172,8 +172,8 @@ class Learner {
     }
   }
 
-  // What is there after these events, and what went away by itself with them: that went with its
-  // cause.
+  // The failures that are active after these events, and those that cleared by themselves with
+  // them, thus with their cause.
   static std::vector<RuleId> there_until(std::span<const Event> events,
                                          const Knowledge& knowledge) {
     std::vector<RuleId> there = knowledge.states.active();

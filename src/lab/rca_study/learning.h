@@ -1,4 +1,4 @@
-// What a manager learns of one robot of the benchmark over many faults, and how true that is.
+// Compares what a manager learns about one robot of the benchmark over many faults with the truth.
 //
 // The robot stays the same; each episode has new faults and new luck, and begins with the beliefs
 // and couplings that the last one ended with. First it learns. Then, while it goes on learning,
@@ -19,7 +19,7 @@
 
 namespace culprit::study::rca {
 
-// What the rules say at first.
+// The initial guesses of the rules.
 enum class Priors : std::uint8_t {
   kRight,  // what the author knows of other robots, near the truth
   kOff,    // 20 % off, up and down by turns
@@ -42,7 +42,7 @@ struct LearningCampaign {
   std::uint32_t measured() const { return has_drift ? faults : 4 * faults; }
 };
 
-// What became of one strategy in all episodes, beside what is believed of it.
+// The outcomes of one strategy in all episodes, beside the belief about it.
 struct LearnedRate {
   std::string strategy;  // "c3.restart"
   double prior = 0;
@@ -53,7 +53,8 @@ struct LearnedRate {
   int judged = 0;      // executions that these are of
   int judged_helped = 0;
 
-  // Of what was learned from: beside another repair nobody can judge (docs/planning.md).
+  // Only for the executions that were learned from: beside another repair no outcome can be judged
+  // (docs/planning.md).
   double truth() const { return judged == 0 ? 0 : static_cast<double>(judged_helped) / judged; }
 };
 

@@ -26,8 +26,8 @@ Json json_of(const Calibration& calibration) {
           {"bins", std::move(bins)}};
 }
 
-// What came true over what was forecast; on the dotted line all is as was said. The larger a
-// circle, the more forecasts it stands for.
+// Observed over predicted frequency; on the dotted line both agree. The larger a circle, the more
+// forecasts it stands for.
 Svg calibration_plot(const std::string& what, const Calibration& calibration) {
   constexpr double kSize = 340;
   const Scale x{0, 1, 50, kSize - 20};
@@ -99,7 +99,7 @@ std::string learning_json(const LearningCampaign& campaign, const LearningResult
 
 std::string learning_html(const LearningCampaign& campaign, const LearningResult& result,
                           const std::string& command, const std::string& version) {
-  const std::string title = "What is learned of a robot";
+  const std::string title = "Learning on one robot";
   return page_head(title) + "<body>\n<header>\n<h1>" + title +
          "</h1>\n<p>What was believed just before an outcome, beside what came true. On the dotted "
          "line all is as was said; the larger a circle, the more outcomes.</p>\n"

@@ -36,7 +36,7 @@ TEST(Learning, ComesNearTheTruth) {
   EXPECT_LT(result.kappa.error(), 0.06);
 }
 
-// Of so many outcomes.
+// The standard error of a rate over this many outcomes.
 double standard_error(double rate, double outcomes) {
   return std::sqrt(rate * (1 - rate) / std::max(1.0, outcomes));
 }

@@ -1,9 +1,9 @@
 #include "rca_study/optimum.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
+#include "base/invariant.h"
 #include "rca_study/rules.h"
 
 namespace culprit::study::rca {
@@ -133,10 +133,10 @@ class OptimumPlanner : public Planner {
 
 }  // namespace
 
-// Branch and bound: what may cost least is looked at first, and nothing that must cost more than
-// what is known already.
+// Branch and bound: the round that may cost least is examined first; a round that must cost more
+// than a known one is not.
 const Optimum::Best& Optimum::best(const Situation& situation) {
-  // If all is known, the other components that are ill do not matter.
+  // If all is known, the other ill components do not matter.
   if (const auto told = process_.told_by_itself(situation)) return best(*told);
   const std::string key = key_of(situation);
   const auto known = known_.find(key);
@@ -159,7 +159,7 @@ const Optimum::Best& Optimum::best(const Situation& situation) {
     for (Begun& begun : all) {
       if (begun.least > best.cost + kTie) break;
       const double sum = cost_below(begun, best.cost + kTie);
-      // Of those that cost the same, the first.
+      // Among equal costs, the first round is kept.
       if (sum < best.cost - kTie || (sum < best.cost + kTie && begun.place < first)) {
         best = {sum, std::move(begun.round)};
         first = begun.place;
@@ -208,7 +208,7 @@ double expected_cost(const RepairProcess& process, const RuleSet& rules, const P
 }
 
 std::unique_ptr<const Planner> optimum_planner(const RcaScenario& scenario, Objective objective) {
-  assert(RepairProcess::is_small(scenario));
+  CULPRIT_ASSERT(RepairProcess::is_small(scenario));
   return std::make_unique<OptimumPlanner>(scenario, objective);
 }
 

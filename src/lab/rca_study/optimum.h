@@ -6,10 +6,10 @@
 //
 // or the cost of leaving it ill, if going on costs more,
 // with the situations x, rounds A and outcomes o of repair_process.h. Each round tries something
-// that may be tried a few times only, so the recursion ends; situations that are reached in several
-// ways are worked out once. The optimum knows how well everything helps against every kind of fault
-// and how often each subscription passes failures on, which no planner of rules is told, but not
-// what broke. So no planner that keeps the promises of culprit's planners can do better.
+// that may be tried a few times only, so the recursion ends; each situation is worked out once. The
+// optimum knows the success rates against every kind of fault and how often each subscription
+// passes failures on. No planner of rules knows these. It does not know which components broke. So
+// no planner that keeps the promises of culprit's planners can do better.
 //
 // The cost of a planner, V_planner, is the same sum with the round that it begins in x instead of
 // the best one: what it decides is asked of the planner itself, shown what a manager would know.
@@ -17,9 +17,10 @@
 //
 //     V_planner / V - 1        with both summed over the first situations, and over the robots
 //
-// What is left out does not change it: subscriptions that nothing will ever tell apart are one
-// (repair_process.h), and a round is not followed any further that costs more than another one even
-// if somebody said from then on what broke. If what is seen says so anyway, that is the cost.
+// Two omissions do not change it. Subscriptions that no observation will ever distinguish are
+// merged (repair_process.h). A round is not followed further if it costs more than another one even
+// with full knowledge of the faults. If the observations reveal the faults anyway, that is the
+// cost.
 //
 // Source: Kaelbling, Littman, Cassandra, "Planning and acting in partially observable stochastic
 // domains", Artificial Intelligence 101, 1998, section 3: the optimal policy is one of the belief.
@@ -42,7 +43,7 @@ class Optimum {
   // The expected cost until all is well, from the beginning, and from a situation on.
   double cost();
   double cost(const Situation& situation) { return best(situation).cost; }
-  // The round to begin; nothing if nothing is left to try or worth it, or nobody is ill.
+  // The round to begin; empty if no strategy is left or worth it, or no component is ill.
   const Round& round(const Situation& situation) { return best(situation).round; }
 
  private:
@@ -65,13 +66,13 @@ class Optimum {
   std::unordered_map<std::string, Best> known_;
 };
 
-// What `planner` costs from the beginning. `rules` are those of the process.
+// The expected cost of `planner` from the beginning. `rules` are those of the process.
 double expected_cost(const RepairProcess& process, const RuleSet& rules, const Planner& planner);
 
 // Plays the optimum on culprit's manager, in rounds: nothing is begun while a strategy is under
-// way, or shortly after a failure came or went. It knows no more of the past than what is seen and
-// was tried, so that its belief may be less sharp than the one above.
-// @pre RepairProcess::is_small(scenario)
+// way, or shortly after a failure came or went. It knows no more of the past than the current
+// observations and earlier tries, so its belief may be less sharp than the one above. @pre
+// RepairProcess::is_small(scenario)
 std::unique_ptr<const Planner> optimum_planner(const RcaScenario& scenario, Objective objective);
 
 }  // namespace culprit::study::rca

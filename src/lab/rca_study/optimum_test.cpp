@@ -123,7 +123,7 @@ TEST(Optimum, IsTheLeastOfAllWhateverIsLeftOut) {
   }
 }
 
-// a feeds b, surely. Who is ill says which it is, and a crash is seen.
+// a feeds b, surely. The ill components show which one is the cause, and a crash is visible.
 TEST(Optimum, KnowsTheCauseFromItsEffects) {
   RcaScenario scenario = single();
   scenario.components.push_back(scenario.components.front());

@@ -88,8 +88,8 @@ void Plant::repair(std::size_t component) {
   update();
 }
 
-// How long until each component is ill if nothing changes any more: Dijkstra's algorithm from those
-// that are ill by themselves. Nothing: it is well then.
+// The time until each component is ill if nothing changes any more: Dijkstra's algorithm from those
+// that are ill by themselves. Empty: it is well then.
 std::vector<std::optional<Duration>> Plant::onsets() const {
   using Item = std::pair<Duration, std::size_t>;
   std::priority_queue<Item, std::vector<Item>, std::greater<>> open;

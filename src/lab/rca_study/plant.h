@@ -1,9 +1,10 @@
-// The hidden truth of a scenario while it is played: who is ill, and since when.
+// The hidden truth of a scenario while it is played: the ill components, and since when.
 //
-// Illness travels: a component that a subscription passes it to is ill after the subscription's
-// delay, and well again as long after its last cause is gone. Of several ways the quickest counts.
-// Who is ill at rest is the least set that follows from faults and adaptations, so a circle never
-// keeps itself ill, and what recovers sooner than an illness arrives is never ill.
+// Illness travels: a component is ill one delay after the component that a subscription connects it
+// to, and well again as long after its last cause is gone. If there are several paths, the quickest
+// counts. The ill components at rest are the least set that follows from faults and adaptations. So
+// a feedback loop never keeps itself ill, and a component that recovers before an illness arrives
+// is never ill.
 #pragma once
 
 #include <functional>
@@ -32,7 +33,7 @@ class Plant {
   bool step(Time until);
 
   bool is_ill(std::size_t component) const { return states_[component].is_ill; }
-  // What its detector would say if it made no mistakes.
+  // The reading of a detector without errors.
   bool looks_ill(std::size_t component) const { return states_[component].looks_ill; }
   std::optional<FaultKind> fault(std::size_t component) const { return states_[component].fault; }
   // Does a common cause hit it now?

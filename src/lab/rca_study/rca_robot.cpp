@@ -134,7 +134,7 @@ void RcaRobot::execute(const Command& command) {
   }
 }
 
-// What changes something takes its time; the rest is answered at once.
+// Changes take their time; other requests are answered at once.
 void RcaRobot::serve(const Command& command) {
   const std::size_t component = command.component.index;
   if (const auto* transition = std::get_if<ChangeLifecycle>(&command.what)) {

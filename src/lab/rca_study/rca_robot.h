@@ -1,8 +1,9 @@
 // A scenario as a robot that culprit's manager runs on, in virtual time.
 //
-// Leaner than src/adapters/simulation, which plays each message of each topic: of ten thousand
-// components a manager of this benchmark needs who talks to whom, what the detectors read, and what
-// adaptations do. Requests, lifecycles, processes and their observations are as there.
+// Leaner than src/adapters/simulation, which plays each message of each topic. For ten thousand
+// components, a manager of this benchmark only needs the edges of the graph, the detectors'
+// readings, and the effects of adaptations. Requests, lifecycles, processes and their observations
+// are as there.
 #pragma once
 
 #include <atomic>
@@ -17,7 +18,7 @@ namespace culprit::study::rca {
 
 class RcaRobot : public Robot {
  public:
-  // A robot that is well for so long is left.
+  // A robot that is well for this long is left.
   static constexpr Duration kQuiet = std::chrono::seconds(5);
 
   // `scenario` must outlive it; `rules` are those of the scenario.

@@ -135,8 +135,8 @@ Members RepairProcess::spread(Members faulty, Members passing) const {
   return ill;
 }
 
-// Faults only end, so two sets of subscriptions are alike for `faulty` if they make the same ill for
-// it and are alike for it without any one of its faults.
+// Faults only end. So two sets of subscriptions are alike for `faulty` if they make the same components ill for it, and are alike for it without any one of its
+// faults.
 void RepairProcess::tell_apart() {
   alike_.resize(ill_.size());
   for (Members faulty = 0; faulty < one(size()); ++faulty) {
@@ -281,7 +281,7 @@ std::vector<RepairProcess::Outcome> RepairProcess::outcomes(const Situation& sit
       Members faulty = h.faulty;
       for (std::size_t r = 0; r < round.size(); ++r) {
         const bool has_fault = has(h.faulty, round[r].component);
-        // Of what has no fault nothing is known but that.
+        // A component without a fault gives no further information.
         const double helps_it = has_fault ? helps[r] : 0;
         weight *= has(helped, r) ? helps_it : 1 - helps_it;
         if (has(helped, r)) faulty &= ~one(round[r].component);

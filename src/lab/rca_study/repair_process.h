@@ -1,17 +1,17 @@
-// A small robot of the benchmark as a decision process: what can be done, what it costs, and what
-// is known of the hidden truth after each outcome. The optimum (optimum.h) is worked out in it, and
-// every planner's regret.
+// A small robot of the benchmark as a decision process: the possible actions, their costs, and the
+// knowledge of the hidden truth after each outcome. The optimum (optimum.h) is worked out in it,
+// and every planner's regret.
 //
 // Hidden truth: F, the components that have a fault now; the kind of each fault; and E, which
 // subscriptions pass failures on in this episode. At the beginning F is any set of as many
-// components as the scenario has faults, kinds are any of the seven, each equally likely, and
-// subscription e passes with its probability q_e. F only becomes smaller.
+// components as the scenario has faults. Each fault is of any of the seven kinds, equally likely,
+// and subscription e passes with its probability q_e. F only becomes smaller.
 //
-// Seen: who is ill, which F and E determine (scenario.h), and whose process is gone, which a crash
-// shows. Detectors make no mistakes, and what is seen has settled.
+// Seen: which components are ill, which F and E determine (scenario.h), and whose process is gone,
+// which a crash shows. Detectors make no mistakes, and what is seen has settled.
 //
-// A round: strategies s in a set A, each at a component c that is ill, begin together; then all is
-// seen again. A fault is gone with the probability
+// A round: strategies s in a set A, each at an ill component c, begin together; then all is seen
+// again. A fault is gone with the probability
 //
 //     sigma(c, s) = sum_k p_k prod_t (1 - h_tk)^m_t h_sk / sum_k p_k prod_t (1 - h_tk)^m_t
 //
@@ -20,17 +20,18 @@
 //   h_tk   how likely treatment t helps against kind k: the scenario's truth
 //   m_t    how often t was tried at c in vain
 //
-// independently of the others; so what is known of kinds is the counts m. What is known of F and E
-// is a belief b(F, E), and an outcome o (who is ill, who is gone) changes it by Bayes' rule:
+// independently of the others; so the counts m are all that is known of kinds. The knowledge of F
+// and E is a belief b(F, E). An outcome o (which components are ill, which processes are gone)
+// changes it by Bayes' rule:
 //
 //     b'(F', E) ~ sum_F b(F, E) prod_{c in A, c in F} (sigma if c not in F', 1 - sigma if it is)
 //
 // over those F' and E that show o. With b and m nothing else of the past matters.
 //
-// What may begin is what culprit's planners promise: strategies that are valid, were not tried in
-// this round of the rule, one for each component, and none at a component that depends on another's
-// of A, unless its process is gone. When all were tried they may be tried again, up to kTurns times
-// each; then nothing is left.
+// A round may begin what culprit's planners allow: strategies that are valid, were not tried in
+// this round of the rule, one for each component. None may be at a component that depends on
+// another's of A, unless its process is gone. When all were tried they may be tried again, up to
+// kTurns times each; then no strategy is left.
 //
 // A round costs, in the weights of the objective (plan/bayes/objective.h),
 //
@@ -59,7 +60,7 @@ namespace culprit::study::rca {
 
 using Members = std::uint32_t;  // a set of components, or of subscriptions: one bit for each
 
-// What is known after some rounds.
+// The state of knowledge after some rounds.
 struct Situation {
   struct Tries {
     std::uint8_t tried = 0;  // in this turn: a bit for each treatment
@@ -103,7 +104,7 @@ class RepairProcess {
     double probability = 0;
     Situation situation;
   };
-  // What may be seen first, before anything was done.
+  // The possible first observations, before any action.
   std::vector<Outcome> beginnings() const;
   std::vector<Outcome> outcomes(const Situation& situation, const Round& round) const;
 
@@ -112,27 +113,28 @@ class RepairProcess {
   double cost(const Situation& situation, const Round& round) const;
   double cost_of_leaving_it_ill(const Situation& situation) const;
 
-  // The situation if somebody said which components have a fault, and always would: only those are
-  // ill, as if no subscription passed anything on. No way on costs less than on average over what
-  // may be said: fewer are ill, so time weighs no more. `faulty` is one of its hypotheses'.
+  // The situation if it were revealed for good which components have a fault: only those are ill,
+  // as if no subscription passed anything on. No way on costs less than on average over the
+  // possible revelations: fewer are ill, so time weighs no more. `faulty` is one of its
+  // hypotheses'.
   Situation told(const Situation& situation, Members faulty) const;
-  // The same if nobody need say it: what is seen shows it, and always will, and no effect is more
+  // The same without a revelation: the observations show it for good, and no effect is more
   // critical than every fault. Returns nothing otherwise, or if this is such a situation already.
   std::optional<Situation> told_by_itself(const Situation& situation) const;
   // Is it such a situation?
   bool is_told(const Situation& situation) const;
 
-  // Is anybody ill for whom something is left to try?
+  // Is any component ill for which a strategy is left to try?
   bool is_open(const Situation& situation) const;
   // Is nothing left to try at this component?
   bool is_exhausted(const Situation& situation, std::size_t component) const;
 
-  // Who talks to whom, as a manager sees it.
+  // Adds the edges of the graph, as a manager sees it.
   void connect(DependencyGraph& graph) const;
-  // What a manager knows in a situation. `knowledge` is of the same rules.
+  // A manager's knowledge in a situation. `knowledge` is of the same rules.
   void show(const Situation& situation, Knowledge& knowledge) const;
-  // The other way round: what is seen and tried by now, with the belief that this alone gives.
-  // Nothing while what is seen has not settled, so that no hypothesis explains it.
+  // The inverse: the observations and tries by now, with the belief that follows from them alone.
+  // Empty while the observations have not settled, so that no hypothesis explains them.
   std::optional<Situation> situation_of(const Knowledge& knowledge) const;
 
   std::size_t size() const { return scenario_.components.size(); }
@@ -153,8 +155,8 @@ class RepairProcess {
     return faulty << paths_.size() | passing;
   }
   Members ill(Members faulty, Members passing) const { return ill_[place(faulty, passing)]; }
-  // The first set of subscriptions that can never be told from `passing` as long as there are no
-  // other faults than these.
+  // The first set of subscriptions that can never be distinguished from `passing` as long as there
+  // are no other faults than these.
   Members alike(Members faulty, Members passing) const { return alike_[place(faulty, passing)]; }
   void tell_apart();
   double probability_of(Members passing) const;

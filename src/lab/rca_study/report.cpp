@@ -21,7 +21,7 @@ std::optional<double> plan_us(const RcaRow& row, Times times) {
   return row.planning_us / static_cast<double>(row.plans);
 }
 
-// By row, whether no other planner beats it in the same setting. Nothing of the optimum: it is a
+// By row, whether no other planner beats it in the same setting. Empty for the optimum: it is a
 // bound.
 std::vector<std::optional<bool>> on_front(const std::vector<RcaRow>& rows) {
   std::vector<std::optional<bool>> is_on(rows.size());
@@ -42,7 +42,7 @@ std::vector<std::optional<bool>> on_front(const std::vector<RcaRow>& rows) {
   return is_on;
 }
 
-// All that is told of a row, in the order of its telling.
+// All figures of a row, in the order of the output.
 Json figures(const RcaRow& row, std::optional<bool> is_on_front, Times times) {
   const auto optional = [](std::optional<double> value) { return value ? Json(*value) : Json(); };
   Json json{{"planner", row.planner},

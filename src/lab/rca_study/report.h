@@ -1,4 +1,5 @@
-// What a campaign of the root-cause benchmark found, as tables, CSV and JSON (docs/study-rca.md).
+// The results of a campaign of the root-cause benchmark, as tables, CSV and JSON
+// (docs/study-rca.md).
 //
 //     {"study": "rca", "campaign": {...},
 //      "rows": [{"planner": "bayes", "components": 200, "faults": 3, "noise": 0, "cyclic": true,
@@ -8,9 +9,9 @@
 //                "plan_us": null, "on_front": true}]}
 //
 // "campaign" is campaign_json.h's. exact_set, top1 and path are shares; the rest are means over the
-// episodes. What does not exist is null: path where no failure waited for another, regret where the
-// optimum was not played, plan_us unless times are asked for, because they are never the same
-// twice, on_front of the optimum. on_front says whether no other planner beats this one
+// episodes. A missing value is null: path where no failure waited for another, regret where the
+// optimum was not played, on_front of the optimum. So is plan_us unless times are asked for,
+// because they are never the same twice. on_front says whether no other planner beats this one
 // (study/pareto.h) in exact_set, wrong_component, unnecessary, strategies_per_fault, downtime_s,
 // recovery_s and unresolved together.
 #pragma once

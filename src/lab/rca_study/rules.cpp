@@ -19,8 +19,8 @@ double tail(int needed, int window, double wrong) {
   return sum;
 }
 
-// The shortest window with a false detection in less than a million evaluations, and with so many
-// readings that may be missed that a false recovery is rarer than one in a hundred thousand.
+// The shortest window with a false detection in less than a million evaluations. It may miss so
+// many readings that a false recovery is rarer than one in a hundred thousand.
 std::string hold(const Detector& detector) {
   constexpr double kRareAlarm = 1e-6;
   constexpr double kRareMiss = 1e-5;

@@ -1,8 +1,7 @@
-// The rules of a scenario: all that a manager is told of the robot beforehand.
+// The rules of a scenario: all that a manager knows of the robot beforehand.
 //
-// One rule for each component that is watched: its detector says that it is ill. The author of the rules knows how
-// often a reading is wrong and has a failure hold in as many of a few readings as make a false
-// detection rare.
+// One rule for each watched component: its detector reports that it is ill. The author of the rules knows how often a reading is wrong and has a failure hold
+// in as many of a few readings as make a false detection rare.
 #pragma once
 
 #include <string>

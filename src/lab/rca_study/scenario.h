@@ -1,13 +1,12 @@
-// One scenario of the root-cause benchmark: a robot as a graph, what is wrong with it, and how well
-// it can be seen and repaired (docs/study-rca.md; as a file: scenario_json.h).
+// One scenario of the root-cause benchmark: a robot as a graph, its faults, its detectors and its
+// repairs (docs/study-rca.md; as a file: scenario_json.h).
 //
-// What a manager may know is what the generated rules say (rules.h). The rest is hidden truth:
-// which subscriptions pass failures on, how good the detectors are, and what helps against what.
+// The generated rules contain all that a manager may know (rules.h). The rest is hidden truth:
+// which subscriptions pass failures on, how good the detectors are, and which repair helps against
+// which fault.
 //
-// Who is ill? A component with a fault that shows, one that is taken down by an adaptation, one that
-// a common cause hits, and every component that is passed an illness: by one of its subscriptions,
-// or, of those that are redundant, by all of them. An illness that only feeds itself (a circle) is
-// none.
+// Which components are ill? A component with a fault that shows, one that an adaptation takes down, one that a common cause hits, and every component that an
+// illness reaches: by one of its subscriptions, or, if they are redundant, by all of them. An illness that only feeds itself (a feedback loop) is none.
 #pragma once
 
 #include <array>
@@ -32,7 +31,7 @@ enum class FaultKind : std::uint8_t {
 inline constexpr std::size_t kFaultKinds = 7;
 std::string_view to_string(FaultKind kind);  // "silent", "wrong_parameter"
 
-// What can be done to a component.
+// A repair of a component.
 enum class Repair : std::uint8_t { kConfigure, kRestart, kRedeploy };
 inline constexpr std::size_t kRepairs = 3;
 std::string_view to_string(Repair repair);  // "configure", "restart", "redeploy"

@@ -1,8 +1,8 @@
 // Scenario files: the benchmark for others (docs/study-rca.md). JSON; components are referred to by
 // name.
 //
-// A file may come from anywhere: what is missing, unknown, out of range or does not fit together is
-// refused with the place where it stands.
+// A file may come from anywhere: a field that is missing, unknown, out of range or inconsistent is
+// refused with its place.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ namespace culprit::study::rca {
 // Larger robots are not read.
 inline constexpr std::size_t kMostComponents = 10'000;
 
-// Ends with a line end. What is read from it is the same scenario.
+// Ends with a line end. Reading it back gives the same scenario.
 std::string to_json(const RcaScenario& scenario);
 
 // Errors: "components[3]: detector is wrong: miss is no probability".

@@ -107,7 +107,7 @@ TEST_F(TimingPlanners, AreNamedWithTheirWait) {
   EXPECT_EQ(std::count(usual.begin(), usual.end(), "patient"), 0);
 }
 
-// What waits for evidence blames nobody wrongly on usual robots.
+// Planners that wait for evidence blame no wrong component on usual robots.
 TEST(TimingPlannersInEpisodes, AreRightWhereAlarmsOnlyComeLate) {
   RcaCampaign campaign;
   RcaSetting setting{20, 3, 0, false};

@@ -1,4 +1,4 @@
-// What a strategy costs in the reference manager.
+// The cost of a strategy in the reference manager.
 //
 //     public code:  0.5 (1 - P) + 0.5 (i - 1) / N        paper (Eq. 1):  (1 - P) + i / i_max
 //

@@ -57,7 +57,7 @@ void Execution::add(StrategyId strategy, std::span<const Slot> signals) {
 }
 
 void Execution::answered(const Reply& reply, std::vector<Command>& commands) {
-  // Who does not answer is waited for.
+  // A component that does not answer is waited for.
   if (reply.outcome == Outcome::kTimedOut || reply.outcome == Outcome::kUnreachable) return;
   for (std::size_t c = 0; c < branches_.size(); ++c) {
     for (Call& call : branches_[c].calls) {

@@ -1,16 +1,15 @@
 // The reference's execution: chosen strategies become requests to the components.
 //
 // Adaptations wait at their component until the next round. A round runs all components side by
-// side, and in each one after another what waits there of
-//   redeploy (the first one; others are dropped), activate, deactivate and restart (likewise),
-//   changes of communication (all), parameters (all);
-// whatever fails ends the component's part of the round. The next round begins in the tick after
-// the slowest component is through: a request that is never answered holds back everything for
-// good.
+// side. In each, it works through the waiting adaptations in this order: redeploy (the first one;
+// others are dropped), activate, deactivate and restart (the same), changes of communication (all),
+// parameters (all). A failure ends the component's part of the round. The next round begins in the
+// tick after the slowest component is through: a request that is never answered holds back
+// everything for good.
 //
 // A component is busy from a request to the tick that sees its answer. Its answer to the shutdown
-// ends a redeploy: the new process is started in the background. Nobody else learns how a request
-// ended.
+// ends a redeploy: the new process is started in the background. The outcome of a request reaches
+// no other part.
 #pragma once
 
 #include <optional>
@@ -26,8 +25,8 @@ namespace culprit::study::reference {
 
 class Execution {
  public:
-  // The reference waits without end. So long adapters wait before they say that nobody answered,
-  // which is not heard.
+  // The reference waits without end. This is the time after which adapters report a timeout, which
+  // is ignored.
   static constexpr Duration kNoTimeout = std::chrono::hours(24);
 
   // `rules` must outlive the execution.
@@ -58,7 +57,7 @@ class Execution {
     bool is_answered = false;
     bool has_succeeded = true;
   };
-  // What is done with one component.
+  // The adaptations of one component.
   struct Branch {
     std::vector<Order> waiting;
     Stage stage = Stage::kDone;  // in this round

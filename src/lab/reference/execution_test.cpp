@@ -1,5 +1,5 @@
-// How the reference carries strategies out: rounds with a barrier, and answers that nobody waits
-// for or everybody does.
+// Execution of strategies by the reference: rounds with a barrier, and answers that are awaited or
+// ignored.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

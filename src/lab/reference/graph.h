@@ -1,8 +1,8 @@
-// What the reference manager takes for the dependencies of the managed system.
+// The reference manager's dependencies of the managed system.
 //
-// As in the public code: a subscriber depends on the publishers of its topic in its own namespace
-// only (topics are compared with the namespace of the node in front of them), and whoever serves a
-// service depends on its clients.
+// As in the public code, a subscriber depends on the publishers of its topic in its own namespace
+// only (topics are compared with the namespace of the node in front of them). A server depends on
+// its clients.
 #pragma once
 
 #include "knowledge/dependency_graph.h"

@@ -1,4 +1,4 @@
-// What the strategies of a rule set weigh, and how long they are waited for.
+// The weights of a rule set's strategies, and their timeouts.
 //
 // The public code knows a constant for each type of adaptation; the paper writes a number at each
 // adaptation. Both take the longest of a strategy's adaptations as the time to wait.

@@ -27,7 +27,7 @@ struct Slips {
   static Slips none() { return {false, false, false, false, false, false}; }
 };
 
-// What an adaptation weighs in the cost and how many ticks its strategy gets.
+// The weight of an adaptation in the cost, and how many ticks its strategy gets.
 enum class ImpactTable : std::uint8_t {
   kCode,      // by type, as the manager that is built
   kStray,     // by type, as a second copy of that file in its include folder
@@ -44,8 +44,7 @@ struct ReferenceOptions {
   Time start{};            // of the first tick; the others follow, one each CYCLE of the rules
   Time graph_frozen_at{};  // the first tick from here on takes the snapshot (slip frozen_graph)
 
-  // What the blackboard holds before a signal is read for the first time, for every signal of the
-  // rules.
+  // The blackboard's initial value of each signal of the rules, before its first reading.
   std::map<std::string, Value> initial;
 
   // Strategies of equal cost go in the order of a hash set of addresses (reference/sent_rules.h);

@@ -47,8 +47,8 @@ void Planning::select(Criticality level, const Present& present) {
     examine(candidate, level, present);
     const bool has_one = std::any_of(decision.begin(), decision.end(),
                                      [](const Candidate& c) { return !c.excluded; });
-    // What is reserved for the strategy chosen for the same failure is rather excluded by that
-    // choice.
+    // If a component is reserved for the strategy chosen for the same failure, the reason given is
+    // that choice.
     const bool is_free = !candidate.excluded || candidate.excluded == Condition::kAffected;
     if (has_one && is_free) candidate.excluded = Condition::kOneEach;
     if (!candidate.excluded) {

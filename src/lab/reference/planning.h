@@ -26,7 +26,7 @@ class Planning {
   // `rules` must outlive the planning.
   Planning(const RuleSet& rules, const ReferenceOptions& options);
 
-  // One tick. What it gives is valid until the next.
+  // One tick. The result is valid until the next tick.
   const std::vector<StrategyId>& advance(Time now, const Analysis& analysis,
                                          const Execution& execution, const Graph& graph,
                                          std::vector<Event>& events);

@@ -1,4 +1,4 @@
-// What the reference chooses: cost, D, C and S, and in which order.
+// The reference's choices: cost, D, C and S, and in which order.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

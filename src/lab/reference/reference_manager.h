@@ -12,9 +12,9 @@
 // The blackboard holds the signals of the rules, each with the value read last, for ever. Rates,
 // ages and states are not there: a rule file for the reference reads signals only.
 //
-// Not reproduced: the reference works on texts of numbers with six decimals (so 1e-7 == 0), dies on
-// errors in expressions at run time, and shuts a component down by a lifecycle transition, which an
-// inactive node refuses.
+// Not reproduced: the reference works on texts of numbers with six decimals (so 1e-7 == 0), and
+// exits on errors in expressions at run time. It also shuts a component down by a lifecycle
+// transition, which an inactive node refuses.
 #pragma once
 
 #include <memory>
@@ -42,7 +42,7 @@ class ReferenceManager : public ManagingSystem {
   Time next_deadline() const override { return next_tick_; }
   std::span<const Event> events() const override { return events_; }
 
-  // What it learned, to go on with in the next run (without the slip fixed_beliefs).
+  // The learned belief, to go on with in the next run (without the slip fixed_beliefs).
   const Belief& belief(StrategyId strategy) const { return analysis_.belief(strategy); }
   void set_belief(StrategyId strategy, Belief belief) { analysis_.set_belief(strategy, belief); }
 

@@ -1,8 +1,8 @@
 // The failures that wait for planning, in the order in which the reference's planner sees them.
 //
 // The public code keeps them in std::unordered_set of addresses. GNU's gives the element inserted
-// last first, but elements whose addresses fall into one of its 13 buckets stay together. That
-// order decides between strategies of equal cost: std::sort keeps the order of up to 16 equal
+// last first, but elements whose addresses fall into one of its 13 buckets stay together. If
+// strategies have equal cost, that order decides: std::sort keeps the order of up to 16 equal
 // elements.
 #pragma once
 

@@ -1,5 +1,5 @@
-// What the reference's blackboard holds on SUNSET before anything is read: the constants of its own
-// rule file (rules/sunset-reference.rules names the same signals).
+// The initial content of the reference's blackboard on SUNSET: the constants of its own rule file
+// (rules/sunset-reference.rules names the same signals).
 #pragma once
 
 #include <map>

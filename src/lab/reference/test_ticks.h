@@ -31,8 +31,8 @@ class Ticks {
   void publish(const std::string& component, const std::string& topic);
   void run(int ticks = 1);
 
-  // What happened, each line with the number of its tick: "3 RGBDead detected". And what was asked
-  // of the components: "3 camera: deactivate"; between ticks the number is of the one before.
+  // The events, each line with the number of its tick: "3 RGBDead detected". The requests to the
+  // components: "3 camera: deactivate"; between ticks the number is of the one before.
   std::vector<std::string> said;
   std::vector<std::string> asked;
   bool has_said(const std::string& line) const;

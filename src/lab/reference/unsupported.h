@@ -12,8 +12,7 @@
 
 namespace culprit::study::reference {
 
-// Nothing if it can run these rules with these options; otherwise what is in the way and what to
-// do.
+// Empty if it can run these rules with these options; otherwise the obstacle and the remedy.
 std::optional<Error> unsupported(const RuleSet& rules, const ReferenceOptions& options);
 
 }  // namespace culprit::study::reference

@@ -12,7 +12,7 @@
 namespace culprit::study {
 namespace {
 
-// What the two are not agreed on; empty if they are.
+// The difference between the two; empty if they agree.
 template <class C>
 std::string disagreement(const ShardHeader<C>& ours, const ShardHeader<C>& theirs) {
   const auto differ = [](const std::string& what, const auto& a, const auto& b) {

@@ -22,7 +22,7 @@ struct ShardSource {
   std::istream* in = nullptr;
 };
 
-// Of the kind that the first shard is of.
+// The type follows the first shard.
 using Merged = std::variant<CampaignResult, SuaveResult>;
 
 Expected<Merged> merge(std::span<const ShardSource> shards);

@@ -47,7 +47,7 @@ Expected<fs::path> set_damage_aside(const fs::path& path, const ShardHeader<C>& 
   const auto content = content_of(path);
   if (!content) return Error{content.error()};
   const std::string first = header_line(header);
-  // A first line that is damaged is ours if nearly all of it is: nobody else's file begins like this.
+  // A damaged first line is ours if nearly all of it is intact: no other file begins like this.
   const std::string_view beginning = std::string_view(first).substr(0, 24);
   const bool is_ours = content->starts_with(first);
   if (!is_ours) {

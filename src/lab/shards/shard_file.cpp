@@ -89,7 +89,7 @@ Expected<std::optional<typename ShardKind<C>::Run>> ShardReader<C>::end(const Js
   const std::string complaint = fields.complaint();
   if (!complaint.empty()) return lines_.error(complaint);
   if (runs != runs_ || runs != size(header_.shard, header_.campaign)) {
-    return lines_.error("the last line tells of " + std::to_string(runs) + " runs, but there are " +
+    return lines_.error("the last line says " + std::to_string(runs) + " runs, but there are " +
                         std::to_string(runs_) + " before it");
   }
   is_complete_ = true;

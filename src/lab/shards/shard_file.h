@@ -1,10 +1,10 @@
 // Shard files: what the runs of a shard yielded, one run a line, as they end.
 //
-// Each line is a sealed JSON object (sealed_line.h). The first tells what campaign and which shard
-// this is; then come the runs in their order; the last tells how many they are. A process that dies
-// leaves a file without that last line, and perhaps with half a line at its end. That half is
-// dropped, and the shard goes on from there. Anything else that is wrong is an error: nobody
-// guesses what a damaged file meant.
+// Each line is a sealed JSON object (sealed_line.h). The first names the campaign and the shard;
+// then come the runs in their order; the last has their number. A process that dies leaves a file
+// without that last line, and perhaps with half a line at its end. The incomplete line is dropped,
+// and the shard goes on from there. Any other damage is an error: the content of a damaged file is
+// never guessed.
 //
 //     {"format":"culprit-shard","format_version":2,"study":"sunset","shard":"2/4",
 //      "campaign":{...},"check":"..."}                                      (in one line)

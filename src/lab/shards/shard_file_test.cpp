@@ -61,7 +61,7 @@ std::string merge_error(const std::vector<std::string>& paths) {
   return merged ? "merged" : merged.error();
 }
 
-// Of a header and a run, with another header or line in their place.
+// The error for a shard file with this text.
 std::string read_error(const std::string& text) {
   std::istringstream in(text);
   const ShardSource source{"x", &in};
@@ -405,9 +405,9 @@ TEST(ShardFile, SaysWhatIsWrongWithItsLines) {
             "it");
   EXPECT_EQ(read_error(head + run + run), "x:3: here should be run 1 of row 0" + end);
   EXPECT_EQ(read_error(head + run + end_line(2)),
-            "x:3: the last line tells of 2 runs, but there are 1 before it" + end);
+            "x:3: the last line says 2 runs, but there are 1 before it" + end);
   EXPECT_EQ(read_error(head + run + end_line(1)),
-            "x:3: the last line tells of 1 runs, but there are 1 before it" + end);
+            "x:3: the last line says 1 runs, but there are 1 before it" + end);
   EXPECT_EQ(read_error(head + run + run_line({0, 1}, RunMetrics()) + end_line(2) + "\n"),
             "x:5: there is something after the last line" + end);
   EXPECT_EQ(read_error(head + std::string(2 << 20, 'x')), "x:2: the line is too long" + end);

@@ -1,5 +1,5 @@
-// What shard files can hold: for each kind of campaign, what its runs are, and what folds them into
-// a result.
+// The kinds of campaign in shard files: the type of their runs, and the function that folds them
+// into a result.
 #pragma once
 
 #include "study/campaign.h"
@@ -9,8 +9,8 @@
 
 namespace culprit::study {
 
-// Of a campaign C, which has size(), operator[] and ==, a version, a command, and kStudy, the name
-// that stands in the files.
+// A campaign C has size(), operator[] and ==, a version, a command, and kStudy, the name in the
+// files.
 template <class C>
 struct ShardKind;
 

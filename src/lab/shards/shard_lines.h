@@ -1,5 +1,5 @@
-// The lines of a shard file as they stand in it, one at a time: how far they are whole, and what
-// the first one tells whatever kind of campaign it is.
+// The lines of a shard file, one at a time: how far they are whole, and the first one's data that
+// all kinds of campaign share.
 #pragma once
 
 #include <cstdint>

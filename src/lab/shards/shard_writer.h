@@ -4,10 +4,10 @@
 // is locked meanwhile: a second process is turned away.
 #pragma once
 
-#include <cassert>
 #include <filesystem>
 #include <functional>
 
+#include "base/invariant.h"
 #include "shards/shard_file.h"
 
 namespace culprit::study {
@@ -35,7 +35,7 @@ class ShardWriter {
   bool is_complete() const { return done_ == size(); }
   // The run that append() wants. @pre !is_complete()
   RunId next() const {
-    assert(!is_complete());
+    CULPRIT_ASSERT(!is_complete());
     return header_.campaign[campaign_index(header_.shard, done_)];
   }
 

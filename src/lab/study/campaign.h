@@ -1,15 +1,16 @@
-// A campaign: so many runs of each of some configurations. What is needed to repeat it is in here.
+// A campaign: so many runs of each of some configurations. It holds all that is needed to repeat
+// it.
 //
 // Its runs have one order, by configuration and then by number, in which they are folded into the
-// result, so that the result is the same to the last bit however the work was spread.
+// result. So the result is the same to the last bit however the work was distributed.
 #pragma once
 
-#include <cassert>
 #include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "base/invariant.h"
 #include "plan/paper_planner.h"
 
 namespace culprit::study {
@@ -55,7 +56,7 @@ struct Campaign {
   std::uint32_t runs = 0;  // of each row
   std::uint64_t seed = 0;
   std::string version;  // of culprit
-  // That makes the whole campaign: without shards, jobs, and where the output goes, which change
+  // The command that makes the whole campaign: without shards, jobs and output paths, which change
   // nothing.
   std::string command;
 
@@ -63,7 +64,7 @@ struct Campaign {
   std::uint64_t size() const { return std::uint64_t{runs} * rows.size(); }
   // The runs in their order. @pre index < size()
   RunId operator[](std::uint64_t index) const {
-    assert(index < size());
+    CULPRIT_ASSERT(index < size());
     return {static_cast<std::uint32_t>(index / runs), static_cast<std::uint32_t>(index % runs)};
   }
 

@@ -1,5 +1,5 @@
-// What a campaign found: each metric of each configuration, in memory that does not grow with the
-// number of runs.
+// The result of a campaign: each metric of each configuration, in memory that does not grow with
+// the number of runs.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ namespace culprit::study {
 // A metric over the runs of a configuration.
 class Summary {
  public:
-  // What one run yielded. `is_censored`: the values are lower bounds.
+  // Adds the values of one run. `is_censored`: the values are lower bounds.
   void add(const std::vector<double>& values, bool is_censored, const Weights& weights);
 
   std::int64_t count() const { return moments_.count(); }
@@ -26,7 +26,7 @@ class Summary {
   // The population's, as in the paper's tables.
   double sd() const { return moments_.population_sd(); }
   const Moments& moments() const { return moments_; }
-  // Of the mean, 95 %, by bootstrap over runs; nothing of too few runs.
+  // 95 % interval of the mean, by bootstrap over runs; empty for too few runs.
   std::optional<Interval> interval() const { return bootstrap_.interval(); }
   // Values that are lower bounds. They are in the mean, which is a lower bound then too, and, where
   // all runs end at the same time, the mean restricted to that time.
@@ -60,7 +60,7 @@ struct CampaignResult {
 };
 
 // Which rows no other beats in the means of all honest costs, among those of the same profile and
-// probabilities (study/pareto.h). Nothing for the oracle, which is a bound and no planner.
+// probabilities (study/pareto.h). Empty for the oracle, which is a bound and no planner.
 std::vector<std::optional<bool>> on_front(const CampaignResult& result);
 
 // Folds runs into a result.
@@ -74,7 +74,7 @@ class CampaignFold {
   std::uint64_t size() const { return next_; }
   bool is_complete() const { return next_ == result_.campaign.size(); }
 
-  // Whatever came so far.
+  // The result so far.
   CampaignResult result() && { return std::move(result_); }
   const CampaignResult& result() const& { return result_; }
 

@@ -10,7 +10,7 @@ constexpr double kAlpha = 0.05;
 
 using Rows = std::array<const Row*, 8>;
 
-// Of the planner and profile of `like`, in the paper's order; null where one is missing.
+// The rows of the planner and profile of `like`, in the paper's order; null where one is missing.
 Rows ablation_rows(const CampaignResult& result, const Configuration& like) {
   Rows rows{};
   const auto published = published::ablation();

@@ -39,7 +39,7 @@ class JsonFields {
   // Takes over the complaint of what was inside `name`.
   void complain_inside(std::string_view name, const std::string& complaint);
 
-  // "ratio is missing"; also if there were fields that nobody read. Empty if all is well.
+  // "ratio is missing"; also if there were fields that were not read. Empty if all is well.
   std::string complaint() const;
 
  private:

@@ -20,14 +20,14 @@ struct LearningCurve {
   std::vector<Moments> learned;
   double executed = 0;  // how often in a series, on average
   double counted = 0;   // as often it was learned from
-  // How often it ends the fault, of all the times that it was executed; the truth, too, if it was
-  // never learned from. It is another number where what nobody can judge is not like what can be
-  // judged: beside an outage that hides whether it helped, other faults are there than without one.
-  // What is learned can be held only against what could be seen.
+  // How often it ends the fault in all of its executions; the truth, too, if it was never learned
+  // from. It is another number if executions that cannot be judged differ from the others: beside
+  // an outage that hides whether it helped, other faults are there than without one. A learned rate
+  // can be compared only with the executions that were observed.
   double truth_of_all = 0;
   double confidence = 0;  // how many outcomes the designer's belief is worth
 
-  // What is believed at the end, and how far that is from the truth.
+  // The belief at the end, and its distance from the truth.
   double believed() const { return learned.empty() ? initial : learned.back().mean(); }
   double error() const { return std::abs(believed() - truth); }
   // The part of that which is what the designer believed: it weighs as much as `confidence`

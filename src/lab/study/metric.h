@@ -30,7 +30,7 @@ inline constexpr std::array kHonestMetrics = {Metric::kHonestDowntime,  Metric::
                                               Metric::kWrongComponent,  Metric::kUnresolved,
                                               Metric::kRecovery,        Metric::kTopCauseRight,
                                               Metric::kExactCausesRight};
-// Of these the honest ones that are costs of managing: what the Pareto front is of.
+// The honest metrics that are costs of managing, of which the Pareto front consists.
 inline constexpr std::array kHonestCosts = {Metric::kHonestDowntime, Metric::kStrategiesPerFault,
                                             Metric::kWrongComponent, Metric::kUnresolved,
                                             Metric::kRecovery};
@@ -49,7 +49,7 @@ struct MetricTraits {
 
 const MetricTraits& traits(Metric metric);
 
-// What a run adds to a metric: nothing, one value, or, of reaction times, any number.
+// The values that a run adds to a metric: none, one, or, of reaction times, any number.
 std::vector<double> values_of(const RunMetrics& run, Metric metric);
 
 }  // namespace culprit::study

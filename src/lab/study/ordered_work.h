@@ -1,6 +1,6 @@
 // Independent pieces of work on several threads, whose results come out in order.
 //
-// What is done ahead is bounded, so memory does not grow with the number of pieces.
+// The work ahead is bounded, so memory does not grow with the number of pieces.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// What the paper prints of its SUNSET evaluation, as data, to be set beside what we measure.
+// The published results of the paper's SUNSET evaluation, as data, to be compared with our
+// measurements.
 //
 // Means and standard deviations are over 162 runs for each configuration; the deviation is the
 // population's (the exemplar's script uses numpy's default). Reaction times are pooled over the
@@ -37,7 +38,7 @@ std::span<const Result, 8> ablation();
 // the ablation's last row.
 std::span<const Result, 2> robustness();
 
-// What the paper has for a configuration: it played its own planner. Nothing if it has nothing.
+// The paper's values for a configuration: it played its own planner. Empty if it has none.
 std::optional<Values> values_of(const Configuration& configuration);
 
 // The colours of the second ablation table: grey, green, red.
@@ -50,7 +51,7 @@ struct Change {
 
 enum class Factor : std::uint8_t { kDependencies, kCriticality, kImpact };
 
-// What switching one factor on does to a configuration.
+// The effect of switching on one factor of a configuration.
 struct Effect {
   Factor factor = Factor::kDependencies;
   PaperSwitches without;

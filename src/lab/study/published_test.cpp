@@ -9,7 +9,7 @@ double mean(const PaperSwitches& switches, std::size_t metric) {
   return (*values_of({switches, "paper", "paper", Probabilities::kIdeal}))[metric].mean;
 }
 
-// The paper's two ablation tables tell the same, so a typing error in one does not pass.
+// The paper's two ablation tables have the same content, so a typing error in one does not pass.
 TEST(Published, ChangesInPercentFollowFromTheMeans) {
   for (const Effect& effect : effects()) {
     for (std::size_t i = 0; i < kPublishedMetrics.size(); ++i) {

@@ -1,4 +1,4 @@
-// What one run of a study yields.
+// The metrics of one run of a study.
 //
 // Twice: as the exemplar's own script computes it (what never recovers
 // counts as no downtime, what is never resolved as no reaction time), and honestly.
@@ -26,8 +26,8 @@ struct HonestMetrics {
   std::int32_t faults = 0;           // that went in
   std::int32_t wrong_component = 0;  // adaptations of components that were well
   std::int32_t unresolved = 0;       // failures that were still there at the end
-  // From the first fault until all was well again; if that did not happen, until the end, and the
-  // run is censored: it would have taken at least so long.
+  // From the first fault until all was well again. If that did not happen, until the end, and the
+  // run is censored: it would have taken at least this long.
   double recovery_s = 0;
   bool is_recovery_censored = false;
   RootCauses root_causes;

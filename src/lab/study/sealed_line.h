@@ -1,5 +1,5 @@
-// A line of JSON that tells whether it is still what was written: its last field is the CRC-32 of
-// the line as it would be without it.
+// A line of JSON with a check of its integrity: its last field is the CRC-32 of the line as it
+// would be without it.
 //
 //     {"row":0,"run":3,"ratio":1.5,"check":"1c291ca3"}
 #pragma once

@@ -1,4 +1,5 @@
-// One run of a campaign with all that was told of it, for people who look at it moment by moment.
+// One run of a campaign with all of its reported events, for people who look at it moment by
+// moment.
 #pragma once
 
 #include <string>
@@ -12,7 +13,7 @@ namespace culprit::study {
 struct SingleRun {
   std::string scenario;  // what was to go wrong, in words; empty: nobody gave it a name
   RuleSet rules;         // that the events are about
-  // What the manager does not tell: the faults that went in, what the robot did. By time.
+  // Entries that the manager does not report: the injected faults, the robot's actions. By time.
   std::vector<TimelineEntry> incidents;
   std::vector<Event> events;  // by time
   double end_s = 0;           // of the robot, from the begin of the run, as all times here

@@ -1,4 +1,4 @@
-// What happened in one run: who failed, who was blamed, what was done.
+// The timeline of one run: which components failed, which were blamed, and how they were repaired.
 #pragma once
 
 #include <cstdint>

@@ -4,12 +4,12 @@
 // phases of all timers, the same drift as long as nothing is done differently.
 #pragma once
 
-#include <cassert>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "base/invariant.h"
 #include "exemplars/suave/model/mission_settings.h"
 #include "study/campaign.h"
 #include "study/single_run.h"
@@ -26,7 +26,7 @@ struct SuaveCampaign {
   std::vector<std::string> managers;
   std::uint32_t runs = 0;  // of each
   std::uint64_t seed = 0;
-  // What differs from the plan; nothing: it is played as it is.
+  // The changes to the plan; empty: it is played unchanged.
   std::optional<suave::model::MissionSettings> settings;
   suave::model::VehicleTraits vehicle;
   std::string version;  // of culprit
@@ -36,7 +36,7 @@ struct SuaveCampaign {
   std::uint64_t size() const { return std::uint64_t{runs} * managers.size(); }
   // The runs in their order, by manager; a RunId's row is the manager. @pre index < size()
   RunId operator[](std::uint64_t index) const {
-    assert(index < size());
+    CULPRIT_ASSERT(index < size());
     return {static_cast<std::uint32_t>(index / runs), static_cast<std::uint32_t>(index % runs)};
   }
 
@@ -90,7 +90,7 @@ class SuaveFold {
 
   // @pre is_complete()
   SuaveResult result() && {
-    assert(is_complete());
+    CULPRIT_ASSERT(is_complete());
     return std::move(result_);
   }
 
@@ -108,8 +108,8 @@ SuaveResult run_campaign(const SuaveCampaign& campaign, unsigned jobs);
 // The first run of each manager again, with its track.
 std::vector<Track> first_tracks(const SuaveCampaign& campaign);
 
-// A run again, to look at moment by moment. Managers of others tell nothing of themselves; what the
-// vehicle does and what goes wrong is told of all.
+// A run again, to look at moment by moment. Managers of others report no events; the vehicle's
+// actions and the faults are reported for all.
 SingleRun single_run(const SuaveCampaign& campaign, RunId id);
 
 }  // namespace culprit::study

@@ -128,7 +128,7 @@ TEST(PublishedSuave, HasReactionsByName) {
   EXPECT_EQ(published::find_suave("stress", "bt"), nullptr);
 }
 
-// What the paper prints of its own tests follows from its table.
+// The paper's own tests follow from its table.
 TEST(PublishedSuave, YieldsThePapersTests) {
   const auto& ours = *published::find_suave("extended", "culprit");
   const auto& rosa = *published::find_suave("extended", "rosa");

@@ -27,7 +27,7 @@ struct FitTarget {
   Moments distance_m;
 };
 
-// What is wanted of the managers of a campaign; its own managers, vehicle and number of runs are
+// The targets for the managers of a campaign; its own managers, vehicle and number of runs are
 // replaced.
 struct FitCampaign {
   SuaveCampaign campaign;
@@ -40,7 +40,7 @@ struct VehicleFit {
   double misfit = 0;
 };
 
-// `runs` of each target for each candidate, 2 or more. `tell` hears of each step that made it
+// `runs` of each target for each candidate, 2 or more. `tell` is called for each step that made it
 // better. Error: no target is left.
 Expected<VehicleFit> fit_vehicle(std::vector<FitCampaign> campaigns,
                                  suave::model::VehicleTraits begin, std::uint32_t runs,

@@ -1,12 +1,12 @@
-// What the paper prints of its SUAVE evaluation (tab:comparison_sota), as data.
+// The published results of the paper's SUAVE evaluation (tab:comparison_sota), as data.
 //
 // 100 runs a row. All rows but the last of each mission are copied there from the article on ROSA.
-// Reaction times have no standard deviation, and they have numbers for names: U1 is to be low
+// Reaction times have no standard deviation, and their names are numbers: U1 is to be low
 // visibility, U2 a failed thruster, U3 a low battery. In the copied rows U1 and U2 are very
-// probably exchanged: an independent campaign with the same programs measured 0.78 s for
+// probably exchanged. An independent campaign with the same programs measured 0.78 s for
 // Metacontrol's reaction to the visibility and 1.50 s for its reaction to the thruster, where the
-// rows have 1.55 and 0.82; and the reasoner's structure explains the former, not the latter. Here
-// they are by name, exchanged back.
+// rows have 1.55 and 0.82. The reasoner's structure explains the former, not the latter. Here they
+// are by name, exchanged back.
 #pragma once
 
 #include <optional>

@@ -98,7 +98,7 @@ Expected<void> add_recorded(std::string_view name, std::string_view text,
     if (fields.size() != head.size())
       return Error{fmt::format("{}: record {} has {} fields, but the head has {}", name, line,
                                fields.size(), head.size())};
-    // Who looks at the runs in a spreadsheet leaves lines of means in the file.
+    // A spreadsheet's lines of means have no mission.
     if (fields[*mission].empty()) continue;
     const auto search_s = amount(fields[*search]);
     const auto distance_m = amount(fields[*distance]);

@@ -5,10 +5,10 @@
 //     pipeline (s),... suave
 //     bt,01-Jul-2025-00-43-53,"(-17.0, 2.8)",250,True,117,33.6140403747559,0.0903712505
 //
-// Of the columns three are read, wherever they stand: "mission name", whose last word is the
-// manager; "time searching pipeline (s)", which of a pipeline that was not found is the whole
-// mission; and "distance inspected (m)". A line without a mission's name is no run. A campaign may
-// be in several files, usually one for each manager.
+// It reads three columns, in any order: "mission name", whose last word is the manager; "time
+// searching pipeline (s)", which is the whole mission if the pipeline was not found; and "distance
+// inspected (m)". A line without a mission's name is no run. A campaign may be in several files,
+// usually one for each manager.
 #pragma once
 
 #include <string>
@@ -32,7 +32,7 @@ struct RecordedCampaign {
 };
 
 // Adds the runs of one file. `name` is the file's, for errors: a column is missing, a line has too
-// few fields, or a field is no finite number of at least 0. Nothing was added then.
+// few fields, or a field is no finite number of at least 0. In that case no run was added.
 Expected<void> add_recorded(std::string_view name, std::string_view text,
                             RecordedCampaign& campaign);
 

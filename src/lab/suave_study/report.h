@@ -1,4 +1,4 @@
-// What a campaign over SUAVE found: tables, ours beside the paper's, and JSON.
+// The results of a campaign over SUAVE: tables, ours beside the paper's, and JSON.
 //
 //     {"study": "suave", "campaign": {...},
 //      "rows": [{"manager": "bt", "mission": "standard", "runs": 100, "outliers": 0,
@@ -14,7 +14,8 @@
 //                 "difference"}]}
 //
 // "campaign" is as in shard files (shards/suave_record.h). Standard deviations are those of a
-// sample. Of no values mean and sd are null; "published" is null where the paper has no such row.
+// sample. Without values, mean and sd are null; "published" is null where the paper has no such
+// row.
 #pragma once
 
 #include <string>

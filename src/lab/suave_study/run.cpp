@@ -20,8 +20,8 @@ using suave::model::SuaveModel;
 
 constexpr double kWorthwhileMetres = 10;
 
-// What culprit itself takes from a message to its request. Deciding takes microseconds; until the
-// intent is in the journal 1 ms was measured (docs/performance.md). The rest is margin.
+// culprit's own delay from a message to its request. Deciding takes microseconds; until the intent
+// is in the journal 1 ms was measured (docs/performance.md). The rest is margin.
 constexpr Pace kOwn{{}, {std::chrono::milliseconds(1), std::chrono::milliseconds(1)}};
 
 // The rules are the project's own, and a test checks them.

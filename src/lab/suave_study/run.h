@@ -48,8 +48,8 @@ std::vector<SuaveContender> suave_contenders();
 // The rules that culprit has in such a mission.
 const RuleSet& rules_for(const suave::model::MissionPlan& plan);
 
-// Plays a mission. `manager` is a contender's name. The same seed, the same run, whether it is
-// written down or not.
+// Plays a mission. `manager` is a contender's name. The same seed gives the same run, with or
+// without a recording.
 SuaveRun play_suave(const std::string& manager, const suave::model::Generation& generation,
                     const suave::model::MissionPlan& plan,
                     const suave::model::VehicleTraits& vehicle, std::uint64_t seed,

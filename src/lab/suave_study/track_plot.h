@@ -7,7 +7,7 @@
 
 namespace culprit::study {
 
-// What all drawings of one page show, so that they can be compared.
+// The area that all drawings of one page show, so that they can be compared.
 struct TrackFrame {
   double left = 0;  // metres, as the simulation's x
   double right = 0;

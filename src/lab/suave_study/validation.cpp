@@ -1,12 +1,12 @@
 #include "suave_study/validation.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include "base/invariant.h"
 #include "json/json.h"
 #include "study/statistics/rank_correlation.h"
 #include "study/tables/columns.h"
@@ -143,7 +143,7 @@ Json json(const ValidationRow& row) {
 
 Validation validate(SuaveCampaign campaign, const RecordedCampaign& recorded, double margin_sd,
                     unsigned jobs) {
-  assert(margin_sd > 0);
+  CULPRIT_ASSERT(margin_sd > 0);
   campaign.managers.clear();
   for (const RecordedRow& row : recorded.rows) campaign.managers.push_back(row.manager);
   const SuaveResult result = run_campaign(campaign, jobs);

@@ -2,9 +2,9 @@
 //
 // "Within 1 sd" says little where deviations are as large as here. So for each manager, and for
 // search time and distance, equivalence is tested (statistics/equivalence.h): a difference of means
-// beyond the margin, in standard deviations of what was recorded, is to be ruled out at 5 %. And
-// whoever wants to know which manager is the best asks for their order: rank correlations of the
-// managers' means (statistics/rank_correlation.h).
+// beyond the margin, in standard deviations of the recorded runs, must be ruled out at 5 %. The
+// order of the managers answers which one is the best: rank correlations of their means
+// (statistics/rank_correlation.h).
 #pragma once
 
 #include <optional>
@@ -56,8 +56,8 @@ std::vector<Table> validation_tables(const Validation& validation);
 //                "within_1_sd": true, "difference", "low", "high", "margin", "p", "equivalent"}],
 //      "ranks": [{"metric", "managers", "spearman_rho", "kendall_tau"}]}
 //
-// low and high are those of the 90 % interval of modelled minus recorded. What cannot be tested is
-// null.
+// low and high are those of the 90 % interval of modelled minus recorded. Values that cannot be
+// tested are null.
 std::string validation_json(const Validation& validation);
 
 }  // namespace culprit::study

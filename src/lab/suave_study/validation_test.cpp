@@ -19,7 +19,7 @@ SuaveCampaign campaign() {
   return campaign;
 }
 
-// What the model yields with another seed: recorded runs of which it is known what they are.
+// The model's results with another seed: recorded runs of known origin.
 RecordedCampaign recorded(SuaveCampaign campaign, double later_s = 0) {
   campaign.managers = {"none", "bt", "rosa"};
   campaign.seed = 77;

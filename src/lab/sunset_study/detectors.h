@@ -1,5 +1,5 @@
-// How SUNSET's outages are seen: by its own monitoring, as in the paper, by culprit on the topics,
-// or by somebody who knows.
+// Detectors of SUNSET's outages: its own monitoring, as in the paper; culprit's, on the topics; or
+// an oracle.
 #pragma once
 
 #include <string>

@@ -16,7 +16,7 @@
 // "campaign" is as in shard files (study/run_record.h): what single runs can be played again from.
 // Run i of each row plays the scenario i modulo their number.
 //
-// The standard deviation is the population's. Of no values, mean and sd are null. A row with
+// The standard deviation is the population's. Without values, mean and sd are null. A row with
 // misspecified probabilities has "probabilities": "misspecified"; what was learned is in
 // "learning", if anything was:
 //

@@ -1,4 +1,4 @@
-// What a manager learns from one experiment after the other (paper, "Learning mechanism").
+// A manager that learns from one experiment after the other (paper, "Learning mechanism").
 #include <algorithm>
 
 #include "sunset_study/study.h"
@@ -9,7 +9,7 @@ namespace {
 struct Learner {
   StrategyId strategy;
   LearningCurve curve;
-  // Of each execution, and of each that was learned from: is the fault one that it ends?
+  // For each execution, and for each that was learned from: whether it ends the fault.
   Moments remedies;
   Moments learned_remedies;
 

@@ -16,7 +16,7 @@ Duration proof(const sunset::model::Profile& profile) {
   return (static_cast<std::int64_t>(profile.frequency_window) + 1) * kEach;
 }
 
-// Of the bag's pictures.
+// The period of the bag's pictures.
 constexpr Duration kFramePeriod = std::chrono::milliseconds(100);
 
 // A run that is learned from begins shortly before its faults. The managers of the profiles `head`
@@ -29,8 +29,8 @@ sunset::model::Profile to_learn_from(sunset::model::Profile profile) {
   return profile;
 }
 
-// The fusion passes on old pictures first. Whoever judges before what it keeps has gone by takes
-// what helped for a failure, undoes it, and thanks the next strategy.
+// The fusion passes on old pictures first. A strategy that is judged before these are gone loses
+// its success: it is undone, and the next one gets the credit.
 void wait_for_pictures(RuleSet& rules, const sunset::model::Profile& profile) {
   const Duration lag = kFramePeriod * static_cast<std::int64_t>(profile.fusion_keeps);
   const Cycles cycles{lag / rules.cycle + 1};

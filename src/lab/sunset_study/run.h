@@ -10,7 +10,7 @@
 
 namespace culprit::study {
 
-// What happened, as far as metrics ask for it.
+// The parts of a run that metrics need.
 struct SunsetRun {
   sunset::Scenario scenario;
   Time begin;                                                     // of managing

@@ -1,8 +1,8 @@
 #include "sunset_study/study.h"
 
 #include <algorithm>
-#include <cassert>
 
+#include "base/invariant.h"
 #include "knowledge/describe.h"
 #include "language/checker.h"
 #include "managers/one_by_one_planner.h"
@@ -70,7 +70,7 @@ std::string component_of(const Event& event, const RuleSet& rules) {
   return "";
 }
 
-// Of "bayes" or "bayes:downtime"; nothing of other planners.
+// The objective of "bayes" or "bayes:downtime"; empty for other planners.
 std::optional<Objective> objective_of(std::string_view planner) {
   constexpr std::string_view kBayes = "bayes";
   if (!planner.starts_with(kBayes)) return std::nullopt;
@@ -188,7 +188,7 @@ std::unique_ptr<const Planner> SunsetStudy::planner_of(const Configuration& conf
   if (find_pace(configuration.planner) != nullptr) return std::make_unique<OneByOnePlanner>();
   if (const auto objective = objective_of(configuration.planner))
     return std::make_unique<BayesPlanner>(*objective);
-  // Who knows each fault need not ask which failure is whose effect.
+  // The oracle knows each fault, so it need not ask which failure is an effect of which.
   if (configuration.planner == "oracle")
     return std::make_unique<PaperPlanner>(PaperSwitches{false, false, false});
   return std::make_unique<PaperPlanner>(configuration.switches);
@@ -201,7 +201,7 @@ const sunset::Scenario& SunsetStudy::scenario_of(RunId id) {
 
 SunsetRun SunsetStudy::play(RunId id) const {
   const Setting& setting = settings_[id.row];
-  assert(setting.configuration.profile != kLiveRobot);
+  CULPRIT_ASSERT(setting.configuration.profile != kLiveRobot);
   sunset::model::SunsetModel model(*setting.profile, seed_of(id));
   const auto managing = manager(id, manager_options(*setting.profile));
   return study::play(model, *setting.rules, *managing, scenario_of(id));

@@ -25,9 +25,9 @@ namespace culprit::study {
 
 class SunsetStudy {
  public:
-  // Errors: a planner or profile that does not exist, or a planner that cannot watch a profile (the
-  // reference needs a blackboard), or play the live robot (the oracle knows what only a model can
-  // tell). A profile may name its detectors (detectors.h).
+  // Errors: an unknown planner or profile; a planner that cannot watch a profile (the reference
+  // needs a blackboard), or cannot play the live robot (the oracle needs a model's truth). A
+  // profile may name its detectors (detectors.h).
   static Expected<SunsetStudy> make(std::vector<Configuration> rows, std::uint64_t seed);
 
   // From several threads if you like. @pre the row is not of profile kLiveRobot
@@ -37,12 +37,12 @@ class SunsetStudy {
   SunsetRun play(RunId id) const;
   const RuleSet& rules(std::uint32_t row) const { return *settings_[row].rules; }
 
-  // What a run is made of, for who plays it elsewhere than on the model.
+  // The parts of a run, for callers that play it elsewhere than on the model.
   const sunset::model::Profile& profile(std::uint32_t row) const { return *settings_[row].profile; }
   static const sunset::Scenario& scenario_of(RunId id);
   std::uint64_t seed_of(RunId id) const;
   std::unique_ptr<ManagingSystem> manager(RunId id, const Manager::Options& options) const;
-  // What such a run yields.
+  // The metrics of such a run.
   RunMetrics measured(RunId id, const SunsetRun& run) const;
 
   // The same run, to look at moment by moment; and told in sentences.
@@ -55,12 +55,12 @@ class SunsetStudy {
   // `experiments` runs after each other with beliefs that are carried on, `repetitions` times: what
   // row 0, of culprit's own planners, learns. A curve for each strategy of the paper's failures F1
   // to F5.
-  // `told` is told how many are done of all (null: nobody is).
+  // `told` is called with the number of finished ones (null: never).
   std::vector<LearningCurve> learn(std::uint32_t experiments, std::uint32_t repetitions,
                                    const std::function<void(std::uint64_t done)>& told) const;
 
  private:
-  // What all runs of a row have in common.
+  // The part that all runs of a row share.
   struct Setting {
     Configuration configuration;
     const sunset::model::Profile* profile = nullptr;
@@ -71,16 +71,17 @@ class SunsetStudy {
       : settings_(std::move(settings)), seed_(seed) {}
 
   static Manager::Options manager_options(const sunset::model::Profile& profile);
-  // Of all but "reference".
+  // For all planners but "reference".
   static std::unique_ptr<const Planner> planner_of(const Configuration& configuration);
 
   std::vector<Setting> settings_;
   std::uint64_t seed_;
 };
 
-// The planners that there are: "paper", "reference", "bayes" (balanced), "bayes:downtime" and so on
-// with another objective, the managers of others, "bt", "metacontrol", "rosa", "rebet", "ac-ros",
-// "vogel" and "ghahremani", and "oracle", who knows each fault at once, and what ends it.
+// The existing planners: "paper", "reference", "bayes" (balanced), and "bayes:downtime" and so on
+// with another objective. Then the managers of others, "bt", "metacontrol", "rosa", "rebet",
+// "ac-ros", "vogel" and "ghahremani". Last, "oracle", which knows each fault, and its remedy, at
+// once.
 std::vector<std::string_view> sunset_planners();
 
 // Whether a planner has the paper's D, C and S to switch off.

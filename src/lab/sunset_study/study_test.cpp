@@ -1,4 +1,4 @@
-// What is claimed of culprit on SUNSET (docs/planning.md), on fewer runs than there.
+// The claims about culprit on SUNSET (docs/planning.md), on fewer runs than there.
 #include "sunset_study/study.h"
 
 #include <cmath>
@@ -71,7 +71,7 @@ TEST(SunsetClaims, AnOracleIsABound) {
   }
 }
 
-// Of whoever knows at once which component is out, but not what ends it.
+// A planner that knows at once which component failed, but not the remedy.
 TEST(SunsetClaims, AgesComeNearWhoeverKnowsEachFaultAtOnce) {
   for (const std::string profile : {"live", "paper"}) {
     SCOPED_TRACE(profile);
@@ -143,7 +143,7 @@ INSTANTIATE_TEST_SUITE_P(OfEachPlannerAndProfile, WhatIsLearned,
                                   std::get<1>(each.param);
                          });
 
-// What is seen of a robot that nothing happens to, by all rules together.
+// The failures that all rules together report of a healthy robot.
 int failures_in_an_hour(const std::string& profile, const std::string& text) {
   const RuleSet rules = *check(Source("study.rules", text)).rules;
   sunset::model::SunsetModel model(**sunset::model::find_profile(profile), 1);

@@ -11,7 +11,7 @@ namespace {
 // Requests and verdicts follow each other at one point of time; so many of them never do.
 constexpr int kMostStepsAtOnce = 200;
 
-// What was well for so long is known to be, and so is what needs it.
+// A component that was well for this long is known to be well, and so are those that need it.
 constexpr Duration kKnownToBeWell = std::chrono::seconds(3);
 
 bool is_seen_as_it_is(const Scenario& scenario) {
@@ -134,8 +134,8 @@ void Invariants::note_the_dead(const Manager& manager, Time now) {
   }
 }
 
-// Whatever the budgets of a minute allow, a failure that nothing helps against does not cost more
-// than its attempts, in an hour or in a day; nor does one that comes and goes.
+// Whatever the budgets of a minute allow, a failure that no strategy repairs does not cost more
+// than its attempts, in an hour or in a day. Neither does one that flaps.
 void Invariants::count_attempts(const Event& event) {
   const auto count = [&](StrategyId strategy) {
     const RuleId rule = rules_[strategy].rule;
@@ -208,9 +208,9 @@ void Invariants::on(const Manager& manager, const StrategyChosen& chosen, const 
   }
   for (const ComponentId component : strategy.components) {
     if (is_seen_true_ && truth.is_leaving[component.index] && !strategy.is_last_resort)
-      fail(at, name + " is begun though somebody ends the launch of " + rules_[component].name);
+      fail(at, name + " is begun though a person ends the launch of " + rules_[component].name);
   }
-  if (!manager.hears()) fail(at, name + " is begun though the robot cannot be heard");
+  if (!manager.hears()) fail(at, name + " is begun though culprit is deaf");
   if (is_paused_) fail(at, name + " is begun while paused");
   if (truth.is_moving && !strategy.is_last_resort)
     fail(at, name + " is begun though the robot moves");
@@ -250,13 +250,13 @@ void Invariants::check_replacement(const Manager& manager, const Strategy& strat
     if (is_seen_true_ && well != kNever && well + kKnownToBeWell <= at)
       fail(at, name + " is begun though " + rules_[component].name + " is well");
     const auto& components = manager.knowledge().components;
-    // What is gone or stopped is replaced for that.
+    // An exited or stopped process is replaced for it.
     if (!is_bayes_ || components[component].process != ProcessState::kRunning) continue;
     const Time failed = manager.knowledge().states[strategy.rule].first_detected();
     for (const std::size_t needed : needs_[part]) {
       const ComponentId cause(needed);
-      // As far as anybody can see: while it is inactive it needs nobody, and where either may need
-      // the other they take turns.
+      // As far as can be observed: while it is inactive it needs no other, and where either may
+      // need the other they take turns.
       const auto needs = [&](ComponentId consumer, ComponentId producer) {
         const auto& upstream = manager.knowledge().graph.upstream(consumer);
         return std::find(upstream.begin(), upstream.end(), producer) != upstream.end();
@@ -312,7 +312,7 @@ void Invariants::check_the_dead(const Manager& manager, Time now) {
   for (const RuleId id : plannable) {
     const ComponentId component = rules_[id].components.front();
     const auto& strategies = rules_[id].strategies;
-    // Whoever can only set a parameter of what is dead waits until it is back.
+    // A strategy that can only set a parameter must wait until the dead component is back.
     const bool can_replace = std::any_of(strategies.begin(), strategies.end(),
                                          [&](StrategyId s) { return replaces(rules_[s]); });
     const bool is_left = can_replace && is_dead(knowledge.components[component]) && !is_held &&

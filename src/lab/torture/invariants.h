@@ -1,4 +1,4 @@
-// What must hold in every step of every run, whatever breaks.
+// Invariants of every step of every run, under every mishap.
 //
 // - No budget is ever exceeded: no interval holds more strategies than allowed, in total, of a
 //   kind, at a component. Counted here anew, from the events.
@@ -7,22 +7,21 @@
 // - No process is started while the component's old one is there.
 // - While paused nothing is asked that changes anything; at a silenced component nothing is begun;
 //   while the robot is known to move nothing is begun.
-// - A component is adapted by one strategy at a time, and no planner begins one downstream of what
-//   is adapted for a failure at least as critical; bayes not even for a lesser one, unless that
-//   only waits for its verdict. What a person ordered is the person's.
+// - A component is adapted by one strategy at a time. No planner begins one downstream of an
+//   adaptation for a failure at least as critical; bayes not even for a lesser one, unless that is
+//   only pending verification. An order of a person is exempt.
 // - A last resort is begun WITHIN its time of the detection, whatever holds the other strategies, where
 //   its component can do it: only a person's pause or silence holds it. It spends no budget.
 // - With bayes, the repair of a component that the operating system knows to be dead begins within
 //   one decision of its detection where the governor allows, whatever the levels.
 // - With bayes, no process is replaced for a silence that a dead or exhausted component which it
 //   needs, and that does not seem to need it in turn, explains.
-// - No failure is treated more often than its ATTEMPTS allow, until it was proven gone; starts of what is
-//   known to be gone do not count.
-// - What was never there is not started.
-// - Nothing healthy is replaced, as long as samples and clocks are not tampered with.
-// - Nothing is begun while the robot cannot be heard.
-// - Nothing is begun at a component while another node has its name, or at what has left while the
-//   launch that it belongs to is being ended.
+// - No failure is treated more often than its ATTEMPTS allow, until it was proven gone; starts of components known to be gone do not count.
+// - A component that was never there is not started.
+// - No healthy process is replaced, as long as samples and clocks are not tampered with.
+// - No strategy begins while culprit is deaf.
+// - No strategy begins at a component while another node has its name, or after it has left because
+//   its launch is being ended.
 // - A rule whose trigger has had no value for a minute is blind: it never counts as well.
 // All of this holds across crashes of the manager: budgets, pauses and silences go on.
 // - A belief changes by one outcome at a time, and only with the verdict that says so.
@@ -48,7 +47,7 @@ struct Violation {
 
 class Invariants {
  public:
-  // What the robot really is like; the manager only knows what it is told.
+  // The real state of the robot; the manager only knows its observations.
   struct Truth {
     std::vector<ProcessState> processes;  // by component
     // By component: its launcher has just started it, and the manager may not know.

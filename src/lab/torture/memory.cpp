@@ -57,7 +57,7 @@ void Memory::note(const Event& event) {
 void Memory::note(const Command& command) {
   if (rules_[command.purpose.strategy].is_last_resort) return;
   Interrupted* each = open(command.purpose.strategy);
-  // A person may have ordered it without a failure: then nobody chose it.
+  // A person may have ordered it without a failure: then no plan chose it.
   if (each == nullptr) {
     each = &open_.emplace_back();
     each->strategy = command.purpose.strategy;

@@ -1,7 +1,7 @@
-// What outlives a manager's crash, as the journal keeps it (journal/recovery.h), without a file:
-// what was told, and the strategies that were under way.
+// The state that outlives a manager's crash, as the journal keeps it (journal/recovery.h), without
+// a file: the events, and the strategies that were under way.
 //
-// What is told and asked for in a step is noted before its requests go out.
+// The events and requests of a step are noted before its requests go out.
 #pragma once
 
 #include <span>
@@ -18,7 +18,7 @@ class Memory {
   // `rules` must outlive the memory.
   explicit Memory(const RuleSet& rules) : rules_(rules) {}
 
-  // A step: what was observed, what was told, and what is about to be asked for.
+  // A step: its observations, its events, and the requests that are about to go out.
   void note(std::span<const Observation> observations, std::span<const Event> events,
             std::span<const Command> commands);
 

@@ -179,7 +179,7 @@ std::vector<std::size_t> all_needs(const Scenario& scenario, std::size_t part) {
 std::string rules_of(const Scenario& scenario) {
   std::string text = "CYCLE 100ms\nSIGNAL moving DIAGNOSTIC base KEY moving\n";
   if (scenario.has_interlock) text += "INTERLOCK moving == false\n";
-  // bayes has to cope without; nobody would run the paper's planner so.
+  // bayes must cope without; the paper's planner would not be run like that.
   if (scenario.has_infrastructure && scenario.uses_paper_planner)
     text += "IGNORE TOPIC /infrastructure\n";
   for (std::size_t i = 0; i < scenario.parts.size(); ++i) {

@@ -51,7 +51,7 @@ struct Mishap {
 };
 std::string_view to_string(Mishap::Kind kind);
 
-// What is wrong on the way between manager and robot, while anything happens.
+// Disturbances between manager and robot, while mishaps occur.
 struct Noise {
   double loss = 0;         // of samples
   double duplication = 0;  // of any observation
@@ -81,7 +81,7 @@ inline constexpr Duration kEndsOfLaunch = std::chrono::milliseconds(1500);
 inline constexpr Duration kPeriod = std::chrono::milliseconds(200);  // of what each part says
 
 Scenario draw(std::uint64_t seed);
-// What the part needs, directly or not.
+// The parts that this part needs, directly or not.
 std::vector<std::size_t> all_needs(const Scenario& scenario, std::size_t part);
 std::string rules_of(const Scenario& scenario);
 std::string describe(const Mishap& mishap);

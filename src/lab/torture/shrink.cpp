@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <cassert>
 #include <cstdio>
 #include <utility>
 
+#include "base/invariant.h"
 #include "torture/torture.h"
 
 namespace culprit::torture {
@@ -40,10 +40,10 @@ bool clear(T& part) {
 }  // namespace
 
 Scenario shrink(Scenario scenario) {
-  assert(run(scenario).violation);
+  CULPRIT_ASSERT(run(scenario).violation);
   while (true) {
     bool is_smaller = leave_out(scenario, &Scenario::mishaps);
-    // Nobody needs the last part.
+    // No other part needs the last one.
     is_smaller |= simplify(scenario, [](Scenario& s) {
       const std::size_t last = s.parts.size() - 1;
       const bool is_used = std::any_of(s.mishaps.begin(), s.mishaps.end(),

@@ -24,7 +24,7 @@ using Kind = Mishap::Kind;
 constexpr Time kQuiet{21s};     // the noise is over by then
 constexpr Time kLatest{3600s};  // back-offs, attempts and silences are over by then
 constexpr Duration kCalm = 4s;
-// Who says nothing for so long waits for a person, not for a back-off or a budget.
+// A manager that reports nothing for this long waits for a person, not for a back-off or a budget.
 constexpr Duration kGivenUp = 2 * Analyzer::kLongestBackoff;
 
 // A step of a manager as it was recorded.
@@ -94,7 +94,7 @@ class Run {
     return std::make_unique<Manager>(rules_, std::move(planner), options);
   }
 
-  // What a manager begins with.
+  // The state that a manager begins with.
   struct Beginning {
     Time start{};
     std::vector<Belief> beliefs;
@@ -113,7 +113,7 @@ class Run {
     return manager;
   }
 
-  // What the journal keeps outlives a crash, and a pause too; the rest it has to find out anew.
+  // The journal's content outlives a crash, and so does a pause; the rest must be observed again.
   void begin_manager() {
     const bool was_paused = manager_ && manager_->governor().is_paused();
     if (manager_) check_replay();
@@ -144,7 +144,7 @@ class Run {
 
   void befall(const Mishap& mishap) {
     say(describe(mishap), "!");
-    // What has begun lasts on while the manager's clock jumps.
+    // A mishap under way lasts on while the manager's clock jumps.
     if (mishap.kind == Kind::kJump) {
       over_ += mishap.lasts;
     } else {
@@ -206,8 +206,8 @@ class Run {
     }
   }
 
-  // What comes while it stands still is there when it goes on. Then it knows, as the runtime tells
-  // it, that it, or the clock, came round late.
+  // Messages that come while it stands still are there when it goes on. Then it knows, as from the
+  // runtime, that it, or the clock, was late.
   void watch(Time until, std::vector<Observation>& observations) {
     const Time due = std::max(stepped_, manager_->next_deadline());
     robot_.observe(until, observations);
@@ -294,11 +294,12 @@ class Run {
     if (governor.is_paused() || governor.storm()) return;
     for (std::size_t i = 0; i < scenario_.parts.size(); ++i) {
       if (!robot_.works(i) && !is_excused(i))
-        return fail("c" + std::to_string(i) + " is not cured, and nobody says why");
+        return fail("c" + std::to_string(i) + " is not repaired, and no report says why");
     }
   }
 
-  // What was said to a person at the end of it all about this part, or about one that it needs.
+  // Whether culprit reported to a person, at the end, why this part or one that it needs does not
+  // work.
   bool is_excused(std::size_t part) const {
     std::vector<std::size_t> needed = all_needs(scenario_, part);
     needed.push_back(part);
@@ -306,7 +307,7 @@ class Run {
       return std::find(needed.begin(), needed.end(), rules_[rule].components.front().index) !=
              needed.end();
     };
-    // Nothing is begun beside what a person is asked about.
+    // No other strategy begins while a person is asked for approval of one.
     for (const StrategyId asked : manager_->governor().asked()) {
       if (is_about(rules_[asked].rule) || is_joined(ComponentId(part), rules_[asked])) return true;
     }
@@ -353,7 +354,7 @@ class Run {
     return left;
   }
 
-  // It never spoke, and that was told.
+  // It never published, and that was reported.
   bool is_never_seen(std::size_t part) const {
     const std::string topic = "/c" + std::to_string(part);
     for (std::size_t t = 0; t < rules_.topics.size(); ++t) {

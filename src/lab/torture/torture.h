@@ -18,9 +18,9 @@ struct RunOutcome {
 };
 
 // Runs the scenario to its end, or to the first violation. Afterwards it must hold too that
-// - every part works, or something that was said excuses it: a storm or a pause, or about it or
-//   about what it needs an exhausted rule, a silence, a refusal, a question that nobody answers, or
-//   that it waits for such a rule, which may be its cause as far as anybody can see;
+// - every part works, or a report excuses it. Excuses are a storm or a pause. For the part, or for
+//   one that it needs, they are an exhausted rule, a silence, a refusal or an unanswered question.
+//   So is waiting for a rule with one of these that may be its cause as far as can be observed;
 // - the same observations give the same commands and events again.
 RunOutcome run(const Scenario& scenario);
 

@@ -19,7 +19,7 @@ simulation::NodeTraits machine_traits() {
 
 bool take(std::vector<CommandId>& ids, CommandId id) { return std::erase(ids, id) > 0; }
 
-// As the operating system tells it. "stopped": it was asked to end, by culprit or by somebody else.
+// As the operating system reports it. "stopped": it was asked to end, by culprit or by another.
 Cause cause_of(const ProcessSeen& seen) {
   if (seen.state == ProcessState::kRunning || seen.remark.empty())
     return seen.state == ProcessState::kStopped ? Cause::kFault : Cause::kUnknown;
@@ -138,7 +138,7 @@ TorturedRobot::Source TorturedRobot::source_of(const Observation& observation) {
   if (std::holds_alternative<SampleArrived>(observation.what) ||
       std::holds_alternative<SignalRead>(observation.what))
     return Source::kTopics;
-  // What the operating system says, and what its adapter answers, come one after the other.
+  // Observations of the operating system, and replies of its adapter, come one after the other.
   if (std::holds_alternative<ProcessSeen>(observation.what) ||
       std::holds_alternative<LauncherSeen>(observation.what) ||
       std::holds_alternative<Reply>(observation.what))
@@ -265,7 +265,7 @@ void TorturedRobot::launch(std::size_t part) {
   launched_[part] = world_.now();
 }
 
-// One after the other, then who had started them; and after `pause` somebody starts them again.
+// One after the other, then their launcher; after `pause` they are started again.
 void TorturedRobot::end_launch(Duration pause) {
   const int launcher = *std::ranges::max_element(launcher_of_);
   if (launcher == 0) return;
@@ -308,7 +308,7 @@ void TorturedRobot::relaunch(std::size_t part, Time until) {
   world_.after(kLook, [this, part, until] { relaunch(part, until); });
 }
 
-// That it hears nothing is known once what it says to itself did not come back.
+// It is known to be deaf once its messages to itself do not return.
 void TorturedRobot::go_deaf(Duration time) {
   constexpr Duration kKnown = 300ms;
   deaf_until_ = std::max(deaf_until_, world_.now() + time);
@@ -325,7 +325,7 @@ void TorturedRobot::tell_namesakes(std::size_t part, int others) {
   receive({now(), NamesakesSeen{"/c" + std::to_string(part), others}});
 }
 
-// Nobody hears of the end of a node of which they never heard.
+// The end of a node is only observed if the node was announced.
 bool TorturedRobot::is_of_a_stranger(const Observation& observation) {
   if (const auto* node = std::get_if<NodeAppeared>(&observation.what)) {
     announced_.insert(node->node);
@@ -337,7 +337,7 @@ bool TorturedRobot::is_of_a_stranger(const Observation& observation) {
   return false;
 }
 
-// Who looks on anew hears of no node that cannot speak, also while others still wait for it.
+// A new observer discovers no node that is stopped, also while others still wait for it.
 bool TorturedRobot::is_of_the_mute(const Observation& observation) const {
   const auto is_mute = [&](const std::string& node) {
     const simulation::Node* known = world_.node(node);

@@ -34,10 +34,10 @@ class TorturedRobot : public Robot {
   void observe(Time until, std::vector<Observation>& observations) override;
   void execute(const Command& command) override;
 
-  // What happens to the robot, not to the manager. Those of people do nothing here.
+  // Applies a mishap to the robot, not to the manager. Mishaps of people have no effect here.
   void befall(const Mishap& mishap);
-  // A manager that begins anew is told what is there, as by discovery, and which of the processes
-  // that were known in the `past` are gone (process/supervisor.h, adopt_again()).
+  // A manager that begins anew receives the current state as by discovery, and which processes
+  // known in the `past` have exited (process/supervisor.h, adopt_again()).
   void rediscover(const History& past);
   // From now on nothing is lost, late or wrong.
   void end_noise() { noise_ = {}; }
@@ -49,7 +49,7 @@ class TorturedRobot : public Robot {
     const auto at = launched_.find(part);
     return at != launched_.end() && world_.now() - at->second <= time;
   }
-  // It left that long ago because somebody ends its launch, which is not over.
+  // It left that long ago because its launch is being ended, which is not over.
   bool has_left_for(std::size_t part, Duration time) const;
   bool has_moved_for(Duration time) const {
     return moving_since_ != kNever && world_.now() - moving_since_ >= time;
@@ -82,8 +82,8 @@ class TorturedRobot : public Robot {
   std::unique_ptr<simulation::Topic<int>> infrastructure_;  // null: there is none
   std::vector<std::unique_ptr<simulation::Topic<int>>> topics_;
   std::vector<std::unique_ptr<Machine>> machines_;
-  // One for each manager so far, the last for the present one. What is due in the world knows the
-  // earlier ones still.
+  // One for each manager so far, the last for the present one. Actions that are due in the world
+  // still refer to the earlier ones.
   std::vector<std::unique_ptr<simulation::SimulatedRobot>> robots_;
   std::array<std::deque<Late>, 3> on_the_way_;  // by source
   std::vector<CommandId> unanswered_;           // replies that get lost

@@ -38,7 +38,7 @@ void Asking::ask_whether_it_answers(const ros2::GraphNode& node, Duration patien
   client->call({{kSimulatedTime}}, ros2::Repeat::kUntilAnswered, patience,
                [this, node, patience](const Parameters::Answer& answer) {
                  if (answer.outcome == ros2::CallOutcome::kTimedOut) {
-                   // Who was never reached is no proof.
+                   // A node that was never reached is no proof.
                    const bool has_ended =
                        node.pid != 0 && !ros2::ProcessFinder().is_running(node.pid);
                    unanswered_[node.name] = {seconds(patience), has_ended};

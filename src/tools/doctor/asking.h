@@ -21,7 +21,7 @@ class Asking {
   explicit Asking(ros2::Node& self) : self_(self) {}
 
   // Nodes of rclcpp and rclpy answer questions about their parameters in the thread that runs their
-  // callbacks: who does not answer for so long hangs. The question is whether it uses simulated time.
+  // callbacks: one that does not answer within `patience` hangs. The question is whether it uses simulated time.
   void ask_whether_it_answers(const ros2::GraphNode& node, Duration patience);
   // Asks a managed node for its state: the first time, and again.
   void ask_for_state(const std::string& node, Time now, Duration patience);

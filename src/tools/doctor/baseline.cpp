@@ -182,24 +182,23 @@ Findings compare(const Baseline& healthy, const Baseline& now) {
       continue;
     }
     all.push_back(finding("D100", Gravity::kError, name, "it was there, and is not",
-                          "what it did nobody does", "start it; its log says why it ended"));
+                          "its function is missing", "start it; its log says why it ended"));
     all.back().nodes = {name};
   }
   for (const auto& [name, node] : now.nodes) {
     if (healthy.nodes.contains(name)) continue;
     all.push_back(finding("D101", Gravity::kWarning, name, "it is there, and was not",
-                          "it may do what another does, too, and takes memory and network",
-                          "end it, or if it is meant, save the robot as healthy anew"));
+                          "it may duplicate another node, and uses memory and network",
+                          "end it, or if it is intended, save a new baseline"));
     all.back().nodes = {name};
   }
   compare_rates(healthy, now, all);
   for (const auto& [parent, child] : healthy.transforms) {
     if (now.transforms.contains({parent, child})) continue;
-    all.push_back(finding("D108", Gravity::kError,
-                          "tf: " + printable(parent) + " → " + printable(child),
-                          "it was published, and is not",
-                          "whoever asks for it waits or gets an error, and what needs it stops",
-                          "see the log of who published it"));
+    all.push_back(
+        finding("D108", Gravity::kError, "tf: " + printable(parent) + " → " + printable(child),
+                "it was published, and is not", "nodes that ask for it wait or get an error",
+                "see the log of who published it"));
     all.back().topic = "/tf";
   }
   for (const std::string& name : healthy.statuses) {

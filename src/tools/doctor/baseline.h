@@ -44,10 +44,11 @@ struct Baseline {
   bool operator==(const Baseline&) const = default;
 };
 
-// Of a picture that was taken with Extent::kEverything. Tools are no part of the robot.
+// The baseline of a picture that was taken with Extent::kEverything. Tools are no part of the
+// robot.
 Baseline baseline_of(const Picture& picture);
 
-// D100 to D109: what is missing, new, slower or different in `now`.
+// D100 to D109: parts of `now` that are missing, new, slower or different.
 Findings compare(const Baseline& healthy, const Baseline& now);
 
 // As a JSON file, and back. Errors say where and why `text` is none.

@@ -19,7 +19,7 @@ class ClockListening {
   void listen();
   void begin_anew();
 
-  // What it shows; nothing if nobody publishes it. From any thread, as the next.
+  // The published time; empty without a publisher. From any thread, as the next.
   std::optional<Duration> now() const;
   std::optional<SimulatedClock> seen() const;
 

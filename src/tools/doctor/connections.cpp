@@ -1,4 +1,4 @@
-// Who does not hear whom, and why.
+// Finds endpoints that do not connect, and the reason.
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -22,7 +22,7 @@ using namespace std::chrono_literals;
 
 enum class Medium : std::uint8_t { kTopic, kService };
 
-// What a receiver requests and a sender does not offer (DDS 1.4, 2.2.3: "requested versus offered").
+// A QoS policy that a receiver requests and a sender does not offer (DDS 1.4, 2.2.3: "requested versus offered").
 struct Mismatch {
   std::string policy, offered, requested;
 };
@@ -69,13 +69,14 @@ std::string in_words(const std::vector<Mismatch>& all) {
   return text;
 }
 
-// Why somebody is not heard: what was seen, and of quality of service the first that does not fit.
+// The reason why two endpoints do not connect: what was observed, and for quality of service the
+// first policy that does not fit.
 struct Break {
   std::string code, seen;
   std::string offered{}, requested{};
   auto operator<=>(const Break&) const = default;
 };
-// Who sends, why it is not heard, and who all do not hear it.
+// The sender, the reason, and all receivers that do not receive its messages.
 using Breaks = std::map<std::pair<std::string, Break>, std::set<std::string>>;
 
 bool have_one_in_common(std::vector<std::string> a, std::vector<std::string> b) {
@@ -145,9 +146,9 @@ Gravity gravity_of(const std::string& code) {
 
 std::string consequence(const std::string& code, Medium medium, const std::string& from,
                         const std::string& to) {
-  if (code == "D005") return "what arrives is read wrongly, or refused as broken";
-  if (medium == Medium::kTopic) return to + " hears nothing of " + from;
-  return code == "D007" ? from + " waits for answers for ever, and nobody says why"
+  if (code == "D005") return "messages are misread, or refused as broken";
+  if (medium == Medium::kTopic) return to + " receives nothing from " + from;
+  return code == "D007" ? from + " waits for answers for ever, without an error"
                         : "calls of " + from + " do not reach " + to;
 }
 
@@ -180,7 +181,7 @@ void compare_all(Medium medium, const std::string& name, const Channel& channel,
 
 using Channels = std::map<std::string, Channel>;
 
-// What each node has, or what is part of something larger: nobody mistypes that.
+// Names that each node has, or that belong to a larger protocol: no person mistypes these.
 bool is_internal(const std::string& name) {
   constexpr std::array kOfEachNode = {
       "get_parameters",      "get_parameter_types",       "set_parameters",      "list_parameters",
@@ -193,7 +194,7 @@ bool has_type(const std::vector<End>& ends, const std::string& type) {
   return std::ranges::any_of(ends, [&](const End& end) { return end.endpoint.type == type; });
 }
 
-// Something that is offered and that nobody uses, of that type, with nearly that name.
+// An offered and unused name of that type that is nearly the same.
 std::string meant_by(const std::string& name, const std::string& type, Medium medium,
                      const Channels& channels) {
   std::vector<std::string_view> unused;
@@ -224,8 +225,8 @@ void look_for_near_name(Medium medium, const std::string& name, const Channel& c
     all.push_back({"D003",
                    Gravity::kWarning,
                    name + ": nobody → " + reader.node,
-                   "nobody publishes " + name + ", and nobody reads " + meant + " of " + writer,
-                   reader.node + " hears nothing, if that is what it means",
+                   "no node publishes " + name + ", and no node reads " + meant + " of " + writer,
+                   reader.node + " receives nothing, if that is the intended name",
                    "remap one of them, or start both in the same namespace",
                    {reader.node, writer},
                    name});
@@ -233,7 +234,7 @@ void look_for_near_name(Medium medium, const std::string& name, const Channel& c
     all.push_back({"D003",
                    Gravity::kWarning,
                    name + ": " + reader.node + " → nobody",
-                   "nobody serves " + name + ", and nobody calls " + meant + " of " + writer,
+                   "no node serves " + name + ", and no node calls " + meant + " of " + writer,
                    reader.node + " waits for a service for ever, if that is what it means",
                    "remap one of them, or start both in the same namespace",
                    {reader.node, writer},
@@ -260,7 +261,7 @@ std::string in_any_namespace(const std::string& name) {
   return space.empty() ? "" : namespace_of(space) + "/*/" + own_name(name);
 }
 
-// Of several topics of one kind one lacks what all others have.
+// Among several topics of one kind, one lacks an endpoint that all others have.
 void look_for_odd_ones(const Channels& topics, Findings& all) {
   constexpr std::size_t kFewest = 3;
   std::map<std::pair<std::string, std::string>, std::vector<const Channels::value_type*>> kinds;
@@ -291,8 +292,8 @@ void look_for_odd_ones(const Channels& topics, Findings& all) {
         {"D004",
          Gravity::kWarning,
          name + ": " + (is_unread ? node + " → nobody" : "nobody → " + node),
-         is_unread ? "nobody subscribes to it, and somebody does to each of " + others
-                   : "nobody publishes it, and somebody does each of " + others,
+         is_unread ? "it has no subscription, unlike each of " + others
+                   : "it has no publisher, unlike each of " + others,
          is_unread ? "what " + node + " says of it is lost" : node + " waits for what never comes",
          is_unread ? "start what should read it, or see to which name that was remapped"
                    : "start what should publish it, or see to which name that was remapped",
@@ -342,7 +343,7 @@ void look_for_missed(const Picture& picture, const std::string& name, const Chan
   }
 }
 
-// ---- what is said to be there, and did not come
+// ---- announced endpoints that did not come
 
 void look_for_undiscovered(const Picture& picture, Findings& all) {
   constexpr Duration kSettled = 3s;  // its discovery takes less

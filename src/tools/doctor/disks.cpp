@@ -21,7 +21,7 @@ void examine_disks(const Picture& picture, Findings& all) {
         picture.looked > 0s ? static_cast<double>(disk.taken) / seconds(picture.looked) : 0;
     const Duration left =
         rate > 0 ? from_seconds(static_cast<double>(disk.free) / rate) : Duration::max();
-    // What is written for some seconds says little unless little is left.
+    // A write rate over some seconds says little unless little space is left.
     const bool fills = share < 0.1 && left < kSoon;
     if (!is_full && !is_nearly_full && !fills) continue;
     all.push_back({"D060", is_full ? Gravity::kError : Gravity::kWarning,

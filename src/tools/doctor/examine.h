@@ -1,4 +1,4 @@
-// What a picture of a robot shows to be wrong. Pure, and the same for the same picture.
+// Findings about a picture of a robot. Pure: the same for the same picture.
 //
 //     const auto picture = doctor::look({.participant = options});     // look.h
 //     for (const doctor::Finding& finding : doctor::examine(*picture)) print(finding);
@@ -18,7 +18,7 @@ namespace culprit::doctor {
 // The worst first, then by code and name.
 std::vector<Finding> examine(const Picture& picture);
 
-// Sorts and leaves out what is there twice.
+// Sorts, and removes duplicates.
 void put_worst_first(std::vector<Finding>& findings);
 
 // Its parts. Each adds what it finds.

@@ -64,7 +64,7 @@ TEST(Examine, FindsNothingWhereEverybodyHearsEverybody) {
       << "an input that nobody feeds, and nobody may mean";
 }
 
-// ---- who hears whom
+// ---- connections
 
 TEST(Examine, D001ReliabilityThatIsNotOffered) {
   const Finding finding = only_finding(robot_with(publishes("/scan", kBestEffort), reads("/scan")));
@@ -137,7 +137,7 @@ TEST(Examine, D003ANameThatIsOneLetterOffOrInAnotherNamespace) {
   const Finding slip = only_finding(robot_with(publishes("/scan"), reads("/scam")));
   EXPECT_EQ(slip.code, "D003");
   EXPECT_EQ(slip.gravity, Gravity::kWarning);
-  EXPECT_THAT(slip.seen, HasSubstr("nobody publishes /scam, and nobody reads /scan of /lidar"));
+  EXPECT_THAT(slip.seen, HasSubstr("no node publishes /scam, and no node reads /scan of /lidar"));
   EXPECT_EQ(only_finding(robot_with(publishes("/front/scan"), reads("/scan"))).code, "D003");
   EXPECT_EQ(only_finding(robot_with(serves("/robot/reset"), calls("/reset"))).code, "D003");
 
@@ -298,8 +298,7 @@ TEST(Examine, D015WhatNobodyDrivesOn) {
                         {"/slam", {"active", "active", 4s}}};
   EXPECT_EQ(only_finding(picture).code, "D015");
   EXPECT_EQ(only_finding(picture).seen,
-            "it is inactive, 1 of 2 managed nodes are active, and nobody is there who would change "
-            "that");
+            "it is inactive, 1 of 2 lifecycle nodes are active, and no manager would change that");
   EXPECT_EQ(only_finding(picture).matters, "/slam waits for what it publishes");
 
   Picture managed = picture;
@@ -408,7 +407,7 @@ TEST(Examine, D021WhatIsNotReportedAnyMore) {
   EXPECT_THAT(examine(picture), IsEmpty()) << "a burst has no rhythm";
 }
 
-// ---- who can hear whom at all
+// ---- reach
 
 TEST(Examine, D030NobodyThere) {
   Picture nobody;
@@ -488,7 +487,7 @@ TEST(Examine, D035SharedMemoryThatIsNotShared) {
 
 // ---- messages and time
 
-// /scan, heard for so long with these pauses.
+// /scan, received for this long with these pauses.
 Picture robot_with_flow(Duration listened, std::vector<Duration> pauses, ros2::Qos requested = {}) {
   Picture picture = robot_with(publishes("/scan", {.deadline = 1ms}), reads("/scan", requested));
   Flow& flow = picture.flows["/scan"];

@@ -1,4 +1,4 @@
-// What each finding means: the pages of `culprit explain D001` and docs/findings.md.
+// Explanations of the findings: the pages of `culprit explain D001` and docs/findings.md.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// What is wrong with a robot, told as `culprit check` tells diagnostics: who, what is seen, why it
-// matters, and what to do.
+// A finding about a robot, in the form of `culprit check`'s diagnostics: the subject, the
+// observation, its effect, and the remedy.
 #pragma once
 
 #include <cstdint>

@@ -67,7 +67,7 @@ void look_at_deadline(const std::string& name, const Channel& topic, const Flow&
                                          std::ranges::count_if(
                                              flow.pauses, [&](Duration p) { return p > deadline; }),
                                          flow.pauses.size(), duration(deadline), duration(longest)),
-                 reader->node + " is told again and again that its deadline was missed",
+                 reader->node + " is notified again and again of a missed deadline",
                  "see what keeps " + writers.front() + ", or let the deadline be what it can keep",
                  {writers.front(), reader->node},
                  name});
@@ -78,7 +78,7 @@ bool is_active(const Picture& picture, const std::string& node) {
   return state == picture.lifecycles.end() || state->second.last == "active";
 }
 
-// Sensors speak all the time; of other topics nobody knows.
+// Sensors publish all the time; for other topics this is unknown.
 void look_at_silence(const Picture& picture, const std::string& name, const Channel& topic,
                      const Flow& flow, Findings& all) {
   constexpr Duration kLongEnough = 4s;
@@ -152,7 +152,7 @@ void look_at_stamps(const Picture& picture, const std::string& name, const Chann
   const auto latches = [](const End& from) {
     return from.endpoint.qos.durability == ros2::Durability::kTransientLocal;
   };
-  // What is latched was true then, and still is.
+  // A latched message was true when it was published, and still is.
   if (!flow.stamps || topic.senders.empty() || std::ranges::any_of(topic.senders, latches)) return;
   const Flow::Stamps& stamps = *flow.stamps;
   const std::vector<std::string> writers = names_of(topic.senders);
@@ -181,7 +181,7 @@ void look_at_stamps(const Picture& picture, const std::string& name, const Chann
           fmt::format(
               "its node has use_sim_time, and its stamps are of the real clock, {} from /clock",
               duration(std::max(*stamps.simulated_lag, -*stamps.simulated_lag))),
-          "whoever uses simulated time takes them for far off, and tf refuses them",
+          "nodes with simulated time see them as far off, and tf refuses them",
           "let it stamp with its node's clock (node->now(), get_clock().now())");
     return;
   }
@@ -189,13 +189,13 @@ void look_at_stamps(const Picture& picture, const std::string& name, const Chann
   if (lag > kOld)
     add("D042", Gravity::kWarning,
         fmt::format("its stamps are {} old when they are sent", duration(lag)),
-        "whoever looks for a transform or waits for messages of one time comes too late",
+        "nodes that look up a transform or wait for messages of one time are too late",
         lag > 1h ? "set the clock of the device or computer that stamps them (chrony, PTP)"
                  : "see what delays them: a queue, a slow device, or a clock that is behind");
   if (lag < -kFuture)
     add("D043", Gravity::kError,
         fmt::format("its stamps are {} ahead when they are sent", duration(-lag)),
-        "tf has no transform for that time yet: whoever waits for it waits, or drops them",
+        "tf has no transform for that time yet: nodes wait for it, or drop them",
         "set the clock of the device or computer that stamps them (chrony, PTP)");
 }
 
@@ -225,14 +225,14 @@ void look_at_clock(const Picture& picture, const Wiring& wiring, Findings& all) 
     all.push_back({"D046", is_published ? Gravity::kWarning : Gravity::kError, listed(simulated),
                    is_published
                        ? "they use simulated time (use_sim_time), and /clock stands still"
-                       : "they use simulated time (use_sim_time), and nobody publishes /clock",
+                       : "they use simulated time (use_sim_time), and /clock has no publisher",
                    "for them no time passes: timers do not fire, and nothing has a time stamp",
                    is_published ? "let the simulation or the bag run"
                                 : "start the simulator, or set use_sim_time to false",
                    simulated, "/clock"});
     return;
   }
-  // Who publishes no time stamp, and looks at none, may have its own time.
+  // A node that publishes no time stamp, and reads none, may use another clock.
   std::erase_if(real, [&](const std::string& node) {
     const auto found = std::ranges::find(
         picture.nodes, node, [](const Node& each) -> const std::string& { return each.node.name; });

@@ -1,5 +1,5 @@
-// Whether the doctor was held up itself: on a machine that has too much to do its threads wait for a processor,
-// and its sockets overflow. What it did not hear then is no proof that nobody said it.
+// Whether the doctor was held up itself: on an overloaded machine its threads wait for a processor, and its sockets overflow. Messages that it missed meanwhile
+// prove nothing.
 #pragma once
 
 #include <map>
@@ -11,12 +11,11 @@
 
 namespace culprit::doctor {
 
-// How long each thread of this process has waited for a processor since it began, by its id. Empty where the
-// kernel does not tell.
+// How long each thread of this process has waited for a processor since it began, by its id. Empty if the kernel does not report it.
 std::map<int, Duration> waits_of_own_threads();
 // In the text of /proc/<pid>/task/<tid>/schedstat: "<running> <waiting> <turns>", in nanoseconds (proc(5)).
 std::optional<Duration> wait_in(const std::string& schedstat);
-// Of one thread, between the two.
+// The longest wait of one thread between the two.
 Duration longest_wait(const std::map<int, Duration>& before, const std::map<int, Duration>& now);
 
 // One of its threads waited for more than a quarter of the look.

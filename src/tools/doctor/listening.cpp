@@ -218,7 +218,8 @@ std::map<std::string, Flow> Listening::flows(Time now) const {
   return all;
 }
 
-// What was let go is listened to again when it is wanted again, after those that waited.
+// A topic that was released is subscribed to again when it is needed again, after those that
+// waited.
 void Listening::begin_anew(Time now) {
   std::erase_if(ears_, [](const auto& entry) { return entry.second->is_closed(); });
   known_.clear();

@@ -1,8 +1,7 @@
 // Listens to topics of a robot as briefly and as lightly as findings need it.
 //
-// Readers are best effort, but for what is latched, and copy no more of a message than its header. A
-// topic is listened to only if a node of the robot does so already: some publish only while somebody
-// listens, and what nobody hears does not matter. What brings much data is let go after some messages.
+// Readers are best effort, except for latched topics, and copy only the header of a message. A topic is only subscribed to if a node of the robot does so
+// already: some nodes publish only with a subscriber, and a topic without one does not matter. A topic with much data is released after some messages.
 #pragma once
 
 #include <deque>
@@ -31,7 +30,7 @@ struct WantedTopic {
   bool operator==(const WantedTopic&) const = default;
 };
 
-// On the executor's thread, but for what it hears.
+// On the executor's thread, except for message callbacks.
 class Listening {
  public:
   // More take turns: each reader costs every participant of the robot a little.
@@ -41,7 +40,7 @@ class Listening {
   static constexpr std::size_t kMuchData = 2'000'000;  // bytes
   // So long is enough of one while others wait.
   static constexpr Duration kTurn = std::chrono::seconds(5);
-  // A turn that is shorter tells less than it costs the robot and us to discover its readers.
+  // A shorter turn yields less than the discovery of its readers costs the robot and us.
   static constexpr Duration kWorthIt = std::chrono::seconds(4);
 
   // `self` outlives it. `simulated_now`: what /clock shows; called on receive threads.

@@ -32,7 +32,7 @@ constexpr std::size_t kMostStatuses = 10'000;  // the network decides how many t
 constexpr std::size_t kMostComings = 100;      // of one node
 constexpr const char* kDiagnostics = "/diagnostics";
 
-// Of the executor's thread, which is the caller's, but for what it hears.
+// Used on the executor's thread, which is the caller's, except for message callbacks.
 class Look {
  public:
   Look(const LookOptions& options, std::function<void(Picture)> on_picture)
@@ -156,7 +156,7 @@ class Look {
     if (published_.contains("/clock")) clock_->listen();
   }
 
-  // ---- what is asked
+  // ---- questions
 
   bool serves(const ros2::Graph::NodeView& view, const std::string& service) const {
     return std::ranges::any_of(view.endpoints, [&](const ros2::GraphEndpoint& each) {
@@ -197,7 +197,7 @@ class Look {
       asking_->ask_for_state(node, live_now(), patience);
   }
 
-  // ---- what is heard
+  // ---- observations
 
   void on_change(const ros2::GraphChange& change) {
     if (const auto* namesakes = std::get_if<ros2::NodeNamesakes>(&change)) {
@@ -210,7 +210,7 @@ class Look {
       nodes_[joined->node.name] = joined->node.pid;
       on_joined(joined->node);
     } else if (const auto* left = std::get_if<ros2::NodeLeft>(&change)) {
-      // Of two nodes of one name the graph shows one, and now another one.
+      // The graph shows one of two nodes with one name, and now the other one.
       if (!namesakes_.contains(left->node)) on_left(*left);
       nodes_.erase(left->node);
     } else if (const auto* endpoint = std::get_if<ros2::EndpointJoined>(&change)) {

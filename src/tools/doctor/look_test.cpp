@@ -25,7 +25,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
 
-// Of which it matters only what it says; as their definitions have it, fields that are not read left out.
+// A message of which only the content matters: defined as usual, without the fields that are not read.
 template <const char* type>
 struct Stamped {
   static constexpr std::string_view kType = type;
@@ -61,7 +61,7 @@ ros2::msg::Time now(Duration off = {}) {
                             std::chrono::duration_cast<std::chrono::system_clock::duration>(off));
 }
 
-// A node of a process of its own, as far as DDS can tell.
+// A node of a process of its own, as far as DDS shows.
 class Member {
  public:
   Member(const ros2::ParticipantOptions& options, const std::string& name) : context_(options) {
@@ -149,7 +149,7 @@ LookOptions options(const ros2::TestDomain& domain, Duration time,
 std::vector<std::string> found_in(const Picture& picture) {
   std::vector<std::string> all;
   for (const Finding& finding : examine(picture)) {
-    // Of the machine that the tests run on, which may be whatever it is.
+    // Findings about the machine that runs the tests may vary.
     if (finding.code == "D018" || finding.code == "D060") continue;
     all.push_back(finding.code + " " + finding.who);
   }
@@ -188,7 +188,7 @@ TEST(Look, FindsWhoDoesNotHearWhomAndNothingElse) {
   slam.reads<Scan>("/points");
   lidar.publishes_as("/image", kImageType, "typehash=RIHS01_aaaaaaaa;");
   slam.reads_as("/image", kImageType, "typehash=RIHS01_bbbbbbbb;");
-  // An endpoint that nobody ever announces.
+  // An endpoint that is never announced.
   ros2::Guid nowhere = camera.context()->participant().guid();
   nowhere.bytes[13] = 99;
   nowhere.bytes[15] = 3;
@@ -333,7 +333,7 @@ TEST(Look, FindsNodesThatComeGoOrAreNotDrivenOn) {
 
   auto picture = std::async(std::launch::async, [&] { return look(options(domain, 4s)); });
   ASSERT_TRUE(watcher.sees_node("/_culprit_doctor"));
-  // Whoever is seen by the doctor is asked; it asks after a third of its time.
+  // A node is asked once the doctor has discovered it; the doctor asks after a third of its time.
   ASSERT_TRUE(
       watcher.sees_endpoint("/_culprit_doctor", EndpointKind::kClient, "/circles/get_parameters"));
   victim.end(SIGKILL);

@@ -163,7 +163,7 @@ std::vector<OtherDomain> other_domains(std::uint32_t own, const std::map<std::st
     for (const auto& [pid, its] : sockets) {
       if (!have_one_in_common(waiting, its)) continue;
       other.programs.push_back(program_of(pid));
-      // Who is on both domains is a bridge.
+      // A process on both domains is a bridge.
       const auto sibling = launched.find(owners::parent_of(pid).value_or(0));
       if (sibling != launched.end() && !here.contains(pid))
         other.siblings.emplace(other.programs.back(), sibling->second);

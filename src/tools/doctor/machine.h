@@ -1,5 +1,5 @@
-// What of this machine matters to all processes of a robot: its disks, and the domains that its
-// processes are on.
+// The properties of this machine that matter to all processes of a robot: its disks, and the
+// domains that its processes are on.
 #pragma once
 
 #include <map>

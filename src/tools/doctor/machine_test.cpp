@@ -1,4 +1,4 @@
-// What is read of this machine: of our own process, for all others may be anything.
+// Tests readings of this machine on our own process, for others may be in any state.
 #include "doctor/machine.h"
 
 #include <fstream>

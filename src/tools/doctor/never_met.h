@@ -1,5 +1,5 @@
-// Whose readers and writers a look has nothing to do with, however long it lasts: it reads topics and
-// calls a few services, it publishes nothing and serves nothing.
+// The topics whose readers and writers a look never needs, however long it lasts: it reads topics and calls a few services, it publishes nothing and serves
+// nothing.
 #pragma once
 
 #include <string_view>
@@ -8,8 +8,7 @@
 
 namespace culprit::doctor {
 
-// ros2::ParticipantOptions::never_meets. What asking.h calls, and what wanted_topics.h and the other
-// listeners may want, must not be in here.
+// ros2::ParticipantOptions::never_meets. Services that asking.h calls, and topics that wanted_topics.h and the other listeners may need, must not be in here.
 bool never_meets(std::string_view dds_topic, ros2::EndpointRole role);
 
 }  // namespace culprit::doctor

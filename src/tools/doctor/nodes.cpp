@@ -1,4 +1,4 @@
-// Nodes that are there twice, gone, stuck, come again and again, or wait for somebody to drive them on.
+// Nodes that exist twice, are gone, are stuck, restart again and again, or wait for a lifecycle manager.
 #include <algorithm>
 #include <array>
 #include <set>
@@ -92,7 +92,7 @@ void examine_answers(const Picture& picture, Findings& all) {
          {name}});
 }
 
-// Who left with a good-bye was ended on purpose, or had done its work.
+// A node that left with a good-bye was ended on purpose, or had finished.
 void examine_comings(const Picture& picture, Findings& all) {
   for (const auto& [name, comings] : picture.comings) {
     if (is_tool_node(name) || picture.namesakes.contains(name)) continue;
@@ -108,10 +108,9 @@ void examine_comings(const Picture& picture, Findings& all) {
            fmt::format("it was started again {} while the doctor looked{}",
                        returns == 1 ? "once" : count_of(returns, "time"),
                        last.pid == 0 ? "" : fmt::format(", last as process {}", last.pid)),
-           is_circle ? "whoever starts it again does not cure it, and each start costs all "
-                       "others discovery"
-                     : "whoever read its state or parameters has lost them",
-           "its log says why it ended; end who starts it again, and start it by hand",
+           is_circle ? "restarts do not repair it, and each one costs all others discovery"
+                     : "readers of its state or parameters have lost them",
+           "its log says why it ended; stop its launcher, and start it by hand",
            {name}});
     } else if (last.was_lost && !picture.unanswered.contains(name)) {
       all.push_back(
@@ -134,8 +133,7 @@ bool is_on_its_way(const std::string& state) {
   return std::ranges::find(kTransitions, state) != kTransitions.end();
 }
 
-// Whether somebody is there who changes its state when it is time: a lifecycle manager, the (hidden)
-// one of system modes, or culprit.
+// Whether its state has a manager: a lifecycle manager, the (hidden) one of system modes, or culprit.
 bool is_driven(const Picture& picture, const std::string& node) {
   const std::string service = node + "/change_state";
   return std::ranges::any_of(picture.nodes, [&](const Node& other) {
@@ -146,7 +144,7 @@ bool is_driven(const Picture& picture, const std::string& node) {
   });
 }
 
-// A node that waits for what only this one publishes; empty: nobody does.
+// A node that waits for a topic that only this one publishes; empty: there is none.
 std::string who_waits_for(const std::string& node, const Wiring& wiring) {
   for (const auto& [name, topic] : wiring.topics) {
     const bool is_only_one =
@@ -182,17 +180,18 @@ void examine_states(const Picture& picture, Findings& all) {
     const std::string waiting = who_waits_for(node, wiring);
     if (waiting.empty()) continue;
     const bool is_final = state.last == "finalized";
-    all.push_back({"D015",
-                   Gravity::kWarning,
-                   node,
-                   fmt::format("it is {}, {} of {} managed nodes are active, and nobody is there "
-                               "who would change that",
-                               state.last, active, picture.lifecycles.size()),
-                   waiting + " waits for what it publishes",
-                   is_final ? "start its process again: from there no way leads back"
-                            : "ros2 lifecycle set " + node +
-                                  (state.last == "inactive" ? " activate" : " configure"),
-                   {node, waiting}});
+    all.push_back(
+        {"D015",
+         Gravity::kWarning,
+         node,
+         fmt::format(
+             "it is {}, {} of {} lifecycle nodes are active, and no manager would change that",
+             state.last, active, picture.lifecycles.size()),
+         waiting + " waits for what it publishes",
+         is_final ? "start its process again: from there no way leads back"
+                  : "ros2 lifecycle set " + node +
+                        (state.last == "inactive" ? " activate" : " configure"),
+         {node, waiting}});
   }
 }
 
@@ -205,11 +204,11 @@ void examine_nodes(const Picture& picture, Findings& all) {
   examine_states(picture, all);
 }
 
-// What nodes say of themselves. STALE is what an aggregator says of who said nothing.
+// The nodes' own diagnostics. An aggregator reports STALE for a status that is no longer updated.
 void examine_statuses(const Picture& picture, Findings& all) {
   constexpr Duration kPatience = std::chrono::seconds(5);
   constexpr int kPauses = 5;
-  // What is reported of an event comes in bursts, and has no rhythm to be missed.
+  // Statuses about an event come in bursts, and have no rhythm to be missed.
   constexpr Duration kBurst = std::chrono::seconds(2);
   for (const auto& [name, status] : picture.statuses) {
     const ros2::msg::DiagnosticStatus& report = status.report;
@@ -219,7 +218,7 @@ void examine_statuses(const Picture& picture, Findings& all) {
       all.push_back({"D020", is_stale ? Gravity::kWarning : Gravity::kError, who,
                      std::string("its diagnostic status is ") + (is_stale ? "STALE" : "ERROR") +
                          (report.message.empty() ? "" : ": " + printable(report.message)),
-                     is_stale ? "who reports it has stopped reporting" : "who reports it is ill",
+                     is_stale ? "its node has stopped reporting" : "its node reports a failure",
                      "look at its values: ros2 topic echo /diagnostics"});
     }
     if (status.count < 3 || status.last - status.first < kBurst) continue;

@@ -8,8 +8,8 @@
 
 namespace culprit::doctor {
 
-// All of up to 60. Of more, one of each participant, for the nodes of a process mostly hang together, and beside
-// those, up to 60 in all, the ones that are managed, since only they know their states. Others in each `round`.
+// Up to 60 nodes: all of them. If there are more, one of each participant, for the nodes of a process mostly hang together. Beside those, up to 60 in all, the
+// lifecycle nodes, since only they know their states. Others in each `round`.
 std::vector<ros2::Graph::NodeView> nodes_to_ask(std::vector<ros2::Graph::NodeView> nodes,
                                                 std::size_t round);
 

@@ -1,7 +1,7 @@
 // A robot as it was seen for some seconds: what findings are made of. Plain data, so that each kind
 // of finding can be tested without a robot.
 //
-// What is only known of this machine (processes, disks, shared memory) is missing for others.
+// Data of this machine only (processes, disks, shared memory) is missing for others.
 #pragma once
 
 #include <cstdint>
@@ -46,7 +46,7 @@ struct Unanswered {
   bool has_ended = false;
 };
 
-// Of a managed node, asked twice. Labels as rcl has them; empty: it did not answer.
+// The state of a lifecycle node, asked twice. Labels as rcl has them; empty: it did not answer.
 struct Lifecycle {
   std::string first{};
   std::string last{};
@@ -69,12 +69,13 @@ struct Flow {
   std::size_t lost = 0;
   Duration first_to_last{};
   std::vector<Duration> pauses{};  // between messages, the first of them; the last one is still on
-  // What the headers of its messages say; nothing where the type has none, or all stamps are zero.
+  // The time stamps of its messages' headers; empty where the type has none, or all stamps are
+  // zero.
   struct Stamps {
     std::size_t count = 0;
     // Sent (by the writer's clock) after the stamp: the middle, of the first of them.
     Duration lag{};
-    // Likewise, by the simulated clock when it came; nothing without one.
+    // The same by the simulated clock at the arrival; empty without one.
     std::optional<Duration> simulated_lag{};
     std::size_t jumps_back = 0;  // of one writer and frame
     Duration furthest_back{};
@@ -115,7 +116,7 @@ struct Process {
   ros2::SystemTime started{};
   Duration age_at_first{};  // at the first sample
   std::string launcher{};   // "process 9 (ros2)"; empty: nobody, or the first process
-  // Whoever started it has ended, and so has whoever read what it prints.
+  // Its launcher has exited, and so has the reader of its output.
   bool is_left_over = false;
   struct Sample {
     Offset at{};
@@ -126,7 +127,7 @@ struct Process {
   // The least share of a core that one of its threads used from one sample to the next; nothing
   // if it was not looked at.
   std::optional<double> busiest_thread{};
-  // What its command line says of parameters, by node.
+  // The parameters on its command line, by node.
   std::map<std::string, std::map<std::string, std::string>> parameters{};
   unsigned user = 0;
   std::uint64_t shared_memory = 0;  // which one it sees; 0: not known
@@ -161,7 +162,7 @@ struct Picture {
   std::size_t asked = 0;  // nodes
   std::map<std::string, Lifecycle> lifecycles{};
   std::map<std::string, bool> uses_simulated_time{};
-  // By node; values as YAML has them. Of those that were asked for.
+  // By node; values as YAML has them. Only of nodes that were asked.
   std::map<std::string, std::map<std::string, std::string>> parameters{};
   std::map<std::string, std::vector<Coming>> comings{};
   std::map<std::string, Status> statuses{};
@@ -173,7 +174,7 @@ struct Picture {
   std::int64_t free_memory = 0;  // bytes of this machine; 0: not known
   std::vector<Disk> disks{};
   std::vector<OtherDomain> other_domains{};
-  // What was not looked at, in sentences.
+  // The parts that were not examined, in sentences.
   std::vector<std::string> left_out{};
 };
 

@@ -62,7 +62,7 @@ std::string command_of(int pid) {
   return name;
 }
 
-// Who takes over processes whose parents have ended.
+// The processes that adopt orphans.
 bool adopts(int pid) {
   constexpr std::array kNames = {"systemd",   "init",        "tini",
                                  "dumb-init", "docker-init", "catatonit"};
@@ -104,7 +104,7 @@ bool prints_to_nobody(int pid) {
   if (!fs::read_symlink(output, error).native().starts_with("pipe:")) return false;
   const int pipe = open(output.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
   if (pipe < 0) return false;
-  // Of the end to write that is an error: the other end is closed (poll(2)).
+  // An error state of the write end means that the other end is closed (poll(2)).
   pollfd state{pipe, POLLOUT, 0};
   const bool is_broken = poll(&state, 1, 0) == 1 && (state.revents & POLLERR) != 0;
   close(pipe);

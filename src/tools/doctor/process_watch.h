@@ -1,5 +1,5 @@
-// What the processes of a robot's nodes do, as far as they are of this machine: their memory and
-// processor time from time to time, how they were started, and where their launcher is.
+// Watches the processes of a robot's nodes, if they are of this machine: their memory and processor
+// time from time to time, their command lines, and their launchers.
 #pragma once
 
 #include <map>
@@ -34,7 +34,7 @@ class ProcessWatch {
   std::map<int, Threads> threads_;  // of those that are busy
 };
 
-// Whether nobody will ever read what the process prints: its standard output is a pipe that has no reader.
+// Whether the process's output has no reader: its standard output is a pipe that no process reads.
 bool prints_to_nobody(int pid);
 
 // Bytes that new processes may have; 0: not known.

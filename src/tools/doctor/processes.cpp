@@ -28,12 +28,11 @@ std::string name_of(int pid, const Process& process, const std::vector<std::stri
 void look_whether_left_over(int pid, const Process& process, const std::vector<std::string>& nodes,
                             Findings& all) {
   if (!process.is_left_over) return;
-  all.push_back(
-      {"D014", Gravity::kWarning, name_of(pid, process, nodes),
-       "who started it has ended, and so has who read what it prints",
-       "it is left over from an earlier launch: nobody starts it again, a new launch makes "
-       "a second one, and printing may end it",
-       fmt::format("end it (kill {}) and launch the robot anew", pid), nodes});
+  all.push_back({"D014", Gravity::kWarning, name_of(pid, process, nodes),
+                 "its launcher has exited, and so has the reader of its output",
+                 "it is left over from an earlier launch: no launcher restarts it, a new launch "
+                 "makes a second one, and printing may end it",
+                 fmt::format("end it (kill {}) and launch the robot anew", pid), nodes});
 }
 
 // Whether memory only grew: of four quarters of the time each ended higher than all before it.

@@ -1,4 +1,4 @@
-// Who can hear whom at all: domains, addresses, keys, distributions, shared memory.
+// Which nodes can reach each other at all: domains, addresses, keys, distributions, shared memory.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -63,7 +63,7 @@ std::vector<std::string> nodes_of(const std::vector<const Participant*>& some) {
   return {names.begin(), names.end()};
 }
 
-// Of those that are not on `host`; empty: all are.
+// A host of those that are not on `host`; empty: all are.
 std::string another_host(const std::vector<const Participant*>& all, const std::string& host) {
   const auto found = std::ranges::find_if(
       all, [&](const Participant* each) { return !each->host.empty() && each->host != host; });
@@ -134,7 +134,7 @@ const Process* process_of(const Picture& picture, const Participant& participant
   return found == picture.processes.end() ? nullptr : &found->second;
 }
 
-// Fast DDS sends through shared memory to whoever it takes to be on the same machine.
+// Fast DDS sends through shared memory to participants that it assumes on the same machine.
 void examine_shared_memory(const Picture& picture, const std::vector<const Participant*>& robot,
                            Findings& all) {
   for (auto a = robot.begin(); a != robot.end(); ++a) {

@@ -1,4 +1,4 @@
-// What the doctor says of a robot, whole: for a terminal, for programs, for the page.
+// The doctor's whole report on a robot: for a terminal, for programs, for the page.
 //
 //     const auto picture = doctor::look({.participant = options});
 //     const doctor::Report report = doctor::report_of(*picture);

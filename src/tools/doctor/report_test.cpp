@@ -141,7 +141,7 @@ TEST(Report, IsDataForPrograms) {
       R"({"domain":7,"nodes":3,"looked_s":8.0,"findings":[{"code":"D001",)"
       R"("severity":"error","who":"/scan: /lidar → /slam","nodes":["/lidar","/slam"],"topic":"/scan",)"
       R"("seen":"reliability: offered is best effort, requested is reliable",)"
-      R"("matters":"/slam hears nothing of /lidar",)"
+      R"("matters":"/slam receives nothing from /lidar",)"
       R"("remedy":"let /lidar offer reliable, or /slam request best effort"}],)"
       R"("left_out":["3 topics were not listened to"]})");
   const auto sarif = to_sarif(report);

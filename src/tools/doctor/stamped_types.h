@@ -1,4 +1,4 @@
-// What is known of standard message types: which begin with a header, and which sensors publish.
+// Facts about standard message types: which begin with a header, and which sensors publish.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@ namespace culprit::doctor {
 // The first thing in it is a std_msgs/Header.
 bool is_stamped_type(const std::string& type);
 
-// Who publishes it does so all the time.
+// Its publishers publish it all the time.
 bool is_sensor_type(const std::string& type);
 
 }  // namespace culprit::doctor

@@ -7,8 +7,7 @@
 
 namespace culprit::doctor {
 
-// By node, of `nodes` (full names); values as YAML has them. Relative files are below `folder`. What
-// cannot be read is left out.
+// By node, of `nodes` (full names); values as YAML has them. Relative files are below `folder`. Unreadable files are left out.
 std::map<std::string, std::map<std::string, std::string>> start_parameters(
     const std::vector<std::string>& command, const std::string& folder,
     const std::vector<std::string>& nodes);

@@ -13,7 +13,7 @@
 
 namespace culprit::doctor {
 
-// On the executor's thread, but for what it hears.
+// On the executor's thread, except for message callbacks.
 class TransformListening {
  public:
   static constexpr std::size_t kMostEdges = 10'000;  // the network decides how many there are
@@ -21,19 +21,19 @@ class TransformListening {
   // `self` outlives it.
   explicit TransformListening(ros2::NodeEntry& self) : self_(self) {}
 
-  // Somebody publishes /tf, or /tf_static.
+  // Called when a publisher of /tf, or /tf_static, exists.
   void listen_to(const std::string& topic, Time now);
   // Since the first of them was listened to; zero: none is.
   Duration listened(Time now) const;
 
-  // `began`: when the look did. Without the nodes, which the writers tell.
+  // `began`: when the look did. Without the nodes, which follow from the writers.
   struct Heard {
     ros2::Guid writer;
     Transform edge;
   };
   std::vector<Heard> heard(Time began) const;
 
-  // Counts anew how long it listened. What it heard stays: edges that have stopped are told by that.
+  // Counts anew how long it listened. Its edges are kept: edges that have stopped are detected by them.
   void begin_anew(Time now);
 
  private:

@@ -155,7 +155,7 @@ void look_for_missing(const Picture& picture, Findings& all) {
                    Gravity::kWarning,
                    "tf: " + printable(frame),
                    "it is in no transform, and messages are measured in it: " + listed(topics),
-                   "nobody can place them on the robot",
+                   "they cannot be placed on the robot",
                    "publish its transform (robot_state_publisher, static_transform_publisher), or "
                    "name the frame that is meant",
                    {},

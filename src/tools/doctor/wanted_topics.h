@@ -14,9 +14,8 @@ enum class Extent : std::uint8_t {
   kEverything,  // a robot as it is: also all rates and parameters
 };
 
-// Only those that a node of the robot reads; first those whose silence is a finding (with a deadline, latched
-// that somebody may have missed, of sensors), for not all may have their turn. Without /tf, /clock and /diagnostics, which have ears of
-// their own.
+// Only topics that a node of the robot reads. First those whose silence is a finding (with a deadline, latched with possible late joiners, of sensors), for not
+// all may have their turn. Without /tf, /clock and /diagnostics, which have listeners of their own.
 std::vector<WantedTopic> wanted_topics(const Picture& picture, Extent extent);
 
 }  // namespace culprit::doctor

@@ -1,4 +1,4 @@
-// Who is connected to whom: the endpoints of a picture, by topic and service. A view of the picture, which must outlive it.
+// The connections: the endpoints of a picture, by topic and service. A view of the picture, which must outlive it.
 #pragma once
 
 #include <map>
@@ -15,7 +15,8 @@ struct End {
   const ros2::GraphEndpoint& endpoint;
 };
 
-// Of a topic its publishers and subscribers; of a service its clients, which send, and its servers.
+// For a topic, its publishers and subscribers; for a service, its clients, which send, and its
+// servers.
 struct Channel {
   std::vector<End> senders;
   std::vector<End> receivers;
@@ -26,7 +27,7 @@ struct Wiring {
   std::map<std::string, Channel> services;
 };
 
-// Without the endpoints of hidden nodes, which are somebody's tools.
+// Without the endpoints of hidden nodes, which belong to tools.
 Wiring wiring_of(const Picture& picture);
 Wiring wiring_of(Picture&& picture) = delete;
 

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "fleet/clean.h"
+#include "fleet/incident_number.h"
 #include "journal/json.h"
 
 namespace culprit::fleet {
@@ -44,6 +45,8 @@ std::string cell_text(const Field& field, Kind kind, double now) {
       return fmt::format("{:.0f} %", 100 * real_in(field));
     case Kind::kTime:
       return time_text(real_in(field)) + " (" + duration_text(now - real_in(field)) + " ago)";
+    case Kind::kIncident:
+      return incident_id(integer_in(field));
   }
   return "";
 }
@@ -117,6 +120,7 @@ Json cell_json(const Field& field, Kind kind) {
   if (!field) return {};
   if (kind == Kind::kText) return *field;
   if (kind == Kind::kCount) return integer_in(field);
+  if (kind == Kind::kIncident) return incident_id(integer_in(field));
   return real_in(field);
 }
 

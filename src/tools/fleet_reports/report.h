@@ -1,4 +1,4 @@
-// What people read of a fleet: tables, each of which one query makes, as text, JSON or one HTML file.
+// Reports on a fleet: tables, each made by one query, as text, JSON or one HTML file.
 #pragma once
 
 #include <string>
@@ -15,7 +15,8 @@ struct Column {
     kNumber,   // two digits of it
     kSeconds,  // of a duration
     kPercent,  // a share, 0..1
-    kTime      // when: seconds since 1970
+    kTime,     // when: seconds since 1970
+    kIncident  // its id (fleet/incident_number.h)
   };
   std::string key;    // in JSON
   std::string title;  // for people

@@ -80,14 +80,14 @@ std::vector<TableQuery> status_queries(const Scope& scope) {
             {"robots", "robots", Kind::kCount},
             {"ill", "ill", Kind::kCount},
             {"exhausted", "wait for a person", Kind::kCount},
-            {"silent", "not heard for 1 h", Kind::kCount},
+            {"silent", "unreachable for 1 h", Kind::kCount},
             {"versions", "versions", Kind::kCount},
             {"rule_sets", "rule files", Kind::kCount},
             {"dropped", "dropped", Kind::kCount}}},
           scope),
       in_scope(
-          {"Ill now",
-           "nobody",
+          {"Failing now",
+           "none",
            "SELECT r.name, r.model, f.rule, f.criticality, f.component, extract(epoch FROM "
            "f.began), f.strategies, CASE WHEN f.exhausted THEN 'waits for a person' ELSE '' END, " +
                std::string(kHeard) +
@@ -105,8 +105,8 @@ std::vector<TableQuery> status_queries(const Scope& scope) {
             {"remark", ""},
             {"seen", "heard last", Kind::kTime}}},
           scope),
-      in_scope({"Not heard of for an hour",
-                "all were heard of",
+      in_scope({"Unreachable for an hour",
+                "all are reachable",
                 "SELECT r.name, r.model, " + std::string(kHeard) +
                     ", r.culprit, r.robot\nFROM culprit.robot r" +
                     where("r.seen < now() - interval '1 hour' AND " + kNoDays) +
@@ -123,7 +123,8 @@ std::vector<TableQuery> incident_queries(const Scope& scope) {
   std::vector<TableQuery> queries = {in_scope(
       {"Incidents",
        "none",
-       "SELECT r.name, r.model, extract(epoch FROM min(f.began)), CASE WHEN bool_and(f.ended IS "
+       "SELECT f.incident, r.name, r.model, extract(epoch FROM min(f.began)), CASE WHEN "
+       "bool_and(f.ended IS "
        "NOT "
        "NULL) THEN extract(epoch FROM max(f.ended) - min(f.began)) END, (array_agg(f.rule ORDER BY "
        "f.row))[1], (array_agg(f.component ORDER BY f.row))[1], count(*), sum(f.strategies), "
@@ -131,7 +132,8 @@ std::vector<TableQuery> incident_queries(const Scope& scope) {
        "'exhausted' WHEN bool_or(f.how = 'left') THEN 'culprit ended' ELSE '' END" +
            kFailures + where(kRecently) +
            "\nGROUP BY r.name, r.model, f.run, f.incident\nORDER BY min(f.began) DESC\nLIMIT 50",
-       {{"robot", "robot"},
+       {{"incident", "incident", Kind::kIncident},
+        {"robot", "robot"},
         {"model", "model"},
         {"began", "began", Kind::kTime},
         {"lasted_s", "lasted", Kind::kSeconds},
@@ -153,7 +155,7 @@ std::vector<TableQuery> incident_queries(const Scope& scope) {
 
 std::vector<TableQuery> belief_queries(const Scope& scope) {
   return {in_scope(
-      {"What the fleet knows",
+      {"Learned success rates",
        "nothing was learned yet",
        "SELECT model, rule, strategy, context, count(*), sum(helped), sum(failed), "
        "sum(helped)::float8 "
@@ -210,7 +212,7 @@ void add_differences(const std::vector<std::string>& key, const std::vector<OfRo
     if (each.helped + each.failed < kFewest || robots.size() < 2) continue;
     RobotOutcomes others = sums;
     others.remove(each.helped, each.failed);
-    // What the designer said is not known here: nothing.
+    // The designer's guess is not known here, so none is used.
     const Belief prior = pooled_prior(initial_belief(percent(50), 1), others, {}, kAll);
     const double agrees = agreement(prior, each.helped, each.failed);
     if (agrees >= kHardly) continue;

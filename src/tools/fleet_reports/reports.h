@@ -8,19 +8,19 @@
 
 namespace culprit::fleet {
 
-// What a report is about; empty fields: all.
+// The scope of a report; empty fields: no limit.
 struct Scope {
   std::string model;
   std::string robot;  // its name
   int days = 30;      // back from now
 };
 
-// Who is ill now, who is not heard of, and how the models are.
+// Current failures, unreachable robots, and the state of the models.
 std::vector<TableQuery> status_queries(const Scope& scope);
 // What happened: the latest incidents, the worst rules, components and versions, and how long
 // repairs took, by week.
 std::vector<TableQuery> incident_queries(const Scope& scope);
-// What the fleet knows of each strategy.
+// The fleet's outcomes of each strategy.
 std::vector<TableQuery> belief_queries(const Scope& scope);
 // Versions beside each other.
 std::vector<TableQuery> version_queries(const Scope& scope);

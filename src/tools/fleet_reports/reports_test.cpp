@@ -13,7 +13,7 @@
 namespace culprit::fleet {
 namespace {
 
-// Nine robots that are alike, and one that is not; the last one is ill.
+// Nine robots that are alike, and one that differs; the last one fails.
 struct FleetReports : testing::Test {
   void SetUp() override {
     if (const std::string why = TestPostgres::why_not(); !why.empty()) GTEST_SKIP() << why;
@@ -57,7 +57,7 @@ TEST_F(FleetReports, SayWhoIsIllWhatIsWorstAndWhoIsNotLikeTheOthers) {
   const std::string status = text_of(status_queries({}));
   EXPECT_NE(status.find("robot 9"), std::string::npos) << status;
   EXPECT_EQ(status.find("robot 3"), std::string::npos) << status;
-  EXPECT_NE(status.find("all were heard of"), std::string::npos) << status;
+  EXPECT_NE(status.find("all are reachable"), std::string::npos) << status;
   Scope other;
   other.model = "other";
   EXPECT_NE(text_of(status_queries(other)).find("no robot has reported"), std::string::npos);

@@ -45,8 +45,7 @@ std::map<std::string, std::string> component_names(const std::vector<std::string
   return names;
 }
 
-// Of containers of which the dump knows how all of their nodes are loaded: else one that is replaced
-// could not have them again.
+// Recipes of containers for which the dump knows how all of their nodes are loaded: a replaced container must load them all again.
 std::map<std::string, Recipe> usable_recipes(const Sighting& seen) {
   std::map<std::string, Recipe> usable;
   const auto& nodes = seen.robot.nodes;
@@ -68,7 +67,7 @@ std::map<std::string, Recipe> usable_recipes(const Sighting& seen) {
   return usable;
 }
 
-// Of a file of parameters as culprit writes it, by the line above each: "/node:\n".
+// The sections of a parameter file of culprit's, by the line above each: "/node:\n".
 std::map<std::string, std::string> sections_in(const std::string& text) {
   std::map<std::string, std::string> sections;
   std::string* section = nullptr;
@@ -265,7 +264,8 @@ class Draft {
     return found == packs_.end() ? nullptr : &*found;
   }
 
-  // Who started them, and what of their environment is not repeated.
+  // Notes the launchers of the nodes, and the variables of their environment that the draft does
+  // not repeat.
   void notes_on_starts() {
     std::map<std::string, std::vector<std::string>> launchers;
     std::set<std::string> withheld;

@@ -20,9 +20,8 @@ struct KnownNames {
   std::set<std::string> taken;                    // for something else, too
 };
 
-// For each node whose process can be started again a component, and a rule that it is there and its
-// topics go on, or with kChosen the pack that sees that; what else is worth a rule or a proposal; at the end
-// what was left out, with the reason. What was guessed is marked "# guess:".
+// For each node whose process can be started again, a component and a rule that it runs and its topics are published, or with kChosen the pack that monitors
+// these. Then other rules and proposals; at the end the omissions, with the reasons. Guesses are marked "# guess:".
 std::vector<Part> parts_of_draft(const Sighting& seen, Packs packs, const KnownNames& known = {});
 
 // These together: the text of a rule file that `culprit check --robot --strict` finds nothing in. Ends in the

@@ -23,8 +23,7 @@ struct Kept {
   std::vector<std::string> notes;  // for people: what could not be kept
 };
 
-// Whether nobody can rely on the file's being there tomorrow: it is below /tmp, /var/tmp, /dev/shm, /run or
-// $TMPDIR.
+// Whether the file may be gone tomorrow: it is below /tmp, /var/tmp, /dev/shm, /run or $TMPDIR.
 bool is_temporary(const std::string& path);
 
 // Each start in `seen` that reads a temporary file of parameters reads its copy instead. `rules`: the whole

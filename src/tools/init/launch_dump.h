@@ -1,6 +1,6 @@
-// What a launch file starts, as play_launch (github.com/NEWSLabNTU/play_launch) dumps it: its
-// system_model.yaml (from 0.9 on), or its record.json (before). Only what cannot be read from processes is taken: how
-// the nodes of component containers are loaded, and what is started again when it ends.
+// The nodes that a launch file starts, as play_launch (github.com/NEWSLabNTU/play_launch) dumps it: its system_model.yaml (from 0.9 on), or its record.json
+// (before). Only facts that cannot be read from processes are taken: how the nodes of component containers are loaded, and which processes are started again
+// after they exit.
 #pragma once
 
 #include <map>

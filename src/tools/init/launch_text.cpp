@@ -1,8 +1,9 @@
 #include "init/launch_text.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cctype>
+
+#include "base/invariant.h"
 
 namespace culprit::init {
 namespace {
@@ -49,7 +50,7 @@ std::string row(const std::vector<std::string>& arguments) {
 }  // namespace
 
 std::string launch_text(const Start& start) {
-  assert(!start.command.empty());
+  CULPRIT_ASSERT(!start.command.empty());
   std::string clauses = "LAUNCH " + text(row(start.command));
   if (!start.environment.empty()) clauses += " ENV " + text(row(start.environment));
   if (!start.folder.empty()) clauses += " CWD " + text(start.folder);

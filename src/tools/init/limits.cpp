@@ -34,7 +34,7 @@ std::string called(const ros2::Survey::StatusKey& status, const Sighting& seen) 
   return "";
 }
 
-// A number that goes up and down. What only rises, counts; and what never changes has shown nothing.
+// A number that goes up and down. A number that only rises is a counter; one that never changes gives no range.
 bool has_range(const ros2::ValueCourse& value) {
   return value.numbers >= kFewestValues && value.others == 0 && value.rose && value.fell;
 }
@@ -69,10 +69,11 @@ class Limits {
                                              written,
                                              course.worst == kError ? "an error" : "stale"));
     add(Part::Kind::kLevel, written,
-        fmt::format("# guess: {0} was {1} in {2} messages. If it is an error, a person is told.\n"
-                    "RULE {3}\n  POLICIES WARNING FOR 1s REPORT\n  TRIGGER level({0}) >= {4}\n",
-                    written, course.worst == 0 ? "OK" : "a warning at worst", course.messages,
-                    names_.take(base, "_error"), kError));
+        fmt::format(
+            "# guess: {0} was {1} in {2} messages. If it is an error, a person is notified.\n"
+            "RULE {3}\n  POLICIES WARNING FOR 1s REPORT\n  TRIGGER level({0}) >= {4}\n",
+            written, course.worst == 0 ? "OK" : "a warning at worst", course.messages,
+            names_.take(base, "_error"), kError));
     propose_keys(written, base, course);
   }
 

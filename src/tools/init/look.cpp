@@ -27,7 +27,7 @@ bool is_of_ros_or_dds(std::string_view variable) {
                                     "CYCLONEDDS_", "PYTHONPATH=", "LD_LIBRARY_PATH="});
 }
 
-// What shells and culprit set for themselves.
+// Variables that shells and culprit set for themselves.
 bool is_nobodys(std::string_view variable) {
   return starts_with_any(variable, {"PWD=", "OLDPWD=", "SHLVL=", "_=", "TERM=", "CULPRIT_"});
 }

@@ -1,17 +1,17 @@
 #include "init/measures.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 #include <fmt/format.h>
 
+#include "base/invariant.h"
 #include "base/units.h"
 
 namespace culprit::init {
 
 double rounded_up(double number) {
-  assert(number > 0);
+  CULPRIT_ASSERT(number > 0);
   const double power = std::pow(10, std::floor(std::log10(number)));
   for (const double step : {1.0, 1.5, 2.0, 3.0, 5.0, 7.5}) {
     if (step * power >= number) return step * power;

@@ -16,8 +16,8 @@ Duration rounded_up(Duration time);
 // "0.06", "-1.5", "1e-07": at most three digits that count, as the rule language takes it.
 std::string as_number(double number);
 
-// Of so many measurements none lies outside of what they span. With 95 % certainty no more than this
-// share of all does, above (one_sided) or on both sides, if one does not depend on the one before.
+// No measurement lies outside the range of its own sample. So with 95 % certainty at most this share of all future ones does, above (one_sided) or on both
+// sides, if they are independent.
 double share_above(std::size_t measurements);    // the rule of three: 3/n
 double share_outside(std::size_t measurements);  // S. S. Wilks, 1941: about 4.74/n
 

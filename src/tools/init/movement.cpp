@@ -95,10 +95,9 @@ std::string interlocks_text(const Sighting& seen, Names& names) {
     proposals += fmt::format("#   INTERLOCK age({}) > 1s || {} < {}\n", topic, speed, kStandstill);
   }
   if (proposals.empty()) return "";
-  return "# proposal: nothing is begun while these command a movement. Take the # away from "
-         "those "
+  return "# proposal: begin no strategy while these command a movement. Remove the # from those "
          "that your robot obeys, and try it:\n"
-         "# nothing is begun either as long as nobody has published them.\n" +
+         "# without their messages, no strategy begins either.\n" +
          proposals;
 }
 

@@ -1,4 +1,5 @@
-// What makes a robot move, and what a draft proposes about it: that nothing is begun meanwhile.
+// Finds the signals of a robot's movement, and proposes interlocks so that no strategy begins
+// meanwhile.
 #pragma once
 
 #include <set>

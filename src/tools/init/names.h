@@ -11,8 +11,7 @@ class Names {
   // The words of the language are taken.
   Names();
 
-  // An identifier that is like `wanted`, and that nobody had yet. With a number or `suffix` where it
-  // has to be.
+  // An identifier like `wanted` that is not used yet. With a number or `suffix` if necessary.
   std::string take(const std::string& wanted, const std::string& suffix = "");
 
  private:

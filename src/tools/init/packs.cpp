@@ -98,7 +98,7 @@ class PackChoice {
     return found != seen_.robot.services.end() && found->second == type;
   }
 
-  // That `node` publishes, it alone unless `shared`.
+  // The topics that `node` publishes, it alone unless `shared`.
   std::vector<std::string> topics_of(const std::string& node, const std::string& type,
                                      bool shared = false) const {
     std::vector<std::string> topics;
@@ -110,7 +110,7 @@ class PackChoice {
     return topics;
   }
 
-  // The only topic of that type that anybody publishes; empty: there is none, or several.
+  // The only published topic of that type; empty: there is none, or several.
   std::string only_topic(const std::string& type) const {
     std::string only;
     for (const auto& each : seen_.robot.topics) {
@@ -129,7 +129,8 @@ class PackChoice {
     return silence && *silence <= patience;
   }
 
-  // Of what a node alone publishes: the first of these types that is steady. Empty: none is.
+  // Among the topics that a node alone publishes: the first of these types that is steady. Empty:
+  // none is.
   std::string steady_topic_of(const std::string& node, const std::vector<const char*>& types,
                               Duration patience) const {
     for (const char* type : types) {
@@ -224,7 +225,7 @@ class PackChoice {
         {drivers[0], clouds[0]}, came(packets));
   }
 
-  // Of an agent whose board has one node: several in a process are not declared.
+  // For an agent whose board has one node: several in a process are not declared.
   void micro_ros() {
     for (const std::string& node : of_package("micro_ros_agent")) {
       std::string topic;

@@ -26,8 +26,7 @@ struct PackUse {
 // INCLUDE "packs/lidars.rules"
 std::string include_of(const std::string& pack);
 
-// `components` are the names of the nodes that are declared, by full name. Adds to `left_out` what is
-// known and has not all that its pack needs.
+// `components` are the names of the nodes that are declared, by full name. Adds to `left_out` known nodes that lack a part that their pack needs.
 std::vector<PackUse> packs_for(const Sighting& seen,
                                const std::map<std::string, std::string>& components,
                                std::vector<std::string>& left_out);

@@ -1,4 +1,4 @@
-// What a draft is made of, so that it can be brought up to a robot that changed part by part.
+// The parts of a draft, so that it can be updated part by part when the robot has changed.
 #pragma once
 
 #include <cstdint>
@@ -19,9 +19,8 @@ struct Part {
     kLeftOut,    // what was left out, with the reasons
   };
   Kind kind = Kind::kComment;
-  // What it is about: of a component and a rule the node, of a level how rules call the status, of a
-  // limit that and the key, of a use the template and the node, or all that stands behind USE. Empty: nothing
-  // in particular.
+  // The subject: the node of a component or a rule; the rules' name of the status for a level; that and the key for a limit. For a use it is the template and
+  // the node, or the whole text after USE. Empty: none.
   std::string subject{};
   std::string text{};  // whole lines
   std::string pack{};  // of a USE: "lidars"

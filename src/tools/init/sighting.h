@@ -1,4 +1,4 @@
-// What `culprit init` saw of a robot.
+// The observations of `culprit init` about a robot.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ struct Sighting {
   LiveInventory robot;
   std::map<std::string, ros2::Rhythm> rhythms;  // by topic
   std::map<std::string, Start> starts;          // by node, of those whose process is proven
-  // Of topics that command movements, by topic and field.
+  // For topics that command movements, by topic and field.
   std::map<std::string, std::map<std::string, ros2::ValueCourse>> fields;
   std::map<ros2::Survey::StatusKey, ros2::StatusCourse> statuses;
   std::set<std::string> came_late;  // nodes that were not there yet after half of the look

@@ -8,13 +8,13 @@
 
 namespace culprit::init {
 
-// Silence is what is longer. Errors: why no rhythm can be told.
+// Silence is what is longer. Errors: why no rhythm can be found.
 Expected<Duration> silence_of(const Sighting& seen, const std::string& topic);
 
 // Messages in a second, in those that came. @pre silence_of() it is known
 double rate_of(const Sighting& seen, const std::string& topic);
 
-// What that was learned from, as comments. @pre likewise
+// The measurements behind it, as comments. @pre likewise
 std::string evidence_of_silence(const Sighting& seen, const std::string& topic);
 
 }  // namespace culprit::init

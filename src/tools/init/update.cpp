@@ -18,7 +18,8 @@
 namespace culprit::init {
 namespace {
 
-// A limit is near what was measured, or far from it, where a new one would be so many times it.
+// A limit is too near the measurements, or too far from them, where a new one would be this many
+// times it.
 constexpr double kTooShort = 2;
 constexpr double kTooLong = 0.25;
 
@@ -137,7 +138,7 @@ bool limits_fit(const std::string& before, const std::string& now) {
   });
 }
 
-// What was seen of a key, as its proposal says it.
+// The measured range of a key, as its proposal states it.
 struct Range {
   double least = 0, most = 0;
 };
@@ -151,8 +152,7 @@ std::optional<Range> range_in(const std::string& proposal) {
   return Range{number(1), number(2)};
 }
 
-// What was seen now would be within the limits that were proposed, as far away again as what was seen then
-// spans, and spans no small part of it.
+// The new range must lie within the proposed limits (the old range, widened by its span on both sides), and must not be much smaller than the old one.
 bool range_fits(const std::string& before, const std::string& now) {
   const auto old = range_in(before);
   const auto seen = range_in(now);
@@ -238,7 +238,7 @@ class Updating {
     known->text = mark->text;
   }
 
-  // That a person wrote it, or something that is about the same.
+  // Whether a person wrote it, or a part with the same subject.
   bool is_known(const Part& part) const {
     switch (part.kind) {
       case Part::Kind::kComponent:
@@ -299,7 +299,7 @@ class Updating {
     }
   }
 
-  // Of a list that is a person's by now.
+  // For a list that a person has changed.
   void note_left_out(const Part& part) {
     if (part.kind != Part::Kind::kLeftOut) return;
     for (const std::string& line : lines_in(part.text)) {
@@ -310,7 +310,7 @@ class Updating {
     }
   }
 
-  // Nothing is left out any more.
+  // Removes the list of omissions.
   void end_left_out() {
     const auto mark = mark_of({.kind = Part::Kind::kLeftOut, .subject = kAll, .text = ""});
     const auto known = std::ranges::find(marks_, mark->about, &Mark::about);
@@ -347,7 +347,7 @@ class Updating {
       const std::string node = each.node.empty() ? seen_.robot.node_of(each) : each.node;
       if (!seen_.robot.nodes.contains(node))
         update_.notes.push_back(
-            fmt::format("{} is not there now; what the file says of it stays", each.name));
+            fmt::format("{} is not there now; its lines in the file stay", each.name));
     }
   }
 

@@ -1,11 +1,11 @@
 // A rule file, brought up to a robot that changed.
 //
-//   - A node, a diagnostic, (with packs) a use or a proposal that neither the file nor its marks know is added.
-//   - What a draft wrote and nobody changed is replaced if it no longer fits: a component that is started
-//     otherwise, a rule whose topics are others, or whose limits are near what was measured or far from it; a
-//     proposal likewise; the list of what was left out if there is something else in it.
-//   - All else stays, with its layout: what a person wrote, changed or took away, and what is about a
-//     node that is not there now, which may only be ill.
+//   - A node, a diagnostic, a proposal or (with packs) a use that neither the file nor its marks know is added.
+//   - A part that a draft wrote and no person changed is replaced if it no longer fits: a component with another start
+//     command, a rule with other topics, a rule or proposal with limits near the measurements or far from them, and a
+//     list of omissions that differs.
+//   - All other lines stay, with their layout: those that a person wrote, changed or removed, and those about a node
+//     that is missing now, which may only have failed.
 #pragma once
 
 #include <cstddef>

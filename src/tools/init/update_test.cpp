@@ -169,7 +169,7 @@ RULE Mine
                               Not(HasSubstr("battery_error")), HasSubstr("\n# marks ")));
   EXPECT_THAT(now.notes, ElementsAre("lidar_in_front runs as `/opt/driver /front`, and not as its "
                                      "LAUNCH says, which stays",
-                                     "gone is not there now; what the file says of it stays"));
+                                     "gone is not there now; its lines in the file stay"));
 }
 
 TEST(Update, ANodeThatIsGoneMayOnlyBeIllSoItsLinesStay) {
@@ -180,7 +180,7 @@ TEST(Update, ANodeThatIsGoneMayOnlyBeIllSoItsLinesStay) {
   seen.robot.topics.erase("/front/scan");
   const Updated now = updated(text, seen);
   EXPECT_EQ(now.text, text);
-  EXPECT_THAT(now.notes, ElementsAre("front is not there now; what the file says of it stays"));
+  EXPECT_THAT(now.notes, ElementsAre("front is not there now; its lines in the file stay"));
 }
 
 TEST(Update, ANewNodeHasAFreeName) {

@@ -70,7 +70,7 @@ OpenCall open_call(std::string_view text) {
   return call;
 }
 
-// What fits at the end of one line's text.
+// The proposals for the end of one line's text.
 class Completion {
  public:
   Completion(const Document& document, std::string_view before, const LiveInventory* robot,
@@ -93,9 +93,10 @@ class Completion {
   std::vector<Proposal> find() {
     if (words_.empty() && is_step_) return keywords({"ADAPTATION"});
     if (words_.empty()) {
-      return keywords({"RULE", "POLICIES", "TRIGGER", "STRATEGY", "ADAPTATION", "THEN", "COMPONENT",
-                       "SIGNAL", "CONST", "DEPENDENCY", "IGNORE", "INTERLOCK", "ROBOT", "CYCLE",
-                       "INCLUDE", "USE", "TEMPLATE", "END"});
+      return keywords({"RULE",      "POLICIES", "TRIGGER", "STRATEGY",   "ADAPTATION", "THEN",
+                       "COMPONENT", "SIGNAL",   "CONST",   "DEPENDENCY", "GROUP",      "IGNORE",
+                       "INTERLOCK", "ABORT",    "DRILL",   "ROBOT",      "CYCLE",      "INCLUDE",
+                       "USE",       "TEMPLATE", "END"});
     }
     if (words_.front() == "INCLUDE") return includable();
     if (words_.front() == "USE") return use();
@@ -133,8 +134,22 @@ class Completion {
       if (words_.size() == 2) return keywords({"ON"});
       return components();
     }
+    if (statement == "GROUP") {
+      if (words_.size() == 1) return {};
+      return before_.find('}') != std::string_view::npos && words_.back() != "MANAGER"
+                 ? keywords({"MANAGER"})
+                 : components();
+    }
+    if (statement == "DRILL") {
+      if (words_.size() == 1) return components();
+      if (words_.size() == 2) return keywords({"set_parameter", "without", "limit"});
+      return words_.back() == "without"
+                 ? keywords({"kill", "hang", "slow", "deactivate", "restart"})
+                 : std::vector<Proposal>{};
+    }
     const bool has_expression = statement == "TRIGGER" || statement == "CONST" ||
-                                statement == "STRATEGY" || statement == "INTERLOCK";
+                                statement == "STRATEGY" || statement == "INTERLOCK" ||
+                                statement == "ABORT";
     return has_expression ? expression() : std::vector<Proposal>{};
   }
 

@@ -1,4 +1,4 @@
-// What may be typed at a place.
+// Completion: the proposals at a place.
 #pragma once
 
 #include <string>
@@ -35,7 +35,7 @@ std::vector<Proposal> proposals(const Document& document, std::uint32_t offset,
                                 const LiveInventory* robot = nullptr,
                                 const std::vector<std::string>& files = {});
 
-// What an editor has to replace by the proposal: what is typed of it already.
+// The text that an editor must replace by the proposal: the part of it that is typed already.
 Span typed_part(const Document& document, std::uint32_t offset, const Proposal& proposal);
 
 }  // namespace culprit::lsp

@@ -1,4 +1,4 @@
-// One open rule file: its text, what it says, and what is wrong with it.
+// One open rule file: its text, its declarations, and its diagnostics.
 #pragma once
 
 #include <map>
@@ -29,8 +29,8 @@ struct Document {
   Component component_called(const std::string& name) const;
   // Every place that names something, found when it is first asked for: not at each keystroke.
   const std::vector<Occurrence>& names() const;
-  // What included files and templates declare, as it is called in these rules. Their spans are of
-  // `rules.source`.
+  // Declarations of included files and templates, under their names in these rules. Their spans are
+  // of `rules.source`.
   const std::vector<Occurrence>& names_elsewhere() const;
   // Checks against the robot too, from now on. False if that changes nothing.
   bool compare_with(const LiveInventory& robot);
@@ -39,8 +39,8 @@ struct Document {
   const syntax::File& file() const { return written_.file; }
   Expansion rules;  // with all that the file includes and uses put in
   Checked checked;  // its diagnostics are of `rules`
-  // Of the file as it is written. What is wrong in a file that it includes is shown at the INCLUDE,
-  // and in that file.
+  // Diagnostics of the file itself. A mistake in an included file is shown at the INCLUDE, and in
+  // that file.
   std::vector<Diagnostic> diagnostics;
   std::map<std::uint32_t, std::vector<Diagnostic>> elsewhere;  // by the file of rules.source
 

@@ -89,7 +89,7 @@ std::string of_component(const Document& document, const Occurrence& thing) {
   return strategies.empty() ? text : text + "\n\nAdapted by " + strategies + ".";
 }
 
-// What the file and the language say.
+// The meaning according to the file and the language.
 std::string meaning(const Document& document, const Occurrence& thing) {
   switch (thing.kind) {
     case OccurrenceKind::kFunction: {

@@ -1,4 +1,4 @@
-// What a thing is, for the reader who points at it.
+// The description of a name, for the reader who points at it.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace culprit::lsp {
 
-// In Markdown; empty if there is nothing to say. What it is now is added if `robot` is not null.
+// In Markdown; empty if there is none. Its current state is added if `robot` is not null.
 std::string hover(const Document& document, const Occurrence& thing,
                   const LiveInventory* robot = nullptr);
 

@@ -41,7 +41,7 @@ std::string of_topic(const Document& document, const Occurrence& thing,
   if (found == robot.topics.end()) return "Not on the robot now.";
   const LiveInventory::Topic& topic = found->second;
   std::string text = "`" + topic.type + "`";
-  if (!topic.is_published()) return text + ", published by nobody now.";
+  if (!topic.is_published()) return text + ", not published now.";
   if (!topic.rate) return text + ".";
   char rate[32];
   std::snprintf(rate, sizeof rate, ", %.1f Hz now.", *topic.rate);
@@ -54,7 +54,7 @@ std::string of_status(const std::string& name, const LiveInventory& robot) {
     if (status.is_called(name) && status.level < kLevels.size())
       return "Level " + std::to_string(status.level) + " (" + kLevels[status.level] + ") now.";
   }
-  return "Not heard on the robot.";
+  return "Not observed on the robot.";
 }
 
 std::string of_service(const Document& document, const Occurrence& thing,

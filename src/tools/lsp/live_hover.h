@@ -1,4 +1,4 @@
-// What a thing of a rule file is on the robot now.
+// The current state on the robot of a name in a rule file.
 #pragma once
 
 #include <string>

@@ -36,7 +36,7 @@ std::vector<Proposal> live_parameters(const LiveInventory& robot, const Componen
 
 std::vector<Proposal> live_routines(const LiveInventory& robot) {
   std::vector<Proposal> out;
-  // What every node offers has adaptations of its own.
+  // Every node's standard services have adaptations of their own.
   const auto is_standard = [](const std::string& type) {
     return type.starts_with("rcl_interfaces/") || type.starts_with("lifecycle_msgs/") ||
            type.starts_with("type_description_interfaces/");

@@ -14,9 +14,8 @@ namespace culprit::lsp {
 // The largest message that is read, in bytes.
 inline constexpr std::size_t kMaxMessage = 128u << 20;
 
-// The next message; nothing at the end of the stream. What is no JSON comes as a discarded value
-// (Json::is_discarded). An error: the stream is no sequence of messages, and cannot be
-// read on.
+// The next message; nothing at the end of the stream. Invalid JSON comes as a discarded value
+// (Json::is_discarded). An error: the stream is no sequence of messages, and cannot be read on.
 Expected<std::optional<Json>> read_message(std::istream& in);
 
 void write_message(std::ostream& out, const Json& message);

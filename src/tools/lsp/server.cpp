@@ -24,8 +24,7 @@ constexpr int kRequestFailed = -32803;
 
 constexpr const char* kQuickFix = "quickfix";  // CodeActionKind
 
-// The value at a path of members; null if it is not there. What a client sends is not trusted to
-// have any shape.
+// The value at a path of members; null if it is not there. A client's message may have any shape.
 using JsonPath = std::initializer_list<const char*>;
 const Json* at(const Json& value, const JsonPath& path) {
   const Json* here = &value;
@@ -151,7 +150,7 @@ int item_kind(Proposal::Kind kind) {
   return 1;
 }
 
-// What editors colour names by; the order is that of Occurrence::Kind.
+// The types by which editors colour names; the order is that of Occurrence::Kind.
 constexpr std::array kTokenTypes = {"enumMember", "class",     "variable", "string", "property",
                                     "namespace",  "method",    "function", "string", "string",
                                     "macro",      "parameter", "string"};
@@ -221,7 +220,7 @@ bool Server::handle(const Json& message) {
     return true;
   }
   if (method.empty()) return true;  // an answer to what we never asked
-  // Nothing else may be an id, and it is sent back.
+  // An id must be a number or a string; it is sent back.
   const bool is_id = id->is_number() || id->is_string();
   Json reply{{"jsonrpc", "2.0"}, {"id", is_id ? *id : Json(nullptr)}};
   reply.update(answer(method, params != nullptr ? *params : kNone));
@@ -338,7 +337,8 @@ void Server::publish(const std::set<std::string>& uris) {
   for (const std::string& uri : uris) publish(uri);
 }
 
-// What is wrong with the document, or with those that include it and is written in it; each once.
+// Publishes the diagnostics of the document, and those that its including documents have in it;
+// each once.
 void Server::publish(const std::string& uri) {
   Json diagnostics = Json::array();
   std::set<std::tuple<Code, TextPosition, TextPosition>> said;
@@ -511,7 +511,7 @@ Json Server::formatting(const Document& document) const {
   return Json::array({{{"range", to_json(document.source(), {0, end})}, {"newText", *text}}});
 }
 
-// The fixes of what is wrong within the range that the client asks about.
+// The fixes of mistakes within the range that the client asks about.
 Json Server::code_actions(const std::string& uri, const Document& document,
                           const Json& params) const {
   Json actions = Json::array();

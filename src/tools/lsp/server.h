@@ -30,11 +30,11 @@ class Server {
   // the client said that the server has to end.
   bool handle(const Json& message);
 
-  // What the robot has now, for completion, hover and diagnostics. Diagnostics that change are
-  // published.
+  // Takes the robot's current state for completion, hover and diagnostics. Diagnostics that change
+  // are published.
   void see(LiveInventory robot);
-  // What of a robot the open documents name. A document that does not parse names what it named
-  // before.
+  // The robot's names in the open documents. A document that does not parse keeps its earlier
+  // names.
   LiveInterest interest() const;
 
   // 0 if the client asked for the shutdown first, as it has to.

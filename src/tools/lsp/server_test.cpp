@@ -456,7 +456,7 @@ TEST(LspReuse, ShowsMistakesInTheFileThatHasThem) {
   editor.open(kDriverUri, "SIGNAL charge TOPIC /battery\n");
   EXPECT_THAT(editor.said()[kDriverUri], ElementsAre(HasSubstr("0: expected FIELD")));
   EXPECT_THAT(editor.said()[kUri], Contains(HasSubstr("0: /packs/driver.rules:1: expected FIELD")));
-  // What is open counts, not the disk; once it is mended there, all is well.
+  // An open document overrides the disk; once it is mended there, all is well.
   editor.open(kDriverUri, kDriver);
   EXPECT_TRUE(editor.said()[kDriverUri].empty());
   EXPECT_TRUE(editor.said()[kUri].empty());

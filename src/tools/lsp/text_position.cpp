@@ -3,8 +3,8 @@
 namespace culprit::lsp {
 namespace {
 
-// Of the UTF-8 character that begins with `lead`. Four bytes are two units (a surrogate pair); a
-// byte that only continues a character is none.
+// The UTF-16 units of the UTF-8 character that begins with `lead`. Four bytes are two units (a
+// surrogate pair); a continuation byte is none.
 std::uint32_t units(unsigned char lead) {
   if ((lead & 0xC0) == 0x80) return 0;
   return lead >= 0xF0 ? 2 : 1;

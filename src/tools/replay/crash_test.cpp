@@ -134,7 +134,7 @@ RULE CameraDead
       ADAPTATION camera redeploy 2
 )";
 
-// What a run that ended in the middle of a redeploy leaves to one that begins `later`.
+// The state that a run interrupted in a redeploy leaves to one that begins `later`.
 journal::Recovery left_behind(Duration later, std::optional<journal::Ending> ending,
                               std::optional<int> manager_before = {}) {
   const TestFolder folder;
@@ -183,7 +183,7 @@ TEST(Crash, WhatWasCutShortLongAgoIsNotTakenUpAgain) {
   const journal::Recovery found = left_behind(61s, {});
   EXPECT_TRUE(found.interrupted.empty());
   EXPECT_THAT(found.given_up, testing::ElementsAre("redeploy for CameraDead: that was more than "
-                                                   "1min ago, so it is not gone on with"));
+                                                   "1min ago, so it is not continued"));
 }
 
 // On one machine, with journals of their own or with one for both; or on two machines.
@@ -193,9 +193,9 @@ TEST(Crash, WhatWasCutShortBeforeAnotherCulpritManagedIsNotTakenUpAgain) {
   for (const int manager : {kAnother, kOnAnotherMachine}) {
     const journal::Recovery found = left_behind(1s, {}, manager);
     EXPECT_TRUE(found.interrupted.empty());
-    EXPECT_THAT(found.given_up, testing::ElementsAre("redeploy for CameraDead: another culprit has "
-                                                     "managed the robot since, so it is not gone "
-                                                     "on with"));
+    EXPECT_THAT(found.given_up,
+                testing::ElementsAre("redeploy for CameraDead: another culprit has "
+                                     "managed the robot since, so it is not continued"));
   }
   EXPECT_EQ(left_behind(1s, {}, test::kProcess).interrupted.size(), 1u)
       << "whose journal that is managed until now";

@@ -40,7 +40,7 @@ std::optional<Said> said_by(const Event& event, const RuleSet& rules, double wal
   return std::nullopt;
 }
 
-// What only some runs lack was there at times.
+// An input that only some runs lack was there at times.
 void keep_common(std::vector<std::string>& missing, const std::vector<std::string>& others) {
   std::erase_if(missing, [&](const std::string& each) {
     return std::ranges::find(others, each) == others.end();

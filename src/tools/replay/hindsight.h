@@ -1,4 +1,4 @@
-// What rules would have seen and begun in the last while, had they run then: for whoever writes them.
+// The failures that rules would have detected, and the strategies they would have begun, in the last while: for authors of rules.
 #pragma once
 
 #include <functional>
@@ -31,9 +31,8 @@ struct Hindsight {
 // By the settings that a run was recorded with. Errors: they cannot be read.
 using PlannerOf = std::function<Expected<std::unique_ptr<const Planner>>(const journal::Session&)>;
 
-// Since `since` (nanoseconds since 1970), over all runs of that time; each only advises on what was observed. `rules`:
-// null stands for those that ran then. What was observed before is known, but for the messages of topics: ages and rates
-// begin anew. Errors: nothing was recorded since, or it cannot be read.
+// Since `since` (nanoseconds since 1970), over all runs of that time; each only advises on the observations. `rules`: null stands for those that ran then.
+// Earlier observations are known, except the messages of topics: ages and rates begin anew. Errors: the journal has no rows since then, or is unreadable.
 Expected<Hindsight> hindsight(const journal::Reader& journal, const RuleSet* rules,
                               const PlannerOf& planner_of, std::int64_t since);
 

@@ -1,4 +1,4 @@
-// What a crash must not make culprit forget: what it spent, what it tried, and what people told it.
+// State that must survive a crash: spent budgets, earlier attempts, and people's orders.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -52,7 +52,7 @@ struct Memory : testing::Test {
     for (const std::string& line : robot.said) text += line + "\n";
     return text;
   }
-  // Of people, that hold on.
+  // Orders of people that still hold.
   std::ptrdiff_t orders() const {
     const History& past = life->recovery.past;
     return std::count_if(past.begin(), past.end(), [](const Event& event) {
@@ -103,7 +103,7 @@ TEST_F(Memory, OfAFailureThatIsGoneIsNone) {
   robot["camera"].fault = "";
   crash();
   robot.run_for(5s);
-  EXPECT_EQ(robot.count("Silent went away"), 1u) << "and that is said" << transcript();
+  EXPECT_EQ(robot.count("Silent cleared"), 1u) << "and that is said" << transcript();
   robot["camera"].fault = "a person";
   run_until_said("Silent detected");
   crash();

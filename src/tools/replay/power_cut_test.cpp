@@ -1,7 +1,5 @@
-// The robot's computer loses its power after each step of culprit that matters. What was not synced is
-// dropped, torn or there out of order; the processes of this computer are gone, and nodes on others
-// live on. Whatever had to be on the disk first is on record, nothing is gone on with, and the robot
-// ends healthy.
+// The robot's computer loses its power after each step of culprit that matters. Unsynced writes are dropped, torn or there out of order; the processes of this
+// computer have exited, and nodes on others live on. Rows that had to be on the disk first are there, no attempt is continued, and the robot ends healthy.
 #include <fstream>
 #include <random>
 
@@ -116,7 +114,7 @@ bool live_lose_power_and_begin_anew(int steps, unsigned seed) {
   const auto verified =
       value_of(journal::verify(value_of(journal::Reader::open(first.remains())), {}));
   EXPECT_TRUE(verified.findings.empty()) << what << ": " << verified.findings.front();
-  // What was started with the machine, and what went on elsewhere.
+  // The processes that started with the machine, and those that went on elsewhere.
   robot["camera"].end();
   robot["camera"].fault = "";
   robot.run_for(5s);

@@ -26,7 +26,7 @@ class Recording {
   Expected<void> rewind();
   // False at the end of the run. Errors name the row.
   Expected<bool> next(journal::Step& step);
-  // That the last step is in.
+  // The row that the last step is in.
   std::int64_t row() const { return entry_->id; }
 
   // Rows that a `gap` says were lost since rewind(): the replay need not be exact then.

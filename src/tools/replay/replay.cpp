@@ -12,7 +12,7 @@
 namespace culprit::replay {
 namespace {
 
-// What the events that follow row `row` say, up to the next steps.
+// The texts of the events after row `row`, up to the next steps.
 Expected<std::vector<std::string>> said_after(const journal::Reader& journal, std::int64_t row) {
   std::vector<std::string> said;
   auto rows = journal.entries(journal::Which::kAll, row + 1);
@@ -27,8 +27,8 @@ Expected<std::vector<std::string>> said_after(const journal::Reader& journal, st
   return said;
 }
 
-// What was observed before the part of a run that is looked at, as if all of it were seen at its beginning. Of what is
-// read again and again the last counts; messages of topics, and what was asked and answered, are over.
+// The observations before the examined part of a run, as if all were made at its beginning. Among repeated readings the last counts; messages of topics,
+// requests and replies are over.
 class Prelude {
  public:
   void add(std::span<const Observation> observations) {
@@ -48,7 +48,7 @@ class Prelude {
   }
 
  private:
-  // Whose reading it is, by its number.
+  // The number of the thing that was read.
   static std::optional<std::size_t> read_of(const Observation& observation) {
     if (const auto* signal = std::get_if<SignalRead>(&observation.what))
       return signal->signal.index;
@@ -105,6 +105,9 @@ std::unique_ptr<Manager> manager_for(const journal::Session& session, const Rule
   options.start = session.watched_since.value_or(session.start);
   options.discovery = session.discovery;
   options.forgetting = session.forgetting;
+  const std::int64_t start = session.start.time_since_epoch().count();
+  options.incidents = {session.wall - start, session.boot + " " + std::to_string(session.process) +
+                                                 " " + std::to_string(start)};
   auto manager = std::make_unique<Manager>(rules, std::move(planner), options);
   restore(*manager, session.learned, rules,
           session.fleet_context ? Priors::kAsLearned : Priors::kOfRules);
@@ -193,7 +196,7 @@ Expected<std::vector<std::string>> advise(Recording& recording, const RuleSet& r
   for (; more && *more; more = recording.next(step)) {
     // Other rules have other deadlines. A damaged clock may leap over millions of them.
     constexpr int kMostDeadlines = 100'000;
-    // Nobody would have decided anything in a sleep.
+    // No decision is made during a sleep.
     const bool has_slept = !step.observations.empty() &&
                            std::holds_alternative<Overslept>(step.observations.front().what);
     for (int i = 0; !has_slept && i < kMostDeadlines && manager->next_deadline() < step.now; ++i) {

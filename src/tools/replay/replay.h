@@ -20,7 +20,7 @@ struct Freedom {
 std::unique_ptr<Manager> manager_for(const journal::Session& session, const RuleSet& rules,
                                      std::unique_ptr<const Planner> planner,
                                      const Freedom& freedom);
-// What is learned grows from the priors that `rules` have, or from those that it grew from.
+// Beliefs grow from the priors of `rules`, or from the recorded ones.
 enum class Priors : std::uint8_t { kOfRules, kAsLearned };
 void restore(Manager& manager, const journal::Learned& learned, const RuleSet& rules,
              Priors priors = Priors::kOfRules);
@@ -48,15 +48,15 @@ Expected<Repetition> repeat(Recording& recording, const journal::Reader& journal
                             std::unique_ptr<const Planner> planner,
                             const Governor::Options& governor, const EventSink& sink = {});
 
-// What part of a run is looked at.
+// The examined part of a run.
 struct Stretch {
   Time from = kLongAgo;    // what was before is known, but for the messages of topics
   Time* newest = nullptr;  // is told when the last step was
 };
 
-// What `rules` and `planner` would have said to do about what was observed in the run. Nothing is
-// done in a recording, so they only advise: a failure is as long there as it was then. `rules` must
-// outlive the call; gives what they read and the recording does not have.
+// The advice of `rules` and `planner` about the observations of the run. A recording cannot change,
+// so they only advise: a failure lasts as long as it did then. `rules` must outlive the call;
+// returns the inputs that they read and the recording lacks.
 Expected<std::vector<std::string>> advise(Recording& recording, const RuleSet& rules,
                                           std::unique_ptr<const Planner> planner,
                                           const EventSink& sink, Stretch stretch = {});

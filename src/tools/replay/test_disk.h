@@ -5,9 +5,8 @@
 //     ...
 //     disk.cut(journal, remains, random);      // what the machine finds when it is started again
 //
-// Of what was written to a database and its write-ahead log since the last sync of each, every write
-// is there or not, or some of its sectors are; later writes may be there without earlier ones. What
-// SQLite does meanwhile goes to the real files as ever.
+// For writes to a database and its write-ahead log since the last sync of each: every write is there or not, or some of its sectors are; later writes may be
+// there without earlier ones. SQLite still works on the real files meanwhile.
 #pragma once
 
 #include <filesystem>
@@ -36,7 +35,7 @@ class PowerCutDisk {
   void cut(const std::filesystem::path& from, const std::filesystem::path& to,
            std::mt19937& random);
 
-  // Of the files behind it.
+  // For the files behind it.
   void wrote(const std::string& path, std::size_t at, std::string bytes);
   void truncated(const std::string& path, std::size_t size);
   void synced(const std::string& path);

@@ -94,7 +94,8 @@ class Life {
     };
   }
 
-  // What its journal has of its last step if it need not have it: only what stands beside it then.
+  // Whether its journal has its last step although it need not, or only the files beside the
+  // journal do.
   enum class Journal : std::uint8_t { kHasIt, kBehind };
   // After so many steps that ask or say anything; whether its last requests still go out.
   void die_after(int steps, bool sends, Journal journal = Journal::kHasIt) {

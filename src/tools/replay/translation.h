@@ -14,11 +14,12 @@ class Translation {
  public:
   Translation(const RuleSet& from, const RuleSet& to);
 
-  // Nothing where the other rules do not speak of it. Replies answer requests that the other
-  // manager did not make, and orders were given about what the recorded one did: both go.
+  // Empty if the other rules do not refer to it. Replies are dropped, for they answer requests that
+  // the other manager did not make. Orders are dropped, too, for they reacted to the recorded
+  // manager.
   std::optional<Observation> operator()(const Observation& observation) const;
 
-  // What the other rules read and the recording does not have: "signal exposure", "topic /scan".
+  // Inputs of the other rules that the recording lacks: "signal exposure", "topic /scan".
   const std::vector<std::string>& missing() const { return missing_; }
 
  private:

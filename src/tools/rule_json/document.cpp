@@ -11,11 +11,11 @@ namespace {
 
 constexpr std::size_t kMaxMembers = 64;
 
-// Reads a text and keeps nothing but what is wrong with it.
+// Reads a text and keeps only its mistakes.
 class Inspector : public nlohmann::json_sax<Json> {
  public:
   const std::string& complaint() const { return complaint_; }
-  // Of the byte where the text is no JSON; 0 if it is.
+  // The offset of the first byte that is no JSON; 0 if all is.
   std::size_t offset() const { return offset_; }
 
   bool null() override { return true; }

@@ -38,8 +38,13 @@ std::vector<Form> table() {
         {"LIFECYCLE", "lifecycle", kWord}},
        {}},
       {"DEPENDENCY", {{"", "consumer", kName}, {"ON", "producers", kNames}}, {}, {}},
+      {"GROUP", {name, {"", "members", kBraced}, {"MANAGER", "manager", kWord}}, {}, {}},
       {"IGNORE", {{"TOPIC", "topics", kNames}}, {}, {}},
       {"INTERLOCK", {{"", "expression", kExpression}}, {}, {}},
+      {"ABORT", {{"", "expression", kExpression}}, {}, {}},
+      {"DRILL", {component, type, parameter, {"", "value", kExpression}}, {}, {"set_parameter"}},
+      {"DRILL", {component, type, {"", "fault", kWord}}, {}, {"without"}},
+      {"DRILL", {component, type, {"", "times", kNumber}}, {}, {"limit"}},
       {"SIGNAL", {name, {"DIAGNOSTIC", "diagnostic", kName}, {"KEY", "key", kName}}, bounds, {}},
       {"SIGNAL", {name, {"TOPIC", "topic", kName}, {"FIELD", "field", kName}}, bounds, {}},
       {"SIGNAL", {name, {"PARAMETER", "component", kName}, parameter}, bounds, {}},
@@ -81,7 +86,7 @@ std::vector<Form> table() {
       {"ADAPTATION",
        {component, type, impact},
        {},
-       {"activate", "deactivate", "restart", "redeploy", "start", "stop"}},
+       {"activate", "deactivate", "restart", "redeploy", "start", "stop", "start_group"}},
   };
 }
 

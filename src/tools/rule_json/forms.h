@@ -27,6 +27,7 @@ enum class Part : std::uint8_t {
   kRange,       // low..high: an array of two numbers
   kParameters,  // (a, b = 1): an array of strings, and of {"name", "usual"}
   kArguments,   // (a, b): an array of names
+  kBraced,      // { a, b }: an array of identifiers
   kFlag         // nothing but the word: true
 };
 

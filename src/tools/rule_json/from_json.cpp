@@ -85,7 +85,8 @@ class Converter {
     places_.push_back(at);
   }
 
-  // What no single line can tell: a strategy outside of a rule, a word of the language as a name.
+  // Finds the mistakes that no single line shows: a strategy outside of a rule, a word of the
+  // language as a name.
   void parse_all() {
     const Source source(name_, text_);
     std::vector<Diagnostic> diagnostics;

@@ -10,9 +10,8 @@
 
 namespace culprit::rule_json {
 
-// `name` is what messages call the document. Errors: what is wrong, a line for each mistake, with
-// its place as a JSON pointer (RFC 6901). What is given parses; whether it makes sense is up to a
-// check.
+// `name` is what messages call the document. Errors: a line for each mistake, with its place as a
+// JSON pointer (RFC 6901). The result parses; a check must find out whether it makes sense.
 Expected<std::string> to_rules(const std::string& name, const std::string& json);
 
 }  // namespace culprit::rule_json

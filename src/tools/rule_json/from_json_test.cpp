@@ -1,4 +1,4 @@
-// JSON that nobody exported: each mistake has its place, and nothing is slipped in.
+// JSON that was not exported: each mistake has its place, and no statement is injected.
 #include "rule_json/from_json.h"
 
 #include <gmock/gmock.h>
@@ -61,7 +61,7 @@ TEST(FromJson, SaysWhatADocumentIs) {
               HasSubstr("/end/0: this is no line of comment"));
 }
 
-// One statement, and what is said of it.
+// One statement, and the message about it.
 TEST(FromJson, SaysWhichMemberIsWrongAndWhatItHasToBe) {
   const std::vector<std::pair<const char*, const char*>> cases = {
       {R"(1)", "/statements/0: this is no object"},

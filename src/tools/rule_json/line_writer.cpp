@@ -39,6 +39,8 @@ const char* describe(Part part) {
       return "an array of names, or of objects with a \"name\" and its \"usual\" value";
     case Part::kArguments:
       return "an array of names, numbers as texts, and quoted texts";
+    case Part::kBraced:
+      return "an array of the names of components";
     case Part::kFlag:
       return "true or false";
   }
@@ -117,6 +119,18 @@ Words parameter_words(const Json& value) {
   return name && usual ? Words(*name + " = " + *usual) : std::nullopt;
 }
 
+// "{ a, b }"
+Words braced_words(const Json& value) {
+  if (!value.is_array() || value.empty()) return std::nullopt;
+  std::string all;
+  for (const Json& each : value) {
+    const Words words = string_words(each, is_word);
+    if (!words) return std::nullopt;
+    all += (all.empty() ? "{ " : ", ") + *words;
+  }
+  return all + " }";
+}
+
 Words words(Part part, const Json& value) {
   switch (part) {
     case Part::kWord:
@@ -146,6 +160,8 @@ Words words(Part part, const Json& value) {
       return list_words(value, parameter_words);
     case Part::kArguments:
       return list_words(value, name_words);
+    case Part::kBraced:
+      return braced_words(value);
     case Part::kFlag:
       return value == true ? Words("") : std::nullopt;
   }
@@ -233,7 +249,7 @@ std::string LineWriter::write() {
   return line_;
 }
 
-// Of those of the statement's keyword, the one of which most is there.
+// Among the forms of the statement's keyword, the one with most members present.
 const Form* LineWriter::choose_form() const {
   const auto keyword = statement_.find("statement");
   const Form* best = nullptr;

@@ -30,7 +30,7 @@ class LineWriter {
   LineWriter(const Json& statement, Complain complain)
       : statement_(statement), complain_(std::move(complain)) {}
 
-  // Of no use if there was a complaint.
+  // Must not be used after a complaint.
   std::string write();
 
  private:

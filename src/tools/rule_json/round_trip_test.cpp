@@ -45,7 +45,7 @@ std::string imported(const std::string& json) {
   return rules ? *rules : "";
 }
 
-// What the published schema says is wrong with `json`; empty if nothing.
+// The complaints of the published schema about `json`; empty if there are none.
 std::string schema_complaints(const std::string& json) {
   static const auto kSchema = [] {
     auto schema = std::make_unique<valijson::Schema>();

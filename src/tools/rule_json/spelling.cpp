@@ -20,8 +20,8 @@ bool is_token(std::string_view text, Token::Kind kind) {
 
 syntax::Name read_name(std::string_view text) { return Scanner(text, whole(text)).next_name(); }
 
-// `value` if it is written back as `text`. What begins with a quote is always a spelling, so that
-// nothing is two things.
+// `value` if it is written back as `text`. A text that begins with a quote is always a spelling, so
+// that no value has two meanings.
 Json value_or_spelling(const std::string& value, std::string_view text,
                        std::string_view rewritten) {
   const bool is_plain = !value.starts_with('"') && rewritten == text;

@@ -16,10 +16,10 @@ std::string in_quotes(std::string_view value);
 // A name as it is written: as it is, or in quotes where it would be read otherwise.
 std::string spelled(std::string_view name);
 
-// What `text`, a quoted text or a name of a rule file, is in JSON.
+// The JSON of `text`, a quoted text or a name of a rule file.
 Json text_to_json(std::string_view text);
 Json name_to_json(std::string_view text);
-// What `text`, a number that may have a sign, is in JSON.
+// The JSON of `text`, a number that may have a sign.
 Json number_to_json(const std::string& text);
 
 // Whether `text` is a whole and proper one, and nothing else. None holds the end of a line.

@@ -38,14 +38,14 @@ class StatementReader {
   bool fits(const Form& form) const {
     if (text(0) != form.keyword) return false;
     if (!form.types.empty()) {
-      // Of two forms of one type, one has more parts.
+      // If two forms have one type, one has more parts.
       const bool is_fixed = std::none_of(form.fixed.begin(), form.fixed.end(), [](const Clause& c) {
         return c.part == Part::kExpression;
       });
       return (!is_fixed || lexemes_.size() == form.fixed.size() + 1) &&
              std::find(form.types.begin(), form.types.end(), text(2)) != form.types.end();
     }
-    // Of the forms of one keyword, each has a word of its own behind the first part.
+    // The forms of one keyword each have a word of their own after the first part.
     return form.fixed.size() < 2 || form.fixed[1].word.empty() || text(2) == form.fixed[1].word;
   }
 
@@ -55,7 +55,7 @@ class StatementReader {
     for (std::size_t i = 0; i < form.fixed.size(); ++i) {
       const Clause& clause = form.fixed[i];
       if (!clause.word.empty()) take();
-      // What stands behind an expression are single lexemes.
+      // All parts after an expression are single lexemes.
       const std::size_t behind = form.fixed.size() - i - 1;
       statement[std::string(clause.member)] = part(clause.part, lexemes_.size() - behind);
     }
@@ -115,13 +115,22 @@ class StatementReader {
         for_each_in_parentheses([&] { arguments.push_back(name_to_json(take())); });
         return arguments;
       }
+      case Part::kBraced: {
+        Json members = Json::array();
+        while (text(next_) != "}") {
+          take();  // the brace, or a comma
+          members.push_back(take());
+        }
+        take();
+        return members;
+      }
       case Part::kFlag:
         return true;
     }
     return {};
   }
 
-  // Nothing, if there are no parentheses.
+  // Does nothing if there are no parentheses.
   template <class TakeOne>
   void for_each_in_parentheses(TakeOne take_one) {
     if (next_ == lexemes_.size() || lexemes_[next_].kind != Lexeme::Kind::kSymbol) return;

@@ -1,4 +1,5 @@
-// What follows ADAPTATION or STRATEGY on a line -> how the robot answers, and what that heals.
+// Reads the text after ADAPTATION or STRATEGY on a line: the robot's answer, and the failure that
+// it heals.
 #pragma once
 
 #include "language/line_reader.h"

@@ -1,4 +1,5 @@
-// What follows the subject on a TOPIC, SIGNAL, LEVEL or PARAMETER line -> its course over time.
+// Reads the text after the subject on a TOPIC, SIGNAL, LEVEL or PARAMETER line: its course over
+// time.
 #pragma once
 
 #include <optional>

@@ -125,7 +125,7 @@ std::string what_is_said_of(const Event& event, StrategyId strategy, const RuleS
   return candidate == nullptr ? "" : describe_exclusion(*candidate, rules);
 }
 
-// What the plans said of the strategy, each reason once.
+// The plans' reasons about the strategy, each once.
 std::string what_was_said_of(StrategyId strategy, std::span<const Event> events,
                              const RuleSet& rules) {
   std::vector<std::string> reasons;

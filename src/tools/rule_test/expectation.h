@@ -1,4 +1,4 @@
-// What a test expects the manager to do, and whether it did.
+// A test's expectation about the manager, and whether it is met.
 #pragma once
 
 #include <optional>
@@ -38,8 +38,8 @@ struct Expectation {
   Span span;                   // where it stands in the test file
 };
 
-// Nothing if `events` meet the expectation; otherwise what happened instead, in one line. `events`
-// are those of a whole test, which started at the clock's zero.
+// Empty if `events` meet the expectation; otherwise the deviation, in one line. `events` are those
+// of a whole test, which started at the clock's zero.
 std::optional<std::string> disappointment(const Expectation& expectation,
                                           std::span<const Event> events, const RuleSet& rules);
 

@@ -1,4 +1,4 @@
-// What follows EXPECT on a line -> an expectation.
+// Reads the text after EXPECT on a line.
 #pragma once
 
 #include <optional>

@@ -15,7 +15,7 @@ struct Part {
   Suite suite;
 };
 
-// The tests as they are read for one rule file. Nothing if there are errors.
+// The tests as they are read for one rule file. Empty if there are errors.
 std::optional<Part> read_part(const Source& source, const std::string& rules_path, Colour colour,
                               std::string& complaints) {
   const auto rules = rule_files::read(rules_path);

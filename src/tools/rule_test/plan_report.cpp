@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMostNearTriggers = 3;
 
-// What triggers read and nobody has told yet.
+// Inputs of triggers without a value.
 std::vector<std::string> unknown_inputs(const Knowledge& knowledge) {
   std::vector<std::string> unknown;
   for (std::size_t i = 0; i < knowledge.rules.inputs.size(); ++i) {
@@ -239,7 +239,7 @@ std::string plan_as_text(const PlanReport& report) {
   for (const plan::ExplainedDecision& explained : report.decisions)
     out += as_text(explained, report);
   if (report.decisions.empty()) {
-    out += "Nothing waits for a decision.\n";
+    out += "No failure awaits a decision.\n";
     const auto near = near_triggers(report.knowledge, kMostNearTriggers);
     for (const NearTrigger& n : near)
       out += (&n == &near.front() ? "Nearest to a failure:\n  " : "  ") + nearness(n, rules) + "\n";

@@ -11,8 +11,8 @@
 namespace culprit {
 
 struct PlanReport {
-  // Finds the decisions, and what would flip them. What the governor withholds is not chosen;
-  // `held_back` says why nothing is begun at all now. `knowledge` must outlive the report.
+  // Finds the decisions, and what would flip them. A strategy that the governor withholds is not
+  // chosen; if none may begin now, `held_back` says why. `knowledge` must outlive the report.
   PlanReport(const Planner& planner, std::vector<RuleId> failures, const Knowledge& plan_knowledge,
              const std::optional<std::string>& held_back);
 

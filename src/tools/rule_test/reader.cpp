@@ -58,7 +58,7 @@ class Reader {
     if (!is_read.value_or(false) || !read_.line_ends(s)) is_broken_ = true;
   }
 
-  // Nothing if no statement begins with `keyword`.
+  // Empty if no statement begins with `keyword`.
   std::optional<bool> read_statement(std::string_view keyword, Scanner& s) {
     for (const std::string_view known : SetupReader::keywords()) {
       if (keyword != known) continue;
@@ -89,7 +89,7 @@ class Reader {
 
   // ---- the file and its tests
 
-  // Its paths are read by rule_files(), which also says what is wrong with them.
+  // Its paths are read by rule_files(), which also reports their errors.
   bool rules_line(Scanner& s) {
     if (!suite_.tests.empty())
       return read_.fail(Code::kOutOfPlace, keyword_, "RULES stands inside a test",

@@ -1,7 +1,7 @@
 // The text of a test file -> its tests, every name looked up in the rules that they test.
 //
-// Statements are lines, as in rule files, and reading goes on behind every mistake. What stands
-// before the first TEST holds for every test of the file.
+// Statements are lines, as in rule files, and reading goes on after every mistake. Statements
+// before the first TEST hold for every test of the file.
 #pragma once
 
 #include <string>
@@ -34,8 +34,8 @@ struct Suite {
 // The files that the RULES lines name, as written. Reports if there is none.
 std::vector<syntax::Name> rule_files(const Source& source, std::vector<Diagnostic>& diagnostics);
 
-// Reads everything but the RULES lines. What cannot be understood is reported and left out: a suite
-// is good for running only if no diagnostic is an error.
+// Reads everything but the RULES lines. Invalid statements are reported and left out: a suite may
+// be run only if no diagnostic is an error.
 Suite read_suite(const Source& source, const RuleSet& rules, std::vector<Diagnostic>& diagnostics);
 
 }  // namespace culprit::rule_test

@@ -30,8 +30,8 @@ std::string messages(const Source& source) {
   return out;
 }
 
-// Each file in golden/ holds mistakes, and beside it what is said about them.
-// CULPRIT_WRITE_GOLDEN=1 writes what is said now, for a person to read and commit.
+// Each file in golden/ holds mistakes, and a file beside it holds the messages about them.
+// CULPRIT_WRITE_GOLDEN=1 writes the present messages, for a person to read and commit.
 TEST(Reader, SaysWhatTheGoldenFilesSay) {
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator("src/tools/rule_test/golden")) {

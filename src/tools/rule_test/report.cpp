@@ -21,7 +21,7 @@ std::string disappointment_line(const Disappointment& d, const Source& source) {
          std::string(source.text(d.expectation)) + ": " + d.instead + "\n";
 }
 
-// That the components are there at the start is no news.
+// The presence of components at the start is no news.
 bool is_beginning(const Event& event) {
   return event.at == Time{} && std::holds_alternative<ComponentFound>(event.what);
 }

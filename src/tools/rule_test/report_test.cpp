@@ -21,7 +21,7 @@ TEST(Report, SaysWhatWasExpectedAndWhatHappenedInstead) {
        2.320  camera is there (process 103)
        2.325  redeploy camera: done
        2.520  CameraDead resolved by camera_redeploy after 0.51 s
-       2.520  FusionDead went away without a strategy of its own after 0.27 s
+       2.520  FusionDead cleared without a repair of its own after 0.27 s
 )");
 }
 

@@ -1,5 +1,5 @@
-// What holds the manager back while a robot is played: what `culprit run` holds back by default,
-// but for the quiet period at its start. A robot that is played has been there for long.
+// The limits of the governor while a robot is played: the defaults of `culprit run` without the
+// quiet period at its start. A played robot has run for long.
 #pragma once
 
 #include "execute/governor.h"

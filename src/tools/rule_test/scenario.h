@@ -1,4 +1,4 @@
-// What happens to the robot in a test, and how it answers: the part of a test that is played.
+// The events on the robot in a test, and its answers: the part of a test that is played.
 //
 // Times count from the start of the test.
 #pragma once
@@ -40,7 +40,7 @@ struct Need {
   ComponentId consumer;
   ComponentId producer;
 };
-// `subject` is told by `component` alone: it is silent while the component does not work.
+// `subject` is published by `component` alone: it is silent while the component does not work.
 struct Origin {
   ComponentId component;
   Subject subject;
@@ -104,7 +104,7 @@ struct Scenario {
   std::vector<Answer> answers;
   std::vector<Cure> cures;
 
-  // What `other` says comes after what this one says.
+  // The statements of `other` follow these.
   void append(const Scenario& other);
 };
 

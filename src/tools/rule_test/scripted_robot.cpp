@@ -197,7 +197,7 @@ void ScriptedRobot::speak(Voice& voice) {
   }
 }
 
-// What each voice says now, and whether it can be heard. One that begins to be heard speaks at
+// Updates the value of each voice, and whether it is published. A voice that starts is published at
 // once.
 void ScriptedRobot::refresh_voices() {
   has_changed_ = false;
@@ -392,7 +392,8 @@ void ScriptedRobot::serve(const Command& command) {
   const bool stops = std::holds_alternative<StopProcess>(command.what);
   if (!stops && !c.can_answer()) return time_out(command);
   if (!how.takes) return stops ? stop(command) : carry_out(command);
-  // What takes longer than the manager waits is done all the same, and nobody hears of it.
+  // A request that takes longer than the manager waits is carried out all the same, without a
+  // reply.
   const bool is_late = *how.takes > command.timeout;
   if (is_late) time_out(command);
   plan(later(now_, *how.takes),

@@ -2,8 +2,8 @@
 //
 // All components of the rules are there at time 0 and work, unless the scenario says otherwise. A
 // component works if its process runs and answers, its lifecycle (if it has one) is active, and
-// whatever it needs delivers: works, with none of its topics and signals silent. What only a
-// component tells is silent while the component does not work.
+// all that it needs works, with none of its topics and signals silent. A topic or signal of a
+// component is silent while the component does not work.
 //
 // Requests are obeyed after a moment: 5 ms, 300 ms for a process to come up. A parameter that
 // strategies write and the scenario does not set is there, with nothing in it (false, 0, "").
@@ -37,12 +37,12 @@ class ScriptedRobot : public Robot {
   void observe(Time until, std::vector<Observation>& observations) override;
   void execute(const Command& command) override;
 
-  // What counts as seen: all that the rules name, but components that are absent, and topics that
-  // only they publish.
+  // All that the rules name counts as seen, except absent components, and topics that only they
+  // publish.
   KnownRobot declared() const;
 
-  // What the manager did. Tells the robot which strategy a command serves, and when an adaptation
-  // took effect.
+  // Takes the manager's events. They tell the robot which strategy a command serves, and when an
+  // adaptation took effect.
   void hear(const Event& event);
 
  private:

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 
+#include "base/invariant.h"
 #include "knowledge/component_states.h"
 #include "rule_test/course_reader.h"
 
@@ -28,7 +28,7 @@ std::optional<Lifecycle> lifecycle_of(std::string_view word) {
   return std::nullopt;
 }
 
-// What can befall a process.
+// The incidents of a process.
 std::optional<Incident::Kind> incident_of(std::string_view word) {
   if (word == "KILLED") return Incident::Kind::kKilled;
   if (word == "STOPPED") return Incident::Kind::kStopped;
@@ -45,7 +45,7 @@ const std::vector<std::string_view>& SetupReader::keywords() {
 }
 
 bool SetupReader::read(std::string_view keyword, Scanner& s, Scenario& scenario) {
-  assert(std::ranges::find(keywords(), keyword) != keywords().end());
+  CULPRIT_ASSERT(std::ranges::find(keywords(), keyword) != keywords().end());
   scenario_ = &scenario;
   if (keyword == "COMPONENT") return component(s);
   if (keyword == "TOPIC") return topic(s);

@@ -48,7 +48,7 @@ TEST(Packs, DoNothingToARobotThatHasNothingOfThem) {
     const Checked checked = check(*rules);
     ASSERT_TRUE(checked.rules) << render(checked.diagnostics, rules->source);
     std::string text = "RULES " + std::filesystem::absolute(entry.path()).string() + "\n";
-    // What is absent never spoke; all else did before a test begins.
+    // Topics of absent components were never published; all others were before a test begins.
     std::string publishes = " PUBLISHES";
     for (const Topic& topic : checked.rules->topics) publishes += " " + topic.name;
     if (checked.rules->topics.empty()) publishes.clear();

@@ -26,7 +26,7 @@ struct State {
   std::vector<Experience> experiences;
 };
 
-// What cannot be understood is reported and left out: a state is good for use only if there are no
+// Invalid statements are reported and left out: a state may be used only if there are no
 // diagnostics.
 State read_state(const Source& source, const RuleSet& rules, std::vector<Diagnostic>& diagnostics);
 

@@ -1,16 +1,14 @@
 // An independent peer for tests: ROS 2 over Cyclone DDS by hand, with the service mapping of
 // rmw_cyclonedds.
 //
-//     ros2_peer_cyclone <domain> tick <topic>            publishes std_msgs/Float64 until it is
-//     killed ros2_peer_cyclone <domain> echo <topic>            prints "value <number>" for each
-//     std_msgs/Float64 ros2_peer_cyclone <domain> diagnostics             prints "status <level>
-//     <name> <key>=<value> ..." ros2_peer_cyclone <domain> serve <node>            is a node with
-//     ~/get_state and ~/change_state,
-//                                                        prints "change <id>" for each request
-//     ros2_peer_cyclone <domain> call <node> <id>...     prints "state <id> <label>", then "change
-//     <id> <success>" for
-//                                                        each transition, or "lost"; says no
-//                                                        good-bye
+//     ros2_peer_cyclone <domain> tick <topic>         publishes std_msgs/Float64 until killed
+//     ros2_peer_cyclone <domain> echo <topic>         prints "value <number>" for each Float64
+//     ros2_peer_cyclone <domain> diagnostics          prints "status <level> <name> <key>=<value> ..."
+//     ros2_peer_cyclone <domain> serve <node>         is a node with ~/get_state, ~/change_state;
+//                                                     prints "change <id>" for each request
+//     ros2_peer_cyclone <domain> call <node> <id>...  prints "state <id> <label>", then "change <id>
+//                                                     <success>" for each transition, or "lost";
+//                                                     ends without leaving the domain
 //
 // A call is made as rmw_cyclonedds makes it: once, as soon as both endpoints have matched here.
 #include <algorithm>
@@ -272,7 +270,7 @@ void announce(Peer& peer, const std::string& node, const std::vector<dds_entity_
           say("change " + std::to_string(id) + " " + std::to_string(response.success));
         });
   }
-  _exit(0);  // like a process that was killed: nobody is told
+  _exit(0);  // like a killed process: without a goodbye
 }
 
 int usage() {

@@ -4,26 +4,27 @@
 //                    [--active] [--activates-after SECONDS] [--stalls-if FILE] [--period SECONDS]
 //                    <full name>...
 //
-// It is heard on this machine only, unless --subnet.
+// It can be discovered on this machine only, unless --subnet.
 //
 // If there is FILE when it is activated, it takes the file away and does nothing more.
 //
 // With --active the first configures and activates itself, as many drivers do. With
-// --activates-after it does so by a timer, and ends with 1 if somebody was there first, as nodes in
+// --activates-after it does so by a timer. It ends with 1 if somebody was there first, as nodes in
 // Python do whose timer raises "Transition is not registered".
 //
-// If there is the FILE of --stalls-if when it has published, it takes the file away, and its only thread
-// does nothing for as many seconds as the file says: nothing is published, nobody is answered, and no
-// polite signal is obeyed.
+// If there is the FILE of --stalls-if when it has published, it takes the file away, and its only
+// thread hangs for as many seconds as the file says: it publishes nothing, answers nothing, and
+// obeys no polite signal.
 //
-// Each has the parameters gain (0..10), count (not negative), label and serial (read-only), the
-// service ~/trigger, ~/value and ~/load, which is of a type of its own, at 10 Hz, or each --period,
-// while it is active, and one status on /diagnostics each second.
+// Each has the parameters gain (0..10), count (not negative), label and serial (read-only), and the
+// service ~/trigger. While it is active it publishes ~/value and ~/load, which is of a type of its
+// own, at 10 Hz, or each --period, and one status on /diagnostics each second.
 //
-// Of several, or with --container, the first is a component container, and the others live in it. It
-// loads, unloads and lists as rclcpp_components' ComponentManager does: classes by the ament index of
-// its environment, numbers from 1, the same texts. Every class is one of these nodes. It prints what
-// it loads and unloads. While there is the FILE of --keeps-if it unloads nothing, and says so.
+// If there are several, or with --container, the first is a component container, and the others
+// live in it. It loads, unloads and lists as rclcpp_components' ComponentManager does: classes by
+// the ament index of its environment, numbers from 1, the same texts. Every class is one of these
+// nodes. It prints what it loads and unloads. While there is the FILE of --keeps-if it unloads
+// nothing, and answers so.
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -53,7 +54,7 @@ using namespace culprit;
 using namespace culprit::ros2;
 using namespace std::chrono_literals;
 
-// That nobody knows who was not told.
+// A type that other programs know only if they were told.
 struct Load {
   static constexpr std::string_view kType = "peer_msgs/msg/Load";
   double share = 0;

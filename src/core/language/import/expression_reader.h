@@ -3,8 +3,9 @@
 //   precedence, from the tightest: ! unary+ unary- ^ | * / | + - | == != < <= > >= | && ||
 //   all operators group to the left; a number before "(" multiplies
 //
-// So `a || b && c` is `(a || b) && c`, and the tree says that. What the reference's own tokeniser
-// drops or cannot read (`1. && b`, `(-1)`, `!!a`, `1e-7`) is read as it is written, and noted.
+// So `a || b && c` is `(a || b) && c`, and the tree says that. Text that the reference's own
+// tokeniser drops or cannot read (`1. && b`, `(-1)`, `!!a`, `1e-7`) is read as it is written, and
+// noted.
 #pragma once
 
 #include "language/import/file_reader.h"

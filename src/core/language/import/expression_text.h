@@ -8,8 +8,8 @@
 
 namespace culprit::foreign {
 
-// What stands for a name of the reference, and whether that is a whole number. culprit divides
-// whole numbers without a remainder, the reference never does.
+// The text that stands for a name of the reference, and whether its value is a whole number.
+// culprit divides whole numbers without a remainder, the reference never does.
 struct Meaning {
   std::string text;
   bool is_whole = false;

@@ -2,8 +2,8 @@
 // END RULES, one statement a line.
 //
 // The reference wants its section markers unindented, tabs nowhere, and exactly one line between
-// two rules; what it stumbles over without need is accepted here. Lines that begin with # or //,
-// and the line between two rules, are comments.
+// two rules; this reader is more tolerant. Lines that begin with # or //, and the line between two
+// rules, are comments.
 #pragma once
 
 #include <functional>

@@ -24,7 +24,7 @@ struct Word {
   Span span;
 };
 
-// What is said about a part: comments of the file, and notes for the person who imports it.
+// Remarks about a part: comments of the file, and notes for the person who imports it.
 struct Remarks {
   std::uint32_t line = 0;             // where the part stands, from 1
   std::vector<std::string> comments;  // above it

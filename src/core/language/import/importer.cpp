@@ -65,8 +65,8 @@ bool is_retracted(const Block& block) {
 }
 
 // The errors of the present text, at most one for each block. A rule is retracted for its own
-// mistakes only; but what one rule tells about the type of a signal may be missed by others, so
-// this is done again until nothing is left.
+// mistakes only; but other rules may need the type of a signal that it gave, so this is repeated
+// until no error is left.
 std::map<std::size_t, std::string> mistakes(const Text& text) {
   std::map<std::size_t, std::string> found;
   const Source source("imported.rules", text.text);

@@ -1,9 +1,9 @@
 // Rule files of the reference manager, in either of its two dialects -> culprit's language.
 //
-// The meaning stays as near as the languages allow, and nothing gets lost silently: what has no
-// equivalent, and what the reference itself reads otherwise than it is written, is said in a
-// comment at its place and in a note. A rule that culprit's checks refuse is kept as a comment,
-// with their words. Comments are kept.
+// The meaning stays as near as the languages allow, and nothing gets lost silently. A part without
+// an equivalent, or one that the reference itself reads otherwise than it is written, gets a
+// comment at its place and a note. A rule that culprit's checks refuse is kept as a comment, with
+// their words. Comments are kept.
 #pragma once
 
 #include <cstdint>

@@ -193,8 +193,8 @@ TEST(Importer, SurvivesHostileNesting) {
   EXPECT_FALSE(imported(conditions(std::string(50000, '('))));
 }
 
-// Files made of the dialects' own words in an order of chance: what is imported passes a check, and
-// no rule gets lost.
+// Files made of the dialects' own words in a random order: the imported rules pass a check, and no
+// rule gets lost.
 RC_GTEST_PROP(Importer, WhatItGivesPassesACheck, ()) {
   const auto word = [](std::vector<std::string> words) {
     return *rc::gen::elementOf(std::move(words));

@@ -199,7 +199,7 @@ class StrategyDialect {
                                             "remove it, or begin a comment with //");
   }
 
-  // What is said at a rule's POLICIES and TRIGGER is said of the rule.
+  // Comments at a rule's POLICIES and TRIGGER become comments of the rule.
   void take_comments(Remarks& remarks) {
     Remarks more = reader_.remarks();
     if (!more.comment_behind.empty()) more.comments.push_back(std::move(more.comment_behind));

@@ -1,4 +1,4 @@
-// What the names of a reference file are called in culprit's language.
+// Maps the names of a reference file to names in culprit's language.
 //
 // The reference keeps one store for everything: its constants are the first values of entries that
 // monitoring may overwrite. culprit separates them, so each name that a trigger reads is told apart
@@ -63,7 +63,7 @@ class Vocabulary {
   // Empty for a constant that is a monitored value.
   std::string constant(const Constant& constant) const;
   Meaning meaning(const std::string& written) const;
-  // What a person should know about the name where it is used; empty for most.
+  // A note for the person about the name where it is used; empty for most.
   std::string note(const std::string& written) const;
 
  private:

@@ -77,7 +77,7 @@ class Writer {
     written_.notes.push_back({block.line, text});
   }
 
-  // What holds for the whole file.
+  // Writes the lines for the whole file.
   void header() {
     Block& header = written_.blocks.front();
     header.comments = {"Imported from " + name_ + ", in the dialect " + file_.dialect + "."};
@@ -169,7 +169,7 @@ class Writer {
   // ---- rules
 
   void add_rule(const Rule& rule) {
-    // What is active already must not keep the others from being activated.
+    // A component that is active already must not keep the others from being activated.
     const auto& first = rule.strategies.front().adaptations;
     const bool is_lifecycle =
         rule.repeats && !first.empty() &&

@@ -32,7 +32,7 @@ struct Unit {
   syntax::File tree;
 };
 
-// What USE and INCLUDE stand in: a unit, or one of the files.
+// The text around a USE or an INCLUDE: a unit, or one of the files.
 struct Surroundings {
   const ComposedText& text;
   const Source& source;
@@ -76,7 +76,7 @@ class Expander {
     syntax::File tree;
     std::vector<Lexeme> lexemes;
     std::uint32_t step;
-    std::vector<std::optional<std::uint32_t>> included;  // by each INCLUDE; nothing: was there
+    std::vector<std::optional<std::uint32_t>> included;  // by each INCLUDE; empty: was there
     std::uint32_t wreck_begin = Step::kNone;             // where wreck_ has it
   };
   struct Known {
@@ -263,7 +263,7 @@ class Expander {
     expanded_ += body.text.text.size() + 1;
     if (expanded_ > kMaxExpanded)
       return refuse(Code::kEndlessTemplate, use.pattern.span,
-                    "what the templates become is larger than 16 MiB", "");
+                    "the expanded templates are larger than 16 MiB", "");
     if (!body.said.empty()) {
       blame(body.text, of_arguments(body));
       return {};

@@ -4,10 +4,9 @@
 //     const Checked checked = check(rules);
 //     for (const Diagnostic& d : checked.diagnostics) show(render(d, rules.source));
 //
-// The result is one text, of which everything else knows no more than of one that somebody wrote by
-// hand: it is checked, managed by and kept in the journal. It knows where each of its parts was
-// written (Source::origin), so what is said about it points there. INCLUDE and USE lines stay in it
-// as comments.
+// The result is one text like any that a person wrote by hand: it is checked, managed by and kept
+// in the journal. It knows where each of its parts was written (Source::origin), so diagnostics
+// point there. INCLUDE and USE lines stay in it as comments.
 //   - A file is there once, however often it is included. Templates may be used before they are
 //     read, and by other templates.
 //   - A name that a template declares is one of the rules, as it is written there, with the

@@ -206,7 +206,7 @@ TEST(Expansion, MistakesPointWhereTheyAreWritten) {
   const Expansion rules = expanded("INCLUDE \"two.rules\"\nUSE two(left)\n", files);
   const auto diagnostics = check(rules, Strictness::kStrict).diagnostics;
   ASSERT_EQ(diagnostics.size(), 1u);
-  // The argument goes through both templates, and is written by whoever uses the outer one.
+  // The argument goes through both templates, and is written where the outer one is used.
   EXPECT_EQ(places(rules, diagnostics[0]),
             (std::vector<std::string>{"robot.rules:2:9 left", "driver.rules:7:20 {name}"}));
 }
@@ -258,7 +258,7 @@ TEST(Expansion, EndsWhateverTemplatesDo) {
   EXPECT_LE(deep.mistakes.size(), 200u);
 }
 
-// What is put together has no statements of reuse left, and every byte of it comes from somewhere.
+// The expanded text has no statements of reuse left, and every byte of it has an origin.
 RC_GTEST_PROP(Expansion, OfWhateverIsWritten, ()) {
   const std::string text = random_rule_text().text;
   const Expansion rules =

@@ -8,7 +8,7 @@
 namespace culprit {
 namespace {
 
-// Of ROS, for all robots of a domain.
+// Topics of ROS, for all robots of a domain.
 constexpr std::array<std::string_view, 4> kOfNoRobot = {"/clock", "/diagnostics",
                                                         "/parameter_events", "/rosout"};
 
@@ -118,6 +118,7 @@ ComposedText filled_in(const syntax::Template& pattern, std::uint32_t file, cons
 void DeclaredNames::add(const syntax::File& tree) {
   for (const syntax::Constant& c : tree.constants) taken_.insert(c.name.text);
   for (const syntax::Signal& s : tree.signals) taken_.insert(s.name.text);
+  for (const syntax::Group& g : tree.groups) taken_.insert(g.name.text);
   for (const syntax::Component& c : tree.components) {
     taken_.insert(c.name.text);
     components_.try_emplace(c.name.text, c.node ? c.node->text : "");
@@ -157,6 +158,7 @@ std::vector<Replacement> DeclaredNames::below(const std::string& space, const sy
   std::set<std::string> own;
   for (const syntax::Component& c : tree.components) own.insert(c.name.text);
   for (const syntax::Signal& s : tree.signals) own.insert(s.name.text);
+  for (const syntax::Group& g : tree.groups) own.insert(g.name.text);
 
   std::vector<Replacement> out;
   const auto insert = [&](std::uint32_t at, const std::string& text) {

@@ -1,5 +1,5 @@
-// What one USE makes of a template: its arguments are put in, and its names are made to fit among
-// all others.
+// Instantiates a template for one USE: puts its arguments in, and makes its names fit among all
+// others.
 #pragma once
 
 #include <map>
@@ -15,7 +15,7 @@
 
 namespace culprit {
 
-// What is put in for a parameter, as it is written, with its quotes.
+// The argument for a parameter, as it is written, with its quotes.
 struct TemplateArgument {
   std::string written;
   Place place;
@@ -23,8 +23,8 @@ struct TemplateArgument {
   std::uint32_t step = Step::kNone;
 };
 
-// Of each parameter. Nothing if `use`, which stands in `text`, gives too few or too many. The
-// template is in file `file`.
+// The arguments, by parameter. Empty if `use`, which stands in `text`, gives too few or too many.
+// The template is in file `file`.
 std::optional<std::vector<TemplateArgument>> arguments_of(const ComposedText& text,
                                                           const syntax::Use& use,
                                                           const syntax::Template& pattern,

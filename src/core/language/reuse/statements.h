@@ -15,14 +15,14 @@
 
 namespace culprit {
 
-// Each stands behind its keyword. Nothing: the line is not understood, and that is said.
+// Each stands behind its keyword. Empty: the line is not understood, and was reported.
 std::optional<syntax::Include> read_include(LineReader& read, Scanner& s, Span line);
 // Without its body.
 std::optional<syntax::Template> read_template(LineReader& read, Scanner& s);
 std::optional<syntax::Use> read_use(LineReader& read, Scanner& s, Span line);
 
-// Says which "{parameter}" of a line in `pattern` there is not. In a quoted text braces may mean
-// something else: there only what is nearly a parameter is a mistake. False if one is.
+// Reports a "{parameter}" of a line that `pattern` does not have. In a quoted text braces may have
+// another meaning: there only a name near that of a parameter is a mistake. False if there is one.
 bool check_holes(LineReader& read, std::string_view text, std::span<const Lexeme> line,
                  const syntax::Template& pattern);
 

@@ -1,5 +1,5 @@
-// culprit's own planner: which component is responsible, what would fix it, what is that worth, and
-// which strategies go together (docs/planning.md, and the headers beside this one).
+// culprit's own planner: decides which component is responsible, which strategies may help, what
+// each is worth, and which go together (docs/planning.md, and the headers beside this one).
 //
 // Strategies that only replace processes that are known to be dead are chosen first, and wait for no
 // other failure (diagnose/known_down.h). Then, for each criticality level (inherited,
@@ -18,12 +18,12 @@
 //   8. adapts a component on which a more critical failure depends that is being worked on and that
 //      it does not explain: the lower criticality never delays the higher. A failure that waits for
 //      a person is not being worked on (its cause is exhausted, or all that is left was refused).
-// 5 and 6 are waits of bounded length, and 3, 4, 7 and 8 wait for failures that come to an end
-// (resolved or exhausted) without waiting for this one, so every failure has its turn.
+// Every failure has its turn: 5 and 6 are waits of bounded length, and 3, 4, 7 and 8 wait for
+// failures that end (resolved or exhausted) without waiting for this one.
 //
-// A strategy that took effect and only waits for its verdict stands less in the way: one of a lower
-// level does not hold back those downstream of it that are more critical, and those that take
-// nothing down need not wait for a more critical one downstream.
+// A strategy that took effect and only waits for its verdict stands less in the way. At a lower
+// level, it does not hold back more critical strategies downstream. At a higher level, it does not
+// hold back strategies upstream that take nothing down.
 //
 // Equal worths go by the names of rule and strategy, so that a decision does not depend on the
 // order of declarations.

@@ -1,5 +1,5 @@
-// What holds for every plan, on random robots: components that depend on each other in any way,
-// circles included, rules that touch one or two of them, and failures of any level.
+// Invariants of every plan, on random robots: components that depend on each other in any way,
+// feedback loops included, rules that touch one or two of them, and failures of any level.
 //
 // scripts/check-invariants runs a million of them.
 #include <algorithm>
@@ -129,7 +129,7 @@ bool is_in_circle(Scene& scene, ComponentId component) {
   });
 }
 
-// Who is in a circle is upstream of itself.
+// A component in a feedback loop is upstream of itself.
 bool is_upstream(Scene& scene, const Rule& rule, const Rule& other) {
   Strategy producer;
   producer.components = rule.components;
@@ -228,7 +228,7 @@ RC_GTEST_PROP(BayesPlannerOnRandomRobots, NeverDelaysTheMoreCritical, ()) {
   }
 }
 
-// A robot without circles, where each failure is of one component.
+// A robot without feedback loops, where each failure is of one component.
 struct RandomPipeline {
   Scene scene;
   std::vector<int> failing;

@@ -309,7 +309,7 @@ TEST(BayesPlanner, RepairsNothingThatAnExhaustedFailureExplains) {
   EXPECT_EQ(scene.plan(kFewRedeployments), "B.restart D.restart") << "it no longer explains them";
 }
 
-// Who was first in a circle is known if a process of it is dead.
+// If a process in a feedback loop is dead, its component was the first to fail.
 TEST(BayesPlanner, RepairsNothingInACircleThatADeadMemberExplains) {
   Scene scene(failure_of("a", "A") + failure_of("b", "B") +
               "STRATEGY other 5 10\nADAPTATION b change_communication in /other 2\n" +
@@ -328,7 +328,7 @@ TEST(BayesPlanner, RepairsNothingInACircleThatADeadMemberExplains) {
   EXPECT_NE(scene.plan(kFewRedeployments), "") << "nobody knows who was first: they take turns";
 }
 
-// It has a cause of its own, and so has what is dead: nobody disturbs the other.
+// It has a cause of its own, and so has the dead component: neither disturbs the other.
 TEST(BayesPlanner, LetsALesserRootUpstreamOfTheDeadActAtOnce) {
   for (const bool is_replaced : {false, true}) {
     Scene scene(failure_of("a", "Root", "NON_CRITICAL") + failure_of("b", "Dead", "WARNING"));

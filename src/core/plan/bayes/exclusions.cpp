@@ -100,7 +100,7 @@ std::optional<Exclusions::Obstacle> Exclusions::obstacle(std::size_t place,
   if (auto held = found(Condition::kDownstream, reach_.upstream(place), holding_[level]))
     return held;
   if (auto urgent = in_the_way(place, urgent_[level])) return urgent;
-  // What is sure and takes nothing down is over before they would have their turn downstream.
+  // A sure strategy that takes nothing down is over before the failures downstream get their turn.
   const bool need_not_wait = chance >= kSure && !takes_down(strategy);
   if (!need_not_wait && has(imminent_[level].bits(), place))
     return Obstacle{Condition::kInTheWay, reach_[place], imminent_[level].failure[place]};

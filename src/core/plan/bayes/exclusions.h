@@ -1,4 +1,5 @@
-// What excludes a strategy from a plan: what else is going on around the components that it adapts.
+// Obstacles that exclude a strategy from a plan: other strategies around the components that it
+// adapts.
 #pragma once
 
 #include <array>
@@ -9,8 +10,8 @@
 
 namespace culprit::plan {
 
-// A strategy that helps at least so likely, and takes nothing down, need not wait for what is wrong
-// downstream of it: whether it helped may not be seen, but hardly matters.
+// A strategy that helps at least so likely, and takes nothing down, need not wait for failures
+// downstream of it: its own effect may be hidden, but hardly matters.
 inline constexpr double kSure = 0.9;
 
 // Does it take a component down, if only for a moment?
@@ -33,20 +34,21 @@ class Exclusions {
   // All that a strategy adapts or ends.
   using Places = std::vector<std::size_t>;
   Places affected(const Strategy& strategy) const;
-  // Who has one of the components, if anybody does that need not give way at this level.
+  // The strategy that reserves one of the components, if any does that need not give way at this
+  // level.
   std::optional<Obstacle> reserved(Criticality level, const Places& places) const;
-  // What else stands against adapting the component at `place` by this strategy, if anything does.
+  // Another obstacle against adapting the component at `place` by this strategy, if there is one.
   // `chance` is u of the strategy (plan/bayes/strategy_chances.h).
   std::optional<Obstacle> obstacle(std::size_t place, const Strategy& strategy,
                                    double chance) const;
 
-  // From now on a strategy of the rule is carried out as well. What only replaces dead processes is
-  // not disturbed by what is done upstream.
+  // From now on a strategy of the rule is carried out as well. A strategy that only replaces dead
+  // processes is not disturbed by others upstream.
   enum class Disturbance : std::uint8_t { kNone, kFromUpstream };
   void add(RuleId rule, const Places& places, Disturbance disturbance);
   // Is it adapted by one of those that were added?
   std::optional<Obstacle> taken(std::size_t place) const;
-  // What the strategies that were added stand against.
+  // The conflict with the strategies that were added, if there is one.
   std::optional<Obstacle> conflict(std::size_t place) const;
 
  private:
@@ -80,7 +82,7 @@ class Exclusions {
   std::vector<Marks> judged_;    // by level: of those whose strategy waits for its verdict
   std::vector<Marks> imminent_;  // by level: of imminent rules that are more critical
   Marks added_;
-  Marks guarded_;  // of those added, what may not be disturbed from upstream
+  Marks guarded_;  // of those added, the ones that must not be disturbed from upstream
 };
 
 }  // namespace culprit::plan

@@ -9,7 +9,7 @@
 // over the failures k that wait for i: those that have a cause upstream and none of their own, i
 // being enough to explain them (Diagnosis::is_explained_by); and those in the same feedback
 // loop as i, for each of them may be the cause of the others. Without that, a WARNING whose effect is an
-// ERROR would wait for the repair of what is not broken.
+// ERROR would wait for the repair of components that are not broken.
 #pragma once
 
 #include <vector>
@@ -24,7 +24,7 @@ class Levels {
   Levels(const Knowledge& knowledge, const diagnose::Causes& causes,
          const diagnose::Diagnosis& diagnosis);
 
-  // Of a rule that has no failure: its own.
+  // The level of a rule without a failure is its own.
   Criticality of(RuleId rule) const;
 
  private:

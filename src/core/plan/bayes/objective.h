@@ -1,4 +1,5 @@
-// What a robot's owner wants least of: how much each kind of cost weighs (docs/planning.md).
+// The cost that a robot's owner most wants to avoid: how much each kind of cost weighs
+// (docs/planning.md).
 //
 // A weight is what one unit of the cost is worth, where resolving a NON_CRITICAL failure is worth
 // 1:
@@ -7,8 +8,8 @@
 //   redeployment   one process replaced
 //   disruption     the whole robot taken down for a moment
 //
-// Under every objective each of them weighs something: of strategies that are equal in what the
-// owner wants least of, the one that is better in the rest is taken.
+// Under every objective each of them weighs something: among strategies with equal main cost, the
+// one that is better in the rest is taken.
 #pragma once
 
 #include <string_view>

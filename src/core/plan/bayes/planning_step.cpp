@@ -20,8 +20,9 @@ using namespace diagnose;
 
 namespace {
 
-// What costs more than it is worth has to be done all the same, once nothing else comes first: it
-// is worth a little, by its index: by how likely it resolves the failure for what it costs.
+// A strategy that costs more than it is worth has to be carried out all the same, once no other one
+// comes first. So it is worth a little, by its index: how likely it resolves the failure for its
+// cost.
 std::int64_t worth(double value, double cost, double index) {
   constexpr double kLittle = 1e-4;
   return parts(std::max(value - cost, kLittle * std::min(index, 1.0))) + 1;
@@ -93,8 +94,8 @@ std::vector<std::vector<StrategyChance>> PlanningStep::all_chances() const {
   return all;
 }
 
-// Those that something may be begun for without a person, now or later. Nobody need make way for
-// the others.
+// The failures for which a strategy may begin without a person, now or later. No failure need make
+// way for the others.
 std::vector<RuleId> PlanningStep::worked_on() const {
   std::vector<RuleId> rules;
   std::copy_if(planned_.begin(), planned_.end(), std::back_inserter(rules),
@@ -207,7 +208,7 @@ void PlanningStep::find_stakes() {
     diagnosis_.for_each_share(
         k, [&](std::size_t i, double share) { stakes_[i] += share * weight_of(k); });
     if (causes_[k].kind != CauseNode::Kind::kFailure) continue;
-    // What is not downstream, and was seen to clear with another one.
+    // Failures that are not downstream, but were seen to clear with another one.
     for (const auto& [cause, coupling] : knowledge_.couplings.of(causes_[k].rule)) {
       if (!knowledge_.states.is_active(cause) || coupling.cleared == 0) continue;
       const std::size_t i = causes_.index_of(cause);
@@ -362,7 +363,7 @@ bool PlanningStep::exclude_coincidence(WeighedCandidate& weighed) const {
 }
 
 // Does it wait because a cause upstream may still be detected, or because it may be the echo of one
-// that is gone?
+// that has cleared?
 bool PlanningStep::exclude_unproven(WeighedCandidate& weighed, double chance) const {
   const RuleId rule = causes_[weighed.failure].rule;
   const auto awaiting = found_.awaited().of(rule);
@@ -386,7 +387,7 @@ void PlanningStep::exclude(WeighedCandidate& weighed, const Exclusions::Obstacle
   weighed.candidate.failure = obstacle.because;
 }
 
-// What makes no sense now may make sense once that is over which is being done to its component.
+// A strategy that is invalid now may become valid once the adaptation of its component is over.
 void PlanningStep::exclude_invalid(WeighedCandidate& weighed, const Invalid& why) const {
   if (const auto held = exclusions_.reserved(weighed.level, weighed.affected))
     return exclude(weighed, *held);
@@ -441,7 +442,8 @@ bool PlanningStep::exclude_effect(WeighedCandidate& weighed) const {
     if (!goes_round && !weighed.goes_round) exclude_for(weighed, *cause);
     return !goes_round;
   }
-  // A failure of what is on a computer that is not heard, or depends on it, waits until it is.
+  // A failure of a component that is on an unreachable computer, or depends on one, waits until it
+  // is reachable.
   if (const auto unheard = unheard_[weighed.failure]) {
     if (may_be_tried_beside_exhausted(strategy, knowledge_)) return false;
     exclude(weighed, {Condition::kUnheard, *unheard, {}});
@@ -578,7 +580,8 @@ std::vector<PlanningStep::WeighedCandidate*> PlanningStep::chosen_together(
   return chosen;
 }
 
-// Of the same failures, at the same components, what costs the least beside each other.
+// Chooses, for the same failures at the same components, the strategies that cost the least beside
+// each other.
 std::vector<PlanningStep::WeighedCandidate*> PlanningStep::weigh_together(
     const std::vector<WeighedCandidate*>& open,
     const std::vector<WeighedCandidate*>& chosen) const {
@@ -606,8 +609,7 @@ std::vector<PlanningStep::WeighedCandidate*> PlanningStep::weigh_together(
   return together;
 }
 
-// Of the components that the rule's strategies adapt, the one that the untried ones are most likely
-// to help at.
+// The component at which the rule's untried strategies are most likely to help.
 ComponentId PlanningStep::likeliest_component(RuleId rule) const {
   if (knowledge_.rules[rule].components.size() == 1) return knowledge_.rules[rule].components[0];
   std::pair<std::int64_t, ComponentId> best{-1, {}};

@@ -79,8 +79,8 @@ class PlanningStep {
   diagnose::Examination found_;
   const diagnose::Causes& causes_;        // of found_
   const diagnose::Diagnosis& diagnosis_;  // likewise
-  // By node: the component on a computer that is not heard that it is about, or can have spread
-  // from. It explains the failure for sure, as nothing that is only learned does.
+  // By node: the component on an unreachable computer that it is about, or can have spread from. It
+  // explains the failure for sure; a learned coupling does not.
   std::vector<std::optional<ComponentId>> unheard_;
   Levels levels_;
   std::vector<std::vector<StrategyChance>> chances_;  // by failure, of those to be decided about

@@ -26,7 +26,7 @@ std::vector<std::size_t> usual(std::span<const Side> sides) {
   return begins;
 }
 
-// What the side would begin with if time cost nothing, because others take longer anyway.
+// The first strategy of the side if time cost nothing, because others take longer anyway.
 std::size_t timeless(Side side) {
   for (Try& tried : side.tries) {
     tried.cost -= tried.time;

@@ -1,4 +1,4 @@
-// What begins together passes together.
+// Strategies that begin together take only as long as the longest.
 //
 // The set of the highest worth (conflict_free_set.h) counts the time of each of its strategies,
 // though the robot waits only for the longest. So the strategy that each of its failures begins

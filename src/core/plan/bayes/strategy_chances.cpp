@@ -27,7 +27,7 @@ std::vector<StrategyChance> strategy_chances(RuleId rule, const Knowledge& knowl
   const double causes = std::max(1.0, sum);
   double left = 1;
   for (const StrategyChance& each : all) {
-    // What nobody can do now is not ruled out by that.
+    // A strategy that cannot be carried out now is not ruled out by that.
     const bool is_ruled_out = each.is_out() && !each.is_unheard();
     if (is_ruled_out) left -= each.chance / causes;
   }

@@ -1,16 +1,16 @@
-// What would fix it? The chances of a failure's strategies, given those that did not help.
+// The chances that a failure's strategies resolve it, given those that did not help.
 //
-// The model: each strategy has one fault of its own; what is wrong is one of these, or none of
-// them. Strategy s always helps against its own fault, and by luck against the others:
+// The model: each strategy has one fault of its own; the fault of the failure is one of these, or
+// none. Strategy s always helps against its own fault, and by luck against the others:
 //
-//     v_s = w_s / max(1, S)                  how likely it is what s is for;  S = sum_t w_t
+//     v_s = w_s / max(1, S)                  how likely the fault is that of s;  S = sum_t w_t
 //     q_s = (w_s - v_s) / (1 - v_s)          its luck with the rest: so that it helps with w_s
 //     u_s = v_s' + (1 - v_s') q_s            v_s' = v_s / (1 - sum_{t out} v_t)
 //
 //   w_s   P_s * e_s
 //   P_s   the belief that s helps (knowledge/beliefs.h)
 //   out   the strategies of the rule that were tried in this round, or are invalid now: their own
-//         fault is ruled out, unless their component is only not heard
+//         fault is ruled out, unless their component is only unreachable
 //   e_s   evidence of the operating system: kUnlikely if a process is gone or stopped that another
 //         strategy would replace and s would not; 1 otherwise
 //
@@ -27,7 +27,7 @@
 
 namespace culprit::plan {
 
-// Of a strategy that leaves a dead process as it is.
+// For a strategy that leaves a dead process as it is.
 inline constexpr double kUnlikely = 0.05;
 
 struct StrategyChance {
@@ -42,7 +42,7 @@ struct StrategyChance {
   bool is_unheard() const { return !is_tried && invalid && invalid->is_unheard; }
 };
 
-// Of all strategies of the rule, in their order.
+// The chances of all strategies of the rule, in their order.
 std::vector<StrategyChance> strategy_chances(RuleId rule, const Knowledge& knowledge);
 
 }  // namespace culprit::plan

@@ -32,7 +32,7 @@ class Scene {
 
   // "A.restart C.redeploy": what is chosen for the failures without a strategy under way, by name.
   std::string plan(const Planner& planner);
-  // Of the last plan.
+  // The decisions of the last plan.
   const std::vector<Decision>& decisions() const { return decisions_; }
   const Decision& decision(const std::string& rule) const;
   const Candidate& candidate(const std::string& strategy) const;

@@ -27,8 +27,8 @@
 //
 //   R_i           its responsibility (diagnose/diagnosis.h)
 //   W             1, 2 or 4: how much worse each level of criticality is than the one below it
-//   share(i -> k) the part of failure k that is put down to i, or how often k was seen to go away
-//                 with it; in one circle kappa(i -> k), as if i had been the first
+//   share(i -> k) the part of failure k that is put down to i, or how often k was seen to clear
+//                 with it; in one feedback loop kappa(i -> k), as if i had been the first
 #pragma once
 
 #include <span>
@@ -42,7 +42,7 @@ namespace culprit::plan {
 // W
 double weight(Criticality level);
 
-// What trying a strategy takes.
+// The effort of one try of a strategy.
 struct Effort {
   Cycles impact;
   Duration latency{};  // of the failure's signals

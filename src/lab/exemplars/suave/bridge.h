@@ -1,5 +1,5 @@
-// Publishes on DDS what the nodes of a simulated world publish there: diagnostics, and the topics
-// that it is told to carry.
+// Publishes on DDS what the nodes of a simulated world publish there: diagnostics, and the chosen
+// topics.
 #pragma once
 
 #include <functional>

@@ -1,6 +1,5 @@
 // One process of the live robot: a function of the model as a managed node (search, follow,
-// recover, recharge). It configures itself at its start and does nothing until somebody activates
-// it.
+// recover, recharge). It configures itself at its start and does nothing until it is activated.
 #pragma once
 
 #include <memory>

@@ -1,8 +1,8 @@
 // Topics and services of the live robot that the model has no need of, and how its processes are
 // started. The nodes' and the systems' names are the model's (model/members.h).
 //
-// Where the exemplar uses message types of its own or of MAVROS, the live robot uses those of
-// std_msgs and std_srvs, so that every tool can read it without their packages.
+// The exemplar uses message types of its own and of MAVROS. The live robot uses those of std_msgs
+// and std_srvs instead, so that every tool can read it without their packages.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ inline constexpr const char* kRecharge = "/battery_monitor/recharge";
 
 }  // namespace services
 
-// Whoever comes late hears the last message.
+// Late joiners receive the last message.
 inline constexpr ros2::Qos kLatched{.durability = ros2::Durability::kTransientLocal, .depth = 1};
 
 inline constexpr const char* kModeMarker = "system_mode_marker";  // of nodes without parameters

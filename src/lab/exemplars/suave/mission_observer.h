@@ -1,5 +1,5 @@
-// What an onlooker sees of a live mission: when the pipeline was found, how much of it was
-// inspected, when the mission was over.
+// Observes a live mission: when the pipeline was found, how much of it was inspected, when the
+// mission was over.
 //
 // A node of its own on a thread of its own; it touches nothing. Times are robot seconds since the
 // mission began.

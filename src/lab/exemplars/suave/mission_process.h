@@ -1,5 +1,5 @@
 // One process of the live robot: the mission (model/mission.h). It waits until the search and the
-// following can be told what to do, begins, and says when it is done.
+// following accept goals, begins, and reports its end.
 #pragma once
 
 #include <map>

@@ -1,6 +1,6 @@
 // suave-node <name>: one process of the live SUAVE robot.
 //
-// Which robot it joins is told by the environment, as to every ROS 2 node: ROS_DOMAIN_ID,
+// The environment chooses the robot that it joins, as for every ROS 2 node: ROS_DOMAIN_ID,
 // ROS_LOCALHOST_ONLY and so on (ros2/options.h).
 #include <csignal>
 #include <cstdio>

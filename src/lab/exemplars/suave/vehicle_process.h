@@ -1,7 +1,7 @@
 // One process of the live robot: the vehicle under its autopilot, the camera that looks for the
 // pipeline, and the monitors of water, battery and thrusters. The nodes are the model's.
 //
-// The mission begins when somebody calls services::kStart.
+// The mission begins with a call of services::kStart.
 #pragma once
 
 #include <memory>

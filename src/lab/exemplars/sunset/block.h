@@ -1,4 +1,4 @@
-// What stands between the roads: paints one block of a town.
+// Paints one block of a town: the area between the roads.
 #pragma once
 
 #include <vector>

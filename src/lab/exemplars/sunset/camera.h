@@ -1,7 +1,7 @@
 // The drone's pinhole camera, looking straight down from kAltitudeMetres.
 //
-// Its focal length is 100 px for 160 px of width (a field of view of 77 degrees), so one pixel is
-// 0.5 m on the ground and a frame covers 80 m x 60 m.
+// Its focal length is 100 px for 160 px of width (a field of view of 77 degrees). One pixel is 0.5
+// m on the ground, and a frame covers 80 m x 60 m.
 #pragma once
 
 #include "exemplars/sunset/image.h"

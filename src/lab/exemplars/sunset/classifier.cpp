@@ -41,7 +41,8 @@ std::size_t height_bin(std::uint16_t depth) {
   return static_cast<std::size_t>(std::clamp(bin, 0.0, static_cast<double>(kHeightBins - 1)));
 }
 
-// Of a pixel and its four neighbours, so that single bad readings do not count. The border repeats.
+// Median of a pixel and its four neighbours, so that single bad readings do not count. The border
+// repeats.
 std::uint16_t median_depth(const DepthImage& depth, int x, int y) {
   std::array<std::uint16_t, 5> readings = {
       depth.at(x, y),

@@ -75,7 +75,7 @@ TEST(Entropy, GoesFromCertaintyToIgnorance) {
 //     defocused, depth noise       0.0323  0.0462  0.0562     0.746     0.603   0.887
 //     colour alone                 0.0539  0.0844  0.1098     0.618     0.462   0.802
 
-// What the classifier makes of a flight when `spoil(frame, number)` has been at every frame.
+// Statistics of the classifier over a flight in which `spoil(frame, number)` altered each frame.
 struct Flight {
   double lowest_entropy = 1;
   double highest_entropy = 0;

@@ -14,7 +14,7 @@ namespace culprit::sunset {
 template <class Picture>
 using Pictures = std::deque<Picture>;  // oldest first
 
-// Whatever has a stamp_of(picture) is a picture: the live nodes' messages, the model's frames.
+// A picture is any type that has a stamp_of(picture): the live nodes' messages, the model's frames.
 constexpr Duration stamp_of(const ros2::msg::Image& picture) {
   return std::chrono::seconds(picture.header.stamp.sec) +
          std::chrono::nanoseconds(picture.header.stamp.nanosec);
@@ -25,9 +25,9 @@ struct PairIndex {
   std::size_t second = 0;
 };
 
-// Of all pairs at most `tolerance` apart for which `allowed(first, second)` is true, the closest;
-// of equally close ones the first, in the order of the first stream, then of the second. Nothing if
-// there is none.
+// Finds the closest pair at most `tolerance` apart for which `allowed(first, second)` is true.
+// Among equally close ones, the first in the order of the first stream, then of the second. Empty
+// if there is none.
 template <class Picture, class Allowed>
 std::optional<PairIndex> closest_pair(const Pictures<Picture>& first,
                                       const Pictures<Picture>& second, Duration tolerance,

@@ -3,7 +3,7 @@
 // - do_drop_depth_camera: frames are dropped silently. No scenario uses it.
 // - depth_degradation g > 0: noise is added to the depth.
 //
-// Nothing but the parameters themselves clears either.
+// Only setting the parameter clears either.
 #pragma once
 
 #include <cstdint>

@@ -2,7 +2,7 @@
 //
 // The exemplar adds up all gaps between two outputs that are longer than two frame periods, each in
 // full. A robot that never recovers has no downtime then: what is before the first
-// output and after the last one does not count. So we tell both figures.
+// output and after the last one does not count. So both figures are given.
 #pragma once
 
 #include <optional>

@@ -30,7 +30,7 @@ struct Setting {
   Value value;
 };
 
-// Of what adaptations change, and of what no scenario uses.
+// Settings that adaptations change, and settings that no scenario uses.
 std::vector<Setting> other_settings() {
   return {{Member::kDepth, "do_drop_depth_camera", false},
           {Member::kImageEnhancement, "image_degradation", 1.5},

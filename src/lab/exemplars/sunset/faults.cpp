@@ -10,8 +10,8 @@
 namespace culprit::sunset {
 namespace {
 
-// What numpy's cast from floating point makes of any value on the exemplar's machines: truncated,
-// then modulo the type's range; zero if not finite.
+// Reproduces numpy's cast from floating point on the exemplar's machines: truncated, then modulo
+// the type's range; zero if not finite.
 template <typename Unsigned>
 Unsigned wrapping_cast(double value) {
   if (!std::isfinite(value)) return 0;

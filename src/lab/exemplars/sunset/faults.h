@@ -1,6 +1,5 @@
 // SUNSET's faults and adaptations as far as they touch pixels, with its parameters' names and
-// scenario values. Each is what the node does to one frame; none of them tells anybody that it
-// happened.
+// scenario values. Each is the node's effect on one frame; none of them is reported.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What sensor_fusion remembers, and which pictures it sends together.
+// The memory of sensor_fusion, and which pictures it sends together.
 //
 // It keeps the last few pictures of each input (6 in the paper's profile). After every arrival it
 // takes, of all pairs close enough in time, the closest one that is not the pair that it took just

@@ -33,7 +33,8 @@ struct Sent {
   int during;  // the frame period in which it was sent
 };
 
-// What a fusion sends while a bag plays: in each period a picture, if there is one, then its depth.
+// The output of a fusion while a bag plays: in each period comes a picture, if there is one, then
+// its depth.
 std::vector<Sent> play(int frames, int pictures_until) {
   FusionBuffer buffer;
   std::vector<Sent> sent;

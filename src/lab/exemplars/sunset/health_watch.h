@@ -1,8 +1,9 @@
 // Whether the pipeline is well, as far as the experimenter can see, and has been for a while.
 //
-// It is, when all nodes but image_enhancement are active (that one may be or not), the camera does
-// not call its pictures blurred, and during the last kCalmSec robot seconds segmentations came
-// without a gap, all of them sure, and right as far as the evaluator judged them.
+// It is well if all nodes but image_enhancement are active (that one may be or not), and the camera
+// does not call its pictures blurred. In addition, during the last kCalmSec robot seconds,
+// segmentations came without a gap, all of them sure, and right as far as the evaluator judged
+// them.
 //
 // A pure data structure, told what happens.
 #pragma once

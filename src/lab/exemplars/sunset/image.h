@@ -43,9 +43,9 @@ struct Rgb {
 };
 static_assert(sizeof(Rgb) == 3);
 
-// What a pixel shows. The metrics of SUNSET's evaluator map to them so: "road" is kRoad
-// (asphalt and its markings), "vehicle" (there the mean over rider, car, truck, bus, train,
-// motorcycle, bicycle) is kVehicle.
+// The class of a pixel. The metrics of SUNSET's evaluator map to them so: "road" is kRoad (asphalt
+// and its markings). "vehicle" (there the mean over rider, car, truck, bus, train, motorcycle,
+// bicycle) is kVehicle.
 enum class Label : std::uint8_t {
   kRoad,
   kPavement,  // sidewalks, parking lots, bridges' and canals' kerbs

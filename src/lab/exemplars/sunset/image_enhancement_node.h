@@ -1,8 +1,8 @@
 // image_enhancement: takes rgb_camera, publishes rgb_enhanced, brightened.
 //
-// Its parameter image_degradation says which degradation it is to undo, 1.5 unless it is told
-// otherwise. On a healthy picture it does harm. It configures itself but does not activate itself,
-// also after a redeployment.
+// Its parameter image_degradation names the degradation to undo, 1.5 by default. On a healthy
+// picture it does harm. It configures itself but does not activate itself, also after a
+// redeployment.
 #pragma once
 
 #include <optional>

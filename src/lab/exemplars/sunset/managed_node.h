@@ -1,12 +1,12 @@
-// What the five managed nodes of SUNSET have in common: a lifecycle, a heartbeat, fault
-// parameters that heal by restart or by redeployment, and parameters that outlive the process.
+// Base of SUNSET's five managed nodes: a lifecycle, a heartbeat, fault parameters that heal by
+// restart or by redeployment, and parameters that outlive the process.
 //
 // - At the start of the process a node takes its parameters' last values, configures and activates
 //   itself. Configuring costs time, in which nothing is answered.
 // - Publishers and subscriptions of pictures exist only while it is active; the heartbeat from
 //   configuring on. Parameters and what a node has buffered survive a restart.
-// - What a fault parameter does is up to the node. Configuring clears some of them, activating
-//   others: so a redeployment heals both kinds, a restart the second.
+// - Each node defines the effect of its fault parameters. Configuring clears some of them,
+//   activating others: so a redeployment heals both kinds, a restart the second.
 // - A shutdown transition ends the process.
 //
 // Left out, because nothing here uses it: the service ~/set_lifecycle_changes (a list of
@@ -14,7 +14,6 @@
 // parameters and topics that the exemplar's scenarios do not touch and its nodes do not read.
 #pragma once
 
-#include <cassert>
 #include <memory>
 #include <optional>
 #include <span>
@@ -24,6 +23,7 @@
 #include <vector>
 
 #include "base/expected.h"
+#include "base/invariant.h"
 #include "exemplars/sunset/heartbeat.h"
 #include "exemplars/sunset/members.h"
 #include "exemplars/sunset/node_options.h"
@@ -55,7 +55,7 @@ class ManagedNode {
   const NodeOptions& options() const { return options_; }
   // @pre configured
   Heartbeat& heartbeat() {
-    assert(heartbeat_);
+    CULPRIT_ASSERT(heartbeat_);
     return *heartbeat_;
   }
   bool is_active() const;
@@ -81,7 +81,7 @@ class ManagedNode {
   virtual Expected<void> activate() = 0;
   // Destroys them; also after an activation that failed.
   virtual void deactivate() = 0;
-  // Somebody wants to change a parameter. An error refuses.
+  // Called for a request to change a parameter. An error refuses.
   virtual Expected<void> on_set(const ros2::msg::Parameter&) { return {}; }
 
   Expected<void> declare_parameters();

@@ -40,7 +40,7 @@ class NodeControl {
 
   explicit NodeControl(std::string target) : target_(std::move(target)) {}
   Expected<void> open(ros2::Node& from);
-  // What is wrong with an answer that brought nothing.
+  // The error of a call without a usable answer.
   Error trouble(ros2::CallOutcome outcome) const;
 
   const std::string target_;  // full name

@@ -21,14 +21,15 @@ struct NodeOptions {
 
 inline constexpr double kHeartbeatPeriodSec = 0.1;
 
-// What configuring costs a camera, a fusion and a segmentation, during which they answer nothing.
-// In the exemplar it is 1 s on the wall at speed 0.2, that is 0.2 robot seconds, beside 2 to 3 s on
-// the wall for starting Python, which ours do not need. Half a second makes a redeployment take as
-// many robot seconds as there, 0.6 to 0.9.
+// The time that a camera, a fusion and a segmentation take to configure, during which they answer
+// nothing. In the exemplar it is 1 s on the wall at speed 0.2, that is 0.2 robot seconds. Starting
+// Python takes another 2 to 3 s on the wall, which ours do not need. Half a second makes a
+// redeployment take as many robot seconds as there, 0.6 to 0.9.
 inline constexpr double kConfigureSec = 0.5;
 
-// What an unfocused camera costs, per frame. The exemplar's 0.5 s on the wall fill a frame period
-// at speed 0.2 and pile up a queue of pictures; three tenths of a period leave the rate at 10 Hz.
+// The time that an unfocused camera takes for each frame. The exemplar's 0.5 s on the wall fill a
+// frame period at speed 0.2 and pile up a queue of pictures; three tenths of a period leave the
+// rate at 10 Hz.
 inline constexpr double kFocusingSec = 0.03;
 
 // From the lifecycle's "finalized" to the end of the process.

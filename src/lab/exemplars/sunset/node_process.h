@@ -13,7 +13,7 @@
 namespace culprit::sunset {
 
 // The pids of those sunset-nodes that were started as `member` and for this DDS domain; usually
-// one. Others' processes, of which the kernel does not tell so much, are left out.
+// one. Processes of other users are left out, since the kernel hides their arguments.
 std::vector<int> processes_of(Member member, std::uint32_t domain);
 
 }  // namespace culprit::sunset

@@ -1,4 +1,4 @@
-// What the experimenter sees of the live robot, and the figures that it makes of it.
+// The experimenter's view of the live robot, and the figures computed from it.
 #pragma once
 
 #include <memory>
@@ -14,11 +14,11 @@
 
 namespace culprit::sunset {
 
-// Of what began with the last Observer::restart(), one scenario as a rule. Times in robot seconds.
+// Since the last Observer::restart(), as a rule for one scenario. Times in robot seconds.
 struct Measurements {
   int judged_frames = 0;
   std::optional<double> mean_iou;  // of the judged frames, as the exemplar has it; nothing if none
-  // Of the evaluator's output, by downtime.h: the exemplar's figure, and the honest one.
+  // Downtime of the evaluator's output, by downtime.h: the exemplar's figure, and the honest one.
   double downtime_between_outputs_sec = 0;
   double downtime_sec = 0;
   std::optional<double> entropy;  // last heard of, as the manager hears it

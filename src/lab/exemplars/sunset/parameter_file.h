@@ -1,4 +1,4 @@
-// What the parameters of a node were last set to, kept across its processes (the exemplar's
+// The last values of a node's parameters, kept across its processes (the exemplar's
 // ~/parameters.csv, one file for each node).
 //
 // The file grows by one line "<name> <value>" for each change; the last one counts. Only whole
@@ -23,8 +23,8 @@ class ParameterFile {
   // Creates the file, and its folder, if need be.
   static Expected<ParameterFile> open(const std::filesystem::path& path);
 
-  // What was last set when the file was opened, of the type of `pattern`; nothing if the parameter
-  // was never set, or if that is no value of this type.
+  // The value that was last set when the file was opened, with the type of `pattern`. Empty if the
+  // parameter was never set, or if its text is no value of this type.
   std::optional<Value> last(std::string_view name, const Value& pattern) const;
 
   // Is on its way to the disk, and survives a kill, when this returns. Errors: the disk is full, or

@@ -4,8 +4,8 @@
 //     DepthImage  16UC1, little endian
 //     LabelImage  8UC1
 //
-// A picture of 0 x 0 stands for none, in any encoding. What is of another encoding or not whole
-// gives nothing: any publisher can meet us here.
+// A picture of 0 x 0 stands for none, in any encoding. Another encoding or an incomplete message
+// gives an empty result: any publisher may send it.
 #pragma once
 
 #include <optional>

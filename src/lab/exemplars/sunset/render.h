@@ -1,4 +1,4 @@
-// What a camera's rays meet: first the terrain, then the vehicles on it.
+// Intersects a camera's rays with the terrain, then with the vehicles on it.
 #pragma once
 
 #include "exemplars/sunset/camera.h"

@@ -1,5 +1,5 @@
-// What goes wrong in SUNSET: the ten faults, the 18 combinations of them that the exemplar's
-// evaluation plays, and what happens to processes in our demonstrations.
+// The faults of SUNSET: the ten faults, the 18 combinations of them that the exemplar's evaluation
+// plays, and the process faults of our demonstrations.
 #pragma once
 
 #include <array>
@@ -59,7 +59,7 @@ std::vector<Scenario> scenarios();
 // By label or by name. An error says which there are.
 Expected<Scenario> find_scenario(std::string_view label_or_name);
 
-// What happens to a process, and no parameter tells.
+// A fault of a process that no parameter shows.
 enum class ProcessFault : std::uint8_t {
   kKill,         // SIGKILL
   kStop,         // SIGSTOP: it is there, and does nothing

@@ -1,4 +1,4 @@
-// What the drone sees: a picture, its depth and its ground truth for every frame, derived from one
+// The drone's view: a picture, its depth and its ground truth for every frame, derived from one
 // town.
 //
 // The drone flies 50 m above the ground along a gently swaying line, its camera looking straight

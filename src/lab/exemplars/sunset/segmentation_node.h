@@ -1,7 +1,7 @@
 // segmentation: takes sensors_fused, publishes segmentation (a class for each pixel, with the stamp
 // of the input) and says on its heartbeat how unsure it was: "entropy" (classifier.h).
 //
-// - cuda_out_of_memory, gpu_failure: nothing is published, no entropy is told (F3).
+// - cuda_out_of_memory, gpu_failure: neither segmentations nor entropy are published (F3).
 //
 // Activating clears cuda_out_of_memory, configuring clears gpu_failure. Configuring fits the model.
 #pragma once

@@ -1,5 +1,4 @@
-// What the drone's two cameras make of a view: the lens, the noise and the encoding of a healthy
-// sensor.
+// Simulates the drone's two cameras: the lens, the noise and the encoding of a healthy sensor.
 #pragma once
 
 #include "exemplars/sunset/image.h"

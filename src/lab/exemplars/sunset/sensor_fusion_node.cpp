@@ -9,7 +9,7 @@ namespace msg = ros2::msg;
 
 namespace {
 
-// What cannot be read as a picture is passed on as it is.
+// A message that is no readable picture is passed on unchanged.
 msg::Image shifted(const msg::Image& message, std::int64_t columns) {
   const auto picture = rgb_of(message);
   return picture ? to_message(shift(*picture, columns), message.header) : message;

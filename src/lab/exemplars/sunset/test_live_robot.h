@@ -1,5 +1,5 @@
-// The live robot for tests: the seven processes on a DDS domain of their own, somebody who watches
-// them, and somebody who adapts them through their services.
+// The live robot for tests: the seven processes on a DDS domain of their own, an observer, and a
+// client that adapts them through their services.
 #pragma once
 
 #include <array>

@@ -113,8 +113,8 @@ struct Span {
   double end = 0;
 };
 
-// What is left between the sidewalks of two neighbouring roads. The last block of an axis lies
-// across the torus' seam.
+// The area between the sidewalks of two neighbouring roads. The last block of an axis lies across
+// the torus' seam.
 Span between(const Road& road, const Road& next) {
   const double seam = next.centre > road.centre ? 0 : kTerrainMetres;
   return {road.centre + road.half_width + kSidewalk,

@@ -1,12 +1,12 @@
 #include "study/plot/distribution_plot.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <optional>
 
 #include <fmt/core.h>
 
+#include "base/invariant.h"
 #include "study/plot/histogram.h"
 #include "study/plot/scale.h"
 #include "study/published.h"
@@ -157,7 +157,7 @@ class Plot {
     }
   }
 
-  // What the histogram does not show.
+  // Statistics that the histogram does not show.
   void notes(const Summary& summary, double base) {
     const std::int64_t beyond = histogram(summary.distribution(), bins_).beyond;
     if (beyond > 0)
@@ -204,7 +204,7 @@ bool has_values(const CampaignResult& result, Metric metric) {
 }
 
 Svg distribution_plot(const CampaignResult& result, Metric metric) {
-  assert(has_values(result, metric));
+  CULPRIT_ASSERT(has_values(result, metric));
   return Plot(result, metric).draw();
 }
 

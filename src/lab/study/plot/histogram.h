@@ -23,7 +23,7 @@ struct Histogram {
   std::int64_t highest() const;
 };
 
-// What is below the first bin is counted in it. A value at an edge belongs to the bin above.
+// A value below the first bin is counted in it. A value at an edge belongs to the bin above.
 Histogram histogram(const Distribution& distribution, const Bins& bins);
 
 }  // namespace culprit::study

@@ -1,10 +1,10 @@
 #include "study/plot/learning_plot.h"
 
 #include <algorithm>
-#include <cassert>
 
 #include <fmt/core.h>
 
+#include "base/invariant.h"
 #include "study/plot/scale.h"
 #include "study/plot/style.h"
 
@@ -117,7 +117,7 @@ class Plot {
 }  // namespace
 
 Svg learning_plot(const std::vector<LearningCurve>& curves) {
-  assert(!curves.empty());
+  CULPRIT_ASSERT(!curves.empty());
   return Plot(curves).draw();
 }
 

@@ -43,7 +43,7 @@ std::vector<NamedPlot> plots(const Findings& findings) {
   for (const auto& curves : by_failure(findings.learning)) {
     plots.push_back({"learning-" + safe_id(curves.front().failure),
                      "learned success probabilities, " + curves.front().failure,
-                     "Of the strategies of " + curves.front().rule + ".", learning_plot(curves)});
+                     "Strategies of " + curves.front().rule + ".", learning_plot(curves)});
   }
   return plots;
 }

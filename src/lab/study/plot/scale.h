@@ -21,7 +21,7 @@ struct Scale {
 // About `wanted` round values within low..high: multiples of 1, 2 or 5 times a power of ten.
 std::vector<double> ticks(double low, double high, int wanted);
 
-// As few digits as tell neighbouring ticks apart.
+// As few digits as distinguish neighbouring ticks.
 std::string tick_label(double tick);
 
 }  // namespace culprit::study

@@ -1,6 +1,6 @@
 // How plots look: one style sheet, with the colours of light or dark scheme.
 //
-// The colours of curves are Okabe and Ito's, which people with any colour vision tell apart.
+// The colours of curves are Okabe and Ito's, which people with any colour vision can distinguish.
 #pragma once
 
 #include <string>

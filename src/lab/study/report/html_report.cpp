@@ -96,20 +96,23 @@ std::string embedded(const std::vector<Timeline>& timelines) {
 
 std::string timeline_section(const std::vector<Timeline>& timelines) {
   if (timelines.empty()) return "";
-  return "<section id=\"runs\">\n<h2>What happened in a run</h2>\n"
-         "<p>Who failed, who was blamed, and what was done. A broad line tells how long a "
-         "component "
-         "was failing.</p>\n"
+  return "<section id=\"runs\">\n"
+         "<h2>Timeline of a run</h2>\n"
+         "<p>Failures, blamed components, and repairs. A broad line shows how long a component was "
+         "failing.</p>\n"
          "<noscript><p>The timelines need JavaScript; all else on this page does "
          "not.</p></noscript>\n"
          "<div class=\"chooser\"><label for=\"run\">Run</label><select id=\"run\"></select></div>\n"
-         "<ul class=\"kinds\" id=\"kinds\"></ul>\n<div id=\"timeline-drawing\"></div>\n"
-         "<div class=\"wide\"><table id=\"timeline-table\">\n<caption>The same in words</caption>\n"
+         "<ul class=\"kinds\" id=\"kinds\"></ul>\n"
+         "<div id=\"timeline-drawing\"></div>\n"
+         "<div class=\"wide\"><table id=\"timeline-table\">\n"
+         "<caption>The same in words</caption>\n"
          "<thead><tr><th scope=\"col\" class=\"right\">time [s]</th><th scope=\"col\" "
-         "class=\"left\">kind</th>"
-         "<th scope=\"col\" class=\"left\">component</th><th scope=\"col\" "
+         "class=\"left\">kind</th><th scope=\"col\" class=\"left\">component</th><th scope=\"col\" "
          "class=\"left\">what</th></tr></thead>\n"
-         "<tbody></tbody>\n</table></div>\n</section>\n"
+         "<tbody></tbody>\n"
+         "</table></div>\n"
+         "</section>\n"
          "<script type=\"application/json\" id=\"timelines\">" +
          embedded(timelines) + "</script>\n<script>\n" + kReportScript + "</script>\n";
 }
@@ -121,7 +124,7 @@ std::string contents(const Findings& findings, bool has_agreement) {
   std::string out = "<nav aria-label=\"Contents\"><ul>";
   if (has_agreement) out += entry("agreement", "Agreement with the paper");
   out += entry("tables", "Tables") + entry("plots", "Plots");
-  if (!findings.timelines.empty()) out += entry("runs", "What happened in a run");
+  if (!findings.timelines.empty()) out += entry("runs", "Timeline of a run");
   return out + "</ul></nav>\n";
 }
 

@@ -1,8 +1,8 @@
 // A study as one HTML page (page.h).
 //
-// How it was made (command, seed, version), how well it agrees with the paper, all tables, a plot
-// of each metric, learning curves, and a timeline of each run that was asked for. Only the choice
-// of a run's timeline needs its script.
+// It has the origin (command, seed, version), the agreement with the paper, all tables, a plot of
+// each metric, learning curves, and a timeline of each requested run. Only the choice of a run's
+// timeline needs its script.
 #pragma once
 
 #include <string>

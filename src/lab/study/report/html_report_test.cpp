@@ -62,7 +62,7 @@ TEST(HtmlReport, EscapesWhatComesFromOutside) {
 TEST(HtmlReport, LeavesOutWhatThereIsNot) {
   const std::string page = html_report({synthetic_result(2), {}, {}}, "t");
   EXPECT_EQ(page.find("<script"), std::string::npos);
-  EXPECT_EQ(page.find("What happened in a run"), std::string::npos);
+  EXPECT_EQ(page.find("Timeline of a run"), std::string::npos);
 }
 
 TEST(Plots, AreWrittenAsFilesOfTheirOwn) {

@@ -1,5 +1,5 @@
-// What every report begins with: a page that needs nothing else, no network, no fonts, no other
-// file, and follows the reader's preference for light or dark.
+// The frame of every report: a page that needs no network, no fonts and no other file, and follows
+// the reader's preference for light or dark.
 #pragma once
 
 #include <string>

@@ -64,7 +64,7 @@
     const bottom = TOP + LANE * lanes.length;
     const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${bottom + 34}`, role: "img" });
     picture.append(svg("title", {}, "Timeline of " + run.label));
-    picture.append(svg("desc", {}, "A lane for each component; the table below tells the same in words."));
+    picture.append(svg("desc", {}, "A lane for each component; the table below says the same in words."));
     for (const component of lanes) {
       picture.append(svg("line", { x1: LEFT, x2: WIDTH - RIGHT, y1: y(component), y2: y(component), class: "lane" }));
       picture.append(svg("text", { x: LEFT - 10, y: y(component) + 4, "text-anchor": "end" }, component || "robot"));

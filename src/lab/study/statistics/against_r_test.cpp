@@ -1,4 +1,5 @@
-// The statistics against R 4.2.2. What made the expected values stands above each test.
+// The statistics against R 4.2.2. A comment above each test names the source of the expected
+// values.
 #include <boost/math/distributions/students_t.hpp>
 #include <gtest/gtest.h>
 
@@ -49,8 +50,8 @@ TEST(AgainstR, QuantilesOfTheStudentizedRange) {
   expect_relative(studentized_range_quantile(0.01, 5, 20), 5.29325251169, 1e-4);
 }
 
-// Of two means, the range is |t| sqrt(2). At two degrees of freedom R's ptukey is off in the third
-// digit (qtukey(0.95, 2, 2) gives 6.0796, sqrt(2) qt(0.975, 2) is 6.0849), so this is held against
+// For two means, the range is |t| sqrt(2). At two degrees of freedom R's ptukey is off in the third
+// digit: qtukey(0.95, 2, 2) gives 6.0796, sqrt(2) qt(0.975, 2) is 6.0849. So this is compared with
 // t.
 TEST(StudentizedRange, OfTwoMeansIsStudentsT) {
   using boost::math::complement;

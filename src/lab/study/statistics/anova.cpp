@@ -1,12 +1,12 @@
 #include "study/statistics/anova.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
 
 #include <boost/math/distributions/fisher_f.hpp>
 
+#include "base/invariant.h"
 #include "study/statistics/studentized_range.h"
 
 namespace culprit::study {
@@ -60,7 +60,7 @@ TukeyHsd::TukeyHsd(std::vector<Moments> groups, Anova anova, double alpha)
                                              anova.degrees_within)) {}
 
 Difference TukeyHsd::compare(std::size_t first, std::size_t second) const {
-  assert(first < groups_.size() && second < groups_.size());
+  CULPRIT_ASSERT(first < groups_.size() && second < groups_.size());
   const Moments& a = groups_[first];
   const Moments& b = groups_[second];
   Difference difference;

@@ -28,7 +28,7 @@ struct Anova {
   double p = 1;
 };
 
-// Nothing if there are fewer than two groups, an empty one, or no more values than groups. Groups
+// Empty if there are fewer than two groups, an empty one, or no more values than groups. Groups
 // without any spread inside: f is infinite and p 0 if their means differ, f 0 and p 1 if not.
 std::optional<Anova> one_way_anova(std::span<const Moments> groups);
 
@@ -42,7 +42,7 @@ struct Difference {
 class TukeyHsd {
  public:
   // `alpha` in (0, 1): 1 - alpha is the joint confidence of all intervals.
-  // Nothing where one_way_anova gives nothing.
+  // Empty if one_way_anova is.
   static std::optional<TukeyHsd> of(std::vector<Moments> groups, double alpha = 0.05);
 
   // @pre both are indices of `groups`

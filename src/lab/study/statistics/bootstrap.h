@@ -6,8 +6,8 @@
 // Source: N. Chamandy, O. Muralidharan, A. Najmi, S. Naidu: "Estimating Uncertainty for Massive
 // Data Streams", Google, 2012.
 //
-// What is drawn is a run, with all that it yielded: the reaction times of one run share a fate, and
-// are no independent values.
+// Whole runs are drawn, with all of their values: the reaction times of one run are not
+// independent.
 #pragma once
 
 #include <array>
@@ -36,7 +36,7 @@ class BootstrapMean {
   // A run yielded `count` values with this sum.
   void add(const Weights& weights, double sum, double count);
 
-  // The 95 % percentile interval. Nothing if too few values came for a replicate to have any.
+  // The 95 % percentile interval. Empty if no replicate has a value, because there are too few.
   std::optional<Interval> interval() const;
 
  private:

@@ -33,7 +33,7 @@ TEST(Bootstrap, DrawsFromPoissonOfOne) {
   EXPECT_NEAR(few[2] / 1e6, 0.1839, 0.003);
 }
 
-// Of a normal sample's mean the interval is known: mean +- 1.96 s / sqrt(n).
+// The interval of a normal sample's mean is known: mean +- 1.96 s / sqrt(n).
 TEST(Bootstrap, AgreesWithTheNormalIntervalWhereThatHolds) {
   constexpr std::uint32_t kRuns = 400;
   std::mt19937 engine(5);

@@ -1,8 +1,9 @@
 #include "study/statistics/distribution.h"
 
 #include <bit>
-#include <cassert>
 #include <cmath>
+
+#include "base/invariant.h"
 
 namespace culprit::study {
 namespace {
@@ -32,7 +33,7 @@ void Distribution::coarsen() {
 }
 
 double Distribution::quantile(double q) const {
-  assert(count_ > 0 && q > 0 && q <= 1);
+  CULPRIT_ASSERT(count_ > 0 && q > 0 && q <= 1);
   const auto wanted = static_cast<std::int64_t>(std::ceil(q * static_cast<double>(count_)));
   std::int64_t seen = 0;
   for (const auto& [value, count] : counts_) {

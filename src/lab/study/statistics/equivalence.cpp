@@ -1,17 +1,17 @@
 #include "study/statistics/equivalence.h"
 
 #include <algorithm>
-#include <cassert>
 
 #include <boost/math/distributions/students_t.hpp>
 
+#include "base/invariant.h"
 #include "study/statistics/welch.h"
 
 namespace culprit::study {
 
 std::optional<EquivalenceTest> equivalence_test(const Moments& first, const Moments& second,
                                                 double margin) {
-  assert(margin > 0);
+  CULPRIT_ASSERT(margin > 0);
   const auto welch = welch_test(first, second);
   if (!welch) return std::nullopt;
   EquivalenceTest test;

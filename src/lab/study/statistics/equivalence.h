@@ -4,8 +4,8 @@
 //     t_low  = (d + margin) / e        t_high = (d - margin) / e        d = mean_b - mean_a
 //
 // with e and the degrees of freedom as in welch.h. Equivalent at 5 % if both one-sided p are below
-// 0.05, which is the same as: the 90 % interval of d lies within ± margin. That no difference was
-// found proves nothing; this does.
+// 0.05, which is the same as: the 90 % interval of d lies within ± margin. A missing difference
+// proves nothing; this test does.
 #pragma once
 
 #include <optional>
@@ -24,7 +24,7 @@ struct EquivalenceTest {
   bool is_equivalent() const { return p < 0.05; }
 };
 
-// Nothing if a sample has fewer than two values, or if neither has any spread. @pre margin > 0
+// Empty if a sample has fewer than two values, or if neither has any spread. @pre margin > 0
 std::optional<EquivalenceTest> equivalence_test(const Moments& first, const Moments& second,
                                                 double margin);
 

@@ -5,8 +5,8 @@
 //
 //     n <- n + 1,  d = x - mean,  mean <- mean + d / n,  M2 <- M2 + d (x - mean)
 //
-// M2 is the sum of squared deviations from the mean. Nothing cancels, however far the mean is from
-// 0.
+// M2 is the sum of squared deviations from the mean. There is no cancellation, however far the mean
+// is from 0.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace culprit::study {
 class Moments {
  public:
   Moments() = default;
-  // What a publication tells of a sample: its mean and the standard deviation with n - 1.
+  // Moments from published figures: the mean, and the standard deviation with n - 1.
   static Moments of_summary(double mean, double sample_sd, std::int64_t count);
 
   void add(double value);

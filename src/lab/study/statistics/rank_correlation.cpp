@@ -1,9 +1,10 @@
 #include "study/statistics/rank_correlation.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <vector>
+
+#include "base/invariant.h"
 
 namespace culprit::study {
 namespace {
@@ -25,7 +26,7 @@ int sign(double x) { return (x > 0) - (x < 0); }
 }  // namespace
 
 std::optional<double> spearman_rho(std::span<const double> a, std::span<const double> b) {
-  assert(a.size() == b.size());
+  CULPRIT_ASSERT(a.size() == b.size());
   const std::vector<double> ranks_a = ranks(a);
   const std::vector<double> ranks_b = ranks(b);
   const double mean = (static_cast<double>(a.size()) + 1) / 2;
@@ -42,7 +43,7 @@ std::optional<double> spearman_rho(std::span<const double> a, std::span<const do
 }
 
 std::optional<double> kendall_tau(std::span<const double> a, std::span<const double> b) {
-  assert(a.size() == b.size());
+  CULPRIT_ASSERT(a.size() == b.size());
   double balance = 0;
   double pairs_a = 0;  // that are no ties
   double pairs_b = 0;

@@ -12,8 +12,8 @@
 
 namespace culprit::study {
 
-// Nothing if there are fewer than two, or if one list has the same number everywhere. @pre as many
-// of either
+// Empty if there are fewer than two, or if one list has the same number everywhere. @pre as many of
+// either
 std::optional<double> spearman_rho(std::span<const double> a, std::span<const double> b);
 std::optional<double> kendall_tau(std::span<const double> a, std::span<const double> b);
 

@@ -12,7 +12,7 @@
 namespace culprit::study {
 namespace {
 
-// What lies beyond changes no digit.
+// The tails beyond it change no digit.
 constexpr double kFarthestNormal = 9;
 constexpr double kLeastTail = 1e-18;
 

@@ -21,7 +21,7 @@ struct WelchTest {
   double high = 0;
 };
 
-// Nothing if a sample has fewer than two values, or if neither has any spread.
+// Empty if a sample has fewer than two values, or if neither has any spread.
 std::optional<WelchTest> welch_test(const Moments& first, const Moments& second);
 
 }  // namespace culprit::study

@@ -1,4 +1,4 @@
-// What the tables of a study have in common.
+// Shared columns of a study's tables.
 #pragma once
 
 #include <string>
@@ -22,7 +22,7 @@ std::string p_value(double p);
 std::vector<Column> switch_columns();
 std::vector<Cell> switch_cells(const PaperSwitches& switches);
 
-// The switches, and what else tells the campaign's rows apart.
+// The switches, and the other columns that distinguish the campaign's rows.
 class ConfigurationColumns {
  public:
   explicit ConfigurationColumns(const std::vector<Row>& rows);

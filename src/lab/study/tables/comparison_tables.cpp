@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 
 #include <fmt/core.h>
 
+#include "base/invariant.h"
 #include "study/statistics/welch.h"
 #include "study/tables/columns.h"
 #include "study/tables/study_tables.h"
@@ -51,7 +51,7 @@ Shade shade(published::Significance significance) {
   return Shade::kNone;
 }
 
-// The largest significant changes of a metric, so that colours can tell how large one is.
+// The largest significant changes of a metric, to scale the colours.
 struct Largest {
   double ours = 0;
   double theirs = 0;
@@ -104,7 +104,7 @@ std::vector<Cell> robustness_row(const std::string& name, const Row& row) {
   return cells;
 }
 
-// What is compared between the live robot and its model.
+// Compares the live robot with its model.
 constexpr std::array kComparedLive = {
     Metric::kRatio,          Metric::kReaction,           Metric::kUnnecessaryRedeployments,
     Metric::kHonestDowntime, Metric::kStrategiesPerFault, Metric::kRecovery};
@@ -229,8 +229,8 @@ Table live_table(const CampaignResult& result) {
 }
 
 Table robustness_table(const Row& ideal, const Row& misspecified) {
-  assert(ideal.configuration.planner == misspecified.configuration.planner &&
-         ideal.configuration.profile == misspecified.configuration.profile);
+  CULPRIT_ASSERT(ideal.configuration.planner == misspecified.configuration.planner &&
+                 ideal.configuration.profile == misspecified.configuration.profile);
   Table table{id_of("robustness", ideal.configuration.planner, ideal.configuration.profile),
               "Probabilities off by 20 %: " +
                   played(ideal.configuration.planner, ideal.configuration.profile),

@@ -21,7 +21,7 @@ std::string_view shade_class(Shade shade) {
   return "";
 }
 
-// For readers that hear the page or cannot tell the colours.
+// For screen readers, and for readers without colours.
 std::string_view spoken(Shade shade) {
   switch (shade) {
     case Shade::kNone:

@@ -4,7 +4,7 @@
 namespace culprit::study {
 namespace {
 
-// What Markdown or HTML in it would read as more than a letter.
+// Escapes the characters that Markdown or HTML would interpret.
 std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : text) {

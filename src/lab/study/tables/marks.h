@@ -1,4 +1,4 @@
-// How forms without colour tell a cell's shade.
+// The signs for a cell's shade in forms without colour.
 #pragma once
 
 #include <string>

@@ -1,10 +1,10 @@
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <optional>
 
 #include <fmt/core.h>
 
+#include "base/invariant.h"
 #include "study/tables/columns.h"
 #include "study/tables/study_tables.h"
 
@@ -111,7 +111,7 @@ Table root_cause_table(const CampaignResult& result) {
 }
 
 Table learning_table(const std::vector<LearningCurve>& curves) {
-  assert(!curves.empty());
+  CULPRIT_ASSERT(!curves.empty());
   Table table{"learning",
               "Learned success probabilities beside the true rates",
               {{"", "failure", "", "", Align::kLeft},

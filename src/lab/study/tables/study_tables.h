@@ -33,7 +33,7 @@ Table live_table(const CampaignResult& result);
 // test of the difference. @pre both are of one planner and profile
 Table robustness_table(const Row& ideal, const Row& misspecified);
 
-// What was learned, beside the true rates. @pre !curves.empty()
+// The learned rates beside the true ones. @pre !curves.empty()
 Table learning_table(const std::vector<LearningCurve>& curves);
 
 // Whichever of these can be made, in this order.

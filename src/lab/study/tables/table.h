@@ -1,7 +1,7 @@
 // A table of results before it is text, Markdown, LaTeX or HTML.
 //
-// Cells are plain UTF-8; each form escapes them as it needs. Of the signs beyond ASCII only those
-// that occur here are known to all forms: ± − – ✓ ✗ Δ.
+// Cells are plain UTF-8; each form escapes them as it needs. Beyond ASCII, all forms know only the
+// signs that occur here: ± − – ✓ ✗ Δ.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct Column {
   Align align = Align::kRight;
 };
 
-// What the paper tells by the colour of a cell.
+// The meaning of a cell's colour in the paper.
 enum class Shade : std::uint8_t { kNone, kNotSignificant, kBetter, kWorse };
 
 struct Cell {

@@ -84,7 +84,7 @@ bool FollowNode::is_there() const {
   return is_near(helm_.seen(), *goal_, kTolerance);
 }
 
-// Every two seconds: whoever waits for the vehicle looks whether it arrived.
+// Every two seconds, a waiting function checks whether the vehicle has arrived.
 void FollowNode::poll() {
   constexpr int kPatience = 10;
   if (!is_active() || !goal_) return;

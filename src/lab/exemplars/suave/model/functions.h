@@ -1,6 +1,6 @@
 // The nodes that do something: search, follow, recover, recharge.
 //
-// They configure themselves at their start, and do nothing until somebody activates them.
+// They configure themselves at their start, and do nothing until they are activated.
 #pragma once
 
 #include <deque>

@@ -1,5 +1,5 @@
-// What the functions ask of the rest of the robot, wherever it runs: in the same model, or in
-// another process.
+// The interface of the functions to the rest of the robot, wherever it runs: in the same model, or
+// in another process.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ class Helm {
  public:
   virtual ~Helm() = default;
 
-  // What the vehicle takes for its position.
+  // The vehicle's estimate of its position.
   virtual Position seen() const = 0;
   virtual void go_to(const Position& goal) = 0;
   // Where the spiral is centred; nothing while that is not known yet.

@@ -1,9 +1,10 @@
 // The exemplar's metrics of a mission (mission_metrics), by name, and what it leaves out.
 //
 // - Visibility: a mismatch opens with a reading of the visibility for which the search does not
-//   have the expected altitude, and closes when the search's altitude becomes the one expected by
-//   then. It does not matter whether anybody searches. A low battery closes an open one without
-//   counting it, and no new one opens until it is charged; in the standard mission, never.
+//   have the expected altitude. It closes when the search's altitude becomes the one expected by
+//   then. It counts also while no search is under way. A low battery closes an open mismatch
+//   without counting it, and no new one opens until the battery is charged; in the standard
+//   mission, never.
 // - Thruster: from the failure's diagnostic to the activation of the recovery.
 // - Battery: from the first reading below a quarter to the activation of the recharging; each
 //   activation counts.
@@ -17,8 +18,8 @@ namespace culprit::suave::model {
 
 struct Reactions {
   std::vector<double> answered_s;
-  // What nobody answered: how long it had been there when it was over, or when the mission was.
-  // Lower bounds. A mismatch is over when nobody searches any more.
+  // Ages of mismatches without an answer, when they were over, or when the mission was. Lower
+  // bounds. A mismatch is over when the search is.
   std::vector<double> unanswered_s;
 
   bool operator==(const Reactions&) const = default;
@@ -30,11 +31,11 @@ class Metrics : private simulation::Watcher {
   Metrics(simulation::World& world, Topics& topics);
   ~Metrics() override;
 
-  // Whatever is open now was not answered.
+  // Mismatches that are still open count as unanswered.
   void finish();
 
   std::optional<Time> found() const { return found_; }
-  // The last that was told: since the following of the pipeline began the last time.
+  // The last reported value: since the following of the pipeline began the last time.
   double distance() const { return distance_; }
   // Of all stretches.
   double whole_distance() const { return earlier_distance_ + distance_; }

@@ -113,7 +113,7 @@ void Mission::ground(const char* system, const char* mode) {
   if (leader_ == Leader::kMission) change_mode(system, mode);
 }
 
-// Whoever leads: what is inspected wholly is done.
+// The mission is over once the whole pipeline is inspected, in every mode of leading.
 void Mission::on_field(const simulation::TopicBase& topic, const std::string&, const Value&) {
   if (&topic == &inspected_topic_) end();
 }

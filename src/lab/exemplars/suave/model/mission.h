@@ -10,7 +10,7 @@
 
 namespace culprit::suave::model {
 
-// Who turns the mission's tasks into modes.
+// Turns the mission's tasks into modes.
 enum class Leader : std::uint8_t {
   kMission,  // the mission itself: a mode for each task, the same all along
   kBridge,   // a manager that hears which task it is (suave_msgs/Task)
@@ -31,7 +31,7 @@ class Mission : public simulation::Node, private simulation::Watcher {
   std::optional<Time> ended() const { return ended_; }
   // Called when it ends.
   std::function<void()> on_end;
-  // Has a system's mode changed. Whoever builds a mission that leads itself sets it.
+  // Has a system's mode changed. Must be set for a mission that leads itself.
   std::function<void(const char* system, const char* mode)> change_mode;
 
  private:

@@ -11,7 +11,7 @@
 
 namespace culprit::suave::model {
 
-// What the exemplar's versions differ in, as far as it changes a run.
+// The differences between the exemplar's versions, as far as they change a run.
 struct Generation {
   std::string_view name;
   std::string_view summary;

@@ -27,8 +27,8 @@ std::string plain(double value) {
   return {text, end};
 }
 
-// Of run number `run`. Draws nothing where there is nothing to draw, so that constants change no
-// run.
+// Draws a value for run number `run`. Does not advance the random numbers for a constant, so that
+// constants change no run.
 double draw(const Range& range, std::uint32_t run, simulation::Random& random) {
   if (!range.turns.empty()) return range.turns[run % range.turns.size()];
   return range.low == range.high ? range.low : random.uniform(range.low, range.high);

@@ -1,13 +1,13 @@
-// What a campaign may set of a mission, beside which one it is: the water, the thrusters, where and
-// how long (the exemplar's mission_config.yaml and its runner's perturbations).
+// Settings of a mission that a campaign may change: the water, the thrusters, the place and the
+// duration (the exemplar's mission_config.yaml and its runner's perturbations).
 //
 //     MissionSettings settings = settings_of(plan);
 //     settings.visibility_shift_s = {0, 120};                    // another one in each run
 //     MissionPlan of_this_run = drawn(plan, settings, seed, run);
 //
-// A range is drawn from uniformly in each run; one without width is a constant. What is given by
-// turns is what the exemplar's runner had drawn: run i has the i-th of each list, from the first
-// again after the last.
+// A range is drawn from uniformly in each run; one without width is a constant. Turns are lists
+// that the exemplar's runner had drawn: run i takes the i-th value of each list, and starts over
+// after the last.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
-// What the robot says of itself on /diagnostics: the water's visibility, the battery, the
-// thrusters. Each has a timer of one second, with a phase of its own, from the mission's begin on.
+// The robot's diagnostics: the water's visibility, the battery, the thrusters. Each has a timer of
+// one second, with a phase of its own, from the mission's begin on.
 #pragma once
 
 #include "exemplars/suave/model/autopilot.h"

@@ -1,4 +1,4 @@
-// Where something is, and where a vehicle is told to go.
+// Positions of things, and goals of the vehicle.
 //
 // The frame is the simulation's: metres, x and y level, z up, the surface of the water at 0.
 #pragma once
@@ -20,7 +20,7 @@ inline bool is_near(const Position& a, const Position& b, double tolerance) {
   return std::abs(a.x - b.x) <= tolerance && std::abs(a.y - b.y) <= tolerance;
 }
 
-// What goes to the autopilot (mavros/setpoint_position/local).
+// A setpoint for the autopilot (mavros/setpoint_position/local).
 struct Setpoint {
   Position goal;
 };

@@ -2,8 +2,8 @@
 //
 //     r_0 = 0,  r_n = r_(n-1) + w / 2 pi * 0.1,  angle 0.1 n,  w = 2 altitude tan(30 deg)
 //
-// w is how wide a stripe the camera sees from that altitude. Driven by a timer once a second; a
-// tick takes at most one step, and only from where the vehicle was told to go.
+// w is the width of the stripe that the camera sees from that altitude. Driven by a timer once a
+// second; a tick takes at most one step, and only from the vehicle's last goal.
 #pragma once
 
 #include <cstdint>

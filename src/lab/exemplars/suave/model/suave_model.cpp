@@ -5,7 +5,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// By then everything runs, and whoever watches has seen it.
+// By then everything runs, and observers have discovered it.
 constexpr double kBeginSec = 10;
 
 Time draw_begin(simulation::Random random) {

@@ -2,8 +2,8 @@
 // time.
 //
 // An underwater robot searches a pipeline in a spiral and then follows it, while the water gets
-// murky, thrusters fail and the battery runs low. What it does about that is a manager's matter,
-// who changes the modes of its functions.
+// murky, thrusters fail and the battery runs low. A manager repairs that by changing the modes of
+// its functions.
 #pragma once
 
 #include "exemplars/suave/model/functions.h"
@@ -21,7 +21,7 @@ class SuaveModel : private Helm {
     VehicleTraits vehicle = {};
   };
 
-  // Starts all nodes. What `setting` refers to must outlive the model. The same seed, the same run.
+  // Starts all nodes. All objects in `setting` must outlive the model. The same seed, the same run.
   SuaveModel(const Setting& setting, std::uint64_t seed);
   SuaveModel(const SuaveModel&) = delete;
   SuaveModel& operator=(const SuaveModel&) = delete;

@@ -12,7 +12,7 @@ using namespace std::chrono_literals;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-// A mission on which somebody acts at given times, in the mission's time.
+// A mission with actions at given times, in the mission's time.
 struct Sea {
   explicit Sea(const char* plan = "standard", const char* generation = "era",
                Leader leader = Leader::kMission, std::uint64_t seed = 1)
@@ -30,7 +30,7 @@ struct Sea {
   SuaveModel model;
 };
 
-// What was said on /diagnostics under a key, with the mission's time.
+// The values of a key on /diagnostics, with the mission's time.
 struct Listener : simulation::Watcher {
   Listener(Sea& of, std::string of_key) : sea(of), key(std::move(of_key)) {
     sea.model.world().watch(*this);

@@ -1,8 +1,8 @@
 // How the vehicle moves: kinematics that stand for a BlueROV2 under ArduSub.
 //
-// It heads for its setpoint with a speed proportional to the distance, up to a cruise speed, and
-// gets there with a lag; its depth likewise. What it and its camera take for its position is off by
-// an Ornstein-Uhlenbeck process. A failed thruster makes it slower and less agile.
+// It heads for its setpoint with a speed proportional to the distance, up to a cruise speed, with a
+// lag; its depth does the same. Its own estimate of the position, and its camera's, is off by an
+// Ornstein-Uhlenbeck process. A failed thruster makes it slower and less agile.
 //
 // The constants are not the exemplar's, which are hidden in an autopilot; they are fitted to what
 // the published runs took (scripts/fit-suave).
@@ -47,7 +47,7 @@ class Vehicle {
   void advance();  // by a step
 
   const Position& position() const { return position_; }
-  // What the autopilot and the camera take for the position.
+  // The position as the autopilot and the camera estimate it.
   Position seen() const;
 
   // `thruster` counts from 1.

@@ -6,7 +6,7 @@
 namespace culprit::sunset::model {
 namespace {
 
-// What looks bad enough for the newest version to publish more often.
+// Beyond these limits the newest version publishes more often.
 constexpr double kLowFrequency = 1;
 constexpr double kHighEntropy = 0.06;
 constexpr int kAlarming = 2;

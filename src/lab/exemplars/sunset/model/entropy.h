@@ -15,7 +15,7 @@ EntropyLevel entropy_level(const Frame& frame);
 
 class Entropy {
  public:
-  // What is seen changes over about this time, and the entropy with it.
+  // The scene changes over about this time, and the entropy with it.
   static constexpr Duration kCorrelation = std::chrono::seconds(1);
 
   explicit Entropy(simulation::Random random) : random_(random) {}

@@ -14,13 +14,13 @@ class Evaluator : public simulation::Node {
  public:
   // Two frame periods: longer gaps between outputs are downtime.
   static constexpr Duration kTolerated = std::chrono::milliseconds(200);
-  // What was well for so long at the end is well.
+  // Without a fault for so long at the end, the robot is well.
   static constexpr Duration kCalm = std::chrono::milliseconds(1500);
 
   // `camera` is asked whether it needs to focus. It must outlive the evaluator.
   Evaluator(simulation::World& world, Topics& topics, const simulation::Node& camera);
 
-  // What came before does not count.
+  // Earlier output does not count.
   void restart();
 
   const Downtime& downtime() const { return downtime_; }

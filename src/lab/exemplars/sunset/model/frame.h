@@ -1,5 +1,5 @@
-// What flows between the modelled nodes: of a picture, only what the segmentation's entropy depends
-// on.
+// The content of a modelled topic: of a picture, only the properties that determine the
+// segmentation's entropy.
 #pragma once
 
 #include <cstdint>

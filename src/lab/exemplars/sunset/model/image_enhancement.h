@@ -1,5 +1,5 @@
-// The modelled image enhancement: idle until somebody activates it. It undoes a
-// degraded picture exactly, and washes out a healthy one.
+// The modelled image enhancement: idle until it is activated. It undoes a degraded picture exactly,
+// and washes out a healthy one.
 #pragma once
 
 #include "exemplars/sunset/model/managed_node.h"

@@ -1,6 +1,6 @@
-// What the five managed nodes have in common, as exemplars/sunset/managed_node.h has it
-// for the live ones: a heartbeat from configuring on, fault parameters that heal by activating or
-// by configuring, and parameters that may outlive the process.
+// Base of the five managed nodes, the counterpart of exemplars/sunset/managed_node.h for live ones.
+// It has a heartbeat from configuring on, fault parameters that heal by activating or by
+// configuring, and parameters that may outlive the process.
 #pragma once
 
 #include <memory>

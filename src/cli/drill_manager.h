@@ -1,0 +1,64 @@
+// The culprit that heals while a drill injects faults: a `culprit run` of its own, followed over its local socket.
+//
+// It outlives a drill that is killed, so that it heals what the drill has broken.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <memory>
+#include <thread>
+
+#include "base/mutex.h"
+#include "cli/running_culprit.h"
+#include "drill/injected.h"
+#include "drill/robot_view.h"
+
+namespace culprit::cli {
+
+class DrillManager {
+ public:
+  // `arguments` as of culprit; its output goes to `log`. Waits until it answers, 20 s at most. Errors: it cannot be
+  // started, has ended, or does not answer; its last line says why.
+  static Expected<std::unique_ptr<DrillManager>> start(const std::vector<std::string>& arguments,
+                                                       const std::filesystem::path& log,
+                                                       const std::atomic<bool>& stop);
+  // Ends it, unless leave() was called. The robot goes on.
+  ~DrillManager();
+  // Lets it run on after this object.
+  void leave() { is_left_ = true; }
+
+  const drill::ProcessId& process() const { return process_; }
+  // Whether it runs and told something in the last 3 s.
+  bool is_answering() const;
+
+  // As it was told last.
+  drill::RobotView view() const;
+  // Events since that time on the clock, in seconds since 1970, oldest first.
+  std::vector<Json> events_since(double clock) const;
+
+ private:
+  DrillManager(drill::ProcessId process, RunningCulprit culprit);
+  void follow();
+
+  const drill::ProcessId process_;
+  const RunningCulprit culprit_;
+  std::atomic<bool> is_over_ = false;
+  bool is_left_ = false;
+
+  mutable Mutex mutex_;
+  Json robot_ CULPRIT_GUARDED_BY(mutex_);
+  Json graph_ CULPRIT_GUARDED_BY(mutex_);
+  Json state_ CULPRIT_GUARDED_BY(mutex_);
+  std::vector<Json> events_ CULPRIT_GUARDED_BY(mutex_);
+  Time told_ CULPRIT_GUARDED_BY(mutex_) = kLongAgo;
+
+  std::thread thread_;
+};
+
+// Ends the process if it is still the one that was meant: SIGINT, and SIGKILL after 5 s.
+void end_manager(const drill::ProcessId& process);
+
+// Now, in seconds since 1970.
+double drill_clock();
+
+}  // namespace culprit::cli

@@ -1,0 +1,255 @@
+#include "cli/drill_session.h"
+
+#include <algorithm>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "base/duration_words.h"
+#include "base/live_clock.h"
+#include "base/text_file.h"
+#include "journal/json.h"
+#include "owners/proc.h"
+
+namespace culprit::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using drill::Fault;
+using drill::FaultKind;
+using drill::Injected;
+using drill::RobotView;
+using drill::Trial;
+
+constexpr Duration kLook = 50ms;
+constexpr Duration kNotices = 5s;  // a rule that has not fired by then does not notice the fault
+
+std::string boot_id() {
+  const auto text = read_text("/proc/sys/kernel/random/boot_id");
+  return text ? text->substr(0, text->find('\n')) : "";
+}
+
+std::string listed(const std::vector<std::string>& complaints) {
+  std::string text;
+  for (const std::string& each : complaints) text += (text.empty() ? "" : ", ") + each;
+  return text;
+}
+
+bool lasts(const Fault& fault) {
+  return fault.kind == FaultKind::kHang || fault.kind == FaultKind::kSlow;
+}
+
+// A deactivated node that no rule is about is not well either.
+std::vector<std::string> complaints_of(const RobotView& view, const RobotView& before,
+                                       const std::vector<Fault>& faults) {
+  std::vector<std::string> all = view.complaints(&before);
+  const auto components = view.components();
+  for (const Fault& fault : faults) {
+    const auto found = components.find(fault.component);
+    if (fault.kind == FaultKind::kDeactivate && found != components.end() &&
+        found->second.lifecycle != "active")
+      all.push_back(fault.component + " is " + found->second.lifecycle);
+  }
+  return all;
+}
+
+bool is_noticed(const std::vector<Json>& events) {
+  return std::ranges::any_of(events, [](const Json& event) {
+    return journal::text_of(event, "type") == "failure_detected" && !drill::is_of_own_rule(event);
+  });
+}
+
+}  // namespace
+
+Expected<std::unique_ptr<DrillSession>> DrillSession::begin(Options options, Say say,
+                                                            const std::atomic<bool>& stop) {
+  std::unique_ptr<DrillSession> session(new DrillSession(std::move(options), std::move(say), stop));
+  auto node = DrillNode::join();
+  if (!node) return Error{node.error()};
+  session->node_ = std::move(*node);
+  session->injector_ = std::make_unique<DrillInjector>(*session->node_);
+  if (auto undone = session->undo_what_is_left(); !undone) return Error{undone.error()};
+  const auto here = culprits_here({});
+  if (!here) return Error{here.error()};
+  if (!here->answering.empty())
+    return Error{here->answering.front().name() +
+                 " manages a robot on this domain; end it first: a drill starts its own"};
+  auto manager =
+      DrillManager::start(session->options_.manager, session->options_.log, session->stop_);
+  if (!manager) return Error{manager.error()};
+  session->manager_ = std::move(*manager);
+  if (auto noted = session->note({}); !noted) return Error{"nothing is injected: " + noted.error()};
+  if (auto well = session->wait_until_well(Until::kWellOrTold); !well) return Error{well.error()};
+  session->healthy_ = session->manager_->view();
+  return session;
+}
+
+Expected<void> DrillSession::undo_what_is_left() {
+  const auto left = drill::read_injected(options_.injected);
+  if (!left)
+    return Error{left.error() + "; see to it that the robot is well, then remove this file"};
+  if (!*left) return {};
+  const bool is_same_boot = (*left)->boot == boot_id();
+  if (is_same_boot) end_manager((*left)->manager);
+  for (const Injected& each : (*left)->faults) {
+    if (drill::acts_on_process(each.fault.kind) && !is_same_boot) continue;
+    const auto undone = injector_->undo(each);
+    if (!undone)
+      say_("left by an earlier drill and not undone: " + to_string(each.fault) + ": " +
+           undone.error());
+    else if (*undone)
+      say_("undone, left by an earlier drill: " + to_string(each.fault));
+  }
+  return {};
+}
+
+Expected<void> DrillSession::note(std::vector<Injected> injected) const {
+  return drill::write_injected(options_.injected,
+                               {boot_id(), manager_->process(), std::move(injected)});
+}
+
+DrillSession::~DrillSession() {
+  if (!manager_) return;
+  if (auto well = wait_until_well(Until::kWell); !well) {
+    say_(well.error() + "; culprit goes on and heals it: process " +
+         std::to_string(manager_->process().pid));
+    manager_->leave();
+    return;
+  }
+  manager_.reset();
+  if (auto forgotten = drill::forget_injected(options_.injected); !forgotten)
+    say_(forgotten.error());
+}
+
+std::string DrillSession::why_to_end() const {
+  if (stop_) return "interrupted";
+  if (!manager_->is_answering()) return "the culprit of this drill does not answer";
+  const RobotView view = manager_->view();
+  for (const std::string& rule : options_.aborts)
+    if (view.trigger(rule).value_or(false)) return "an ABORT condition is true";
+  return "";
+}
+
+Expected<void> DrillSession::wait_until_well(Until until) {
+  std::vector<std::string> complaints;
+  std::optional<Time> calm;
+  for (const Time end = live_now() + options_.patience; live_now() < end;) {
+    if (const std::string why = why_to_end(); !why.empty() && until == Until::kWellOrTold)
+      return Error{why};
+    complaints = manager_->view().complaints(healthy_ ? &*healthy_ : nullptr);
+    if (!complaints.empty()) calm.reset();
+    if (complaints.empty() && !calm) calm = live_now();
+    if (calm && live_now() - *calm >= drill::kCalm) return {};
+    std::this_thread::sleep_for(kLook);
+  }
+  return Error{"the robot is not well: " + listed(complaints)};
+}
+
+Expected<void> DrillSession::may_inject() const {
+  const RobotView view = manager_->view();
+  for (const std::string& rule : options_.interlocks)
+    if (view.trigger(rule).value_or(true)) return Error{"an INTERLOCK does not hold"};
+  return {};
+}
+
+Expected<std::vector<Injected>> DrillSession::prepare(const std::vector<Fault>& faults) {
+  const auto components = manager_->view().components();
+  std::vector<Injected> out;
+  for (const Fault& fault : faults) {
+    const auto found = components.find(fault.component);
+    if (found == components.end()) return Error{fault.component + " is not known"};
+    if (!found->second.is_alive) return Error{fault.component + " is not there"};
+    if (!drill::acts_on_process(fault.kind) && fault.kind != FaultKind::kSetParameter &&
+        found->second.lifecycle != "active")
+      return Error{fault.component + " is no active lifecycle node"};
+    auto prepared = injector_->prepare(fault, found->second.node, found->second.pid);
+    if (!prepared) return Error{prepared.error()};
+    out.push_back(std::move(*prepared));
+  }
+  return out;
+}
+
+bool DrillSession::undo(std::vector<Injected>& injected) {
+  bool is_undone = false;
+  std::erase_if(injected, [&](const Injected& each) {
+    const auto undone = injector_->undo(each);
+    is_undone |= undone && *undone;
+    return undone.has_value();
+  });
+  return is_undone;
+}
+
+void DrillSession::watch_reaction(Trial& trial, std::vector<Injected>& injected) {
+  const RobotView before = *healthy_;
+  const bool has_lasting = std::ranges::any_of(trial.faults, lasts);
+  std::optional<double> calm;
+  bool is_over = false;
+  const auto undo_now = [&] {
+    if (undo(injected)) trial.undone = drill_clock();
+    is_over = true;
+  };
+  for (double after = 0; after < seconds(options_.patience);
+       after = drill_clock() - trial.injected) {
+    std::this_thread::sleep_for(kLook);
+    const RobotView view = manager_->view();
+    for (const std::string& each : view.silent()) trial.silent.try_emplace(each, drill_clock());
+    if (trial.trouble = why_to_end(); !trial.trouble.empty()) return undo_now();
+    const bool noticed = is_noticed(manager_->events_since(trial.injected));
+    // The guard lets a stopped process go on by itself. Others stay broken for half of the time that culprit has.
+    const Duration until = has_lasting ? options_.hang
+                           : noticed   ? options_.patience / 2
+                                       : options_.hang + kNotices;
+    if (!is_over && after > seconds(until)) undo_now();
+    const bool is_well = complaints_of(view, before, trial.faults).empty();
+    if (!is_well) calm.reset();
+    if (is_well && !calm) calm = drill_clock();
+    const double seen = std::max(0.0, drill_clock() - calm.value_or(drill_clock()));
+    const bool was_awaited = noticed || is_over || after > seconds(kNotices);
+    if (calm && was_awaited && seen >= seconds(drill::kCalm)) {
+      trial.well = *calm;
+      break;
+    }
+  }
+  if (!is_over) undo_now();
+}
+
+Expected<Trial> DrillSession::run(const drill::Step& step) {
+  if (auto well = wait_until_well(Until::kWellOrTold); !well) return Error{well.error()};
+  if (auto may = may_inject(); !may) return Error{may.error()};
+  Trial trial{step.faults, step.round};
+  auto injected = prepare(step.faults);
+  if (!injected) {
+    trial.trouble = injected.error();
+    return trial;
+  }
+  if (auto noted = note(*injected); !noted) return Error{"nothing is injected: " + noted.error()};
+  trial.injected = drill_clock();
+  for (const Injected& each : *injected) {
+    say_("injects " + to_string(each.fault));
+    if (auto done = injector_->inject(each, options_.hang); !done) trial.trouble = done.error();
+    if (each.fault.kind == FaultKind::kRestart) trial.undone = drill_clock();
+  }
+  if (trial.trouble.empty()) watch_reaction(trial, *injected);
+  undo(*injected);
+  trial.end = drill_clock();
+  for (Json event : manager_->events_since(trial.injected)) {
+    event.erase("candidates");
+    trial.events.push_back(std::move(event));
+  }
+  if (!injected->empty())
+    return Error{to_string(injected->front().fault) +
+                 " cannot be undone now; the next drill of this robot tries again"};
+  // If the disk is full meanwhile, the record stays as it was: undoing twice harms nothing.
+  (void)note({});
+  return trial;
+}
+
+bool DrillSession::watch(Duration time) {
+  for (const Time end = live_now() + time; live_now() < end;) {
+    if (!why_to_end().empty()) return false;
+    std::this_thread::sleep_for(kLook);
+  }
+  return true;
+}
+
+}  // namespace culprit::cli

@@ -1,0 +1,75 @@
+// One drill on a live robot: faults one after the other, while a culprit of its own heals.
+//
+// Safety, in this order for each fault: the robot is well for kCalm; interlocks hold; the fault is on the disk
+// (drill/injected.h); only then it is injected. Afterwards it is undone if culprit did not heal it, and the robot has to be
+// well again before the next one.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <memory>
+
+#include "cli/drill_injector.h"
+#include "cli/drill_manager.h"
+#include "drill/drill_plan.h"
+#include "drill/trial.h"
+
+namespace culprit::cli {
+
+class DrillSession {
+ public:
+  struct Options {
+    std::vector<std::string> manager;     // arguments of the culprit that heals
+    std::filesystem::path log;            // of it
+    std::filesystem::path injected;       // the record of faults that are not undone
+    std::vector<std::string> interlocks;  // of the rules that the drill added
+    std::vector<std::string> aborts;      // likewise
+    Duration hang = std::chrono::seconds(3);
+    Duration patience = std::chrono::seconds(60);  // for the robot to be well
+  };
+  using Say = std::function<void(const std::string& line)>;
+
+  // Undoes what an earlier drill has left behind, starts the culprit, and waits until the robot is well. Errors: another
+  // culprit manages the robot, the record is damaged, or the robot does not get well; each says what to do.
+  static Expected<std::unique_ptr<DrillSession>> begin(Options options, Say say,
+                                                       const std::atomic<bool>& stop);
+
+  // Waits until the robot is well and ends the culprit. If the robot does not get well, that culprit goes on.
+  ~DrillSession();
+
+  // One fault. Errors end the drill: the robot is not well before or after it, an interlock does not hold, the disk is
+  // full, an ABORT condition is true, or `stop`. The fault is undone then.
+  Expected<drill::Trial> run(const drill::Step& step);
+
+  // As it was before the first fault.
+  drill::HealthyRobot healthy() const { return healthy_->healthy(); }
+  // Watches for so long and injects nothing. False: stopped.
+  bool watch(Duration time);
+
+ private:
+  DrillSession(Options options, Say say, const std::atomic<bool>& stop)
+      : options_(std::move(options)), say_(std::move(say)), stop_(stop) {}
+
+  Expected<void> undo_what_is_left();
+  // Errors: what is wrong; with kWellOrTold also why the drill is to end.
+  enum class Until : std::uint8_t { kWell, kWellOrTold };
+  Expected<void> wait_until_well(Until until);
+  // On the disk, with the culprit that runs.
+  Expected<void> note(std::vector<drill::Injected> injected) const;
+  Expected<void> may_inject() const;
+  std::string why_to_end() const;  // empty: go on
+  Expected<std::vector<drill::Injected>> prepare(const std::vector<drill::Fault>& faults);
+  void watch_reaction(drill::Trial& trial, std::vector<drill::Injected>& injected);
+  bool undo(std::vector<drill::Injected>& injected);
+
+  const Options options_;
+  const Say say_;
+  const std::atomic<bool>& stop_;
+  std::unique_ptr<DrillNode> node_;
+  std::unique_ptr<DrillManager> manager_;
+  std::unique_ptr<DrillInjector> injector_;
+  std::optional<drill::RobotView> healthy_;
+};
+
+}  // namespace culprit::cli

@@ -1,0 +1,180 @@
+#include "cli/run_configuration.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <optional>
+#include <sstream>
+#include <string_view>
+
+#include <CLI/CLI.hpp>
+#include <fmt/core.h>
+
+#include "base/closest.h"
+#include "base/name_grammar.h"
+#include "base/text_file.h"
+#include "cli/run_options.h"
+#include "terminal/help.h"
+#include "terminal/listed.h"
+
+namespace culprit::cli {
+namespace {
+
+constexpr const char* kRulesKey = "rules";
+
+// "web", "rules"; empty: it cannot stand in the file.
+std::string key_of(const CLI::Option& option) {
+  if (option.get_positional()) return kRulesKey;
+  if (!option.get_configurable() || option.get_lnames().empty()) return "";
+  return option.get_lnames().front();
+}
+
+bool is_flag(const CLI::Option& option) { return option.get_items_expected_max() == 0; }
+
+// The line of the file that gives `key`; 0: none does.
+int line_of_key(const std::string& text, const std::string& key) {
+  std::istringstream lines(text);
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    const auto begin = line.find_first_not_of(" \t\"'");
+    if (begin == std::string::npos || line.compare(begin, key.size(), key) != 0) continue;
+    const auto end = line.find_first_not_of(" \t\"'", begin + key.size());
+    if (end == std::string::npos || line[end] == '=') return number;
+  }
+  return 0;
+}
+
+struct ConfigurationFile {
+  std::string name;
+  std::string text;
+
+  std::string place(const std::string& key) const {
+    const int line = line_of_key(text, key);
+    return line > 0 ? fmt::format("{}:{}: ", name, line) : name + ": ";
+  }
+};
+
+Error unknown_key(const ConfigurationFile& file, const std::string& key,
+                  const std::vector<std::string>& known) {
+  std::string plain = key;
+  std::replace(plain.begin(), plain.end(), '_', '-');
+  const bool is_known = std::find(known.begin(), known.end(), plain) != known.end();
+  const std::string near = is_known ? plain : closest(plain, {known.begin(), known.end()});
+  return Error{file.place(key) + "culprit run has no option '" + printable(key) + "'" +
+               (near.empty() ? "" : "; did you mean '" + near + "'?")};
+}
+
+// The words that stand for one line of the file. Errors: its value is wrong.
+Expected<std::vector<std::string>> words_of_item(const ConfigurationFile& file,
+                                                 const CLI::ConfigItem& item, CLI::Option& option) {
+  const std::string& value = item.inputs.empty() ? std::string() : item.inputs.front();
+  if (is_flag(option)) {
+    if (value == "false") return std::vector<std::string>{};
+    if (value == "true") return std::vector<std::string>{"--" + item.name};
+    return Error{file.place(item.name) + item.name + " is true or false, not '" + printable(value) +
+                 "'"};
+  }
+  try {
+    option.add_result(item.inputs);
+    option.run_callback();
+  } catch (const CLI::Error& error) {
+    return Error{file.place(item.name) + error.what()};
+  }
+  if (option.get_positional()) return item.inputs;
+  std::vector<std::string> words;
+  for (const std::string& each : item.inputs) words.push_back("--" + item.name + "=" + each);
+  return words;
+}
+
+Expected<std::vector<std::string>> words_of_file(const ConfigurationFile& file, CLI::App& run) {
+  std::istringstream text(file.text);
+  std::vector<CLI::ConfigItem> items;
+  try {
+    items = CLI::ConfigTOML().from_config(text);
+  } catch (const CLI::Error& error) {
+    return Error{file.name + ": " + error.what()};
+  }
+  std::vector<std::string> known;
+  for (const CLI::Option* option : options_in(run)) {
+    if (const std::string key = key_of(*option); !key.empty()) known.push_back(key);
+  }
+  std::vector<std::string> words;
+  for (const CLI::ConfigItem& item : items) {
+    if (!item.parents.empty())
+      return Error{file.place("[" + item.parents.front() + "]") +
+                   "the file has no sections; write each option on a line of its own"};
+    const bool is_known = std::find(known.begin(), known.end(), item.name) != known.end();
+    if (!is_known) return unknown_key(file, item.name, known);
+    CLI::Option* option = run.get_option(item.name == kRulesKey ? "RULES" : "--" + item.name);
+    if (option->count() > 0) continue;  // by the command line or the environment
+    auto more = words_of_item(file, item, *option);
+    if (!more) return more;
+    words.insert(words.end(), more->begin(), more->end());
+    if (is_flag(*option) && !more->empty()) option->add_result("true");
+  }
+  return words;
+}
+
+// As TOML writes it.
+std::string toml_value(const std::string& value) {
+  std::string out = "\"";
+  for (const char c : value) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "\"";
+}
+
+std::string toml_values(const std::vector<std::string>& values) {
+  if (values.size() == 1) return toml_value(values.front());
+  std::string list;
+  for (const std::string& each : values) list += (list.empty() ? "" : ", ") + toml_value(each);
+  return "[" + list + "]";
+}
+
+// Every option with its value; a comment where it has its default.
+std::string as_toml(const CLI::App& run) {
+  std::string out = "# The options of culprit run. Use it with: culprit run --config FILE\n";
+  for (const CLI::Option* option : options_in(run)) {
+    const std::string key = key_of(*option);
+    if (key.empty()) continue;
+    std::istringstream purpose(wrapped(purpose_of(*option), 98));
+    out += "\n";
+    for (std::string line; std::getline(purpose, line);) out += "# " + line + "\n";
+    if (option->count() > 0)
+      out += key + " = " + (is_flag(*option) ? "true" : toml_values(option->results())) + "\n";
+    else
+      out += "# " + key + " = " +
+             (is_flag(*option) ? "false" : toml_value(option->get_default_str())) + "\n";
+  }
+  return out;
+}
+
+}  // namespace
+
+Expected<RunConfiguration> with_configuration(std::vector<std::string> words) {
+  CLI::App app;
+  CLI::App* run = app.add_subcommand("run");
+  RunOptions options;
+  options.add_to(*run);
+  run->get_option("RULES")->required(false);
+  try {
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+  } catch (const CLI::ParseError&) {
+    return RunConfiguration{std::move(words), ""};
+  }
+  RunConfiguration out{std::move(words), ""};
+  if (!options.config.empty()) {
+    auto text = read_text(options.config);
+    if (!text) return Error{text.error()};
+    const auto more = words_of_file({options.config, std::move(*text)}, *run);
+    if (!more) return Error{more.error()};
+    // Behind a "--" everything is the name of a rule file.
+    const auto end = std::find(out.words.begin(), out.words.end(), "--");
+    out.words.insert(end, more->begin(), more->end());
+  }
+  if (options.prints_config) out.printed = as_toml(*run);
+  return out;
+}
+
+}  // namespace culprit::cli

@@ -1,0 +1,98 @@
+#include "cli/run_configuration.h"
+
+#include <cstdlib>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/test_folder.h"
+
+namespace culprit::cli {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class RunConfigurationFile : public testing::Test {
+ protected:
+  std::string write(const std::string& text) {
+    std::ofstream(file_) << text;
+    return file_;
+  }
+  Expected<RunConfiguration> with(const std::string& text,
+                                  std::vector<std::string> words = {"run"}) {
+    words.insert(words.end(), {"--config", write(text)});
+    return with_configuration(std::move(words));
+  }
+  std::string error_of(const std::string& text) {
+    const auto result = with(text);
+    return result ? "no error" : result.error();
+  }
+  std::vector<std::string> added(const std::string& text, const std::vector<std::string>& words) {
+    const auto result = with(text, words);
+    if (!result) return {result.error()};
+    return {result->words.begin() + static_cast<std::ptrdiff_t>(words.size()) + 2,
+            result->words.end()};
+  }
+
+  test::TestFolder folder_;
+  const std::string file_ = folder_.path() / "culprit.toml";
+};
+
+TEST_F(RunConfigurationFile, StandsForOptions) {
+  EXPECT_THAT(
+      added("# a comment\nrules = \"my.rules\"\nweb = true\ndry-run = false\nsettle = \"8s\"\n",
+            {"run"}),
+      ElementsAre("my.rules", "--web", "--settle=8s"));
+}
+
+TEST_F(RunConfigurationFile, GivesWayToTheCommandLine) {
+  EXPECT_THAT(added("rules = \"my.rules\"\nweb = true\nsettle = \"8s\"\n",
+                    {"run", "other.rules", "--settle", "3s"}),
+              ElementsAre("--web"));
+}
+
+TEST_F(RunConfigurationFile, GivesWayToTheEnvironment) {
+  setenv("CULPRIT_SETTLE", "3s", 1);
+  EXPECT_THAT(added("web = true\nsettle = \"8s\"\n", {"run", "my.rules"}), ElementsAre("--web"));
+  unsetenv("CULPRIT_SETTLE");
+}
+
+TEST_F(RunConfigurationFile, NamesTheLineOfAMistake) {
+  EXPECT_EQ(error_of("web = true\nsettel = \"8s\"\n"),
+            file_ + ":2: culprit run has no option 'settel'; did you mean 'settle'?");
+  EXPECT_EQ(error_of("dry_run = true\n"),
+            file_ + ":1: culprit run has no option 'dry_run'; did you mean 'dry-run'?");
+  EXPECT_THAT(error_of("\nsettle = \"soon\"\n"), HasSubstr(":2: --settle: "));
+  EXPECT_EQ(error_of("web = \"maybe\"\n"), file_ + ":1: web is true or false, not 'maybe'");
+  EXPECT_THAT(error_of("[run]\nweb = true\n"), HasSubstr("the file has no sections"));
+  EXPECT_THAT(error_of("config = \"other.toml\"\n"), HasSubstr("has no option 'config'"));
+}
+
+TEST_F(RunConfigurationFile, MustBeThere) {
+  const auto result = with_configuration({"run", "--config", folder_.path() / "none.toml"});
+  ASSERT_FALSE(result);
+  EXPECT_THAT(result.error(), HasSubstr("none.toml"));
+}
+
+TEST_F(RunConfigurationFile, IsPrintedWithEveryOption) {
+  const auto result = with("web = true\n", {"run", "my.rules", "--print-config"});
+  ASSERT_TRUE(result) << result.error();
+  EXPECT_THAT(result->printed, HasSubstr("\nrules = \"my.rules\"\n"));
+  EXPECT_THAT(result->printed, HasSubstr("\nweb = true\n"));
+  EXPECT_THAT(result->printed, HasSubstr("\n# dry-run = false\n"));
+  EXPECT_THAT(result->printed, HasSubstr("\n# settle = "));
+  const auto again = with(result->printed, {"run"});
+  ASSERT_TRUE(again) << again.error();
+  EXPECT_THAT(again->words, testing::Contains("--web"));
+}
+
+TEST_F(RunConfigurationFile, LeavesAWrongLineToItsParser) {
+  const auto result = with_configuration({"run", "--no-such-option"});
+  ASSERT_TRUE(result);
+  EXPECT_THAT(result->words, ElementsAre("run", "--no-such-option"));
+}
+
+}  // namespace
+}  // namespace culprit::cli

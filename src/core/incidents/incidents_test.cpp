@@ -1,0 +1,324 @@
+#include "incidents/incidents.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "manager/test_robot.h"
+
+namespace culprit {
+namespace {
+
+using namespace std::chrono_literals;
+using test::TestRobot;
+using testing::HasSubstr;
+
+constexpr const char* kIncidentRules = R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+COMPONENT fusion NODE /fusion LAUNCH "fusion"
+COMPONENT lamp   NODE /lamp
+RULE CameraSilent
+  POLICIES ERROR ATTEMPTS 2
+  TRIGGER age(/rgb) > 300ms
+    STRATEGY redeploy_camera 90 10
+      ADAPTATION camera redeploy 20
+RULE FusionSilent
+  POLICIES WARNING
+  TRIGGER age(/fused) > 300ms
+    STRATEGY restart_fusion 90 10
+      ADAPTATION fusion restart 10
+RULE Dark
+  POLICIES NON_CRITICAL
+  TRIGGER brightness < 0.5
+    STRATEGY light 90 10
+      ADAPTATION lamp set_parameter on 1 2
+)";
+
+// A camera, what needs it, and a lamp that has nothing to do with either.
+struct Watched {
+  explicit Watched(Approval approval = Approval::kNone, Autonomy autonomy = Autonomy::kAct,
+                   const std::string& host_of_camera = "") {
+    Manager::Options options;
+    options.governor.approval = approval;
+    options.autonomy = autonomy;
+    robot.emplace(kIncidentRules, std::make_unique<BayesPlanner>(), options);
+    robot->add("camera", {}, "/rgb").host = host_of_camera;
+    robot->add("fusion", {"camera"}, "/fused").hears = {};
+    robot->add("lamp").parameters["on"] = Value(std::int64_t{0});
+    robot->after_step = [this] { note(); };
+    robot->discover();
+    robot->signal("brightness", Value(1.0));
+    robot->run_for(8s);
+  }
+  const std::vector<Incident>& incidents() const { return robot->manager().incidents().open(); }
+  Incidents::Course course(std::size_t place = 0) const {
+    return robot->manager().course_of(incidents().at(place));
+  }
+  void note() {
+    for (const Event& event : robot->manager().events()) {
+      if (const auto* opened = std::get_if<IncidentOpened>(&event.what))
+        told.push_back("opened " + opened->incident.headline);
+      if (const auto* closed = std::get_if<IncidentClosed>(&event.what))
+        told.push_back(std::string(to_string(closed->how)) + " " +
+                       robot->rules()[closed->root].name);
+    }
+  }
+  std::vector<std::string> names(const std::vector<RuleId>& rules) const {
+    std::vector<std::string> all;
+    for (const RuleId rule : rules) all.push_back(robot->rules()[rule].name);
+    return all;
+  }
+
+  std::vector<std::string> told;  // when incidents open and close
+  mutable std::optional<TestRobot> robot;
+};
+
+TEST(Incidents, IsEmptyWhileAllIsWell) { EXPECT_TRUE(Watched().incidents().empty()); }
+
+TEST(Incidents, IsOneIncidentForOneFaultWithWhatSuffersFromIt) {
+  Watched watched;
+  watched.robot->kill("camera");
+  watched.robot->run_for(500ms);
+  const auto incidents = watched.incidents();
+  ASSERT_EQ(incidents.size(), 1u) << transcript(*watched.robot);
+  const Incident& incident = incidents[0];
+  EXPECT_EQ(watched.robot->rules()[incident.root].name, "CameraSilent");
+  EXPECT_THAT(watched.names(incident.consequences), testing::ElementsAre("FusionSilent"));
+  EXPECT_EQ(incident.components, std::vector{ComponentId(0)});
+  EXPECT_TRUE(incident.is_certain);
+  EXPECT_EQ(incident.criticality, Criticality::kError);
+  EXPECT_EQ(incident.headline, "camera is dead");
+  EXPECT_EQ(watched.course().doing, "being repaired: redeploy camera");
+  EXPECT_FALSE(incident.needs_person());
+  watched.robot->run_for(10s);
+  EXPECT_TRUE(watched.incidents().empty()) << transcript(*watched.robot);
+}
+
+TEST(Incidents, IsOneIncidentForAPersonWhereAComputerIsNotHeard) {
+  Watched watched(Approval::kNone, Autonomy::kAct, "rover2");
+  watched.robot->cut("rover2");
+  watched.robot->run_for(60s);
+  const auto incidents = watched.incidents();
+  ASSERT_EQ(incidents.size(), 1u) << transcript(*watched.robot);
+  EXPECT_EQ(incidents[0].headline, "rover2, where camera ran, is unreachable");
+  EXPECT_EQ(incidents[0].host, "rover2");
+  EXPECT_EQ(incidents[0].components, std::vector{ComponentId(0)});
+  EXPECT_EQ(incidents[0].consequences.size(), 1u);
+  EXPECT_TRUE(incidents[0].needs_person());
+  EXPECT_FALSE(incidents[0].is_exhausted);
+  watched.robot->mend("rover2");
+  watched.robot->run_for(5s);
+  EXPECT_TRUE(watched.incidents().empty()) << transcript(*watched.robot);
+}
+
+TEST(Incidents, SaysWhatComesNextAndWhen) {
+  Watched watched;
+  watched.robot->kill("camera");
+  watched.robot->run_for(500ms);
+  EXPECT_EQ(watched.course().next, "redeploy_camera is being carried out");
+  auto& camera = (*watched.robot)["camera"];
+  camera.fault = "nothing helps";
+  for (int i = 0; i < 100 && watched.course().next.find("if the symptom") != 0; ++i)
+    watched.robot->run_for(100ms);
+  EXPECT_THAT(watched.course().next, HasSubstr("if the symptom is not gone in "));
+  watched.robot->run_for(2min);
+  const auto incidents = watched.incidents();
+  ASSERT_FALSE(incidents.empty());
+  EXPECT_TRUE(incidents[0].is_exhausted) << transcript(*watched.robot);
+  EXPECT_TRUE(incidents[0].needs_person());
+  EXPECT_EQ(watched.course().doing, "nothing helped");
+  EXPECT_EQ(watched.course().next, "nothing more is tried: a person must look");
+}
+
+TEST(Incidents, TellsTwoFaultsApartWorstFirst) {
+  Watched watched;
+  watched.robot->signal("brightness", Value(0.1));
+  watched.robot->kill("camera");
+  watched.robot->order({1, "Ann", "", Pause{}});
+  watched.robot->run_for(1s);
+  const auto incidents = watched.incidents();
+  ASSERT_EQ(incidents.size(), 2u) << transcript(*watched.robot);
+  EXPECT_EQ(incidents[0].headline, "camera is dead");
+  EXPECT_EQ(watched.course().doing, "nothing is done: culprit is paused");
+  EXPECT_EQ(incidents[1].headline, "lamp is held responsible");
+}
+
+TEST(Incidents, DoNotBlameAPauseThatIsOver) {
+  Watched watched;
+  watched.robot->kill("camera");
+  watched.robot->order({1, "Ann", "", Pause{}});
+  watched.robot->run_for(1s);
+  EXPECT_EQ(watched.course().doing, "nothing is done: culprit is paused");
+  watched.robot->tell(HearingLost{"a test"});
+  watched.robot->order({2, "Ann", "", Resume{}});
+  watched.robot->run_for(1s);
+  EXPECT_THAT(watched.course().doing, HasSubstr("does not receive")) << transcript(*watched.robot);
+  EXPECT_THAT(watched.course().doing, testing::Not(HasSubstr("paused")));
+}
+
+TEST(Incidents, SaysThatItWaitsForAPerson) {
+  Watched watched(Approval::kEach);
+  watched.robot->kill("camera");
+  watched.robot->run_for(1s);
+  const auto incidents = watched.incidents();
+  ASSERT_EQ(incidents.size(), 1u) << transcript(*watched.robot);
+  EXPECT_TRUE(incidents[0].awaits_approval);
+  EXPECT_EQ(watched.course().doing, "waits for approval: redeploy camera");
+}
+
+TEST(Incidents, SaysWhatWouldBeDoneInADryRun) {
+  Watched watched(Approval::kNone, Autonomy::kAdvise);
+  watched.robot->kill("camera");
+  watched.robot->run_for(1s);
+  ASSERT_EQ(watched.incidents().size(), 1u) << transcript(*watched.robot);
+  EXPECT_EQ(watched.course().doing, "would be repaired: redeploy camera");
+}
+
+TEST(Incidents, KeepTheirIdsUntilTheirEndsAndShareThemWithNone) {
+  Watched watched;
+  watched.robot->kill("camera");
+  watched.robot->run_for(500ms);
+  const std::string id = watched.incidents().at(0).id;
+  watched.robot->signal("brightness", Value(0.1));
+  watched.robot->run_for(200ms);
+  ASSERT_EQ(watched.incidents().size(), 2u) << transcript(*watched.robot);
+  EXPECT_EQ(watched.incidents()[0].id, id);
+  EXPECT_NE(watched.incidents()[1].id, id);
+  watched.robot->signal("brightness", Value(1.0));
+  watched.robot->run_for(30s);
+  EXPECT_TRUE(watched.incidents().empty()) << transcript(*watched.robot);
+  watched.robot->kill("camera");
+  watched.robot->run_for(500ms);
+  EXPECT_NE(watched.incidents().at(0).id, id);
+}
+
+TEST(Incidents, HaveTheSameIdsWhereverTheSameHappensToTheSameRun) {
+  const auto id_of = [](std::int64_t wall, const std::string& salt) {
+    Manager::Options options;
+    options.incidents = {wall, salt};
+    TestRobot robot(kIncidentRules, std::make_unique<BayesPlanner>(), options);
+    robot.add("camera", {}, "/rgb");
+    robot.discover();
+    robot.signal("brightness", Value(1.0));
+    robot.run_for(8s);
+    robot.kill("camera");
+    robot.run_for(500ms);
+    return robot.manager().incidents().open().at(0).id;
+  };
+  constexpr std::int64_t kNoon = 1'800'000'000'000'000'000;
+  EXPECT_EQ(id_of(kNoon, "a"), id_of(kNoon, "a"));
+  EXPECT_NE(id_of(kNoon, "a"), id_of(kNoon, "b")) << "another robot at the same time";
+  EXPECT_NE(id_of(kNoon, "a"), id_of(kNoon + 5'000'000, "a"));
+  EXPECT_EQ(id_of(kNoon, "a").size(), 12u) << "one can read it out";
+}
+
+// An effect may be noticed before its cause. Both are one incident, under one id.
+TEST(Incidents, AreTheSameWhenTheirRootTurnsUpLater) {
+  Watched watched;
+  watched.robot->order({1, "Ann", "", Pause{}});
+  (*watched.robot)["fusion"].fault = "nothing helps";
+  watched.robot->run_for(1s);
+  ASSERT_EQ(watched.incidents().size(), 1u) << transcript(*watched.robot);
+  const std::string id = watched.incidents()[0].id;
+  watched.robot->kill("camera");
+  watched.robot->run_for(2s);
+  for (const Incident& each : watched.incidents()) {
+    const bool has_fusion = each.has(RuleId(1));
+    if (has_fusion) {
+      EXPECT_EQ(each.id, id) << transcript(*watched.robot);
+    }
+  }
+}
+
+TEST(Incidents, AreOpenedAndClosedOnce) {
+  Watched watched;
+  watched.robot->kill("camera");
+  watched.robot->run_for(30s);
+  EXPECT_THAT(watched.told, testing::ElementsAre("opened camera is dead", "resolved CameraSilent"))
+      << transcript(*watched.robot);
+}
+
+// The two dead components of this course were one incident of the page.
+TEST(Incidents, AreTwoForTwoDeadComponentsWhileNothingIsDone) {
+  Watched watched;
+  watched.robot->order({1, "Ann", "", Pause{}});
+  watched.robot->kill("camera");
+  watched.robot->run_for(3s);
+  watched.robot->signal("brightness", Value(0.1));
+  watched.robot->kill("lamp");
+  watched.robot->run_for(3s);
+  ASSERT_EQ(watched.incidents().size(), 2u) << transcript(*watched.robot);
+  // Only a person can start the lamp.
+  EXPECT_EQ(watched.incidents()[0].headline, "lamp is dead");
+  EXPECT_TRUE(watched.incidents()[0].needs_person());
+  EXPECT_EQ(watched.incidents()[1].headline, "camera is dead");
+}
+
+// The planner's decisions say which failures belong together, from step to step.
+struct Told {
+  // Shows these failures, as after a step in which `what` happened.
+  std::vector<EventWhat> after(std::vector<RuleId> failing, std::vector<EventWhat> what) {
+    knowledge.now += 1s;
+    EventLog events;
+    for (std::size_t r = 0; r < rules.rules.size(); ++r) {
+      const bool is_there = std::ranges::find(failing, RuleId(r)) != failing.end();
+      if (is_there == (knowledge.states[RuleId(r)].phase != RulePhase::kQuiet)) continue;
+      knowledge.states.state(RuleId(r)).failing_since = knowledge.now;
+      knowledge.states.enter(RuleId(r), is_there ? RulePhase::kFailing : RulePhase::kQuiet);
+    }
+    for (EventWhat& each : what) events.tell(knowledge.now, std::move(each));
+    const std::size_t before = events.size();
+    incidents.advance(knowledge, {}, events);
+    std::vector<EventWhat> told;
+    for (std::size_t i = before; i < events.size(); ++i) told.push_back(events[i].what);
+    return told;
+  }
+  std::string id_of(RuleId root) const {
+    const auto found = std::ranges::find(incidents.open(), root, &Incident::root);
+    return found == incidents.open().end() ? "" : found->id;
+  }
+
+  const RuleSet rules = *check(Source("test", kIncidentRules)).rules;
+  Knowledge knowledge{rules};
+  Incidents incidents{IncidentIds{}};
+  const RuleId camera{0};
+  const RuleId fusion{1};
+};
+
+TEST(Incidents, AreKnownAgainByTheirRoots) {
+  Told told;
+  const StrategyId redeploy = told.rules[told.camera].strategies[0];
+  told.after({told.camera, told.fusion},
+             {FailureDetected{told.camera}, FailureDetected{told.fusion},
+              StrategyChosen{redeploy, {}, {told.fusion}}});
+  const std::string first = told.id_of(told.camera);
+  ASSERT_EQ(told.incidents.open().size(), 1u);
+  // The consequence turns out to be no consequence.
+  told.after({told.camera, told.fusion}, {StrategyChosen{redeploy, {}, {}}});
+  ASSERT_EQ(told.incidents.open().size(), 2u);
+  EXPECT_EQ(told.id_of(told.camera), first);
+  const std::string second = told.id_of(told.fusion);
+  // And now it is one again.
+  const auto merged =
+      told.after({told.camera, told.fusion}, {StrategyChosen{redeploy, {}, {told.fusion}}});
+  ASSERT_EQ(told.incidents.open().size(), 1u);
+  EXPECT_EQ(told.id_of(told.camera), first);
+  const auto& closed = std::get<IncidentClosed>(merged.back());
+  EXPECT_EQ(closed.id, second);
+  EXPECT_EQ(closed.how, IncidentEnd::kMerged);
+  EXPECT_EQ(closed.into, first);
+  // Its root goes, what suffered stays: it is not over.
+  told.after({told.fusion}, {FailureResolved{told.camera, {}, redeploy}});
+  EXPECT_EQ(told.id_of(told.fusion), first);
+  const auto over = told.after({}, {FailureLost{told.fusion}});
+  ASSERT_EQ(over.size(), 1u);
+  EXPECT_EQ(std::get<IncidentClosed>(over[0]).how, IncidentEnd::kLost);
+}
+
+TEST(Incidents, SayNothingWhileNothingChanges) {
+  Told told;
+  EXPECT_EQ(told.after({told.camera}, {FailureDetected{told.camera}}).size(), 1u);
+  EXPECT_EQ(told.after({told.camera}, {}).size(), 0u);
+}
+
+}  // namespace
+}  // namespace culprit

@@ -1,0 +1,253 @@
+// Components that one lifecycle manager starts (GROUP): a group that was left half up is brought up past its
+// manager, and a failure of a member is over only once its group is active.
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "manager/manager.h"
+#include "manager/test_robot.h"
+
+namespace culprit::test {
+namespace {
+
+// Three servers and their manager, each with a command. The group's rule waits 2 s.
+std::string rules_of_group(const std::string& more = "",
+                           const std::string& launch = "LAUNCH \"x\"") {
+  std::string text;
+  for (const std::string name : {"planner", "controller", "navigator", "manager"})
+    text += "COMPONENT " + name + " NODE /" + name + " " +
+            (launch.empty() ? "" : "LAUNCH \"" + name + "\"") +
+            (name == "manager" ? "\n" : " LIFECYCLE launcher\n");
+  return text +
+         "GROUP navigation { planner, controller, navigator } MANAGER manager\n"
+         "RULE HalfUp\n  POLICIES ERROR FOR 2s\n"
+         "  TRIGGER navigation == \"half_up\" || navigation == \"down\"\n"
+         "    STRATEGY start_navigation 80 10\n      ADAPTATION navigation start_group 25\n" +
+         more;
+}
+
+std::string gone_rule(const std::string& name) {
+  return "RULE " + name + "_gone\n  POLICIES ERROR\n  TRIGGER !alive(" + name + ")\n    STRATEGY " +
+         name + "_again 85 10\n      ADAPTATION " + name + " redeploy 25\n";
+}
+
+TestRobot robot_with_group(const std::string& rules) {
+  TestRobot robot(rules);
+  for (const char* name : {"planner", "controller", "navigator"})
+    robot.add(name).state_at_start = Lifecycle::kUnconfigured;
+  robot.add("manager").has_lifecycle = false;
+  robot.discover();
+  robot.run_for(10s);
+  return robot;
+}
+
+void put(TestRobot& robot, const std::string& name, Lifecycle state) {
+  robot[name].state = state;
+  robot.tell(LifecycleRead{robot.id(name), state});
+}
+
+bool is_active(TestRobot& robot, const std::string& name) {
+  return robot[name].state == Lifecycle::kActive;
+}
+
+bool are_active(TestRobot& robot) {
+  return is_active(robot, "planner") && is_active(robot, "controller") &&
+         is_active(robot, "navigator");
+}
+
+std::size_t place_asked(const TestRobot& robot, const std::string& what) {
+  const auto found = std::ranges::find(robot.asked, what);
+  return static_cast<std::size_t>(found - robot.asked.begin());
+}
+
+TEST(Groups, OneThatIsWellIsLeftAlone) {
+  TestRobot robot = robot_with_group(rules_of_group());
+  robot.run_for(60s);
+  EXPECT_EQ(robot.count("HalfUp"), 0u) << transcript(robot);
+}
+
+TEST(Groups, OneThatIsHalfUpIsDrivenUpInItsOrderAndItsManagerBegunAnew) {
+  TestRobot robot = robot_with_group(rules_of_group());
+  put(robot, "controller", Lifecycle::kUnconfigured);
+  put(robot, "navigator", Lifecycle::kInactive);
+  robot.run_for(12s);
+  EXPECT_TRUE(are_active(robot)) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("planner: activate")) << transcript(robot);
+  EXPECT_LT(place_asked(robot, "controller: configure"),
+            place_asked(robot, "controller: activate"));
+  EXPECT_LT(place_asked(robot, "controller: activate"), place_asked(robot, "navigator: activate"));
+  EXPECT_LT(place_asked(robot, "navigator: activate"),
+            place_asked(robot, "manager: start process"));
+  EXPECT_EQ(robot.count("HalfUp resolved by start_navigation"), 1u) << transcript(robot);
+}
+
+TEST(Groups, AManagerThatResetsIsBusyAndLeftAlone) {
+  TestRobot robot = robot_with_group(rules_of_group());
+  // One server after the other, each taking its time, and up again.
+  for (const Lifecycle state :
+       {Lifecycle::kInactive, Lifecycle::kUnconfigured, Lifecycle::kInactive, Lifecycle::kActive}) {
+    for (const char* name : {"navigator", "controller", "planner"}) {
+      put(robot, name, state);
+      robot.run_for(3s);
+    }
+  }
+  robot.run_for(30s);
+  EXPECT_EQ(robot.count("HalfUp"), 0u) << transcript(robot);
+}
+
+TEST(Groups, OneThatAPersonPausedStaysPaused) {
+  TestRobot robot = robot_with_group(rules_of_group());
+  for (const char* name : {"navigator", "controller", "planner"})
+    put(robot, name, Lifecycle::kInactive);
+  robot.run_for(60s);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+}
+
+TEST(Groups, AMemberThatDiesDuringAPauseIsReplacedAndThePauseLasts) {
+  TestRobot robot = robot_with_group(rules_of_group(gone_rule("planner")));
+  for (const char* name : {"navigator", "controller", "planner"})
+    put(robot, name, Lifecycle::kInactive);
+  robot.run_for(10s);
+  robot.kill("planner");
+  robot.run_for(60s);
+  EXPECT_EQ(robot.count_asked("planner: start"), 1u) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("controller: ")) << transcript(robot);
+  // The pause ends, and the manager cannot activate the new one.
+  for (const char* name : {"controller", "navigator"}) put(robot, name, Lifecycle::kActive);
+  robot.run_for(15s);
+  EXPECT_TRUE(are_active(robot)) << transcript(robot);
+}
+
+TEST(Groups, AMemberThatDiedIsStarted) {
+  TestRobot robot = robot_with_group(rules_of_group());
+  robot.kill("planner");
+  put(robot, "navigator", Lifecycle::kInactive);
+  robot.run_for(20s);
+  EXPECT_TRUE(are_active(robot)) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("planner: start"), 1u) << transcript(robot);
+}
+
+TEST(Groups, AMemberThatHangsIsReplaced) {
+  TestRobot robot = robot_with_group(rules_of_group());
+  robot.stop("controller");
+  put(robot, "navigator", Lifecycle::kInactive);
+  robot.run_for(40s);
+  EXPECT_TRUE(are_active(robot)) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("controller: start"), 1u) << transcript(robot);
+}
+
+TEST(Groups, WithoutACommandADeadMemberIsLeftToAPerson) {
+  TestRobot robot = robot_with_group(rules_of_group("", ""));
+  robot.kill("planner");
+  robot.run_for(5min);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+  EXPECT_GE(robot.count("HalfUp"), 1u) << transcript(robot);
+}
+
+TEST(Groups, OneWhoseManagerCannotBeStartedIsDrivenUpAllTheSame) {
+  TestRobot robot = robot_with_group(rules_of_group("", ""));
+  put(robot, "controller", Lifecycle::kInactive);
+  robot.run_for(20s);
+  EXPECT_TRUE(are_active(robot)) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("manager: ")) << transcript(robot);
+}
+
+TEST(Groups, AMemberThatRefusesIsReportedAndTheOthersStayUp) {
+  TestRobot robot = robot_with_group(rules_of_group());
+  robot["navigator"].refuses = true;
+  put(robot, "controller", Lifecycle::kInactive);
+  put(robot, "navigator", Lifecycle::kInactive);
+  robot.run_for(10min);
+  EXPECT_TRUE(is_active(robot, "controller")) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("controller: deactivate")) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("manager: ")) << transcript(robot);
+  EXPECT_GE(robot.count("it refused to activate"), 1u) << transcript(robot);
+}
+
+TEST(Groups, WhatSomebodyDeactivatesMeanwhileIsNotActivatedAgain) {
+  TestRobot robot = robot_with_group(rules_of_group());
+  put(robot, "planner", Lifecycle::kInactive);
+  put(robot, "controller", Lifecycle::kInactive);
+  put(robot, "navigator", Lifecycle::kUnconfigured);
+  // A person pauses as soon as the first ones are up.
+  bool has_paused = false;
+  robot.after_step = [&] {
+    if (has_paused || !robot.was_asked("navigator: ")) return;
+    has_paused = true;
+    for (const char* name : {"controller", "planner"}) put(robot, name, Lifecycle::kInactive);
+    put(robot, "navigator", Lifecycle::kInactive);
+  };
+  robot.run_for(14s);
+  EXPECT_TRUE(has_paused) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("planner: activate"), 1u) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("manager: ")) << transcript(robot);
+}
+
+TEST(Groups, NothingIsDoneWhileCulpritIsPaused) {
+  TestRobot robot = robot_with_group(rules_of_group());
+  robot.order({1, "a person", "", Pause{}});
+  put(robot, "controller", Lifecycle::kInactive);
+  robot.run_for(60s);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+  robot.order({2, "a person", "", Resume{}});
+  robot.run_for(10s);
+  EXPECT_TRUE(are_active(robot)) << transcript(robot);
+}
+
+TEST(Groups, AMemberThatAPersonShutDownStaysDown) {
+  TestRobot robot = robot_with_group(rules_of_group());
+  robot["planner"].state = Lifecycle::kFinalized;
+  robot.tell(LifecycleRead{robot.id("planner"), Lifecycle::kFinalized, true});
+  robot.run_for(60s);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+}
+
+TEST(Groups, ACulpritThatIsKilledMeanwhileLeavesNothingThatTheNextOneCannotFinish) {
+  TestRobot robot = robot_with_group(rules_of_group());
+  put(robot, "controller", Lifecycle::kInactive);
+  put(robot, "navigator", Lifecycle::kInactive);
+  robot.before_commands = [&](std::vector<Observation>&, std::span<const Command> commands) {
+    return std::ranges::none_of(
+        commands, [&](const Command& each) { return each.component == robot.id("navigator"); });
+  };
+  robot.run_for(9s);
+  ASSERT_TRUE(is_active(robot, "controller")) << transcript(robot);
+  robot.before_commands = nullptr;
+  robot.replace_manager(std::make_unique<Manager>(robot.rules(), std::make_unique<BayesPlanner>(),
+                                                  Manager::Options{.start = robot.now}));
+  robot.run_for(20s);
+  EXPECT_TRUE(are_active(robot)) << transcript(robot);
+}
+
+// It is there again at once, and the manager has stopped at it: the failure is over when the group is up.
+TEST(Groups, AMemberIsWellOnceItsGroupIs) {
+  TestRobot robot = robot_with_group(rules_of_group(gone_rule("planner")));
+  robot.kill("planner");
+  robot.run_for(4s);
+  EXPECT_EQ(robot.count_asked("planner: start"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("planner_gone") - robot.count("planner_again"), 1u) << transcript(robot);
+  put(robot, "navigator", Lifecycle::kInactive);
+  robot.run_for(3s);
+  EXPECT_EQ(robot.count("resolved"), 0u) << transcript(robot);
+  robot.run_for(10s);
+  EXPECT_TRUE(are_active(robot)) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("planner: start"), 1u) << transcript(robot);
+  EXPECT_GE(robot.count("resolved"), 2u) << transcript(robot);
+}
+
+// Its manager brings it up in time.
+TEST(Groups, AMemberWhoseManagerBringsItUpNeedsNoMore) {
+  TestRobot robot = robot_with_group(rules_of_group(gone_rule("planner")));
+  robot.kill("planner");
+  robot.run_for(4s);
+  put(robot, "planner", Lifecycle::kInactive);
+  robot.run_for(1s);
+  put(robot, "planner", Lifecycle::kActive);
+  robot.run_for(60s);
+  EXPECT_FALSE(robot.was_asked("planner: activate")) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("manager: ")) << transcript(robot);
+  EXPECT_EQ(robot.count("resolved"), 1u) << transcript(robot);
+}
+
+}  // namespace
+}  // namespace culprit::test

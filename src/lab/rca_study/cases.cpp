@@ -1,0 +1,281 @@
+#include "rca_study/cases.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numeric>
+
+#include "manager/manager.h"
+#include "manager/runtime.h"
+#include "rca_study/campaign.h"
+#include "rca_study/plant.h"
+#include "rca_study/rca_robot.h"
+#include "rca_study/rules.h"
+
+namespace culprit::study::rca {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double kAfterLastFailure_s = 5;
+constexpr double kSoonestFault_s = 5;  // later than the generator has it
+constexpr double kLatestFault_s = 15;
+constexpr double kWorks = 0.5;          // probability from which on a repair counts as working
+constexpr Duration kStillAdvised = 2s;  // longer than a flapping component is well
+
+// ---- the scenario of a case
+
+// With its components and topics in another order, and named by it.
+RcaScenario shuffled(RcaScenario scenario, simulation::Random& random) {
+  const std::size_t size = scenario.components.size();
+  std::vector<std::size_t> old(size);  // by new place
+  std::iota(old.begin(), old.end(), std::size_t{0});
+  for (std::size_t i = size; i > 1; --i)
+    std::swap(old[i - 1], old[static_cast<std::size_t>(random.next() % i)]);
+  std::vector<std::size_t> place(size);  // the other way round
+  for (std::size_t i = 0; i < size; ++i) place[old[i]] = i;
+
+  RcaScenario other = scenario;
+  for (std::size_t i = 0; i < size; ++i) {
+    other.components[i] = std::move(scenario.components[old[i]]);
+    other.components[i].name = "c" + std::to_string(i);
+    // The generator's first topics are those of its components.
+    other.topics[i] = std::move(scenario.topics[old[i]]);
+    other.topics[i].name = "/" + other.components[i].name + "/out";
+  }
+  for (RcaTopic& topic : other.topics) {
+    for (std::size_t& publisher : topic.publishers) publisher = place[publisher];
+    for (Subscription& s : topic.subscribers) s.component = place[s.component];
+    std::sort(topic.publishers.begin(), topic.publishers.end());
+    std::sort(
+        topic.subscribers.begin(), topic.subscribers.end(),
+        [](const Subscription& a, const Subscription& b) { return a.component < b.component; });
+  }
+  for (InjectedFault& fault : other.faults) fault.component = place[fault.component];
+  for (CommonCause& cause : other.common_causes) {
+    cause.first = place[cause.first];
+    cause.second = place[cause.second];
+  }
+  return other;
+}
+
+RcaScenario as_case(RcaScenario scenario) {
+  simulation::Random random(simulation::mix(scenario.seed + 4));
+  scenario = shuffled(std::move(scenario), random);
+  const double later_s = random.uniform(kSoonestFault_s, kLatestFault_s);
+  for (InjectedFault& fault : scenario.faults) fault.at_s += later_s;
+  for (CommonCause& cause : scenario.common_causes) cause.at_s += later_s;
+  scenario.horizon_s += later_s;
+  return scenario;
+}
+
+// ---- its truth
+
+// By component: when it first becomes ill.
+using Onsets = std::vector<std::optional<double>>;
+
+Onsets onsets_of(const RcaScenario& scenario) {
+  Plant plant(scenario);
+  Onsets onsets(scenario.components.size());
+  plant.on_change = [&](std::size_t c) {
+    if (!onsets[c]) onsets[c] = seconds(plant.now().time_since_epoch());
+  };
+  while (plant.step(Time(from_seconds(scenario.horizon_s)))) continue;
+  return onsets;
+}
+
+std::vector<Repair> working_repairs(const RcaScenario& scenario, const InjectedFault& fault) {
+  std::vector<Repair> all;
+  if (fault.is_unfixable) return all;
+  for (const Treatment& t : scenario.components[fault.component].treatments) {
+    if (t.helps[static_cast<std::size_t>(fault.kind)] >= kWorks) all.push_back(t.repair);
+  }
+  return all;
+}
+
+// ---- what others see of it
+
+// Lets each failure wait.
+class SilentPlanner : public Planner {
+ public:
+  std::vector<Decision> plan(std::span<const RuleId> failures, const Knowledge&) const override {
+    std::vector<Decision> decisions;
+    for (const RuleId rule : failures) decisions.emplace_back().rule = rule;
+    return decisions;
+  }
+};
+
+// Asks a planner about what the manager knows.
+class Adviser {
+ public:
+  explicit Adviser(std::unique_ptr<const Planner> planner) : planner_(std::move(planner)) {}
+
+  void look(const Manager& manager, Time now) {
+    now_ = now;
+    const auto failures = manager.plannable();
+    if (failures.empty()) return;
+    const RuleSet& rules = manager.knowledge().rules;
+    for (Decision& decision : planner_->plan(failures, manager.knowledge())) {
+      const ComponentId own = rules[decision.rule].components.front();
+      if (decision.chosen) propose(rules[*decision.chosen]);
+      latest_.insert_or_assign(own.index, Latest{now, number_++, std::move(decision)});
+    }
+  }
+
+  Advice advice() const {
+    std::vector<std::pair<std::size_t, double>> weighed;  // the heaviest first
+    bool is_probability = false;
+    const auto weight = [&](std::size_t component) -> double& {
+      for (auto& [other, its] : weighed) {
+        if (other == component) return its;
+      }
+      return weighed.emplace_back(component, 0).second;
+    };
+    for (const auto& [own, latest] : latest_) {
+      if (later(latest.at, kStillAdvised) < now_) continue;
+      const Decision& decision = latest.decision;
+      if (decision.suspects.empty()) {
+        // Weights are negative numbers of decisions, so that the first weighs most.
+        if (decision.chosen) weight(own) = -static_cast<double>(latest.number);
+        continue;
+      }
+      is_probability = true;
+      weight(own);
+      for (const Suspect& suspect : decision.suspects) {
+        const std::size_t component = suspect.component.index;
+        // A failure of its own says more about a component than those downstream.
+        const bool is_own = component == own && suspect.failure == decision.rule;
+        if (!is_own && latest_.contains(component)) continue;
+        weight(component) = std::max(weight(component), suspect.probability);
+      }
+    }
+    std::stable_sort(weighed.begin(), weighed.end(),
+                     [](const auto& a, const auto& b) { return a.second > b.second; });
+    Advice advice;
+    for (const auto& [component, its] : weighed) {
+      advice.ranked.push_back(component);
+      if (!is_probability || its > 0.5) advice.causes.push_back(component);
+    }
+    advice.repairs = proposals_;
+    return advice;
+  }
+
+ private:
+  struct Latest {
+    Time at;
+    std::size_t number = 0;
+    Decision decision;
+  };
+
+  void propose(const Strategy& strategy) {
+    const std::size_t component = strategy.components.front().index;
+    const bool is_known = std::any_of(proposals_.begin(), proposals_.end(),
+                                      [&](const Proposal& p) { return p.component == component; });
+    if (is_known) return;
+    for (const Repair repair : {Repair::kConfigure, Repair::kRestart, Repair::kRedeploy}) {
+      if (strategy.name == to_string(repair))
+        proposals_.push_back({component, repair, seconds(now_.time_since_epoch())});
+    }
+  }
+
+  std::unique_ptr<const Planner> planner_;
+  std::map<std::size_t, Latest> latest_;  // by component of the failure
+  std::size_t number_ = 0;
+  Time now_;
+  std::vector<Proposal> proposals_;
+};
+
+void record(const Runtime::Step& step, RcaCase& made) {
+  for (const Observation& observation : step.observations) {
+    const double at_s = seconds(observation.at.time_since_epoch());
+    if (const auto* read = std::get_if<SignalRead>(&observation.what)) {
+      if (made.times_s.empty() || made.times_s.back() < at_s) {
+        made.times_s.push_back(at_s);
+        made.readings.emplace_back(made.watched.size(), false);
+      }
+      made.readings.back()[read->signal.index] = read->value == Value(true);
+    }
+    const auto* seen = std::get_if<ProcessSeen>(&observation.what);
+    if (seen != nullptr && seen->state == ProcessState::kGone)
+      made.exits.push_back({at_s, seen->component.index});
+  }
+}
+
+}  // namespace
+
+std::optional<CaseTruth> truth_of(const RcaScenario& scenario) {
+  const auto& components = scenario.components;
+  const Onsets onsets = onsets_of(scenario);
+  CaseTruth truth;
+  for (const InjectedFault& fault : scenario.faults)
+    truth.causes.push_back({fault, working_repairs(scenario, fault)});
+  std::sort(truth.causes.begin(), truth.causes.end(), [](const CaseCause& a, const CaseCause& b) {
+    return a.fault.component < b.fault.component;
+  });
+
+  std::map<std::size_t, CaseEffect> effects;
+  for (const CaseCause& cause : truth.causes) {
+    const std::size_t faulty = cause.fault.component;
+    RcaScenario alone = scenario;
+    alone.faults = {cause.fault};
+    alone.common_causes.clear();
+    RcaScenario without = scenario;
+    std::erase_if(without.faults, [&](const InjectedFault& f) { return f.component == faulty; });
+    const Onsets if_alone = onsets_of(alone);
+    const Onsets if_without = onsets_of(without);
+    bool has_shown = false;
+    for (std::size_t c = 0; c < components.size(); ++c) {
+      const bool is_faulty = std::any_of(scenario.faults.begin(), scenario.faults.end(),
+                                         [&](const InjectedFault& f) { return f.component == c; });
+      if (is_faulty || !onsets[c] || (!if_alone[c] && if_without[c])) continue;
+      CaseEffect& effect = effects[c];
+      effect.component = c;
+      effect.causes.push_back(faulty);
+      effect.since_s = *onsets[c];
+      has_shown |= !components[c].is_unwatched;
+    }
+    if (!has_shown || components[faulty].is_unwatched) return std::nullopt;
+  }
+  for (auto& [component, effect] : effects) truth.effects.push_back(std::move(effect));
+
+  for (std::size_t c = 0; c < components.size(); ++c) {
+    if (onsets[c])
+      truth.end_s = std::max(truth.end_s, *onsets[c] + components[c].detector.latency_s);
+  }
+  // It ends with a reading.
+  truth.end_s =
+      std::ceil((truth.end_s + kAfterLastFailure_s) / scenario.reading_s) * scenario.reading_s;
+  return truth;
+}
+
+std::optional<RcaCase> case_of(RcaScenario scenario, std::span<const std::string> advisers,
+                               Objective objective) {
+  RcaCase made;
+  made.scenario = as_case(std::move(scenario));
+  auto truth = truth_of(made.scenario);
+  if (!truth) return std::nullopt;
+  made.truth = std::move(*truth);
+  made.scenario.horizon_s = made.truth.end_s;
+  for (std::size_t c = 0; c < made.scenario.components.size(); ++c) {
+    if (!made.scenario.components[c].is_unwatched) made.watched.push_back(c);
+  }
+
+  const RuleSet rules = rules_of(made.scenario);
+  RcaRobot robot(made.scenario, rules);
+  Manager::Options options;
+  options.discovery = Duration::zero();
+  Manager manager(rules, std::make_unique<SilentPlanner>(), options);
+  std::map<std::string, Adviser> asked;
+  for (const std::string& name : advisers)
+    asked.emplace(name, std::move(*make_planner(name, objective, made.scenario)));
+  Runtime runtime(manager, robot);
+  runtime.on_step = [&](const Runtime::Step& step) {
+    record(step, made);
+    for (auto& [name, adviser] : asked) adviser.look(manager, step.now);
+  };
+  runtime.run(robot.is_over(), Time(from_seconds(made.truth.end_s)));
+  for (const auto& [name, adviser] : asked) made.advice[name] = adviser.advice();
+  return made;
+}
+
+}  // namespace culprit::study::rca

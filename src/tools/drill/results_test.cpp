@@ -1,0 +1,246 @@
+#include "drill/results.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/text_file.h"
+#include "drill/drill_record.h"
+#include "drill/report.h"
+#include "drill/write_back.h"
+#include "language/checker.h"
+
+namespace culprit::drill {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr const char* kDrilled = R"(# A robot.
+ROBOT rover
+CYCLE 200ms
+CONST silence = 350ms    # three messages
+COMPONENT camera NODE /camera LAUNCH "camera"
+COMPONENT fusion NODE /fusion LAUNCH "fusion"
+
+RULE CameraDead
+  POLICIES ERROR
+  TRIGGER age(/rgb) > silence
+    STRATEGY camera_restart 50 2
+      ADAPTATION camera restart 5
+    STRATEGY camera_redeploy 50 2  # as a last try
+      ADAPTATION camera redeploy 5
+)";
+
+Json event(double clock, const char* type, const char* strategy = "") {
+  Json json{{"clock", clock}, {"type", type}, {"rule", "CameraDead"}};
+  if (*strategy != '\0') json["strategy"] = strategy;
+  return json;
+}
+
+// At second 100: killed; noticed after 0.4 s, redeployed after 1 s, well after 1.5 s.
+Trial killed(int round = 1) {
+  Trial trial{{Fault{FaultKind::kKill, "camera"}}, round, 100};
+  Json chosen = event(100.5, "strategy_chosen", "camera_redeploy");
+  chosen["components"] = {"camera"};
+  trial.events = {event(100.4, "failure_detected"), chosen,
+                  event(101.0, "adaptation_done", "camera_redeploy"),
+                  event(101.5, "failure_resolved", "camera_redeploy")};
+  trial.well = 101.5;
+  trial.end = 104.5;
+  return trial;
+}
+
+Results results_with(const std::vector<Trial>& trials, const Paths& paths = {}) {
+  return results_of(trials, *check(Source("r", kDrilled)).rules, paths, "2026-12-01");
+}
+
+TEST(DrillTrial, IsReadAsItWasWritten) {
+  Trial trial = killed();
+  trial.silent["fusion"] = 100.7;
+  trial.undone = 103;
+  const auto trials = trials_in(to_line(to_json(trial)) + "\n{\"faults\": [{\"ki");
+  ASSERT_EQ(trials.size(), 1u) << "a line that was cut is left out";
+  EXPECT_EQ(to_json(trials[0]), to_json(trial));
+}
+
+TEST(DrillResults, OfAFaultSayWhoNoticedWhatHelpedAndHowLongItTook) {
+  const Results results = results_with({killed(1), killed(2), killed(3)});
+  ASSERT_EQ(results.faults.size(), 1u);
+  const FaultResult& fault = results.faults[0];
+  EXPECT_EQ(fault.noticed, 3);
+  EXPECT_NEAR(spread_of(fault.noticed_after).median, 0.4, 1e-9);
+  EXPECT_EQ(fault.blamed_rightly, 3);
+  EXPECT_THAT(fault.helped, ElementsAre(testing::Pair("CameraDead.camera_redeploy", 3)));
+  EXPECT_NEAR(spread_of(fault.well_after).most, 1.5, 1e-9);
+  EXPECT_EQ(fault.healed, 3);
+  EXPECT_THAT(results.unnoticed, IsEmpty());
+}
+
+TEST(DrillResults, CoverageNamesWhatNoRuleAndNoFaultReaches) {
+  Trial quiet{{Fault{FaultKind::kHang, "fusion"}}, 1, 100, 103, 103, 106};
+  const Results results = results_with({quiet});
+  EXPECT_THAT(results.unnoticed, ElementsAre("hang fusion"));
+  EXPECT_THAT(results.untripped, ElementsAre("CameraDead"));
+}
+
+TEST(DrillResults, AStrategyOnAHealthyComponentIsWrongBlame) {
+  Trial trial = killed();
+  trial.events[1]["components"] = {"fusion"};
+  trial.events[1]["text"] = "fusion is held responsible";
+  const Results results = results_with({trial});
+  EXPECT_EQ(results.faults[0].blamed_wrongly, 1);
+  EXPECT_THAT(results.touched, ElementsAre(testing::Pair("fusion", 1)));
+  EXPECT_THAT(results.faults[0].evidence,
+              ElementsAre("kill camera #1: fusion is held responsible"));
+}
+
+TEST(DrillResults, WhatTheDrillUndidIsNoSuccessOfAStrategy) {
+  Trial trial = killed();
+  trial.undone = 101.2;
+  EXPECT_THAT(attempts_in(trial), IsEmpty());
+  trial.undone.reset();
+  ASSERT_EQ(attempts_in(trial).size(), 1u);
+  EXPECT_NEAR(*attempts_in(trial)[0].effect, 0.5, 1e-9);
+}
+
+TEST(DrillResults, IntervalsHoldTheirShare) {
+  EXPECT_EQ(interval_of(0, 0).high, 1);
+  const Interval all = interval_of(20, 20);
+  EXPECT_NEAR(all.low, 0.839, 1e-3);
+  EXPECT_EQ(all.high, 1);
+  const Interval half = interval_of(5, 10);
+  EXPECT_NEAR(half.low, 0.237, 1e-3);
+  EXPECT_NEAR(half.high, 0.763, 1e-3);
+}
+
+Trial silences(const char* fault, int round, const char* silent) {
+  Trial trial{{Fault{FaultKind::kKill, fault}}, round, 100, {}, 102, 105};
+  if (silent != nullptr) trial.silent[silent] = 100.6;
+  return trial;
+}
+
+TEST(DrillResults, AHiddenDependencyRepeatsAndNeverHappensWithout) {
+  std::vector<Trial> trials{silences("camera", 1, "fusion"), silences("camera", 2, "fusion")};
+  EXPECT_THAT(results_with(trials).hidden, IsEmpty()) << "twice is not enough";
+  trials.push_back(silences("camera", 3, "fusion"));
+  ASSERT_EQ(results_with(trials).hidden.size(), 1u);
+  EXPECT_EQ(results_with(trials).hidden[0].consumer, "fusion");
+  EXPECT_EQ(results_with(trials).hidden[0].producer, "camera");
+  EXPECT_THAT(results_with(trials, {{"fusion", "camera"}}).hidden, IsEmpty()) << "the graph has it";
+  std::vector<Trial> once_not = trials;
+  once_not.push_back(silences("camera", 4, nullptr));
+  EXPECT_THAT(results_with(once_not).hidden, IsEmpty());
+  trials.push_back(silences("lidar", 1, "fusion"));
+  EXPECT_THAT(results_with(trials).hidden, IsEmpty()) << "it happens without";
+}
+
+TEST(DrillResults, AnEffectOfAHiddenDependencyIsNone) {
+  std::vector<Trial> trials;
+  for (int round = 1; round <= 3; ++round) {
+    trials.push_back(silences("camera", round, "fusion"));
+    trials.back().silent["planner"] = 100.8;
+  }
+  const Results results = results_with(trials, {{"planner", "fusion"}});
+  ASSERT_EQ(results.hidden.size(), 1u);
+  EXPECT_EQ(results.hidden[0].consumer, "fusion");
+}
+
+TEST(DrillWriteBack, ChangesWhatWasMeasuredAndSaysWhereFrom) {
+  std::vector<Trial> trials{killed(1), killed(2), killed(3)};
+  trials[2].events.erase(trials[2].events.begin() + 2, trials[2].events.end());
+  trials[2].events.push_back(event(102, "strategy_failed", "camera_redeploy"));
+  for (int round = 4; round <= 6; ++round) trials.push_back(silences("camera", round, "fusion"));
+  for (Trial& trial : trials) trial.silent["fusion"] = 100.6;
+  trials.push_back(killed(7));
+  trials.back().silent["fusion"] = 100.6;
+  Results results = results_with(trials);
+  results.thresholds = {{.of = comparisons_in(check(Source("r", kDrilled)).file).at(0),
+                         .values = 200,
+                         .least = 0.09,
+                         .most = 0.12,
+                         .looked = 20}};
+  const auto written = write_back("rover.rules", kDrilled, results);
+  ASSERT_TRUE(written) << written.error();
+  EXPECT_EQ(written->text, R"(# A robot.
+ROBOT rover
+CYCLE 200ms
+CONST silence = 360ms    # three messages; drill 2026-12-01, 200 values
+COMPONENT camera NODE /camera LAUNCH "camera"
+COMPONENT fusion NODE /fusion LAUNCH "fusion"
+DEPENDENCY fusion ON camera    # drill 2026-12-01: silent in all 7 faults of camera
+
+RULE CameraDead
+  POLICIES ERROR
+  TRIGGER age(/rgb) > silence
+    STRATEGY camera_restart 50 2
+      ADAPTATION camera restart 5
+    STRATEGY camera_redeploy 75 4  # as a last try; drill 2026-12-01, 4 times
+      ADAPTATION camera redeploy 4    # drill 2026-12-01, 3 times
+)");
+  EXPECT_TRUE(check(Source("r", written->text)).rules);
+  Results later = results_with(trials);
+  later.date = "2026-12-24";
+  later.hidden.clear();
+  later.strategies[1].helped = 3;
+  later.strategies[1].tried = 3;
+  const auto again = write_back("rover.rules", written->text, later);
+  EXPECT_THAT(again->text, HasSubstr("100 3  # as a last try; drill 2026-12-24, 3 times\n"));
+}
+
+TEST(DrillWriteBack, ADurationSeparatesWhatNoThresholdDoes) {
+  constexpr const char* kOverlap =
+      "COMPONENT camera NODE /camera LAUNCH \"camera\"\n"
+      "SIGNAL entropy DIAGNOSTIC camera KEY entropy\n"
+      "RULE Bad\n  POLICIES WARNING FOR 100ms\n  TRIGGER entropy > 0.5\n"
+      "    STRATEGY s 50 2\n      ADAPTATION camera redeploy 5\n";
+  const Source source("r", kOverlap);
+  Results results = results_of({}, *check(source).rules, {}, "2026-12-01");
+  results.thresholds = {{.of = comparisons_in(check(source).file).at(0),
+                         .values = 50,
+                         .least = 0.1,
+                         .most = 0.9,
+                         .longest_beyond = 0.2,
+                         .faulty = 0.8}};
+  EXPECT_THAT(write_back("r", kOverlap, results)->text,
+              HasSubstr("POLICIES WARNING FOR 400ms    # drill 2026-12-01, 50 values\n"));
+}
+
+TEST(DrillResults, CountOnlyWhatRulesOfTheFileNoticed) {
+  Trial trial{{Fault{FaultKind::kKill, "fusion"}}, 1, 100, {}, 102, 105};
+  for (const char* rule : {"fusion_failed", "drill_interlock_1"})
+    trial.events.push_back({{"clock", 100.2}, {"type", "failure_detected"}, {"rule", rule}});
+  EXPECT_EQ(finding_of(trial).rule, "fusion_failed");
+  EXPECT_EQ(results_with({trial}).faults[0].noticed, 0);
+}
+
+TEST(DrillWriteBack, WritesNothingWithoutEnoughOutcomes) {
+  const auto written = write_back("r", kDrilled, results_with({killed(1), killed(2)}));
+  EXPECT_EQ(written->text, kDrilled);
+}
+
+TEST(DrillWriteBack, NamesWhatStandsElsewhere) {
+  Results results = results_with({killed(1), killed(2), killed(3)});
+  results.strategies[1].rule = "FromAPack";
+  EXPECT_THAT(write_back("r", kDrilled, results)->unwritten,
+              ElementsAre(HasSubstr("FromAPack.camera_redeploy")));
+}
+
+TEST(DrillReport, IsOnePageAndOneDocument) {
+  Trial hostile = killed();
+  hostile.trouble = "<script>";
+  const Results results = results_with({killed(), hostile});
+  const std::string page = report_page(results);
+  EXPECT_THAT(page, HasSubstr("kill camera"));
+  EXPECT_THAT(page, testing::Not(HasSubstr("<script")));
+  const Json json = report_json(results);
+  EXPECT_EQ(json["faults"][0]["noticed"], 1);
+  EXPECT_EQ(json["strategies"][1]["impact"], 4);
+  EXPECT_THAT(report_lines(results), testing::Contains(HasSubstr("wrong blame")).Times(0));
+  EXPECT_EQ(line_of(killed()),
+            "kill camera: noticed after 0.40 s by CameraDead, helped by "
+            "CameraDead.camera_redeploy, well after 1.50 s");
+}
+
+}  // namespace
+}  // namespace culprit::drill

@@ -1,0 +1,26 @@
+// What rules see in a recording, as one HTML file that needs nothing else: the incident's page (incident_page.h), over the
+// whole recording, with its timeline, events, and curves with limits and marks.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/expected.h"
+#include "language/rule_set.h"
+#include "plan/planner.h"
+
+namespace culprit::incident_reports {
+
+struct BagPageWish {
+  std::filesystem::path bag;
+  std::vector<std::filesystem::path> message_path{};  // as ros2::message_directories() gives them
+  double written_at = 0;                              // seconds since 1970
+};
+
+// Errors: the bag cannot be read, or has no message.
+Expected<std::string> bag_page(const RuleSet& rules, std::unique_ptr<const Planner> planner,
+                               const BagPageWish& wish);
+
+}  // namespace culprit::incident_reports

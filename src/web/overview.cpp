@@ -1,0 +1,128 @@
+#include "web/overview.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "knowledge/describe.h"
+#include "web/component_health.h"
+
+namespace culprit::web {
+namespace {
+
+std::string of_rules(std::size_t count) {
+  return fmt::format("{} {}", count, count == 1 ? "rule" : "rules");
+}
+
+Overview of_incidents(const Manager& manager) {
+  const std::vector<Incident>& all = manager.incidents().open();
+  const Incident& first = all.front();
+  Overview overview;
+  overview.look = first.is_exhausted ? kHealthWords[4] : to_string(first.criticality);
+  overview.headline = first.headline;
+  if (all.size() > 1) overview.headline += fmt::format(", and {} more", all.size() - 1);
+  overview.detail = manager.course_of(first).doing;
+  return overview;
+}
+
+std::vector<std::string> missing_of(const Manager& manager) {
+  const Knowledge& knowledge = manager.knowledge();
+  std::vector<std::string> missing;
+  for (std::size_t c = 0; c < knowledge.rules.components.size(); ++c) {
+    const ComponentState& state = knowledge.components[ComponentId(c)];
+    const bool is_there = !state.is_missed && state.alive != false;
+    if (knowledge.rules.components[c].is_required && !is_there)
+      missing.push_back(knowledge.rules.components[c].name);
+  }
+  return missing;
+}
+
+// The first of the most critical.
+RuleId worst_blind(const Knowledge& knowledge) {
+  const std::vector<RuleId> blind = knowledge.blindness.rules();
+  return *std::ranges::max_element(
+      blind, {}, [&](RuleId id) { return knowledge.rules[id].policies.criticality; });
+}
+
+Overview of_blind(const Knowledge& knowledge) {
+  const RuleId worst = worst_blind(knowledge);
+  const std::size_t count = knowledge.blindness.count();
+  const bool is_grave = knowledge.rules[worst].policies.criticality == Criticality::kError;
+  Overview overview;
+  overview.look = is_grave ? "BLIND_ERROR" : "BLIND";
+  overview.headline =
+      "no failure is seen, but " + (count == 1 ? knowledge.rules[worst].name + " is blind"
+                                               : fmt::format("{} are blind", of_rules(count)));
+  overview.detail = describe(*knowledge.blindness[worst]);
+  return overview;
+}
+
+Overview of_watching_nothing(const Knowledge& knowledge) {
+  if (knowledge.rules.rules.empty())
+    return {"WATCHING_NOTHING", "watching nothing: there is no rule", "no failure can be seen"};
+  return {"WATCHING_NOTHING", "watching nothing: no rule can see",
+          describe(*knowledge.blindness[worst_blind(knowledge)])};
+}
+
+}  // namespace
+
+Overview overview_of(const Manager& manager) {
+  const Knowledge& knowledge = manager.knowledge();
+  if (!manager.incidents().open().empty()) return of_incidents(manager);
+  if (!manager.hears())
+    return {"DEAF", "culprit does not receive the robot's messages",
+            "nothing is judged, and nothing is done"};
+  if (const auto missing = missing_of(manager); !missing.empty())
+    return {"MISSING",
+            listed(missing) + (missing.size() == 1 ? " is REQUIRED and is not there"
+                                                   : " are REQUIRED and are not there"),
+            "no rule sees a failure"};
+  if (knowledge.blindness.is_total()) return of_watching_nothing(knowledge);
+  if (knowledge.blindness.count() > 0) return of_blind(knowledge);
+  std::size_t unseen = 0;
+  std::vector<std::string> dead;
+  for (std::size_t c = 0; c < knowledge.rules.components.size(); ++c) {
+    const ComponentState& state = knowledge.components[ComponentId(c)];
+    unseen += state.is_missed ? 1 : 0;
+    if (state.alive == false) dead.push_back(knowledge.rules.components[c].name);
+  }
+  std::string detail = "no failure is seen by " + of_rules(knowledge.rules.rules.size());
+  if (unseen > 0)
+    detail +=
+        fmt::format("; {} never seen",
+                    unseen == 1 ? "one component was" : fmt::format("{} components were", unseen));
+  if (!dead.empty()) detail += "; not running: " + listed(dead);
+  return {"OK", "all is well", std::move(detail)};
+}
+
+ComponentLook look_of(ComponentId id, std::size_t health, const Manager& manager) {
+  const Knowledge& knowledge = manager.knowledge();
+  const ComponentState& state = knowledge.components[id];
+  ComponentLook look{kHealthWords[health], ""};
+  if (knowledge.is_unheard(id)) {
+    look = {"UNREACHABLE", "not heard"};
+  } else if (state.process == ProcessState::kStopped && state.alive) {
+    look = {"STOPPED", "stopped"};
+  } else if (state.alive && state.hangs()) {
+    look = {"HUNG", "hangs"};
+  } else if (state.alive == false) {
+    look = {"DEAD", "dead"};
+  } else if (!state.alive && !knowledge.graph.is_present(id)) {
+    look = {"NEVER_SEEN", state.is_missed ? "never seen" : "not seen yet"};
+  } else if (health == 0) {
+    const auto about = knowledge.states.touching(id);
+    const bool is_seen =
+        std::ranges::any_of(about, [&](RuleId rule) { return !knowledge.blindness[rule]; });
+    if (about.empty()) look = {"UNWATCHED", "no rule"};
+    if (!about.empty() && (!is_seen || !manager.hears())) look = {"BLIND", "blind"};
+  }
+  if (health > 0) look.look = kHealthWords[health];
+  return look;
+}
+
+Json to_json(const Overview& overview) {
+  return {{"look", overview.look}, {"headline", overview.headline}, {"detail", overview.detail}};
+}
+
+}  // namespace culprit::web

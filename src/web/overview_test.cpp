@@ -1,0 +1,142 @@
+// No alarm is not health: each state that nobody can call well has a look of its own.
+#include "web/overview.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "manager/test_robot.h"
+#include "web/component_health.h"
+
+namespace culprit::web {
+namespace {
+
+using namespace std::chrono_literals;
+using test::TestRobot;
+using testing::HasSubstr;
+
+constexpr const char* kOverviewRules = R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+COMPONENT lamp   NODE /lamp
+COMPONENT lidar  NODE /lidar
+RULE CameraDead
+  POLICIES ERROR
+  TRIGGER alive(camera) == false
+    STRATEGY redeploy_camera 90 10
+      ADAPTATION camera redeploy 20
+RULE Dark
+  POLICIES WARNING
+  TRIGGER brightness < 0.5
+    STRATEGY light 90 10
+      ADAPTATION lamp set_parameter on 1 2
+)";
+
+struct Overlooked {
+  explicit Overlooked(const std::string& rules = kOverviewRules) : robot(rules) {}
+  void run(Duration time) {
+    for (Duration passed{}; passed < time; passed += 1s) {
+      if (is_bright) robot.signal("brightness", Value(1.0));
+      robot.run_for(1s);
+    }
+  }
+  Overview overview() { return overview_of(robot.manager()); }
+  ComponentLook look(std::size_t component) {
+    const auto health = health_of_components(robot.manager().knowledge());
+    return look_of(ComponentId(component), health[component], robot.manager());
+  }
+
+  TestRobot robot;
+  bool is_bright = true;
+};
+
+TEST(Overview, SaysThatAllIsWellAndWhichPartsNobodySaw) {
+  Overlooked some;
+  some.robot.add("camera", {}, "/rgb");
+  some.robot.add("lamp");
+  some.robot.discover();
+  some.run(30s);
+  EXPECT_EQ(some.overview().look, "OK") << transcript(some.robot);
+  EXPECT_EQ(some.overview().headline, "all is well");
+  EXPECT_EQ(some.overview().detail, "no failure is seen by 2 rules; one component was never seen");
+  EXPECT_EQ(some.look(0).look, "OK");
+  EXPECT_EQ(some.look(2).look, "NEVER_SEEN");
+  EXPECT_EQ(some.look(2).condition, "never seen");
+}
+
+TEST(Overview, GivesAComponentWithoutARuleNoHealth) {
+  Overlooked some;
+  some.robot.add("camera", {}, "/rgb");
+  some.robot.add("lamp");
+  some.robot.add("lidar");
+  some.robot.discover();
+  some.run(30s);
+  EXPECT_EQ(some.look(2).look, "UNWATCHED");
+  EXPECT_EQ(some.overview().detail, "no failure is seen by 2 rules");
+}
+
+TEST(Overview, NamesTheRuleThatIsBlind) {
+  Overlooked some;
+  some.is_bright = false;
+  some.robot.add("camera", {}, "/rgb");
+  some.robot.add("lamp");
+  some.robot.discover();
+  some.run(60s);
+  EXPECT_EQ(some.overview().look, "BLIND") << transcript(some.robot);
+  EXPECT_EQ(some.overview().headline, "no failure is seen, but Dark is blind");
+  EXPECT_THAT(some.overview().detail, HasSubstr("brightness"));
+  EXPECT_EQ(some.look(1).look, "BLIND");
+  EXPECT_EQ(some.look(0).look, "OK");
+}
+
+TEST(Overview, NeverCallsARobotWellThatNoRuleCanSee) {
+  Overlooked none;
+  none.is_bright = false;
+  none.robot.discover();
+  none.run(60s);
+  EXPECT_EQ(none.overview().look, "WATCHING_NOTHING") << transcript(none.robot);
+  EXPECT_EQ(none.overview().headline, "watching nothing: no rule can see");
+  Overlooked without_rules("COMPONENT camera NODE /camera\n");
+  without_rules.is_bright = false;
+  without_rules.run(5s);
+  EXPECT_EQ(without_rules.overview().headline, "watching nothing: there is no rule");
+}
+
+TEST(Overview, SaysWhatIsRequiredAndMissing) {
+  Overlooked some("COMPONENT camera NODE /camera REQUIRED\n");
+  some.is_bright = false;
+  some.robot.discover();
+  some.run(30s);
+  EXPECT_EQ(some.overview().look, "MISSING") << transcript(some.robot);
+  EXPECT_EQ(some.overview().headline, "camera is REQUIRED and is not there");
+}
+
+TEST(Overview, SaysThatItCannotHearTheRobot) {
+  Overlooked some;
+  some.robot.add("camera", {}, "/rgb");
+  some.robot.add("lamp");
+  some.robot.discover();
+  some.run(30s);
+  some.robot.tell(HearingLost{"a test"});
+  some.run(1s);
+  EXPECT_EQ(some.overview().look, "DEAF");
+  EXPECT_EQ(some.look(0).look, "BLIND");
+}
+
+TEST(Overview, IsTheFirstIncidentAndCountsTheOthers) {
+  Overlooked some;
+  some.robot.add("camera", {}, "/rgb");
+  some.robot.add("lamp").parameters["on"] = Value(std::int64_t{0});
+  some.robot.discover();
+  some.run(30s);
+  some.robot.order({1, "ada", "", Pause{}});
+  some.is_bright = false;
+  some.robot.signal("brightness", Value(0.1));
+  some.robot.kill("camera");
+  some.robot.run_for(1s);
+  EXPECT_EQ(some.overview().look, "ERROR") << transcript(some.robot);
+  EXPECT_EQ(some.overview().headline, "camera is dead, and 1 more");
+  EXPECT_EQ(some.overview().detail, "nothing is done: culprit is paused");
+  EXPECT_EQ(some.look(0).condition, "dead");
+}
+
+}  // namespace
+}  // namespace culprit::web
