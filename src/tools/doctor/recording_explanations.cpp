@@ -49,8 +49,8 @@ std::vector<Explanation> recording_explanations() {
        "joints. Covariances and ranges are not reported, nor numbers that were never measured.",
        "See what its publisher divides by, or what its device reports then."},
       {"D206", "values froze while others changed", "Its readers take old data for new data.",
-       "A number, or the whole content of a scan, cloud or image, that changes with nine of ten "
-       "messages did not change "
+       "Of a number, or the content of a scan, cloud or image, that changes with nine of ten "
+       "messages. It stayed the same "
        "for two seconds, 15 messages and five times its next longest row. It is an error for "
        "sensors if the robot or "
        "another sensor changed meanwhile. Odometry and joints of a robot that stands still are not "
