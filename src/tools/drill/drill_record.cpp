@@ -81,7 +81,8 @@ Expected<DrillRecord> DrillRecord::open(const std::filesystem::path& folder,
 }
 
 bool DrillRecord::has(const std::string& id) const {
-  return std::ranges::any_of(trials_, [&](const Trial& each) { return each.id() == id; });
+  return std::ranges::any_of(
+      trials_, [&](const Trial& each) { return each.id() == id && each.trouble.empty(); });
 }
 
 Expected<void> DrillRecord::write_head() const {

@@ -28,6 +28,7 @@ class DrillRecord {
   static Expected<DrillRecord> open(const std::filesystem::path& folder, const DrillHead& head);
 
   const std::vector<Trial>& trials() const { return trials_; }
+  // Whether the step is done: a trial that proves nothing is tried again.
   bool has(const std::string& id) const;
   const DrillHead& head() const { return head_; }
   std::filesystem::path file(const char* name) const { return folder_ / name; }

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/test_folder.h"
 #include "base/text_file.h"
 #include "drill/drill_record.h"
 #include "drill/report.h"
@@ -62,6 +63,30 @@ TEST(DrillTrial, IsReadAsItWasWritten) {
   const auto trials = trials_in(to_line(to_json(trial)) + "\n{\"faults\": [{\"ki");
   ASSERT_EQ(trials.size(), 1u) << "a line that was cut is left out";
   EXPECT_EQ(to_json(trials[0]), to_json(trial));
+}
+
+TEST(DrillRecord, ResumesWhatIsNotDoneAndRefusesAnotherPlan) {
+  const test::TestFolder folder;
+  const DrillHead head{"rules", {"kill camera #1", "kill camera #2"}};
+  auto record = DrillRecord::open(folder.path() / "drill", head);
+  ASSERT_TRUE(record) << record.error();
+  HealthyRobot healthy;
+  healthy.edges = {{"fusion", "camera"}};
+  healthy.lifecycles = {{"camera", "active"}};
+  healthy.topics = {{"/rgb", {10, "camera", {"fusion"}}}};
+  ASSERT_TRUE(record->keep(healthy));
+  ASSERT_TRUE(record->add(killed(1)));
+  Trial aborted = killed(2);
+  aborted.trouble = "interrupted";
+  ASSERT_TRUE(record->add(aborted));
+  const auto resumed = DrillRecord::open(folder.path() / "drill", head);
+  ASSERT_TRUE(resumed) << resumed.error();
+  EXPECT_TRUE(resumed->has("kill camera #1"));
+  EXPECT_FALSE(resumed->has("kill camera #2")) << "it proves nothing";
+  EXPECT_EQ(to_json(resumed->head().healthy), to_json(healthy));
+  const auto other = DrillRecord::open(folder.path() / "drill", {"other rules", head.plan});
+  ASSERT_FALSE(other);
+  EXPECT_THAT(other.error(), HasSubstr("choose another --record"));
 }
 
 TEST(DrillResults, OfAFaultSayWhoNoticedWhatHelpedAndHowLongItTook) {
