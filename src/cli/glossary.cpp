@@ -101,6 +101,7 @@ const Term* find_term(std::string_view word) {
   std::vector<std::string> forms = {wanted};
   if (wanted.ends_with("ies")) forms.push_back(wanted.substr(0, wanted.size() - 3) + "y");
   if (wanted.ends_with('s')) forms.push_back(wanted.substr(0, wanted.size() - 1));
+  if (wanted.ends_with('y')) forms.push_back(wanted.substr(0, wanted.size() - 1) + "ies");
   forms.push_back(wanted + "s");
   for (const std::string& form : forms) {
     for (const Term& term : glossary()) {
