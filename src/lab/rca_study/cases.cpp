@@ -7,6 +7,7 @@
 
 #include "manager/manager.h"
 #include "manager/runtime.h"
+#include "plan/ties.h"
 #include "rca_study/campaign.h"
 #include "rca_study/plant.h"
 #include "rca_study/rca_robot.h"
@@ -123,44 +124,49 @@ class Adviser {
   }
 
   Advice advice() const {
-    std::vector<std::pair<std::size_t, double>> weighed;  // the heaviest first
-    bool is_probability = false;
-    const auto weight = [&](std::size_t component) -> double& {
-      for (auto& [other, its] : weighed) {
-        if (other == component) return its;
+    std::vector<Weight> weights;
+    const auto weight = [&](std::size_t component) -> Weight& {
+      for (Weight& its : weights) {
+        if (its.component == component) return its;
       }
-      return weighed.emplace_back(component, 0).second;
+      return weights.emplace_back(Weight{component});
     };
+    bool is_probability = false;
     for (const auto& [own, latest] : latest_) {
       if (later(latest.at, kStillAdvised) < now_) continue;
       const Decision& decision = latest.decision;
-      if (decision.suspects.empty()) {
-        // Weights are negative numbers of decisions, so that the first weighs most.
-        if (decision.chosen) weight(own) = -static_cast<double>(latest.number);
-        continue;
-      }
-      is_probability = true;
-      weight(own);
+      is_probability |= !decision.suspects.empty();
+      // Negative numbers of decisions, so that the first weighs most.
+      if (decision.suspects.empty() && decision.chosen)
+        weight(own).own = -static_cast<double>(latest.number);
       for (const Suspect& suspect : decision.suspects) {
-        const std::size_t component = suspect.component.index;
+        Weight& its = weight(suspect.component.index);
+        const bool is_own = its.component == own && suspect.failure == decision.rule;
+        if (!is_own) its.of_others += suspect.probability;
         // A failure of its own says more about a component than those downstream.
-        const bool is_own = component == own && suspect.failure == decision.rule;
-        if (!is_own && latest_.contains(component)) continue;
-        weight(component) = std::max(weight(component), suspect.probability);
+        if (is_own || !latest_.contains(its.component))
+          its.own = std::max(its.own, suspect.probability);
       }
     }
-    std::stable_sort(weighed.begin(), weighed.end(),
-                     [](const auto& a, const auto& b) { return a.second > b.second; });
+    std::stable_sort(weights.begin(), weights.end(), [](const Weight& a, const Weight& b) {
+      return std::pair(plan::parts(a.own), plan::parts(a.of_others)) >
+             std::pair(plan::parts(b.own), plan::parts(b.of_others));
+    });
     Advice advice;
-    for (const auto& [component, its] : weighed) {
-      advice.ranked.push_back(component);
-      if (!is_probability || its > 0.5) advice.causes.push_back(component);
+    for (const Weight& its : weights) {
+      advice.ranked.push_back(its.component);
+      if (!is_probability || its.own > 0.5) advice.causes.push_back(its.component);
     }
     advice.repairs = proposals_;
     return advice;
   }
 
  private:
+  struct Weight {
+    std::size_t component = 0;
+    double own = 0;        // that it has a cause of its own
+    double of_others = 0;  // failures that it explains, weighed by probability
+  };
   struct Latest {
     Time at;
     std::size_t number = 0;

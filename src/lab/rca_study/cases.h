@@ -54,8 +54,8 @@ struct Proposal {
 
 // What a planner says of a case without acting.
 struct Advice {
-  // Components by the probability of a cause of their own, if the planner has it; else those that
-  // it would repair, in its order. As of the last 2 s.
+  // Components by the probability of a cause of their own, then by what they explain of others, if
+  // the planner has these; else those that it would repair, in its order. As of the last 2 s.
   std::vector<std::size_t> ranked;
   std::vector<std::size_t> causes;  // more likely than not, or those that it would repair
   std::vector<Proposal> repairs;    // of each component the first that it would choose
