@@ -33,7 +33,7 @@ Ended ended(std::vector<std::string> words) {
   std::string format, file;
   std::vector<std::string> pair, files;
   testing::internal::CaptureStderr();
-  const int code = run_program(
+  const int ended_with = run_program(
       app,
       [&](int& code) {
         CLI::App* check = app.add_subcommand("check", "Check");
@@ -52,7 +52,7 @@ Ended ended(std::vector<std::string> words) {
         add_help(app, code);
       },
       static_cast<int>(words.size()), argv.data());
-  return {code, testing::internal::GetCapturedStderr()};
+  return {ended_with, testing::internal::GetCapturedStderr()};
 }
 
 TEST(Program, SaysWhichCommandWasMeant) {
@@ -106,9 +106,10 @@ TEST(Program, ShowsTheHelpOfACommand) {
 }
 
 TEST(Manual, HasAPageForEachCommand) {
+  bool is_strict = false;
   CLI::App app("culprit");
   app.add_subcommand("check", "Check rule files\nAll of them")
-      ->add_flag("--strict", "Every component must be declared");
+      ->add_flag("--strict", is_strict, "Every component must be declared");
   const Manual manual{.name = "culprit",
                       .purpose = "keep robots working",
                       .examples = {{"culprit check my.rules", "One file."},
