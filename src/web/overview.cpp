@@ -19,7 +19,7 @@ Overview of_incidents(const Manager& manager) {
   const std::vector<Incident>& all = manager.incidents().open();
   const Incident& first = all.front();
   Overview overview;
-  overview.look = first.is_exhausted ? kHealthWords[4] : to_string(first.criticality);
+  overview.look = first.is_exhausted ? kHealthWords[4] : culprit::to_string(first.criticality);
   overview.headline = first.headline;
   if (all.size() > 1) overview.headline += fmt::format(", and {} more", all.size() - 1);
   overview.detail = manager.course_of(first).doing;
