@@ -21,7 +21,7 @@ ros2::ByteView view(std::string_view bytes) {
   return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
 }
 
-// What a node's messages on /rosout are signed with: of "/arm/gripper" it is "arm.gripper"
+// The name with which a node signs its messages on /rosout: of "/arm/gripper" it is "arm.gripper"
 // (design.ros2.org/articles/logging.html, rcl's node.c).
 std::string logger_of(const std::string& node) {
   std::string name = node.substr(1);
@@ -130,6 +130,7 @@ void BagReading::read(const BagMessage& message, std::vector<Observation>& obser
   const ros2::ByteView payload = view(message.bytes);
   ++plan.messages;
   now_ = Time(Duration(message.at));
+  recorded_at_ = message.recorded_at;
   out_ = &observations;
   if (plan.topic) put(SampleArrived{*plan.topic, 1});
   if (!plan.fields.empty()) read_fields(plan, payload, decodes(plan, topic, payload));
@@ -179,7 +180,7 @@ void BagReading::note_undecoded(Plan& plan, const BagTopic& topic, ros2::ByteVie
   plan.why_undecoded =
       is_xcdr2(payload) ? "they are in XCDR2, not in XCDR1"
       : is_longer       ? "they do not fit the definition of " + topic.type +
-                        (is_described ? " in the bag" : "; give theirs with --message-path")
+                        (is_described ? " in the bag" : "; give the recorder's with --message-path")
                   : "they are cut short, or are not of " + topic.type;
 }
 
@@ -187,7 +188,7 @@ void BagReading::read_fields(const Plan& plan, ros2::ByteView payload, bool is_d
   for (const Field& field : plan.fields) {
     Value value;
     const bool is_read =
-        is_decoded && field.reader.read(payload, value) == ros2::FieldStatus::kRead;
+        is_decoded && field.reader.read(payload, value, recorded_at_) == ros2::FieldStatus::kRead;
     read_signal(field.signal, is_read ? std::move(value) : unreadable_value());
   }
 }
