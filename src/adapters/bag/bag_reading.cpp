@@ -302,6 +302,13 @@ std::string BagReading::why_no_component(ComponentId component) const {
          ": no parameter event, transition or log";
 }
 
+std::string BagReading::why_no_lifecycle(ComponentId component) const {
+  if (std::string why = why_no_component(component); !why.empty()) return why;
+  return lifecycles_[component.index]
+             ? ""
+             : "no transition of " + rules_[component].name + " was recorded";
+}
+
 std::string BagReading::why_no_parameter(ParameterId parameter) const {
   if (parameters_[parameter.index]) return "";
   const Parameter& wanted = rules_[parameter];
@@ -320,6 +327,13 @@ std::string BagReading::why_no_signal(SignalId signal) const {
   const SignalSeen& seen = signals_[signal.index];
   if (const auto* parameter = std::get_if<ParameterId>(&declared.source))
     return why_no_parameter(*parameter);
+  if (const auto* group = std::get_if<GroupId>(&declared.source)) {
+    std::string why;
+    for (const ComponentId member : rules_.groups[group->index].members) {
+      if (why.empty()) why = why_no_lifecycle(member);
+    }
+    return why;
+  }
   const auto* field = std::get_if<TopicField>(&declared.source);
   if (field != nullptr) {
     if (std::string why = why_no_topic(field->topic); !why.empty()) return why;
@@ -367,10 +381,7 @@ std::string BagReading::why_unknown(InputId id) const {
     case Input::Kind::kAlive:
       return why_no_component(input.component);
     case Input::Kind::kLifecycle:
-      if (std::string why = why_no_component(input.component); !why.empty()) return why;
-      return lifecycles_[input.component.index]
-                 ? ""
-                 : "no transition of " + rules_[input.component].name + " was recorded";
+      return why_no_lifecycle(input.component);
     case Input::Kind::kParameter:
       return why_no_parameter(input.parameter);
     case Input::Kind::kLevel:

@@ -91,6 +91,7 @@ class BagReading {
   std::string why_no_signal(SignalId signal) const;
   std::string why_no_status(const std::string& status) const;
   std::string why_no_component(ComponentId component) const;
+  std::string why_no_lifecycle(ComponentId component) const;
   std::string why_no_parameter(ParameterId parameter) const;
   bool has_type(std::string_view type) const;
 
