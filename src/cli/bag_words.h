@@ -1,4 +1,4 @@
-// What is said of every bag: when, and what is not in order with it.
+// Words that all commands have for bags: times, and troubles.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace culprit::cli {
 
-// Of `at`, nanoseconds since 1970: "2026-11-21 18:36:01.123" by the clock of this machine, and
+// `at`, in nanoseconds since 1970, as "2026-11-21 18:36:01.123" by the clock of this machine, and
 // "2026-11-21T17:36:01.123Z".
 std::string clock_text(std::int64_t at);
 std::string clock_document(std::int64_t at);

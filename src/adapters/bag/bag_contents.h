@@ -1,4 +1,4 @@
-// What a bag turns out to hold while it is read: topics, message definitions, and what was lost.
+// The contents of a bag as far as it was read: topics, message definitions, and losses.
 #pragma once
 
 #include <cstdint>
@@ -42,10 +42,9 @@ class BagContents {
   std::size_t place_of(BagTopic topic);
   const std::vector<BagTopic>& topics() const { return topics_; }
 
-  // What a message type looked like to the recorder (ros2::MessageLibrary::learn). The first one
-  // counts.
+  // The recorder's definition of a message type (ros2::MessageLibrary::learn). The first one counts.
   void define(std::string_view type, std::string_view text);
-  // Nothing if the bag does not say.
+  // Null if the bag has none.
   const std::string* definition_of(const std::string& type) const;
 
   // A line for people: what cannot be read, where and why.

@@ -2,8 +2,8 @@
 //
 // A bag is one file in SQLite3 storage or MCAP, or a folder of them that were split while
 // recording; each may be compressed with Zstandard as a whole (`.zstd`), or message by message.
-// What is in it came from elsewhere and is not trusted: what is whole is read, and what is not is
-// said.
+// Its content came from elsewhere and is not trusted: the reader gives all that is whole, and reports
+// the rest.
 //
 // Where the recorder's clock was set, or it paused for long, time goes on from message to message
 // (time_line.h), and the jump is among contents().jumps().

@@ -201,8 +201,8 @@ TEST_F(BagTest, APartThatCannotBeReadDoesNotHideTheOthers) {
   write("bag_1.db3", cut);
   write("bag_2.mcap", mcap(two_topics() + said(1, 1000, "u"), 1));
   const Read all = read(folder_);
-  EXPECT_THAT(all.losses, ElementsAre(HasSubstr("bag_0.db3: it is no"),
-                                      HasSubstr("bag_1.db3: the database is damaged")));
+  EXPECT_THAT(all.losses,
+              ElementsAre(HasSubstr("bag_0.db3: it is no"), HasSubstr("bag_1.db3: it is damaged")));
   EXPECT_EQ(all.messages.back(), "/a@1000=u");
 }
 

@@ -34,7 +34,7 @@ void BagInfo::add(const BagMessage& message) {
     first_clock_ = message.recorded_at;
   }
   if (message.is_after_hole) {
-    // Nobody knows what came in the hole.
+    // The gaps end and begin at the hole, in which messages may have come.
     for (Topic& each : topics_) {
       if (each.info.messages > 0) note_gap(each, last_);
       each.heard_since = message.at;

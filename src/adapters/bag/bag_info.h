@@ -1,4 +1,4 @@
-// What a recording holds, topic by topic, without any rule.
+// The contents of a recording, topic by topic, without any rule.
 #pragma once
 
 #include <cstdint>

@@ -52,7 +52,7 @@ std::string first_bytes(const fs::path& path) {
   return bytes;
 }
 
-// What the bytes are counts; the name is what people, and other tools, gave it.
+// The first bytes decide the format; people and other tools may have renamed the file.
 BagPart part_at(const fs::path& path) {
   const std::string bytes = first_bytes(path);
   const bool is_named_mcap = uncompressed_name(path).extension() == ".mcap";

@@ -30,7 +30,7 @@ struct BagParts {
   std::optional<std::uint64_t> messages;  // of all parts, by metadata.yaml
 };
 
-// Of a file or a folder. Errors say why it is no rosbag2 recording: a ROS 1 bag, a pointer of
+// The parts of a file or a folder. Errors say why it is no rosbag2 recording: a ROS 1 bag, a pointer of
 // Git LFS, an empty folder.
 Expected<BagParts> find_parts(const std::filesystem::path& path);
 

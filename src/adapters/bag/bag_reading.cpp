@@ -21,7 +21,7 @@ ros2::ByteView view(std::string_view bytes) {
   return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
 }
 
-// What a node's messages on /rosout are signed with: of "/arm/gripper" it is "arm.gripper"
+// The name with which a node signs its messages on /rosout: of "/arm/gripper" it is "arm.gripper"
 // (design.ros2.org/articles/logging.html, rcl's node.c).
 std::string logger_of(const std::string& node) {
   std::string name = node.substr(1);
@@ -130,6 +130,7 @@ void BagReading::read(const BagMessage& message, std::vector<Observation>& obser
   const ros2::ByteView payload = view(message.bytes);
   ++plan.messages;
   now_ = Time(Duration(message.at));
+  recorded_at_ = message.recorded_at;
   out_ = &observations;
   if (plan.topic) put(SampleArrived{*plan.topic, 1});
   if (!plan.fields.empty()) read_fields(plan, payload, decodes(plan, topic, payload));
@@ -179,7 +180,7 @@ void BagReading::note_undecoded(Plan& plan, const BagTopic& topic, ros2::ByteVie
   plan.why_undecoded =
       is_xcdr2(payload) ? "they are in XCDR2, not in XCDR1"
       : is_longer       ? "they do not fit the definition of " + topic.type +
-                        (is_described ? " in the bag" : "; give theirs with --message-path")
+                        (is_described ? " in the bag" : "; give the recorder's with --message-path")
                   : "they are cut short, or are not of " + topic.type;
 }
 
@@ -187,7 +188,7 @@ void BagReading::read_fields(const Plan& plan, ros2::ByteView payload, bool is_d
   for (const Field& field : plan.fields) {
     Value value;
     const bool is_read =
-        is_decoded && field.reader.read(payload, value) == ros2::FieldStatus::kRead;
+        is_decoded && field.reader.read(payload, value, recorded_at_) == ros2::FieldStatus::kRead;
     read_signal(field.signal, is_read ? std::move(value) : unreadable_value());
   }
 }
@@ -301,6 +302,13 @@ std::string BagReading::why_no_component(ComponentId component) const {
          ": no parameter event, transition or log";
 }
 
+std::string BagReading::why_no_lifecycle(ComponentId component) const {
+  if (std::string why = why_no_component(component); !why.empty()) return why;
+  return lifecycles_[component.index]
+             ? ""
+             : "no transition of " + rules_[component].name + " was recorded";
+}
+
 std::string BagReading::why_no_parameter(ParameterId parameter) const {
   if (parameters_[parameter.index]) return "";
   const Parameter& wanted = rules_[parameter];
@@ -319,6 +327,13 @@ std::string BagReading::why_no_signal(SignalId signal) const {
   const SignalSeen& seen = signals_[signal.index];
   if (const auto* parameter = std::get_if<ParameterId>(&declared.source))
     return why_no_parameter(*parameter);
+  if (const auto* group = std::get_if<GroupId>(&declared.source)) {
+    std::string why;
+    for (const ComponentId member : rules_.groups[group->index].members) {
+      if (why.empty()) why = why_no_lifecycle(member);
+    }
+    return why;
+  }
   const auto* field = std::get_if<TopicField>(&declared.source);
   if (field != nullptr) {
     if (std::string why = why_no_topic(field->topic); !why.empty()) return why;
@@ -366,10 +381,7 @@ std::string BagReading::why_unknown(InputId id) const {
     case Input::Kind::kAlive:
       return why_no_component(input.component);
     case Input::Kind::kLifecycle:
-      if (std::string why = why_no_component(input.component); !why.empty()) return why;
-      return lifecycles_[input.component.index]
-                 ? ""
-                 : "no transition of " + rules_[input.component].name + " was recorded";
+      return why_no_lifecycle(input.component);
     case Input::Kind::kParameter:
       return why_no_parameter(input.parameter);
     case Input::Kind::kLevel:

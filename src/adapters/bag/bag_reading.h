@@ -1,4 +1,4 @@
-// What a recorded bag would have told a manager: the rhythm of topics, values of their fields,
+// A recorded bag as observations for a manager: the rhythm of topics, values of their fields,
 // diagnostics, parameters, lifecycle states and goals of actions.
 //
 // A bag does not say which node published what, nor which processes ran. So nodes are known from
@@ -40,7 +40,7 @@ class BagReading {
   // or the rule compares a number with a text. why_unknown() says why.
   bool is_misread(InputId input) const;
 
-  // What the rules read and the bag, as far as it was read, does not have: one line each.
+  // The inputs of the rules that the bag, as far as it was read, does not have: one line each.
   std::vector<std::string> missing() const;
 
   // The topics with messages that cannot be decoded, one line each.
@@ -62,7 +62,7 @@ class BagReading {
     std::uint64_t undecoded = 0;
     std::string why_undecoded{};  // the first of them
   };
-  // What was read of a signal.
+  // The readings of a signal so far.
   struct SignalSeen {
     bool was_read = false;
     bool was_usable = false;       // once at least, by the type that the rules read
@@ -91,6 +91,7 @@ class BagReading {
   std::string why_no_signal(SignalId signal) const;
   std::string why_no_status(const std::string& status) const;
   std::string why_no_component(ComponentId component) const;
+  std::string why_no_lifecycle(ComponentId component) const;
   std::string why_no_parameter(ParameterId parameter) const;
   bool has_type(std::string_view type) const;
 
@@ -109,6 +110,7 @@ class BagReading {
   std::vector<bool> parameters_;              // it was read
   std::unordered_set<std::string> statuses_;  // names and hardware ids, of many the first ones
   Time now_{};
+  std::int64_t recorded_at_ = 0;
   std::vector<Observation>* out_ = nullptr;  // while reading
 };
 

@@ -28,7 +28,7 @@ class ByteSource {
 
   // How many bytes it could read: fewer than `size` at the end only.
   std::size_t read(char* to, std::size_t size);
-  // Of the next byte.
+  // The place of the next byte.
   std::uint64_t position() const { return position_; }
   // Why it ended too early, for people; empty if it did not.
   const std::string& trouble() const { return trouble_; }

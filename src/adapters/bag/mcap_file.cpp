@@ -150,7 +150,7 @@ bool McapFile::take_in_bare(const RecordHead& head) {
   return true;
 }
 
-// What the recorder says of the bytes before this record.
+// Compares the bytes before this record with the recorder's checksum.
 void McapFile::check_bytes(const RecordHead& head) {
   has_data_end_ = true;
   const std::uint32_t expected = McapFields(body_).u32();
@@ -329,7 +329,7 @@ bool McapFile::decompress_chunk(const Block& block, std::string& into, Telling t
   return true;
 }
 
-// What is whole in the last chunk of a file that was cut off is whole.
+// A chunk at which the file was cut off gives the records that are whole.
 void McapFile::read_records(std::size_t block, OpenBlock& opened, Telling telling) {
   McapFields fields(opened.bytes);
   std::size_t message = 0;

@@ -242,9 +242,8 @@ bool SqliteFile::next(BagMessage& message) {
     return true;
   }
   if (!damage_.empty())
-    contents_.lose(name_ + ": the database is damaged (" + damage_ + "): only " +
-                   std::to_string(read_) + " messages were read; try sqlite3 " + name_ +
-                   " .recover, or record it again");
+    contents_.lose(name_ + ": " + damage_ + "; only " + std::to_string(read_) +
+                   " messages were read; try sqlite3 " + name_ + " .recover");
   damage_.clear();
   return false;
 }

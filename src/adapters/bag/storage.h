@@ -23,8 +23,8 @@ class Storage {
   virtual void survey(PieceFinder& finder) = 0;
   // Once, before the first message.
   virtual void follow(TimeLine line) = 0;
-  // The next message by its time with the offset of the line. False at the end. What cannot be read
-  // is told to the contents and left out. Of a time that is_time() refuses, `at` is that time.
+  // The next message by its time with the offset of the line. False at the end. Losses
+  // are reported to the contents. A time that is_time() refuses gets no offset.
   virtual bool next(BagMessage& message) = 0;
   // Messages so far that were written after one of a later time, and that the survey did not count.
   virtual std::uint64_t late() const { return 0; }

@@ -156,7 +156,8 @@ void TopicWatch::on_message(const Sample& sample) {
   }
   for (Field& field : fields_) {
     Value value;
-    if (field.reader.read(sample.payload, value) != FieldStatus::kRead) value = unreadable_value();
+    if (field.reader.read(sample.payload, value, wall_now()) != FieldStatus::kRead)
+      value = unreadable_value();
     // The same value again changes no trigger; it only proves that the signal is not stale.
     const Urgency urgency = field.last == value ? Urgency::kSoon : Urgency::kNow;
     field.last = value;

@@ -2,7 +2,13 @@
 //
 // A path such as `pose.pose.position.x`, `ranges[3]` or `status[0].level` is compiled once, against
 // the definition of the message type, into a flat plan: the fields to pass over, then those to
-// read. Reading allocates no memory, except for a string. Payloads are hostile: reading one takes
+// read. An element may have a name for its index: `effort[elbow]` is that of the array `name` (or
+// `names`, `joint_names`) before it; `status[lidar].level` is of the first message in the array whose
+// `name` (or `child_frame_id`, `key`, `id`) is that. `min(ranges)` and `max(ranges)` are over an
+// array, but for NaN. `delay(header.stamp)` is the time from a stamp until the message arrived, in
+// seconds.
+//
+// Reading allocates no memory, except for a string. Payloads are hostile: reading one takes
 // time proportional to its size, whatever it claims.
 #pragma once
 
@@ -45,8 +51,9 @@ class FieldReader {
   bool reads_number() const;
 
   // Sets `value` if and only if kRead. Every integer type becomes int64 (uint64 saturates), both
-  // floating-point types double.
-  FieldStatus read(ByteView payload, Value& value) const;
+  // floating-point types double. `arrival`: nanoseconds since 1970, for delay(); without it there is
+  // none.
+  FieldStatus read(ByteView payload, Value& value, std::int64_t arrival = 0) const;
 
  private:
   enum class Op : std::uint8_t {
@@ -56,7 +63,16 @@ class FieldReader {
     kRepeat,         // the next `length` steps, `count` times
     kRepeatCounted,  // a count n, then the next `length` steps, n times
     kBound,          // a count n; the field is absent unless n > `count`
-    kRead            // the value, a `primitive`
+    kRead,           // the value, a `primitive`
+    kFind,           // a count n, then n strings: the place of key `count` among them
+    kSkipFound,    // a count n, then as many primitives of `size` bytes as stand before that place
+    kRepeatFound,  // a count n, then the next `length` steps for each element before that place
+    kSearch,       // a count n: the next `length` steps pass over the key of an element, then
+                   // `count` over all of it; what follows reads the element that has the key
+    kMatch,        // a string, which may be key `count`
+    kLeast,        // `count` primitives, or a count n and n of them if that is 0: the least
+    kGreatest,     // likewise
+    kDelay         // a builtin_interfaces/msg/Time
   };
   struct Step {
     Op op;
@@ -67,9 +83,19 @@ class FieldReader {
   };
   class Compiler;
 
-  FieldStatus run(CdrReader& reader, std::size_t begin, std::size_t end, Value& value) const;
+  // The state of a run of the plan.
+  struct Run {
+    Value& value;
+    std::int64_t arrival = 0;
+    std::uint32_t found = 0;  // by kFind
+    bool was_found = false;   // by kFind or kMatch
+  };
+  FieldStatus run(CdrReader& reader, std::size_t begin, std::size_t end, Run& state) const;
+  bool search(CdrReader& reader, std::size_t at, Run& state) const;
+  FieldStatus fold(CdrReader& reader, const Step& step, Run& state) const;
 
   std::vector<Step> plan_;
+  std::vector<std::string> keys_;
 };
 
 }  // namespace culprit::ros2

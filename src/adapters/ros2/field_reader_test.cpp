@@ -67,6 +67,76 @@ TEST(FieldReader, ReadsAPlainField) {
   EXPECT_EQ(read("std_msgs/msg/String", "data", encode(msg::String{"hello"})), text("hello"));
 }
 
+TEST(FieldReader, ReadsAnElementByItsName) {
+  const Bytes payload = encode(two_statuses());
+  constexpr std::string_view kType = "diagnostic_msgs/msg/DiagnosticArray";
+  EXPECT_EQ(read(kType, "status[second].level", payload), Value(std::int64_t{2}));
+  EXPECT_EQ(read(kType, "status[second].values[b].value", payload), text("2"));
+  EXPECT_EQ(read(kType, "status[second].values[a].value", payload), text("second"));
+  EXPECT_EQ(read(kType, "status[third].level", payload), text("absent"));
+  EXPECT_NE(compile_error("sensor_msgs/msg/LaserScan", "ranges[left]"), "none");
+}
+
+// A sensor_msgs/msg/JointState with these joints; effort has one element less.
+Bytes joints() {
+  CdrWriter writer;
+  writer.write(std::int32_t{0});
+  writer.write(std::uint32_t{0});
+  writer.write_string("");
+  writer.write(std::uint32_t{3});
+  for (const char* name : {"base", "elbow", "wrist"}) writer.write_string(name);
+  for (const std::uint32_t count : {3u, 3u, 2u}) {
+    writer.write(count);
+    for (std::uint32_t i = 0; i < count; ++i) writer.write(10.0 * count + i);
+  }
+  return writer.take();
+}
+
+TEST(FieldReader, ReadsAnElementByTheArrayOfNamesBeside) {
+  constexpr std::string_view kType = "sensor_msgs/msg/JointState";
+  EXPECT_EQ(read(kType, "position[elbow]", joints()), Value(31.0));
+  EXPECT_EQ(read(kType, "effort[elbow]", joints()), Value(21.0));
+  EXPECT_EQ(read(kType, "effort[wrist]", joints()), text("absent"));
+  EXPECT_EQ(read(kType, "effort[tail]", joints()), text("absent"));
+}
+
+TEST(FieldReader, ReadsTheLeastAndTheGreatestOfAnArray) {
+  constexpr std::string_view kType = "sensor_msgs/msg/JointState";
+  EXPECT_EQ(read(kType, "min(position)", joints()), Value(30.0));
+  EXPECT_EQ(read(kType, "max(effort)", joints()), Value(21.0));
+  EXPECT_NE(compile_error(kType, "max(name)"), "none");
+  EXPECT_NE(compile_error(kType, "max(header.stamp)"), "none");
+}
+
+TEST(FieldReader, ReadsHowLongAfterItsStampAMessageCame) {
+  msg::DiagnosticArray array = two_statuses();
+  array.header.stamp = {1000, 500'000'000};
+  MessageLibrary library;
+  const auto reader =
+      FieldReader::compile(library, "diagnostic_msgs/msg/DiagnosticArray", "delay(header.stamp)");
+  ASSERT_TRUE(reader) << reader.error();
+  Value value;
+  EXPECT_EQ(reader->read(encode(array), value, 1'000'750'000'000), FieldStatus::kRead);
+  EXPECT_EQ(value, Value(0.25));
+  array.header.stamp = {0, 0};
+  EXPECT_EQ(reader->read(encode(array), value, 1'000'750'000'000), FieldStatus::kAbsent);
+  EXPECT_NE(compile_error("diagnostic_msgs/msg/DiagnosticArray", "delay(status)"), "none");
+}
+
+TEST(FieldReader, SaysWhetherAPayloadFitsItsType) {
+  MessageLibrary library;
+  const auto whole = FieldReader::compile_whole(library, "diagnostic_msgs/msg/DiagnosticArray");
+  ASSERT_TRUE(whole) << whole.error();
+  Bytes payload = encode(two_statuses());
+  EXPECT_EQ(whole->fit(payload), PayloadFit::kFits);
+  payload.insert(payload.end(), 8, 0);
+  EXPECT_EQ(whole->fit(payload), PayloadFit::kTooLong);
+  payload.resize(payload.size() - 12);
+  EXPECT_EQ(whole->fit(payload), PayloadFit::kMalformed);
+  payload[1] = 7;  // XCDR2
+  EXPECT_EQ(whole->fit(payload), PayloadFit::kMalformed);
+}
+
 TEST(FieldReader, ReadsThroughNestedMessagesAndArrays) {
   for (const Endianness endianness : {Endianness::kLittle, Endianness::kBig}) {
     const Bytes payload = encode(two_statuses(), endianness);

@@ -169,7 +169,7 @@ void MessageLibrary::learn(std::string_view type, std::string_view text) {
   }
 }
 
-// The text of a .srv or .action file is that of all its parts. What is made of them is known then.
+// The text of a .srv or .action file is that of all its parts; types that are made of them follow.
 void MessageLibrary::learn_one(std::string_view type, std::string_view text) {
   const bool has_parts = text.starts_with("---") || text.find("\n---") != std::string_view::npos;
   const std::string interface(interface_of(type));

@@ -1,4 +1,5 @@
-// The fields of the standard message types, so that the common signals need no ROS installation.
+// The fields of the standard message types and of common packages (as of Humble), so that the common
+// signals need no ROS installation.
 #pragma once
 
 #include <optional>

@@ -230,11 +230,18 @@ class ExpressionParser {
     return value_is_missing(token);
   }
 
-  // "500 ms"
+  // "500 ms", "5 Hz"
   std::optional<Diagnostic> unit_behind_blank(const Token& number, std::string_view unit) {
-    if (!parse_duration("1" + std::string(unit))) return std::nullopt;
     const std::uint32_t begin = scanner_.position();
     const auto end = begin + static_cast<std::uint32_t>(unit.size());
+    if (is_hertz(unit))
+      return Diagnostic{Code::kSyntax,
+                        Severity::kError,
+                        {number.span.begin, end},
+                        "rates are in Hz and have no unit",
+                        "leave the unit out",
+                        Edit{{number.span.end, end}, ""}};
+    if (!parse_duration("1" + std::string(unit))) return std::nullopt;
     return Diagnostic{Code::kSyntax,
                       Severity::kError,
                       {number.span.begin, end},
@@ -371,8 +378,16 @@ class ExpressionParser {
 
   std::nullopt_t bad(const Token& token) {
     auto [cause, fix, remedy] = complaint_about(token);
-    if (remedy.empty() && token.flaw == Token::Flaw::kNumber)
+    if (remedy.empty() && token.flaw == Token::Flaw::kNumber) {
       remedy = "a unit is one of ns, us, ms, s, min and h, as in 500ms";
+      const auto number =
+          std::get<std::string_view>(token.literal).substr(0, token.span.end - token.span.begin);
+      const auto end = number.find_first_not_of(".0123456789");
+      if (end != std::string_view::npos && is_hertz(number.substr(end))) {
+        remedy = "rates are in Hz and have no unit: write " + std::string(number.substr(0, end));
+        fix = Edit{token.span, std::string(number.substr(0, end))};
+      }
+    }
     return fail(Code::kBadToken, token.span, cause, remedy, fix);
   }
 

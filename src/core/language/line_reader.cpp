@@ -321,9 +321,6 @@ bool LineReader::line_ends(Scanner& s) {
       is_digit(token.span.end))
     return fail(Code::kExtraText, token.span, "a number has a point, and no comma", "write a '.'",
                 Edit{token.span, "."});
-  if (is_hertz(token.text))
-    return fail(Code::kExtraText, token.span, "a rate is a number of Hz, without a unit",
-                "remove it", Edit{token.span, ""});
   if (is_reserved(token.text))
     return fail(Code::kExtraText, token.span,
                 std::string(token.text) + " has no place in this line",

@@ -186,8 +186,6 @@ Complaint not_a_number(Span span, std::string_view text) {
   const std::string number(text.substr(0, end));
   const std::string_view letters = text.substr(end);
   const std::string cause = "'" + std::string(text) + "' is neither a number nor a duration";
-  if (is_hertz(letters))
-    return {cause, Edit{span, number}, "rates are in Hz and have no unit: write " + number};
   if (letters == "m")
     return {cause, std::nullopt, "write " + number + "min for minutes, or " + number + "ms"};
   const std::string_view unit = duration_unit(letters);

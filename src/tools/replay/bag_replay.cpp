@@ -1,6 +1,7 @@
 #include "replay/bag_replay.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace culprit::replay {
 namespace {
@@ -51,13 +52,27 @@ void BagReplay::step(const bag::BagMessage& message) {
     observations_.push_back({now_, HearingLost{"the copy of the recording lacks messages"}});
     advance(now_, observations_);
     observations_.clear();
+    was_known_.clear();
+    for (State& each : states_) {
+      was_known_.push_back(each.known_since.has_value());
+      pause(each, now_);
+    }
   }
   // A recording may have holes of hours; nobody waits in them for more than this.
   constexpr int kMostDeadlines = 100'000;
-  for (int i = 0; i < kMostDeadlines && manager_->next_deadline() < now; ++i)
-    advance(manager_->next_deadline(), {});
+  for (int i = 0; i < kMostDeadlines && manager_->next_deadline() < now; ++i) {
+    now_ = manager_->next_deadline();
+    manager_->step(now_, {});
+    take_events();
+    if (!is_after_hole) note_triggers();
+  }
   clock_offset_ = message.recorded_at - message.at;
-  if (is_after_hole) observations_.push_back({now, HearingRegained{}});
+  if (is_after_hole) {
+    observations_.push_back({now, HearingRegained{}});
+    for (std::size_t r = 0; r < states_.size(); ++r) {
+      if (was_known_[r]) go_on(states_[r], now);
+    }
+  }
   reading_.read(message, observations_);
   advance(now, observations_);
 }
@@ -73,7 +88,9 @@ void BagReplay::take_events() {
   for (const Event& event : manager_->events()) {
     if (const auto* detected = event_as<FailureDetected>(event)) {
       State& state = states_[detected->rule.index];
-      state.since = event.at;
+      state.is_on = true;
+      state.on_since = event.at;
+      state.lasted = Duration::zero();
       if (event.at >= stretch_.from) {
         ++state.outcome.times;
         if (!state.outcome.first) {
@@ -104,15 +121,30 @@ Duration BagReplay::counted(Time from, Time until) const {
 
 void BagReplay::end_failure(RuleId rule, Time at) {
   State& state = states_[rule.index];
-  if (!state.since) return;
+  if (!std::exchange(state.is_on, false)) return;
   // It is told a little after the trigger stopped being true.
   const Detection& detection = manager_->knowledge().states[rule].detection;
   const bool is_over = !detection.trigger.known || !detection.trigger.b;
-  if (is_over && detection.trigger_since > *state.since) at = std::min(at, detection.trigger_since);
-  const Duration lasted = counted(*state.since, at);
-  state.outcome.longest = std::max(state.outcome.longest, lasted);
-  state.outcome.total += lasted;
-  state.since.reset();
+  const Time gone = is_over ? std::min(at, detection.trigger_since) : at;
+  if (state.on_since) state.lasted += counted(*state.on_since, gone);
+  state.on_since.reset();
+  state.outcome.longest = std::max(state.outcome.longest, state.lasted);
+  state.outcome.total += state.lasted;
+}
+
+// From here on nobody knows whether it is there.
+void BagReplay::pause(State& state, Time at) {
+  if (state.on_since) state.lasted += counted(*state.on_since, at);
+  state.on_since.reset();
+  if (!state.known_since) return;
+  state.outcome.known += counted(*state.known_since, at);
+  state.outcome.was_known |= at >= stretch_.from;
+  state.known_since.reset();
+}
+
+void BagReplay::go_on(State& state, Time at) {
+  state.known_since = at;
+  if (state.is_on) state.on_since = at;
 }
 
 void BagReplay::note_triggers() {
@@ -122,11 +154,9 @@ void BagReplay::note_triggers() {
     const bool is_known = states[RuleId(r)].detection.trigger.known;
     if (is_known == state.known_since.has_value()) continue;
     if (is_known) {
-      state.known_since = now_;
+      go_on(state, now_);
     } else {
-      state.outcome.known += counted(*state.known_since, now_);
-      state.outcome.was_known |= now_ >= stretch_.from;
-      state.known_since.reset();
+      pause(state, now_);
     }
   }
 }
@@ -137,9 +167,10 @@ std::vector<RuleOutcome> BagReplay::outcomes() const {
     RuleOutcome outcome = state.outcome;
     outcome.was_known |= state.known_since.has_value();
     if (state.known_since) outcome.known += counted(*state.known_since, now_);
-    if (state.since) {
+    if (state.is_on) {
       outcome.is_on = true;
-      const Duration lasted = counted(*state.since, now_);
+      const Duration lasted =
+          state.lasted + (state.on_since ? counted(*state.on_since, now_) : Duration::zero());
       outcome.longest = std::max(outcome.longest, lasted);
       outcome.total += lasted;
     }

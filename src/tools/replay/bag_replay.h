@@ -30,7 +30,7 @@ struct RuleOutcome {
   std::vector<std::string> why_unknown{};
 };
 
-// Of the time since the beginning, what is told and counted.
+// The part of a recording that is reported and counted.
 struct BagStretch {
   Time from = kLongAgo;  // as BagMessage::at; what was before is known
 };
@@ -50,7 +50,7 @@ class BagReplay {
 
   void step(const bag::BagMessage& message);
 
-  // By rule. What is still there counts until the last message.
+  // By rule. A failure that is still there counts until the last message.
   std::vector<RuleOutcome> outcomes() const;
 
   std::uint64_t messages() const { return messages_; }
@@ -62,7 +62,9 @@ class BagReplay {
  private:
   struct State {
     RuleOutcome outcome;
-    std::optional<Time> since;        // it is there
+    bool is_on = false;               // it is there
+    std::optional<Time> on_since;     // it is there, and its trigger is known
+    Duration lasted{};                // before that
     std::optional<Time> known_since;  // its trigger is known
   };
 
@@ -71,6 +73,8 @@ class BagReplay {
   void take_events();
   void note_triggers();
   void end_failure(RuleId rule, Time at);
+  void pause(State& state, Time at);
+  void go_on(State& state, Time at);
   Duration counted(Time from, Time until) const;
 
   const RuleSet& rules_;
@@ -81,6 +85,7 @@ class BagReplay {
   std::optional<Manager> manager_;
   std::vector<State> states_;
   std::vector<Observation> observations_;
+  std::vector<bool> was_known_;  // by rule, before a hole
   std::optional<Time> start_;
   std::int64_t start_clock_ = 0;
   std::int64_t clock_offset_ = 0;  // from BagMessage::at to the clock of the recorder

@@ -246,6 +246,8 @@ TEST_F(BagReplayTest, AMessageThatIsCutMakesItsValueUnknown) {
   EXPECT_THAT(judged.undecoded,
               ElementsAre(HasSubstr("50 of 300 messages of /x cannot be decoded")));
   EXPECT_NEAR(seconds(judged.outcomes[0].known), 24.9, 0.1);
+  // It fired at 9.1 s, and nobody knows for how long.
+  EXPECT_NEAR(seconds(judged.outcomes[0].longest), 0.9, 0.01);
 }
 
 TEST_F(BagReplayTest, XcdrTwoAndDefinitionsThatDoNotFitAreNamed) {
@@ -296,6 +298,7 @@ TEST_F(BagReplayTest, AHoleOfTheCopyIsNoSilenceOfTheRobot) {
   ASSERT_EQ(judged.holes.size(), 1u);
   EXPECT_NEAR(judged.holes[0].first, 9.9, 1e-6);
   EXPECT_NEAR(judged.holes[0].second, 20.0, 1e-6);
+  EXPECT_NEAR(seconds(judged.outcomes[0].known), 19.8, 0.2);
 }
 
 // Recorders write the text of the .srv or .action file for the types that are made of its parts.
