@@ -1,9 +1,13 @@
 #include "laboratory/study_rca_command.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "base/text_file.h"
+#include "laboratory/commands.h"
 
 namespace culprit::lab {
 namespace {
@@ -63,6 +67,38 @@ TEST_F(StudyRcaCommand, RefusesFactorsWhereTheyChangeNothing) {
   EXPECT_THAT(run({"--regret", "--hidden", "10%"}), HasSubstr("--hidden excludes --regret"));
   EXPECT_THAT(run({"--learn", "10", "--unwatched", "10%"}),
               HasSubstr("--unwatched excludes --learn"));
+}
+
+// Exports into `folder` with `more` options, and gives the exit code.
+int export_to(const std::filesystem::path& folder, std::vector<std::string> more) {
+  more.insert(more.begin(), {"rca", "--export-cases", folder.string()});
+  std::reverse(more.begin(), more.end());
+  CLI::App study;
+  int exit_code = -1;
+  add_study_rca(study, "test", exit_code);
+  study.parse(more);
+  return exit_code;
+}
+
+TEST(StudyRcaExport, WritesTheSmallSetOnce) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / "culprit-study-rca-export";
+  std::filesystem::remove_all(folder);
+  EXPECT_EQ(export_to(folder, {"--cases", "1", "--seed", "3", "--hidden-seed", "3"}), kUsage);
+  EXPECT_FALSE(std::filesystem::exists(folder));
+  EXPECT_EQ(export_to(folder, {"--cases", "1", "--common-causes", "1"}), kOk);
+  EXPECT_TRUE(std::filesystem::exists(folder / "public/case-0001/truth.json"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "hidden"));
+  EXPECT_THAT(*read_text((folder / "README.md").string()),
+              HasSubstr("--cases 1 --components 12,16,20 --faults 1,2,3 --noise 0 "
+                        "--detector-latency 0..3s --unwatched 20% --hidden 10% --common-causes 1 "
+                        "--false-alarms 0.5 --objective balanced --seed 1"));
+  EXPECT_EQ(export_to(folder, {"--cases", "1"}), kUsage) << "it is not empty";
+  std::filesystem::remove_all(folder);
+}
+
+TEST_F(StudyRcaCommand, RefusesOptionsThatAnExportDoesNotUse) {
+  EXPECT_THAT(run({"--export-cases", "nowhere"}), HasSubstr("--export-cases"));
+  EXPECT_THAT(run({"--hidden-seed", "4"}), HasSubstr("--hidden-seed requires --export-cases"));
 }
 
 }  // namespace

@@ -416,8 +416,8 @@ COLUMNS = (
     ("top1", "top 1 [%]", 100),
     ("top3", "top 3 [%]", 100),
     ("exact", "exact set [%]", 100),
-    ("wrong_components", "wrong components", 1),
-    ("useless_repairs", "useless repairs", 1),
+    ("wrong_components", "wrong", 1),
+    ("useless_repairs", "useless", 1),
     ("repaired", "repaired [%]", 100),
     ("repaired_after_s", "after [s]", 1),
 )
