@@ -5,6 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include "terminal/command.h"
 #include "terminal/help.h"
 #include "terminal/manual.h"
