@@ -104,7 +104,7 @@ std::string test_of(const std::vector<const Trial*>& trials, const std::string& 
   }
   for (const auto& [component, lifecycle] : robot.lifecycles) {
     if (!broken.contains(component) &&
-        in_all([&](const Finding& each) { return !each.blamed.contains(component); }))
+        in_all([&, &name = component](const Finding& each) { return !each.blamed.contains(name); }))
       expected += "  EXPECT NO STRATEGY OF " + component + "\n";
   }
   return fmt::format(

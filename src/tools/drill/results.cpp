@@ -94,9 +94,9 @@ class HiddenSearch {
     std::vector<HiddenDependency> out;
     for (const auto& [pair, times] : often) {
       // An effect of another candidate needs no edge of its own.
-      const auto explains = [&](const auto& other) {
-        return other.first.second == pair.second && other.first.first != pair.first &&
-               paths_.contains({pair.first, other.first.first});
+      const auto explains = [&, &found = pair](const auto& other) {
+        return other.first.second == found.second && other.first.first != found.first &&
+               paths_.contains({found.first, other.first.first});
       };
       if (std::ranges::none_of(often, explains)) out.push_back({pair.first, pair.second, times});
     }

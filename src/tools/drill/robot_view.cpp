@@ -133,7 +133,7 @@ HealthyRobot RobotView::healthy() const {
 
 std::set<std::string> RobotView::silent() const {
   constexpr double kShortest = 0.5;  // seconds
-  constexpr double kPauses = 5;
+  constexpr double kUsualGaps = 5;
   const HealthyRobot now = healthy();
   const Json& topics = member(robot_, "topics");
   const Json& states = member(state_, "topics");
@@ -142,7 +142,7 @@ std::set<std::string> RobotView::silent() const {
     if (!topics[i].is_string()) continue;
     const HealthyRobot::Topic& topic = now.topics.at(topics[i].get<std::string>());
     if (!topic.publisher.empty() && topic.rate > 0 &&
-        number_of(states[i], "age") > std::max(kShortest, kPauses / topic.rate))
+        number_of(states[i], "age") > std::max(kShortest, kUsualGaps / topic.rate))
       out.insert(topic.publisher);
   }
   return out;
