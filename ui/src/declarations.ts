@@ -39,6 +39,12 @@ const kSources: Way[] = [
   { words: 'a parameter', members: { component: 'my_node', parameter: 'my_parameter' } },
 ]
 
+const kDrills: Way[] = [
+  { words: 'breaks it so many times at most', members: { type: 'limit', times: 0 } },
+  { words: 'leaves a fault out', members: { type: 'without', fault: 'kill' } },
+  { words: 'sets a parameter', members: { type: 'set_parameter', parameter: 'my_parameter', value: '0' } },
+]
+
 export const kDeclarations: Record<string, Declaration> = {
   ROBOT: { title: 'Robot', members: { name: {} }, fresh: () => ({ name: 'my_robot' }) },
   CYCLE: { title: 'Cycle', members: { length: {} }, fresh: () => ({ length: '200ms' }) },
@@ -113,7 +119,14 @@ export const kDeclarations: Record<string, Declaration> = {
   ABORT: { title: 'End of a drill', members: { expression: { wide: true } }, fresh: () => ({ expression: 'false' }) },
   DRILL: {
     title: 'Drill',
-    members: { component: { list: 'components' }, type: {}, parameter: {}, value: {}, fault: {}, times: {} },
+    members: {
+      component: { list: 'components' },
+      parameter: {},
+      value: {},
+      fault: { of: ['kill', 'hang', 'slow', 'deactivate', 'restart'] },
+      times: { kind: 'number' },
+    },
+    ways: { label: 'what it says', all: kDrills },
     fresh: (document) => ({ component: namesOf(document, 'COMPONENT')[0] ?? 'my_node', type: 'limit', times: 0 }),
   },
 }
@@ -133,7 +146,10 @@ export function inWay({ ways, members }: Declaration, statement: Statement, word
   const chosen = ways!.all.find((w) => w.words === words)!
   const changed = { ...statement }
   for (const member of ways!.all.flatMap(membersOf)) if (!(member in chosen.members)) delete changed[member]
-  for (const [member, value] of Object.entries(chosen.members)) changed[member] ??= value
+  for (const [member, value] of Object.entries(chosen.members)) {
+    const isInAll = ways!.all.every((w) => member in w.members) // and so tells the ways apart
+    changed[member] = isInAll ? value : (changed[member] ?? value)
+  }
   for (const [member, facts] of Object.entries(members)) if (!makesSense(facts, changed)) delete changed[member]
   return changed
 }

@@ -52,7 +52,7 @@ async function mistake(page) {
 async function reload(page) {
   await page.reload()
   const draft = page.getByRole('status', { name: 'Draft' })
-  await draft.getByText('is here again').waitFor()
+  await draft.getByText('is restored').waitFor()
   await text(page).filter({ hasText: 'STRATEGY wake 77 10' }).waitFor()
   await isAccessible(page)
   await draft.getByRole('button', { name: 'Go on' }).click()

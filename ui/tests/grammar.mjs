@@ -17,6 +17,13 @@ COMPONENT wheel NODE /wheel /wheel/odometry RESPAWNED LIFECYCLE self
 DEPENDENCY slam ON lidar eye
 IGNORE TOPIC /rosout /clock
 INTERLOCK limit == 1
+GROUP drives { lidar, wheel } MANAGER arm
+ABORT limit == 2
+DRILL eye limit 3
+DRILL eye without kill
+DRILL eye without hang
+DRILL eye without slow
+DRILL eye set_parameter gain 0
 CONST limit = 0.5
 SIGNAL load TOPIC /arm/load FIELD data STALE 2s RANGE -1..1
 SIGNAL heat DIAGNOSTIC motor KEY temperature
@@ -68,6 +75,7 @@ ADAPTATION eye redeploy 10
 ADAPTATION lidar start 10
 THEN ADAPTATION wheel stop 10
 ADAPTATION slam call clear 1
+ADAPTATION drives start_group 5
 
 TEMPLATE looked_after(name, topic, patience = 2s, start = 50)
 CONST least = 3
@@ -142,6 +150,23 @@ export async function writesEveryRow() {
     await say('Topics to ignore', { topics: '/rosout /clock' })
     await add('Interlock')
     await say('Interlock', { expression: 'limit == 1' })
+    await add('Group with a lifecycle manager')
+    await say('Group with a lifecycle manager my_group', { members: 'lidar wheel', manager: 'arm', name: 'drives' })
+    await add('End of a drill')
+    await say('End of a drill', { expression: 'limit == 2' })
+    // Each becomes the one before the next is added: they are called alike.
+    const drill = async (way, members) => {
+      await add('Drill')
+      const own = group('Drill').last()
+      await enter(own, 'component', 'eye')
+      if (way) await choose(own, 'what it says', way)
+      for (const [label, value] of Object.entries(members)) await (label === 'fault' ? choose : enter)(own, label, value)
+    }
+    await drill(null, { times: '3' })
+    await drill('leaves a fault out', {})
+    await drill('leaves a fault out', { fault: 'hang' })
+    await drill('leaves a fault out', { fault: 'slow' })
+    await drill('sets a parameter', { parameter: 'gain' })
     await add('Constant')
     await say('Constant limit', { value: '0.5' })
     await add('Signal')
@@ -229,7 +254,7 @@ export async function writesEveryRow() {
       ['arm', 'change_mode', { mode: 'SLOW' }, '4'],
       ['arm', 'call', { service: 'home', request: 'data: true' }, '4'],
     ]
-    const kAlone = [['eye', 'redeploy', {}, '10'], ['lidar', 'start', {}, '10'], ['wheel', 'stop', {}, '10', 'then'], ['slam', 'call', { service: 'clear' }, '1']]
+    const kAlone = [['eye', 'redeploy', {}, '10'], ['lidar', 'start', {}, '10'], ['wheel', 'stop', {}, '10', 'then'], ['slam', 'call', { service: 'clear' }, '1'], ['drives', 'start_group', {}, '5']]
     const adaptations = async (within, all) => {
       for (const [place, [who, type, members, impact, step]] of all.entries()) {
         if (place > 0) await add('Adaptation', within)

@@ -94,7 +94,7 @@ async function opened(page) {
   await page.getByLabel('or open a result').setInputFiles(file('suave.json'))
   const single = page.getByRole('region', { name: 'Single run' })
   await single.getByRole('button', { name: 'Play it again' }).click()
-  await single.getByText('This manager tells nothing').waitFor()
+  await single.getByText('This manager reports no events').waitFor()
   const log = single.getByRole('region', { name: 'Event log' })
   await log.getByText('it inspects').waitFor()
   await single.getByLabel('who managed').selectOption('culprit')

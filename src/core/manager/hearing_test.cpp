@@ -256,7 +256,7 @@ TEST(Hearing, AVerdictWaitsUntilTheRobotWouldHaveBeenReceivedAgain) {
   robot["camera"].fault = "";
   robot.run_for(10s);
   EXPECT_EQ(robot.count("did not help"), 0u) << transcript(robot);
-  EXPECT_EQ(robot.count("CameraSilent.redeploy"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("redeploy camera: done"), 1u) << transcript(robot);
 }
 
 TEST(Hearing, NothingIsRunByHandWhileDeaf) {

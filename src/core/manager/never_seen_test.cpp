@@ -106,7 +106,7 @@ TEST(NeverSeen, ATypingMistakeInADiagnosticOrAParameterIsTold) {
         "signal curent was never seen: no message carries it; did you mean 'current'?",
         "diagnostic lense was never seen: no node publishes it; did you mean 'lens'?",
         "parameter gian of camera was never seen: no value was read; did you mean 'gain'?",
-        "parameter names of camera was never seen: no value was read. What"})
+        "parameter names of camera was never seen: no value was read. Rules"})
     EXPECT_EQ(robot.count(line), 1u) << line << transcript(robot);
 }
 

@@ -1,5 +1,6 @@
 #include "doctor/report.h"
 
+#include <filesystem>
 #include <fstream>
 #include <regex>
 
@@ -171,9 +172,16 @@ TEST(FindingExplanations, ThereIsOneForEachCodeInOrder) {
   }
   // Each code that the sources name.
   std::set<std::string> named;
+  std::vector<std::filesystem::path> files;
   for (const char* file :
-       {"connections", "nodes", "processes", "reach", "flows", "transforms", "disks", "baseline"}) {
-    std::ifstream in(std::string("src/tools/doctor/") + file + ".cpp");
+       {"connections", "nodes", "processes", "reach", "flows", "transforms", "disks", "baseline"})
+    files.push_back(std::string("src/tools/doctor/") + file + ".cpp");
+  for (const auto& each : std::filesystem::directory_iterator("src/tools/bag_doctor")) {
+    const std::string name = each.path().filename();
+    if (name.ends_with(".cpp") && !name.ends_with("_test.cpp")) files.push_back(each.path());
+  }
+  for (const auto& file : files) {
+    std::ifstream in(file);
     const std::string text(std::istreambuf_iterator<char>(in), {});
     const std::regex code("\"(D\\d\\d\\d)\"");
     for (std::sregex_iterator i(text.begin(), text.end(), code), end; i != end; ++i)

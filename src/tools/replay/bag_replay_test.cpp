@@ -99,7 +99,8 @@ TEST_F(BagReplayTest, CountsHowOftenAndHowLongARuleFired) {
   EXPECT_EQ(silent.longest, silent.total);
   EXPECT_EQ(*silent.first_clock, kBagStart + 10'400'000'001);
   EXPECT_FALSE(silent.is_on);
-  EXPECT_THAT(judged.labels, ElementsAre("detected", "resolved"));  // nothing is exhausted
+  EXPECT_THAT(judged.labels, ElementsAre("detected", "incident", "resolved", "incident"))
+      << "nothing is exhausted";
 }
 
 TEST_F(BagReplayTest, SaysThatARuleWasNeverTrue) {
