@@ -233,6 +233,10 @@ TEST_F(Barred, NothingIsEndedThatCouldNotBeStartedAgain) {
   build();
   Supervised c(program());
   const int pid = c.start();
+  // Until the shell has read its script, and sleeps.
+  while (std::filesystem::read_symlink("/proc/" + std::to_string(pid) + "/exe").filename() !=
+         "sleep")
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
   std::filesystem::remove(program());
   c.supervisor->stop({3}, ComponentId(0), 0, Ending::kToStartAgain);
   EXPECT_EQ(c.missing(), "there is no program '" + program() + "', or it is not executable");
@@ -513,7 +517,7 @@ TEST(Supervisor, EndsNoOrphanThatNobodyWouldStartAgain) {
   launcher.end();
   const Reply reply = c.stop_to_start_again();
   EXPECT_EQ(reply.outcome, Outcome::kRefused);
-  EXPECT_NE(reply.text.find("launcher of c has ended"), std::string::npos) << reply.text;
+  EXPECT_NE(reply.text.find("launcher of c has exited"), std::string::npos) << reply.text;
   EXPECT_TRUE(exists(orphan));
   kill(orphan, SIGKILL);
 }

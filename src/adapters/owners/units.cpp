@@ -197,7 +197,11 @@ void Units::look_at(ComponentId component, const UnitState& state) {
                            in_words(state, name_of(component)),
                            state.is_orderly && !is_ours ? Cause::kOrder : Cause::kUnknown});
   }
-  if (!state.is_over()) ended_here_.erase(component);
+  // The process that culprit had ended may be seen once more before it is gone.
+  const auto ended_here = ended_here_.find(component);
+  const bool runs_anew = !state.is_over() && state.main_pid != 0 &&
+                         ended_here != ended_here_.end() && ended_here->second != state.main_pid;
+  if (runs_anew) ended_here_.erase(ended_here);
 }
 
 // A lost connection is reported at once, and the return once the nodes had time to be discovered
@@ -393,7 +397,7 @@ bool Units::begin_end(Errand& errand, const UnitState& state) {
   const auto asked =
       is_to_replace ? bus.restart(name, polite_for(errand)) : bus.stop(name, polite_for(errand));
   if (!asked) return answer(errand, Outcome::kRefused, asked.error());
-  ended_here_.insert(errand.component);
+  ended_here_.insert_or_assign(errand.component, state.main_pid);
   errand.was_asked = true;
   errand.main_pid = state.main_pid;
   const bool acts = !is_here() || (!is_stopped(errand.pid) && !is_stopped(errand.main_pid));

@@ -162,7 +162,8 @@ class Units {
   Engine docker_{EngineContainer::Engine::kDocker, host_};
   Engine podman_{EngineContainer::Engine::kPodman, host_};
   std::map<ComponentId, UnitState::Activity> before_;
-  std::set<ComponentId> ended_here_;  // on culprit's request, and not seen to run since
+  // The main process that ended on culprit's request; until another one runs.
+  std::map<ComponentId, int> ended_here_;
   std::map<ComponentId, Elsewhere> elsewhere_;
   int failures_ = 0;          // in a row, to ask the computer
   bool is_reached_ = true;    // as reported

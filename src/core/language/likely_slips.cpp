@@ -41,7 +41,8 @@ struct ShellWord {
   std::string remedy;
 };
 
-ShellWord shell_word(const std::vector<std::string>& command) {
+// `text`: the command as it is written.
+ShellWord shell_word(const std::vector<std::string>& command, const std::string& text) {
   const std::string& program = command.front();
   if (is_shell(program)) return {};
   if (is_one_of(program, {"source", "."}))
@@ -55,6 +56,8 @@ ShellWord shell_word(const std::vector<std::string>& command) {
     if (is_one_of(word, {"&&", "||", ";", "|", "&", ">", ">>", "<", "2>&1"}) ||
         word.starts_with("$(") || word.starts_with("${"))
       return {word, "leave it out, or ask for a shell: LAUNCH \"bash -c '...'\""};
+    // No shell would expand it either.
+    if (text.find("'" + word + "'") != std::string::npos) continue;
     if (word == "~" || word.starts_with("~/"))
       return {word, "write the full path of the home folder: /home/robot" + word.substr(1)};
     if (names_variable(word))
@@ -102,7 +105,7 @@ void check_short_impacts(const syntax::Rule& rule, const RuleSet& rules,
 void check_shell(const syntax::Component& written, const Component& component,
                  std::vector<Diagnostic>& diagnostics) {
   if (!written.launch || component.launch.empty()) return;
-  const ShellWord found = shell_word(component.launch);
+  const ShellWord found = shell_word(component.launch, written.launch->text);
   if (found.word.empty()) return;
   diagnostics.push_back(
       {Code::kNoShell, Severity::kWarning, written.launch->span,
