@@ -230,7 +230,8 @@ void add_doctor(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "doctor",
       "Find problems of the robot, or in recordings of it, without rules: observes it for some "
-      "seconds, changes nothing. Exits with 0 if there are none, with 3 if there are only warnings");
+      "seconds, changes nothing. Exits with 0 if there are none, with 3 if there are only "
+      "warnings");
   CLI::Option* bags = add_bag_options(*command, options->recorded);
   add_seconds(*command, "--for", options->seconds, "How long to look", 0.1, 3600)->excludes(bags);
   auto* json = command->add_flag("--json", options->json, "For programs");

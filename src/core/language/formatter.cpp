@@ -110,7 +110,8 @@ class Spacing {
         return false;
       case Lexeme::Kind::kWord: {
         const std::string_view word = text(lexeme);
-        return word != "TRIGGER" && word != "INTERLOCK" && word != "ABORT" && word != "WHEN" && word != "RANGE";
+        return word != "TRIGGER" && word != "INTERLOCK" && word != "ABORT" && word != "WHEN" &&
+               word != "RANGE";
       }
     }
     return false;

@@ -73,8 +73,8 @@ struct Order {
   std::uint64_t number = 0;  // of the sender's choosing, for it to know the answer by
   std::string author;        // who says so, for the record
   std::string reason;        // may be empty
-  std::variant<Pause, Resume, SetDryRun, Approve, Refuse, Propose, Silence, LiftSilence, RunStrategy,
-               Forget, Revive, EndStarted>
+  std::variant<Pause, Resume, SetDryRun, Approve, Refuse, Propose, Silence, LiftSilence,
+               RunStrategy, Forget, Revive, EndStarted>
       what;
 };
 
