@@ -34,7 +34,7 @@ function incidentOf(event: ManagerEvent): Incident {
   }
 }
 
-// What an event changes of those that are open.
+// The change of the open incidents by an event.
 export function follow(open: Map<string, Incident>, event: ManagerEvent): void {
   if (event.type === 'incident_opened' || event.type === 'incident_changed') open.set(event.incident!, incidentOf(event))
   if (event.type === 'incident_closed') open.delete(event.incident!)

@@ -46,6 +46,6 @@ export const kLooks: Record<Look, Appearance> = {
 }
 const kRanks = new Map(Object.keys(kLooks).map((look, place) => [look, place]))
 export const rankOf = (look: Look): number => kRanks.get(look) ?? 0
-// What is wrong, as opposed to what nobody judges.
+// Looks of failures; the others are looks of what no rule can judge.
 export const isIll = (look: Look): boolean => rankOf(look) <= rankOf('WARNING') || look === 'NON_CRITICAL'
 export const toneOf = (look: Look): Tone => kLooks[look]?.tone ?? 'unknown'

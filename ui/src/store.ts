@@ -151,7 +151,7 @@ export const blindRules = computed(() =>
 )
 export const presentIncidents = computed(() => state.value?.incidents ?? [])
 
-// Of an earlier moment only what failed is known.
+// An earlier moment has its failures only.
 const failedThen = computed(() => {
   const result = new Map<string, Health>()
   const rules = new Map(robot.value?.rules.map((r) => [r.name, r]) ?? [])
