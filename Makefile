@@ -56,6 +56,8 @@ soak:
 	ctest --preset tsan-soak
 	scripts/fuzz --seconds 300
 	scripts/figures --check
+	scripts/install-dependencies --arm64
+	scripts/arm64
 	scripts/install-dependencies --packages
 	scripts/test-packages
 
