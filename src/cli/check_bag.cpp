@@ -15,7 +15,7 @@
 namespace culprit::cli {
 namespace {
 
-// What is known of a rule after some bags.
+// The judgement of a rule by some bags.
 struct Judged {
   Duration known{};
   bool was_known = false;

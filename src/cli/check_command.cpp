@@ -249,7 +249,8 @@ void add_check(CLI::App& app, int& exit_code) {
       ->add_flag("--fix", options->fixes, "Apply the fixes that editors offer, and write the files")
       ->excludes(robot);
   command
-      ->add_option("--fail-on", options->fail_on, "What makes the command fail: error or warning")
+      ->add_option("--fail-on", options->fail_on,
+                   "Least severity that makes the command fail: error or warning")
       ->check(CLI::IsMember({"error", "warning"}))
       ->capture_default_str();
   command

@@ -1,4 +1,4 @@
-// What is wrong in recordings, without a rule.
+// Finds problems in recordings, without rules.
 #pragma once
 
 #include <filesystem>

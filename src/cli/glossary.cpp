@@ -42,7 +42,7 @@ std::string lower_case_of(std::string_view text) {
   return out;
 }
 
-// Of "coupling (κ)" and "upstream, downstream": each word by itself.
+// Each word by itself, as in "coupling (κ)" and "upstream, downstream".
 std::vector<std::string> words_of_term(const std::string& name) {
   std::vector<std::string> words;
   std::string word;

@@ -43,8 +43,8 @@ Json check_text(const std::string& text) {
   return json_report(files);
 }
 
-// The next line without its end; empty at the end of the input. What is too long comes as "", which is no
-// JSON, and is skipped up to its end.
+// The next line without its end; empty at the end of the input. A line that is too long is
+// skipped up to its end and comes as "", which is no JSON.
 std::optional<std::string> next_line(std::istream& in) {
   std::string line;
   bool is_too_long = false;

@@ -103,7 +103,7 @@ class TwoFaults {
     for (const Incident& each : robot_->manager().incidents().open()) all.push_back(each.headline);
     return all;
   }
-  // What `status`, `top` and the page have.
+  // The data of `status`, `top` and the page.
   WhatCulpritSays said() const {
     WhatCulpritSays said;
     said.robot = parse_json(*hub_.latest(web::Kind::kRobot));

@@ -150,7 +150,7 @@ std::string silence_line(const Json& silence, double now) {
   return reason.empty() ? line : line + ": " + reason;
 }
 
-// What the culprits leave alone.
+// Lists muted components and rules.
 int list_silences(const OrderOptions& options) {
   auto here = culprits_here(options.which);
   if (!here) return fail(here.error(), kUsage);

@@ -20,7 +20,7 @@
 
 namespace culprit {
 
-// What ids are made of. The manager has no clock on the wall; the same values give the same ids again.
+// The parts of an id. The manager has no clock on the wall; the same values give the same ids again.
 struct IncidentIds {
   std::int64_t wall_at_zero = 0;  // nanoseconds since 1970 when the robot's clock showed 0
   std::string salt{};             // differs between robots and between runs
@@ -33,7 +33,7 @@ class Incidents {
     bool is_paused = false;
     std::vector<StrategyId> asked{};  // strategies that wait for approval
   };
-  // What is done about an incident, and what comes next; the times change by themselves.
+  // The current action about an incident, and the next one; the times change by themselves.
   struct Course {
     std::string doing{};  // or why nothing is
     std::string next{};   // may be empty
@@ -53,7 +53,7 @@ class Incidents {
   Course course_of(const Incident& incident, const Knowledge& knowledge, Halt halt) const;
 
  private:
-  // What was said last about a failure.
+  // The latest event about a failure.
   struct Failure {
     std::vector<Candidate> candidates{};
     std::vector<Suspect> suspects{};

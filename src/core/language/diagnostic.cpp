@@ -82,7 +82,7 @@ std::size_t offset_of_character(std::string_view text, std::size_t count) {
   return at;
 }
 
-// Of a long line the part around the mistake, so that it fits on a screen.
+// The part of a long line around the mistake, so that it fits on a screen.
 struct Excerpt {
   Span shown;   // of the source
   Span marked;  // in it

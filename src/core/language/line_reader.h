@@ -68,7 +68,7 @@ class LineReader {
   bool unexpected_clause(const Token& token, std::vector<std::string_view> known,
                          std::string remedy = "", Code code = Code::kSyntax);
 
-  // Of a line whose first mistake was reported, all that follows from it.
+  // The mistakes that follow from the first one of a line, which was reported.
   std::size_t complaints() const { return diagnostics_.size(); }
   void forget_since(std::size_t complaints) {
     diagnostics_.erase(diagnostics_.begin() + static_cast<std::ptrdiff_t>(complaints),

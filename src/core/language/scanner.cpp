@@ -78,7 +78,7 @@ Complaint unclosed(std::uint32_t begin, std::string_view rest) {
           "write a '\"' where the text ends"};
 }
 
-// What keyboards, word processors and web pages make of the quotes of a text.
+// Quotes as keyboards, word processors and web pages change them.
 constexpr std::array<std::string_view, 9> kForeignQuotes = {
     "'", "`", "\u201c", "\u201d", "\u201e", "\u2018", "\u2019", "\u00ab", "\u00bb"};
 
