@@ -182,14 +182,15 @@ bool DrillSession::undo(std::vector<Injected>& injected) {
 void DrillSession::watch_reaction(Trial& trial, std::vector<Injected>& injected) {
   const RobotView before = *healthy_;
   const bool has_lasting = std::ranges::any_of(trial.faults, lasts);
-  std::optional<double> calm;
+  // The clock on the wall may be set meanwhile: it dates what is written, and measures nothing.
+  const Time begin = live_now();
+  std::optional<std::pair<Time, double>> calm;
   bool is_over = false;
   const auto undo_now = [&] {
     if (undo(injected)) trial.undone = drill_clock();
     is_over = true;
   };
-  for (double after = 0; after < seconds(options_.patience);
-       after = drill_clock() - trial.injected) {
+  for (double after = 0; after < seconds(options_.patience); after = seconds(live_now() - begin)) {
     std::this_thread::sleep_for(kLook);
     const RobotView view = manager_->view();
     for (const std::string& each : view.silent()) trial.silent.try_emplace(each, drill_clock());
@@ -202,11 +203,10 @@ void DrillSession::watch_reaction(Trial& trial, std::vector<Injected>& injected)
     if (!is_over && after > seconds(until)) undo_now();
     const bool is_well = complaints_of(view, before, trial.faults).empty();
     if (!is_well) calm.reset();
-    if (is_well && !calm) calm = drill_clock();
-    const double seen = std::max(0.0, drill_clock() - calm.value_or(drill_clock()));
+    if (is_well && !calm) calm.emplace(live_now(), drill_clock());
     const bool was_awaited = noticed || is_over || after > seconds(kNotices);
-    if (calm && was_awaited && seen >= seconds(drill::kCalm)) {
-      trial.well = *calm;
+    if (calm && was_awaited && live_now() - calm->first >= drill::kCalm) {
+      trial.well = calm->second;
       break;
     }
   }
