@@ -66,6 +66,7 @@ Analyzer::Analyzer(const Knowledge& knowledge, Writes writes, Time start, Time d
       blind_(knowledge, {writes.blindness, writes.events}, start, discovered),
       known_silence_(knowledge),
       couplings_(knowledge, {writes.states, writes.couplings}),
+      lateness_(knowledge, writes.latencies),
       outcomes_(knowledge, {writes.beliefs, writes.outcomes, writes.events}),
       fights_(knowledge, writes.states) {}
 
@@ -74,6 +75,7 @@ void Analyzer::advance(Time now) {
   while (const auto due = deadlines_.pop_due(now)) look_at(RuleId(*due), now);
   couplings_.advance(now);
   outcomes_.advance(now);
+  lateness_.advance(now);
 }
 
 void Analyzer::restart(Time now) {

@@ -43,6 +43,7 @@
 #include "analyze/blind_watch.h"
 #include "analyze/coupling_watch.h"
 #include "analyze/known_silence.h"
+#include "analyze/lateness_watch.h"
 #include "analyze/outcome_watch.h"
 #include "analyze/parameter_fights.h"
 #include "knowledge/deadlines.h"
@@ -203,6 +204,7 @@ class Analyzer {
   BlindWatch blind_;
   KnownSilence known_silence_;
   CouplingWatch couplings_;
+  LatenessWatch lateness_;
   OutcomeWatch outcomes_;
   ParameterFights fights_;
 };

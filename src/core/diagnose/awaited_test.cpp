@@ -21,6 +21,7 @@ class TwoMonitors : public ::testing::Test {
       scene_->signals.set_latency(scene_.rules()[scene_.rule(rule)].inputs.front(), 400ms);
       scene_->states.state(scene_.rule(rule)).detection.trigger = Slot::of(false);
     }
+    scene_->latencies.weigh(-3);  // the monitors keep what the rules state
   }
 
   static std::string rules() {
@@ -44,6 +45,16 @@ TEST_F(TwoMonitors, AQuietRuleUpstreamCanStillFireForAWhile) {
   EXPECT_FALSE(awaited(300ms)->is_echo);
   EXPECT_TRUE(awaited(399ms));
   EXPECT_FALSE(awaited(401ms));
+}
+
+// Until it is known that monitors keep it, they may be 2 s late, whatever the rules state.
+TEST_F(TwoMonitors, AnUnprovenStatementIsNotReliedOn) {
+  scene_->latencies.forget(scene_.rule("A"));
+  EXPECT_TRUE(awaited(1900ms));
+  EXPECT_FALSE(awaited(2100ms));
+  scene_->latencies.weigh(3);  // they exceed it
+  EXPECT_TRUE(awaited(3100ms));
+  EXPECT_FALSE(awaited(3300ms));
 }
 
 TEST_F(TwoMonitors, ARuleThatCannotSeeIsNotWaitedFor) {

@@ -52,7 +52,8 @@ Duration reading_of(RuleId rule, const Knowledge& knowledge) {
 // The onset of a bad value that made the trigger true `since` then.
 Onset onset_of_value(RuleId rule, Time since, const Knowledge& knowledge) {
   const Latencies::Range lateness = knowledge.latencies.lateness(rule);
-  return {since - reading_of(rule, knowledge) - lateness.most - held_at_most(rule, knowledge),
+  return {since - reading_of(rule, knowledge) - knowledge.latencies.reckon_with(rule) -
+              held_at_most(rule, knowledge),
           since - lateness.least - held_at_least(rule, knowledge)};
 }
 
@@ -130,14 +131,14 @@ Duration evidence_within(RuleId quiet, Time onset, const Knowledge& knowledge) {
   }
   if (reads_value) {
     longest =
-        std::max(longest, reading_of(quiet, knowledge) + knowledge.latencies.lateness(quiet).most +
+        std::max(longest, reading_of(quiet, knowledge) + knowledge.latencies.reckon_with(quiet) +
                               held_at_most(quiet, knowledge));
   }
   return std::min(longest, kLongestEvidence);
 }
 
 Duration clears_within(RuleId failure, const Knowledge& knowledge) {
-  return 2 * reading_of(failure, knowledge) + knowledge.latencies.lateness(failure).most +
+  return 2 * reading_of(failure, knowledge) + knowledge.latencies.reckon_with(failure) +
          held_at_most(failure, knowledge);
 }
 

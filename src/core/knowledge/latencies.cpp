@@ -10,6 +10,21 @@
 namespace culprit {
 namespace {
 
+using namespace std::chrono_literals;
+
+// A monitor that checks once a second, and debounces, is late by this.
+constexpr Duration kSlowMonitor = 3s;
+// Evidence is not awaited for longer than this beyond the statement while that is unproven.
+constexpr Duration kUnproven = 2s;
+
+// From these log-odds on the statement counts as exceeded, or as kept. The latter needs less: a
+// statement is believed by default, and later evidence corrects it.
+constexpr double kExceeds = 3;
+constexpr double kKeeps = 1.2;
+// What one rule says whose learned lateness is within the statement, or beyond it.
+constexpr double kIsWithin = -0.4;
+constexpr double kIsBeyond = 2;
+
 bool reads_value(const Input& input) {
   using Kind = Input::Kind;
   switch (input.kind) {
@@ -90,7 +105,34 @@ Latencies::Range Latencies::lateness(RuleId rule) const {
     return {least, learned.range.most, least};
   }
   if (!is_late_[rule.index]) return {};
+  if (statement_ == Statement::kExceeded)
+    return {stated.least, std::max(stated.most + excess_, kSlowMonitor), stated.least};
   return {stated.least, stated.most + excess_, stated.presumed};
+}
+
+Duration Latencies::reckon_with(RuleId rule) const {
+  const Duration most = lateness(rule).most;
+  const bool is_unproven = statement_ == Statement::kUnproven && is_late(rule) && !is_learned(rule);
+  return is_unproven ? std::max(most, kUnproven) : most;
+}
+
+double Latencies::repairs() const {
+  double sum = 0;
+  for (std::size_t r = 0; r < learned_.size(); ++r) {
+    if (learned_[r].count == 0) continue;
+    const bool is_within = learned_[r].range.most <= stated_[r].most + 2 * cycle_;
+    sum += is_within ? kIsWithin : kIsBeyond;
+  }
+  return std::clamp(sum, -kExceeds, kExceeds);
+}
+
+void Latencies::weigh(double spreading) {
+  const double sum = repairs() + spreading;
+  if (sum >= kExceeds) {
+    statement_ = Statement::kExceeded;
+  } else if (sum <= (statement_ == Statement::kExceeded ? -kExceeds : -kKeeps)) {
+    statement_ = Statement::kKept;
+  }
 }
 
 void Latencies::cleared(RuleId rule, Duration after) {
@@ -106,12 +148,15 @@ void Latencies::set(RuleId rule, const Learned& learned) {
   if (!is_late_[rule.index]) return;
   learned_[rule.index] = learned;
   extend_excess(rule.index);
+  weigh(0);
 }
 
 void Latencies::forget(RuleId rule) {
   learned_[rule.index] = {};
   excess_ = Duration::zero();
+  statement_ = Statement::kUnproven;
   for (std::size_t r = 0; r < learned_.size(); ++r) extend_excess(r);
+  weigh(0);
 }
 
 void Latencies::extend_excess(std::size_t rule) {

@@ -8,6 +8,11 @@
 //             How much longer that was than stated, at most, counts for the rules of which nothing was
 //             learned yet: the same author underestimated them
 //
+// A statement is only an impact, and its author may not have thought of the monitor. So it is
+// *unproven* until repairs, or failures that spread along the graph, show whether the monitors keep
+// it. Meanwhile a rule of which nothing was learned may be later than stated (reckon_with). If the
+// monitors exceed it, all such rules are taken to be as late as slow monitors of robots are.
+//
 // A status that carries the values of several rules comes from one monitor, which sees all of them
 // at once: none of these rules is later than the others, and they have no lateness. Triggers on topics alone have no lateness: their thresholds say when they fire.
 #pragma once
@@ -37,12 +42,25 @@ class Latencies {
     bool operator==(const Learned&) const = default;
   };
 
+  // Do the monitors keep the lateness that the rule file states?
+  enum class Statement : std::uint8_t { kUnproven, kKept, kExceeded };
+
   explicit Latencies(const RuleSet& rules);
 
   // Does the rule read a value of a monitor of its own? Only then it has a lateness.
   bool is_late(RuleId rule) const { return is_late_[rule.index]; }
   // The lateness that was learned for the rule; or else the one that the rule file states.
   Range lateness(RuleId rule) const;
+  bool is_learned(RuleId rule) const { return learned_[rule.index].count > 0; }
+
+  // The longest lateness that evidence about the rule has to allow for: the most of lateness(), or
+  // longer while that is unproven.
+  Duration reckon_with(RuleId rule) const;
+  Statement statement() const { return statement_; }
+  // What failures that spread just now say (analyze/lateness_watch.h): the logarithm of how much
+  // likelier they are if the monitors exceed the statement than if they keep it. Counts together with
+  // what was learned.
+  void weigh(double spreading);
 
   // A proven repair took effect, and the rule's trigger was false so long `after` that. Ignored for
   // rules that have no lateness.
@@ -55,12 +73,14 @@ class Latencies {
 
  private:
   void extend_excess(std::size_t rule);
+  double repairs() const;
 
   std::vector<bool> is_late_;  // by rule: it reads values of a monitor of its own
   std::vector<Range> stated_;
   std::vector<Learned> learned_;
   Duration cycle_;
   Duration excess_{};  // of what was learned over what was stated
+  Statement statement_ = Statement::kUnproven;
 };
 
 }  // namespace culprit

@@ -134,5 +134,36 @@ TEST_F(LatenciesOfRules, CountNoFurtherThanTheyCan) {
             (Latencies::Learned{Latencies::Learned::kMost, {1s, 3s, 1s}}));
 }
 
+// Later evidence corrects the first.
+TEST(Latencies, FailuresThatSpreadShowWhetherTheStatementIsKept) {
+  using Statement = Latencies::Statement;
+  const RuleSet rules = latency_rules();
+  Latencies latencies(rules);
+  EXPECT_EQ(latencies.statement(), Statement::kUnproven);
+  EXPECT_EQ(latencies.lateness(kLate).most, 1s);
+  EXPECT_EQ(latencies.reckon_with(kLate), 2s);
+  latencies.weigh(-2);
+  EXPECT_EQ(latencies.statement(), Statement::kKept);
+  EXPECT_EQ(latencies.reckon_with(kLate), 1s);
+  latencies.weigh(5);
+  EXPECT_EQ(latencies.statement(), Statement::kExceeded);
+  EXPECT_EQ(latencies.lateness(kLate), (Range{0s, 3s, 0s}));
+  EXPECT_EQ(latencies.reckon_with(kOnTopic), 0s);
+  latencies.weigh(-2);
+  EXPECT_EQ(latencies.statement(), Statement::kExceeded) << "less evidence than that against it";
+}
+
+// A robot that is often repaired needs no failure that spreads.
+TEST(Latencies, RepairsShowWhetherTheStatementIsKept) {
+  const RuleSet rules = latency_rules();
+  Latencies latencies(rules);
+  latencies.set(kLate, {1, {400ms, 900ms, 400ms}});
+  EXPECT_EQ(latencies.reckon_with(kLate), 900ms);
+  EXPECT_EQ(latencies.reckon_with(kOther), 2s);
+  latencies.set(kLate, {1, {400ms, 4s, 400ms}});
+  latencies.set(kOther, {1, {400ms, 4s, 400ms}});
+  EXPECT_EQ(latencies.statement(), Latencies::Statement::kExceeded);
+}
+
 }  // namespace
 }  // namespace culprit

@@ -195,8 +195,8 @@ TEST(FalseAlarms, ComeAsOftenAsTheyAreSaidTo) {
   EXPECT_NEAR(alarms, 2900 / 13, 45);
 }
 
-// Detectors that are up to 3 s late, which the rules do not state: lessons from other faults make it act on the right components.
-TEST(Factors, LatenciesThatEarlierFaultsTaughtCount) {
+// Detectors that are up to 3 s late, which the rules do not state: it notices that from the way in which failures spread, and acts on the right components. Lessons from other faults help.
+TEST(Factors, LatenciesThatNoRuleStatesAreFoundOut) {
   const auto exact = [](std::size_t faults_before) {
     RcaCampaign campaign;
     campaign.settings = {with({.detector_latency_s = {0, 3}, .faults_before = faults_before})};
@@ -205,7 +205,8 @@ TEST(Factors, LatenciesThatEarlierFaultsTaughtCount) {
     campaign.episodes = 30;
     return run_campaign(campaign, 2, {})->front().exact.mean();
   };
-  EXPECT_GT(exact(15), exact(0) + 0.2);
+  EXPECT_GE(exact(0), 0.8);
+  EXPECT_GE(exact(15), 0.9);
 }
 
 }  // namespace

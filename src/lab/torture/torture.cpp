@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "journal/history.h"
 #include "knowledge/describe.h"
 #include "language/checker.h"
 #include "manager/runtime.h"
@@ -123,7 +124,7 @@ class Run {
       beginning_.beliefs.push_back(manager_->knowledge().beliefs[StrategyId(s)]);
     beginning_.start = robot_.now();
     stepped_ = kLongAgo;
-    beginning_.past = memory_.past();
+    beginning_.past = journal::still_counting(memory_.past(), robot_.now(), rules_);
     beginning_.interrupted = memory_.interrupted();
     manager_ = make_manager();
     recorded_.clear();

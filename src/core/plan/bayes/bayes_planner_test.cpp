@@ -152,6 +152,7 @@ TEST(BayesPlanner, WaitsForAMonitorUpstreamUntilItWouldHaveShownTheCause) {
   text.replace(text.rfind("x > 1"), 5, "y > 1");
   Scene scene(text);
   scene.link("a", "b").fail("B", 9900ms);  // 100 ms ago
+  scene->latencies.weigh(-3);              // monitors are as quick as the rules state
   scene->states.state(scene.rule("A")).detection.trigger = Slot::of(false);
   const auto reads = [&](Duration interval) {
     scene->signals.set_latency(scene.rules()[scene.rule("A")].inputs.front(), 2 * interval);
