@@ -290,6 +290,47 @@ TEST(Link, ReadsAStatusOnlyOfItsPublisher) {
       [](const SignalRead& r) { return r.value == Value(std::string("90")); }, 500ms));
 }
 
+// The liar comes first, publishes more often, and latches.
+TEST(Link, ReadsASignalOnlyOfThePublisherThatIsDeclared) {
+  const TestDomain domain;
+  LiveContext other(domain.options());
+  NodeEntry liar(*other, {"/", "liar"});
+  auto forged = Publisher<msg::DiagnosticArray>(std::move(
+      *RawPublisher::create(liar, "/diagnostics", msg::DiagnosticArray::kType, qos::kDefault)));
+  constexpr Qos kLatched{.durability = Durability::kTransientLocal, .depth = 1};
+  const auto forged_mode = RawPublisher::create(liar, "/level", msg::Float64::kType, kLatched);
+  ASSERT_TRUE(forged_mode);
+  (*forged_mode)->publish(encode(msg::Float64{90}));
+  const auto temperature = [](const std::string& text) {
+    msg::DiagnosticArray array;
+    array.status = {{1, "motor", "", "m1", {{"temperature", text}}}};
+    return array;
+  };
+  Timer lies(other->executor(), 10ms, [&] { forged.publish(temperature("90")); });
+  Linked linked(domain, {},
+                "COMPONENT robot NODE /robot\n"
+                "SIGNAL temperature DIAGNOSTIC motor KEY temperature FROM robot\n"
+                "SIGNAL level TOPIC /level FIELD data FROM robot\n"
+                "RULE R\nPOLICIES ERROR REPORT\nTRIGGER temperature > 80 || level > 80\n");
+  EXPECT_TRUE(
+      linked.wait<LinkTrouble>(tells("status motor is published by /liar, but the rules "
+                                     "read it FROM robot: only the latter is used")));
+  Robot robot(domain);
+  auto own = robot.publisher<msg::DiagnosticArray>("/diagnostics");
+  NodeEntry& entry = robot.managed->node().entry();
+  const auto own_level = RawPublisher::create(entry, "/level", msg::Float64::kType, kLatched);
+  ASSERT_TRUE(own_level);
+  (*own_level)->publish(encode(msg::Float64{40}));  // once
+  Timer speaks(robot.context.executor(), 20ms, [&] { own.publish(temperature("40")); });
+  const auto is = [](Value value) {
+    return [value](const SignalRead& r) { return r.value == value; };
+  };
+  EXPECT_TRUE(linked.wait<SignalRead>(is(Value(std::string("40")))));
+  EXPECT_TRUE(linked.wait<SignalRead>(is(Value(40.0))));
+  EXPECT_FALSE(linked.has_seen<SignalRead>(is(Value(std::string("90")))));
+  EXPECT_FALSE(linked.has_seen<SignalRead>(is(Value(90.0))));
+}
+
 TEST(Link, BelievesNoParameterEventOfOthers) {
   const TestDomain domain;
   Robot robot(domain);
