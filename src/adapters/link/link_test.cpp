@@ -321,7 +321,7 @@ TEST(Link, ReadsASignalOnlyOfThePublisherThatIsDeclared) {
   const auto own_level = RawPublisher::create(entry, "/level", msg::Float64::kType, kLatched);
   ASSERT_TRUE(own_level);
   (*own_level)->publish(encode(msg::Float64{40}));  // once
-  Timer speaks(robot.context.executor(), 20ms, [&] { own.publish(temperature("40")); });
+  Timer speaks(robot.context->executor(), 20ms, [&] { own.publish(temperature("40")); });
   const auto is = [](Value value) {
     return [value](const SignalRead& r) { return r.value == value; };
   };
