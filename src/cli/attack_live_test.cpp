@@ -19,6 +19,7 @@
 
 #include "base/environment.h"
 #include "base/live_clock.h"
+#include "cli/test_connections.h"
 #include "exemplars/sunset/node_process.h"
 #include "robot/inbox.h"
 #include "ros2/lifecycle.h"
@@ -71,35 +72,6 @@ std::size_t count_of(const std::string& text, const std::string& what) {
   for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;
   return count;
 }
-
-// Connections to a port of this machine.
-class Connections {
- public:
-  explicit Connections(int port) : port_(port) {}
-  ~Connections() {
-    for (const int each : sockets_) close(each);
-  }
-  Connections(const Connections&) = delete;
-
-  void open(int count) {
-    sockaddr_in to{};
-    to.sin_family = AF_INET;
-    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    to.sin_port = htons(static_cast<std::uint16_t>(port_));
-    for (int i = 0; i < count; ++i) {
-      const int each = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-      connect(each, reinterpret_cast<sockaddr*>(&to), sizeof to);
-      sockets_.push_back(each);
-    }
-  }
-  void say(const std::string& text) const {
-    for (const int each : sockets_) send(each, text.data(), text.size(), MSG_NOSIGNAL);
-  }
-
- private:
-  const int port_;
-  std::vector<int> sockets_;
-};
 
 // Receives culprit's notifications in place of systemd.
 class Notifications {

@@ -61,6 +61,7 @@ std::vector<ComponentId> read_by(const Rule& rule, const RuleSet& rules) {
       case Input::Kind::kFrozen:
         if (const auto* parameter = std::get_if<ParameterId>(&rules[input.signal].source))
           of_parameter(*parameter);
+        if (const auto publisher = publisher_of(input.signal, rules)) all.push_back(*publisher);
         break;
       case Input::Kind::kRate:
       case Input::Kind::kAge:

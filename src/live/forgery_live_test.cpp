@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <csignal>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -22,9 +21,9 @@
 #include "manager/manager.h"
 #include "manager/runtime.h"
 #include "plan/bayes/bayes_planner.h"
-#include "ros2/discovery_info.h"
 #include "ros2/live_test.h"
 #include "ros2/peer_process.h"
+#include "ros2/test_eavesdropper.h"
 #include "rtps/origins.h"
 #include "rtps/test_hostile_process.h"
 #include "rtps/test_network.h"
@@ -43,63 +42,6 @@ bool comes_true(Done done) {
   }
   return true;
 }
-
-// Listens as any participant of the domain can: participants, their endpoints and addresses.
-class Eavesdropper {
- public:
-  explicit Eavesdropper(const ros2::ParticipantOptions& options)
-      : participant_(std::move(*ros2::Participant::create(
-            options, [this](const ros2::DiscoveryEvent& event) { note(event); }))) {}
-
-  // The lies that remove the node of the process with this number.
-  std::vector<ros2::Bytes> farewells_of(int pid) {
-    EXPECT_TRUE(comes_true([&] { return has(pid, 12); }));
-    const std::lock_guard lock(mutex_);
-    const ros2::Guid guid = participants_[pid].guid;
-    return ros2::farewells(guid, endpoints_of(pid), info_writers_[guid.prefix()],
-                           ros2::encode_discovery_info({guid, {}}, ros2::GidSize::kHumbleAndOlder));
-  }
-  // Where the process listens: for discovery, and for samples.
-  std::vector<ros2::UdpAddress> ports_of(int pid) {
-    EXPECT_TRUE(comes_true([&] { return has(pid, 1); }));
-    const std::lock_guard lock(mutex_);
-    std::vector<ros2::UdpAddress> all = participants_[pid].metatraffic;
-    for (ros2::UdpAddress each : participants_[pid].metatraffic) {
-      ++each.port;
-      all.push_back(each);
-    }
-    return all;
-  }
-
- private:
-  bool has(int pid, std::size_t endpoints) {
-    const std::lock_guard lock(mutex_);
-    return participants_.contains(pid) && endpoints_of(pid).size() >= endpoints;
-  }
-  void note(const ros2::DiscoveryEvent& event) {
-    const std::lock_guard lock(mutex_);
-    if (const auto* info = std::get_if<ros2::ParticipantInfo>(&event)) {
-      participants_[info->pid] = *info;
-    } else if (const auto* endpoint = std::get_if<ros2::EndpointInfo>(&event)) {
-      endpoints_.push_back(endpoint->guid);
-      if (endpoint->topic == ros2::kDiscoveryInfoTopic && !endpoint->guid.is_reader())
-        info_writers_[endpoint->guid.prefix()] = endpoint->guid;
-    }
-  }
-  std::vector<ros2::Guid> endpoints_of(int pid) {
-    std::vector<ros2::Guid> all;
-    for (const ros2::Guid& each : endpoints_) {
-      if (each.prefix() == participants_[pid].guid.prefix()) all.push_back(each);
-    }
-    return all;
-  }
-
-  std::mutex mutex_;
-  std::map<int, ros2::ParticipantInfo> participants_;  // by the process that they say they are
-  std::vector<ros2::Guid> endpoints_;
-  std::map<ros2::GuidPrefix, ros2::Guid> info_writers_;
-  std::unique_ptr<ros2::Participant> participant_;
-};
 
 // Heals /camera: if it is gone, and if its topic is silent.
 class Healer {
@@ -229,7 +171,7 @@ TEST_F(Forgery, OfAnotherProcessOfThisComputerEndsNoHealthyNode) {
   const ros2::PeerProcess process(camera());
   Healer healer(options, camera());
   ASSERT_TRUE(healer.sees(process.pid())) << healer.said();
-  Eavesdropper eavesdropper(options);
+  ros2::Eavesdropper eavesdropper(options);
   const ros2::HostileProcess stranger(eavesdropper.farewells_of(process.pid()),
                                       eavesdropper.ports_of(getpid()), 200ms);
   is_left_alone_and_healed(healer, process.pid());
@@ -248,7 +190,7 @@ TEST_F(Forgery, FromAnotherComputerEndsNoHealthyNode) {
   ASSERT_TRUE(healer.sees(process.pid())) << healer.said();
   here.reset();
   here.emplace(**network, TestNetwork::kDesk);
-  Eavesdropper eavesdropper(options);
+  ros2::Eavesdropper eavesdropper(options);
   const ros2::HostileProcess stranger(eavesdropper.farewells_of(process.pid()),
                                       eavesdropper.ports_of(getpid()), 200ms);
   is_left_alone_and_healed(healer, process.pid());
@@ -258,7 +200,7 @@ TEST_F(Forgery, FromAnotherComputerEndsNoHealthyNode) {
 
 TEST_F(Forgery, ThatBeganBeforeItWasLookedForEndsNoHealthyNode) {
   const ros2::PeerProcess process(camera());
-  std::vector<ros2::Bytes> farewells = Eavesdropper(options).farewells_of(process.pid());
+  std::vector<ros2::Bytes> farewells = ros2::Eavesdropper(options).farewells_of(process.pid());
   std::vector<ros2::UdpAddress> to;  // also where nobody listens yet
   for (std::uint32_t i = 10; i < 100; ++i)
     to.push_back({{127, 0, 0, 1}, static_cast<std::uint16_t>(7400 + 250 * options.domain + i)});

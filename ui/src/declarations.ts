@@ -87,6 +87,7 @@ export const kDeclarations: Record<string, Declaration> = {
       key: {},
       component: { list: 'components' },
       parameter: {},
+      from: { list: 'components' },
       stale: { begins: '1s' },
       range: { kind: 'range', begins: [0, 1] },
     },

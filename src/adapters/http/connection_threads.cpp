@@ -5,8 +5,19 @@
 #include <utility>
 
 #include "http/budgeted_server.h"
+#include "http/thread_room.h"
 
 namespace culprit::web {
+
+namespace {
+
+// A node that is started again has threads, too: readers of a page must not take their room.
+bool leaves_room_for_nodes() {
+  constexpr std::size_t kThreads = 64;
+  return threads_left().value_or(kThreads) >= kThreads;
+}
+
+}  // namespace
 
 ConnectionThreads::ConnectionThreads(std::size_t most, std::size_t ready) : most_(most) {
   const MutexLock lock(mutex_);
@@ -18,7 +29,8 @@ void ConnectionThreads::enqueue(std::function<void()> connection) {
   something_changed_.wait(lock, [&]() CULPRIT_REQUIRES(mutex_) {
     return is_ending_ || waiting_.size() < idle_ || threads_.size() < most_;
   });
-  if (waiting_.size() >= idle_ && threads_.size() < most_ && !is_ending_ && !add_thread()) {
+  if (waiting_.size() >= idle_ && threads_.size() < most_ && !is_ending_ &&
+      !(leaves_room_for_nodes() && add_thread())) {
     lock.unlock();
     const RefusesConnections refuses;
     return connection();

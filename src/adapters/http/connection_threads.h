@@ -2,8 +2,9 @@
 //
 // A page keeps one connection for as long as it is open, so a small pool would soon be used up. At
 // the limit the server takes no further connection until one ends: the kernel keeps a few waiting
-// and refuses the rest. Where the system gives no further thread (pids.max, RLIMIT_NPROC, RLIMIT_AS), the connection
-// is closed unread. A few threads are there from the beginning, so that no other part of the program can take them all.
+// and refuses the rest. Where the system gives no further thread (RLIMIT_NPROC, RLIMIT_AS), or the control group has
+// room for few (pids.max), the connection is closed unread. A few threads are there from the beginning, so that no other
+// part of the program can take them all.
 #pragma once
 
 #include <deque>

@@ -9,16 +9,19 @@ DiagnosticsReading::DiagnosticsReading(const RuleSet& rules) {
     const Signal& signal = rules.signals[s];
     if (const auto* source = std::get_if<DiagnosticKey>(&signal.source)) {
       const bool is_any = source->status == "*";
-      signals_.emplace(is_any ? source->key : source->status + "\n" + source->key,
-                       Wanted<SignalId>{SignalId(s), is_any ? source->key : source->status});
+      signals_[is_any ? source->key : source->status + "\n" + source->key].push_back(
+          {SignalId(s), is_any ? source->key : source->status, source->publisher});
     } else if (std::holds_alternative<LookedUp>(signal.source)) {
-      signals_.emplace(signal.name, Wanted<SignalId>{SignalId(s), signal.name});
+      signals_[signal.name].push_back({SignalId(s), signal.name});
+    } else {
+      continue;
     }
+    ++missing_;
   }
   for (std::size_t d = 0; d < rules.diagnostics.size(); ++d)
     levels_.emplace(rules.diagnostics[d].name,
                     Wanted<DiagnosticId>{DiagnosticId(d), rules.diagnostics[d].name});
-  missing_ = signals_.size() + levels_.size();
+  missing_ += levels_.size();
 }
 
 void DiagnosticsReading::read(const msg::DiagnosticArray& message, const MaySay& may_say) {
@@ -36,7 +39,7 @@ void DiagnosticsReading::read(const msg::DiagnosticStatus& status, const MaySay&
 void DiagnosticsReading::read_named(const std::string& name, const msg::DiagnosticStatus& status,
                                     const MaySay& may_say) {
   const auto level = levels_.find(name);
-  if (level != levels_.end() && (!may_say || may_say(level->second.status))) {
+  if (level != levels_.end() && (!may_say || may_say(level->second.status, {}))) {
     note_found(level->second);
     on_level(level->second.id, status.level);
   }
@@ -49,9 +52,12 @@ void DiagnosticsReading::read_named(const std::string& name, const msg::Diagnost
 void DiagnosticsReading::read(const std::string& name, const std::string& text,
                               const MaySay& may_say) {
   const auto found = signals_.find(name);
-  if (found == signals_.end() || (may_say && !may_say(found->second.status))) return;
-  note_found(found->second);
-  on_signal(found->second.id, text);
+  if (found == signals_.end()) return;
+  for (Wanted<SignalId>& each : found->second) {
+    if (may_say && !may_say(each.status, each.publisher)) continue;
+    note_found(each);
+    on_signal(each.id, text);
+  }
 }
 
 template <class Id>

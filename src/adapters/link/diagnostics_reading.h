@@ -7,9 +7,11 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
+#include <vector>
 
 #include "language/rule_set.h"
 #include "robot/observation.h"
@@ -35,8 +37,9 @@ class DiagnosticsReading {
   std::function<void(StatusHeard)> on_status;  // each status once
 
   // Whether the message's publisher may report `status`, as the rules name it
-  // (signal_publishers.h).
-  using MaySay = std::function<bool(const std::string& status)>;
+  // (signal_publishers.h); with `publisher`: to a signal that is declared FROM that one.
+  using MaySay =
+      std::function<bool(const std::string& status, std::optional<ComponentId> publisher)>;
   // Calls the three above for what the rules want of `message`.
   void read(const msg::DiagnosticArray& message, const MaySay& may_say = {});
 
@@ -45,6 +48,7 @@ class DiagnosticsReading {
   struct Wanted {
     Id id;
     std::string status;
+    std::optional<ComponentId> publisher{};
     bool was_found = false;
   };
 
@@ -56,7 +60,8 @@ class DiagnosticsReading {
   template <class Id>
   void note_found(Wanted<Id>& wanted);
 
-  std::unordered_map<std::string, Wanted<SignalId>> signals_;  // by "status\nkey", or the bare name
+  // By "status\nkey", or the bare name.
+  std::unordered_map<std::string, std::vector<Wanted<SignalId>>> signals_;
   std::unordered_map<std::string, Wanted<DiagnosticId>> levels_;  // by name or hardware id
   std::size_t missing_ = 0;                                       // of both
   std::unordered_set<std::string> told_;                          // "name\nhardware id" of statuses

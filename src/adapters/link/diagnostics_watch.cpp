@@ -8,8 +8,10 @@ namespace culprit::ros2 {
 
 Expected<std::unique_ptr<DiagnosticsWatch>> DiagnosticsWatch::create(NodeEntry& self,
                                                                      const RuleSet& rules,
-                                                                     Inbox& inbox) {
-  std::unique_ptr<DiagnosticsWatch> watch(new DiagnosticsWatch(self, rules, inbox));
+                                                                     Inbox& inbox,
+                                                                     ComponentOf component_of) {
+  std::unique_ptr<DiagnosticsWatch> watch(
+      new DiagnosticsWatch(self, rules, inbox, std::move(component_of)));
   if (!watch->is_wanted()) return watch;
   constexpr Qos kQos{.reliability = Reliability::kBestEffort, .depth = 1};
   auto subscription = RawSubscription::create(
@@ -20,9 +22,19 @@ Expected<std::unique_ptr<DiagnosticsWatch>> DiagnosticsWatch::create(NodeEntry& 
   return watch;
 }
 
-DiagnosticsWatch::DiagnosticsWatch(NodeEntry& self, const RuleSet& rules, Inbox& inbox)
-    : self_(self), inbox_(inbox), reading_(rules), tasks_(self.context().executor()) {
-  for (const Component& each : rules.components) components_.insert(each.node);
+DiagnosticsWatch::DiagnosticsWatch(NodeEntry& self, const RuleSet& rules, Inbox& inbox,
+                                   ComponentOf component_of)
+    : self_(self),
+      inbox_(inbox),
+      reading_(rules),
+      component_of_(std::move(component_of)),
+      tasks_(self.context().executor()) {
+  for (const Signal& signal : rules.signals) {
+    const auto* key = std::get_if<DiagnosticKey>(&signal.source);
+    if (key != nullptr && key->publisher)
+      publishers_.declare(key->status == "*" ? key->key : key->status, *key->publisher,
+                          rules[*key->publisher].name);
+  }
   reading_.on_level = [this](DiagnosticId id, std::uint8_t level)
                           CULPRIT_REQUIRES(mutex_) { on_level(id, level); };
   reading_.on_signal = [this](SignalId id, const std::string& text)
@@ -75,28 +87,36 @@ void DiagnosticsWatch::on_sample(const Sample& sample) {
 void DiagnosticsWatch::look_up(const Guid& writer, const msg::DiagnosticArray& message) {
   constexpr std::size_t kMostWriters = 10'000;  // the network decides how many there are
   const Graph::Owner owner = self_.context().graph().owner_of(writer);
-  const SignalPublishers::Publisher by{owner.node, owner.pid != 0,
-                                       owner.node.empty() || owner.counts,
-                                       components_.contains(owner.node)};
+  SignalPublishers::Publisher by{owner.node, owner.pid != 0, owner.node.empty() || owner.counts,
+                                 component_of_(owner.node)};
   const MutexLock lock(mutex_);
   --waiting_;
+  if (by.node.empty()) {
+    if (unclaimed_.size() >= kMostWriters) unclaimed_.clear();
+    const Time now = live_now();
+    const Time first = unclaimed_.try_emplace(writer, now).first->second;
+    by.is_new = now < later(first, SignalPublishers::kClaimed);
+  } else {
+    unclaimed_.erase(writer);
+  }
   if (!by.node.empty() && writers_.size() < kMostWriters) writers_.insert_or_assign(writer, by);
   read(message, by);
 }
 
 void DiagnosticsWatch::read(const msg::DiagnosticArray& message,
                             const SignalPublishers::Publisher& by) {
-  reading_.read(message, [&](const std::string& status)
-                             CULPRIT_REQUIRES(mutex_) { return may_say(status, by); });
+  reading_.read(message, [&](const std::string& status, std::optional<ComponentId> publisher)
+                             CULPRIT_REQUIRES(mutex_) { return may_say(status, publisher, by); });
 }
 
-bool DiagnosticsWatch::may_say(const std::string& status, const SignalPublishers::Publisher& by) {
+bool DiagnosticsWatch::may_say(const std::string& status, std::optional<ComponentId> publisher,
+                               const SignalPublishers::Publisher& by) {
   SignalPublishers::Answer answer = publishers_.judge(
       status, by, live_now(),
       [this](const std::string& node) CULPRIT_REQUIRES(mutex_) { return nodes_.contains(node); });
   if (answer.is_learned) inbox_.put(PublisherKnown{status, by.node});
   if (!answer.conflict.empty()) inbox_.put(LinkTrouble{std::move(answer.conflict)});
-  return answer.is_used;
+  return answer.is_used && (!publisher || publisher == by.component);
 }
 
 void DiagnosticsWatch::on_level(DiagnosticId diagnostic, std::uint8_t level) {

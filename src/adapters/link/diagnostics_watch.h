@@ -6,8 +6,10 @@
 // went.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <unordered_map>
@@ -23,8 +25,10 @@ namespace culprit::ros2 {
 class DiagnosticsWatch {
  public:
   // Subscribes if the rules read any diagnostic. All references must outlive the watch.
+  // `component_of` is called on the executor's thread.
+  using ComponentOf = std::function<std::optional<ComponentId>(const std::string& node)>;
   static Expected<std::unique_ptr<DiagnosticsWatch>> create(NodeEntry& self, const RuleSet& rules,
-                                                            Inbox& inbox);
+                                                            Inbox& inbox, ComponentOf component_of);
 
   // An earlier run learned which node publishes that status. From any thread.
   void remember(const std::string& status, const std::string& node);
@@ -38,14 +42,14 @@ class DiagnosticsWatch {
  private:
   static constexpr int kMostWaiting = 1000;  // messages of writers that are looked up
 
-  DiagnosticsWatch(NodeEntry& self, const RuleSet& rules, Inbox& inbox);
+  DiagnosticsWatch(NodeEntry& self, const RuleSet& rules, Inbox& inbox, ComponentOf component_of);
   bool is_wanted() const;
   void on_sample(const Sample& sample);
   void look_up(const Guid& writer, const msg::DiagnosticArray& message);
   void read(const msg::DiagnosticArray& message, const SignalPublishers::Publisher& by)
       CULPRIT_REQUIRES(mutex_);
-  bool may_say(const std::string& status, const SignalPublishers::Publisher& by)
-      CULPRIT_REQUIRES(mutex_);
+  bool may_say(const std::string& status, std::optional<ComponentId> publisher,
+               const SignalPublishers::Publisher& by) CULPRIT_REQUIRES(mutex_);
   void on_level(DiagnosticId diagnostic, std::uint8_t level) CULPRIT_REQUIRES(mutex_);
   void on_signal(SignalId signal, const std::string& text) CULPRIT_REQUIRES(mutex_);
 
@@ -54,10 +58,12 @@ class DiagnosticsWatch {
   mutable Mutex mutex_;  // receive threads take it: nothing of the middleware is called with it
   DiagnosticsReading reading_ CULPRIT_GUARDED_BY(mutex_);
   SignalPublishers publishers_ CULPRIT_GUARDED_BY(mutex_);
-  std::set<std::string> components_;                        // nodes of the rule file; constant
+  const ComponentOf component_of_;
   std::set<std::string> nodes_ CULPRIT_GUARDED_BY(mutex_);  // of the graph
   std::unordered_map<Guid, SignalPublishers::Publisher> writers_
       CULPRIT_GUARDED_BY(mutex_);  // that were looked up
+  // Those that no node claims: when each was looked up first.
+  std::unordered_map<Guid, Time> unclaimed_ CULPRIT_GUARDED_BY(mutex_);
   int waiting_ CULPRIT_GUARDED_BY(mutex_) = 0;
   // The newest values, by signal and by diagnostic.
   std::unordered_map<std::uint32_t, std::string> last_ CULPRIT_GUARDED_BY(mutex_);

@@ -188,7 +188,9 @@ Expected<void> Link::start() {
     watch->asks_for_writers([this, name] { tasks_.post([this, name] { tell_writers(name); }); });
     watches_.emplace(name, std::move(watch));
   }
-  auto watch = DiagnosticsWatch::create(node_->entry(), rules_, inbox_);
+  auto watch =
+      DiagnosticsWatch::create(node_->entry(), rules_, inbox_,
+                               [this](const std::string& name) { return binding_.bind(name); });
   if (!watch) return Error{watch.error()};
   diagnostics_watch_ = std::move(*watch);
   if (auto watched = watch_parameter_events(); !watched) return watched;
@@ -730,9 +732,11 @@ void Link::on_endpoint(const std::string& node, const GraphEndpoint& endpoint) {
 
 void Link::tell_writers(const std::string& topic) {
   TopicWatch::Writers writers;
-  for (const auto& [writer, node] : context_->graph().publishers_of(topic)) {
+  const Graph& graph = context_->graph();
+  for (const auto& [writer, node] : graph.publishers_of(topic)) {
     const auto component = binding_.bind(node);
-    if (component) writers[writer] = *component;
+    // Anybody can claim to be that node.
+    if (component && graph.owner_of(writer).counts) writers[writer] = *component;
   }
   watches_.at(topic)->knows_writers(std::move(writers));
 }
@@ -786,6 +790,9 @@ void Link::probe() {
   probed_last_ = now;
   context_->forget_ended_namesakes();
   context_->look_at_unproven();
+  for (const auto& [topic, watch] : watches_) {
+    if (watch->waits_for_writers()) tell_writers(topic);
+  }
   std::set<ComponentId> are_probed;
   for (const auto& [node, each] : probed_) {
     are_probed.insert(each.component);

@@ -22,7 +22,8 @@
 #include "ros2/services.h"
 #include "ros2/test_forger.h"
 #include "ros2/timer.h"
-#include "rtps/test_datagram.h"
+#include "rtps/newcomers.h"
+#include "rtps/test_hostile_process.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -289,6 +290,47 @@ TEST(Link, ReadsAStatusOnlyOfItsPublisher) {
       [](const SignalRead& r) { return r.value == Value(std::string("90")); }, 500ms));
 }
 
+// The liar comes first, publishes more often, and latches.
+TEST(Link, ReadsASignalOnlyOfThePublisherThatIsDeclared) {
+  const TestDomain domain;
+  LiveContext other(domain.options());
+  NodeEntry liar(*other, {"/", "liar"});
+  auto forged = Publisher<msg::DiagnosticArray>(std::move(
+      *RawPublisher::create(liar, "/diagnostics", msg::DiagnosticArray::kType, qos::kDefault)));
+  constexpr Qos kLatched{.durability = Durability::kTransientLocal, .depth = 1};
+  const auto forged_mode = RawPublisher::create(liar, "/level", msg::Float64::kType, kLatched);
+  ASSERT_TRUE(forged_mode);
+  (*forged_mode)->publish(encode(msg::Float64{90}));
+  const auto temperature = [](const std::string& text) {
+    msg::DiagnosticArray array;
+    array.status = {{1, "motor", "", "m1", {{"temperature", text}}}};
+    return array;
+  };
+  Timer lies(other->executor(), 10ms, [&] { forged.publish(temperature("90")); });
+  Linked linked(domain, {},
+                "COMPONENT robot NODE /robot\n"
+                "SIGNAL temperature DIAGNOSTIC motor KEY temperature FROM robot\n"
+                "SIGNAL level TOPIC /level FIELD data FROM robot\n"
+                "RULE R\nPOLICIES ERROR REPORT\nTRIGGER temperature > 80 || level > 80\n");
+  EXPECT_TRUE(
+      linked.wait<LinkTrouble>(tells("status motor is published by /liar, but the rules "
+                                     "read it FROM robot: only the latter is used")));
+  Robot robot(domain);
+  auto own = robot.publisher<msg::DiagnosticArray>("/diagnostics");
+  NodeEntry& entry = robot.managed->node().entry();
+  const auto own_level = RawPublisher::create(entry, "/level", msg::Float64::kType, kLatched);
+  ASSERT_TRUE(own_level);
+  (*own_level)->publish(encode(msg::Float64{40}));  // once
+  Timer speaks(robot.context->executor(), 20ms, [&] { own.publish(temperature("40")); });
+  const auto is = [](Value value) {
+    return [value](const SignalRead& r) { return r.value == value; };
+  };
+  EXPECT_TRUE(linked.wait<SignalRead>(is(Value(std::string("40")))));
+  EXPECT_TRUE(linked.wait<SignalRead>(is(Value(40.0))));
+  EXPECT_FALSE(linked.has_seen<SignalRead>(is(Value(std::string("90")))));
+  EXPECT_FALSE(linked.has_seen<SignalRead>(is(Value(90.0))));
+}
+
 TEST(Link, BelievesNoParameterEventOfOthers) {
   const TestDomain domain;
   Robot robot(domain);
@@ -312,29 +354,6 @@ TEST(Link, BelievesNoParameterEventOfOthers) {
   EXPECT_TRUE(linked.wait<ParameterRead>(is(3.0)));
 }
 
-// The announcement of a participant that does not exist (RTPS 2.3 §8.5.4.2, §9.6.2.2).
-Bytes announcement_of(std::uint16_t number) {
-  Guid guid;
-  guid.bytes = {1, 15, 0x5a, 0x5a};
-  guid.bytes[10] = static_cast<std::uint8_t>(number >> 8);
-  guid.bytes[11] = static_cast<std::uint8_t>(number);
-  guid.bytes[14] = 1;
-  guid.bytes[15] = 0xc1;
-  Guid announcer = guid;
-  announcer.bytes[13] = 1;
-  announcer.bytes[14] = 0;
-  announcer.bytes[15] = 0xc2;
-  TestParameters said;
-  said.add(0x15, Bytes{2, 3}).add(0x16, Bytes{1, 15});
-  said.add(0x50, Bytes(guid.bytes.begin(), guid.bytes.end()));
-  Bytes locator{1, 0, 0, 0, 0x39, 0x30, 0, 0};
-  locator.resize(20);
-  locator.insert(locator.end(), {127, 0, 0, 1});
-  said.add(0x32, locator).add(0x31, locator);
-  said.add(0x58, Bytes{0x3f, 0, 0, 0}).add(0x02, Bytes{100, 0, 0, 0, 0, 0, 0, 0});
-  return TestDatagram(guid.prefix()).announcement(announcer, 1, said.end()).bytes();
-}
-
 TEST(Link, DiscoversANewProcessBesideAThousandParticipantsOfAStranger) {
   const TestDomain domain;
   Linked linked(domain, {}, kAliveRules);
@@ -345,8 +364,12 @@ TEST(Link, DiscoversANewProcessBesideAThousandParticipantsOfAStranger) {
   });
   ASSERT_TRUE(spy);
   ASSERT_TRUE(ports.wait_for_count(1));
-  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  // One source would introduce no more than sixteen at once.
+  std::vector<int> sockets;
+  for (int i = 0; i < 1100 / Newcomers::kAtOnce + 1; ++i)
+    sockets.push_back(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   const auto announce = [&](std::uint16_t number) {
+    const int socket = sockets[number / Newcomers::kAtOnce];
     const Bytes datagram = announcement_of(number);
     sockaddr_in to{};
     to.sin_family = AF_INET;
@@ -366,7 +389,7 @@ TEST(Link, DiscoversANewProcessBesideAThousandParticipantsOfAStranger) {
   ASSERT_TRUE(is_full);
   Robot robot(domain);
   EXPECT_TRUE(linked.sees("/robot"));
-  close(socket);
+  for (const int each : sockets) close(each);
 }
 
 // Before something is taken down that depends on it. No rule is about it, so nothing asks it periodically.

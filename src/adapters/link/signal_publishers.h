@@ -10,6 +10,8 @@
 //   - A proven process replaces a node that left more than kForgets ago, whatever its name: a
 //     driver may have another name each time.
 //   - A component of the rule file that is proven counts besides: in SUAVE the vehicle and a controller publish one status.
+//   - If the rules declare the publisher (SIGNAL … FROM), only that component counts, and nothing is
+//     learned. Two signals may declare two components for one status.
 //   - Many nodes publish statuses of others (drivers, aggregators), so the subject of a status
 //     proves nothing.
 //
@@ -23,6 +25,7 @@
 #include <string>
 #include <utility>
 
+#include "base/ids.h"
 #include "base/time.h"
 
 namespace culprit::ros2 {
@@ -35,13 +38,18 @@ class SignalPublishers {
   static constexpr Duration kClaimed = std::chrono::seconds(3);
 
   struct Publisher {
-    std::string node{};         // full name; empty: no node claims the writer
-    bool is_proven = false;     // to be a process of this machine
-    bool counts = true;         // it is the one that holds the name, if others claim it, too
-    bool is_component = false;  // of the rule file
+    std::string node{};      // full name; empty: no node claims the writer
+    bool is_proven = false;  // to be a process of this machine
+    bool counts = true;      // it is the one that holds the name, if others claim it, too
+    std::optional<ComponentId> component{};  // of the rule file
+    bool is_new =
+        false;  // no node claims the writer, which was unknown kClaimed ago: no conflict yet
   };
   // Whether a node of this name is in the graph.
   using IsThere = std::function<bool(const std::string& node)>;
+
+  // The rules read `status` FROM `component`, which is called `name`. Before the first question.
+  void declare(const std::string& status, ComponentId component, const std::string& name);
 
   // An earlier run learned that. Before the first question.
   void remember(const std::string& status, const std::string& node);
@@ -65,11 +73,20 @@ class SignalPublishers {
     bool is_proven = false;
     std::optional<Time> missed;  // since when there is no node of that name
   };
-  Answer learn(const std::string& status, const Publisher& by);
+  struct Declared {
+    std::set<ComponentId> components;
+    std::string names;  // "left and right"
+  };
+  // A status, and the node that was declared for it; empty: none was.
+  using Claim = std::pair<std::string, std::string>;
+  Answer judge(const Claim& claim, const Publisher& by, Time now, const IsThere& is_there);
+  Answer learn(const Claim& claim, const Publisher& by);
   Answer refuse(const std::string& status, const Publisher& by, const std::string& bound);
+  Answer report(const std::string& status, const Publisher& by, const std::string& publishers);
 
-  std::map<std::string, Bound> bound_;  // by status
-  std::map<std::string, Time> first_;   // by status without a publisher: when it first came
+  std::map<std::string, Declared> declared_;  // by status
+  std::map<Claim, Bound> bound_;
+  std::map<Claim, Time> first_;  // of those without a publisher: when the status first came
   std::set<std::pair<std::string, std::string>> told_;  // status, node
   std::map<std::string, std::string> conflicts_;
 };

@@ -49,12 +49,14 @@ TEST(SignalPublishers, MayPublishStatusesOfSeveralAndOfOthers) {
 TEST(SignalPublishers, MayBeBesidesAComponentThatIsProven) {
   Statuses statuses;
   statuses.says(kDriver);
-  const auto besides = statuses.says({"/controller", true, true, true});
+  const auto besides = statuses.says({"/controller", true, true, ComponentId(1)});
   EXPECT_TRUE(besides.is_used);
   EXPECT_EQ(besides.conflict, "");
   EXPECT_TRUE(statuses.uses(kDriver));
-  EXPECT_FALSE(statuses.uses({"/controller", false, true, true})) << "somebody in its name";
-  EXPECT_FALSE(statuses.uses({"/controller", true, false, true})) << "another node of its name";
+  EXPECT_FALSE(statuses.uses({"/controller", false, true, ComponentId(1)}))
+      << "somebody in its name";
+  EXPECT_FALSE(statuses.uses({"/controller", true, false, ComponentId(1)}))
+      << "another node of its name";
 }
 
 // After a redeploy it is another process, and the same node.
@@ -116,6 +118,49 @@ TEST(SignalPublishers, AreWaitedForUntilANodeClaimsThem) {
   Statuses without_node;
   EXPECT_FALSE(without_node.uses({"", true}, 1s));
   EXPECT_TRUE(without_node.uses({"", true}, 4s)) << "not of ROS 2";
+}
+
+// A process that was started again speaks a moment before its node is known.
+TEST(SignalPublishers, AreNoConflictBeforeANodeCouldClaimThem) {
+  Statuses statuses;
+  statuses.says(kDriver);
+  EXPECT_EQ(statuses.says({"", true, true, {}, true}).conflict, "");
+  EXPECT_FALSE(statuses.uses({"", true, true, {}, true}));
+  EXPECT_THAT(statuses.says({"", true}).conflict, HasSubstr("a participant without a node"));
+}
+
+// SIGNAL … FROM driver
+TEST(SignalPublishers, ThatAreDeclaredAreNotLearned) {
+  Statuses statuses;
+  statuses.publishers.declare("motor", ComponentId(0), "driver");
+  const auto stranger = statuses.says(kStranger, 10s);
+  EXPECT_FALSE(stranger.is_used) << "though it came first";
+  EXPECT_THAT(stranger.conflict, HasSubstr("motor is published by /stranger, but the rules read it "
+                                           "FROM driver: only the latter is used"));
+  EXPECT_EQ(statuses.says({"/lidar", true, true, ComponentId(1)}, 10s).conflict, "")
+      << "a component may have a status of that name, which no rule reads";
+  const StatusPublisher declared{"/driver", true, true, ComponentId(0)};
+  const auto driver = statuses.says(declared, 11s);
+  EXPECT_TRUE(driver.is_used);
+  EXPECT_FALSE(driver.is_learned) << "the rules say it each time";
+  EXPECT_FALSE(statuses.uses({"/driver", false, true, ComponentId(0)}, 12s)) << "in its name";
+  EXPECT_FALSE(statuses.uses({"/driver", true, false, ComponentId(0)}, 12s));
+  statuses.there.erase("/driver");
+  EXPECT_FALSE(statuses.uses(kStranger, 300s)) << "though it has left for long";
+  EXPECT_FALSE(statuses.uses({"/driver_7", true}, 300s));
+  EXPECT_TRUE(statuses.uses(declared, 301s));
+}
+
+TEST(SignalPublishers, ThatAreDeclaredMayBeTwoOnOtherComputers) {
+  Statuses statuses;
+  statuses.publishers.declare("motor", ComponentId(0), "left");
+  statuses.publishers.declare("motor", ComponentId(1), "right");
+  const StatusPublisher left{"/left", false, true, ComponentId(0)};
+  const StatusPublisher right{"/right", false, true, ComponentId(1)};
+  statuses.says(left), statuses.says(right);
+  EXPECT_TRUE(statuses.uses(left, 3s));
+  EXPECT_TRUE(statuses.uses(right, 3s));
+  EXPECT_THAT(statuses.says(kStranger).conflict, HasSubstr("FROM left and right"));
 }
 
 }  // namespace

@@ -50,22 +50,44 @@ TopicWatch::TopicWatch(NodeEntry& self, TopicId topic, const RuleSet& rules, Inb
 void TopicWatch::knows_writers(Writers writers) {
   const MutexLock lock(mutex_);
   writers_ = std::move(writers);
+  std::deque<std::pair<Guid, Bytes>> waiting = std::exchange(waiting_, {});
+  for (auto& [writer, payload] : waiting) {
+    const auto known = writers_.find(writer);
+    if (known == writers_.end()) {
+      waiting_.emplace_back(writer, std::move(payload));
+      continue;
+    }
+    for (Field& field : fields_) {
+      if (field.publisher == known->second) read(field, payload);
+    }
+  }
+}
+
+bool TopicWatch::waits_for_writers() const {
+  const MutexLock lock(mutex_);
+  return !waiting_.empty();
 }
 
 // Empty while the writer is not known, or if its node is no component.
 std::optional<ComponentId> TopicWatch::publisher_of(const Guid& writer) {
-  constexpr Duration kLookedUpAgain = std::chrono::seconds(1);
   {
     const MutexLock lock(mutex_);
     const auto known = writers_.find(writer);
     if (known != writers_.end()) return known->second;
   }
-  const Time now = live_now();
-  if (later(asked_, kLookedUpAgain) <= now && ask_for_writers_) {
-    asked_ = now;
-    ask_for_writers_();
-  }
+  ask();
   return std::nullopt;
+}
+
+void TopicWatch::ask() {
+  constexpr Duration kLookedUpAgain = std::chrono::seconds(1);
+  {
+    const MutexLock lock(mutex_);
+    const Time now = live_now();
+    if (later(asked_, kLookedUpAgain) > now || !ask_for_writers_) return;
+    asked_ = now;
+  }
+  ask_for_writers_();
 }
 
 void TopicWatch::on_arrival(const Sample& sample) {
@@ -101,9 +123,10 @@ void TopicWatch::publisher_seen(const std::string& type, const Qos& offered,
   if (!listener_) {
     if (reads_goals_ && type != msg::GoalStatusArray::kType)
       return tell_once(name + " is published as " + type + ", which is no status of an action");
-    if (!compile_fields(type, library) && !counts_ && !reads_goals_) return;
-    if (const auto listening = listen(type, offered.keys); !listening) {
-      fields_.clear();
+    const bool has_fields = compile_fields(type, library);
+    if (!has_fields && !counts_ && !reads_goals_) return;
+    const PayloadUse use = has_fields || reads_goals_ ? PayloadUse::kWhole : PayloadUse::kHeader;
+    if (const auto listening = listen(type, offered.keys, use); !listening) {
       return tell_once("cannot watch " + name + ": " + listening.error());
     }
   }
@@ -111,13 +134,12 @@ void TopicWatch::publisher_seen(const std::string& type, const Qos& offered,
     tell_once("cannot read what " + name + " has latched: " + latched.error());
 }
 
-Expected<void> TopicWatch::listen(const std::string& type, Keys keys) {
-  auto listener = TopicListener::open(
-      self_, rules_[topic_].name, type, keys,
-      fields_.empty() && !reads_goals_ ? PayloadUse::kHeader : PayloadUse::kWhole,
-      {.on_arrival = [this](const Sample& sample) { on_arrival(sample); },
-       .on_message = [this](const Sample& sample) { on_message(sample); },
-       .on_unheard = [this] { on_unheard(); }});
+Expected<void> TopicWatch::listen(const std::string& type, Keys keys, PayloadUse use) {
+  auto listener =
+      TopicListener::open(self_, rules_[topic_].name, type, keys, use,
+                          {.on_arrival = [this](const Sample& sample) { on_arrival(sample); },
+                           .on_message = [this](const Sample& sample) { on_message(sample); },
+                           .on_unheard = [this] { on_unheard(); }});
   if (!listener) return Error{listener.error()};
   type_ = type;
   listener_ = std::move(*listener);
@@ -126,6 +148,7 @@ Expected<void> TopicWatch::listen(const std::string& type, Keys keys) {
 
 // Gives whether there is one to read.
 bool TopicWatch::compile_fields(const std::string& type, const Expected<MessageLibrary*>& library) {
+  std::vector<Field> fields;
   for (std::size_t s = 0; s < rules_.signals.size(); ++s) {
     const auto* field = std::get_if<TopicField>(&rules_.signals[s].source);
     if (field == nullptr || rules_[field->topic].name != rules_[topic_].name) continue;
@@ -136,11 +159,13 @@ bool TopicWatch::compile_fields(const std::string& type, const Expected<MessageL
     }
     auto reader = FieldReader::compile(**library, type, field->field);
     if (reader) {
-      fields_.push_back({SignalId(s), std::move(*reader), {}});
+      fields.push_back({SignalId(s), std::move(*reader), rules_[field->topic].publisher, {}});
     } else {
       tell_once(signal + reader.error());
     }
   }
+  const MutexLock lock(mutex_);
+  fields_ = std::move(fields);
   return !fields_.empty();
 }
 
@@ -154,15 +179,38 @@ void TopicWatch::on_message(const Sample& sample) {
   if (reads_goals_) {
     if (auto goals = goals_in(topic_, sample.payload)) inbox_.put(std::move(*goals));
   }
-  for (Field& field : fields_) {
-    Value value;
-    if (field.reader.read(sample.payload, value, wall_now()) != FieldStatus::kRead)
-      value = unreadable_value();
-    // The same value again changes no trigger; it only proves that the signal is not stale.
-    const Urgency urgency = field.last == value ? Urgency::kSoon : Urgency::kNow;
-    field.last = value;
-    inbox_.put(SignalRead{field.signal, std::move(value)}, urgency);
+  {
+    const MutexLock lock(mutex_);
+    const auto known = writers_.find(sample.identity.writer);
+    const bool is_known = known != writers_.end();
+    bool is_of_publisher = false;
+    for (Field& field : fields_) {
+      is_of_publisher = is_of_publisher || field.publisher;
+      if (!field.publisher || (is_known && field.publisher == known->second))
+        read(field, sample.payload);
+    }
+    if (is_known || !is_of_publisher) return;
+    keep(sample);
   }
+  ask();
+}
+
+void TopicWatch::read(Field& field, ByteView payload) {
+  Value value;
+  if (field.reader.read(payload, value, wall_now()) != FieldStatus::kRead)
+    value = unreadable_value();
+  // The same value again changes no trigger; it only proves that the signal is not stale.
+  const Urgency urgency = field.last == value ? Urgency::kSoon : Urgency::kNow;
+  field.last = value;
+  inbox_.put(SignalRead{field.signal, std::move(value)}, urgency);
+}
+
+void TopicWatch::keep(const Sample& sample) {
+  if (sample.payload.size() > kLargestWaiting) return;
+  const Guid& writer = sample.identity.writer;
+  std::erase_if(waiting_, [&](const auto& message) { return message.first == writer; });
+  if (waiting_.size() >= kMostWaiting) waiting_.pop_front();
+  waiting_.emplace_back(writer, Bytes(sample.payload.begin(), sample.payload.end()));
 }
 
 // Samples that cannot be reassembled were published all the same: the topic is not silent.

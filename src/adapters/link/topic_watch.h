@@ -4,12 +4,14 @@
 #pragma once
 
 #include <atomic>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "base/mutex.h"
@@ -34,6 +36,8 @@ class TopicWatch {
   void asks_for_writers(std::function<void()> ask) { ask_for_writers_ = std::move(ask); }
   // From any thread.
   void knows_writers(Writers writers);
+  // Whether a message waits for its writer to be known. From any thread.
+  bool waits_for_writers() const;
 
   // Whether it takes a message's type to watch it, not only that it comes.
   bool reads_fields() const;
@@ -54,14 +58,18 @@ class TopicWatch {
   struct Field {
     SignalId signal;
     FieldReader reader;
+    std::optional<ComponentId> publisher;  // FROM
     std::optional<Value> last;
   };
   bool compile_fields(const std::string& type, const Expected<MessageLibrary*>& library);
-  Expected<void> listen(const std::string& type, Keys keys);
+  Expected<void> listen(const std::string& type, Keys keys, PayloadUse use);
   void tell_once(std::string trouble);
   void on_message(const Sample& sample);
+  void keep(const Sample& sample) CULPRIT_REQUIRES(mutex_);
+  void read(Field& field, ByteView payload) CULPRIT_REQUIRES(mutex_);
   void on_arrival(const Sample& sample);
   std::optional<ComponentId> publisher_of(const Guid& writer);
+  void ask();
   void on_unheard();
   std::uint32_t published_since(const SampleIdentity& identity);
 
@@ -82,13 +90,17 @@ class TopicWatch {
   std::set<std::string> told_;  // troubles: each publisher has the same ones
 
   // Used by the receive thread only, once the listener exists.
-  std::vector<Field> fields_;
   std::unordered_map<Guid, std::int64_t> last_sequence_;  // by writer
 
-  Time asked_ = kLongAgo;  // for writers
-
-  Mutex mutex_;
+  mutable Mutex mutex_;
+  Time asked_ CULPRIT_GUARDED_BY(mutex_) = kLongAgo;  // for writers
+  std::vector<Field> fields_ CULPRIT_GUARDED_BY(mutex_);
   Writers writers_ CULPRIT_GUARDED_BY(mutex_);
+  // The newest message of each writer that is not known yet: a latched one comes once. The oldest is
+  // dropped if there are too many.
+  static constexpr std::size_t kMostWaiting = 16;
+  static constexpr std::size_t kLargestWaiting = std::size_t{1} << 20;  // bytes
+  std::deque<std::pair<Guid, Bytes>> waiting_ CULPRIT_GUARDED_BY(mutex_);
 
   std::atomic<bool> has_heard_ = false;
   std::atomic<bool> told_unheard_ =

@@ -10,7 +10,7 @@
 #include "base/live_clock.h"
 #include "ros2/hearing.h"
 #include "ros2/live_test.h"
-#include "rtps/test_datagram.h"
+#include "rtps/test_hostile_process.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -145,6 +145,18 @@ TEST_F(HostileDatagrams, FragmentsWithinTheBudgetTakeNoMoreThanIt) {
   }
   EXPECT_TRUE(discovers());
   EXPECT_LT(resident_bytes(), before + (64u << 20));
+}
+
+// Each takes the middleware milliseconds on the thread that receives.
+TEST_F(HostileDatagrams, ParticipantsThatOneSourceMakesUpComeInSlowly) {
+  for (std::uint16_t i = 0; i < 1100; ++i) {
+    attacker.send(announcement_of(i));
+    if (i % 50 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_TRUE(discovers());
+  EXPECT_TRUE(speaks());
+  EXPECT_GE(victim->refused().count, 1u);
+  EXPECT_EQ(victim->refused().why, "one source introduces too many participants");
 }
 
 // A participant's own announcements arrive at its discovery port again and again: they prove that

@@ -394,6 +394,7 @@ class Participant::Impl {
     guid_ = fast_dds::to_guid(participant_->guid());
     never_meets_ = options.never_meets;
     if (never_meets_ && !options.security && options.servers.empty()) discover_past_middleware();
+    reception_.newcomers->begin(guid_.prefix());
     *reception_.speaks = true;
     if (!options.security) reception_.filter->begin_to_address();
     is_secured_ = options.security.has_value();

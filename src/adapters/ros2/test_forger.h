@@ -10,6 +10,7 @@
 #include <string>
 #include <sys/socket.h>
 #include <unistd.h>
+#include <utility>
 #include <vector>
 
 #include "ros2/discovery_info.h"
@@ -119,11 +120,13 @@ class Forger {
     fast_dds::dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
   }
 
-  void says_that_it_holds(const NodeEntities& node) {
-    fast_dds::write(*writer_,
-                    encode_discovery_info({fast_dds::to_guid(participant_->guid()), {node}},
-                                          GidSize::kHumbleAndOlder),
-                    {});
+  void says_that_it_holds(const NodeEntities& node) { says_that_it_holds(std::vector{node}); }
+  void says_that_it_holds(std::vector<NodeEntities> nodes) {
+    fast_dds::write(
+        *writer_,
+        encode_discovery_info({fast_dds::to_guid(participant_->guid()), std::move(nodes)},
+                              GidSize::kHumbleAndOlder),
+        {});
   }
   GuidPrefix prefix() const { return fast_dds::to_guid(participant_->guid()).prefix(); }
 

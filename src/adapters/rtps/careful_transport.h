@@ -45,8 +45,10 @@
 #include "rtps/claims.h"
 #include "rtps/datagram_filter.h"
 #include "rtps/datagram_sources.h"
+#include "rtps/newcomers.h"
 #include "rtps/origins.h"
 #include "rtps/receive_thread.h"
+#include "rtps/speakers.h"
 #include "rtps/udp_sockets.h"
 
 namespace culprit::ros2::fast_dds {
@@ -65,6 +67,7 @@ struct Reception {
   std::shared_ptr<DatagramSources> sources = std::make_shared<DatagramSources>();
   std::shared_ptr<Origins> origins = std::make_shared<Origins>();
   std::shared_ptr<DatagramFilter> filter = std::make_shared<DatagramFilter>();
+  std::shared_ptr<Newcomers> newcomers = std::make_shared<Newcomers>();
   std::shared_ptr<ReceiveThread> thread = std::make_shared<ReceiveThread>();
   // Where readers that have time are sent to; 0: there is no such port.
   std::shared_ptr<std::atomic<std::uint16_t>> patient_port =
@@ -329,11 +332,31 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
 
   bool counts(const ReceiveThread::Datagram& datagram) const {
     const Time now = live_now();
+    if (has_too_many_submessages(datagram.bytes)) {
+      reception_.filter->note_refused("a datagram has thousands of submessages");
+      return false;
+    }
     if (!reception_.origins->counts(datagram.bytes, datagram.from, now)) return false;
     if (*reception_.relays) return true;
+    if (!may_introduce(datagram, now)) return false;
     for (const GuidPrefix& other : others_announced(datagram.bytes)) {
       const bool has_spoken = reception_.sources->may_speak_from(other, datagram.from);
       if (!reception_.origins->may_tell_of(other, datagram.from, has_spoken, now)) return false;
+    }
+    return true;
+  }
+
+  bool may_introduce(const ReceiveThread::Datagram& datagram, Time now) const {
+    if (!is_rtps(datagram.bytes)) return true;
+    int unknown = 0;
+    for_each_speaker(datagram.bytes, [&](const GuidPrefix& each) {
+      unknown += reception_.filter->knows(each) || reception_.newcomers->is_self(each) ? 0 : 1;
+    });
+    if (unknown == 0 || !introduces(datagram.bytes)) return true;
+    for (; unknown > 0; --unknown) {
+      if (reception_.newcomers->admits(datagram.from, now)) continue;
+      reception_.filter->note_refused("one source introduces too many participants");
+      return false;
     }
     return true;
   }

@@ -90,6 +90,24 @@ std::vector<GuidPrefix> others_announced(std::span<const std::uint8_t> datagram)
   return others;
 }
 
+bool has_too_many_submessages(std::span<const std::uint8_t> datagram) {
+  int count = 0;
+  for_each_submessage(datagram, [&](ByteView) { ++count; });
+  return count > kMostSubmessages;
+}
+
+bool introduces(std::span<const std::uint8_t> datagram) {
+  bool does = false;
+  for_each_submessage(datagram, [&](ByteView each) {
+    if ((each[0] != rtps::kData && each[0] != rtps::kDataFragment) || each.size() < kLeast) return;
+    const auto is_writer = [&](const Entity& entity) {
+      return std::equal(entity.begin(), entity.end(), each.begin() + kWriter);
+    };
+    does = does || is_writer(kAnnouncers[0]) || is_writer(kAnnouncers[3]);
+  });
+  return does;
+}
+
 bool acknowledges(std::span<const std::uint8_t> datagram, const GuidPrefix& self) {
   bool is_for_self = false;
   bool does = false;

@@ -17,6 +17,14 @@ namespace culprit::ros2 {
 // see into encrypted data, nor into fragments after the first.
 std::vector<GuidPrefix> others_announced(std::span<const std::uint8_t> datagram);
 
+// Whether it has more submessages than participants send: thousands of empty ones fit into a datagram, and each costs
+// the middleware time.
+inline constexpr int kMostSubmessages = 1000;
+bool has_too_many_submessages(std::span<const std::uint8_t> datagram);
+
+// Whether it announces a participant.
+bool introduces(std::span<const std::uint8_t> datagram);
+
 // Whether somebody acknowledges what `self` has written: an answer to its heartbeats (RTPS 2.3 §8.3.7.1), which
 // participants owe one another from their discovery on.
 bool acknowledges(std::span<const std::uint8_t> datagram, const GuidPrefix& self);

@@ -35,6 +35,25 @@ TEST(Claims, OfItselfAreNone) {
       IsEmpty());
 }
 
+TEST(Claims, OfParticipantsIntroduceThem) {
+  const Bytes nothing = TestParameters().end();
+  EXPECT_TRUE(introduces(TestDatagram(kSender)
+                             .heartbeat(of_writers(), 1, 1)
+                             .announcement(of_participants(), 1, nothing)
+                             .bytes()));
+  EXPECT_TRUE(introduces(
+      TestDatagram(kSender).announcement(guid(kSender, {0xff, 1, 1, 0xc2}), 1, nothing).bytes()));
+  EXPECT_FALSE(introduces(TestDatagram(kSender).announcement(of_writers(), 1, nothing).bytes()));
+  EXPECT_FALSE(introduces(TestDatagram(kSender).heartbeat(of_participants(), 1, 1).bytes()));
+}
+
+TEST(Claims, OfAThousandSubmessagesAreTooMany) {
+  TestDatagram many(kSender);
+  for (int i = 0; i < kMostSubmessages; ++i) many.submessage(0x01, 0, {});
+  EXPECT_FALSE(has_too_many_submessages(many.bytes()));
+  EXPECT_TRUE(has_too_many_submessages(many.submessage(0x01, 0, {}).bytes()));
+}
+
 TEST(Claims, AreWhatEndsAndWhatBegins) {
   const Guid other = guid(kOther, {0, 0, 5, 3});
   const Guid third = guid(kThird, {0, 0, 1, 0xc1});

@@ -649,6 +649,16 @@ void DatagramFilter::forget(const GuidPrefix& participant) {
   participants_.erase(participant);
 }
 
+bool DatagramFilter::knows(const GuidPrefix& participant) const {
+  const MutexLock lock(mutex_);
+  return participants_.contains(participant);
+}
+
+void DatagramFilter::note_refused(const char* why) {
+  const MutexLock lock(mutex_);
+  refused_ = {refused_.count + 1, why};
+}
+
 DatagramFilter::Refused DatagramFilter::refused() const {
   const MutexLock lock(mutex_);
   return refused_;

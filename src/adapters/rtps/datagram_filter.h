@@ -132,6 +132,7 @@ class DatagramFilter {
   // again.
   void know(const GuidPrefix& participant);
   void forget(const GuidPrefix& participant);
+  bool knows(const GuidPrefix& participant) const;
 
   // Submessages and datagrams that were taken out so far, and why the last one was; empty: none.
   struct Refused {
@@ -139,6 +140,8 @@ class DatagramFilter {
     std::string why;
   };
   Refused refused() const;
+  // A datagram was taken out before pass().
+  void note_refused(const char* why);
 
  private:
   struct Assembly {

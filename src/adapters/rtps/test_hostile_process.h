@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <ctime>
+#include <iterator>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -18,30 +19,76 @@
 
 namespace culprit::ros2 {
 
-// A stranger's lies that remove a participant: its endpoints have ended, it holds no node, and it has left.
-// `info_writer` writes its ros_discovery_info; `no_nodes` is that as a payload. Reliable
-// readers take a number only if it is the next one, so some after it are tried, too.
-inline std::vector<Bytes> farewells(const Guid& participant, const std::vector<Guid>& endpoints,
-                                    const Guid& info_writer, const Bytes& no_nodes) {
-  const auto builtin = [&](std::uint8_t kind, std::uint8_t number) {
-    Guid guid = participant;
-    guid.bytes[12] = 0, guid.bytes[13] = kind, guid.bytes[14] = number, guid.bytes[15] = 0xc2;
-    return guid;
-  };
-  const GuidPrefix name = participant.prefix();
+// A stranger's lies that remove a participant. Reliable readers take a number only if it is the next one, so some after it
+// are tried, too.
+inline Guid builtin_of(Guid participant, std::uint8_t kind, std::uint8_t number) {
+  participant.bytes[12] = 0, participant.bytes[13] = kind, participant.bytes[14] = number;
+  participant.bytes[15] = 0xc2;
+  return participant;
+}
+// Its endpoints have ended.
+inline std::vector<Bytes> farewells_of_endpoints(const Guid& participant,
+                                                 const std::vector<Guid>& endpoints) {
   std::vector<Bytes> all;
   for (const Guid& each : endpoints) {
     const auto announced = std::ranges::count_if(
         endpoints, [&](const Guid& other) { return other.is_reader() == each.is_reader(); });
+    const Guid announcer = builtin_of(participant, 0, each.is_reader() ? 4 : 3);
     for (std::int64_t i = announced + 1; i <= announced + 4; ++i)
-      all.push_back(TestDatagram(name)
-                        .farewell(each.is_reader() ? builtin(0, 4) : builtin(0, 3), i, each)
-                        .bytes());
+      all.push_back(TestDatagram(participant.prefix()).farewell(announcer, i, each).bytes());
   }
-  for (std::int64_t i = 2; i < 40; ++i)
-    all.push_back(TestDatagram(name).sample(info_writer, i, no_nodes).bytes());
-  all.push_back(TestDatagram(name).farewell(builtin(1, 0), 1000, participant).bytes());
   return all;
+}
+// `info` is what its ros_discovery_info says, as a payload; `writer` writes that.
+inline std::vector<Bytes> forged_info(const Guid& participant, const Guid& writer,
+                                      const Bytes& info) {
+  std::vector<Bytes> all;
+  for (std::int64_t i = 2; i < 40; ++i)
+    all.push_back(TestDatagram(participant.prefix()).sample(writer, i, info).bytes());
+  return all;
+}
+// It has left.
+inline Bytes farewell_of(const Guid& participant) {
+  return TestDatagram(participant.prefix())
+      .farewell(builtin_of(participant, 1, 0), 1000, participant)
+      .bytes();
+}
+// All of them. `no_nodes`: it holds no node.
+inline std::vector<Bytes> farewells(const Guid& participant, const std::vector<Guid>& endpoints,
+                                    const Guid& info_writer, const Bytes& no_nodes) {
+  std::vector<Bytes> all = farewells_of_endpoints(participant, endpoints);
+  std::ranges::copy(forged_info(participant, info_writer, no_nodes), std::back_inserter(all));
+  all.push_back(farewell_of(participant));
+  return all;
+}
+
+// A participant that does not exist.
+inline Guid made_up(std::uint16_t number) {
+  Guid guid;
+  guid.bytes = {1, 15, 0x5a, 0x5a};
+  guid.bytes[10] = static_cast<std::uint8_t>(number >> 8);
+  guid.bytes[11] = static_cast<std::uint8_t>(number);
+  guid.bytes[14] = 1;
+  guid.bytes[15] = 0xc1;
+  return guid;
+}
+// One of its writers: (1, 0) announces it, (0, 3) its writers, (0, 4) its readers.
+inline Guid made_up(std::uint16_t number, std::uint8_t kind, std::uint8_t writer) {
+  return builtin_of(made_up(number), kind, writer);
+}
+
+// Its announcement (RTPS 2.3 §8.5.4.2, §9.6.2.2).
+inline Bytes announcement_of(std::uint16_t number) {
+  const Guid guid = made_up(number);
+  TestParameters said;
+  said.add(0x15, Bytes{2, 3}).add(0x16, Bytes{1, 15});
+  said.add(0x50, Bytes(guid.bytes.begin(), guid.bytes.end()));
+  Bytes locator{1, 0, 0, 0, 0x39, 0x30, 0, 0};
+  locator.resize(20);
+  locator.insert(locator.end(), {127, 0, 0, 1});
+  said.add(0x32, locator).add(0x31, locator);
+  said.add(0x58, Bytes{0x3f, 0, 0, 0}).add(0x02, Bytes{100, 0, 0, 0, 0, 0, 0, 0});
+  return TestDatagram(guid.prefix()).announcement(made_up(number, 1, 0), 1, said.end()).bytes();
 }
 
 class HostileProcess {

@@ -38,7 +38,10 @@ void SimulatedRobot::index_rules() {
     } else if (const auto* field = std::get_if<TopicField>(&signal.source)) {
       const std::string& topic = rules_[field->topic].name;
       signals_[topic + "\n" + field->field].push_back(SignalId(s));
-      if (TopicBase* known = world_.topic(topic)) known->watch_field(field->field);
+      if (TopicBase* known = world_.topic(topic)) {
+        known->set_watched(true);
+        known->watch_field(field->field);
+      }
     } else if (std::holds_alternative<LookedUp>(signal.source)) {
       signals_[signal.name].push_back(SignalId(s));
     }

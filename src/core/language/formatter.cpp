@@ -41,7 +41,12 @@ constexpr std::array kTables = {
           {{{"NODE", 1}, {"LAUNCH", 2}, {"UNIT", 2}, {"CONTAINER", 2}, {"IN", 2}}}},
     Table{"SIGNAL",
           "  ",
-          {{{"DIAGNOSTIC", 1}, {"TOPIC", 1}, {"PARAMETER", 1}, {"STALE", 2}, {"RANGE", 3}}}},
+          {{{"DIAGNOSTIC", 1},
+            {"TOPIC", 1},
+            {"PARAMETER", 1},
+            {"FROM", 2},
+            {"STALE", 3},
+            {"RANGE", 4}}}},
     Table{"CONST", " ", {{{"=", 1}}}},
 };
 

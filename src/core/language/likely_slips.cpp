@@ -133,6 +133,9 @@ void check_unused(const syntax::File& file, const RuleSet& rules,
   for (const Topic& topic : rules.topics) {
     if (topic.publisher) use(*topic.publisher);
   }
+  for (std::size_t s = 0; s < rules.signals.size(); ++s) {
+    if (const auto publisher = publisher_of(SignalId(s), rules)) use(*publisher);
+  }
   for (const Group& group : rules.groups) {
     for (const ComponentId member : group.members) use(member);
     use(group.manager);

@@ -96,6 +96,7 @@ class Collector {
       add(OccurrenceKind::kComponent, parameter->component);
       add(OccurrenceKind::kParameter, parameter->parameter, false, parameter->component.text);
     }
+    if (s.from) add(OccurrenceKind::kComponent, *s.from);
   }
 
   void rule(const syntax::Rule& r) {

@@ -490,7 +490,12 @@ class Parser {
         s.next();
         if (!range(s, signal)) return false;
       } else {
-        return read_.unexpected_clause(clause, {"STALE", "RANGE"});
+        const bool is_publisher = clause.text == "FROM";
+        return read_.unexpected_clause(
+            clause, {"STALE", "RANGE"},
+            is_publisher ? "one FROM may stand behind the key or the field; a parameter is its "
+                           "component's own"
+                         : "");
       }
     }
     into_->signals.push_back(std::move(signal));
@@ -503,13 +508,13 @@ class Parser {
       auto status = read_.name_or_text(s, "the status's name or hardware id");
       if (!status || !read_.expect_word(s, "KEY")) return false;
       auto key = read_.name_or_text(s, "the key");
-      if (!key) return false;
+      if (!key || !publisher(s, signal)) return false;
       signal.source = syntax::DiagnosticSource{std::move(*status), std::move(*key)};
     } else if (kind.text == "TOPIC") {
       auto topic = read_.ros_name(s, "the topic");
       if (!topic || !read_.expect_word(s, "FIELD")) return false;
       auto field = read_.name_or_text(s, "the field, for example data or pose.position.x");
-      if (!field) return false;
+      if (!field || !publisher(s, signal)) return false;
       signal.source = syntax::TopicSource{std::move(*topic), std::move(*field)};
     } else if (kind.text == "PARAMETER") {
       auto component = read_.component_reference(s);
@@ -520,6 +525,16 @@ class Parser {
     } else {
       return read_.unexpected_clause(kind, {kSignalSources.begin(), kSignalSources.end()});
     }
+    return true;
+  }
+
+  // FROM, if it is there.
+  bool publisher(Scanner& s, syntax::Signal& signal) {
+    if (s.peek().text != "FROM") return true;
+    s.next();
+    auto component = read_.component_reference(s);
+    if (!component) return false;
+    signal.from = std::move(*component);
     return true;
   }
 

@@ -81,10 +81,11 @@ class Mover {
   }
   void move(syntax::Signal::Range& r) const { move(r.span); }
   void move(syntax::Signal& s) const {
-    auto& [name, source, stale, range] = s;
+    auto& [name, source, stale, range, from] = s;
     move(name);
     std::visit([this](auto& which) { move(which); }, source);
     move(range);
+    move(from);
   }
   void move(syntax::Adaptation& a) const {
     auto& [component, type, subject, topic, request, value, impact, span, begins_step] = a;

@@ -126,6 +126,7 @@ struct StatusLevel {
 struct DiagnosticKey {
   std::string status;  // name or hardware id of the status; "*": any
   std::string key;
+  std::optional<ComponentId> publisher{};  // FROM: only what this one publishes
 };
 struct TopicField {
   TopicId topic;
@@ -306,6 +307,14 @@ struct RuleSet {
   const Rule& operator[](RuleId id) const { return rules[id.index]; }
   const Strategy& operator[](StrategyId id) const { return strategies[id.index]; }
 };
+
+// The component that a signal is declared FROM.
+inline std::optional<ComponentId> publisher_of(SignalId signal, const RuleSet& rules) {
+  const auto& source = rules[signal].source;
+  if (const auto* key = std::get_if<DiagnosticKey>(&source)) return key->publisher;
+  if (const auto* field = std::get_if<TopicField>(&source)) return rules[field->topic].publisher;
+  return std::nullopt;
+}
 
 // Whether components of the rules are loaded into its node.
 inline bool is_container(ComponentId component, const RuleSet& rules) {

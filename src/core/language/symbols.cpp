@@ -429,10 +429,12 @@ SystemdUnit Symbols::declared_unit(const syntax::Component& written) {
 
 void Symbols::declare_signal(const syntax::Signal& s) {
   Signal signal{s.name.text, LookedUp{}, Type::kDouble, s.stale, {}};
+  std::optional<ComponentId> publisher;
+  if (s.from) publisher = component(*s.from);
   if (const auto* d = std::get_if<syntax::DiagnosticSource>(&s.source)) {
-    signal.source = DiagnosticKey{d->status.text, d->key.text};
+    signal.source = DiagnosticKey{d->status.text, d->key.text, publisher};
   } else if (const auto* t = std::get_if<syntax::TopicSource>(&s.source)) {
-    signal.source = TopicField{topic(t->topic.text), t->field.text};
+    signal.source = TopicField{topic(t->topic.text, publisher), t->field.text};
   } else {
     const auto& p = std::get<syntax::ParameterSource>(s.source);
     signal.source = parameter(component(p.component), p.parameter.text);

@@ -141,6 +141,7 @@ struct Signal {
     Span span;
   };
   std::optional<Range> range;
+  Seldom<Name> from{};  // the component that publishes it; never of a parameter
 };
 
 enum class AdaptationType : std::uint8_t {

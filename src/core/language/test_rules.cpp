@@ -169,12 +169,13 @@ std::string component_line() {
 
 std::string signal_line() {
   std::string source;
+  const std::string from = maybe(words({"FROM", component()}));
   switch (below(3)) {
     case 0:
-      source = words({"DIAGNOSTIC", name(), "KEY", name()});
+      source = words({"DIAGNOSTIC", name(), "KEY", name(), from});
       break;
     case 1:
-      source = words({"TOPIC", ros_name(), "FIELD", name()});
+      source = words({"TOPIC", ros_name(), "FIELD", name(), from});
       break;
     default:
       source = words({"PARAMETER", component(), name()});

@@ -59,7 +59,7 @@ class Writer {
   void put(const ParameterSource& s) { all(s.component, s.parameter); }
   void put(const syntax::Signal::Range& r) { all(r.low, r.high, r.span); }
   void put(const syntax::Signal& s) {
-    all(s.name, static_cast<std::int64_t>(s.source.index()), s.stale, s.range);
+    all(s.name, static_cast<std::int64_t>(s.source.index()), s.stale, s.range, s.from);
     std::visit([this](const auto& source) { put(source); }, s.source);
   }
 

@@ -227,10 +227,10 @@ class Completion {
     const std::size_t count = words_.size();
     if (last == "TOPIC") return topics();
     if (last == "DIAGNOSTIC") return names(&live_statuses);
-    if (last == "PARAMETER") return components();
+    if (last == "PARAMETER" || last == "FROM") return components();
     if (last == "KEY" && robot_ != nullptr) return live_keys(*robot_, words_[count - 2]);
     if (count > 2 && words_[count - 2] == "PARAMETER") return parameters(last);
-    return keywords({"DIAGNOSTIC", "TOPIC", "PARAMETER", "KEY", "FIELD", "STALE", "RANGE"});
+    return keywords({"DIAGNOSTIC", "TOPIC", "PARAMETER", "KEY", "FIELD", "FROM", "STALE", "RANGE"});
   }
 
   // ---- names of the file, then of the robot

@@ -12,6 +12,7 @@ std::vector<Form> table() {
   const Clause parameter{"", "parameter", kName};
   const Clause impact{"", "impact", kNumber};
   const std::vector<Clause> bounds = {{"STALE", "stale", kDuration}, {"RANGE", "range", kRange}};
+  const std::vector<Clause> published = {{"FROM", "from", kName}, bounds[0], bounds[1]};
   return {
       {"ROBOT", {name}, {}, {}},
       {"CYCLE", {{"", "length", kDuration}}, {}, {}},
@@ -45,8 +46,8 @@ std::vector<Form> table() {
       {"DRILL", {component, type, parameter, {"", "value", kExpression}}, {}, {"set_parameter"}},
       {"DRILL", {component, type, {"", "fault", kWord}}, {}, {"without"}},
       {"DRILL", {component, type, {"", "times", kNumber}}, {}, {"limit"}},
-      {"SIGNAL", {name, {"DIAGNOSTIC", "diagnostic", kName}, {"KEY", "key", kName}}, bounds, {}},
-      {"SIGNAL", {name, {"TOPIC", "topic", kName}, {"FIELD", "field", kName}}, bounds, {}},
+      {"SIGNAL", {name, {"DIAGNOSTIC", "diagnostic", kName}, {"KEY", "key", kName}}, published, {}},
+      {"SIGNAL", {name, {"TOPIC", "topic", kName}, {"FIELD", "field", kName}}, published, {}},
       {"SIGNAL", {name, {"PARAMETER", "component", kName}, parameter}, bounds, {}},
       {"RULE", {name}, {}, {}},
       {"POLICIES",

@@ -1,6 +1,7 @@
 #include "rule_json/line_writer.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <optional>
 
 #include "language/diagnostic.h"
@@ -45,6 +46,14 @@ const char* describe(Part part) {
       return "true or false";
   }
   return "";
+}
+
+// Among the clauses that may be left out: the publisher belongs to its source, and an expression
+// reaches to the end of the line.
+enum class Place : std::uint8_t { kFirst, kAnywhere, kLast };
+Place place_of(const Clause& clause) {
+  if (clause.part == Part::kExpression) return Place::kLast;
+  return clause.word == "FROM" ? Place::kFirst : Place::kAnywhere;
 }
 
 using Words = std::optional<std::string>;  // of a line; nothing: the value is no such part
@@ -232,12 +241,11 @@ std::string LineWriter::write() {
     }
   }
   // An expression goes on to the end of its line.
-  for (const bool is_last : {false, true}) {
+  for (const Place place : {Place::kFirst, Place::kAnywhere, Place::kLast}) {
     for (const auto& [member, value] : statement_.items()) {
       const bool is_off = value == false;
       for (const Clause& clause : form->free) {
-        const bool is_wanted =
-            clause.member == member && (clause.part == Part::kExpression) == is_last;
+        const bool is_wanted = clause.member == member && place_of(clause) == place;
         if (is_wanted && !(is_off && clause.part == Part::kFlag)) add(clause);
       }
     }

@@ -119,7 +119,7 @@ TEST(RuleJson, IsNotWhateverTheSchemaIsGiven) {
 TEST(RuleJson, HoldsEachPartByItsName) {
   const auto json = to_json(Source("test.rules", R"(# head
 COMPONENT fusion NODE /robot/fusion LAUNCH "run \"it\""  # the one
-SIGNAL entropy DIAGNOSTIC "the status" KEY k STALE 2s RANGE -0.5..1
+SIGNAL entropy DIAGNOSTIC "the status" KEY k FROM fusion STALE 2s RANGE -0.5..1
 
 RULE Bad
   POLICIES WARNING HOLD 3/5 ON_CHANGE
@@ -135,7 +135,7 @@ RULE Bad
       {"statement": "COMPONENT", "name": "fusion", "node": "/robot/fusion",
        "launch": "run \"it\"", "comment": "# the one", "above": ["# head"]},
       {"statement": "SIGNAL", "name": "entropy", "diagnostic": "the status", "key": "k",
-       "stale": "2s", "range": [-0.5, 1]},
+       "from": "fusion", "stale": "2s", "range": [-0.5, 1]},
       {"statement": "RULE", "name": "Bad", "above": [""]},
       {"statement": "POLICIES", "criticality": "WARNING", "hold": [3, 5], "on_change": true},
       {"statement": "TRIGGER", "expression": "entropy>.06"},

@@ -1,0 +1,47 @@
+// Limits how fast one source introduces participants.
+//
+// A participant that is not known yet costs the middleware milliseconds on the thread that receives everything: a thousand
+// of them, which one stranger makes up in a moment, make it deaf for many seconds. A participant of a robot has a socket
+// of its own and introduces itself. It does so again after a few seconds, so one that is refused is late and not lost.
+//
+// Pure: each question brings the time. All members may be called from any thread.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <unordered_map>
+
+#include "base/mutex.h"
+#include "base/time.h"
+#include "rtps/datagram_sources.h"
+#include "rtps/guid.h"
+
+namespace culprit::ros2 {
+
+class Newcomers {
+ public:
+  static constexpr int kAtOnce = 16;  // of a source that introduced none for long
+  static constexpr Duration kEach = std::chrono::milliseconds(250);
+  // Beyond it each further source may introduce participants: a stranger keeps no other out.
+  static constexpr std::size_t kMostSources = 4096;
+
+  // Our own participant is no newcomer: that its announcements come back shows that we can receive.
+  void begin(const GuidPrefix& self);
+  bool is_self(const GuidPrefix& participant) const;
+
+  // May a socket introduce one more?
+  bool admits(const UdpAddress& from, Time now);
+
+ private:
+  struct Hash {
+    std::size_t operator()(const UdpAddress& address) const;
+  };
+
+  mutable Mutex mutex_;
+  std::optional<GuidPrefix> self_ CULPRIT_GUARDED_BY(mutex_);
+  // When all that a source introduced has been worked off, at one each kEach.
+  std::unordered_map<UdpAddress, Time, Hash> until_ CULPRIT_GUARDED_BY(mutex_);
+  Time cleared_ CULPRIT_GUARDED_BY(mutex_) = kLongAgo;  // of those that have been
+};
+
+}  // namespace culprit::ros2
