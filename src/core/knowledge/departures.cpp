@@ -183,9 +183,11 @@ bool Departures::is_any_orphan() const {
 
 // @pre its launcher has ended
 Departures::Verdict Departures::verdict(const Launch& launch, Time now) const {
-  if (launch.has_crashed) return {Verdict::What::kGoesOn};
   const bool are_leaving = launch.left > 0 && launch.left_first <= later(launch.ended, kTogether) &&
                            launch.ended <= later(launch.left_at, kTogether);
+  // The exit code of ros2 launch is 1 after an error of its own shutdown, too.
+  const bool took_all_along = are_leaving && (launch.left > 1 || !is_original_left(launch));
+  if (launch.has_crashed && !took_all_along) return {Verdict::What::kGoesOn};
   const bool is_over = (are_leaving && launch.left > 1) || !is_original_left(launch);
   if (!is_over) {
     const Time until = later(launch.ended, kTogether);

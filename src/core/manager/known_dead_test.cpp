@@ -362,6 +362,24 @@ TEST(ALaunch, ThatEndsSoonAfterACrashStaysDownAndSaysWhy) {
   EXPECT_FALSE(robot.manager().knowledge().departures.stays_down(robot.id("a")));
 }
 
+// Several nodes with on_exit=Shutdown(): ros2 launch is told to end repeatedly, and exits with code 1.
+TEST(ALaunch, WhoseLauncherExitsWithAnErrorAfterItsNodesHasEnded) {
+  for (const bool has_crashed : {false, true}) {
+    TestRobot robot = launch_of_five();
+    if (has_crashed) robot.kill("a");
+    robot.run_for(300ms);
+    for (const std::string name : {"b", "c", "d", "e"}) robot.leave(name);
+    if (!has_crashed) robot.leave("a");
+    robot.run_for(200ms);
+    for (const std::string& name : kFive)
+      robot.tell(LauncherSeen{robot.id(name), kLauncher, true, true});
+    robot.run_for(1min);
+    for (const std::string& name : kFive)
+      EXPECT_TRUE(robot.manager().knowledge().departures.stays_down(robot.id(name)))
+          << name << transcript(robot);
+  }
+}
+
 // on_exit=Shutdown(): its launcher ended the rest because one had broken.
 TEST(ALaunch, ThatEndsBecauseOneBrokeIsBroughtBackWithRevive) {
   TestRobot robot = launch_of_five(reviving());
