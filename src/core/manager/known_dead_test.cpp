@@ -198,6 +198,82 @@ TEST(KnownDead, IsResolvedWhenItIsHeardAgain) {
   EXPECT_EQ(robot.count_asked("camera: start process"), 1u) << transcript(robot);
 }
 
+// As `culprit init` drafts it.
+std::string drafted_rules() {
+  std::string rules(kPatientRules);
+  return rules.replace(rules.find("age(/image) > 5s"), 16, "!alive(camera) || age(/image) > 750ms");
+}
+
+// The process is there again at once, and its topic is not.
+TEST(KnownDead, IsResolvedWhenItIsHeardAgainAlsoIfTheRuleReadsAlive) {
+  TestRobot robot = robot_with(drafted_rules());
+  robot.kill("camera");
+  robot["camera"].fault = "warms up";
+  robot.run_for(1s);
+  EXPECT_EQ(robot.count("CameraSilent detected (ERROR)"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("known dead"), 0u) << "the rule sees by itself that it exited";
+  EXPECT_EQ(robot.count("redeploy camera: done"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("CameraSilent resolved"), 0u) << transcript(robot);
+  robot["camera"].fault = "";
+  robot.run_for(5s);
+  EXPECT_EQ(robot.count("CameraSilent resolved by redeploy"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("CameraSilent detected"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("camera: start process"), 1u) << transcript(robot);
+}
+
+// Of a node whose constructor opens a device before it makes a publisher. It was killed, and its
+// successor is at its start.
+TestRobot robot_that_starts_slowly() {
+  Manager::Options options;
+  options.governor = Governor::Options::recommended();
+  TestRobot robot(drafted_rules(), std::make_unique<BayesPlanner>(), options);
+  robot.add("camera", {}, "/image").has_lifecycle = false;
+  robot.add("fusion", {"camera"}, "/fused");
+  robot.discover();
+  robot.tell(EndpointAppeared{"/camera", EndpointKind::kPublisher, "/image"});
+  robot.tell(Probed{robot.id("camera"), true});
+  robot.run_for(6s);
+  robot.kill("camera");
+  robot.run_for(100ms);
+  robot.tell(EndpointVanished{"/camera", EndpointKind::kPublisher, "/image"});
+  robot["camera"].fault = "warms up";
+  return robot;
+}
+
+TEST(KnownDead, ANodeThatDoesNotSpeakYetIsNotEndedAgain) {
+  TestRobot robot = robot_that_starts_slowly();
+  robot.run_for(25s);
+  EXPECT_EQ(robot.count_asked("camera: start process"), 1u) << transcript(robot);
+  robot.tell(EndpointAppeared{"/camera", EndpointKind::kPublisher, "/image"});
+  robot.tell(Probed{robot.id("camera"), true});
+  robot.run_for(2s);  // until it is discovered
+  robot["camera"].fault = "";
+  robot.run_for(5s);
+  EXPECT_EQ(robot.count("CameraSilent resolved by redeploy"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("camera: start process"), 1u) << transcript(robot);
+}
+
+// Its start is over once it answers: what it has not made by then it may never make.
+TEST(KnownDead, ANodeThatAnswersAndDoesNotSpeakIsReplaced) {
+  TestRobot robot = robot_that_starts_slowly();
+  robot.run_for(2s);
+  robot.tell(Probed{robot.id("camera"), true});
+  robot.run_for(20s);
+  EXPECT_GE(robot.count_asked("camera: start process"), 2u) << transcript(robot);
+}
+
+// A topic on demand need not come again: the process is there, and that is all that can be known.
+TEST(KnownDead, ARarelyPublishedTopicIsNotAwaitedForLong) {
+  TestRobot robot = robot_with(std::string(kPatientRules)
+                                   .replace(std::string(kPatientRules).find("age(/image) > 5s"), 16,
+                                            "!alive(camera) || age(/image) > 1h"));
+  robot.kill("camera");
+  robot["camera"].fault = "warms up";
+  robot.run_for(30s);
+  EXPECT_EQ(robot.count("CameraSilent resolved by redeploy"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("camera: start process"), 1u) << transcript(robot);
+}
+
 TEST(KnownDead, WhatSomebodyElseStartedAgainIsLeftAlone) {
   Manager::Options options;
   options.governor.quiet_at_start = 8s;  // so that nothing is begun for a while
