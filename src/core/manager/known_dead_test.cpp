@@ -526,6 +526,7 @@ TEST(ALaunch, TakesWhatStandsInForOneOfItAlong) {
     robot.leave("a");
     robot.run_for(1min);
     EXPECT_EQ(robot.asked.size(), asked) << transcript(robot);
+    EXPECT_EQ(robot.count("none helped"), 0u) << "none was tried" << transcript(robot);
     EXPECT_TRUE(departures.started().empty());
   }
 }
