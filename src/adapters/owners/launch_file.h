@@ -2,8 +2,8 @@
 //
 // The launch file is evaluated at each start, by `python3` and the package `launch` of the
 // component's environment. The process that evaluates it becomes the node. So a redeploy starts
-// what the launch file says now, with its parameters, remappings and variables. Nothing else of the
-// launch file is started.
+// what the launch file says now, with its parameters, remappings and variables. No other process of
+// the launch file is started.
 #pragma once
 
 #include <optional>
@@ -19,7 +19,7 @@ struct LaunchFileNode {
   std::string node;  // "driver", "/front/driver"; of a node without a name in the file its program
 };
 
-// Of a launch command. Nothing: it names no launch file.
+// The node that a launch command names. Empty: it names no launch file.
 std::optional<LaunchFileNode> launch_file_node(const std::vector<std::string>& launch);
 
 // Where the file is. `prefixes`: the value of AMENT_PREFIX_PATH that the node gets; empty: places of a

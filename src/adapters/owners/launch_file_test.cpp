@@ -41,7 +41,7 @@ TEST(LaunchFile, OfAPackageIsNeededInOneOfItsFolders) {
               ElementsAre("/a/robot.launch.py"));
 }
 
-// What the script uses of the package `launch`: two nodes of a file, of which one has a condition.
+// The part of the package `launch` that the script uses. A launch file is a function `actions` here.
 constexpr const char* kLaunch = R"(
 class Described:
     def __init__(self, command, env): self.command, self.env = command, env

@@ -221,8 +221,8 @@ TEST(KnownDead, IsResolvedWhenItIsHeardAgainAlsoIfTheRuleReadsAlive) {
   EXPECT_EQ(robot.count_asked("camera: start process"), 1u) << transcript(robot);
 }
 
-// Of a node whose constructor opens a device before it makes a publisher. It was killed, and its
-// successor is at its start.
+// A node was killed whose constructor opens a device before it makes a publisher; its successor is at
+// its start.
 TestRobot robot_that_starts_slowly() {
   Manager::Options options;
   options.governor = Governor::Options::recommended();
