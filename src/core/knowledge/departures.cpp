@@ -202,13 +202,16 @@ Departures::Verdict Departures::verdict(const Launch& launch, Time now) const {
   }
   if (!are_leaving && !launch.ran_others && !has_stand_in(launch)) return {Verdict::What::kGoesOn};
   const Time began = are_leaving ? std::min(launch.left_first, launch.ended) : launch.ended;
-  const auto is_soon_after = [&](Time at) {
-    return at != kLongAgo && at <= began && began <= later(at, kDoubt);
+  const auto is_soon_after = [&](Time at, Duration soon = kDoubt) {
+    return at != kLongAgo && at <= began && began <= later(at, soon);
   };
+  // Its last process crashed, or culprit ended that. On a busy computer it takes seconds to end.
+  const bool had_nothing_left = !are_leaving && !launch.ran_others;
+  if (had_nothing_left && is_soon_after(std::max(launch.fell_at, launch.ended_here_at), kTogether))
+    return {Verdict::What::kGoesOn};
   if (is_soon_after(launch.ended_here_at)) return {Verdict::What::kBroken};
   if (!is_soon_after(launch.fell_at))
     return {Verdict::What::kEnded, kNever, StaysDown::Why::kPerson};
-  if (!are_leaving && !launch.ran_others) return {Verdict::What::kGoesOn};
   if (revives_) return {Verdict::What::kBroken};
   return {Verdict::What::kEnded, kNever, StaysDown::Why::kDoubt, began - launch.fell_at};
 }

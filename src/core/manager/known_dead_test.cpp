@@ -551,6 +551,26 @@ TEST(ALaunch, OfTwoOfWhichOneWasReplacedIsEndedByAPerson) {
   EXPECT_FALSE(robot.manager().knowledge().departures.stays_down(robot.id("c")));
 }
 
+// It has nothing left to run, and takes its time to end.
+TEST(ALaunch, WhoseLastProcessCrashedEndsAndItsComponentsRunOn) {
+  for (const Duration takes : {Duration(200ms), Duration(6s)}) {
+    TestRobot robot = launch_of_five();
+    for (const std::string name : {"c", "d", "e"})
+      robot.tell(LauncherSeen{robot.id(name), kLauncher + 1, false});
+    for (const std::string name : {"a", "b"}) {
+      robot.kill(name);
+      robot.run_for(name == "a" ? 3s : takes);
+    }
+    robot.tell(LauncherSeen{robot.id("b"), kLauncher, true});
+    robot.run_for(1min);
+    EXPECT_EQ(robot.count("stay"), 0u) << transcript(robot);
+    for (const std::string name : {"a", "b"}) {
+      EXPECT_TRUE(robot.works(name)) << name << transcript(robot);
+      EXPECT_EQ(robot.manager().knowledge().departures.to_end(robot.id(name)), 0);
+    }
+  }
+}
+
 // Its nodes run on, and so does what stands in for one of them.
 TEST(ALaunch, WhoseLauncherCrashesRunsOn) {
   for (const bool is_known : {true, false}) {
