@@ -75,7 +75,8 @@ void Departures::launcher_ended(const LauncherSeen& seen, Time at) {
   const auto found = std::ranges::find(launches_, seen.pid, &Launch::launcher);
   if (found == launches_.end()) return;
   has_changed_ = true;
-  found->ran_others |= seen.ran_others;
+  // Each component reports what ran when its own process had ended; for the last one nothing did.
+  found->ran_others = seen.ran_others && (found->ended == kNever || found->ran_others);
   if (found->ended != kNever) return;
   found->ended = at;
   found->has_crashed = seen.has_crashed;

@@ -562,6 +562,7 @@ TEST(ALaunch, WhoseLastProcessCrashedEndsAndItsComponentsRunOn) {
       robot.run_for(name == "a" ? 3s : takes);
     }
     robot.tell(LauncherSeen{robot.id("b"), kLauncher, true});
+    robot.tell(LauncherSeen{robot.id("a"), kLauncher, true, false, true});  // b ran then
     robot.run_for(1min);
     EXPECT_EQ(robot.count("stay"), 0u) << transcript(robot);
     for (const std::string name : {"a", "b"}) {
