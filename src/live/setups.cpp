@@ -8,6 +8,7 @@
 
 #include "base/environment.h"
 #include "live/rule_trust.h"
+#include "owners/launch_file.h"
 #include "owners/setup.h"
 #include "owners/spawn.h"
 #include "owners/start_needs.h"
@@ -47,10 +48,14 @@ std::optional<Trouble> trouble_of(const Component& component) {
                    "there is no folder " + component.folder};
   if (!component.setup.empty()) return std::nullopt;
   // Looked for where culprit run looks for it.
-  owners::Program program{component.launch, {own_folder()}, "/dev/null", component.environment};
+  const std::string prefixes =
+      owners::value_in_environment("AMENT_PREFIX_PATH", component.environment);
+  owners::Program program{owners::program_of_launch(component.launch, prefixes),
+                          {own_folder()},
+                          "/dev/null",
+                          component.environment};
   program.folder = component.folder;
-  program.needs = owners::start_needs(
-      component.launch, owners::value_in_environment("AMENT_PREFIX_PATH", component.environment));
+  program.needs = owners::start_needs(component.launch, prefixes);
   if (const auto could = could_run(program); !could)
     return Trouble{component.name, Trouble::Clause::kLaunch, component.launch.front(),
                    could.error()};

@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 
 #include "base/live_clock.h"
+#include "owners/launch_file.h"
 #include "owners/parameter_file.h"
 #include "owners/proc.h"
 
@@ -142,6 +143,22 @@ std::vector<std::string> launch_differences(const std::vector<std::string>& laun
     const auto changed = changed_at(file);
     return changed && *changed > process.started_at + kSlack;
   };
+  const auto look_at_program = [&] {
+    if (process.program_is_gone)
+      all.push_back(
+          is_there(process.program)
+              ? "runs a program that was replaced since it was started: a redeploy starts "
+                "the new " +
+                    process.program
+              : "runs a program that is not there any more: " + process.program);
+  };
+  // Its arguments are known only when it is evaluated, at the start.
+  if (const auto source = launch_file_node(launch)) {
+    look_at_program();
+    if (is_newer(source->file))
+      all.push_back("was started before its launch file '" + source->file + "' was changed");
+    return all;
+  }
   const Parts runs = parts_of(process.started.command);
   const Parts written = parts_of(launch);
   if (runs.program != written.program) {
@@ -149,12 +166,7 @@ std::vector<std::string> launch_differences(const std::vector<std::string>& laun
   } else if (runs.arguments != written.arguments) {
     all.push_back(arguments_in_words(runs.arguments, written.arguments));
   }
-  if (process.program_is_gone)
-    all.push_back(is_there(process.program)
-                      ? "runs a program that was replaced since it was started: a redeploy starts "
-                        "the new " +
-                            process.program
-                      : "runs a program that is not there any more: " + process.program);
+  look_at_program();
   for (const std::string& file : written.files) {
     const std::string path = in_folder(file, folder);
     if (!is_there(path))

@@ -12,15 +12,22 @@ namespace {
 
 constexpr const char* kComponentVariable = "CULPRIT_COMPONENT=";
 constexpr const char* kNamespaceVariable = "CULPRIT_PROCESS_COUNTS_IN=";
+constexpr const char* kNetworkVariable = "CULPRIT_NETWORK=";
 
 constexpr const char* kPlaceVariable = "CULPRIT_IN_PLACE_OF=";
 
 std::string mark(const std::string& component) { return kComponentVariable + component; }
 
+bool is_of_our_network(int pid) {
+  const std::string network = value_of_variable(pid, kNetworkVariable);
+  return network.empty() || network == network_namespace_of(getpid());
+}
+
 }  // namespace
 
 std::vector<std::string> mark_of(const std::string& component) {
-  return {mark(component), kNamespaceVariable + pid_namespace_of(getpid())};
+  return {mark(component), kNamespaceVariable + pid_namespace_of(getpid()),
+          kNetworkVariable + network_namespace_of(getpid())};
 }
 
 std::string to_text(int launcher) {
@@ -47,7 +54,7 @@ PlaceHeld place_in(const std::string& text) {
 PlaceHeld place_held_by(int pid) { return place_in(value_of_variable(pid, kPlaceVariable)); }
 
 bool carries_mark(int pid, const std::string& component) {
-  return has_variable(pid, mark(component));
+  return has_variable(pid, mark(component)) && is_of_our_network(pid);
 }
 
 bool is_what_was_launched(int pid) {
@@ -65,7 +72,7 @@ std::vector<MarkedProcess> marked_processes(const std::string& prefix) {
     std::string component = value_of_variable(pid, kComponentVariable);
     const bool has_ended = state_letter(pid).value_or('X') == 'Z';
     if (!component.starts_with(prefix) || has_ended || pid == getpid() ||
-        !is_what_was_launched(pid))
+        !is_what_was_launched(pid) || !is_of_our_network(pid))
       continue;
     all.push_back({std::move(component), pid});
   }
@@ -76,7 +83,7 @@ std::vector<int> launched_as(const std::string& component) {
   std::vector<int> pids = processes_with(mark(component));
   std::erase_if(pids, [](int pid) {
     const bool has_ended = state_letter(pid).value_or('X') == 'Z';
-    return has_ended || pid == getpid() || !is_what_was_launched(pid);
+    return has_ended || pid == getpid() || !is_what_was_launched(pid) || !is_of_our_network(pid);
   });
   return pids;
 }
@@ -86,7 +93,7 @@ std::vector<int> left_by(const std::string& component, const std::string& proces
   std::vector<int> pids = processes_with(mark(component));
   std::erase_if(pids, [&](int pid) {
     if (pid == getpid() || state_letter(pid).value_or('X') == 'Z' || is_what_was_launched(pid) ||
-        !has_variable(pid, counts_in))
+        !has_variable(pid, counts_in) || !is_of_our_network(pid))
       return true;
     if (!process.empty()) return !has_variable(pid, process);
     const int launched = std::atoi(value_of_variable(pid, std::string(kPidVariable) + "=").c_str());

@@ -3,7 +3,8 @@
 //
 // A child process inherits the mark and is not the component. So a second variable holds the PID of
 // the component's process, and a third one the PID namespace: in another namespace that PID is
-// another process.
+// another process. A fourth one holds the network namespace: in another network the same domain
+// and the same name are another robot. A process without it counts in every network.
 //
 // A process that stands in for one of a launch names that launch: the launcher's PID, and when it
 // began.
@@ -37,7 +38,7 @@ PlaceHeld place_held_by(int pid);
 std::string to_text(int launcher);
 PlaceHeld place_in(const std::string& text);
 
-// Whether it, or what started it, carries the mark.
+// Whether it, or what started it, carries the mark, and that was set in our network.
 bool carries_mark(int pid, const std::string& component);
 
 // Not one that a marked process started in turn.

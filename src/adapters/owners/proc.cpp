@@ -293,6 +293,11 @@ std::string pid_namespace_of(int pid) {
   return fs::read_symlink("/proc/" + std::to_string(pid) + "/ns/pid", error).native();
 }
 
+std::string network_namespace_of(int pid) {
+  std::error_code error;
+  return fs::read_symlink("/proc/" + std::to_string(pid) + "/ns/net", error).native();
+}
+
 int own_number_of(int pid) {
   const std::vector<int> numbers = numbers_of(std::to_string(pid));
   return numbers.empty() ? 0 : numbers.back();

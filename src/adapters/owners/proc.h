@@ -62,6 +62,8 @@ std::vector<int> processes_with(const std::string& variable);
 
 // Where processes are counted: "pid:[4026531836]". Empty if it is unknown.
 std::string pid_namespace_of(int pid);
+// The network that it is in: "net:[4026531840]". Empty if it is unknown.
+std::string network_namespace_of(int pid);
 // The number that a process has in the innermost namespace that it is in; 0 if it is unknown.
 int own_number_of(int pid);
 // An error where /proc counts processes in another PID namespace than this process is in: its numbers are those of others here.

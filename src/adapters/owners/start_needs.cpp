@@ -4,6 +4,8 @@
 #include <optional>
 #include <sstream>
 
+#include "owners/launch_file.h"
+
 namespace culprit::owners {
 namespace {
 
@@ -44,6 +46,10 @@ std::optional<StartNeed> script_of(const std::vector<std::string>& arguments) {
 std::vector<StartNeed> start_needs(const std::vector<std::string>& arguments,
                                    const std::string& prefixes) {
   std::vector<StartNeed> needs;
+  if (const auto what = launch_file_node(arguments)) {
+    if (auto need = need_of(*what, prefixes)) needs.push_back(std::move(*need));
+    return needs;
+  }
   if (auto need = program_of_package(arguments, prefixes)) needs.push_back(std::move(*need));
   if (auto need = script_of(arguments)) needs.push_back(std::move(*need));
   for (std::size_t i = 0; i + 1 < arguments.size(); ++i) {

@@ -3,6 +3,7 @@
 //   ... --params-file FILE          the file of parameters
 //   ros2 run PACKAGE EXECUTABLE     that program, in lib/PACKAGE below one of AMENT_PREFIX_PATH
 //   python3 /path/to/script ...     the script
+//   PACKAGE/FILE.launch.py#NODE     the launch file (launch_file.h)
 //
 // Other forms are not analysed, so no file of theirs is reported as missing.
 #pragma once

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "owners/bounded_log.h"
+#include "owners/launch_file.h"
 #include "owners/launch_note.h"
 #include "owners/mark.h"
 #include "owners/start_needs.h"
@@ -86,8 +87,9 @@ Program Supervisor::program_of(ComponentId component, int launcher) const {
   program.lifetime = options_.lifetime;
   program.folder = what.folder;
   if (const auto environment = environment_of(component)) program.environment = *environment;
-  program.needs = start_needs(program.arguments,
-                              value_in_environment("AMENT_PREFIX_PATH", program.environment));
+  const std::string prefixes = value_in_environment("AMENT_PREFIX_PATH", program.environment);
+  program.needs = start_needs(what.launch, prefixes);
+  program.arguments = program_of_launch(what.launch, prefixes);
   if (!options_.robot.empty()) {
     for (std::string& each : mark_of(marked_as(component)))
       program.environment.push_back(std::move(each));

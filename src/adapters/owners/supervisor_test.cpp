@@ -1161,6 +1161,27 @@ TEST(Supervisor, AMarkCountsOnlyWhereItsNumberDoes) {
   kill(stranger, SIGKILL);
 }
 
+// Two simulated robots of one name and domain, each in a network of its own, are two robots.
+TEST(Supervisor, AMarkCountsOnlyInItsNetwork) {
+  const std::string robot = "test/network/" + std::to_string(getpid());
+  const auto started_in = [&](const std::string& network) {
+    return start_by_others("exec env CULPRIT_COMPONENT=" + robot +
+                           "/c CULPRIT_PROCESS_COUNTS_IN='" + pid_namespace_of(getpid()) +
+                           "' CULPRIT_NETWORK='" + network +
+                           "' sh -c 'export CULPRIT_PROCESS=$$; exec sleep 1000'");
+  };
+  const int other = started_in("net:[1]");
+  ASSERT_TRUE(becomes(other, "sleep"));
+  EXPECT_FALSE(carries_mark(other, robot + "/c"));
+  EXPECT_TRUE(launched_as(robot + "/c").empty());
+  EXPECT_TRUE(marked_processes(robot + "/").empty());
+  const int own = started_in(network_namespace_of(getpid()));
+  ASSERT_TRUE(becomes(own, "sleep"));
+  EXPECT_EQ(launched_as(robot + "/c"), std::vector{own});
+  kill(other, SIGKILL);
+  kill(own, SIGKILL);
+}
+
 // Between fork() and execve() a process carries no mark yet.
 TEST(Supervisor, StartsNothingWhileAnotherCulpritStartsIt) {
   Supervised c("sleep 1000");

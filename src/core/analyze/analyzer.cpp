@@ -243,7 +243,7 @@ void Analyzer::evaluate_trigger(RuleId id, Time now) {
 Slot Analyzer::value_of_trigger(RuleId id, Time now) {
   Detection& detection = write_.states.state(id).detection;
   const Slot value = evaluate(knowledge_.rules[id].trigger, knowledge_.signals.slots());
-  const auto dead = is_true(value) ? std::nullopt : known_silence_.behind(id);
+  const auto dead = known_silence_.behind(id);
   if (!dead) {
     detection.known_death.reset();
     return value;
@@ -457,8 +457,9 @@ void Analyzer::judge(RuleId id, Time now) {
     fail(id, now);
 }
 
-// A started component has to discover its publishers; its subscribers have to discover it, too,
-// where the rule reads from them.
+// A started component has to make the publishers that it had, for which it may open a device first.
+// It has to discover its publishers; its subscribers have to discover it, too, where the rule reads
+// from them.
 Time Analyzer::shows_from(const Attempt& attempt) const {
   const Strategy& strategy = knowledge_.rules[attempt.strategy];
   const auto is_read = [&](ComponentId component) {
@@ -467,14 +468,20 @@ Time Analyzer::shows_from(const Attempt& attempt) const {
         inputs, [&](InputId id) { return may_be_of(component, knowledge_.rules[id], knowledge_); });
   };
   std::vector<ComponentId> hearing;
+  Time speaks = kLongAgo;
   for (const Adaptation& adaptation : strategy.adaptations) {
     if (adaptation.type != AdaptationType::kRedeploy && adaptation.type != AdaptationType::kStart)
       continue;
     hearing.push_back(adaptation.component);
+    const ComponentState& started = knowledge_.components[adaptation.component];
+    if (is_read(adaptation.component)) speaks = std::max(speaks, started.awaits_ends_until);
+    if (is_read(adaptation.component) && started.ends_back > started.node_seen)
+      speaks = std::max(speaks, later(started.ends_back, knowledge_.finding));
     const auto& downstream = knowledge_.graph.downstream(adaptation.component);
     std::copy_if(downstream.begin(), downstream.end(), std::back_inserter(hearing), is_read);
   }
-  return std::min(knowledge_.can_hear_from(hearing), later(attempt.effective, kInputs));
+  const Time hears = std::min(knowledge_.can_hear_from(hearing), later(attempt.effective, kInputs));
+  return std::max(hears, speaks);
 }
 
 bool Analyzer::holds_up_more_critical(StrategyId strategy) const {

@@ -61,9 +61,18 @@ std::optional<ComponentId> KnownSilence::silent_through(TopicId topic, RuleId ru
   if (state.known_dead)
     return *heard >= state.node_seen && sees(rule, *component) ? component : std::nullopt;
   const auto& before = knowledge_.states[rule].detection.known_death;
-  const bool is_awaited = before && before->component == *component && *heard <= before->since &&
-                          knowledge_.states[rule].attempt;
+  const auto& attempt = knowledge_.states[rule].attempt;
+  const bool is_awaited =
+      before && before->component == *component && *heard <= before->since && attempt &&
+      (!reads_whether_alive(rule, *component) || knowledge_.now < attempt->deadline);
   return is_awaited ? component : std::nullopt;
+}
+
+bool KnownSilence::reads_whether_alive(RuleId rule, ComponentId component) const {
+  return std::ranges::any_of(knowledge_.rules[rule].inputs, [&](InputId id) {
+    const Input& input = knowledge_.rules[id];
+    return input.kind == Input::Kind::kAlive && input.component == component;
+  });
 }
 
 bool KnownSilence::sees(RuleId rule, ComponentId component) const {
@@ -73,7 +82,8 @@ bool KnownSilence::sees(RuleId rule, ComponentId component) const {
 
 FailureDetected KnownSilence::detected(RuleId rule) const {
   const auto& death = knowledge_.states[rule].detection.known_death;
-  if (!death) return {rule};
+  const Slot shown = evaluate(knowledge_.rules[rule].trigger, knowledge_.signals.slots());
+  if (!death || (shown.known && shown.b)) return {rule};
   const ComponentState& state = knowledge_.components[death->component];
   return {
       rule, death->component,

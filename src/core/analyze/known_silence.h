@@ -27,15 +27,16 @@ class KnownSilence {
   // `knowledge` must outlive it.
   explicit KnownSilence(const Knowledge& knowledge);
 
-  // The component whose known death makes the trigger of `rule` true. Empty: none does.
-  // @pre what the trigger reads does not make it true by itself
+  // The component whose known death makes the trigger of `rule` true, or would make it true. Empty:
+  // none does.
   std::optional<ComponentId> behind(RuleId rule) const;
 
-  // The event, with that component.
+  // The event, with that component unless the inputs show the failure by themselves.
   FailureDetected detected(RuleId rule) const;
 
  private:
   std::optional<ComponentId> silent_through(TopicId topic, RuleId rule) const;
+  bool reads_whether_alive(RuleId rule, ComponentId component) const;
   bool sees(RuleId rule, ComponentId component) const;
 
   const Knowledge& knowledge_;

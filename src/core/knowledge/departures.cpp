@@ -75,7 +75,8 @@ void Departures::launcher_ended(const LauncherSeen& seen, Time at) {
   const auto found = std::ranges::find(launches_, seen.pid, &Launch::launcher);
   if (found == launches_.end()) return;
   has_changed_ = true;
-  found->ran_others |= seen.ran_others;
+  // Each component reports what ran when its own process had ended; for the last one nothing did.
+  found->ran_others = seen.ran_others && (found->ended == kNever || found->ran_others);
   if (found->ended != kNever) return;
   found->ended = at;
   found->has_crashed = seen.has_crashed;
@@ -183,9 +184,11 @@ bool Departures::is_any_orphan() const {
 
 // @pre its launcher has ended
 Departures::Verdict Departures::verdict(const Launch& launch, Time now) const {
-  if (launch.has_crashed) return {Verdict::What::kGoesOn};
   const bool are_leaving = launch.left > 0 && launch.left_first <= later(launch.ended, kTogether) &&
                            launch.ended <= later(launch.left_at, kTogether);
+  // The exit code of ros2 launch is 1 after an error of its own shutdown, too.
+  const bool took_all_along = are_leaving && (launch.left > 1 || !is_original_left(launch));
+  if (launch.has_crashed && !took_all_along) return {Verdict::What::kGoesOn};
   const bool is_over = (are_leaving && launch.left > 1) || !is_original_left(launch);
   if (!is_over) {
     const Time until = later(launch.ended, kTogether);
@@ -200,13 +203,16 @@ Departures::Verdict Departures::verdict(const Launch& launch, Time now) const {
   }
   if (!are_leaving && !launch.ran_others && !has_stand_in(launch)) return {Verdict::What::kGoesOn};
   const Time began = are_leaving ? std::min(launch.left_first, launch.ended) : launch.ended;
-  const auto is_soon_after = [&](Time at) {
-    return at != kLongAgo && at <= began && began <= later(at, kDoubt);
+  const auto is_soon_after = [&](Time at, Duration soon = kDoubt) {
+    return at != kLongAgo && at <= began && began <= later(at, soon);
   };
+  // Its last process crashed, or culprit ended that. On a busy computer it takes seconds to end.
+  const bool had_nothing_left = !are_leaving && !launch.ran_others;
+  if (had_nothing_left && is_soon_after(std::max(launch.fell_at, launch.ended_here_at), kTogether))
+    return {Verdict::What::kGoesOn};
   if (is_soon_after(launch.ended_here_at)) return {Verdict::What::kBroken};
   if (!is_soon_after(launch.fell_at))
     return {Verdict::What::kEnded, kNever, StaysDown::Why::kPerson};
-  if (!are_leaving && !launch.ran_others) return {Verdict::What::kGoesOn};
   if (revives_) return {Verdict::What::kBroken};
   return {Verdict::What::kEnded, kNever, StaysDown::Why::kDoubt, began - launch.fell_at};
 }

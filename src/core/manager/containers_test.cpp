@@ -117,5 +117,23 @@ TEST(AContainer, ThatRunsIsNotHeldResponsibleForAComponentOfIt) {
   EXPECT_FALSE(robot.was_asked("box: stop process")) << transcript(robot);
 }
 
+// It did not answer the request to unload a component. It was the last of its launch, which ends.
+TEST(AContainer, ThatCulpritReplacesForAComponentWasNotEndedByAPerson) {
+  constexpr int kLauncher = 50;
+  TestRobot robot = robot_with_box(std::string(kPartsGone) + kBoxGone);
+  for (const std::string name : {"box", "detector", "tracker"})
+    robot.tell(LauncherSeen{robot.id(name), kLauncher, false});
+  robot["tracker"].fault = "redeploy";
+  while (!robot.was_asked("tracker: stop process")) robot.run_for(10ms);
+  robot.leave("box");
+  robot.leave("detector");
+  robot.run_for(300ms);
+  for (const std::string name : {"box", "detector", "tracker"})
+    robot.tell(LauncherSeen{robot.id(name), kLauncher, true});
+  robot.run_for(1min);
+  EXPECT_EQ(robot.count("stay"), 0u) << transcript(robot);
+  EXPECT_TRUE(robot.works("box")) << transcript(robot);
+}
+
 }  // namespace
 }  // namespace culprit::test

@@ -198,6 +198,82 @@ TEST(KnownDead, IsResolvedWhenItIsHeardAgain) {
   EXPECT_EQ(robot.count_asked("camera: start process"), 1u) << transcript(robot);
 }
 
+// As `culprit init` drafts it.
+std::string drafted_rules() {
+  std::string rules(kPatientRules);
+  return rules.replace(rules.find("age(/image) > 5s"), 16, "!alive(camera) || age(/image) > 750ms");
+}
+
+// The process is there again at once, and its topic is not.
+TEST(KnownDead, IsResolvedWhenItIsHeardAgainAlsoIfTheRuleReadsAlive) {
+  TestRobot robot = robot_with(drafted_rules());
+  robot.kill("camera");
+  robot["camera"].fault = "warms up";
+  robot.run_for(1s);
+  EXPECT_EQ(robot.count("CameraSilent detected (ERROR)"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("known dead"), 0u) << "the rule sees by itself that it exited";
+  EXPECT_EQ(robot.count("redeploy camera: done"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("CameraSilent resolved"), 0u) << transcript(robot);
+  robot["camera"].fault = "";
+  robot.run_for(5s);
+  EXPECT_EQ(robot.count("CameraSilent resolved by redeploy"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("CameraSilent detected"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("camera: start process"), 1u) << transcript(robot);
+}
+
+// A node was killed whose constructor opens a device before it makes a publisher; its successor is at
+// its start.
+TestRobot robot_that_starts_slowly() {
+  Manager::Options options;
+  options.governor = Governor::Options::recommended();
+  TestRobot robot(drafted_rules(), std::make_unique<BayesPlanner>(), options);
+  robot.add("camera", {}, "/image").has_lifecycle = false;
+  robot.add("fusion", {"camera"}, "/fused");
+  robot.discover();
+  robot.tell(EndpointAppeared{"/camera", EndpointKind::kPublisher, "/image"});
+  robot.tell(Probed{robot.id("camera"), true});
+  robot.run_for(6s);
+  robot.kill("camera");
+  robot.run_for(100ms);
+  robot.tell(EndpointVanished{"/camera", EndpointKind::kPublisher, "/image"});
+  robot["camera"].fault = "warms up";
+  return robot;
+}
+
+TEST(KnownDead, ANodeThatDoesNotSpeakYetIsNotEndedAgain) {
+  TestRobot robot = robot_that_starts_slowly();
+  robot.run_for(25s);
+  EXPECT_EQ(robot.count_asked("camera: start process"), 1u) << transcript(robot);
+  robot.tell(EndpointAppeared{"/camera", EndpointKind::kPublisher, "/image"});
+  robot.tell(Probed{robot.id("camera"), true});
+  robot.run_for(2s);  // until it is discovered
+  robot["camera"].fault = "";
+  robot.run_for(5s);
+  EXPECT_EQ(robot.count("CameraSilent resolved by redeploy"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("camera: start process"), 1u) << transcript(robot);
+}
+
+// Its start is over once it answers: what it has not made by then it may never make.
+TEST(KnownDead, ANodeThatAnswersAndDoesNotSpeakIsReplaced) {
+  TestRobot robot = robot_that_starts_slowly();
+  robot.run_for(2s);
+  robot.tell(Probed{robot.id("camera"), true});
+  robot.run_for(20s);
+  EXPECT_GE(robot.count_asked("camera: start process"), 2u) << transcript(robot);
+}
+
+// A topic on demand need not come again: the process is there, and that is all that can be known.
+TEST(KnownDead, ARarelyPublishedTopicIsNotAwaitedForLong) {
+  TestRobot robot = robot_with(std::string(kPatientRules)
+                                   .replace(std::string(kPatientRules).find("age(/image) > 5s"), 16,
+                                            "!alive(camera) || age(/image) > 1h"));
+  robot.kill("camera");
+  robot["camera"].fault = "warms up";
+  robot.run_for(30s);
+  EXPECT_EQ(robot.count("CameraSilent resolved by redeploy"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("camera: start process"), 1u) << transcript(robot);
+}
+
 TEST(KnownDead, WhatSomebodyElseStartedAgainIsLeftAlone) {
   Manager::Options options;
   options.governor.quiet_at_start = 8s;  // so that nothing is begun for a while
@@ -362,6 +438,24 @@ TEST(ALaunch, ThatEndsSoonAfterACrashStaysDownAndSaysWhy) {
   EXPECT_FALSE(robot.manager().knowledge().departures.stays_down(robot.id("a")));
 }
 
+// Several nodes with on_exit=Shutdown(): ros2 launch is told to end repeatedly, and exits with code 1.
+TEST(ALaunch, WhoseLauncherExitsWithAnErrorAfterItsNodesHasEnded) {
+  for (const bool has_crashed : {false, true}) {
+    TestRobot robot = launch_of_five();
+    if (has_crashed) robot.kill("a");
+    robot.run_for(300ms);
+    for (const std::string name : {"b", "c", "d", "e"}) robot.leave(name);
+    if (!has_crashed) robot.leave("a");
+    robot.run_for(200ms);
+    for (const std::string& name : kFive)
+      robot.tell(LauncherSeen{robot.id(name), kLauncher, true, true});
+    robot.run_for(1min);
+    for (const std::string& name : kFive)
+      EXPECT_TRUE(robot.manager().knowledge().departures.stays_down(robot.id(name)))
+          << name << transcript(robot);
+  }
+}
+
 // on_exit=Shutdown(): its launcher ended the rest because one had broken.
 TEST(ALaunch, ThatEndsBecauseOneBrokeIsBroughtBackWithRevive) {
   TestRobot robot = launch_of_five(reviving());
@@ -432,6 +526,7 @@ TEST(ALaunch, TakesWhatStandsInForOneOfItAlong) {
     robot.leave("a");
     robot.run_for(1min);
     EXPECT_EQ(robot.asked.size(), asked) << transcript(robot);
+    EXPECT_EQ(robot.count("none helped"), 0u) << "none was tried" << transcript(robot);
     EXPECT_TRUE(departures.started().empty());
   }
 }
@@ -454,6 +549,27 @@ TEST(ALaunch, OfTwoOfWhichOneWasReplacedIsEndedByAPerson) {
   EXPECT_EQ(robot.count("a and b stay down: a person ended the launch of process 50"), 1u)
       << transcript(robot);
   EXPECT_FALSE(robot.manager().knowledge().departures.stays_down(robot.id("c")));
+}
+
+// It has nothing left to run, and takes its time to end.
+TEST(ALaunch, WhoseLastProcessCrashedEndsAndItsComponentsRunOn) {
+  for (const Duration takes : {Duration(200ms), Duration(6s)}) {
+    TestRobot robot = launch_of_five();
+    for (const std::string name : {"c", "d", "e"})
+      robot.tell(LauncherSeen{robot.id(name), kLauncher + 1, false});
+    for (const std::string name : {"a", "b"}) {
+      robot.kill(name);
+      robot.run_for(name == "a" ? 3s : takes);
+    }
+    robot.tell(LauncherSeen{robot.id("b"), kLauncher, true});
+    robot.tell(LauncherSeen{robot.id("a"), kLauncher, true, false, true});  // b ran then
+    robot.run_for(1min);
+    EXPECT_EQ(robot.count("stay"), 0u) << transcript(robot);
+    for (const std::string name : {"a", "b"}) {
+      EXPECT_TRUE(robot.works(name)) << name << transcript(robot);
+      EXPECT_EQ(robot.manager().knowledge().departures.to_end(robot.id(name)), 0);
+    }
+  }
 }
 
 // Its nodes run on, and so does what stands in for one of them.

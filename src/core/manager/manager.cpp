@@ -23,6 +23,13 @@ bool same_reasons(const std::vector<Candidate>& a, const std::vector<Candidate>&
                     });
 }
 
+// Did a person end one of them?
+bool stays_any_down(std::span<const ComponentId> components, const Knowledge& knowledge) {
+  return std::ranges::any_of(components, [&](ComponentId component) {
+    return knowledge.departures.stays_down(component);
+  });
+}
+
 // Does the governor withhold all strategies that were left to try until a person has looked?
 bool is_given_up(const Decision& decision, const Knowledge& knowledge) {
   bool is_any = false;
@@ -93,10 +100,7 @@ void Manager::remember(const History& past) {
 void Manager::resume(Interrupted interrupted) {
   if (autonomy_ == Autonomy::kAdvise) return;
   const StrategyId strategy = interrupted.strategy;
-  const bool is_down = std::ranges::any_of(
-      knowledge_.rules[strategy].components,
-      [&](ComponentId component) { return knowledge_.departures.stays_down(component); });
-  if (is_down) return;
+  if (stays_any_down(knowledge_.rules[strategy].components, knowledge_)) return;
   executor_.resume(std::move(interrupted), now_, discovered_);
   governor_.began(strategy, now_);
 }
@@ -337,7 +341,7 @@ void Manager::plan(Time now, std::vector<Command>& commands) {
       // reachable again.
       if (knowledge_.unheard_behind(decision.rule))
         analyzer_.turn_to_last_resort(decision.rule, now);
-      else
+      else if (!stays_any_down(knowledge_.rules[decision.rule].components, knowledge_))
         analyzer_.round_is_spent(decision.rule, now);
     } else {
       hold_back(decision, now);

@@ -49,6 +49,7 @@ Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time dis
       derived_(knowledge.rules.inputs.size()),
       component_inputs_(knowledge.rules.components.size()),
       part_misses_(knowledge.rules.components.size()),
+      has_answered_(knowledge.rules.components.size(), false),
       parameter_inputs_(knowledge.rules.parameters.size()),
       parameter_signals_(knowledge.rules.parameters.size()),
       diagnostic_inputs_(knowledge.rules.diagnostics.size()),
@@ -168,8 +169,12 @@ void Monitor::advance(Time now) {
     }
     if (*due > knowledge_.rules.inputs.size() + 1) {
       const ComponentId component(*due - knowledge_.rules.inputs.size() - 2);
-      await_ends_no_more(component, now);
-      note_missing_part(component, now);
+      if (is_at_its_start(component, now)) {
+        await_ends(component, now);
+      } else {
+        await_ends_no_more(component, now);
+        note_missing_part(component, now);
+      }
       continue;
     }
     for (std::size_t c = 0; c < knowledge_.rules.components.size(); ++c) {

@@ -39,6 +39,9 @@ class Monitor {
   static constexpr std::size_t kLeastReadings = 4;
   // A node that began anew may take so long to make the publishers and subscribers it had.
   static constexpr Duration kEndsAwaited = std::chrono::seconds(10);
+  // Or so long, if its earlier processes answered requests and this one has answered none yet: it is
+  // at its start still.
+  static constexpr Duration kStartAwaited = std::chrono::minutes(1);
   static constexpr Duration kSpeaksAgain = std::chrono::seconds(2);
   static constexpr Duration kUnsure = std::chrono::seconds(10);
   // A node whose lifecycle changed has so long before it is found to hang.
@@ -253,6 +256,7 @@ class Monitor {
 
   void await_ends(ComponentId component, Time at);
   void note_ends(ComponentId component, Time at);
+  bool is_at_its_start(ComponentId component, Time now) const;
   void await_ends_no_more(ComponentId component, Time at);
   void keep_ends(ComponentId component);
   void forget_process(ComponentId component, Time at);
@@ -316,6 +320,7 @@ class Monitor {
     bool has_answered = false;
   };
   std::vector<std::vector<PartMisses>> part_misses_;  // by component
+  std::vector<bool> has_answered_;                    // by component: one of its processes did
   std::vector<std::vector<InputId>> parameter_inputs_;
   std::vector<std::vector<SignalId>> parameter_signals_;
   std::vector<std::vector<InputId>> diagnostic_inputs_;

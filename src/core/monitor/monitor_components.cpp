@@ -95,6 +95,12 @@ void Monitor::note_ends(ComponentId component, Time at) {
     await_ends_no_more(component, at);
 }
 
+bool Monitor::is_at_its_start(ComponentId component, Time now) const {
+  const ComponentState& state = knowledge_.components[component];
+  return has_answered_[component.index] && !state.answers_probes && state.in_graph &&
+         state.process == ProcessState::kRunning && now < later(state.node_seen, kStartAwaited);
+}
+
 void Monitor::await_ends_no_more(ComponentId component, Time at) {
   ComponentState& state = write_.components[component];
   state.awaits_ends_until = kLongAgo;
@@ -309,6 +315,7 @@ void Monitor::on(Time at, const Probed& seen) {
   state.missed_probes = seen.answered ? 0 : state.missed_probes + 1;
   state.answers_probes |= seen.answered;
   if (seen.answered) {
+    has_answered_[seen.component.index] = true;
     state.answered = at;
     state.questioned.unanswered.reset();
     state.questioned.is_pointless = false;

@@ -3,6 +3,23 @@
 #include "monitor/monitor.h"
 
 namespace culprit {
+namespace {
+
+// Does culprit end it? A strategy adapts it, or reloads a component of its container: if the
+// container does not answer, it is replaced with all that it has.
+bool is_ended_here(ComponentId component, const Knowledge& knowledge) {
+  if (knowledge.states.reservation(component) != nullptr) return true;
+  const RuleSet& rules = knowledge.rules;
+  const ComponentId home = container_of(component, rules).value_or(component);
+  for (std::size_t c = 0; c < rules.components.size(); ++c) {
+    if (container_of(ComponentId(c), rules) != home) continue;
+    const Attempt* attempt = knowledge.states.reservation(ComponentId(c));
+    if (attempt != nullptr && attempt->stage == Attempt::Stage::kAdapting) return true;
+  }
+  return false;
+}
+
+}  // namespace
 
 void Monitor::on(Time at, const LauncherSeen& seen) {
   if (seen.has_ended) return write_.departures.launcher_ended(seen, at);
@@ -41,7 +58,7 @@ void Monitor::note_end(const ProcessSeen& seen, Time at) {
   const ComponentId component = seen.component;
   const bool has_said_good_bye = !knowledge_.components[component].in_graph;
   note_no_longer_dead(component);
-  if (knowledge_.states.reservation(component) != nullptr) {
+  if (is_ended_here(component, knowledge_)) {
     write_.departures.ended_here(component, at);
   } else if (seen.cause == Cause::kOrder) {
     write_.departures.left(component, at);
@@ -66,7 +83,7 @@ void Monitor::note_farewell(ComponentId component, Time at) {
   const bool is_fallen = deadlines_.at(farewell_of(component)) != kNever;
   deadlines_.clear(farewell_of(component));
   if (!is_running && !is_fallen) return;  // its lease ran out, long after its end
-  if (knowledge_.states.reservation(component) == nullptr) write_.departures.left(component, at);
+  if (!is_ended_here(component, knowledge_)) write_.departures.left(component, at);
 }
 
 void Monitor::note_known_dead(ComponentId component, Time at) {
