@@ -31,11 +31,11 @@ test:
 	@scripts/install-dependencies --test-builds
 	scripts/test
 
-# What takes longer than a test may, some five hours in all: all tests as users build, a robot that is broken and healed for an hour, three robots that nothing
+# What takes longer than a test may, some six hours in all: all tests as users build, a robot that is broken and healed for an hour, three robots that nothing
 # is wrong with for ten minutes each, 500 kills of culprit, 67 attacks 20 times each, 1,000 robots of a fleet, 100 random sequences of faults for each kind of
 # owner, 40 changes of the core that its tests should notice, the laboratory and the commands under the address sanitizer, all but robots, laboratory and
-# commands under the thread sanitizer, each fuzzer for five minutes, every figure in the documents that its command makes again, Debian packages that are
-# installed, upgraded and removed.
+# commands under the thread sanitizer, each file compiled by itself, each fuzzer for five minutes, every figure in the documents that its command makes again,
+# Debian packages that are installed, upgraded and removed, and clang-tidy on every file.
 soak:
 	@scripts/install-dependencies --tests
 	cmake --preset release
@@ -55,12 +55,15 @@ soak:
 	cmake --preset tsan
 	cmake --build --preset tsan-soak --parallel $(JOBS)
 	ctest --preset tsan-soak
+	cmake --preset walls
+	cmake --build --preset walls-soak --parallel $(JOBS)
 	scripts/fuzz --seconds 300
 	scripts/figures --check
 	scripts/install-dependencies --arm64
 	scripts/arm64
 	scripts/install-dependencies --packages
 	scripts/test-packages
+	scripts/tidy
 
 # The documents as a site that can be searched: build/docs/index.html. It needs no network.
 docs:

@@ -1,4 +1,11 @@
 // The load that culprit puts on a robot, as a process beside it.
+#include <chrono>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
 #include <benchmark/benchmark.h>
 
 #include "claims.h"

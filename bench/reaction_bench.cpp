@@ -1,6 +1,7 @@
 // From a sample to the request that answers it, between processes: a source, `culprit run`, and a
 // plain reader.
 #include <algorithm>
+#include <cstdlib>
 #include <sstream>
 
 #include <benchmark/benchmark.h>

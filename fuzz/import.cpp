@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string>
 
+#include "import/importer.h"
 #include "language/checker.h"
-#include "language/import/importer.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace culprit;

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <set>
 #include <string>
+#include <tuple>
 
 #include "link/manager_lease.h"
 #include "ros2/discovery_info.h"

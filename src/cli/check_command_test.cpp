@@ -1,5 +1,6 @@
 #include <fstream>
 #include <iterator>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

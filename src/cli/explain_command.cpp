@@ -87,7 +87,7 @@ int explain(const ExplainOptions& options) {
   if (options.last || is_number(options.what)) return explain_row(options);
   if (options.markdown) {
     const bool of_doctor = options.what == "doctor";
-    fmt::print("{}", of_doctor ? doctor::findings_as_markdown() : diagnostics_as_markdown());
+    fmt::print("{}", of_doctor ? doctor::findings_page() : diagnostics_page());
     return kOk;
   }
   if (options.what.empty() && options.json) {

@@ -1,6 +1,7 @@
 // culprit export and the way back, as a user runs them.
 #include <filesystem>
 #include <fstream>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,10 @@
 // culprit fmt as a user runs it: files, output and exit codes.
 #include <filesystem>
 #include <fstream>
+#include <iostream>
+#include <sstream>
 #include <sys/stat.h>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -4,8 +4,8 @@
 #include <cctype>
 
 #include "base/closest.h"
+#include "base/wrapped.h"
 #include "cli/glossary_text.h"
-#include "terminal/help.h"
 
 namespace culprit::cli {
 namespace {

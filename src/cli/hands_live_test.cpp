@@ -1,5 +1,6 @@
 // A running culprit, asked and told from another terminal, as people do it.
 #include <csignal>
+#include <memory>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -6,7 +6,7 @@
 
 #include "base/text_file.h"
 #include "cli/commands.h"
-#include "language/import/importer.h"
+#include "import/importer.h"
 #include "rule_json/from_json.h"
 
 namespace culprit::cli {

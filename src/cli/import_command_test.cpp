@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <fstream>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -29,9 +30,8 @@ struct ImportCommand : testing::Test {
 
 TEST_F(ImportCommand, WritesTheRulesAndSumsUpTheNotes) {
   testing::internal::CaptureStderr();
-  EXPECT_EQ(
-      run({"import", "src/core/language/import/golden/conditions.txt", "-o", path("out.rules")}),
-      kOk);
+  EXPECT_EQ(run({"import", "src/tools/import/golden/conditions.txt", "-o", path("out.rules")}),
+            kOk);
   EXPECT_THAT(testing::internal::GetCapturedStderr(),
               testing::AllOf(testing::HasSubstr("7 rules imported, 1 kept as comments, 2"),
                              testing::HasSubstr("mission_phase is looked up on the robot: as the "
@@ -47,7 +47,7 @@ TEST_F(ImportCommand, WritesTheRulesAndSumsUpTheNotes) {
 TEST_F(ImportCommand, PrintsTheRulesWithoutAnOutputFile) {
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
-  EXPECT_EQ(run({"import", "src/core/language/import/golden/strategies.txt"}), kOk);
+  EXPECT_EQ(run({"import", "src/tools/import/golden/strategies.txt"}), kOk);
   testing::internal::GetCapturedStderr();
   EXPECT_THAT(testing::internal::GetCapturedStdout(), testing::HasSubstr("RULE ScanLost\n"));
 }
@@ -57,9 +57,8 @@ TEST_F(ImportCommand, FailsWithAReason) {
   testing::internal::CaptureStderr();
   EXPECT_EQ(run({"import", path("bad.txt")}), kFailed);
   EXPECT_EQ(run({"import", path("missing.txt")}), kFailed);
-  EXPECT_EQ(
-      run({"import", "src/core/language/import/golden/strategies.txt", "-o", path("no/such")}),
-      kFailed);
+  EXPECT_EQ(run({"import", "src/tools/import/golden/strategies.txt", "-o", path("no/such")}),
+            kFailed);
   EXPECT_THAT(
       testing::internal::GetCapturedStderr(),
       testing::AllOf(testing::HasSubstr("bad.txt:2:12: 'ten' is no number"),

@@ -1,5 +1,6 @@
 // culprit plan --state as a user runs it: files, output and exit codes.
 #include <fstream>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
 // The black box as users have it: `culprit run --record` on a node that is killed, and what is in the recording.
+#include <algorithm>
 #include <csignal>
 
 #include <gmock/gmock.h>

@@ -13,6 +13,7 @@
 #include "base/closest.h"
 #include "base/name_grammar.h"
 #include "base/text_file.h"
+#include "base/wrapped.h"
 #include "cli/run_options.h"
 #include "terminal/help.h"
 #include "terminal/listed.h"

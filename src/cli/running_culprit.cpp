@@ -4,7 +4,6 @@
 #include <charconv>
 #include <csignal>
 #include <cstdlib>
-#include <fstream>
 #include <pwd.h>
 #include <string_view>
 #include <unistd.h>
@@ -13,6 +12,7 @@
 
 #include "base/environment.h"
 #include "base/name_grammar.h"
+#include "base/process_stat.h"
 #include "ros2/options.h"
 
 namespace culprit::cli {
@@ -25,23 +25,13 @@ std::string name_of_user(std::uint32_t user) {
   return entry != nullptr ? entry->pw_name : std::to_string(user);
 }
 
-// 'T' of a process that is stopped; 0: unknown. After the name, which may hold anything but ends with
-// the last bracket (proc(5)).
-char state_of_process(int process) {
-  std::ifstream file("/proc/" + std::to_string(process) + "/stat");
-  std::string text;
-  std::getline(file, text);
-  const std::size_t end = text.rfind(')');
-  return end == std::string::npos || end + 2 >= text.size() ? '\0' : text[end + 2];
-}
-
 std::string why_silent(const LocalSocket& socket, const std::string& error) {
   const std::string who =
       fmt::format("the culprit of process {} (domain {})", socket.process, socket.domain);
   if (socket.state == LocalSocket::State::kLeft)
     return who +
            " has ended without a word: it was killed, or crashed; culprit log shows what it did";
-  if (state_of_process(socket.process) == 'T')
+  if (const auto stat = process_stat(std::to_string(socket.process)); stat && stat->state == 'T')
     return fmt::format("{} is stopped and does nothing: kill -CONT {} lets it go on", who,
                        socket.process);
   return fmt::format("{} does not answer: {}", who, error);

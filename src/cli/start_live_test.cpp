@@ -1,6 +1,7 @@
 // The output at the start of culprit or its demonstration, and the fate of both when the person or
 // the terminal is gone.
 #include <csignal>
+#include <fstream>
 #include <thread>
 
 #include <gmock/gmock.h>

@@ -6,6 +6,7 @@
 
 #include "base/closest.h"
 #include "base/name_grammar.h"
+#include "base/wrapped.h"
 #include "terminal/command.h"
 #include "terminal/console.h"
 #include "terminal/listed.h"
@@ -56,35 +57,6 @@ std::string purpose_of(const CLI::Option& option) {
   const std::string fallback = option.get_default_str();
   const bool is_told = fallback.empty() || text.find("(default") != std::string::npos;
   return is_told ? text : text + " (default: " + fallback + ")";
-}
-
-std::string wrapped(const std::string& text, std::size_t columns) {
-  std::string out;
-  std::size_t column = 0;
-  std::string word;
-  const auto end_word = [&] {
-    if (word.empty()) return;
-    if (column > 0 && column + 1 + word.size() > columns) {
-      out += '\n';
-      column = 0;
-    }
-    if (column > 0) out += ' ';
-    column += (column > 0 ? 1 : 0) + word.size();
-    out += std::exchange(word, "");
-  };
-  for (const char c : text) {
-    if (c != ' ' && c != '\n') {
-      word += c;
-      continue;
-    }
-    end_word();
-    if (c == '\n') {
-      out += '\n';
-      column = 0;
-    }
-  }
-  end_word();
-  return out;
 }
 
 void add_help(CLI::App& app, int& exit_code) {

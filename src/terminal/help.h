@@ -14,9 +14,6 @@ std::string value_of(const CLI::Option& option);
 // The purpose of an option, and its default: "How many of the latest rows (default: 50)".
 std::string purpose_of(const CLI::Option& option);
 
-// `text` in lines of so many characters at most, if its words allow it.
-std::string wrapped(const std::string& text, std::size_t columns);
-
 std::shared_ptr<CLI::FormatterBase> help_formatter();
 
 // Adds the command `help`, which prints the help of the command that it is given, or the program's.

@@ -142,13 +142,6 @@ TEST(Program, EndsAtOnceWithAllThatItSaid) {
   EXPECT_EXIT(end(), testing::ExitedWithCode(kFailed), "as said");
 }
 
-TEST(Help, HasLinesThatFit) {
-  EXPECT_EQ(wrapped("one two three", 7), "one two\nthree");
-  EXPECT_EQ(wrapped("a line\nand another", 80), "a line\nand another");
-  EXPECT_EQ(wrapped("a-word-that-is-too-long", 5), "a-word-that-is-too-long");
-  EXPECT_EQ(wrapped("", 5), "");
-}
-
 TEST(SecondsOption, TakesUnitsOrSeconds) {
   EXPECT_EQ(ended({"check"}).said, "waits 3.000");
   EXPECT_EQ(ended({"check", "--wait", "8"}).said, "waits 8.000");

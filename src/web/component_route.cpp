@@ -1,6 +1,6 @@
 #include "web/component_route.h"
 
-#include "web/process_stat.h"
+#include "base/process_stat.h"
 
 namespace culprit::web {
 namespace {

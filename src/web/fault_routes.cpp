@@ -1,6 +1,7 @@
 #include "web/fault_routes.h"
 
 #include <algorithm>
+#include <memory>
 
 namespace culprit::web {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <fmt/core.h>
 
-#include "web/process_stat.h"
+#include "base/process_stat.h"
 
 namespace culprit::web {
 namespace {

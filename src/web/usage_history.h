@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "base/mutex.h"
+#include "base/process_stat.h"
 #include "live/observer.h"
-#include "web/process_stat.h"
 
 namespace culprit::web {
 

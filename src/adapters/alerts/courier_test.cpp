@@ -1,5 +1,6 @@
 #include "alerts/courier.h"
 
+#include <atomic>
 #include <sys/socket.h>
 
 #include <gmock/gmock.h>

@@ -1,6 +1,7 @@
 // What stays of a curve of very many samples.
 #include "bag/thinned_curve.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -1,6 +1,7 @@
 #include "journal/standing_orders.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "base/invariant.h"
 #include "base/name_grammar.h"

@@ -1,6 +1,7 @@
 #include "owners/parameter_file.h"
 
 #include <fstream>
+#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

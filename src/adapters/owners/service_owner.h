@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/expected.h"
+#include "base/time.h"
 
 namespace culprit::owners {
 

@@ -2,6 +2,9 @@
 
 #include <filesystem>
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include "base/test_folder.h"
 #include "owners/spawn.h"
 #include "owners/test_process.h"

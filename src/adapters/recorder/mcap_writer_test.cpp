@@ -1,5 +1,6 @@
 #include "recorder/mcap_writer.h"
 
+#include <algorithm>
 #include <csignal>
 #include <fstream>
 #include <sys/wait.h>

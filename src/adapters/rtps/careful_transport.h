@@ -31,7 +31,7 @@
 #include <utility>
 #include <vector>
 
-#include <fastdds/rtps/common/LocatorList.hpp>
+#include <fastdds/rtps/common/Locator.h>
 #include <fastdds/rtps/network/SenderResource.h>
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>

@@ -1,6 +1,8 @@
 #include "rtps/receive_thread.h"
 
+#include <algorithm>
 #include <arpa/inet.h>
+#include <atomic>
 #include <semaphore>
 #include <set>
 #include <string>

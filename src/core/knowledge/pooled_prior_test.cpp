@@ -1,6 +1,7 @@
 #include "knowledge/pooled_prior.h"
 
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

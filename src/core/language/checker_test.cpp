@@ -11,6 +11,7 @@
 #include "language/evaluate.h"
 #include "language/explanations.h"
 #include "language/live_checks.h"
+#include "language/test_example_robot.h"
 
 namespace culprit {
 namespace {

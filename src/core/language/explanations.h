@@ -1,29 +1,25 @@
-// The explanation of each diagnostic: the pages of `culprit explain` and docs/diagnostics.md.
+// The explanation of each diagnostic. The source is docs/diagnostics.md, which is compiled in: there is no second text.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "language/diagnostic.h"
-#include "language/live_inventory.h"
-#include "language/symbols.h"
 
 namespace culprit {
 
 // `wrong` and `right` are whole rule files: checking `wrong` gives `code` and nothing else,
-// checking `right` gives nothing.
+// checking `right` gives nothing; with --strict where the title says so, against a robot where
+// `why` describes one.
 struct Explanation {
   Code code;
   std::string title;  // one line, no full stop
   std::string why;    // a paragraph: what it means for the robot, and what to do
   std::string wrong;
   std::string right;
-  Strictness strictness = Strictness::kLenient;  // of the check that finds it
-  bool needs_robot = false;                      // found by checking against example_robot()
 };
-
-// A robot with one camera.
-const LiveInventory& example_robot();
 
 // One for each code, ascending.
 const std::vector<Explanation>& explanations();
@@ -35,6 +31,6 @@ const Explanation* find_explanation(std::string_view code);
 std::string page(const Explanation& explanation);
 
 // All of them: docs/diagnostics.md.
-std::string diagnostics_as_markdown();
+std::string_view diagnostics_page();
 
 }  // namespace culprit

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "language/explanations.h"
 #include "language/live_checks.h"
+#include "language/test_example_robot.h"
 
 namespace culprit {
 namespace {

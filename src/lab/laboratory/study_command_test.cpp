@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <fstream>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <gmock/gmock.h>

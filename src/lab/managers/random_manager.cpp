@@ -1,5 +1,7 @@
 #include "managers/random_manager.h"
 
+#include <array>
+
 namespace culprit::study {
 namespace {
 

@@ -2,6 +2,7 @@
 #include "sunset_study/study.h"
 
 #include <cmath>
+#include <tuple>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <functional>
 #include <optional>
+#include <tuple>
 #include <unordered_map>
 
 #include "bag/bag_file.h"

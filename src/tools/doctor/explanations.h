@@ -1,4 +1,4 @@
-// Explanations of the findings: the pages of `culprit explain D001` and docs/findings.md.
+// Explanations of the findings. The source is docs/findings.md, which is compiled in: there is no second text.
 #pragma once
 
 #include <string>
@@ -25,6 +25,6 @@ const Explanation* find_explanation(std::string_view code);
 std::string page(const Explanation& explanation);
 
 // All of them: docs/findings.md.
-std::string findings_as_markdown();
+std::string_view findings_page();
 
 }  // namespace culprit::doctor

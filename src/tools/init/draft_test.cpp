@@ -2,6 +2,9 @@
 
 #include <regex>
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include "language/checker.h"
 #include "language/formatter.h"
 

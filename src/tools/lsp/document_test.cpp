@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "language/explanations.h"
 #include "language/test_edits.h"
+#include "language/test_example_robot.h"
 
 namespace culprit::lsp {
 namespace {

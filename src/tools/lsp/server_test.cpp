@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "language/explanations.h"
+#include "language/test_example_robot.h"
 #include "lsp/message_stream.h"
 #include "lsp/text_position.h"
 
@@ -212,7 +212,7 @@ TEST(LspServer, PrefersNoFixWhereThereIsAChoice) {
   EXPECT_FALSE(actions[0].contains("isPreferred"));
 }
 
-// The robot of explanations.h, with a topic that is watched.
+// The robot of test_example_robot.h, with a topic that is watched.
 LiveInventory robot() {
   LiveInventory robot = example_robot();
   robot.topics["/robot/image"].rate = 29.96;

@@ -1,6 +1,8 @@
 // JSON that was not exported: each mistake has its place, and no statement is injected.
 #include "rule_json/from_json.h"
 
+#include <vector>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

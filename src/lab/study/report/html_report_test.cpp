@@ -1,5 +1,6 @@
 #include "study/report/html_report.h"
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 

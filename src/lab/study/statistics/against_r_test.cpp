@@ -1,5 +1,7 @@
 // The statistics against R 4.2.2. A comment above each test names the source of the expected
 // values.
+#include <cmath>
+
 #include <boost/math/distributions/students_t.hpp>
 #include <gtest/gtest.h>
 

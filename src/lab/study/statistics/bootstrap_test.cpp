@@ -1,5 +1,6 @@
 #include "study/statistics/bootstrap.h"
 
+#include <cmath>
 #include <numeric>
 #include <random>
 

@@ -1,5 +1,7 @@
 #include "study/statistics/moments.h"
 
+#include <vector>
+
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 

@@ -1,6 +1,7 @@
 #include "exemplars/sunset/model/sunset_model.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 #include <gtest/gtest.h>

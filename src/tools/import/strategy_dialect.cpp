@@ -1,8 +1,8 @@
-#include "language/import/strategy_dialect.h"
+#include "import/strategy_dialect.h"
 
-#include "language/import/actions.h"
-#include "language/import/expression_reader.h"
-#include "language/import/file_reader.h"
+#include "import/actions.h"
+#include "import/expression_reader.h"
+#include "import/file_reader.h"
 
 namespace culprit::foreign {
 namespace {

@@ -1,4 +1,4 @@
-#include "language/import/vocabulary.h"
+#include "import/vocabulary.h"
 
 #include <algorithm>
 

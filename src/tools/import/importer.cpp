@@ -1,13 +1,13 @@
-#include "language/import/importer.h"
+#include "import/importer.h"
 
 #include <algorithm>
 #include <map>
 #include <string_view>
 
+#include "import/condition_dialect.h"
+#include "import/file_reader.h"
+#include "import/strategy_dialect.h"
 #include "language/checker.h"
-#include "language/import/condition_dialect.h"
-#include "language/import/file_reader.h"
-#include "language/import/strategy_dialect.h"
 
 namespace culprit {
 namespace {

@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "language/import/expression_text.h"
-#include "language/import/foreign_rules.h"
+#include "import/expression_text.h"
+#include "import/foreign_rules.h"
 
 namespace culprit::foreign {
 

@@ -1,4 +1,4 @@
-#include "language/import/expression_reader.h"
+#include "import/expression_reader.h"
 
 #include <array>
 

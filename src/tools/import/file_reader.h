@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "base/expected.h"
-#include "language/import/foreign_rules.h"
+#include "import/foreign_rules.h"
 #include "language/source.h"
 
 namespace culprit::foreign {

@@ -11,7 +11,7 @@
 #pragma once
 
 #include "base/expected.h"
-#include "language/import/foreign_rules.h"
+#include "import/foreign_rules.h"
 #include "language/source.h"
 
 namespace culprit::foreign {

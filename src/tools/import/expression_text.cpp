@@ -1,4 +1,4 @@
-#include "language/import/expression_text.h"
+#include "import/expression_text.h"
 
 #include "base/value.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "language/import/foreign_rules.h"
+#include "import/foreign_rules.h"
 
 namespace culprit::foreign {
 

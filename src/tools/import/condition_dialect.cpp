@@ -1,10 +1,10 @@
-#include "language/import/condition_dialect.h"
+#include "import/condition_dialect.h"
 
 #include <array>
 
+#include "import/actions.h"
+#include "import/file_reader.h"
 #include "language/expression_parser.h"
-#include "language/import/actions.h"
-#include "language/import/file_reader.h"
 #include "language/scanner.h"
 
 namespace culprit::foreign {

@@ -1,4 +1,4 @@
-#include "language/import/actions.h"
+#include "import/actions.h"
 
 namespace culprit::foreign {
 

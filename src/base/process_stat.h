@@ -5,9 +5,10 @@
 #include <optional>
 #include <string>
 
-namespace culprit::web {
+namespace culprit {
 
 struct ProcessStat {
+  char state = 0;                // 'R': running, 'T': stopped, 'Z': a zombie …
   double processor_seconds = 0;  // that it has used, of all its threads
   std::uint64_t threads = 0;
   double started_after_boot = 0;  // seconds
@@ -18,4 +19,4 @@ struct ProcessStat {
 // `process`: its number, or "self". Nothing: there is no such process.
 std::optional<ProcessStat> process_stat(const std::string& process);
 
-}  // namespace culprit::web
+}  // namespace culprit

@@ -1,10 +1,10 @@
-#include "language/import/writer.h"
+#include "import/writer.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/value.h"
-#include "language/import/vocabulary.h"
+#include "import/vocabulary.h"
 
 namespace culprit::foreign {
 namespace {

@@ -1,11 +1,11 @@
-#include "web/process_stat.h"
+#include "base/process_stat.h"
 
 #include <algorithm>
 #include <fstream>
 #include <sstream>
 #include <unistd.h>
 
-namespace culprit::web {
+namespace culprit {
 
 std::optional<ProcessStat> process_stat(const std::string& process) {
   std::ifstream file("/proc/" + process + "/stat");
@@ -22,7 +22,8 @@ std::optional<ProcessStat> process_stat(const std::string& process) {
   std::uint64_t system_ticks = 0;
   std::uint64_t start_ticks = 0;
   std::uint64_t resident_pages = 0;
-  skip(11);  // fields 3 to 13
+  rest >> stat.state;
+  skip(10);  // fields 4 to 13
   rest >> user_ticks >> system_ticks;
   skip(4);  // to field 19
   rest >> stat.threads;
@@ -36,4 +37,4 @@ std::optional<ProcessStat> process_stat(const std::string& process) {
   return stat;
 }
 
-}  // namespace culprit::web
+}  // namespace culprit

@@ -1,4 +1,4 @@
-#include "language/import/file_reader.h"
+#include "import/file_reader.h"
 
 #include <algorithm>
 #include <charconv>

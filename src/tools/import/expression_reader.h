@@ -8,7 +8,7 @@
 // noted.
 #pragma once
 
-#include "language/import/file_reader.h"
+#include "import/file_reader.h"
 #include "language/scanner.h"
 
 namespace culprit::foreign {

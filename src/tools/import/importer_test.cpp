@@ -1,4 +1,4 @@
-#include "language/import/importer.h"
+#include "import/importer.h"
 
 #include <cstdlib>
 #include <filesystem>
@@ -50,7 +50,7 @@ std::string trigger_of(const std::string& text) {
 // CULPRIT_WRITE_GOLDEN=1 writes what it becomes now, for a person to read and commit.
 TEST(Importer, GivesWhatTheGoldenFilesSay) {
   int files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator("src/core/language/import/golden")) {
+  for (const auto& entry : std::filesystem::directory_iterator("src/tools/import/golden")) {
     if (entry.path().extension() != ".txt") continue;
     ++files;
     const Source source(entry.path().filename().string(), read_file(entry.path()));

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/expected.h"
-#include "language/import/writer.h"
+#include "import/writer.h"
 #include "language/source.h"
 
 namespace culprit {
