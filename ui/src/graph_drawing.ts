@@ -161,7 +161,11 @@ export class Drawing {
     }
   }
 
-  // A straight line would lead through the nodes of the layers between.
+  // A straight line may lead through nodes between the two.
+  private mayCross(edge: Edge): boolean {
+    return this.isLong(edge) || Math.abs(this.points.get(edge.from)!.x - this.points.get(edge.to)!.x) < kLayer / 2
+  }
+  // Beyond the next layer.
   private isLong({ from, to }: Edge): boolean {
     return Math.abs(this.points.get(from)!.x - this.points.get(to)!.x) > 1.5 * kLayer
   }
@@ -209,7 +213,7 @@ export class Drawing {
     this.middle = (Math.min(...rows) + Math.max(...rows)) / 2
     for (const [id, edge] of shown.value.edges) {
       const [from, to] = [places.get(edge.from), places.get(edge.to)]
-      if (!from || !to || !this.isLong(edge)) continue // what is new is drawn soon
+      if (!from || !to || !this.mayCross(edge)) continue // what is new is drawn soon
       const others = shown.value.nodes.flatMap(({ node }) => places.get(node) ?? [])
       this.bends.set(id, clearBend(from, to, others.filter((p) => p !== from && p !== to)))
     }
