@@ -1,4 +1,4 @@
-// What the rules read, over the last quarter of an hour: rate and age of each topic, and each input that is a number. Sampled every second, with or without a viewer:
+// The inputs of the rules over the last quarter of an hour: rate and age of each topic, and each input that is a number. Sampled every second, with or without a viewer:
 // so a plot also shows the time before the page was opened, and a link to a plot shows the same to everybody.
 #pragma once
 

@@ -100,7 +100,7 @@ export class Drawing {
     this.structure = ''
   }
 
-  // What is to be seen from here.
+  // The content of the drawing at the present zoom.
   private fill(): void {
     const { nodes, edges } = shown.value
     if (nodes.some((n) => !this.points.has(n.node))) return // they are placed soon

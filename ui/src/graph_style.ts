@@ -18,7 +18,7 @@ export function coloursNow(): Colours {
   }
 }
 
-// What no rule judges is neither well nor ill.
+// A component that no rule judges is neither well nor ill.
 export const styled = (tone: Tone, colours: Colours): Pick<SceneNode, 'shape' | 'fill' | 'border' | 'borderWidth' | 'isDouble' | 'fillOpacity'> => ({
   shape: kShapes[tone] ?? 'rounded',
   fill: colours(`${tone}-fill`),

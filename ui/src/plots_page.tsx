@@ -131,7 +131,7 @@ function optionsFor(names: string[], zoomTo: (from: number, to: number) => void)
   }
 }
 
-// What is shown, as a table that other programs read.
+// The shown values as a table for other programs (CSV).
 function asTable(names: string[]): string {
   const { from, to } = extent()
   const [clocks, ...columns] = aligned(names)

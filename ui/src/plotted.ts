@@ -1,4 +1,4 @@
-// What the page of plots shows: which signals over which time, as the address says it, and their values as the server has them.
+// The content of the page of plots: which signals over which time, as the address says it, and their values as the server has them.
 import { computed, signal } from '@preact/signals'
 import { call } from './api'
 import { nowByTheClock } from './freshness'
@@ -100,7 +100,7 @@ export function extent(): { from: number; to: number } {
   return 'last' in shown ? { from: now - shown.last, to: now } : shown
 }
 
-// Of a robot that is looked at for the first time: how its first topics come.
+// Without signals in the address: the rates of the first topics.
 export const atFirst = (): string[] => (robot.value?.topics ?? []).slice(0, kMostAtFirst).map((topic) => `rate ${topic}`)
 
 async function ask(name: string): Promise<[string, Curve]> {

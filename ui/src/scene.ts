@@ -151,7 +151,7 @@ export class Scene {
       })
   }
 
-  // What the screen shows of the drawing.
+  // The visible part of the drawing.
   get view(): Extent {
     const { x, y } = this.at({ x: 0, y: 0 })
     return { left: x, top: y, right: x + this.width / this.zoom, bottom: y + this.height / this.zoom }
