@@ -1,7 +1,7 @@
 // Every page while something is wrong: the status bar says so on each, each can be used by the keyboard alone and with a
 // screen reader, and looks as in the pictures beside this. Each page's purpose is tested on the stub.
 import { readFileSync } from 'node:fs'
-import { kLargeRobot, largeState } from './large_robot.mjs'
+import { largeRobot } from './large_robot.mjs'
 import { kSchemes, kSizes, pictures } from './pictures.mjs'
 import { kHealed, kIncidentEvents, kIncidents, kNow, kStates, kToday, play, state } from './robots.mjs'
 import { expect, expectSoon, file, isAccessible, isUsableByKeyboard, stubbed, suite } from './session.mjs'
@@ -375,8 +375,9 @@ async function theKeyPauses(page, server) {
 // 500 nodes: from far away groups with the one that is at fault, from near its nodes, and all of it in a corner.
 async function staysUsableWhenLarge(page, server, album) {
   server.anew()
-  for (const [kind, document] of Object.entries(kLargeRobot)) server.tell(kind, document)
-  server.tell('state', largeState(2, kToday / 1000))
+  const { documents, stateAt } = largeRobot(500)
+  for (const [kind, document] of Object.entries(documents)) server.tell(kind, document)
+  server.tell('state', stateAt(2, kToday / 1000))
   await page.evaluate(() => (location.hash = 'robot'))
   await page.getByText('and 440 more').waitFor()
   await page.getByRole('button', { name: 'New layout' }).click()
