@@ -225,7 +225,7 @@ int run(const RunOptions& options) {
                     options.recording.folder_in(options.state_path()), options.planner.factory()));
     server = serve(options.web, std::move(routes), &hub, remarks);
     if (!server) return fail(server.error());
-    histories.usage.start();
+    histories.start();
     who.page = (*server)->address();
     if (*alerts) (*alerts)->set_page(who.page);
   }

@@ -7,10 +7,16 @@
 
 namespace culprit::web {
 
-// Both observe the robot, whether a page is open or not.
+// Both observe the robot once they are started, whether a page is open or not.
 struct Histories {
   UsageHistory usage;
   SignalHistory signals;
+
+  // As soon as a page is served.
+  void start() {
+    usage.start();
+    signals.start();
+  }
 };
 
 // `histories` must outlive the route.

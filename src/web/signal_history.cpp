@@ -53,7 +53,7 @@ void SignalHistory::begins(const Manager& manager, std::function<Remarks()>, Tim
 }
 
 void SignalHistory::stepped(const Runtime::Step& step) {
-  if (step.now < next_) return;
+  if (!is_sampling_ || step.now < next_) return;
   next_ = later(step.now, kPeriod);
   sample();
 }

@@ -1,7 +1,8 @@
-// The inputs of the rules over the last quarter of an hour: rate and age of each topic, and each input that is a number. Sampled every second, with or without a viewer:
+// The inputs of the rules over the last quarter of an hour: rate and age of each topic, and each input that is a number. Sampled every second once a page is served, with or without a viewer:
 // so a plot also shows the time before the page was opened, and a link to a plot shows the same to everybody.
 #pragma once
 
+#include <atomic>
 #include <deque>
 #include <map>
 #include <string>
@@ -31,10 +32,13 @@ class SignalHistory : public live::Observer {
   // Empty: there is no such signal. From any thread.
   Series of(const std::string& name) const;
 
+  // Samples from now on. Without it, nothing is sampled: a robot without a page pays nothing. From any thread.
+  void start() { is_sampling_ = true; }
+
   // Signals that the new rules still read keep their past.
   void begins(const Manager& manager, std::function<Remarks()> remarks, Time start) override;
   void stepped(const Runtime::Step& step) override;
-  Time next_look() const override { return next_; }
+  Time next_look() const override { return is_sampling_ ? next_ : kNever; }
   void announced(Time, const EventWords&, const std::string&) override {}
 
  private:
@@ -43,6 +47,7 @@ class SignalHistory : public live::Observer {
   const HubObserver::WallClock wall_;
   const Manager* manager_ = nullptr;  // null: none has begun
   Time next_ = kLongAgo;
+  std::atomic<bool> is_sampling_ = false;
   mutable Mutex mutex_;
   std::deque<double> clocks_ CULPRIT_GUARDED_BY(mutex_);
   // Each has one value a clock.

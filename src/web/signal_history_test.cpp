@@ -45,6 +45,8 @@ class PlottedSignals : public testing::Test {
 
 TEST_F(PlottedSignals, AreSampledEverySecondWhetherAPageIsOpenOrNot) {
   using std::chrono::milliseconds;
+  EXPECT_EQ(histories.signals.next_look(), kNever) << "no page is served";
+  histories.signals.start();
   step(milliseconds(0));
   step(milliseconds(400), {{Time(), SignalRead{SignalId(0), Value(25.0)}}});
   EXPECT_EQ(ask("input brightness")["clocks"], Json({1000.0})) << "once a second is enough";
@@ -63,6 +65,7 @@ TEST_F(PlottedSignals, AreSampledEverySecondWhetherAPageIsOpenOrNot) {
 }
 
 TEST_F(PlottedSignals, AreKeptForAQuarterOfAnHourAndBeyondAReload) {
+  histories.signals.start();
   for (std::size_t i = 0; i < SignalHistory::kMost + 10; ++i) step(std::chrono::seconds(i));
   EXPECT_EQ(ask("age /image")["clocks"].size(), SignalHistory::kMost);
   EXPECT_EQ(ask("age /image")["clocks"][0], 1010.0) << "the oldest is dropped first";

@@ -223,7 +223,7 @@ int demo_sunset(const DemoOptions& options) {
     say(stderr, "culprit: {}\n", server.error());
     return kUsage;
   }
-  histories.usage.start();
+  histories.start();
   std::vector<web::Route> local = web::live_routes(hub);
   for (web::Route& route : web::order_routes(orders, hub)) local.push_back(std::move(route));
   const auto asked = serve_this_machine({"", (*demo)->rules().robot, "sunset.rules",
