@@ -1,5 +1,6 @@
 // Plots of what the rules read and what processes use: several signals on one time axis, with the thresholds of rules, and
 // with failures and repairs as marks. The address says what is shown, so that a link shows the same to others.
+import { signal } from '@preact/signals'
 import { useEffect, useMemo, useRef } from 'preact/hooks'
 import uPlot from 'uplot'
 import { byTheClock, when } from './clock'
@@ -21,7 +22,9 @@ const kRanges: [number, string][] = [
 ]
 const kShortest = 1 // s
 const kHigh = 420
-const isNarrow = matchMedia('(max-width: 600px)')
+const narrow = matchMedia('(max-width: 600px)')
+const isNarrow = signal(narrow.matches)
+narrow.addEventListener('change', () => (isNarrow.value = narrow.matches))
 const kMarked: Record<string, string> = { failure_detected: '◆', strategy_chosen: '▼', strategy_failed: '✕', failure_resolved: '✓', rule_exhausted: '✖' }
 const kMarkColours: Record<string, string> = { failure_detected: 'ERROR', strategy_chosen: 'accent', strategy_failed: 'WARNING', failure_resolved: 'OK', rule_exhausted: 'ERROR' }
 
@@ -103,7 +106,7 @@ function optionsFor(names: string[], zoomTo: (from: number, to: number) => void)
     select: { show: true, left: 0, top: 0, width: 0, height: 0 },
     axes: [
       { ...axisLook(), space: 96, values: (_, splits) => splits.map((clock) => byTheClock(clock, splits.length > 1 && splits[1] - splits[0] < 1 ? 1 : 0)) },
-      ...units.map((unit, i): uPlot.Axis => ({ ...axisLook(), scale: unit, ...(isNarrow.matches ? { size: 36 } : { label: unit, size: 62 }), side: i === 0 ? 3 : 1, ...(i === 0 ? {} : { grid: { show: false } }) })),
+      ...units.map((unit, i): uPlot.Axis => ({ ...axisLook(), scale: unit, ...(isNarrow.value ? { size: 46 } : { label: unit, size: 62 }), side: i === 0 ? 3 : 1, ...(i === 0 ? {} : { grid: { show: false } }) })),
     ],
     series: [
       { label: 'time', value: (_, clock) => (clock === null ? '–' : byTheClock(clock, 1)) },
@@ -311,8 +314,8 @@ export function PlotsPage() {
       ) : (
         <Plotter
           label={`${names.map(wordsOf).join(', ')} over time; Save as CSV has the values`}
-          height={isNarrow.matches ? kHigh / 1.5 : kHigh}
-          remake={names.map((name) => name + kindOf(name).unit).join() + (robot.value?.thresholds?.length ?? 0) + isNarrow.matches}
+          height={isNarrow.value ? kHigh / 1.5 : kHigh}
+          remake={names.map((name) => name + kindOf(name).unit).join() + (robot.value?.thresholds?.length ?? 0) + isNarrow.value}
           make={() => optionsFor(names, (begin, end) => show(plotted.value, { from: begin, to: Math.max(end, begin + kShortest) }))}
           data={data}
           onPlot={(made) => (plot.current = made)}

@@ -415,8 +415,8 @@ await suite(() =>
       await examines(page, server, album)
       await dragsAThreshold(page, server, album)
       await imaginesTheRobotAsItIs(page, server)
-      await theKeyPauses(page, server)
       await plotsSignals(page, server, album)
+      await theKeyPauses(page, server)
       await staysUsableWhenLarge(page, server, album)
       await album.end()
     },
