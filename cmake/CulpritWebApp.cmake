@@ -21,7 +21,7 @@ function(culprit_web_app target)
     return()
   endif()
   file(MAKE_DIRECTORY ${CULPRIT_UI_MODULES})
-  file(GLOB sources CONFIGURE_DEPENDS ${ui}/src/* ${PROJECT_SOURCE_DIR}/rules/cookbook/*.rules)
+  file(GLOB sources CONFIGURE_DEPENDS ${ui}/src/* ${PROJECT_SOURCE_DIR}/rules/cookbook/*.rules ${PROJECT_SOURCE_DIR}/rules/packs/*.rules ${PROJECT_SOURCE_DIR}/docs/glossary.md)
   set(installed ${CULPRIT_UI_MODULES}/node_modules/.package-lock.json) # npm's own
   add_custom_command(
     OUTPUT ${installed}

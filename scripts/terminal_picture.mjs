@@ -14,9 +14,12 @@ const kMargin = 14;
 function linesOf(bytes, columns) {
   let lines = [[]];
   let look = { colour: kPlain, isBold: false };
+  let isReturned = false; // to the begin of the line
   const put = (text) => lines.at(-1).push({ ...look, text });
   const sequence = /\x1b\[([?0-9;]*)([A-Za-z])|\r?\n|\r|([^\x1b\r\n]+)|\x1b/g;
   for (const [whole, parameters, letter, text] of bytes.matchAll(sequence)) {
+    if (isReturned && text !== undefined) lines[lines.length - 1] = []; // a progress bar is drawn over the one before
+    isReturned = whole === "\r" || (isReturned && text === undefined && letter !== undefined);
     if (text !== undefined) put(text);
     else if (whole === "\n" || whole === "\r\n") lines.push([]);
     else if (letter === "H") lines = [[]];

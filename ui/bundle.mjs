@@ -10,6 +10,19 @@ const rules = join(source, '../../rules')
 const rulesIn = (folder) =>
   Object.fromEntries(readdirSync(join(rules, folder)).filter((f) => f.endsWith('.rules')).sort().map((f) => [f, readFileSync(join(rules, folder, f), 'utf8')]))
 
+// The rows of the glossary's tables, without markup: src/cli/glossary.cpp reads the same file.
+const plain = (markdown) => markdown.replace(/\[([^\]]*)\]\([^)]*\)/g, '$1').replace(/[`*]/g, '').replace(/\\\|/g, '|').trim()
+function glossary() {
+  const terms = []
+  let section = ''
+  for (const line of readFileSync(join(source, '../../docs/glossary.md'), 'utf8').split('\n')) {
+    if (line.startsWith('## ')) section = line.slice(3)
+    const [, name, meaning] = /^\| (.*?) \| (.*) \|$/.exec(line) ?? []
+    if (name && name !== 'word' && !name.startsWith('---')) terms.push({ section, name: plain(name), meaning: plain(meaning) })
+  }
+  return terms
+}
+
 const isLegal = (file) => file.path.endsWith('.LEGAL.txt')
 
 // `modules` is the folder of node_modules.
@@ -32,7 +45,7 @@ export function bundleWithNotices(modules) {
     jsx: 'automatic',
     jsxImportSource: 'preact',
     legalComments: 'external', // into the notices
-    define: { kCookbook: JSON.stringify(rulesIn('cookbook')), kPacks: JSON.stringify(rulesIn('packs')) },
+    define: { kCookbook: JSON.stringify(rulesIn('cookbook')), kPacks: JSON.stringify(rulesIn('packs')), kGlossary: JSON.stringify(glossary()) },
   })
   const assets = [
     ['/', 'text/html; charset=utf-8', readFileSync(join(source, 'index.html'))],

@@ -29,6 +29,7 @@
 #include "web/recording_routes.h"
 #include "web/reload_routes.h"
 #include "web/rule_routes.h"
+#include "web/series_route.h"
 #include "web/status_routes.h"
 #include "web/what_if_route.h"
 
@@ -76,7 +77,7 @@ std::vector<web::Route> local_routes(web::Hub& hub, const web::Metrics& metrics,
   return all;
 }
 
-std::vector<web::Route> page_routes(web::Hub& hub, const web::UsageHistory& usage,
+std::vector<web::Route> page_routes(web::Hub& hub, const web::Histories& histories,
                                     web::RuleDesk& desk, live::RobotNames& names,
                                     const std::filesystem::path& journal,
                                     const std::filesystem::path& recordings,
@@ -91,7 +92,8 @@ std::vector<web::Route> page_routes(web::Hub& hub, const web::UsageHistory& usag
   add(all, web::name_routes(look, desk.loader()));
   add(all, web::incident_routes(hub, journal, recordings));
   add(all, web::doctor_routes(web::examine_robot));
-  all.push_back(web::component_route(hub, usage, look, log_of));
+  all.push_back(web::component_route(hub, histories.usage, look, log_of));
+  all.push_back(web::series_route(histories));
   all.push_back(web::hindsight_route(journal_of));
   all.push_back(web::what_if_route(std::move(planner), desk.loader()));
   return all;
@@ -176,7 +178,7 @@ int run(const RunOptions& options) {
   web::Hub hub([&] { running->interrupt(); });
   web::Metrics metrics;
   web::HubObserver observer(hub, metrics);
-  web::UsageHistory usage;
+  web::Histories histories;
   live::OrderKeeper keeper("the run has not begun");
   web::OrderDesk orders(keeper.keeping());
   ros_api::RosApi ros_api({options.version,
@@ -184,7 +186,7 @@ int run(const RunOptions& options) {
                            [&listener](const std::string& trouble) {
                              listener->on_remark("culprit: " + trouble + "\n");
                            }});
-  std::vector<live::Observer*> onlookers{&observer, &usage, &ros_api};
+  std::vector<live::Observer*> onlookers{&observer, &histories.usage, &histories.signals, &ros_api};
   if (*alerts) onlookers.push_back(&(*alerts)->observer());
   const auto recording = open_recording(options, rules->rules.robot, *session);
   if (!recording) return fail(recording.error());
@@ -219,11 +221,11 @@ int run(const RunOptions& options) {
   if (options.is_on_web) {
     std::vector<web::Route> routes = local_routes(hub, metrics, orders, live, recording->get());
     add(routes,
-        page_routes(hub, usage, desk, names, journal,
+        page_routes(hub, histories, desk, names, journal,
                     options.recording.folder_in(options.state_path()), options.planner.factory()));
     server = serve(options.web, std::move(routes), &hub, remarks);
     if (!server) return fail(server.error());
-    usage.start();
+    histories.start();
     who.page = (*server)->address();
     if (*alerts) (*alerts)->set_page(who.page);
   }

@@ -184,10 +184,14 @@ Json latencies_to_json(const Knowledge& knowledge) {
 Json rules_to_json(const RuleSet& rules) {
   Json json{{"robot", rules.robot},        {"cycle_s", seconds(rules.cycle)},
             {"components", Json::array()}, {"topics", Json::array()},
-            {"inputs", Json::array()},     {"rules", Json::array()}};
+            {"inputs", Json::array()},     {"thresholds", Json::array()},
+            {"rules", Json::array()}};
   for (const Component& c : rules.components) json["components"].push_back(component_to_json(c));
   for (const Topic& t : rules.topics) json["topics"].push_back(t.name);
-  for (const Input& i : rules.inputs) json["inputs"].push_back(describe(i, rules));
+  for (const Input& i : rules.inputs) {
+    json["inputs"].push_back(describe(i, rules));
+    json["thresholds"].push_back(i.thresholds);
+  }
   for (const Rule& rule : rules.rules) {
     Json entry{{"name", rule.name},
                {"criticality", culprit::to_string(rule.policies.criticality)},

@@ -27,6 +27,7 @@
 #include "web/recording_routes.h"
 #include "web/reload_routes.h"
 #include "web/rule_routes.h"
+#include "web/series_route.h"
 #include "web/status_routes.h"
 #include "web/study_routes.h"
 
@@ -89,7 +90,8 @@ struct Routes : testing::Test {
     const auto log_of = [](const std::string& node) -> Expected<std::vector<ros2::msg::Log>> {
       return std::vector<ros2::msg::Log>{{{7, 500'000'000}, 30, node, "it is dark", "", "", 0}};
     };
-    all.push_back(component_route(hub, usage, look, log_of));
+    all.push_back(component_route(hub, histories.usage, look, log_of));
+    all.push_back(series_route(histories));
     all.push_back(hindsight_route([](const std::string&) -> Expected<std::filesystem::path> {
       return Error{"nothing is recorded here"};
     }));
@@ -121,7 +123,7 @@ struct Routes : testing::Test {
   Duration examined_for{};
   Hub hub;
   Metrics metrics;
-  UsageHistory usage;
+  Histories histories;
   RuleDesk desk{path};
   const RuleSet rules = *check(Source("test", kRouteRules)).rules;
   live::OrderKeeper keeper{"this is a test"};

@@ -5,7 +5,10 @@ import { hasToken } from './api'
 import { IncidentsPage, showIncident } from './incidents_page'
 import { BeliefsPage } from './beliefs_page'
 import { DoctorPage } from './doctor_page'
+import { HelpPage, Meaning } from './glossary'
 import { Notices } from './notices'
+import { fromAddress } from './plotted'
+import { PlotsPage } from './plots_page'
 import { RobotPage } from './robot_page'
 import { RulesPage } from './rules_page'
 import { SimulatorPage } from './simulator_page'
@@ -13,31 +16,35 @@ import { isOld } from './freshness'
 import { followInTitle, StatusBar } from './status_bar'
 import { calls, can, robot, start } from './store'
 import { StudiesPage } from './studies_page'
+import { Tour } from './tour'
 import { WallPage } from './wall_page'
 
 const kPages = [
   { name: 'robot', title: 'Robot', needs: 'get /api/stream', Page: RobotPage },
   { name: 'incidents', title: 'Incidents', needs: 'get /api/incidents', Page: IncidentsPage },
+  { name: 'plots', title: 'Plots', needs: 'get /api/series', Page: PlotsPage },
   { name: 'doctor', title: 'Doctor', needs: 'post /api/doctor', Page: DoctorPage },
   { name: 'rules', title: 'Rules', needs: 'get /api/rules', Page: RulesPage },
   { name: 'beliefs', title: 'Beliefs', needs: 'get /api/stream', Page: BeliefsPage },
   { name: 'simulator', title: 'Simulator', needs: 'post /api/what-if', Page: SimulatorPage },
   { name: 'studies', title: 'Studies', needs: 'get /api/studies', Page: StudiesPage },
+  { name: 'help', title: 'Help', needs: '', Page: HelpPage },
 ]
 
 const page = signal('')
-// "#incidents/m9k2" is a place within a page.
+// "#incidents/m9k2" is a place within a page, "#plots/s=…" what it shows.
 function follow(): void {
   const [name, place = ''] = location.hash.slice(1).split('/')
   page.value = name
   if (name === 'incidents') showIncident(place)
+  if (name === 'plots') fromAddress(place)
 }
 addEventListener('hashchange', follow)
 follow()
 const trouble = signal('')
 
 function App() {
-  const offered = kPages.filter((p) => calls.value.has(p.needs))
+  const offered = kPages.filter((p) => calls.value.has(p.needs) || (!p.needs && calls.value.size > 0))
   if (page.value === 'wall' && can('get', '/api/stream')) return <WallPage />
   const current = offered.find((p) => p.name === page.value) ?? offered[0]
   return (
@@ -66,6 +73,8 @@ function App() {
         </main>
       )}
       <Notices />
+      <Meaning />
+      {current?.name === 'robot' && <Tour />}
     </>
   )
 }

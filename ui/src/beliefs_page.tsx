@@ -1,15 +1,15 @@
 // The belief in each strategy: how often it helps, prior and posterior.
-import { useEffect, useRef, useState } from 'preact/hooks'
-import uPlot from 'uplot'
-import 'uplot/dist/uPlot.min.css'
+import { useMemo, useState } from 'preact/hooks'
+import type uPlot from 'uplot'
 import { call } from './api'
 import { beta, density } from './beta'
 import { when } from './clock'
 import { download } from './download'
 import { act } from './notices'
 import { order, canOrder } from './order'
+import { axisLook, type Options, Plotter } from './plotter'
 import { can, clockAt, events, robot, state } from './store'
-import { colour, isDark } from './theme'
+import { colour } from './theme'
 import type { ManagerEvent, Strategy } from './types'
 
 interface Entry {
@@ -37,45 +37,31 @@ function entries(): Entry[] {
   return list
 }
 
+const kGrid = Array.from({ length: 201 }, (_, i) => i / 200)
+
+const densityOptions = (): Options => ({
+  scales: { x: { time: false } },
+  axes: [
+    { ...axisLook(), label: 'how often it helps' },
+    { ...axisLook(), label: 'density' },
+  ],
+  series: [
+    { label: 'success' },
+    { label: 'as the rules say', stroke: colour('muted'), dash: [6, 4], width: 2 },
+    { label: 'as learned', stroke: colour('accent'), width: 2 },
+  ],
+})
+
 function Density({ entry }: { entry: Entry }) {
-  const place = useRef<HTMLDivElement>(null)
   const { prior } = entry.strategy
   const [a, b] = entry.belief
-  useEffect(() => {
-    const grid = { stroke: colour('line'), width: 0.5 }
-    const x = Array.from({ length: 201 }, (_, i) => i / 200)
-    const plot = new uPlot(
-      {
-        width: Math.min(640, place.current!.clientWidth || 640),
-        height: 300,
-        scales: { x: { time: false } },
-        axes: [
-          { stroke: colour('text'), grid, label: 'how often it helps' },
-          { stroke: colour('text'), grid, label: 'density' },
-        ],
-        series: [
-          { label: 'success' },
-          { label: 'as the rules say', stroke: colour('muted'), dash: [6, 4], width: 2 },
-          { label: 'as learned', stroke: colour('accent'), width: 2 },
-        ],
-      },
-      [x, x.map((p) => density(p, prior[0], prior[1])), x.map((p) => density(p, a, b))],
-      place.current!
-    )
-    const fit = () => plot.setSize({ width: Math.min(640, place.current!.clientWidth || 640), height: 300 })
-    const observer = new ResizeObserver(fit)
-    observer.observe(place.current!)
-    return () => {
-      observer.disconnect()
-      plot.destroy()
-    }
-  }, [entry.rule, entry.strategy.name, a, b, isDark.value])
+  const data = useMemo((): uPlot.AlignedData => [kGrid, kGrid.map((p) => density(p, prior[0], prior[1])), kGrid.map((p) => density(p, a, b))], [prior, a, b])
   return (
     <figure>
       <figcaption>
         {entry.rule}.{entry.strategy.name}: {entry.strategy.actions.join(', ')}
       </figcaption>
-      <div ref={place} />
+      <Plotter label={`Belief in ${entry.strategy.name}`} height={300} most={640} make={densityOptions} remake="" data={data} />
     </figure>
   )
 }

@@ -3,21 +3,30 @@ import { useEffect } from 'preact/hooks'
 import { byTheClock, lasting } from './clock'
 import { details, lookAt, trouble } from './component_details'
 import { listed } from './incidents'
-import { clockAt, events, graph, robot, rulesByComponent, state, stateOfComponent, stateOfTopic } from './store'
+import { can, clockAt, events, graph, robot, rulesByComponent, state, stateOfComponent, stateOfTopic } from './store'
+import { toAddress } from './plotted'
 import { trendOf } from './trends'
 
 const kWide = 90
 const kHigh = 18
+const kPlotted = 900 // s, of a plot that is opened
 
-function Sparkline({ values }: { values: number[] }) {
+// A press opens the plot of `signals`.
+function Sparkline({ values, signals }: { values: number[]; signals: string[] }) {
   if (values.length < 2) return null
   const most = Math.max(...values, 1e-9)
   const x = (place: number) => (kWide * place) / (values.length - 1)
   const y = (value: number) => kHigh - 1 - ((kHigh - 2) * value) / most
-  return (
+  const drawing = (
     <svg class="sparkline" width={kWide} height={kHigh} aria-hidden="true">
       <polyline points={values.map((value, place) => `${x(place)},${y(value)}`).join(' ')} />
     </svg>
+  )
+  if (!can('get', '/api/series')) return drawing
+  return (
+    <a href={toAddress(signals, { last: kPlotted })} title="Plot" aria-label={`Plot ${signals.join(', ')}`}>
+      {drawing}
+    </a>
   )
 }
 
@@ -54,7 +63,7 @@ function Topics({ title, links }: { title: string; links: Link[] }) {
             </th>
             <td class="number">{rateOf(topic)}</td>
             <td>
-              <Sparkline values={trendOf('rate', topic).values} />
+              <Sparkline values={trendOf('rate', topic).values} signals={[`rate ${topic}`, `age ${topic}`]} />
             </td>
           </tr>
         ))}
@@ -67,7 +76,7 @@ const kMegabyte = 1_000_000
 const megabytes = (bytes: number) => `${(bytes / kMegabyte).toFixed(bytes < 10 * kMegabyte ? 1 : 0)} MB`
 
 // The load of its process, now and in the last quarter of an hour.
-function Usage() {
+function Usage({ name }: { name: string }) {
   const { process, usage } = details.value!
   if (!process) return null
   const last = usage[usage.length - 1]
@@ -84,7 +93,7 @@ function Usage() {
             <th scope="row">{what}</th>
             <td class="number">{now}</td>
             <td>
-              <Sparkline values={values} />
+              <Sparkline values={values} signals={[`${what} ${name}`]} />
             </td>
           </tr>
         ))}
@@ -171,7 +180,7 @@ export function ComponentPanel({ name }: { name: string }) {
           </tbody>
         </table>
       )}
-      {details.value && <Usage />}
+      {details.value && <Usage name={name} />}
       <Topics title="it publishes" links={node ? linksOf(node, true) : []} />
       <Topics title="it subscribes to" links={node ? linksOf(node, false) : []} />
       {details.value && <Parameters />}

@@ -5,8 +5,7 @@ const kGap = 8 // between an edge and a node that it passes
 const kBends = [0, 90, -90, 150, -150, 220, -220, 300, -300]
 const kMostPassed = 200 // nodes: beyond, nobody follows a single edge
 
-// The control point of a curve of the second degree,
-// across the straight line, as Cytoscape counts it.
+// How far the control point of a curve of the second degree stands from the straight line.
 export function clearBend(from: Point, to: Point, others: Point[]): number {
   if (others.length > kMostPassed) return kBends[1]
   const [vx, vy] = [to.x - from.x, to.y - from.y]

@@ -18,6 +18,11 @@ interface LspDiagnostic {
   code: string
   message: string
 }
+interface LspAction {
+  title: string
+  diagnostics: LspDiagnostic[]
+  edit: { changes: Record<string, { range: LspDiagnostic['range']; newText: string }[]> }
+}
 interface Reply<T> {
   diagnostics: LspDiagnostic[]
   result: T
@@ -107,16 +112,26 @@ const hover = hoverTooltip(async (view, pos) => {
   }
 })
 
+// As the language server offers it.
+export interface Fix {
+  title: string
+  from: number
+  to: number
+  was: string
+  text: string
+}
 export interface Found {
   line: number
   from: number
   isError: boolean
   code: string
   message: string
+  fix?: Fix
 }
 
 export interface Editor {
   view: EditorView
+  fix(all: Fix[]): void
   setText(text: string): void
   undo(): void
   redo(): void
@@ -137,6 +152,25 @@ function shadowRoot(parent: HTMLElement): ShadowRoot {
   return root
 }
 
+function fixOf(doc: Text, mistake: LspDiagnostic, actions: LspAction[]): Fix | undefined {
+  const key = (d: LspDiagnostic) => JSON.stringify([d.code, d.range.start, d.range.end])
+  const action = actions.find((a) => a.diagnostics.some((d) => key(d) === key(mistake)))
+  const [edit] = action ? Object.values(action.edit.changes).flat() : []
+  if (!edit) return undefined
+  const [from, to] = [offset(doc, edit.range.start), offset(doc, edit.range.end)]
+  return { title: action!.title, from, to, was: doc.sliceString(from, to), text: edit.newText }
+}
+// As one step for Undo. One that overlaps an earlier one, or whose text has changed, waits for the next check.
+function applyAll(view: EditorView, all: Fix[]): void {
+  const apart: Fix[] = []
+  for (const fix of [...all].sort((a, b) => a.from - b.from)) {
+    const isAsItWas = view.state.doc.sliceString(fix.from, fix.to) === fix.was
+    if (isAsItWas && (apart.length === 0 || fix.from >= apart[apart.length - 1].to)) apart.push(fix)
+  }
+  view.dispatch({ changes: apart.map(({ from, to, text }) => ({ from, to, insert: text })) })
+  view.focus()
+}
+
 // `onText` is called with each new text, `onFound` with the check's findings about the newest.
 export function makeEditor(
   parent: HTMLElement,
@@ -144,36 +178,40 @@ export function makeEditor(
   onText: (text: string) => void,
   onFound: (found: Found[]) => void
 ): Editor {
+  let found: Found[] = []
   const check = linter(
     async (view): Promise<Diagnostic[]> => {
       const { doc } = view.state
       // The page says that culprit is gone; when it is back, the next change is checked.
-      const reply = await call<Reply<null>>('POST', '/api/rules/ask', { text: doc.toString() }).catch((error: unknown) => {
+      const whole = { start: position(doc, 0), end: position(doc, doc.length) }
+      const params = { range: whole, context: { diagnostics: [] } }
+      const reply = await call<Reply<LspAction[] | null>>('POST', '/api/rules/ask', { text: doc.toString(), method: 'textDocument/codeAction', params }).catch((error: unknown) => {
         if (error instanceof Refusal && error.status === 0) return null
         throw error
       })
       // Answers may overtake one another: findings about an older text are dropped.
       if (!reply || !view.state.doc.eq(doc)) return []
-      const list = reply.diagnostics.map((d): Diagnostic => {
+      const list = reply.diagnostics.map((d): Found & { to: number } => {
         const from = offset(doc, d.range.start)
         return {
+          line: d.range.start.line + 1,
           from,
           to: Math.max(from, offset(doc, d.range.end)),
-          severity: d.severity === 1 ? 'error' : 'warning',
-          source: d.code,
+          isError: d.severity === 1,
+          code: d.code,
           message: d.message,
+          fix: fixOf(doc, d, reply.result ?? []),
         }
       })
-      onFound(
-        list.map((d) => ({
-          line: doc.lineAt(d.from).number,
-          from: d.from,
-          isError: d.severity === 'error',
-          code: d.source ?? '',
-          message: d.message,
-        }))
-      )
-      return list
+      onFound((found = list))
+      return list.map(({ from, to, isError, code, message, fix }, place): Diagnostic => ({
+        from,
+        to,
+        severity: isError ? 'error' : 'warning',
+        source: code,
+        message,
+        actions: fix && [{ name: fix.title, apply: () => applyAll(view, [found[place]?.fix ?? fix]) }],
+      }))
     },
     { delay: 150 }
   )
@@ -198,7 +236,16 @@ export function makeEditor(
         keymap.of([...defaultKeymap, ...historyKeymap]), // the Tab key leaves, as everywhere
         EditorView.contentAttributes.of({ 'aria-label': 'Rule file', tabindex: '0' }),
         EditorView.updateListener.of((update) => {
-          if (update.docChanged) onText(update.state.doc.toString())
+          if (!update.docChanged) return
+          // Until the next check, findings move with their text.
+          const { changes, state } = update
+          found = found.map((f) => {
+            const from = changes.mapPos(f.from)
+            const fix = f.fix && { ...f.fix, from: changes.mapPos(f.fix.from, 1), to: changes.mapPos(f.fix.to, -1) }
+            return { ...f, from, line: state.doc.lineAt(from).number, fix }
+          })
+          onFound(found)
+          onText(state.doc.toString())
         }),
       ],
     }),
@@ -209,6 +256,7 @@ export function makeEditor(
       if (next === view.state.doc.toString()) return
       view.dispatch({ changes: { from: 0, to: view.state.doc.length, insert: next } })
     },
+    fix: (all) => applyAll(view, all),
     undo: () => void undo(view),
     redo: () => void redo(view),
     goTo(at) {

@@ -1,14 +1,17 @@
 // Why: for each cause who is held responsible, what it makes fail, what was weighed and why not the others, and what
 // happens next.
+import { type Signal, signal } from '@preact/signals'
 import { ComponentPanel } from './component_panel'
 import { byTheClock, lasting, lastingSoFar, when } from './clock'
 import { nowByTheClock } from './freshness'
+import { Term } from './glossary'
 import { search } from './graph_model'
 import { type Failure, healthOf, type View } from './history'
 import { type Incident, listed } from './incidents'
 import { usePaced } from './paced'
-import { kLooks, type Look, rankOf } from './looks'
-import { blindRules, can, clockAt, conditionAt, culprits, isLive, live, looks, now, robot, selected, state } from './store'
+import { signalOf, toAddress } from './plotted'
+import { isIll, kLooks, type Look, rankOf } from './looks'
+import { blindRules, can, clockAt, conditionAt, culprits, graph, isLive, live, looks, now, robot, selected, state } from './store'
 import type { Candidate, Criticality, Evidence, ManagerEvent } from './types'
 
 export const kWords: Record<Criticality, string> = {
@@ -41,7 +44,9 @@ export function Suspects({ decision, rule }: { decision: ManagerEvent; rule: str
   if (suspects.length === 0) return null
   return (
     <table class="suspects">
-      <caption>Possible causes</caption>
+      <caption>
+        <Term word="root cause">Possible causes</Term>
+      </caption>
       <tbody>
         {suspects.slice(0, 5).map((s) => (
           <tr>
@@ -107,7 +112,9 @@ export function Candidates({ list, chosen }: { list: Candidate[]; chosen?: strin
   if (list.length === 0) return null
   return (
     <table class="candidates">
-      <caption>Possible repairs</caption>
+      <caption>
+        <Term word="candidate">Possible repairs</Term>
+      </caption>
       <thead>
         <tr>
           <th scope="col">strategy</th>
@@ -182,6 +189,22 @@ function Consequence({ failure, view }: { failure: Failure; view: View }) {
   )
 }
 
+const kPlotted = 300 // s
+
+// To the plot of what its rules read.
+function PlotLink({ rules }: { rules: string[] }) {
+  if (!can('get', '/api/series')) return null
+  const inputs = robot.value?.inputs ?? []
+  const read = new Set((robot.value?.rules ?? []).filter((r) => rules.includes(r.name)).flatMap((r) => r.inputs))
+  const names = [...read].map((place) => signalOf(inputs[place]))
+  if (names.length === 0) return null
+  return (
+    <p>
+      <a href={toAddress(names, { last: kPlotted })}>Plot what these rules read</a>
+    </p>
+  )
+}
+
 const isWide = matchMedia('(min-width: 901px)')
 
 function IncidentCard({ incident, view }: { incident: Incident; view: View }) {
@@ -204,13 +227,14 @@ function IncidentCard({ incident, view }: { incident: Incident; view: View }) {
           <Since failure={root} view={view} />
           {can('get', '/api/incidents') && view === live && (
             <>
-              , incident <a href={`#incidents/${incident.id}`}>{incident.id}</a>
+              , <Term>incident</Term> <a href={`#incidents/${incident.id}`}>{incident.id}</a>
             </>
           )}
         </p>
       )}
       {root?.decision && <p>{root.decision.text}.</p>}
       {view === live && <Next incident={incident} />}
+      {view === live && <PlotLink rules={[incident.rule, ...incident.consequences]} />}
       {consequences.length > 0 && (
         <details class="consequences">
           <summary>
@@ -229,10 +253,13 @@ function IncidentCard({ incident, view }: { incident: Incident; view: View }) {
   )
 }
 
+const kFewComponents = 10 // need no filter
 const kMostComponents = 60 // what one can look through; more are found by their names
 
 interface Entry {
   name: string
+  host: string
+  space: string // its namespace
   look: Look
   condition: string
   isBlamed: boolean
@@ -255,21 +282,66 @@ function ComponentButton({ name, look, condition, isBlamed }: Entry) {
 
 const kPeriod = 150 // ms
 
+const kLevels: Record<string, (look: Look) => boolean> = {
+  'all levels': () => true,
+  'failing or dead': isIll,
+  'not judged': (look) => !isIll(look) && look !== 'OK',
+  well: (look) => look === 'OK',
+}
+const level = signal('all levels')
+const host = signal('')
+const space = signal('')
+
+// Offered where there is something to choose.
+function Filter({ label, chosen, all, every }: { label: string; chosen: Signal<string>; all: string[]; every: string }) {
+  if (all.length < 2 && !chosen.value) return null
+  return (
+    <select aria-label={label} value={chosen.value} onChange={(e) => (chosen.value = e.currentTarget.value)}>
+      <option value="">{every}</option>
+      {[...new Set([...all, ...(chosen.value ? [chosen.value] : [])])].sort().map((each) => (
+        <option>{each}</option>
+      ))}
+    </select>
+  )
+}
+
 // The same as the graph in words, for readers that cannot see or point at it. The worst come first.
 export function Components() {
   const entries = usePaced(() => {
     const blamed = culprits.value
-    const all = (robot.value?.components ?? []).map(
-      ({ name }): Entry => ({ name, look: looks.value.get(name) ?? 'UNTOLD', condition: conditionAt(name), isBlamed: blamed.has(name) })
-    )
+    const nodes = new Map(graph.value.nodes.map((n) => [n.component, n.node]))
+    const all = (robot.value?.components ?? []).map(({ name, node, host: own }, place): Entry => {
+      const full = nodes.get(name) ?? node ?? ''
+      const computer = state.value?.components[place]?.host ?? own ?? 'this computer'
+      return { name, host: computer, space: full.slice(0, full.lastIndexOf('/')) || '/', look: looks.value.get(name) ?? 'UNTOLD', condition: conditionAt(name), isBlamed: blamed.has(name) }
+    })
     return all.sort((a, b) => Number(b.isBlamed) - Number(a.isBlamed) || rankOf(a.look) - rankOf(b.look))
   }, kPeriod)
   const wanted = search.value.toLowerCase()
-  const found = entries.value.filter(({ name }) => name.toLowerCase().includes(wanted))
+  const found = entries.value.filter(
+    (e) => e.name.toLowerCase().includes(wanted) && kLevels[level.value](e.look) && (!host.value || e.host === host.value) && (!space.value || e.space === space.value)
+  )
+  const differ = (of: (entry: Entry) => string) => [...new Set(entries.value.map(of))]
   const rest = found.slice(kMostComponents)
   return (
     <section class="components" aria-label="Components">
-      <h2>Components</h2>
+      <h2>
+        <Term word="component">Components</Term>
+      </h2>
+      {entries.value.length > kFewComponents && (
+        <div class="bar filters" role="group" aria-label="Filter the components">
+          <select aria-label="Level" value={level.value} onChange={(e) => (level.value = e.currentTarget.value)}>
+            {Object.keys(kLevels).map((each) => (
+              <option>{each}</option>
+            ))}
+          </select>
+          <Filter label="Namespace" chosen={space} all={differ((e) => e.space)} every="all namespaces" />
+          <Filter label="Computer" chosen={host} all={differ((e) => e.host)} every="all computers" />
+          <span class="muted" role="status">
+            {found.length} of {entries.value.length}
+          </span>
+        </div>
+      )}
       <ul>
         {found.slice(0, kMostComponents).map((each) => (
           <li key={each.name}>
@@ -289,7 +361,9 @@ function BlindRules() {
     <>
       {blindRules.value.map((rule) => (
         <article class={`incident ${rule.criticality}`} key={rule.name}>
-          <h2>{rule.name} is blind</h2>
+          <h2>
+            {rule.name} is <Term>blind</Term>
+          </h2>
           <p>
             {sentence(rule.text)} culprit cannot tell whether its failure is present, since {byTheClock(clockAt(rule.since), 1)}.
           </p>

@@ -1,19 +1,21 @@
-// Brings the drawing of the graph to what is to be shown, touching only what differs.
-import cytoscape from 'cytoscape'
+// The graph as a drawing: where its nodes stand, and how they and their edges look at present.
 import { clearBend } from './edge_bends'
-import { cascade, edgeLabel, isSilent, markOf, labelOf, lineBelow, search, shown, showsAll } from './graph_model'
-import { kLeastZoom, stylesheet } from './graph_style'
+import { cascade, edgeLabel, isSilent, markOf, labelOf, lineBelow, search, shown, type Shown, showsAll } from './graph_model'
+import { coloursNow, kLeastZoom, styled } from './graph_style'
 import { effective, groupOf } from './grouping'
-import { GroupBoxes } from './group_boxes'
+import { boxesOf, flowsOf, type Groups, groupsOf, isFar } from './group_boxes'
 import { groupedLayout } from './group_layout'
 import { Minimap } from './minimap'
-import { kLayer, kRow, layered, placed, type Point } from './layout'
+import { kLayer, kNode, kRow, layered, placed, type Point } from './layout'
 import { toneOf } from './looks'
+import { type Extent, extentOf, Scene, type SceneEdge, type SceneNode } from './scene'
 import { culprits, looks, robot, selected } from './store'
 import type { Graph } from './types'
 
 type Node = Graph['nodes'][number]
+type Edge = Shown['edges'] extends Map<string, infer E> ? E : never
 
+const kMostFitted = 1.3 // zoom
 const kNearly = 0.9 // what is left out for names that are hardly larger would be missed
 const kAside = 19 // from an edge to its label
 export const kDiscovery = 10_000 // ms
@@ -21,7 +23,11 @@ export const isUpright = matchMedia('(max-width: 700px)')
 const kUprightRow = 208
 const kUprightLayer = 130
 const kUprightGroups = { x: 2.1, y: 0.36 } // of blocks of nodes, which are wider than high
+const kBack = 30 // how far an edge bends that has another one in the opposite direction
+const kText = 17
+const kUnmanaged = { height: 44, textSize: 13 } // a node that no rule is about
 
+const middleOf = ({ left, top, right, bottom }: Extent): Point => ({ x: (left + right) / 2, y: (top + bottom) / 2 })
 
 // Where the nodes of this robot stand, also after a reload.
 const placesKey = () => {
@@ -40,127 +46,128 @@ function writePlaces(places: Map<string, Point>): void {
 }
 
 export class Drawing {
-  private readonly cy: cytoscape.Core
+  private readonly scene: Scene
   private points = new Map<string, Point>()
   private held: Map<string, Point> // for ever
   private wanted = `${showsAll.peek()} ${search.peek()}`
-  private groups = effective.peek()
+  private grouping = effective.peek()
   private key = placesKey() // until it is known which robot it is, nothing is held
   private readonly minimap: Minimap
-  private readonly boxes: GroupBoxes
+  private groups: Groups = { members: new Map(), flows: new Map() }
   private middle = 0 // of what is shown
   private bends = new Map<string, number>() // of edges that would lead through nodes
   private readonly begun = Date.now()
   private structure = ''
+  private colours = coloursNow()
+  private drawnZoom = 0 // for which the groups were drawn
 
   constructor(container: HTMLElement) {
     this.held = readPlaces()
-    this.cy = cytoscape({
-      container,
-      style: stylesheet(),
-      minZoom: 0.03,
-      maxZoom: 2,
-      autoungrabify: true,
-      boxSelectionEnabled: false,
-    })
-    this.minimap = new Minimap(this.cy, container)
-    this.boxes = new GroupBoxes(this.cy, (id, data) => void this.tell(id, data))
-    this.cy.on('tap', 'node', (e) => {
-      if (e.target.data('isGroup')) this.cy.fit(e.target, 40)
-      else selected.value = e.target.data('component') ?? null
-    })
-    this.cy.on('zoom', () => {
-      const hidNodes = this.boxes.hidesNodes
-      this.boxes.zoomed()
-      if (hidNodes && !this.boxes.hidesNodes) this.draw() // what has changed of them meanwhile
-    })
-    this.cy.on('tap', (e) => {
-      if (e.target === this.cy) selected.value = null
-    })
+    this.scene = new Scene(container, () => ({ text: this.colours('text'), surface: this.colours('surface'), accent: this.colours('accent') }))
+    this.minimap = new Minimap(this.scene, container)
+    this.scene.onPress = (id) => {
+      const box = this.scene.content.boxes.find((b) => b.id === id)
+      if (box) this.scene.fit(extentOf([box]), 40)
+      else selected.value = shown.peek().nodes.find((n) => n.node === id)?.component ?? null
+    }
+    this.scene.onView = () => {
+      this.minimap.drawSoon()
+      if (this.groups.members.size > 0 && this.scene.zoom !== this.drawnZoom) this.fill() // names of groups are as large as one can read them
+    }
   }
 
   draw(): void {
     const { nodes, edges } = shown.value
-    if (this.groups !== effective.value || this.key !== placesKey()) this.regroup()
+    if (this.grouping !== effective.value || this.key !== placesKey()) this.regroup()
     const structure = nodes.map((n) => `${n.node} ${groupOf(n) ?? ''}`).join() + '|' + [...edges.keys()].join()
-    this.cy.batch(() => {
-      if (structure !== this.structure) this.rebuild()
-      this.boxes.show()
-      const isHidden = this.boxes.hidesNodes && structure === this.structure
-      for (const node of nodes) if (!isHidden || groupOf(node) === undefined) this.show(node)
-      for (const [id, edge] of isHidden ? [] : edges) {
-        this.tell(id, {
-          label: isUpright.matches && this.isLong(edge) ? '' : edgeLabel(edge.channels), // it would lie under nodes
-          isSilent: edge.channels.some(isSilent),
-          isCascade: cascade.value.has(id),
-          isLong: this.isLong(edge),
-          bend: this.bends.get(id) ?? 0,
-          aside: this.aside(edge),
-        })
-      }
-    })
-    if (structure !== this.structure) this.fit()
+    const isNew = structure !== this.structure
+    if (isNew) {
+      this.place()
+      this.groups = groupsOf(shown.value)
+      this.bend()
+    }
     this.structure = structure
-    this.minimap.drawSoon()
+    this.fill()
+    if (isNew) this.fit()
   }
 
   // Other groups stand elsewhere, and so do the nodes of another robot.
   private regroup(): void {
-    this.groups = effective.value
+    this.grouping = effective.value
     this.key = placesKey()
-    this.cy.elements().remove()
     this.points.clear()
     this.held = readPlaces()
     this.structure = ''
   }
 
-  // Cytoscape styles an element anew whenever its data are set, be they as they were or not.
-  private tell(id: string, data: Record<string, unknown>): cytoscape.CollectionReturnValue {
-    const element = this.cy.getElementById(id)
-    const told = element.data()
-    if (Object.entries(data).some(([key, value]) => told[key] !== value)) element.data(data)
-    return element
-  }
-
-  // A straight line would lead through the nodes of the layers between.
-  private isLong({ from, to }: { from: string; to: string }): boolean {
-    return Math.abs(this.points.get(from)!.x - this.points.get(to)!.x) > 1.5 * kLayer
-  }
-
-  private show(node: Node): void {
-    const look = node.component ? (looks.value.get(node.component) ?? 'UNTOLD') : 'OK'
-    const isCulprit = !!node.component && culprits.value.has(node.component)
-    const element = this.tell(node.node, {
-      label: (isCulprit ? '★ ' : markOf(look)) + labelOf(node) + lineBelow(node.component),
-      tone: toneOf(look),
-      component: node.component,
-      isManaged: !!node.component,
-      isPresent: node.present,
-      isCulprit,
-    })
-    const isSelected = !!node.component && node.component === selected.value
-    if (element.selected() !== isSelected) isSelected ? element.select() : element.unselect()
-  }
-
-  private rebuild(): void {
+  // The content of the drawing at the present zoom.
+  private fill(): void {
     const { nodes, edges } = shown.value
-    this.place()
-    this.boxes.prepare(shown.value)
-    const wanted = new Set([...nodes.map((n) => n.node), ...edges.keys(), ...this.boxes.ids()])
-    this.cy.elements().filter((e) => !wanted.has(e.id())).remove()
-    this.bend()
-    const pointOf = (node: string) => this.onScreen(this.points.get(node)!)
-    this.boxes.place(pointOf)
-    for (const { node } of nodes) {
-      const known = this.cy.getElementById(node)
-      if (known.nonempty()) known.position(pointOf(node))
-      else this.cy.add({ data: { id: node }, position: { ...pointOf(node) } })
-    }
+    if (nodes.some((n) => !this.points.has(n.node))) return // they are placed soon
+    const { zoom } = this.scene
+    const far = isFar(zoom, this.groups)
+    this.drawnZoom = zoom
+    const boxes = boxesOf(this.groups, zoom, (node) => this.onScreen(this.points.get(node)!), this.colours)
+    const own = nodes.filter((n) => !far || groupOf(n) === undefined).map((n) => this.sceneNode(n))
+    const byId = new Map([...boxes, ...own].map((n) => [n.id, n]))
+    const lines: SceneEdge[] = far ? flowsOf(this.groups, byId, this.colours) : []
     for (const [id, edge] of edges) {
-      if (this.cy.getElementById(id).empty())
-        this.cy.add({ data: { id, source: edge.from, target: edge.to } })
+      const [from, to] = [byId.get(edge.from), byId.get(edge.to)]
+      if (from && to) lines.push(this.sceneEdge(id, edge, from, to))
     }
-    this.boxes.connect()
+    this.scene.content = { boxes, edges: lines, nodes: own }
+    this.scene.drawSoon()
+    this.minimap.drawSoon()
+  }
+
+  private sceneNode(node: Node): SceneNode {
+    const { component } = node
+    const look = component ? (looks.value.get(component) ?? 'UNTOLD') : 'OK'
+    const isCulprit = !!component && culprits.value.has(component)
+    const tone = toneOf(look)
+    const dash = !node.present ? [6, 4] : !component ? [2, 3] : undefined
+    return {
+      ...this.onScreen(this.points.get(node.node)!),
+      ...styled(tone, this.colours),
+      id: node.node,
+      width: kNode.width,
+      height: kNode.height,
+      textSize: kText,
+      ...(component ? {} : { ...kUnmanaged, fillOpacity: 0.5 }),
+      ...(node.present ? {} : { fillOpacity: 0.3 }),
+      ...(isCulprit ? { border: this.colours('culprit'), borderWidth: 6, halo: this.colours('culprit'), isBold: true, isDouble: false } : {}),
+      label: (isCulprit ? '★ ' : markOf(look)) + labelOf(node) + lineBelow(component),
+      dash,
+      isSelected: !!component && component === selected.value,
+      mapColour: this.colours(isCulprit ? 'culprit' : tone),
+    }
+  }
+
+  private sceneEdge(id: string, edge: Edge, from: SceneNode, to: SceneNode): SceneEdge {
+    const isLost = edge.channels.some(isSilent)
+    const isCascade = cascade.value.has(id)
+    const isLong = this.isLong(edge)
+    const hasBack = edge.from !== edge.to && shown.value.edges.has(`${edge.to} > ${edge.from}`)
+    return {
+      from,
+      to,
+      bend: this.bends.get(id) ?? (hasBack ? kBack : 0),
+      label: isUpright.matches && isLong ? '' : edgeLabel(edge.channels), // it would lie under nodes
+      labelAside: this.aside(edge),
+      textColour: this.colours(isLost ? 'ERROR' : 'text'),
+      colour: this.colours(isCascade ? 'culprit' : isLost ? 'ERROR' : 'line'),
+      width: isCascade ? 5 : 1.5,
+      dash: isLost ? [6, 4] : undefined,
+    }
+  }
+
+  // A straight line may lead through nodes between the two.
+  private mayCross(edge: Edge): boolean {
+    return this.isLong(edge) || Math.abs(this.points.get(edge.from)!.x - this.points.get(edge.to)!.x) < kLayer / 2
+  }
+  // Beyond the next layer.
+  private isLong({ from, to }: Edge): boolean {
+    return Math.abs(this.points.get(from)!.x - this.points.get(to)!.x) > 1.5 * kLayer
   }
 
   // While a robot is discovered, what comes late would stand at the edge; then nothing moves any more.
@@ -182,13 +189,13 @@ export class Drawing {
     writePlaces(this.held)
   }
   private laidOut(names: string[], links: [string, string][], before: Map<string, Point>): Map<string, Point> {
-    if (this.groups === 'none') return layered(names, links, before)
+    if (this.grouping === 'none') return layered(names, links, before)
     const byName = new Map(shown.value.nodes.map((n) => [n.node, n]))
     return groupedLayout(names, links, (name) => groupOf(byName.get(name)!))
   }
   // The other members of a new node's group, beside which it is drawn.
   private companions(nodes: Node[]): (name: string) => string[] {
-    if (this.groups === 'none') return () => []
+    if (this.grouping === 'none') return () => []
     const groups = new Map(nodes.map((n) => [n.node, groupOf(n)]))
     return (name) => nodes.map((n) => n.node).filter((n) => n !== name && groups.get(n) !== undefined && groups.get(n) === groups.get(name))
   }
@@ -206,7 +213,7 @@ export class Drawing {
     this.middle = (Math.min(...rows) + Math.max(...rows)) / 2
     for (const [id, edge] of shown.value.edges) {
       const [from, to] = [places.get(edge.from), places.get(edge.to)]
-      if (!from || !to || !this.isLong(edge)) continue // what is new is drawn soon
+      if (!from || !to || !this.mayCross(edge)) continue // what is new is drawn soon
       const others = shown.value.nodes.flatMap(({ node }) => places.get(node) ?? [])
       this.bends.set(id, clearBend(from, to, others.filter((p) => p !== from && p !== to)))
     }
@@ -215,7 +222,7 @@ export class Drawing {
   // The data flow down a screen that is higher than wide.
   private onScreen({ x, y }: Point): Point {
     if (!isUpright.matches) return { x, y }
-    if (this.groups !== 'none') return { x: y * kUprightGroups.x, y: x * kUprightGroups.y }
+    if (this.grouping !== 'none') return { x: y * kUprightGroups.x, y: x * kUprightGroups.y }
     return { x: (y / kRow) * kUprightRow, y: (x / kLayer) * kUprightLayer }
   }
 
@@ -232,7 +239,7 @@ export class Drawing {
     const links = [...edges.values()].map((e): [string, string] => [e.from, e.to])
     const managed = new Set(nodes.filter((n) => n.component).map((n) => n.node))
     // A node without a rule is placed beside the others.
-    const isShown = (node: string) => managed.size === 0 || this.groups !== 'none' || managed.has(node)
+    const isShown = (node: string) => managed.size === 0 || this.grouping !== 'none' || managed.has(node)
     const own = links.filter(([from, to]) => isShown(from) && isShown(to))
     this.held = this.laidOut(nodes.map((n) => n.node).filter(isShown), own, new Map())
     this.draw()
@@ -244,40 +251,35 @@ export class Drawing {
   }
 
   zoom(factor: number): void {
-    const { width, height } = this.size()
-    this.cy.zoom({ level: this.cy.zoom() * factor, renderedPosition: { x: width / 2, y: height / 2 } })
-  }
-  private size() {
-    return { width: this.cy.width(), height: this.cy.height() }
+    this.scene.zoomBy(factor)
   }
 
   // All of it if its names can be read then; else a part of it, with who is at fault in the middle.
   fit(isWhole = false): void {
-    this.cy.resize()
-    this.cy.fit(this.cy.nodes(), this.groups === 'none' ? 24 : 40)
-    if (this.cy.zoom() > 1.3) this.cy.zoom(1.3)
+    this.scene.resize()
+    const { boxes, nodes } = this.scene.content
+    if (boxes.length + nodes.length === 0) return
+    const all = extentOf([...boxes, ...nodes])
+    this.scene.fit(all, this.grouping === 'none' ? 24 : 40, kMostFitted)
     // From far away one reads the groups.
-    if (isWhole || this.groups !== 'none' || this.cy.zoom() >= kNearly * kLeastZoom) return void this.cy.center()
-    this.cy.zoom(kLeastZoom)
-    const guilty = this.cy.nodes('[?isCulprit]')
-    const managed = this.cy.nodes('[?isManaged]')
-    this.cy.center(guilty.nonempty() ? guilty : managed.nonempty() ? managed : undefined)
+    if (isWhole || this.grouping !== 'none' || this.scene.zoom >= kNearly * kLeastZoom) return
+    const guilty = nodes.filter((n) => n.halo)
+    const managed = nodes.filter((n) => n.height === kNode.height)
+    this.scene.zoomBy(kLeastZoom / this.scene.zoom)
+    this.scene.center(middleOf(guilty.length > 0 ? extentOf(guilty) : managed.length > 0 ? extentOf(managed) : all))
   }
   turn(): void {
+    this.scene.resize()
     this.bend()
-    this.cy.batch(() => {
-      for (const [node, point] of this.points) this.cy.getElementById(node).position(this.onScreen(point))
-      this.boxes.place((node) => this.onScreen(this.points.get(node)!))
-    })
+    this.fill()
     this.fit()
   }
   restyle(): void {
-    this.cy.style(stylesheet())
-    this.minimap.restyle()
+    this.colours = coloursNow()
+    this.fill()
   }
   destroy(): void {
     this.minimap.destroy()
-    this.cy.destroy()
+    this.scene.destroy()
   }
 }
-

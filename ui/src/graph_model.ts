@@ -93,7 +93,7 @@ export function lineBelow(component: string | undefined): string {
   if (!component) return ''
   const live = isLive.value ? stateOfComponent(component) : undefined
   const decided = culprits.value.get(component)
-  if (decided?.phase === 'attempting') return `\n${decided.blame!.strategy}`
+  if (decided?.phase === 'attempting' && decided.blame?.strategy) return `\n${decided.blame.strategy}`
   const condition = conditionAt(component)
   if (condition) return `\n${condition}`
   if (live?.lifecycle && live.lifecycle !== 'active') return `\n${live.lifecycle}`

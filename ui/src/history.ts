@@ -11,7 +11,6 @@ export interface Failure {
   sinceClock?: number
   decision?: ManagerEvent // the last about it: a strategy was chosen, or it waits
   blame?: ManagerEvent // the last that held somebody responsible, be something done about it or not
-  heldBack?: string // why what was chosen is not done
   tried: string[]
   retryAt?: number
 }
@@ -56,17 +55,14 @@ function situationAt(history: ManagerEvent[], t: number): Situation {
       case 'strategy_chosen':
         if (!failure) break
         failure.decision = failure.blame = event
-        failure.heldBack = undefined
         failure.phase = event.dry_run ? 'failing' : 'attempting'
         break
       case 'approval_asked':
         if (!failure) break
         failure.decision = failure.blame = event
-        failure.heldBack = undefined
         break
       case 'action_held_back': // paused, silenced, or beyond a limit: whose fault it is is known nevertheless
         if (!failure) break
-        failure.heldBack = event.reason
         if (failure.decision?.candidates === undefined) failure.decision = event
         failure.blame = event
         break

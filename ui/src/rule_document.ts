@@ -106,21 +106,26 @@ export function newAdaptation(type: string, before: Statement): Statement {
   return statement
 }
 
-export function newStrategy(name: string, component: string): Statement[] {
+export function newStrategy(name: string, component: string, type = 'restart'): Statement[] {
   return [
     { statement: 'STRATEGY', name, probability: 50, confidence: 10 },
-    newAdaptation('restart', { statement: 'ADAPTATION', component }),
+    newAdaptation(type, { statement: 'ADAPTATION', component }),
   ]
 }
 
-// Every rule set first asks whether the component is alive.
+const kOwners = ['launch', 'unit', 'container', 'plugin', 'respawned']
+
+// Every rule set first asks whether the component is alive. Deactivating and activating does not help a process that exited, so a component whose
+// process can be started is started again.
 export function newRule(document: RuleDocument, component: string): Statement[] {
   const name = component.replace(/(^|_+)([a-z])/g, (_, __, letter: string) => letter.toUpperCase())
+  const declared = document.statements.find((s) => s.statement === 'COMPONENT' && s.name === component)
+  const type = kOwners.some((owner) => declared?.[owner] !== undefined) ? 'redeploy' : 'restart'
   return [
     { statement: 'RULE', name: freeName(document, 'RULE', `${name}Dead`), above: [''] },
     { statement: 'POLICIES', criticality: 'ERROR' },
     { statement: 'TRIGGER', expression: `alive(${component}) == false` },
-    ...newStrategy(freeName(document, 'STRATEGY', 'strategy'), component),
+    ...newStrategy(freeName(document, 'STRATEGY', 'strategy'), component, type),
   ]
 }
 

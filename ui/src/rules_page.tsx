@@ -250,7 +250,7 @@ export function RulesPage() {
 
   const change = (edit: Edit) => take(edit, (next) => editor.current?.setText(next))
   const format = () =>
-    act('Laying out', async () => {
+    act('Formatting', async () => {
       const reply = await call<{ result: { newText: string }[] | null }>('POST', '/api/rules/ask', {
         text: text.value,
         method: 'textDocument/formatting',
@@ -260,6 +260,7 @@ export function RulesPage() {
 
   const isChanged = !!file.value && file.value.text !== text.value
   const errors = found.value.filter((f) => f.isError).length
+  const fixes = found.value.flatMap((f) => f.fix ?? [])
   return (
     <main class="rules">
       <div class="bar">
@@ -282,7 +283,7 @@ export function RulesPage() {
           Redo
         </button>
         <button type="button" disabled={!hasToken} onClick={() => void format()}>
-          Lay out
+          Format
         </button>
         <button
           type="button"
@@ -318,15 +319,25 @@ export function RulesPage() {
         </section>
         <section class="text" aria-label="Text">
           <div class="editor" ref={place} />
+          {fixes.length > 1 && (
+            <button type="button" class="fix-all" onClick={() => editor.current?.fix(fixes)}>
+              Apply all {fixes.length} fixes
+            </button>
+          )}
           <ul class="found" aria-label="Findings of the check">
             {found.value.map((f) => (
               <li>
-                <button type="button" onClick={() => editor.current?.goTo(f.from)}>
+                <button type="button" class="finding" onClick={() => editor.current?.goTo(f.from)}>
                   <span class={f.isError ? 'ERROR' : 'WARNING'}>
                     {f.isError ? '◆' : '▲'} line {f.line}
                   </span>{' '}
                   {f.message} <small>{f.code}</small>
                 </button>
+                {f.fix && (
+                  <button type="button" onClick={() => editor.current?.fix([f.fix!])}>
+                    {f.fix.title}
+                  </button>
+                )}
               </li>
             ))}
           </ul>

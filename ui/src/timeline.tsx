@@ -295,8 +295,8 @@ export function Timeline({ view: itself, label = 'Timeline', hasMoment = true }:
               )}
             </g>
           ))}
-          {visible.length === 0 && (
-            <text x="8" y="18">Nothing has failed in this time.</text>
+          {visible.length === 0 && view.newest.value > 0 && (
+            <text x="8" y="18">No failure was detected in this time.</text>
           )}
           {visible.map((lane, row) => (
             <Bars key={lane.name} {...{ lane, row, begin, end }} />

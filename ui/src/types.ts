@@ -35,6 +35,7 @@ export interface Robot {
   components: ComponentFacts[]
   topics: string[]
   inputs: string[]
+  thresholds?: number[][] // of each input: the constants that rules compare it with
   rules: Rule[]
 }
 

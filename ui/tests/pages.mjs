@@ -1,7 +1,7 @@
 // Every page while something is wrong: the status bar says so on each, each can be used by the keyboard alone and with a
 // screen reader, and looks as in the pictures beside this. Each page's purpose is tested on the stub.
 import { readFileSync } from 'node:fs'
-import { kLargeRobot, largeState } from './large_robot.mjs'
+import { largeRobot } from './large_robot.mjs'
 import { kSchemes, kSizes, pictures } from './pictures.mjs'
 import { kHealed, kIncidentEvents, kIncidents, kNow, kStates, kToday, play, state } from './robots.mjs'
 import { expect, expectSoon, file, isAccessible, isUsableByKeyboard, stubbed, suite } from './session.mjs'
@@ -21,6 +21,7 @@ const kCalls = {
   'get /api/incidents/page': ({ id }) => (pageTrouble ? [409, { error: pageTrouble }] : [200, { what: `page of ${id}` }]),
   'get /api/incidents/recording': ({ name }) => [200, { name }],
   'get /api/component': () => [200, { node: '/camera', process: { pid: 12, memory: 123_000_000, threads: 7 }, usage: [0.25, 0.5, 0.125].map((processor, look) => ({ clock: kToday / 1000 - 15 + 5 * look, processor, memory: 120_000_000 + 1_000_000 * look })), parameters: { gain: 0.5, matrix: null }, log: [{ clock: kToday / 1000 - 13, level: 'warning', text: 'no frame for 200 ms' }] }],
+  'get /api/series': ({ name, since }) => [200, curveOf(name, Number(since ?? 0))],
   'post /api/doctor': () => [200, { domain: 7, nodes: 5, findings }],
   'get /api/rules': () => [200, { path: 'rover.rules', text: '', version: '1', can_save: true }],
   'post /api/rules/json': () => [200, { version: 1, statements: rules }],
@@ -30,7 +31,16 @@ const kCalls = {
   'post /api/what-if': () => [200, { failures: [], near: [], unknown: [] }],
   'get /api/studies': () => [200, { study: null }],
 }
-const kPages = ['robot', 'incidents', 'doctor', 'rules', 'beliefs', 'simulator', 'studies']
+const kPages = ['robot', 'incidents', 'plots', 'doctor', 'rules', 'beliefs', 'simulator', 'studies', 'help']
+
+// The last five minutes, as if asked at kToday: the camera's topics went silent 12 s before.
+function curveOf(name, since) {
+  const now = kToday / 1000
+  const clocks = Array.from({ length: 300 }, (_, i) => now - 299 + i).filter((clock) => clock > since)
+  const valueAt = { rate: (ago) => (ago < 12 ? 0 : 10), age: (ago) => (ago < 12 ? 12 - ago : 0.1), memory: () => 1.2e8, input: (ago) => 0.04 + 0.01 * Math.sin(ago / 10) }
+  const value = valueAt[name.slice(0, name.indexOf(' '))]
+  return value && !name.includes('nothing') ? { clocks, values: clocks.map((clock) => value(now - clock)) } : { clocks: [], values: [] }
+}
 
 async function become(page, server, wanted, hash) {
   server.anew()
@@ -62,7 +72,7 @@ async function everyPage(page, server, album) {
     await bar.getByText('camera is dead').waitFor()
     await bar.getByRole('button', { name: 'Pause' }).waitFor()
     expect((await page.title()).startsWith('◆ camera is dead'), `the title is ${await page.title()}`)
-    if (name !== 'robot') await photograph(page, album, `page-${name}`)
+    if (name !== 'robot' && name !== 'plots') await photograph(page, album, `page-${name}`) // these have pictures of their own
     await isAccessible(page)
     await isUsableByKeyboard(page)
     await page.setViewportSize(kSizes.phone)
@@ -213,6 +223,74 @@ async function tellsIncidents(page, server, album) {
   await page.evaluate(() => (location.hash = 'incidents/'))
 }
 
+// Signals of several units on one time axis, with thresholds and marks; the address says it all, and others read it, too.
+async function plotsSignals(page, server, album) {
+  await become(page, server, kStates.ill, 'robot')
+  await page.getByRole('link', { name: 'Plot what these rules read' }).click()
+  const chosen = page.getByRole('list', { name: 'Plotted signals' })
+  await chosen.getByRole('button', { name: 'Remove age of /fused' }).waitFor()
+  await chosen.getByRole('button', { name: 'Remove segmentation_entropy' }).waitFor()
+  await page.getByRole('combobox', { name: 'Signal' }).fill('memory of camera')
+  await page.getByRole('combobox', { name: 'Signal' }).press('Enter')
+  await page.getByLabel('Show a longer time').click()
+  await page.getByRole('region', { name: 'Marks' }).getByText('camera is held responsible for RGBDead').waitFor()
+  await photograph(page, album, 'plots')
+  await isAccessible(page)
+  await isUsableByKeyboard(page)
+  // By the mouse, to where it broke; the cursor tells the values there.
+  const plot = page.locator('.u-over')
+  const box = await plot.boundingBox()
+  await page.mouse.move(box.x + box.width * 0.9, box.y + 50)
+  await page.mouse.down()
+  await page.mouse.move(box.x + box.width * 0.999, box.y + 60, { steps: 3 })
+  await page.mouse.up()
+  await expectSoon(() => page.url().includes('from='), 'dragging does not zoom')
+  await page.mouse.move(box.x + box.width * 0.1, box.y + 50)
+  await page.locator('.u-legend').getByText('120 MB').waitFor()
+  const saving = page.waitForEvent('download')
+  await page.getByRole('button', { name: 'Save as CSV' }).click()
+  const [head, first] = readFileSync(await (await saving).path(), 'utf8').split('\n')
+  expect(head.startsWith('time,clock_s,') && head.includes('age of /fused [s]') && head.includes('memory of camera [MB]'), `the table has these columns: ${head}`)
+  expect(first.split(',').length === head.split(',').length && first.includes('120'), `the table has this first row: ${first}`)
+  const painting = page.waitForEvent('download')
+  await page.getByRole('button', { name: 'Save as picture' }).click()
+  expect(readFileSync(await (await painting).path()).subarray(1, 4).toString() === 'PNG', 'the picture is none')
+  // A link shows the same to others: signals and time.
+  const shown = await page.locator('.plots .muted').first().innerText()
+  await page.reload()
+  await chosen.getByRole('button', { name: 'Remove memory of camera' }).waitFor()
+  expect((await page.locator('.plots .muted').first().innerText()) === shown, 'the link shows another time')
+  await chosen.getByRole('button', { name: 'Remove memory of camera' }).press('Enter')
+  await expectSoon(() => !page.url().includes('memory'), 'the address keeps what was removed')
+  await page.getByRole('button', { name: '● Live' }).click()
+}
+
+// Six steps on the first visit, which can be ended; terms are explained where they stand.
+async function guidesNewcomers(page, server) {
+  play(server, kStates.ill)
+  const tour = page.getByRole('region', { name: 'Tour' })
+  for (let i = 1; i < 6; ++i) {
+    await tour.getByText(`(${i} of 6)`).waitFor()
+    await page.locator('.toured').first().waitFor()
+    if (i === 1) await isAccessible(page)
+    await tour.getByRole('button', { name: 'Next' }).press('Enter')
+  }
+  await tour.getByRole('button', { name: 'Done' }).click()
+  await page.reload()
+  const term = page.getByRole('button', { name: 'Possible causes' })
+  await term.focus()
+  await page.getByRole('tooltip').getByText('The component whose fault explains the failures.').waitFor()
+  await isAccessible(page)
+  await page.keyboard.press('Escape')
+  expect((await page.getByRole('tooltip').count()) === 0, 'the tooltip does not close')
+  expect((await tour.count()) === 0, 'the tour begins again')
+  await page.evaluate(() => (location.hash = 'help'))
+  await page.getByRole('button', { name: 'Start the tour' }).click()
+  await tour.getByText('(1 of 6)').waitFor()
+  await tour.getByRole('button', { name: 'End the tour' }).click()
+  expect((await tour.count()) === 0, 'the tour does not end')
+}
+
 // Findings without a rule; and which of them are new since the last time.
 async function examines(page, server, album) {
   await become(page, server, kStates.well, 'doctor')
@@ -297,8 +375,9 @@ async function theKeyPauses(page, server) {
 // 500 nodes: from far away groups with the one that is at fault, from near its nodes, and all of it in a corner.
 async function staysUsableWhenLarge(page, server, album) {
   server.anew()
-  for (const [kind, document] of Object.entries(kLargeRobot)) server.tell(kind, document)
-  server.tell('state', largeState(2, kToday / 1000))
+  const { documents, stateAt } = largeRobot(500)
+  for (const [kind, document] of Object.entries(documents)) server.tell(kind, document)
+  server.tell('state', stateAt(2, kToday / 1000))
   await page.evaluate(() => (location.hash = 'robot'))
   await page.getByText('and 440 more').waitFor()
   await page.getByRole('button', { name: 'New layout' }).click()
@@ -311,6 +390,11 @@ async function staysUsableWhenLarge(page, server, album) {
   await page.getByLabel('Find a node').fill('node_499')
   await page.getByRole('region', { name: 'Components' }).getByRole('button', { name: 'node_499' }).waitFor()
   await page.getByLabel('Find a node').fill('')
+  await page.getByRole('combobox', { name: 'Computer' }).selectOption('rover1')
+  await page.getByRole('combobox', { name: 'Namespace' }).selectOption('/area_03')
+  await page.getByRole('combobox', { name: 'Level' }).selectOption('well')
+  await page.getByText('1 of 500').waitFor()
+  for (const [name, all] of [['Computer', 'all computers'], ['Namespace', 'all namespaces'], ['Level', 'all levels']]) await page.getByRole('combobox', { name }).selectOption(all)
   for (const by of ['host', 'container', 'none', 'auto']) {
     await page.getByLabel('Group nodes by').selectOption(by)
     await page.getByRole('button', { name: 'Show all of the graph' }).click()
@@ -331,10 +415,11 @@ await suite(() =>
       await examines(page, server, album)
       await dragsAThreshold(page, server, album)
       await imaginesTheRobotAsItIs(page, server)
+      await plotsSignals(page, server, album)
       await theKeyPauses(page, server)
       await staysUsableWhenLarge(page, server, album)
       await album.end()
     },
     kToday
-  )
+  ).then(() => stubbed(kCalls, guidesNewcomers, kToday, true))
 )

@@ -18,6 +18,8 @@ const references = join(dirname(fileURLToPath(import.meta.url)), 'pictures')
 const isMaking = process.env.CULPRIT_PICTURES === 'make'
 const kScale = 0.25
 const kPatience = 60_000 // ms, for what is still being drawn
+const kCalm = 3 // looks, until a new reference is taken
+const kBetween = 200 // ms
 const kMostOthers = 0.006 // share of a picture that may differ: less than a button
 
 // One picture for all sizes: side by side, the dark ones below.
@@ -103,10 +105,15 @@ export async function pictures(page, folder) {
       await open(name)
       const tile = tiles[`${size} ${scheme}`]
       const end = Date.now() + kPatience
+      let calm = 0 // looks without a change
       for (;;) {
         const shot = await shoot()
         if (isMaking) {
-          if (!(await glass.evaluate(([t, p]) => isSettled(t, p), [tile, shot])) && Date.now() < end) continue
+          calm = (await glass.evaluate(([t, p]) => isSettled(t, p), [tile, shot])) ? calm + 1 : 0
+          if (calm < kCalm && Date.now() < end) {
+            await page.waitForTimeout(kBetween)
+            continue
+          }
           return void (await glass.evaluate(([n, t, p]) => put(n, t, p), [name, tile, shot]))
         }
         const others = await glass.evaluate(([n, t, p]) => compare(n, t, p), [name, tile, shot])

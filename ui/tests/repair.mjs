@@ -30,10 +30,10 @@ export async function mendsABrokenFile() {
       await page.keyboard.insertText(text.trim().replace(wrong, right))
     }
     await replace(7, '150', '50')
-    await replace(8, 'restrat', 'restart')
+    await found.getByRole('listitem').filter({ hasText: 'line 8' }).getByRole('button').last().click() // its quick fix
     await page.getByText('no errors').waitFor()
-    await page.getByRole('button', { name: 'Lay out' }).click()
-    await page.getByText('Laying out: done').waitFor()
+    await page.getByRole('button', { name: 'Format' }).click()
+    await page.getByText('Formatting: done').waitFor()
     await page.getByRole('button', { name: 'Save …' }).click()
     await page.getByRole('dialog').getByRole('button', { name: 'Save', exact: true }).click()
     await page.getByText('as saved').waitFor()

@@ -15,7 +15,7 @@ const kRules = [
 export const kRobot = {
   robot: 'rover', cycle_s: 0.2,
   components: kComponents.map((name) => ({ name, can_start: true, node: `/${name}`, owner: 'culprit, by its LAUNCH command' })),
-  topics: kTopics, inputs: ['alive(camera)', 'age(/fused)', 'segmentation_entropy'], rules: kRules,
+  topics: kTopics, inputs: ['alive(camera)', 'age(/fused)', 'segmentation_entropy'], thresholds: [[], [0.5], [0.06]], rules: kRules,
 }
 export const kGraph = {
   nodes: [

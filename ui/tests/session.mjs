@@ -68,14 +68,15 @@ export async function expectSoon(holds, message) {
 // Runs `steps` with a page of `culprit <args>`, and what it prints.
 export const session = (args, steps) => browse(serve(args), steps)
 
-// Runs `steps` with a page of a stub that answers these calls (stub.mjs). `now`: what all clocks show, also as time passes.
-export async function stubbed(calls, steps, now = null) {
+// Runs `steps` with a page of a stub that answers these calls (stub.mjs). `now`: what all clocks show, also as time passes. `hasTour`: as on a
+// first visit.
+export async function stubbed(calls, steps, now = null, hasTour = false) {
   const server = await stub(modules, calls)
-  await browse({ ...server, address: Promise.resolve(server.address) }, steps, now)
+  await browse({ ...server, address: Promise.resolve(server.address) }, steps, now, hasTour)
 }
 
 let browser = null
-async function newPage() {
+async function newPage(hasTour) {
   browser ??= await chromium.launch({
     executablePath: '/usr/bin/chromium-headless-shell',
     args: [
@@ -85,6 +86,7 @@ async function newPage() {
     env: { ...process.env, TMPDIR: folder, TZ: 'UTC', FONTCONFIG_FILE: join(dirname(fileURLToPath(import.meta.url)), 'fonts.conf') },
   })
   const context = await browser.newContext({ viewport: { width: 1440, height: 900 } })
+  if (!hasTour) await context.addInitScript(() => localStorage.setItem('culprit-tour', 'ended'))
   if (process.env.CULPRIT_FRESH_PAGE) {
     for (const { path, type, contents } of bundle(modules))
       await context.route((url) => url.pathname === path, (route) => route.fulfill({ contentType: type, body: Buffer.from(contents) }))
@@ -106,12 +108,12 @@ export async function suite(sessions) {
 }
 
 // Runs `steps` with a page of any server: its address is a promise, and it has an end().
-export async function browse(server, steps, now = null) {
+export async function browse(server, steps, now = null, hasTour = false) {
   const complaints = []
   let page
   try {
     const address = await server.address
-    page = await newPage()
+    page = await newPage(hasTour)
     page.setDefaultTimeout(kPatience)
     page.on('pageerror', (error) => complaints.push(String(error)))
     page.on('console', (message) => {

@@ -30,6 +30,7 @@
 #include "web/name_routes.h"
 #include "web/order_routes.h"
 #include "web/rule_routes.h"
+#include "web/series_route.h"
 #include "web/single_run_route.h"
 #include "web/status_routes.h"
 #include "web/study_runner.h"
@@ -145,7 +146,7 @@ web::Faults faults_of(SunsetDemo& demo) {
 }
 
 std::vector<web::Route> web_routes(SunsetDemo& demo, web::Hub& hub, const web::Metrics& metrics,
-                                   const web::UsageHistory& usage, web::OrderDesk& orders,
+                                   const web::Histories& histories, web::OrderDesk& orders,
                                    web::RuleDesk& desk, web::StudyRunner& studies,
                                    live::RobotNames& names, PlannerFactory planner) {
   std::vector<web::Route> routes = web::live_routes(hub);
@@ -157,8 +158,10 @@ std::vector<web::Route> web_routes(SunsetDemo& demo, web::Hub& hub, const web::M
   for (web::Route& route : web::incident_routes(hub, "")) routes.push_back(std::move(route));
   for (web::Route& route : web::doctor_routes(web::examine_robot))
     routes.push_back(std::move(route));
-  routes.push_back(web::component_route(
-      hub, usage, look, [&names](const std::string& node) { return names.log_of(node); }));
+  routes.push_back(
+      web::component_route(hub, histories.usage, look,
+                           [&names](const std::string& node) { return names.log_of(node); }));
+  routes.push_back(web::series_route(histories));
   routes.push_back(web::what_if_route(std::move(planner)));
   for (web::Route& route : web::study_routes(studies.studies())) routes.push_back(std::move(route));
   routes.push_back(web::single_run_route());
@@ -188,8 +191,8 @@ int demo_sunset(const DemoOptions& options) {
   web::Hub hub([&] { running->interrupt(); });
   web::Metrics metrics;
   web::HubObserver observer(hub, metrics);
-  web::UsageHistory usage;
-  live::Observers observers({&observer, &usage});
+  web::Histories histories;
+  live::Observers observers({&observer, &histories.usage, &histories.signals});
   SunsetDemo::Options setup;
   setup.speed = options.speed;
   setup.seed = options.seed;
@@ -213,14 +216,14 @@ int demo_sunset(const DemoOptions& options) {
   web::StudyRunner studies(default_state_folder() / "studies");
   orders.open((*demo)->rules(), [&](Order order) { (*demo)->submit(std::move(order)); });
   const auto server = serve(options.web,
-                            web_routes(**demo, hub, metrics, usage, orders, desk, studies, names,
-                                       options.planner.factory()),
+                            web_routes(**demo, hub, metrics, histories, orders, desk, studies,
+                                       names, options.planner.factory()),
                             &hub);
   if (!server) {
     say(stderr, "culprit: {}\n", server.error());
     return kUsage;
   }
-  usage.start();
+  histories.start();
   std::vector<web::Route> local = web::live_routes(hub);
   for (web::Route& route : web::order_routes(orders, hub)) local.push_back(std::move(route));
   const auto asked = serve_this_machine({"", (*demo)->rules().robot, "sunset.rules",

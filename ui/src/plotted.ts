@@ -1,0 +1,141 @@
+// The content of the page of plots: which signals over which time, as the address says it, and their values as the server has them.
+import { computed, signal } from '@preact/signals'
+import { call } from './api'
+import { nowByTheClock } from './freshness'
+import { robot, state } from './store'
+
+export interface Curve {
+  clocks: number[] // s since 1970, the oldest first
+  values: (number | null)[] // null: it was unknown
+}
+export type Range = { last: number } | { from: number; to: number } // s
+
+export const kKept = 900 // s, by the server
+const kUsual = 120 // s
+const kPeriod = 1000 // ms
+const kMostAtFirst = 3
+
+export const plotted = signal<string[]>([]) // "rate /scan", "input entropy", "memory camera"
+export const range = signal<Range>({ last: kUsual })
+export const curves = signal<Map<string, Curve>>(new Map())
+export const trouble = signal('')
+
+export interface Kind {
+  unit: string
+  scale: number // from the server's unit
+  words: string
+}
+const kKinds: Record<string, Kind> = {
+  rate: { unit: 'Hz', scale: 1, words: 'rate of' },
+  age: { unit: 's', scale: 1, words: 'age of' },
+  processor: { unit: '% of a core', scale: 100, words: 'processor of' },
+  memory: { unit: 'MB', scale: 1e-6, words: 'memory of' },
+  input: { unit: '', scale: 1, words: '' },
+}
+const kTimes = /^(age|goal_age|frozen)\(/
+export function kindOf(name: string): Kind {
+  const what = name.slice(0, name.indexOf(' '))
+  if (what === 'input') {
+    const place = robot.value?.inputs.indexOf(subjectOf(name)) ?? -1
+    if (typeof state.value?.inputs[place] === 'boolean') return { ...kKinds.input, unit: 'true = 1' }
+    if (kTimes.test(subjectOf(name))) return { ...kKinds.input, unit: 's' }
+  }
+  return kKinds[what] ?? kKinds.input
+}
+export const subjectOf = (name: string) => name.slice(name.indexOf(' ') + 1)
+export const wordsOf = (name: string) => `${kindOf(name).words} ${subjectOf(name)}`.trim()
+
+// How an input of the rules is called here.
+export function signalOf(input: string): string {
+  const [, what, topic] = /^(rate|age)\((\/[^ ,()]+)\)$/.exec(input) ?? []
+  return topic && robot.value?.topics.includes(topic) ? `${what} ${topic}` : `input ${input}`
+}
+
+// All that can be plotted.
+export const offered = computed((): string[] => {
+  const { topics = [], inputs = [], components = [] } = robot.value ?? {}
+  return [
+    ...inputs.filter((_, place) => typeof state.value?.inputs[place] !== 'string').map(signalOf).filter((name) => name.startsWith('input ')),
+    ...topics.flatMap((t) => [`rate ${t}`, `age ${t}`]),
+    ...components.flatMap(({ name }) => [`processor ${name}`, `memory ${name}`]),
+  ]
+})
+
+// The constants that rules compare it with, in the unit of the plot.
+export function thresholdsOf(name: string): number[] {
+  const subject = subjectOf(name)
+  const what = name.slice(0, name.indexOf(' '))
+  const [input, scale] =
+    what === 'input' ? [subject, 1] : what === 'processor' ? [`cpu(${subject})`, 100] : what === 'memory' ? [`memory(${subject})`, 1.048576] : [`${what}(${subject})`, 1]
+  const place = robot.value?.inputs.indexOf(input) ?? -1
+  return (robot.value?.thresholds?.[place] ?? []).map((value) => value * scale)
+}
+
+// The part of the address behind "#plots/".
+export function toAddress(names: string[], shown: Range): string {
+  const query = new URLSearchParams(names.map((name) => ['s', name]))
+  if ('last' in shown) query.set('last', String(shown.last))
+  else {
+    query.set('from', shown.from.toFixed(1))
+    query.set('to', shown.to.toFixed(1))
+  }
+  return `#plots/${query}`
+}
+export function fromAddress(place: string): void {
+  const query = new URLSearchParams(place)
+  const number = (key: string) => (query.has(key) ? Number(query.get(key)) : NaN)
+  if (query.has('s')) plotted.value = query.getAll('s')
+  if (number('to') > number('from')) range.value = { from: number('from'), to: number('to') }
+  else if (number('last') > 0) range.value = { last: number('last') }
+}
+export function show(names: string[], shown: Range = range.value): void {
+  plotted.value = names
+  range.value = shown
+  history.replaceState(null, '', toAddress(names, shown))
+}
+
+export function extent(): { from: number; to: number } {
+  const shown = range.value
+  const now = nowByTheClock()
+  return 'last' in shown ? { from: now - shown.last, to: now } : shown
+}
+
+// Without signals in the address: the rates of the first topics.
+export const atFirst = (): string[] => (robot.value?.topics ?? []).slice(0, kMostAtFirst).map((topic) => `rate ${topic}`)
+
+async function ask(name: string): Promise<[string, Curve]> {
+  const known = curves.peek().get(name)
+  const since = known?.clocks[known.clocks.length - 1]
+  const more = await call<Curve>('GET', `/api/series?name=${encodeURIComponent(name)}${since === undefined ? '' : `&since=${since}`}`)
+  const clocks = [...(known?.clocks ?? []), ...more.clocks]
+  const values = [...(known?.values ?? []), ...more.values]
+  const first = Math.max(0, clocks.findIndex((clock) => clock > clocks[clocks.length - 1] - kKept))
+  return [name, { clocks: clocks.slice(first), values: values.slice(first) }]
+}
+
+// As long as the page is open. Gives how to stop.
+export function followCurves(): () => void {
+  let isOver = false
+  let isAsking = false
+  const look = async (): Promise<void> => {
+    if (isAsking || isOver) return
+    isAsking = true
+    const wanted = plotted.peek()
+    try {
+      const all = await Promise.all(wanted.map(ask))
+      if (!isOver) curves.value = new Map(all)
+      trouble.value = ''
+    } catch (error) {
+      if (!isOver) trouble.value = (error as Error).message
+    }
+    isAsking = false
+    if (wanted !== plotted.peek()) return look()
+  }
+  const stop = plotted.subscribe(() => void look())
+  const timer = setInterval(() => void look(), kPeriod)
+  return () => {
+    isOver = true
+    stop()
+    clearInterval(timer)
+  }
+}
