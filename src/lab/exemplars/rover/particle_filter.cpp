@@ -9,7 +9,7 @@ namespace {
 constexpr std::size_t kParticles = 200;
 constexpr double kFar = 0.5;    // metres: a beam that ends that far from a wall is as bad as any
 constexpr double kHit = 0.15;   // metres: standard deviation of a beam
-constexpr double kNear = 0.25;  // metres: such a beam fits
+constexpr double kNear = 0.2;   // metres: such a beam fits
 
 }  // namespace
 
