@@ -76,7 +76,7 @@ struct Rover {
   using Demo = RoverDemo;
   using Plays = std::vector<RoverDemo::Play>;
   static constexpr const char* kName = "the rover";
-  static constexpr const char* kNodes = "sixteen processes in the shape of Nav2";
+  static constexpr const char* kNodes = "seventeen processes in the shape of Nav2";
   static constexpr const char* kRules = "rover.rules";
   static constexpr const char* kProgram = "rover-node";
   static constexpr const char* kCrashes = "planner_server";

@@ -196,7 +196,7 @@ std::optional<Time> RoverDemo::wait_until_well(const std::vector<const rover::Fa
 bool RoverDemo::wait_for_safe_stop() {
   for (const Time end = later(live_now(), 20s); live_now() < end && !stop_;) {
     std::this_thread::sleep_for(100ms);
-    if (experiment_->measure().standing_s > 4) return true;
+    if (experiment_->measure().stood_s > 3) return true;
   }
   return false;
 }

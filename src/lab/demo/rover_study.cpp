@@ -20,12 +20,14 @@ bool is_well_soon(const RoverDemo& demo) {
   return false;
 }
 
-// The one that an incident named first and that is a cause, if any is.
+bool is_cause(const RoverDemo::Play& play, const std::string& component) {
+  return std::ranges::any_of(play.faults,
+                             [&](const auto* fault) { return fault->cause == component; });
+}
+
 std::string blamed_in(const RoverDemo::Play& play, const PlayOutcome& outcome) {
-  for (const std::string& each : outcome.blamed) {
-    if (std::ranges::any_of(play.faults, [&](const auto* fault) { return fault->cause == each; }))
-      return each;
-  }
+  for (const std::string& each : outcome.blamed)
+    if (is_cause(play, each)) return each;
   return outcome.blamed.empty() ? "nobody" : "not it: " + outcome.blamed.front();
 }
 
@@ -45,6 +47,11 @@ Expected<void> play_all(const RoverStudy& study, const std::atomic<bool>& stop) 
     if (!outcome->is_resolved() || !is_well_soon(*demo)) demo.reset();
   }
   return {};
+}
+
+bool is_blamed(const RoverDemo::Play& play, const PlayOutcome& outcome) {
+  return std::ranges::any_of(outcome.blamed,
+                             [&](const std::string& each) { return is_cause(play, each); });
 }
 
 std::string header_of_rover_table() {

@@ -22,7 +22,10 @@ struct RoverStudy {
 // not come up, a fault cannot be injected, or `stop` was set.
 Expected<void> play_all(const RoverStudy& study, const std::atomic<bool>& stop);
 
-// One row of the table: fault, noticed, blamed, healed, restarts of others.
+// Whether an incident held one of the components responsible that are.
+bool is_blamed(const RoverDemo::Play& play, const PlayOutcome& outcome);
+
+// One row of the table: fault, noticed, blamed, healed, time stood, redeployments of others, goals reached.
 std::string header_of_rover_table();
 std::string row_of(const RoverDemo::Play& play, const PlayOutcome& outcome);
 

@@ -22,7 +22,7 @@ std::vector<Fault> make_faults() {
   for (const char* process :
        {"lidar_driver", "camera_driver", "imu_driver", "base_driver", "map_server", "amcl",
         "planner_server", "controller_server", "behavior_server", "velocity_smoother",
-        "bt_navigator", "twist_mux", "lifecycle_manager_navigation"}) {
+        "bt_navigator", "twist_mux", "e_stop", "lifecycle_manager_navigation"}) {
     const std::string component = component_of(process);
     all.push_back({"kill:" + component, Way::kKill, process, "", {}, component, "redeploy"});
   }

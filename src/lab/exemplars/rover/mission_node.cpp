@@ -18,11 +18,17 @@ class MissionNode final : public RoverNode {
  private:
   void set_up() override {
     join(client_);
+    hear<ActionTypes<act::NavigateToPose>::Feedback>(
+        "/navigate_to_pose/_action/feedback", ros2::qos::kDefault,
+        [this](const auto&) { heard_ = ros2::Executor::Clock::now(); });
     every(500ms, [this] {
-      if (!client_.is_running()) send();
+      // A navigator that was replaced does not know the goal.
+      const bool is_forgotten = ros2::Executor::Clock::now() - heard_ > 6s;
+      if (!client_.is_running() || is_forgotten) send();
     });
   }
   void send() {
+    heard_ = ros2::Executor::Clock::now();
     client_.send({{header_now("map"), to_message(kGoals[next_])}, ""},
                  [this](auto status, const auto&) {
                    if (status == Status::kSucceeded) {
@@ -40,6 +46,7 @@ class MissionNode final : public RoverNode {
   std::size_t next_ = 0;
   int reached_ = 0;
   int failed_ = 0;
+  ros2::Executor::Clock::time_point heard_{};  // the last feedback, or the order
   ActionClient<act::NavigateToPose> client_{"/navigate_to_pose"};
 };
 

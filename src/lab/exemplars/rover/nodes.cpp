@@ -16,6 +16,7 @@ std::span<const Process> processes() {
                                      {"velocity_smoother", make_velocity_smoother},
                                      {"bt_navigator", make_bt_navigator},
                                      {"twist_mux", make_twist_mux},
+                                     {"e_stop", make_e_stop},
                                      {"lifecycle_manager_localization", nullptr},
                                      {"lifecycle_manager_navigation", nullptr},
                                      {"mission", make_mission, false}};

@@ -4,6 +4,7 @@
 //   map_server, lidar_driver ─> amcl ─> /tf ─> planner_server, controller_server
 //   bt_navigator ─ actions ─> planner_server, controller_server, behavior_server
 //   controller_server, behavior_server ─> velocity_smoother ─> twist_mux ─> base_driver
+//   e_stop ─ lock ─> twist_mux
 //
 // The world and the mission, which gives the goals, are no part of the robot.
 #pragma once
@@ -30,6 +31,7 @@ std::unique_ptr<RoverNode> make_behavior_server(Settings settings);
 std::unique_ptr<RoverNode> make_bt_navigator(Settings settings);
 std::unique_ptr<RoverNode> make_velocity_smoother(Settings settings);
 std::unique_ptr<RoverNode> make_twist_mux(Settings settings);
+std::unique_ptr<RoverNode> make_e_stop(Settings settings);
 
 struct Process {
   std::string_view name;

@@ -7,9 +7,10 @@ namespace culprit::rover {
 namespace {
 
 constexpr std::size_t kParticles = 200;
-constexpr double kFar = 0.5;    // metres: a beam that ends that far from a wall is as bad as any
-constexpr double kHit = 0.15;   // metres: standard deviation of a beam
-constexpr double kNear = 0.2;   // metres: such a beam fits
+constexpr double kShortest = 0.05;  // metres: nearer is no beam, and NaN is none
+constexpr double kFar = 0.5;   // metres: a beam that ends that far from a wall is as bad as any
+constexpr double kHit = 0.15;  // metres: standard deviation of a beam
+constexpr double kNear = 0.2;  // metres: such a beam fits
 
 }  // namespace
 
@@ -42,7 +43,7 @@ double ParticleFilter::likelihood(const Pose2& pose, const Scan& scan, int every
   const auto beams = static_cast<int>(scan.ranges.size());
   for (int i = 0; i < beams; i += every) {
     const auto range = static_cast<double>(scan.ranges[static_cast<std::size_t>(i)]);
-    if (!(range < scan.longest)) continue;
+    if (!(range > kShortest && range < scan.longest)) continue;
     const double angle = pose.yaw - std::numbers::pi + 2 * std::numbers::pi * i / beams;
     const int column = GridMap::cell(pose.x + range * std::cos(angle));
     const int row = GridMap::cell(pose.y + range * std::sin(angle));
@@ -79,6 +80,10 @@ void ParticleFilter::place_anywhere(const Scan& scan) {
 }
 
 void ParticleFilter::update(const Pose2& motion, const Scan& scan) {
+  const bool is_blind = std::ranges::none_of(scan.ranges, [&](float range) {
+    return static_cast<double>(range) > kShortest && static_cast<double>(range) < scan.longest;
+  });
+  if (is_blind) return;
   const double driven = std::hypot(motion.x, motion.y);
   weights_.clear();
   for (Pose2& particle : particles_) {
@@ -128,7 +133,7 @@ void ParticleFilter::summarize(const Scan& scan) {
   const auto beams = static_cast<int>(scan.ranges.size());
   for (int i = 0; i < beams; ++i) {
     const auto range = static_cast<double>(scan.ranges[static_cast<std::size_t>(i)]);
-    if (!(range < scan.longest)) continue;
+    if (!(range > kShortest && range < scan.longest)) continue;
     const Pose2 end = estimate_.pose *
                       Pose2{0, 0, -std::numbers::pi + 2 * std::numbers::pi * i / beams} *
                       Pose2{range, 0, 0};

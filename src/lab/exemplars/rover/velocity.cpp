@@ -1,4 +1,4 @@
-// velocity_smoother and twist_mux: from what the controller wants to what the base is told.
+// velocity_smoother, twist_mux and e_stop: from what the controller wants to what the base is told.
 #include <algorithm>
 
 #include "exemplars/rover/geometry.h"
@@ -40,29 +40,57 @@ class VelocitySmoother final : public RoverNode {
   std::optional<ros2::Publisher<msg::Twist>> out_;
 };
 
-// twist_mux: a person's command goes before that of the navigation, 0.5 s long. While `stopped` is set it says stop: the safe stop.
+// twist_mux: a person's command goes before that of the navigation, 0.5 s long. While /e_stop says so, or is silent for 1 s, it says
+// stop: a lock, as twist_mux calls it.
 class TwistMux final : public RoverNode {
  public:
-  explicit TwistMux(Settings settings)
-      : RoverNode({.name = "/twist_mux", .parameters = {{"stopped", false}}}, settings) {}
+  explicit TwistMux(Settings settings) : RoverNode({.name = "/twist_mux"}, settings) {}
 
  private:
+  using Clock = ros2::Executor::Clock;
+
   void set_up() override {
     offer(out_, "/cmd_vel");
     hear<msg::Twist>("/cmd_vel_joy", ros2::qos::kDefault, [this](const msg::Twist& twist) {
-      by_hand_ = ros2::Executor::Clock::now();
+      by_hand_ = Clock::now();
       pass(twist);
     });
     hear<msg::Twist>("/cmd_vel_smoothed", ros2::qos::kDefault, [this](const msg::Twist& twist) {
-      if (ros2::Executor::Clock::now() - by_hand_ > 500ms) pass(twist);
+      if (Clock::now() - by_hand_ > 500ms) pass(twist);
+    });
+    hear<ros2::msg::Bool>("/e_stop", ros2::qos::kDefault, [this](const ros2::msg::Bool& stop) {
+      if (!stop.data) released_ = Clock::now();
+      if (stop.data) released_ = {};
     });
   }
   void pass(const msg::Twist& twist) {
-    out_->publish(parameter<bool>("stopped") ? msg::Twist{} : twist);
+    out_->publish(Clock::now() - released_ < 1s ? twist : msg::Twist{});
   }
 
-  ros2::Executor::Clock::time_point by_hand_{};
+  Clock::time_point by_hand_{};
+  Clock::time_point released_{};  // the last time that /e_stop allowed to drive
   std::optional<ros2::Publisher<msg::Twist>> out_;
+};
+
+// e_stop: the safe stop. /e_stop says at 5 Hz whether the rover must stand: the parameter `stopped`.
+class EStop final : public RoverNode {
+ public:
+  explicit EStop(Settings settings)
+      : RoverNode({.name = "/e_stop", .parameters = {{"stopped", false}}}, settings) {}
+
+ private:
+  void set_up() override {
+    offer(out_, "/e_stop");
+    every(200ms, [this] { publish(parameter<bool>("stopped")); });
+  }
+  // At once, not with the next tick.
+  Expected<void> on_set(const ros2::msg::Parameter& change) override {
+    if (out_ && change.name == "stopped") publish(change.value.bool_value);
+    return {};
+  }
+  void publish(bool stopped) { out_->publish({stopped}); }
+
+  std::optional<ros2::Publisher<ros2::msg::Bool>> out_;
 };
 
 }  // namespace
@@ -72,6 +100,9 @@ std::unique_ptr<RoverNode> make_velocity_smoother(Settings settings) {
 }
 std::unique_ptr<RoverNode> make_twist_mux(Settings settings) {
   return std::make_unique<TwistMux>(std::move(settings));
+}
+std::unique_ptr<RoverNode> make_e_stop(Settings settings) {
+  return std::make_unique<EStop>(std::move(settings));
 }
 
 }  // namespace culprit::rover
