@@ -1,4 +1,4 @@
-// What became of one play of a demonstration.
+// The outcome of one play of a demonstration.
 #pragma once
 
 #include <optional>

@@ -23,7 +23,7 @@ namespace culprit::lab {
 
 class RoverDemo : private live::Listener {
  public:
-  // Who keeps the rover working, besides Nav2's lifecycle managers, which are always there.
+  // The manager that keeps the rover working, besides Nav2's lifecycle managers, which are always there.
   enum class Manager : std::uint8_t {
     kNone,
     kRespawn,  // a process that exits is started again after 2 s

@@ -131,7 +131,7 @@ void add_study_rover(CLI::App& study, int& exit_code) {
       ->add_option("--fault", options->faults,
                    "Faults by name, several at once as kill:amcl+lidar:stall (default: each)")
       ->delimiter(',');
-  command->add_option("--patience", options->patience_s, "Seconds until a fault is not healed")
+  command->add_option("--patience", options->patience_s, "Longest wait for a repair, in seconds")
       ->check(CLI::Range(1.0, 600.0))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Seed of the world")->capture_default_str();

@@ -28,7 +28,7 @@ struct Measurements {
   double stood_s = 0;       // since restart_measuring()
   double standing_s = 0;    // until now
   double pose_error_m = 0;  // of amcl
-  // What is wrong with the robot: a server is not active, it does not know where it is, it stands. Empty: nothing.
+  // The fault that can be seen: a server is not active, the rover does not know where it is, or it stands. Empty: none.
   std::string complaint{};
 };
 
@@ -41,7 +41,7 @@ class Experiment {
   Expected<void> inject(const Fault& fault);
   // Whether the fault itself is over, whatever became of its effects. Blocks.
   bool is_over(const Fault& fault);
-  // Removes all faults and the safe stop. What is dead or inactive is left to the manager. Blocks.
+  // Removes all faults and the safe stop. The manager restarts exited processes and activates servers. Blocks.
   void clear();
 
   void restart_measuring();

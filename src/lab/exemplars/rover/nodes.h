@@ -42,7 +42,7 @@ struct Process {
 // In the order in which they are started.
 std::span<const Process> processes();
 
-// What the lifecycle managers manage, in the order of start-up.
+// The servers of the lifecycle managers, in the order of start-up.
 inline constexpr std::string_view kLocalization[] = {"/map_server", "/amcl"};
 inline constexpr std::string_view kNavigation[] = {"/controller_server", "/planner_server",
                                                    "/behavior_server", "/velocity_smoother",

@@ -7,7 +7,7 @@
 
 namespace culprit::rover {
 
-// What it costs to be in each cell: kLethal within the robot's radius of an obstacle, less and less beyond.
+// The cost of each cell: kLethal within the robot's radius of an obstacle, less and less beyond.
 class CostGrid {
  public:
   static constexpr int kLethal = 100;
