@@ -17,7 +17,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration kComingUp = 60s;
+constexpr Duration kComingUp = 120s;
 constexpr const char* kProgram = "rover-node";
 
 std::string launches(bool has_robot) {
