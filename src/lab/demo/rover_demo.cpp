@@ -17,7 +17,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration kComingUp = 120s;
+constexpr Duration kRoverComesUp = 120s;
 constexpr const char* kProgram = "rover-node";
 
 std::string launches(bool has_robot) {
@@ -117,7 +117,7 @@ Expected<void> RoverDemo::open() {
   } else if (options_.manager == Manager::kRespawn) {
     thread_ = std::thread([this] { respawn(); });
   }
-  if (wait_until_well({}, kComingUp)) return {};
+  if (wait_until_well({}, kRoverComesUp)) return {};
   if (stop_) return Error{"interrupted"};
   return Error{"the rover does not come up: " + experiment_->measure().complaint +
                "; its logs are in " + (keep_state() / "log").string()};

@@ -196,9 +196,10 @@ void Experiment::clear() {
       {"world", {"battery", Value(1.0)}},
       {"e_stop", {"stopped", Value(false)}},
       {"controller_server", {"max_speed", Value(0.5)}}};
-  for (const auto& [process, setting] : healthy)
-    (void)answer_to<void>(
-        [&](auto then) { control(process).set_parameter(setting.first, setting.second, then); });
+  for (const auto& each : healthy)
+    (void)answer_to<void>([&each, this](auto then) {
+      control(each.first).set_parameter(each.second.first, each.second.second, then);
+    });
   for (const Process& process : processes()) {
     if (process.make == nullptr) continue;
     (void)answer_to<void>([&](auto then) {
