@@ -8,7 +8,7 @@ JOBS := $(shell nproc)
 build:
 	@scripts/install-dependencies --studies
 	cmake --preset release -DCULPRIT_TESTS=OFF
-	cmake --build --preset release --parallel $(JOBS) --target culprit culprit-lab sunset-node suave-node
+	cmake --build --preset release --parallel $(JOBS) --target culprit culprit-lab sunset-node suave-node rover-node
 
 # Programs, rules, documents, the manual page, and culprit::core for programs of others.
 PREFIX ?= /usr/local

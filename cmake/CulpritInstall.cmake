@@ -14,7 +14,7 @@ install(FILES ${PROJECT_SOURCE_DIR}/packaging/monitoring/culprit-alerts.yaml ${P
         DESTINATION share/culprit/monitoring COMPONENT culprit)
 install(FILES ${PROJECT_SOURCE_DIR}/packaging/culprit.1 DESTINATION share/man/man1 COMPONENT culprit)
 install(FILES ${PROJECT_SOURCE_DIR}/packaging/culprit-lab.1 DESTINATION share/man/man1 COMPONENT lab)
-install(FILES ${PROJECT_SOURCE_DIR}/packaging/sunset-node.1 ${PROJECT_SOURCE_DIR}/packaging/suave-node.1
+install(FILES ${PROJECT_SOURCE_DIR}/packaging/sunset-node.1 ${PROJECT_SOURCE_DIR}/packaging/suave-node.1 ${PROJECT_SOURCE_DIR}/packaging/rover-node.1
         DESTINATION share/man/man1 COMPONENT lab)
 install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION share/doc/culprit COMPONENT doc)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/ DESTINATION share/doc/culprit/docs COMPONENT doc)

@@ -157,6 +157,8 @@ void Incidents::note(const Event& event, const RuleSet& rules) {
   } else if (const auto* order = std::get_if<OrderAccepted>(&event.what)) {
     if (std::holds_alternative<Resume>(order->order.what)) resume();
   } else if (const auto* chosen = std::get_if<StrategyChosen>(&event.what)) {
+    // A last resort protects the robot from the failure; what it adapts is not the cause.
+    if (rules[chosen->strategy].is_last_resort) return;
     of(rules[chosen->strategy].rule, rules) = {.candidates = chosen->candidates,
                                                .suspects = chosen->suspects,
                                                .blamed = chosen->strategy,
@@ -166,6 +168,7 @@ void Incidents::note(const Event& event, const RuleSet& rules) {
     of(rules[asked->strategy].rule, rules) = {
         .candidates = asked->candidates, .suspects = asked->suspects, .blamed = asked->strategy};
   } else if (const auto* held = std::get_if<ActionHeldBack>(&event.what)) {
+    if (rules[held->strategy].is_last_resort) return;
     // The failure is known to be its own cause all the same.
     Failure& failure = of(rules[held->strategy].rule, rules);
     failure.held_back = held->reason;

@@ -110,6 +110,33 @@ TEST(Incidents, IsOneIncidentForAPersonWhereAComputerIsNotHeard) {
   EXPECT_TRUE(watched.incidents().empty()) << transcript(*watched.robot);
 }
 
+// A last resort makes the robot stand still; the component that does so is not the cause.
+TEST(Incidents, DoNotBlameWhatALastResortAdapts) {
+  TestRobot robot(R"(
+COMPONENT lidar NODE /lidar LAUNCH "lidar"
+COMPONENT base  NODE /base
+RULE LidarSilent
+  POLICIES ERROR
+  TRIGGER age(/scan) > 300ms
+    STRATEGY replace_lidar 90 10
+      ADAPTATION lidar redeploy 20
+    STRATEGY stand_still 100 10 LASTRESORT WITHIN 1s
+      ADAPTATION base set_parameter stopped 1 1
+)",
+                  std::make_unique<BayesPlanner>(), Manager::Options{});
+  robot.add("lidar", {}, "/scan");
+  robot.add("base").parameters["stopped"] = Value(std::int64_t{0});
+  robot.discover();
+  robot.run_for(8s);
+  robot["lidar"].fault = "a person";
+  robot.run_for(2s);
+  ASSERT_EQ(robot["base"].parameters["stopped"], Value(std::int64_t{1})) << transcript(robot);
+  const auto& open = robot.manager().incidents().open();
+  ASSERT_EQ(open.size(), 1u) << transcript(robot);
+  EXPECT_EQ(open[0].components, std::vector{ComponentId(0)}) << transcript(robot);
+  EXPECT_EQ(transcript(robot).find("base is held responsible"), std::string::npos);
+}
+
 TEST(Incidents, SaysWhatComesNextAndWhen) {
   Watched watched;
   watched.robot->kill("camera");

@@ -56,6 +56,10 @@ class Describer {
       if (chosen->value > 0) reason += ", value " + two_decimals(chosen->value);
       reason += ", cost " + two_decimals(chosen->cost);
     }
+    // The component that a last resort adapts is not the cause.
+    if (strategy.is_last_resort)
+      return "as the last resort for " + listed(failures) + ": " + (e.dry_run ? "would " : "") +
+             actions_of(strategy, rules_) + with + " (" + reason + ")";
     return listed(blamed) + (blamed.size() == 1 ? " is" : " are") + " held responsible for " +
            listed(failures) + doubt(e) + ": " + (e.dry_run ? "would " : "") +
            actions_of(strategy, rules_) + with + " (" + reason + ")";

@@ -11,6 +11,7 @@
 #include "base/environment.h"
 #include "base/text_file.h"
 #include "demo/demo_setup.h"
+#include "demo/rover_demo.h"
 #include "demo/suave_demo_command.h"
 #include "demo/sunset_demo.h"
 #include "json/json.h"
@@ -53,7 +54,48 @@ struct DemoOptions {
   WebOptions web;
 };
 
-Expected<std::vector<Play>> plays_for(const DemoOptions& options) {
+// The differences between the robots that a demonstration breaks.
+struct Sunset {
+  using Demo = SunsetDemo;
+  using Plays = std::vector<Play>;
+  static constexpr const char* kName = "SUNSET";
+  static constexpr const char* kNodes =
+      "camera, depth, image_enhancement, sensor_fusion, segmentation";
+  static constexpr const char* kRules = "sunset.rules";
+  static constexpr const char* kProgram = "sunset-node";
+  static constexpr const char* kCrashes = "camera";
+  static constexpr const char* kHangs = "segmentation";
+  static constexpr const char* kGoesOn = "The robot flies on";
+  static Expected<Plays> plays_for(const DemoOptions& options);
+  static void set(SunsetDemo::Options& setup, const DemoOptions& options) {
+    setup.speed = options.speed;
+  }
+  static web::Faults faults_of(SunsetDemo& demo);
+};
+
+struct Rover {
+  using Demo = RoverDemo;
+  using Plays = std::vector<RoverDemo::Play>;
+  static constexpr const char* kName = "the rover";
+  static constexpr const char* kNodes = "seventeen processes in the shape of Nav2";
+  static constexpr const char* kRules = "rover.rules";
+  static constexpr const char* kProgram = "rover-node";
+  static constexpr const char* kCrashes = "planner_server";
+  static constexpr const char* kHangs = "controller_server";
+  static constexpr const char* kGoesOn = "The rover drives on";
+  static Expected<Plays> plays_for(const DemoOptions& options);
+  static void set(RoverDemo::Options&, const DemoOptions&) {}
+  static web::Faults faults_of(RoverDemo& demo);
+};
+
+Expected<Rover::Plays> Rover::plays_for(const DemoOptions& options) {
+  if (options.scenario.empty()) return RoverDemo::default_plays();
+  auto play = RoverDemo::find_play(options.scenario);
+  if (!play) return Error{play.error()};
+  return Plays{*play};
+}
+
+Expected<std::vector<Play>> Sunset::plays_for(const DemoOptions& options) {
   if (options.scenario.empty()) return default_plays();
   if (options.scenario == "random") {
     const auto all = sunset::scenarios();
@@ -89,6 +131,7 @@ Json to_json(const std::vector<PlayOutcome>& outcomes) {
                {"reaction_time_s", o.reaction_times},
                {"downtime_s", o.downtime},
                {"mean_iou", nullptr},
+               {"blamed", o.blamed},
                {"resolved", o.is_resolved()}};
     if (o.mean_iou) entry["mean_iou"] = *o.mean_iou;
     document["scenarios"].push_back(std::move(entry));
@@ -112,6 +155,7 @@ void print_outcome(const PlayOutcome& o) {
   say(stdout, "  reaction times             {} s\n", reactions.empty() ? "-" : reactions);
   say(stdout, "  downtime                   {:.2f} s\n", o.downtime);
   if (o.mean_iou) say(stdout, "  mean IoU                   {:.2f}\n", *o.mean_iou);
+  if (!o.blamed.empty()) say(stdout, "  held responsible           {}\n", joined(o.blamed));
   if (!o.is_resolved()) say(stdout, "  NOT RESOLVED               {}\n", o.complaint);
 }
 
@@ -132,7 +176,15 @@ void print_summary(const std::vector<PlayOutcome>& outcomes) {
       "redeploys: those that were not necessary. reaction: mean, from detection to resolution.\n");
 }
 
-web::Faults faults_of(SunsetDemo& demo) {
+web::Faults Rover::faults_of(RoverDemo& demo) {
+  web::Faults faults;
+  for (const rover::Fault& fault : rover::faults()) faults.all.push_back({fault.name, fault.cause});
+  faults.inject = [&demo](const std::string& name) { return demo.inject(name); };
+  faults.clear = [&demo] { return demo.clear_faults(); };
+  return faults;
+}
+
+web::Faults Sunset::faults_of(SunsetDemo& demo) {
   web::Faults faults;
   for (const sunset::Fault& fault : sunset::faults())
     faults.all.push_back({std::string(fault.name), std::string(sunset::name_of(fault.member))});
@@ -145,7 +197,7 @@ web::Faults faults_of(SunsetDemo& demo) {
   return faults;
 }
 
-std::vector<web::Route> web_routes(SunsetDemo& demo, web::Hub& hub, const web::Metrics& metrics,
+std::vector<web::Route> web_routes(web::Faults faults, web::Hub& hub, const web::Metrics& metrics,
                                    const web::Histories& histories, web::OrderDesk& orders,
                                    web::RuleDesk& desk, web::StudyRunner& studies,
                                    live::RobotNames& names, PlannerFactory planner) {
@@ -165,36 +217,39 @@ std::vector<web::Route> web_routes(SunsetDemo& demo, web::Hub& hub, const web::M
   routes.push_back(web::what_if_route(std::move(planner)));
   for (web::Route& route : web::study_routes(studies.studies())) routes.push_back(std::move(route));
   routes.push_back(web::single_run_route());
-  for (web::Route& route : web::fault_routes(faults_of(demo))) routes.push_back(std::move(route));
+  for (web::Route& route : web::fault_routes(std::move(faults))) routes.push_back(std::move(route));
   return routes;
 }
 
+template <class Robot>
 void print_how_to_break(const std::string& address, std::uint32_t domain) {
   say(stdout,
-      "  in the browser             {}\n"
-      "  a crash                    pkill -f 'sunset-node camera'\n"
-      "  a hang                     pkill -STOP -f 'sunset-node segmentation'\n"
-      "  and see what culprit does  culprit status --domain {}\n",
-      address, domain);
+      "  in the browser             {0}\n"
+      "  a crash                    pkill -f '{2} {3}'\n"
+      "  a hang                     pkill -STOP -f '{2} {4}'\n"
+      "  and see what culprit does  culprit status --domain {1}\n",
+      address, domain, Robot::kProgram, Robot::kCrashes, Robot::kHangs);
 }
 
-int demo_sunset(const DemoOptions& options) {
-  const auto plays = plays_for(options);
+template <class Robot>
+int demo_robot(const DemoOptions& options) {
+  using Demo = typename Robot::Demo;
+  const auto plays = Robot::plays_for(options);
   if (!plays) {
     say(stderr, "culprit: {}\n", plays.error());
     return kUsage;
   }
   StopSignals signals;
   const Colour colour = colour_of(STDOUT_FILENO);
-  say(stdout, "Starting SUNSET: camera, depth, image_enhancement, sensor_fusion, segmentation\n");
-  SunsetDemo* running = nullptr;
+  say(stdout, "Starting {}: {}\n", Robot::kName, Robot::kNodes);
+  Demo* running = nullptr;
   web::Hub hub([&] { running->interrupt(); });
   web::Metrics metrics;
   web::HubObserver observer(hub, metrics);
   web::Histories histories;
   live::Observers observers({&observer, &histories.usage, &histories.signals});
-  SunsetDemo::Options setup;
-  setup.speed = options.speed;
+  typename Demo::Options setup;
+  Robot::set(setup, options);
   setup.seed = options.seed;
   setup.domain = options.domain;
   setup.planner = options.planner.factory();
@@ -203,21 +258,21 @@ int demo_sunset(const DemoOptions& options) {
     if (!text.empty()) say(stdout, "{}\n", text);
   };
   setup.observer = &observers;
-  auto demo = SunsetDemo::start(std::move(setup), signals.stopped());
+  auto demo = Demo::start(std::move(setup), signals.stopped());
   if (!demo) {
     say(stderr, "culprit: {}\n", demo.error());
     return kFailed;
   }
   running = demo->get();
-  say_domain("SUNSET", (*demo)->domain());
-  web::RuleDesk desk("sunset.rules", SunsetDemo::rule_text());
+  say_domain(Robot::kName, (*demo)->domain());
+  web::RuleDesk desk(Robot::kRules, Demo::rule_text());
   web::OrderDesk orders((*demo)->keeper().keeping());
   live::RobotNames names;
   web::StudyRunner studies(default_state_folder() / "studies");
   orders.open((*demo)->rules(), [&](Order order) { (*demo)->submit(std::move(order)); });
   const auto server = serve(options.web,
-                            web_routes(**demo, hub, metrics, histories, orders, desk, studies,
-                                       names, options.planner.factory()),
+                            web_routes(Robot::faults_of(**demo), hub, metrics, histories, orders,
+                                       desk, studies, names, options.planner.factory()),
                             &hub);
   if (!server) {
     say(stderr, "culprit: {}\n", server.error());
@@ -226,18 +281,18 @@ int demo_sunset(const DemoOptions& options) {
   histories.start();
   std::vector<web::Route> local = web::live_routes(hub);
   for (web::Route& route : web::order_routes(orders, hub)) local.push_back(std::move(route));
-  const auto asked = serve_this_machine({"", (*demo)->rules().robot, "sunset.rules",
+  const auto asked = serve_this_machine({"", (*demo)->rules().robot, Robot::kRules,
                                          (*demo)->domain(), "culprit", (*server)->address()},
                                         std::move(local), hub);
   if (options.stay) {
     say(stdout, "Break it in the browser, and see what becomes of it; Ctrl-C ends it.\n");
-    print_how_to_break((*server)->address(), (*demo)->domain());
+    print_how_to_break<Robot>((*server)->address(), (*demo)->domain());
     signals.wait_until_stopped();
     return kOk;
   }
   std::vector<PlayOutcome> outcomes;
   for (std::size_t i = 0; i < plays->size(); ++i) {
-    const Play& play = (*plays)[i];
+    const auto& play = (*plays)[i];
     say(stdout, "\nScenario {} of {}: {}\nInjecting {}\n", i + 1, plays->size(), play.name,
         joined(play.fault_names()));
     auto outcome = (*demo)->play(play);
@@ -262,22 +317,27 @@ int demo_sunset(const DemoOptions& options) {
   }
   const bool is_watched = isatty(STDIN_FILENO) != 0 && isatty(STDOUT_FILENO) != 0;
   if (is_watched && !options.ends) {
-    say(stdout, "\nThe robot flies on; Ctrl-C ends it. Break it yourself:\n");
-    print_how_to_break((*server)->address(), (*demo)->domain());
+    say(stdout, "\n{}; Ctrl-C ends it. Break it yourself:\n", Robot::kGoesOn);
+    print_how_to_break<Robot>((*server)->address(), (*demo)->domain());
     signals.wait_until_stopped();
   }
   return all_healed ? kOk : kFailed;
 }
 
 int demo(const DemoOptions& options) {
-  if (options.robot == "sunset" && options.is_extended) {
+  if (options.robot != "suave" && options.is_extended) {
     say(stderr, "culprit: --extended is for --robot suave\n");
     return kUsage;
   }
-  if (options.robot == "sunset") return demo_sunset(options);
+  if (options.robot == "sunset") return demo_robot<Sunset>(options);
+  if (options.robot == "rover" && options.speed != 1) {
+    say(stderr, "culprit: the rover lives at --speed 1 only\n");
+    return kUsage;
+  }
+  if (options.robot == "rover") return demo_robot<Rover>(options);
   if (!options.scenario.empty() || options.stay) {
     say(stderr,
-        "culprit: --scenario and --stay are for --robot sunset; SUAVE has its missions, the "
+        "culprit: --scenario and --stay are for the other robots; SUAVE has its missions, the "
         "standard one and --extended\n");
     return kUsage;
   }
@@ -301,14 +361,17 @@ void add_demo(CLI::App& app, int& exit_code) {
       "Plays three scenarios, each with an ERROR, a WARNING and a NON_CRITICAL fault at once.\n"
       "Then it goes on until Ctrl-C if a person watches.\n"
       "With --robot suave: an underwater robot that must find a pipeline in murky water, and loses "
-      "a thruster.");
+      "a thruster.\n"
+      "With --robot rover: a mobile robot in the shape of Nav2, which drives from room to room.");
   command->add_option("--robot", options->robot, "Robot")
-      ->check(CLI::IsMember({"sunset", "suave"}))
+      ->check(CLI::IsMember({"sunset", "suave", "rover"}))
       ->capture_default_str();
   command->add_option(
       "--scenario", options->scenario,
       "One scenario instead: 001 to 018, a name such as image_shift+gpu_failure, 'random', or "
-      "faults of processes: kill:camera, stop:depth, crash:segmentation, kill:camera+segmentation");
+      "faults of processes: kill:camera, stop:depth, crash:segmentation, kill:camera+segmentation. "
+      "With "
+      "--robot rover: faults by name, such as lidar:stall+kidnapped");
   command->add_flag(
       "--extended", options->is_extended,
       "With --robot suave: the battery runs low as well, and killed processes are started again");

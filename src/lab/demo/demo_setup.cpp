@@ -3,17 +3,23 @@
 #include <stdlib.h>
 
 #include "base/environment.h"
+#include "demo/embedded_rules.h"
 #include "language/checker.h"
+#include "language/reuse/expansion.h"
 #include "terminal/console.h"
 
 namespace culprit::lab {
 
-RuleSet embedded_rules(const char* name, const char* text) {
-  return *check(Source(name, text)).rules;
+live::LoadedRules embedded_file(const char* name, const char* text) {
+  // The only file that any of them includes.
+  const Expansion all = expand(Source(name, text), [](const std::string& file, const std::string&) {
+    return Expected<Source>(Source(file, kNav2Pack));
+  });
+  return {*check(all).rules, all.source, ""};
 }
 
-live::LoadedRules embedded_file(const char* name, const char* text) {
-  return {embedded_rules(name, text), Source(name, text), ""};
+RuleSet embedded_rules(const char* name, const char* text) {
+  return embedded_file(name, text).rules;
 }
 
 live::LiveSession::Options demo_session(const char* rules_file, live::LiveRobot::Options robot,

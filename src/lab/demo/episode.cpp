@@ -22,11 +22,20 @@ void Episode::on(const FailureResolved& e) {
 void Episode::on(const StrategyChosen& e) {
   if (e.dry_run) return;
   strategies_.push_back(rules_[e.strategy].name);
-  const auto& adaptations = rules_[e.strategy].adaptations;
-  const bool redeploys =
-      std::any_of(adaptations.begin(), adaptations.end(),
-                  [](const Adaptation& a) { return a.type == AdaptationType::kRedeploy; });
+  bool redeploys = false;
+  for (const Adaptation& each : rules_[e.strategy].adaptations) {
+    if (each.type != AdaptationType::kRedeploy) continue;
+    redeploys = true;
+    redeployed_.push_back(rules_[each.component].name);
+  }
   if (redeploys) ++redeployments_;
+}
+
+void Episode::blame(const Incident& incident) {
+  for (const ComponentId component : incident.components) {
+    const std::string& name = rules_[component].name;
+    if (std::ranges::find(blamed_, name) == blamed_.end()) blamed_.push_back(name);
+  }
 }
 
 }  // namespace culprit::lab

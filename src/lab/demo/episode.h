@@ -24,6 +24,10 @@ class Episode {
   int strategies_succeeded() const { return strategies_succeeded_; }
   // Executed strategies that redeploy a component.
   int redeployments() const { return redeployments_; }
+  // Components that an incident held responsible, or else suspected, in the order in which they were first named.
+  const std::vector<std::string>& blamed() const { return blamed_; }
+  // Components that executed strategies redeployed.
+  const std::vector<std::string>& redeployed() const { return redeployed_; }
   // From detection to resolution, for each failure that was resolved.
   const std::vector<Duration>& reactions() const { return reactions_; }
 
@@ -37,6 +41,9 @@ class Episode {
   void on(const FailureLost& e) { open_.erase(e.rule); }
   void on(const StrategyChosen& e);
   void on(const RuleExhausted&) { is_exhausted_ = true; }
+  void on(const IncidentOpened& e) { blame(e.incident); }
+  void on(const IncidentChanged& e) { blame(e.incident); }
+  void blame(const Incident& incident);
   template <class Other>
   void on(const Other&) {}
 
@@ -45,6 +52,8 @@ class Episode {
   std::vector<Duration> reactions_;
   std::set<RuleId> open_;
   std::vector<std::string> strategies_;
+  std::vector<std::string> blamed_;
+  std::vector<std::string> redeployed_;
   int strategies_succeeded_ = 0;
   int redeployments_ = 0;
   bool is_exhausted_ = false;

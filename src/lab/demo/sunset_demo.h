@@ -13,27 +13,12 @@
 #include "base/mutex.h"
 #include "demo/episode.h"
 #include "demo/play.h"
+#include "demo/play_outcome.h"
 #include "demo/sunset_world.h"
 #include "live/live_session.h"
 #include "plan/bayes/bayes_planner.h"
 
 namespace culprit::lab {
-
-// How one play went. Times are seconds on the clock.
-struct PlayOutcome {
-  std::string name;
-  std::vector<std::string> faults;
-  std::vector<std::string> failures;
-  std::vector<std::string> strategies;  // executed, in their order
-  int strategies_succeeded = 0;
-  int unnecessary_redeployments = 0;
-  std::vector<double> reaction_times;
-  double downtime = 0;  // of the segmentation as the evaluator sees it, open gaps included
-  std::optional<double> mean_iou;
-  std::size_t unresolved = 0;  // failures
-  std::string complaint;       // what is still wrong with the robot; empty: nothing
-  bool is_resolved() const { return unresolved == 0 && complaint.empty(); }
-};
 
 class SunsetDemo : private live::Listener {
  public:

@@ -1,5 +1,5 @@
-// The command line of sunset-node and suave-node: which process of a live robot this one is. CLI11, which reads it, takes
-// longer to compile than the rest of such a program; so both have it from here.
+// The command line of sunset-node, suave-node and rover-node: which process of a live robot this one is. CLI11, which reads it,
+// takes longer to compile than the rest of such a program; so all have it from here.
 #pragma once
 
 #include <cstdint>

@@ -14,6 +14,7 @@
 #include "laboratory/study_fleet_command.h"
 #include "laboratory/study_output.h"
 #include "laboratory/study_rca_command.h"
+#include "laboratory/study_rover_command.h"
 #include "laboratory/study_runs.h"
 #include "laboratory/study_suave_command.h"
 #include "shards/merge.h"
@@ -364,6 +365,7 @@ void add_study(CLI::App& app, const std::string& version, int& exit_code) {
   add_study_suave(*command, version, exit_code);
   add_study_rca(*command, version, exit_code);
   add_study_fleet(*command, exit_code);
+  add_study_rover(*command, exit_code);
   add_merge(*command, exit_code);
 }
 

@@ -1,4 +1,4 @@
-#include "exemplars/sunset/node_process.h"
+#include "exemplars/node_process.h"
 
 #include <algorithm>
 #include <charconv>
@@ -7,7 +7,7 @@
 #include <string>
 #include <system_error>
 
-namespace culprit::sunset {
+namespace culprit {
 namespace {
 
 namespace fs = std::filesystem;
@@ -20,10 +20,10 @@ std::vector<std::string> texts_of(const fs::path& file) {
   return texts;
 }
 
-bool runs(const fs::path& process, Member member) {
+bool runs(const fs::path& process, std::string_view program, std::string_view name) {
   const auto arguments = texts_of(process / "cmdline");  // empty when it has ended
-  return arguments.size() >= 2 && fs::path(arguments.front()).filename() == "sunset-node" &&
-         std::ranges::find(arguments, name_of(member)) != arguments.end();
+  return arguments.size() >= 2 && fs::path(arguments.front()).filename() == program &&
+         std::ranges::find(arguments, name) != arguments.end();
 }
 
 bool is_in(const fs::path& process, std::uint32_t domain) {
@@ -37,18 +37,20 @@ bool is_in(const fs::path& process, std::uint32_t domain) {
 
 }  // namespace
 
-std::vector<int> processes_of(Member member, std::uint32_t domain) {
+std::vector<int> processes_of(std::string_view program, std::string_view name,
+                              std::uint32_t domain) {
   std::vector<int> pids;
   std::error_code error;
   for (fs::directory_iterator i("/proc", error); !error && i != fs::directory_iterator();
        i.increment(error)) {
-    const std::string name = i->path().filename().native();
+    const std::string file = i->path().filename().native();
     int pid = 0;
-    const auto [rest, failed] = std::from_chars(name.data(), name.data() + name.size(), pid);
-    const bool is_process = failed == std::errc() && rest == name.data() + name.size();
-    if (is_process && runs(i->path(), member) && is_in(i->path(), domain)) pids.push_back(pid);
+    const auto [rest, failed] = std::from_chars(file.data(), file.data() + file.size(), pid);
+    const bool is_process = failed == std::errc() && rest == file.data() + file.size();
+    if (is_process && runs(i->path(), program, name) && is_in(i->path(), domain))
+      pids.push_back(pid);
   }
   return pids;
 }
 
-}  // namespace culprit::sunset
+}  // namespace culprit

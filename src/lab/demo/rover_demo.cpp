@@ -1,0 +1,274 @@
+#include "demo/rover_demo.h"
+
+#include <algorithm>
+#include <sstream>
+#include <stdlib.h>
+#include <system_error>
+
+#include <fmt/core.h>
+
+#include "demo/demo_setup.h"
+#include "demo/embedded_rules.h"
+#include "exemplars/node_process.h"
+#include "exemplars/rover/nodes.h"
+
+namespace culprit::lab {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration kRoverComesUp = 120s;
+constexpr const char* kProgram = "rover-node";
+
+std::string launches(bool has_robot) {
+  std::string text;
+  for (const rover::Process& process : rover::processes()) {
+    if (!process.is_robot || has_robot)
+      text += fmt::format("COMPONENT {0} LAUNCH \"rover-node {0}\"\n", process.name);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::string> RoverDemo::Play::fault_names() const {
+  std::vector<std::string> names;
+  for (const rover::Fault* fault : faults) names.push_back(fault->name);
+  return names;
+}
+
+Expected<RoverDemo::Play> RoverDemo::find_play(std::string_view name) {
+  Play play{std::string(name), {}};
+  std::istringstream text(play.name);
+  for (std::string each; std::getline(text, each, '+');) {
+    const rover::Fault* fault = rover::find_fault(each);
+    if (fault == nullptr) {
+      std::string all;
+      for (const rover::Fault& known : rover::faults()) all += " " + known.name;
+      return Error{"the rover has no fault '" + each + "'; there are:" + all};
+    }
+    play.faults.push_back(fault);
+  }
+  return play;
+}
+
+std::vector<RoverDemo::Play> RoverDemo::default_plays() {
+  std::vector<Play> plays;
+  for (const char* name : {"lidar:stall", "kidnapped", "kill:controller_server", "lidar:unplugged"})
+    plays.push_back(*find_play(name));
+  return plays;
+}
+
+Expected<std::unique_ptr<RoverDemo>> RoverDemo::start(Options options,
+                                                      const std::atomic<bool>& stop) {
+  auto domain = make_own_domain(options.domain);
+  if (!domain) return Error{domain.error()};
+  auto state = make_state_folder();
+  if (!state) return Error{state.error()};
+  std::unique_ptr<RoverDemo> demo(
+      new RoverDemo(std::move(options), stop, std::move(*domain), std::move(*state)));
+  if (auto opened = demo->open(); !opened) return Error{opened.error()};
+  return demo;
+}
+
+RoverDemo::RoverDemo(Options options, const std::atomic<bool>& stop, ros2::DomainLock domain,
+                     std::filesystem::path state)
+    : options_(std::move(options)),
+      stop_(stop),
+      domain_(std::move(domain)),
+      state_(std::move(state)),
+      rules_of_processes_(embedded_rules("processes.rules",
+                                         launches(options_.manager != Manager::kCulprit).c_str())),
+      keeper_(kForgets) {}
+
+RoverDemo::~RoverDemo() {
+  is_over_ = true;
+  if (session_) session_->leave();
+  if (thread_.joinable()) thread_.join();
+  experiment_.reset();
+  if (session_) session_->supervisor().stop_all();
+  if (processes_) processes_->stop_all();
+  session_.reset();
+  processes_.reset();
+  std::error_code error;
+  if (!keeps_state_) std::filesystem::remove_all(state_, error);
+}
+
+const std::filesystem::path& RoverDemo::keep_state() {
+  keeps_state_ = true;
+  return state_;
+}
+
+const char* RoverDemo::rule_text() { return kRoverRules; }
+
+Expected<void> RoverDemo::open() {
+  setenv("ROVER_SEED", std::to_string(options_.seed).c_str(), 1);
+  setenv("ROVER_STATE", state_.c_str(), 1);
+  const auto participant = ros2::options_from_environment();
+  if (!participant) return Error{participant.error()};
+  auto experiment = rover::Experiment::start(*participant);
+  if (!experiment) return Error{experiment.error()};
+  experiment_ = std::move(*experiment);
+  processes_ = std::make_unique<owners::Supervisor>(rules_of_processes_, demo_processes(state_),
+                                                    processes_inbox_);
+  start_all(*processes_, rules_of_processes_);
+  if (options_.manager == Manager::kCulprit) {
+    if (auto opened = open_session(*participant); !opened) return opened;
+  } else if (options_.manager == Manager::kRespawn) {
+    thread_ = std::thread([this] { respawn(); });
+  }
+  if (wait_until_well({}, kRoverComesUp)) return {};
+  if (stop_) return Error{"interrupted"};
+  return Error{"the rover does not come up: " + experiment_->measure().complaint +
+               "; its logs are in " + (keep_state() / "log").string()};
+}
+
+Expected<void> RoverDemo::open_session(const ros2::ParticipantOptions& participant) {
+  live::LiveRobot::Options robot;
+  robot.link.participant = participant;
+  robot.supervisor = demo_processes(state_);
+  how_ = demo_session("rover.rules", std::move(robot), options_.planner, state_);
+  auto opened = live::LiveSession::open({.options = how_,
+                                         .records = false,
+                                         .lease = {},
+                                         .orders = keeper_,
+                                         .listener = *this,
+                                         .observer = options_.observer,
+                                         .start = live_now()},
+                                        embedded_file("rover.rules", kRoverRules));
+  if (!opened) return Error{opened.error()};
+  session_ = std::move(*opened);
+  start_all(session_->supervisor(), rules());
+  session_->begin(stop_);
+  thread_ = std::thread([this] { session_->run(kNever); });
+  return {};
+}
+
+// As `respawn=True, respawn_delay=2.0` of a launch file.
+void RoverDemo::respawn() {
+  std::vector<Time> missing(rules_of_processes_.components.size(), kNever);
+  for (; !is_over_; std::this_thread::sleep_for(100ms)) {
+    for (std::size_t c = 0; c < missing.size(); ++c) {
+      const std::string& name = rules_of_processes_.components[c].name;
+      if (!processes_of(kProgram, name, domain()).empty()) {
+        missing[c] = kNever;
+      } else if (missing[c] == kNever) {
+        missing[c] = live_now();
+      } else if (live_now() > later(missing[c], 2s)) {
+        processes_->start({}, ComponentId(c));
+        missing[c] = live_now();
+      }
+    }
+  }
+}
+
+void RoverDemo::on_event(const Event& event, const RuleSet& rules, Time start) {
+  const MutexLock lock(mutex_);
+  if (episode_) episode_->add(event);
+  if (options_.on_event) options_.on_event(event, rules, start);
+}
+
+std::optional<Time> RoverDemo::wait_until_well(const std::vector<const rover::Fault*>& faults,
+                                               Duration patience) {
+  constexpr Duration kCalm = 2s;
+  Time well = kNever;
+  for (const Time end = later(live_now(), patience); live_now() < end && !stop_;) {
+    std::this_thread::sleep_for(100ms);
+    bool is_well = experiment_->measure().complaint.empty() &&
+                   std::ranges::all_of(faults, [this](const rover::Fault* fault) {
+                     return experiment_->is_over(*fault);
+                   });
+    if (is_well) {
+      const MutexLock lock(mutex_);
+      is_well = !episode_ || episode_->open() == 0;
+    }
+    if (!is_well) {
+      well = kNever;
+    } else if (well == kNever) {
+      well = live_now();
+    } else if (live_now() >= later(well, kCalm)) {
+      return well;
+    }
+  }
+  return std::nullopt;
+}
+
+bool RoverDemo::wait_for_safe_stop() {
+  for (const Time end = later(live_now(), 20s); live_now() < end && !stop_;) {
+    std::this_thread::sleep_for(100ms);
+    if (experiment_->measure().stood_s > 3) return true;
+  }
+  return false;
+}
+
+Expected<void> RoverDemo::inject(const std::string& fault) {
+  const auto play = find_play(fault);
+  if (!play) return Error{play.error()};
+  for (const rover::Fault* each : play->faults) {
+    if (auto injected = experiment_->inject(*each); !injected) return injected;
+  }
+  return {};
+}
+
+Expected<void> RoverDemo::clear_faults() {
+  experiment_->clear();
+  return {};
+}
+
+Expected<PlayOutcome> RoverDemo::play(const Play& play, Duration patience) {
+  if (session_) {
+    const MutexLock lock(mutex_);
+    episode_.emplace(rules());
+  }
+  const rover::Measurements before = experiment_->measure();
+  experiment_->restart_measuring();
+  const Time begin = live_now();
+  for (const rover::Fault* fault : play.faults) {
+    if (auto injected = experiment_->inject(*fault); !injected)
+      return Error{fault->name + ": " + injected.error()};
+  }
+  const bool is_fixable = std::ranges::all_of(play.faults, &rover::Fault::is_fixable);
+  const auto well = is_fixable ? wait_until_well(play.faults, patience) : std::nullopt;
+  const bool stands = !is_fixable && wait_for_safe_stop();
+  if (stop_) return Error{"interrupted"};
+
+  const rover::Measurements measured = experiment_->measure();
+  PlayOutcome outcome;
+  outcome.name = play.name;
+  outcome.faults = play.fault_names();
+  outcome.downtime = measured.stood_s;
+  outcome.goals = measured.goals_reached - before.goals_reached;
+  outcome.collisions = measured.collisions - before.collisions;
+  if (well) outcome.healed_s = seconds(*well - begin);
+  {
+    const MutexLock lock(mutex_);
+    if (episode_) {
+      outcome.failures = episode_->failures();
+      outcome.strategies = episode_->strategies();
+      outcome.strategies_succeeded = episode_->strategies_succeeded();
+      outcome.blamed = episode_->blamed();
+      outcome.redeployed = episode_->redeployed();
+      for (const Duration reaction : episode_->reactions())
+        outcome.reaction_times.push_back(seconds(reaction));
+      outcome.unresolved = is_fixable ? episode_->open() : 0;
+    }
+  }
+  for (const std::string& each : outcome.redeployed) {
+    if (std::ranges::none_of(play.faults, [&](const auto* fault) { return fault->cause == each; }))
+      ++outcome.unnecessary_redeployments;
+  }
+  if (!is_fixable) {
+    outcome.complaint = stands ? "" : "the rover does not stop";
+  } else if (!well) {
+    outcome.complaint =
+        measured.complaint.empty() ? "the fault is still there" : measured.complaint;
+  }
+  experiment_->clear();
+  {
+    const MutexLock lock(mutex_);
+    episode_.reset();
+  }
+  return outcome;
+}
+
+}  // namespace culprit::lab

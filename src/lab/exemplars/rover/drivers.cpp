@@ -1,0 +1,151 @@
+// The drivers: each turns what its device sends into a topic of ROS.
+
+#include "exemplars/rover/geometry.h"
+#include "exemplars/rover/nodes.h"
+
+namespace culprit::rover {
+namespace {
+
+// lidar_driver: /scan at 10 Hz.
+//
+// Faults: "stall", "zeros", "nan", "frozen" (the same scan again), "slow" (2 Hz), "wrong_frame". Activity is no cure: it is a
+// plain node. If it was killed, its device is busy for 8 s: the driver exits at its start, as many do.
+class LidarDriver final : public RoverNode {
+ public:
+  explicit LidarDriver(Settings settings) : RoverNode({.name = "/lidar_driver"}, settings) {}
+
+ private:
+  void set_up() override {
+    offer(scan_, "/scan", ros2::qos::kSensorData);
+    hear<msg::LaserScan>("/hardware/lidar", ros2::qos::kSensorData,
+                         [this](const msg::LaserScan& scan) { on_scan(scan); });
+  }
+
+  void on_scan(msg::LaserScan scan) {
+    ++count_;
+    if (has("stall") || (has("slow") && count_ % 5 != 0)) return;
+    if (has("zeros")) scan.ranges.assign(scan.ranges.size(), 0);
+    if (has("nan")) scan.ranges.assign(scan.ranges.size(), std::nanf(""));
+    if (has("frozen")) scan.ranges = last_;
+    if (has("wrong_frame")) scan.header.frame_id = "lazer";
+    last_ = scan.ranges;
+    scan_->publish(scan);
+  }
+
+  int count_ = 0;
+  std::vector<float> last_;
+  std::optional<ros2::Publisher<msg::LaserScan>> scan_;
+};
+
+// camera_driver: /camera/image_raw at 4 Hz. Faults: "stall", "dark".
+class CameraDriver final : public RoverNode {
+ public:
+  explicit CameraDriver(Settings settings) : RoverNode({.name = "/camera_driver"}, settings) {}
+
+ private:
+  void set_up() override {
+    offer(image_, "/camera/image_raw", ros2::qos::kSensorData);
+    hear<ros2::msg::Image>("/hardware/camera", ros2::qos::kSensorData,
+                           [this](ros2::msg::Image image) {
+                             if (has("stall")) return;
+                             if (has("dark")) image.data.assign(image.data.size(), 0);
+                             brightness_ = 0;
+                             for (const std::uint8_t pixel : image.data) brightness_ += pixel;
+                             brightness_ /= static_cast<double>(image.data.size());
+                             image_->publish(image);
+                           });
+  }
+  std::vector<ros2::msg::KeyValue> values() override {
+    return {{"brightness", std::to_string(brightness_)}};
+  }
+
+  double brightness_ = 0;
+  std::optional<ros2::Publisher<ros2::msg::Image>> image_;
+};
+
+// imu_driver: /imu at 20 Hz. Faults: "stall", "bias" (0.5 rad/s).
+class ImuDriver final : public RoverNode {
+ public:
+  explicit ImuDriver(Settings settings) : RoverNode({.name = "/imu_driver"}, settings) {}
+
+ private:
+  void set_up() override {
+    offer(imu_, "/imu", ros2::qos::kSensorData);
+    hear<msg::Imu>("/hardware/imu", ros2::qos::kSensorData, [this](msg::Imu imu) {
+      if (has("stall")) return;
+      if (has("bias")) imu.angular_velocity.z += 0.5;
+      imu_->publish(imu);
+    });
+  }
+
+  std::optional<ros2::Publisher<msg::Imu>> imu_;
+};
+
+// base_driver: drives as /cmd_vel says, and stops if nothing came for 0.5 s. Integrates the wheels' encoders: /odom and
+// odom -> base_link on /tf, 20 Hz. Passes on /battery_state.
+//
+// Faults: "odom_frozen" (encoders read zero), "tf_stopped", "tf_late" (stamps 3 s old), "stall" (obeys no command).
+class BaseDriver final : public RoverNode {
+ public:
+  explicit BaseDriver(Settings settings) : RoverNode({.name = "/base_driver"}, settings) {}
+
+ private:
+  void set_up() override {
+    offer(motors_, "/hardware/motors");
+    offer(odom_, "/odom");
+    offer(tf_, "/tf", {.depth = 100});
+    offer(battery_, "/battery_state");
+    hear<msg::Twist>("/cmd_vel", ros2::qos::kDefault, [this](const msg::Twist& twist) {
+      command_ = twist;
+      commanded_ = ros2::Executor::Clock::now();
+    });
+    hear<msg::Odometry>("/hardware/wheels", ros2::qos::kSensorData,
+                        [this](const msg::Odometry& wheels) { on_wheels(wheels.twist.twist); });
+    hear<msg::BatteryState>("/hardware/battery", ros2::qos::kSensorData,
+                            [this](const msg::BatteryState& state) { battery_->publish(state); });
+    every(50ms, [this] {
+      const bool is_fresh = ros2::Executor::Clock::now() - commanded_ < 500ms;
+      motors_->publish(is_fresh && !has("stall") ? command_ : msg::Twist{});
+    });
+  }
+
+  void on_wheels(msg::Twist twist) {
+    if (has("odom_frozen")) twist = {};
+    pose_ = moved(pose_, twist.linear.x, twist.angular.z, 0.05);
+    msg::Header header = header_now("odom");
+    if (has("tf_late")) header.stamp.sec -= 3;
+    msg::Odometry odom;
+    odom.header = header;
+    odom.child_frame_id = "base_link";
+    odom.pose.pose = to_message(pose_);
+    odom.twist.twist = twist;
+    odom_->publish(odom);
+    if (!has("tf_stopped"))
+      tf_->publish({{{header, "base_link", {{pose_.x, pose_.y, 0}, quaternion(pose_.yaw)}}}});
+  }
+
+  Pose2 pose_;
+  msg::Twist command_;
+  ros2::Executor::Clock::time_point commanded_{};
+  std::optional<ros2::Publisher<msg::Twist>> motors_;
+  std::optional<ros2::Publisher<msg::Odometry>> odom_;
+  std::optional<ros2::Publisher<msg::TFMessage>> tf_;
+  std::optional<ros2::Publisher<msg::BatteryState>> battery_;
+};
+
+}  // namespace
+
+std::unique_ptr<RoverNode> make_lidar_driver(Settings settings) {
+  return std::make_unique<LidarDriver>(std::move(settings));
+}
+std::unique_ptr<RoverNode> make_camera_driver(Settings settings) {
+  return std::make_unique<CameraDriver>(std::move(settings));
+}
+std::unique_ptr<RoverNode> make_imu_driver(Settings settings) {
+  return std::make_unique<ImuDriver>(std::move(settings));
+}
+std::unique_ptr<RoverNode> make_base_driver(Settings settings) {
+  return std::make_unique<BaseDriver>(std::move(settings));
+}
+
+}  // namespace culprit::rover

@@ -1,0 +1,78 @@
+#include "exemplars/rover/faults.h"
+
+#include <algorithm>
+
+namespace culprit::rover {
+namespace {
+
+// A node's component has the node's name, without "_driver".
+std::string component_of(const std::string& process) {
+  const std::size_t end = process.find("_driver");
+  return process.substr(0, end);
+}
+
+Fault shown(const std::string& process, const std::string& fault, std::string remedies) {
+  const std::string component = component_of(process);
+  return {component + ":" + fault, Way::kParameter, process, "fault", Value(fault), component,
+          std::move(remedies)};
+}
+
+std::vector<Fault> make_faults() {
+  std::vector<Fault> all;
+  for (const char* process :
+       {"lidar_driver", "camera_driver", "imu_driver", "base_driver", "map_server", "amcl",
+        "planner_server", "controller_server", "behavior_server", "velocity_smoother",
+        "bt_navigator", "twist_mux", "e_stop", "lifecycle_manager_navigation"}) {
+    const std::string component = component_of(process);
+    all.push_back({"kill:" + component, Way::kKill, process, "", {}, component, "redeploy"});
+  }
+  for (const char* process : {"lidar_driver", "base_driver", "amcl", "planner_server",
+                              "controller_server", "bt_navigator", "twist_mux"}) {
+    const std::string component = component_of(process);
+    all.push_back({"stop:" + component, Way::kStop, process, "", {}, component, "redeploy"});
+  }
+  for (const char* process : {"amcl", "controller_server", "velocity_smoother", "bt_navigator"})
+    all.push_back({"deactivate:" + std::string(process),
+                   Way::kDeactivate,
+                   process,
+                   "",
+                   {},
+                   process,
+                   "start_group, activate"});
+  for (const char* fault : {"stall", "zeros", "nan", "frozen", "slow", "wrong_frame", "hang"})
+    all.push_back(shown("lidar_driver", fault, "redeploy"));
+  for (const char* fault : {"stall", "dark", "leak"})
+    all.push_back(shown("camera_driver", fault, "redeploy"));
+  for (const char* fault : {"stall", "bias"}) all.push_back(shown("imu_driver", fault, "redeploy"));
+  for (const char* fault : {"odom_frozen", "tf_stopped", "tf_late", "crash"})
+    all.push_back(shown("base_driver", fault, "redeploy"));
+  for (const char* fault : {"stall", "tf_stopped"})
+    all.push_back(shown("amcl", fault, "restart, redeploy"));
+  all.push_back(shown("planner_server", "hang", "redeploy"));
+  all.push_back(shown("planner_server", "costmap_frozen", "restart, redeploy"));
+  all.push_back(shown("controller_server", "costmap_frozen", "restart, redeploy"));
+  all.push_back(shown("controller_server", "oscillate", "redeploy"));
+  all.push_back(shown("bt_navigator", "hang", "redeploy"));
+  all.push_back({"controller_server:slow_setting", Way::kParameter, "controller_server",
+                 "max_speed", Value(0.05), "controller_server", "set_parameter, redeploy"});
+  all.push_back({"kidnapped", Way::kParameter, "world", "kidnap", Value("10 5.9 1"), "amcl",
+                 "call /reinitialize_global_localization"});
+  all.push_back(
+      {"lidar:unplugged", Way::kParameter, "world", "lidar_plugged", Value(false), "lidar", ""});
+  all.push_back({"battery:sag", Way::kParameter, "world", "battery", Value(0.1), "base", ""});
+  return all;
+}
+
+}  // namespace
+
+const std::vector<Fault>& faults() {
+  static const std::vector<Fault> kAll = make_faults();
+  return kAll;
+}
+
+const Fault* find_fault(std::string_view name) {
+  const auto found = std::ranges::find(faults(), name, &Fault::name);
+  return found == faults().end() ? nullptr : &*found;
+}
+
+}  // namespace culprit::rover

@@ -1,0 +1,61 @@
+// Places in the plane: metres and radians, and how they are written in messages.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "exemplars/rover/messages.h"
+
+namespace culprit::rover {
+
+struct Pose2 {
+  double x = 0;
+  double y = 0;
+  double yaw = 0;
+};
+
+// In (-pi, pi].
+inline double normalized(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
+
+// The pose `b`, which is given in the frame of `a`, in the frame that `a` is given in.
+inline Pose2 operator*(const Pose2& a, const Pose2& b) {
+  const double c = std::cos(a.yaw);
+  const double s = std::sin(a.yaw);
+  return {a.x + c * b.x - s * b.y, a.y + s * b.x + c * b.y, normalized(a.yaw + b.yaw)};
+}
+
+inline Pose2 inverse(const Pose2& a) {
+  const double c = std::cos(a.yaw);
+  const double s = std::sin(a.yaw);
+  return {-c * a.x - s * a.y, s * a.x - c * a.y, -a.yaw};
+}
+
+inline double distance(const Pose2& a, const Pose2& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+
+// After `dt` seconds at a constant speed and turn rate.
+inline Pose2 moved(const Pose2& from, double speed, double turn, double dt) {
+  const double yaw = from.yaw + turn * dt / 2;
+  return {from.x + speed * dt * std::cos(yaw), from.y + speed * dt * std::sin(yaw),
+          normalized(from.yaw + turn * dt)};
+}
+
+inline msg::Quaternion quaternion(double yaw) {
+  return {0, 0, std::sin(yaw / 2), std::cos(yaw / 2)};
+}
+inline double yaw_of(const msg::Quaternion& q) { return 2 * std::atan2(q.z, q.w); }
+
+inline msg::Pose to_message(const Pose2& pose) {
+  return {{pose.x, pose.y, 0}, quaternion(pose.yaw)};
+}
+inline Pose2 to_pose(const msg::Pose& pose) {
+  return {pose.position.x, pose.position.y, yaw_of(pose.orientation)};
+}
+inline msg::Twist to_twist(double speed, double turn) { return {{speed, 0, 0}, {0, 0, turn}}; }
+
+inline msg::Header header_now(std::string frame) {
+  return {ros2::msg::to_time(std::chrono::system_clock::now()), std::move(frame)};
+}
+
+}  // namespace culprit::rover

@@ -1,0 +1,211 @@
+#include "exemplars/rover/lifecycle_manager.h"
+
+#include <algorithm>
+#include <atomic>
+#include <deque>
+#include <future>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "base/live_clock.h"
+#include "base/mutex.h"
+#include "exemplars/rover/geometry.h"
+#include "exemplars/rover/messages.h"
+#include "ros2/lifecycle.h"
+#include "ros2/node.h"
+#include "ros2/services.h"
+
+namespace culprit::rover {
+namespace {
+
+using namespace std::chrono_literals;
+using ros2::TransitionId;
+
+constexpr Duration kBondTimeout = 4s;
+constexpr Duration kRespawn = 10s;
+constexpr Duration kForEver = std::chrono::hours(24);
+
+class Server {
+ public:
+  Expected<void> open(ros2::Node& manager, std::string_view name) {
+    name_ = name;
+    auto client = ros2::ServiceClient::create(
+        manager.entry(), {name_ + "/change_state", std::string(ros2::srv::ChangeState::kType)},
+        ros2::qos::kServices,
+        {{name_ + "/get_state", std::string(ros2::srv::GetState::kType)},
+         ros2::encode(ros2::srv::GetState::Request{})});
+    if (!client) return Error{client.error()};
+    change_ = std::move(*client);
+    return {};
+  }
+
+  const std::string& name() const { return name_; }
+  bool is_there() const { return change_->is_ready(); }
+  void begin_bond() { heard_ = live_now(); }
+  void on_bond(const msg::BondStatus& bond) {
+    if ("/" + bond.id == name_ && bond.active) heard_ = live_now();
+  }
+  bool is_bond_broken() const { return later(heard_.load(), kBondTimeout) < live_now(); }
+
+  // Blocks until the server has answered, in whichever way.
+  bool change(TransitionId transition) {
+    auto answered = std::make_shared<std::promise<bool>>();
+    auto answer = answered->get_future();
+    ros2::srv::ChangeState::Request request;
+    request.transition.id = static_cast<std::uint8_t>(transition);
+    change_->call(ros2::encode(request), ros2::Repeat::kNever, kForEver,
+                  [answered](const ros2::CallResult& result) {
+                    const auto response =
+                        result.outcome == ros2::CallOutcome::kAnswered
+                            ? ros2::decode<ros2::srv::ChangeState::Response>(result.reply)
+                            : std::nullopt;
+                    answered->set_value(response && response->success);
+                  });
+    return answer.get();
+  }
+
+ private:
+  std::string name_;
+  std::unique_ptr<ros2::ServiceClient> change_;
+  std::atomic<Time> heard_ = kLongAgo;
+};
+
+class LifecycleManager {
+ public:
+  Expected<void> open(ros2::Context& context, const std::string& name,
+                      std::span<const std::string_view> servers) {
+    auto node = ros2::Node::create(context, {"/", name});
+    if (!node) return Error{node.error()};
+    node_ = std::move(*node);
+    ros2::msg::Parameter names{"node_names", {}};
+    names.value.type = static_cast<std::uint8_t>(ros2::msg::ParameterType::kStringArray);
+    for (const std::string_view each : servers) {
+      names.value.string_array_value.emplace_back(each.substr(1));
+      servers_.push_back(std::make_unique<Server>());
+      if (auto opened = servers_.back()->open(*node_, each); !opened) return opened;
+    }
+    if (auto done = node_->parameters().declare(names.name, names.value); !done) return done;
+    auto bonds = node_->create_subscription<msg::BondStatus>("/bond", ros2::qos::kDefault,
+                                                             [this](const msg::BondStatus& bond) {
+                                                               for (const auto& server : servers_)
+                                                                 server->on_bond(bond);
+                                                             });
+    if (!bonds) return Error{bonds.error()};
+    bonds_ = std::move(*bonds);
+    auto manage = ros2::ServiceServer::create_slow(
+        node_->entry(),
+        {node_->name().full() + "/manage_nodes", std::string(srv::ManageLifecycleNodes::kType)},
+        ros2::qos::kServices,
+        [this](ros2::ByteView request, const ros2::ServiceServer::Answer& answer) {
+          const auto asked = ros2::decode<srv::ManageLifecycleNodes::Request>(request);
+          const MutexLock lock(mutex_);
+          if (asked) requests_.push_back({asked->command, answer});
+        });
+    if (!manage) return Error{manage.error()};
+    manage_ = std::move(*manage);
+    return {};
+  }
+
+  // For ever.
+  void run() {
+    while (!are_all_there()) std::this_thread::sleep_for(100ms);
+    is_active_ = startup();
+    for (;; std::this_thread::sleep_for(200ms)) {
+      if (const auto request = next_request()) {
+        const bool is_done = manage(request->command);
+        request->answer(ros2::encode(srv::ManageLifecycleNodes::Response{is_done}));
+      }
+      if (is_active_ && is_any_bond_broken()) recover();
+    }
+  }
+
+ private:
+  struct Request {
+    std::uint8_t command;
+    ros2::ServiceServer::Answer answer;
+  };
+
+  std::optional<Request> next_request() {
+    const MutexLock lock(mutex_);
+    if (requests_.empty()) return std::nullopt;
+    Request next = std::move(requests_.front());
+    requests_.pop_front();
+    return next;
+  }
+
+  bool are_all_there() const {
+    return std::ranges::all_of(servers_, [](const auto& each) { return each->is_there(); });
+  }
+  bool is_any_bond_broken() const {
+    return std::ranges::any_of(servers_, [](const auto& each) { return each->is_bond_broken(); });
+  }
+
+  bool manage(std::uint8_t command) {
+    switch (command) {
+      case 0:
+        return is_active_ = startup();
+      case 1:
+        is_active_ = false;
+        return backwards(TransitionId::kDeactivate);
+      case 2:
+        return is_active_ = forwards(TransitionId::kActivate);
+      case 3:
+        is_active_ = false;
+        return reset();
+      default:
+        return false;
+    }
+  }
+
+  void recover() {
+    node_->log(ros2::Severity::kError, "a bond is broken; resetting all nodes");
+    is_active_ = false;
+    reset();
+    for (const Time end = later(live_now(), kRespawn); !are_all_there() && live_now() < end;)
+      std::this_thread::sleep_for(1s);
+    if (are_all_there()) is_active_ = startup();
+  }
+
+  bool startup() { return forwards(TransitionId::kConfigure) && forwards(TransitionId::kActivate); }
+  bool reset() { return backwards(TransitionId::kDeactivate) && backwards(TransitionId::kCleanup); }
+
+  bool forwards(TransitionId transition) {
+    for (const auto& server : servers_) {
+      if (server->change(transition)) continue;
+      node_->log(ros2::Severity::kError,
+                 "failed to bring up all requested nodes; " + server->name() + " refuses");
+      return false;
+    }
+    for (const auto& server : servers_) server->begin_bond();
+    return true;
+  }
+  bool backwards(TransitionId transition) {
+    for (auto server = servers_.rbegin(); server != servers_.rend(); ++server) {
+      if (!(*server)->is_there()) return false;
+      (*server)->change(transition);
+    }
+    return true;
+  }
+
+  std::unique_ptr<ros2::Node> node_;
+  std::vector<std::unique_ptr<Server>> servers_;
+  std::unique_ptr<ros2::Subscription> bonds_;
+  std::unique_ptr<ros2::ServiceServer> manage_;
+  bool is_active_ = false;
+  Mutex mutex_;
+  std::deque<Request> requests_ CULPRIT_GUARDED_BY(mutex_);
+};
+
+}  // namespace
+
+Expected<void> run_lifecycle_manager(ros2::Context& context, const std::string& name,
+                                     std::span<const std::string_view> servers) {
+  auto manager = std::make_shared<LifecycleManager>();
+  if (auto opened = manager->open(context, name, servers); !opened) return opened;
+  std::thread([manager] { manager->run(); }).detach();
+  return {};
+}
+
+}  // namespace culprit::rover
