@@ -1,4 +1,4 @@
-// What stays of a curve of very many samples.
+// Few points stand for very many samples.
 #include "bag/thinned_curve.h"
 
 #include <algorithm>

@@ -21,7 +21,7 @@ constexpr Duration kUnproven = 2s;
 // statement is believed by default, and later evidence corrects it.
 constexpr double kExceeds = 3;
 constexpr double kKeeps = 1.2;
-// What one rule says whose learned lateness is within the statement, or beyond it.
+// A rule whose learned lateness is within the statement, or beyond it, says so much.
 constexpr double kIsWithin = -0.4;
 constexpr double kIsBeyond = 2;
 

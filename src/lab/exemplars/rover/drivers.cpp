@@ -8,8 +8,8 @@ namespace {
 
 // lidar_driver: /scan at 10 Hz.
 //
-// Faults: "stall", "zeros", "nan", "frozen" (the same scan again), "slow" (2 Hz), "wrong_frame". Activity is no cure: it is a
-// plain node. If it was killed, its device is busy for 8 s: the driver exits at its start, as many do.
+// Faults: "stall", "zeros", "nan", "frozen" (the same scan again), "slow" (2 Hz), "wrong_frame". It is a plain node:
+// no lifecycle transition helps.
 class LidarDriver final : public RoverNode {
  public:
   explicit LidarDriver(Settings settings) : RoverNode({.name = "/lidar_driver"}, settings) {}
