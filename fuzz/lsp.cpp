@@ -5,7 +5,7 @@
 #include <sstream>
 #include <string>
 
-#include "language/explanations.h"
+#include "language/test_example_robot.h"
 #include "lsp/message_stream.h"
 #include "lsp/server.h"
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "language/evaluate.h"
-#include "language/explanations.h"
 #include "language/live_checks.h"
+#include "language/test_example_robot.h"
 
 namespace {
 

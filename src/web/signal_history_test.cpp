@@ -49,15 +49,15 @@ TEST_F(PlottedSignals, AreSampledEverySecondWhetherAPageIsOpenOrNot) {
   histories.signals.start();
   step(milliseconds(0));
   step(milliseconds(400), {{Time(), SignalRead{SignalId(0), Value(25.0)}}});
-  EXPECT_EQ(ask("input brightness")["clocks"], Json({1000.0})) << "once a second is enough";
-  EXPECT_EQ(ask("input brightness")["values"], Json({nullptr})) << "it was unknown";
+  EXPECT_EQ(ask("input brightness")["clocks"], Json::array({1000.0})) << "once a second is enough";
+  EXPECT_EQ(ask("input brightness")["values"], Json::array({nullptr})) << "it was unknown";
   step(milliseconds(1000));
   EXPECT_EQ(ask("input brightness")["clocks"], Json({1000.0, 1001.0}));
   EXPECT_EQ(ask("input brightness")["values"], Json({nullptr, 25.0}));
   EXPECT_EQ(series_route(histories)
                 .answer({{"name", "input brightness"}, {"since", "1000"}})
                 .body["values"],
-            Json({25.0}))
+            Json::array({25.0}))
       << "a page asks for what is new";
   EXPECT_EQ(ask("input nothing")["clocks"], Json::array());
   EXPECT_EQ(histories.signals.next_look(), Time(milliseconds(2000)))

@@ -33,19 +33,19 @@ RULE Silent
 POLICIES ERROR FOR 500ms HOLD 3/5 COOLDOWN 10s ATTEMPTS 6
 TRIGGER age(/scan FROM lidar) > 500ms && rate(/scan) < 5 && phi(/scan) > 8
 STRATEGY strategy 50 10
-ADAPTATION arm restart 5
+ADAPTATION arm redeploy 10
 
 RULE Dead
 POLICIES WARNING ON_CHANGE
 TRIGGER alive(lidar) == false || lifecycle(arm) != "active"
 STRATEGY strategy2 50 10
-ADAPTATION lidar restart 5
+ADAPTATION lidar redeploy 10
 
 RULE Odd
 POLICIES NON_CRITICAL
 TRIGGER mean(load, 3s) >= limit && min(load, 3s) <= 0.9 && max(load, 3s) < 0.95 && stddev(load, 3s) > 0.1
 STRATEGY strategy3 50 10
-ADAPTATION slam restart 5
+ADAPTATION slam redeploy 10
 
 RULE Changed
 POLICIES OK REPORT
@@ -55,7 +55,7 @@ RULE Level
 POLICIES DEGRADED
 TRIGGER level(motor) >= 2 && parameter(eye, exposure) == 7
 STRATEGY strategy4 50 10
-ADAPTATION eye restart 5
+ADAPTATION eye redeploy 10
 
 RULE Written
 POLICIES FAILURE

@@ -16,6 +16,9 @@ constexpr double kPasses = 0.85;          // the probability that a consumer fai
 constexpr double kUnrelated_per_s = 0.05;
 constexpr double kSlowMonitor_s = 3;
 constexpr Duration kFresh = 4s;
+// A topic with more consumers, or several producers, is infrastructure (/tf) or redundant: that its consumers
+// are well says nothing.
+constexpr std::size_t kMostConsumers = 5;
 
 // The difference of two detections.
 struct Apart {
@@ -81,6 +84,7 @@ void LatenessWatch::advance(Time now) {
   }
   double sum = 0;
   knowledge_.graph.for_each_channel([&](auto producers, auto consumers) {
+    if (producers.size() > 1 || consumers.size() > kMostConsumers) return;
     for (const auto producer : producers) {
       for (const RuleId cause : rules_at[producer]) {
         if (!knowledge_.states.is_active(cause) || !is_fresh(cause, now)) continue;
