@@ -49,7 +49,9 @@ TestEngine::~TestEngine() {
 
 void TestEngine::add(const std::string& name, TestContainer container) {
   const MutexLock lock(mutex_);
-  containers_[name] = std::move(container);
+  TestContainer& place = containers_[name];
+  end(place);
+  place = std::move(container);
 }
 
 int TestEngine::start(const std::string& name) {

@@ -159,6 +159,11 @@ void print_outcome(const PlayOutcome& o) {
   if (!o.is_resolved()) say(stdout, "  NOT RESOLVED               {}\n", o.complaint);
 }
 
+const char* verdict(const PlayOutcome& o) {
+  if (!o.is_resolved()) return "NOT HEALED";
+  return o.is_for_a_person ? "stands, for a person" : "healed";
+}
+
 void print_summary(const std::vector<PlayOutcome>& outcomes) {
   say(stdout, "\n{:<42} {:>8} {:>10} {:>9} {:>9} {:>8} {:>5}\n", "scenario", "failures",
       "strategies", "redeploys", "reaction", "downtime", "IoU");
@@ -169,8 +174,7 @@ void print_summary(const std::vector<PlayOutcome>& outcomes) {
                                                        static_cast<double>(o.reaction_times.size());
     say(stdout, "{:<42} {:>8} {:>10} {:>9} {:>7.2f} s {:>6.2f} s {:>5}  {}\n", o.name,
         o.failures.size(), o.strategies.size(), o.unnecessary_redeployments, mean, o.downtime,
-        o.mean_iou ? fmt::format("{:.2f}", *o.mean_iou) : "-",
-        o.is_resolved() ? "healed" : "NOT HEALED");
+        o.mean_iou ? fmt::format("{:.2f}", *o.mean_iou) : "-", verdict(o));
   }
   say(stdout,
       "redeploys: those that were not necessary. reaction: mean, from detection to resolution.\n");

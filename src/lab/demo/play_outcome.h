@@ -24,6 +24,7 @@ struct PlayOutcome {
   std::size_t unresolved = 0;             // failures
   std::vector<std::string> blamed{};      // components that an incident held responsible
   std::vector<std::string> redeployed{};  // components, in their order
+  bool is_for_a_person = false;           // no strategy helps, and the robot is to stand
   std::string complaint;                  // what is still wrong with the robot; empty: nothing
   bool is_resolved() const { return unresolved == 0 && complaint.empty(); }
 };

@@ -236,6 +236,7 @@ Expected<PlayOutcome> RoverDemo::play(const Play& play, Duration patience) {
   PlayOutcome outcome;
   outcome.name = play.name;
   outcome.faults = play.fault_names();
+  outcome.is_for_a_person = !is_fixable;
   outcome.downtime = measured.stood_s;
   outcome.goals = measured.goals_reached - before.goals_reached;
   outcome.collisions = measured.collisions - before.collisions;
