@@ -7,7 +7,7 @@
 
 namespace culprit {
 
-// What stands below a heading, up to the next one.
+// The text below a heading, up to the next one.
 struct MarkdownSection {
   std::string_view heading;
   std::string_view text;

@@ -57,9 +57,9 @@ class Latencies {
   // longer while that is unproven.
   Duration reckon_with(RuleId rule) const;
   Statement statement() const { return statement_; }
-  // What failures that spread just now say (analyze/lateness_watch.h): the logarithm of how much
-  // likelier they are if the monitors exceed the statement than if they keep it. Counts together with
-  // what was learned.
+  // Takes the evidence of failures that spread just now (analyze/lateness_watch.h): the logarithm of
+  // how much likelier they are if the monitors exceed the statement than if they keep it. It counts
+  // together with the latencies that were learned.
   void weigh(double spreading);
 
   // A proven repair took effect, and the rule's trigger was false so long `after` that. Ignored for
