@@ -14,7 +14,6 @@ constexpr double kPassing_s = 0.5;        // along one edge
 constexpr double kPassingVaries_s = 0.4;  // standard deviation
 constexpr double kPasses = 0.85;          // the probability that a consumer fails, too
 constexpr double kUnrelated_per_s = 0.05;
-constexpr double kSlowMonitor_s = 3;
 constexpr Duration kFresh = 4s;
 // A topic with more consumers, or several producers, is infrastructure (/tf) or redundant: that its consumers
 // are well says nothing.
@@ -51,7 +50,7 @@ double LatenessWatch::weight(RuleId cause, RuleId effect, Time now) const {
   const double most =
       seconds(std::max(latencies_.lateness(cause).most, latencies_.lateness(effect).most));
   const Apart stated(most);
-  const Apart slow(std::max(most, kSlowMonitor_s));
+  const Apart slow(std::max(most, seconds(Latencies::kSlowMonitor)));
   const Time began = knowledge_.states[cause].failing_since;
   const RuleState& state = knowledge_.states[effect];
   if (knowledge_.states.is_active(effect)) {

@@ -12,8 +12,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// A monitor that checks once a second, and debounces, is late by this.
-constexpr Duration kSlowMonitor = 3s;
 // Evidence is not awaited for longer than this beyond the statement while that is unproven.
 constexpr Duration kUnproven = 2s;
 

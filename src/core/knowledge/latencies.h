@@ -44,6 +44,8 @@ class Latencies {
 
   // Do the monitors keep the lateness that the rule file states?
   enum class Statement : std::uint8_t { kUnproven, kKept, kExceeded };
+  // A monitor that checks once a second, and debounces, is late by this.
+  static constexpr Duration kSlowMonitor = std::chrono::seconds(3);
 
   explicit Latencies(const RuleSet& rules);
 
