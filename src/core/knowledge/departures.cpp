@@ -112,6 +112,11 @@ void Departures::fell(ComponentId component, Time at) {
   member.has_crashed = true;
   Launch* launch = launch_of(component);
   if (launch == nullptr) return;
+  // A launcher that kills ends only after that.
+  if (has_outlived(*launch, at)) {
+    member.launcher = 0;
+    return;
+  }
   const bool are_leaving = launch->left > 0 && later(launch->left_at, kTogether) >= at;
   if (are_leaving || launch->ended != kNever) return;
   launch->fell_before = std::exchange(launch->fell_at, at);
@@ -121,7 +126,11 @@ void Departures::fell(ComponentId component, Time at) {
 void Departures::ended_here(ComponentId component, Time at) {
   if (std::exchange(members_[component.index].has_left, true)) return;
   has_changed_ = true;
-  if (Launch* launch = launch_of(component)) launch->ended_here_at = at;
+  Launch* launch = launch_of(component);
+  if (launch == nullptr) return;
+  launch->ended_here_at = at;
+  // It had outlived the launch.
+  if (launch->verdict.what == Verdict::What::kEnded) members_[component.index].launcher = 0;
 }
 
 void Departures::lost(ComponentId component) {
@@ -217,11 +226,33 @@ Departures::Verdict Departures::verdict(const Launch& launch, Time now) const {
   return {Verdict::What::kEnded, kNever, StaysDown::Why::kDoubt, began - launch.fell_at};
 }
 
+bool Departures::has_outlived(const Launch& launch, Time at) {
+  return launch.verdict.what == Verdict::What::kEnded && later(launch.ended, kDoubt) < at;
+}
+
 // Its components are of no launch from now on.
 void Departures::dissolve(const Launch& launch) {
   const int launcher = launch.launcher;
   for (Member& member : members_) {
     if (member.launcher == launcher) member.launcher = 0;
+  }
+}
+
+// What ends while the launch still ends its components stays down with it. What runs on after that is
+// of no launch.
+void Departures::take_down(const Launch& launch, Time now) {
+  const Time over = later(launch.ended, kTogether);
+  for (Member& member : members_) {
+    if (member.launcher != launch.launcher || member.down) continue;
+    const bool runs = !member.is_ours && !member.has_left;
+    if (!runs) {
+      member.down = launch.verdict.why;
+      member.is_told = false;
+    } else if (now >= over) {
+      member.launcher = 0;
+    } else {
+      settles_at_ = std::min(settles_at_, over);
+    }
   }
 }
 
@@ -245,12 +276,7 @@ Departures::Settled Departures::settle(Time now) {
         dissolve(launch);
         break;
       case Verdict::What::kEnded:
-        for (Member& member : members_) {
-          const bool runs = !member.is_ours && !member.has_left;
-          if (member.launcher != launch.launcher || runs || member.down) continue;
-          member.down = launch.verdict.why;
-          member.is_told = false;
-        }
+        take_down(launch, now);
         break;
     }
   }

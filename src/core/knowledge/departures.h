@@ -7,7 +7,9 @@
 //   one component exits cleanly        the others may be about to: it is held back for kAlone
 //   several do                         they leave together, until none has for kTogether
 //   the launcher ends with them        the launch has ended. Its components stay down until a person
-//                                      starts one again, or orders so (Revive)
+//                                      starts one again, or orders so (Revive). One that runs on for
+//                                      kTogether, crashes later than kDoubt, or that culprit ends, is
+//                                      of no launch from then on
 //   a person started it again          it has kBack to come up
 //
 // A launch that lived on for kDoubt after a crash was ended by a person. One that ends sooner may have
@@ -160,8 +162,11 @@ class Departures {
   bool is_original_left(const Launch& launch) const;
   bool has_stand_in(const Launch& launch) const;
   bool is_any_orphan() const;
+  // Has what crashes `at` that time outlived its launch?
+  static bool has_outlived(const Launch& launch, Time at);
   Verdict verdict(const Launch& launch, Time now) const;
   void dissolve(const Launch& launch);
+  void take_down(const Launch& launch, Time now);
   void forget_unused_launches();
 
   std::vector<Member> members_;  // by component

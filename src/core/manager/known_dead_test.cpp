@@ -391,6 +391,59 @@ TEST(ALaunch, OfFiveThatSomebodyEndsIsNotStartedAgain) {
   EXPECT_TRUE(robot.works("b")) << transcript(robot);
 }
 
+// e outlives its launch (nohup, a launcher of its own). From then on it is repaired as any other.
+TEST(ALaunch, DoesNotTakeAlongWhatOutlivesIt) {
+  for (const bool is_killed : {false, true}) {
+    TestRobot robot = launch_of_five();
+    for (const std::string name : {"a", "b", "c", "d"}) robot.leave(name);
+    end_launcher(robot);
+    robot["e"].launcher = 0;
+    robot.run_for(Departures::kAlone + 1s);
+    if (is_killed) robot.kill("e");
+    if (!is_killed) robot.stop("e");
+    robot.run_for(1min);
+    EXPECT_TRUE(robot.works("e")) << transcript(robot);
+    EXPECT_EQ(robot.count("a, b, c and d stay down"), 1u) << transcript(robot);
+    EXPECT_EQ(robot.count("e stays down"), 0u) << transcript(robot);
+  }
+}
+
+// A strategy that only sets a parameter ends no process.
+TEST(ALaunch, ThatSomebodyEndsDuringAReconfigurationIsNotStartedAgain) {
+  TestRobot robot(R"(
+CYCLE 100ms
+COMPONENT a NODE /a LAUNCH "a"
+COMPONENT b NODE /b LAUNCH "b"
+SIGNAL drift TOPIC /a FIELD drift
+RULE A
+  POLICIES ERROR
+  TRIGGER age(/a) > 300ms
+    STRATEGY redeploy_a 90 10
+      ADAPTATION a redeploy 5
+RULE Drift
+  POLICIES WARNING
+  TRIGGER drift > 1
+    STRATEGY tune 90 50
+      ADAPTATION a set_parameter gain 1 30
+)");
+  for (const std::string name : {"a", "b"})
+    robot.add(name, {}, "/" + name).parameters["gain"] = Value(0.0);
+  robot.discover();
+  for (const std::string name : {"a", "b"})
+    robot.tell(LauncherSeen{robot.id(name), kLauncher, false});
+  robot.signal("drift", 0.0);
+  robot.run_for(6s);
+  robot.signal("drift", 2.0);
+  robot.run_for(500ms);
+  EXPECT_TRUE(robot.was_asked("a: set gain")) << transcript(robot);
+  for (const std::string name : {"a", "b"}) robot.leave(name);
+  for (const std::string name : {"a", "b"})
+    robot.tell(LauncherSeen{robot.id(name), kLauncher, true});
+  robot.run_for(1min);
+  EXPECT_FALSE(robot.was_asked("a: start process")) << transcript(robot);
+  EXPECT_EQ(robot.count("a and b stay down: a person ended the launch"), 1u) << transcript(robot);
+}
+
 // A process that ignores SIGTERM is killed by its launcher.
 TEST(ALaunch, ThatSomebodyEndsMayHaveToKill) {
   TestRobot robot = launch_of_five();

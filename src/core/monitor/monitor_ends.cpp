@@ -1,20 +1,31 @@
 // The monitor's part about how processes end: whether that is known to be a fault, so that what the
 // component published is known to be silent, or somebody's wish.
+#include <algorithm>
+
 #include "monitor/monitor.h"
 
 namespace culprit {
 namespace {
 
-// Does culprit end it? A strategy adapts it, or reloads a component of its container: if the
+// Can the attempt end a process? One that only reconfigures cannot.
+bool may_end(const Attempt* attempt, const RuleSet& rules) {
+  if (attempt == nullptr) return false;
+  return std::ranges::any_of(rules[attempt->strategy].adaptations, [](const Adaptation& each) {
+    return each.type == AdaptationType::kRestart || each.type == AdaptationType::kRedeploy ||
+           each.type == AdaptationType::kStop || each.type == AdaptationType::kStart;
+  });
+}
+
+// Does culprit end it? A strategy begins it anew, or reloads a component of its container: if the
 // container does not answer, it is replaced with all that it has.
 bool is_ended_here(ComponentId component, const Knowledge& knowledge) {
-  if (knowledge.states.reservation(component) != nullptr) return true;
   const RuleSet& rules = knowledge.rules;
+  if (may_end(knowledge.states.reservation(component), rules)) return true;
   const ComponentId home = container_of(component, rules).value_or(component);
   for (std::size_t c = 0; c < rules.components.size(); ++c) {
     if (container_of(ComponentId(c), rules) != home) continue;
     const Attempt* attempt = knowledge.states.reservation(ComponentId(c));
-    if (attempt != nullptr && attempt->stage == Attempt::Stage::kAdapting) return true;
+    if (may_end(attempt, rules) && attempt->stage == Attempt::Stage::kAdapting) return true;
   }
   return false;
 }
