@@ -11,7 +11,7 @@ void CouplingWatch::resolved(const Attempt& attempt, bool is_proven, Time now) {
   const RuleId cause = knowledge_.rules[strategy].rule;
   // Some show it before the failure that was repaired does.
   for (const Clearing& clearing : clearings_) {
-    if (is_proven && clearing.at >= attempt.first_change && clearing.rule != cause &&
+    if (is_proven && clearing.gone > attempt.first_change && clearing.rule != cause &&
         is_only_cause(strategy, clearing.rule, attempt.first_change))
       write_.couplings.cleared(cause, clearing.rule);
   }
@@ -102,13 +102,21 @@ Time CouplingWatch::last_change_for(RuleId cleared, Time now) const {
   return last.value_or(now);
 }
 
+// When the trigger of a rule that clears now became false. With HOLD it may be true again by chance.
+Time CouplingWatch::gone_since(RuleId rule, Time now) const {
+  const Detection& detection = knowledge_.states[rule].detection;
+  const bool is_false = detection.trigger.known && !detection.trigger.b;
+  return is_false ? detection.trigger_since : now;
+}
+
 void CouplingWatch::cleared(RuleId rule, Time now) {
   forget_what_is_settled(now);
-  clearings_.push_back({rule, now});
+  const Time gone = gone_since(rule, now);
+  clearings_.push_back({rule, gone, now});
   settle(knowledge_.rules[rule].components, rule, last_change_for(rule, now), kUsualDelay, now);
   std::erase_if(questions_, [&](const Question& q) {
     if (q.effect != rule) return false;
-    if (is_only_cause(q.strategy, rule, q.since))
+    if (gone > q.since && is_only_cause(q.strategy, rule, q.since))
       write_.couplings.cleared(knowledge_.rules[q.strategy].rule, rule);
     return true;
   });

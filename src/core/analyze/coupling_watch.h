@@ -77,13 +77,15 @@ class CouplingWatch {
   };
   struct Clearing {
     RuleId rule;
-    Time at;
+    Time gone;  // its trigger became false
+    Time at;    // it cleared
   };
 
   void settle(const std::vector<ComponentId>& repaired, RuleId cause, Time changed,
               std::optional<Cycles> on_its_way, Time now);
   Duration held(RuleId rule) const;
   Time last_change_for(RuleId cleared, Time now) const;
+  Time gone_since(RuleId rule, Time now) const;
   Duration delay(RuleId cause, RuleId effect) const;
   Time shown(const Change& change, RuleId rule) const;
   Time shown_after_all(const Change& change, RuleId rule) const;

@@ -142,6 +142,24 @@ TEST(CouplingWatch, TakesWhatCameToLightWithTheRepairForNoLateEffect) {
   }
 }
 
+// b's own repair resolves it just when a clears by itself: b did not bring a back, although a is
+// reported to have cleared only after b's repair began.
+TEST(CouplingWatch, DoesNotCoupleWhatWasGoneBeforeTheChange) {
+  for (const bool was_gone : {true, false}) {
+    Two two("", 1s);
+    CouplingWatch watch(two.knowledge, {two.knowledge.states, two.knowledge.couplings});
+    const Attempt attempt = two.attempt(kEffect, Two::kCame + 5s);
+    Detection& detection = two.knowledge.states.state(kCause).detection;
+    detection.trigger = Slot::of(false);
+    detection.trigger_since = Two::kCame + 5s + (was_gone ? -10ms : 900ms);
+    two.knowledge.states.enter(kCause, RulePhase::kQuiet);
+    watch.cleared(kCause, Two::kCame + 6s);
+    watch.resolved(attempt, true, Two::kCame + 7s);
+    const auto& learned = two.knowledge.couplings.of(kCause);
+    EXPECT_EQ(learned.empty(), was_gone);
+  }
+}
+
 // It has the usual time from the end of the change on: ten cycles.
 TEST(CouplingWatch, GivesWhatCameToLightWithTheRepairTheUsualTimeToGo) {
   Two two("", 4s, "WARNING");

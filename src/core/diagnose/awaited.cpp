@@ -7,15 +7,24 @@ namespace {
 
 std::size_t at(Symptom symptom) { return static_cast<std::size_t>(symptom); }
 
+// Since when the rule does not show its failure; kLongAgo: it does, or never did. An exhausted failure
+// that its trigger does not show any more is about to clear.
+Time gone_since(RuleId rule, const Knowledge& knowledge) {
+  const RuleState& state = knowledge.states[rule];
+  if (state.phase == RulePhase::kQuiet) return state.gone_since;
+  const bool is_clearing = state.phase == RulePhase::kExhausted && state.detection.trigger.known &&
+                           !state.detection.trigger.b;
+  return is_clearing ? state.detection.trigger_since : kLongAgo;
+}
+
 // When the rule's failure was really over.
 Time recovered(RuleId rule, const Knowledge& knowledge) {
-  return knowledge.states[rule].gone_since - knowledge.latencies.lateness(rule).presumed;
+  return gone_since(rule, knowledge) - knowledge.latencies.lateness(rule).presumed;
 }
 
 bool cleared_lately(RuleId rule, const Knowledge& knowledge) {
-  const RuleState& state = knowledge.states[rule];
-  return state.phase == RulePhase::kQuiet && state.gone_since != kLongAgo &&
-         knowledge.now < later(state.gone_since, kLongestEvidence);
+  const Time gone = gone_since(rule, knowledge);
+  return gone != kLongAgo && knowledge.now < later(gone, kLongestEvidence);
 }
 
 }  // namespace

@@ -98,6 +98,17 @@ TEST_F(TwoMonitors, AFailureMayBeTheEchoOfOneThatCleared) {
   EXPECT_FALSE(awaited(900ms)) << "that was too long ago";
 }
 
+// A was given up, and comes and goes by itself: it has not cleared yet, but is not there any more.
+TEST_F(TwoMonitors, AFailureMayBeTheEchoOfAnExhaustedOneThatIsAboutToClear) {
+  state("A").onset = Onset{scene_->now - 2s, scene_->now - 1500ms};
+  scene_->states.enter(scene_.rule("A"), RulePhase::kExhausted);
+  state("A").detection.trigger_since = scene_->now - 10ms;
+  const auto echo = awaited(900ms);
+  ASSERT_TRUE(echo);
+  EXPECT_EQ(echo->because, scene_.rule("A"));
+  EXPECT_TRUE(echo->is_echo);
+}
+
 // However long ago it was detected.
 TEST_F(TwoMonitors, AnOldFailureMayBeAnEcho) {
   scene_.fail("A", -10min);
