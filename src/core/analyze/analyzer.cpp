@@ -357,6 +357,7 @@ void Analyzer::detect(RuleId id, Time now) {
     write_.states.begin_search(id, now);
   }
   state.onset = diagnose::onset_now(id, now, knowledge_);
+  state.masked_until = kLongAgo;
   if (!recurs) {
     state.first_onset = state.onset->latest;
     state.worked_until = state.detection.last_false;
@@ -691,6 +692,21 @@ void Analyzer::leave(RuleId id, Time now) {
   write_.states.state(id).gone_since = now;
   write_.states.state(id).standing.clear();
   write_.states.enter(id, RulePhase::kQuiet);
+  unmask_effects_of(id, now);
+}
+
+// What fails downstream although this cause of it is gone has another one, which may have begun until
+// now.
+void Analyzer::unmask_effects_of(RuleId gone, Time now) {
+  if (knowledge_.states.active().empty()) return;
+  const Time began = diagnose::onset_of(gone, knowledge_).earliest;
+  for (const ComponentId c : knowledge_.graph.downstream(knowledge_.rules[gone].components)) {
+    for (const RuleId effect : knowledge_.states.touching(c)) {
+      const bool may_be = effect != gone && knowledge_.states.is_active(effect) &&
+                          began <= diagnose::onset_of(effect, knowledge_).latest;
+      if (may_be) write_.states.state(effect).masked_until = now;
+    }
+  }
 }
 
 void Analyzer::round_is_spent(RuleId id, Time now) {

@@ -169,6 +169,7 @@ class Analyzer {
   void detect(RuleId id, Time now);
   void watch_failing(RuleId id, Time now);
   void leave(RuleId id, Time now);
+  void unmask_effects_of(RuleId gone, Time now);
   void judge(RuleId id, Time now);
   // Its effect cannot be seen before.
   Time shows_from(const Attempt& attempt) const;

@@ -50,6 +50,24 @@ bool may_be_broken(RuleId rule, const RuleSet& rules) {
       });
 }
 
+// When the last process of a component that the rule touches began, if that runs.
+Time begun_last(RuleId rule, const Knowledge& knowledge) {
+  Time last = kLongAgo;
+  for (const ComponentId c : touched_by(rule, knowledge)) {
+    const ComponentState& state = knowledge.components[c];
+    if (state.process == ProcessState::kRunning) last = std::max(last, state.process_since);
+  }
+  return last;
+}
+
+// Until when a cause of what the failure shows now may have begun, besides its onset. Of a failure that
+// an earlier culprit detected, that is unknown.
+Time unclear_until(RuleId failure, const Knowledge& knowledge) {
+  const RuleState& state = knowledge.states[failure];
+  if (!state.onset) return knowledge.now;
+  return std::max(begun_last(failure, knowledge), state.masked_until);
+}
+
 // As a cause, a flapping failure began with its first detection; as an effect, with its last.
 Onset onset_of_node(RuleId failure, const Knowledge& knowledge) {
   const Onset onset = onset_of(failure, knowledge);
@@ -130,6 +148,7 @@ void Causes::add_rules(const Knowledge& knowledge, std::span<const RuleId> immin
     CauseNode& node = nodes_.back();
     node.first_onset = is_imminent ? node.onset.latest
                                    : std::min(node.onset.latest, first_onset_of(rule, knowledge));
+    if (!is_imminent) node.unclear_until = unclear_until(rule, knowledge);
   }
 }
 
@@ -247,7 +266,7 @@ bool Causes::can_explain(std::size_t j, std::size_t i, const Knowledge& knowledg
 }
 
 bool Causes::can_precede(std::size_t j, std::size_t i) const {
-  return nodes_[j].onset.earliest <= nodes_[i].onset.latest;
+  return nodes_[j].onset.earliest <= std::max(nodes_[i].onset.latest, nodes_[i].unclear_until);
 }
 
 double Causes::timely(std::size_t j, std::size_t i) const {

@@ -11,7 +11,8 @@
 // the effect can have taken (paths.h). Criticality does not matter: the effects decide how bad a
 // cause is (plan/bayes/levels.h). One exception: a bad value that is only ever reconfigured is no
 // cause of a more critical failure. Two failures that were seen to clear together count as if they
-// were connected, although the graph shows no edge. A cause begins before its effect (timing.h).
+// were connected, although the graph shows no edge. A cause begins before its effect (timing.h), or,
+// if the effect outlasts an earlier cause or its own component's new beginning, before that.
 // Nodes that may be the causes of each other, directly or through others, form a feedback loop. That
 // needs no loop in the graph, because a rule may touch several components.
 //
@@ -48,6 +49,8 @@ struct CauseNode {
   Onset onset;
   Time worked_until = kLongAgo;  // of a rule: when it was seen to be well last
   Time first_onset = kNever;     // of a rule: the latest onset of its first detection
+  // Of a failure: when its component began anew, or a cause of it cleared, and it was there still.
+  Time unclear_until = kLongAgo;
 
   bool is_rule() const { return kind == Kind::kFailure || kind == Kind::kImminent; }
 };

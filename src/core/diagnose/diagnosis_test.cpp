@@ -65,6 +65,23 @@ TEST(Diagnosis, FallsToTheFailureWithNoFailureUpstream) {
   EXPECT_DOUBLE_EQ(own(scene, "C"), own_cause(kPi, 1 - (1 - kKappa) * (1 - kKappa)));
 }
 
+// A began after B. It explains B only if B outlasts an earlier cause, or its own new beginning.
+TEST(Diagnosis, AnEffectThatOutlastsItsFirstCauseMayHaveALaterOne) {
+  Scene scene = chain();
+  scene.fail("A").fail("B");
+  const Time b = scene->now - 5s;
+  const Time a = scene->now - 3s;
+  scene->states.state(scene.rule("B")).onset = Onset{b, b};
+  scene->states.state(scene.rule("A")).onset = Onset{a, a};
+  EXPECT_DOUBLE_EQ(own(scene, "B"), 1);
+  scene->states.state(scene.rule("B")).masked_until = scene->now - 2s;
+  EXPECT_DOUBLE_EQ(own(scene, "B"), own_cause(kPi, kKappa));
+  scene->states.state(scene.rule("B")).masked_until = scene->now - 4s;
+  EXPECT_DOUBLE_EQ(own(scene, "B"), 1);
+  scene->components[scene.component("b")].process_since = scene->now - 2s;
+  EXPECT_DOUBLE_EQ(own(scene, "B"), own_cause(kPi, kKappa));
+}
+
 TEST(Diagnosis, LooksThroughHealthyComponents) {
   Scene scene = chain();
   scene.fail("A").fail("C");

@@ -86,6 +86,7 @@ struct RuleState {
   Time failing_since = kNever;    // when the failure was detected
   std::optional<Onset> onset;     // when it began, as far as known when it was detected
   Time first_onset = kNever;      // the latest onset of its first detection, if it is flapping
+  Time masked_until = kLongAgo;   // until then a failure upstream was there that may have caused it
   Time worked_until = kLongAgo;   // when it was seen to be well last before that; kLongAgo: never
   Time recurring_since = kNever;  // if it cleared and is back: when it was detected first
   Time gone_since = kLongAgo;     // when it cleared last

@@ -67,6 +67,12 @@ void Invariants::fail(Time at, std::string what) {
   if (!violation_) violation_ = Violation{at, std::move(what)};
 }
 
+// A culprit that was killed says nothing of a silence that ended meanwhile.
+bool Invariants::is_silenced(Silenceable what, Time at) const {
+  const auto found = silenced_.find(what);
+  return found != silenced_.end() && at < found->second;
+}
+
 void Invariants::check(const Manager& manager, Time now, std::span<const Command> commands,
                        const Truth& truth) {
   begun_now_.clear();
@@ -79,7 +85,8 @@ void Invariants::check(const Manager& manager, Time now, std::span<const Command
       if (std::holds_alternative<Pause>(what)) is_paused_ = true;
       if (std::holds_alternative<Resume>(what)) is_paused_ = false;
       if (const auto* run = std::get_if<RunStrategy>(&what)) ordered_.insert(run->strategy);
-      if (const auto* silence = std::get_if<Silence>(&what)) silenced_.insert(silence->what);
+      if (const auto* silence = std::get_if<Silence>(&what))
+        silenced_[silence->what] = silence->lasts ? later(event.at, *silence->lasts) : kNever;
       if (const auto* lift = std::get_if<LiftSilence>(&what)) silenced_.erase(lift->what);
     } else if (const auto* done = std::get_if<LastResortDone>(&event.what)) {
       last_resort_[rules_[done->strategy].rule.index] = event.at;
@@ -178,7 +185,7 @@ void Invariants::on(const Manager& manager, const StrategyChosen& chosen, const 
   for (const ComponentId component : strategy.components) {
     const std::string& where = rules_[component].name;
     if (!strategy.is_last_resort) spend(components_[component.index], "of " + where, at);
-    if (silenced_.contains(component)) fail(at, name + " is begun at the silenced " + where);
+    if (is_silenced(component, at)) fail(at, name + " is begun at the silenced " + where);
     int busy = 0;
     for (const RuleId id : manager.knowledge().states.active()) {
       const auto& attempt = manager.knowledge().states[id].attempt;
@@ -199,7 +206,7 @@ void Invariants::on(const Manager& manager, const StrategyChosen& chosen, const 
   if (!strategy.is_last_resort && is_downstream_of_an_attempt(manager.knowledge(), strategy, at))
     fail(at, name + " is begun downstream of what is being adapted");
   begun_now_.insert(chosen.strategy);
-  if (silenced_.contains(strategy.rule)) fail(at, name + " is begun though its rule is silenced");
+  if (is_silenced(strategy.rule, at)) fail(at, name + " is begun though its rule is silenced");
   check_replacement(manager, strategy, truth, at);
   for (const ComponentId component : strategy.components) {
     const ComponentState& state = manager.knowledge().components[component];
@@ -283,8 +290,8 @@ bool Invariants::is_given_up(const Manager& manager, ComponentId component, Time
 void Invariants::check_last_resorts(const Manager& manager, Time now) {
   const Knowledge& knowledge = manager.knowledge();
   const auto is_held = [&](RuleId rule, ComponentId component) {
-    return is_paused_ || !manager.hears() || silenced_.contains(rule) ||
-           silenced_.contains(component) || knowledge.components[component].alive != true;
+    return is_paused_ || !manager.hears() || is_silenced(rule, now) ||
+           is_silenced(component, now) || knowledge.components[component].alive != true;
   };
   for (std::size_t s = 0; s < rules_.strategies.size(); ++s) {
     const Strategy& strategy = rules_.strategies[s];

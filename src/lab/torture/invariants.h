@@ -29,6 +29,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 #include <set>
 #include <span>
@@ -91,6 +92,7 @@ class Invariants {
   void check_beliefs(const Manager& manager, Time now);
   void check_commands(std::span<const Command> commands, const Truth& truth, Time now);
   void fail(Time at, std::string what);
+  bool is_silenced(Silenceable what, Time at) const;
 
   const RuleSet& rules_;
   bool is_bayes_;
@@ -114,7 +116,7 @@ class Invariants {
   std::vector<Budget> components_;
   std::vector<Budget> restarts_;  // by component
   std::vector<Belief> beliefs_;
-  std::set<Silenceable> silenced_;
+  std::map<Silenceable, Time> silenced_;   // until then
   std::set<StrategyId> ordered_;           // by a person
   std::set<StrategyId> begun_now_;         // in this step so far
   std::set<StrategyId> started_the_gone_;  // whose latest attempt began so

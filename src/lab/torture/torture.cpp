@@ -314,7 +314,8 @@ class Run {
     }
     const std::set<RuleId> left = left_to_person();
     if (std::any_of(left.begin(), left.end(), is_about)) return true;
-    if (std::any_of(needed.begin(), needed.end(), [&](std::size_t p) { return is_never_seen(p); }))
+    if (std::any_of(needed.begin(), needed.end(),
+                    [&](std::size_t p) { return is_never_seen(p) || is_left_down(p); }))
       return true;
     for (std::size_t r = 0; r < rules_.rules.size(); ++r) {
       const RuleId id(r);
@@ -353,6 +354,13 @@ class Run {
       }
     }
     return left;
+  }
+
+  // It was ended by a person, and no culprit saw it since: it stays down, and that was reported.
+  bool is_left_down(std::size_t part) const {
+    const ComponentId component(part);
+    return manager_->knowledge().departures.stays_down(component) &&
+           manager_->knowledge().components[component].node_seen == kLongAgo;
   }
 
   // It never published, and that was reported.
