@@ -64,7 +64,7 @@ std::vector<unsigned> users_of(const fs::path& process) {
 class Holdings {
  public:
   explicit Holdings(const fs::path& process)
-      : links_(descriptors_of(process)),
+      : links_(descriptors_of(process).value_or(std::set<std::string>())),
         users_(links_.empty() ? std::vector<unsigned>() : users_of(process)) {}
 
   bool has(const Candidates& each) const {

@@ -216,14 +216,15 @@ Origins::Whose Origins::find(Proven& proven, const UdpAddress& from) {
 bool Origins::look(Proven& proven, const std::vector<UdpSocket>& table, Time now) {
   if (!is_of_this_network(table)) return false;
   const std::filesystem::path process = proc_ / std::to_string(proven.pid);
-  if (running_since(process) != proven.began) return end(proven, table, now);
-  const std::set<std::string> links = descriptors_of(process);
-  if (links.empty()) return false;
+  const auto links = descriptors_of(process);
+  const bool is_ending = links && links->empty();
+  if (is_ending || running_since(process) != proven.began) return end(proven, table, now);
+  if (!links) return false;
   std::vector<Socket> sockets;
   for (const UdpSocket& each : table) {
-    if (!links.contains(each.link)) continue;
+    if (!links->contains(each.link)) continue;
     const bool is_shared = std::ranges::any_of(table, [&](const UdpSocket& other) {
-      return !links.contains(other.link) && share(each, other);
+      return !links->contains(other.link) && share(each, other);
     });
     sockets.push_back({each.address, each.link, is_shared});
   }
@@ -240,13 +241,18 @@ bool Origins::is_of_this_network(const std::vector<UdpSocket>& table) const {
   });
 }
 
-// False: a process that it had started holds its sockets, and may go on speaking.
+// False: a process that it had started holds its sockets, and may go on speaking. They may also be those of
+// threads that are just ending, or the table may be older than the end: for a moment, that is not decided, and
+// nothing new counts.
 bool Origins::end(Proven& proven, const std::vector<UdpSocket>& table, Time now) {
+  if (!proven.ending) proven.ending = now;
   const bool lives_on = std::ranges::any_of(table, [&](const UdpSocket& each) {
     return std::ranges::any_of(proven.sockets,
                                [&](const Socket& its) { return its.link == each.link; });
   });
-  if (lives_on) return false;
+  if (lives_on && now >= later(*proven.ending, kEnds)) return false;
+  proven.looked = now;
+  if (lives_on) return true;
   proven.sockets.clear();
   if (!proven.ended) proven.ended = now;
   return true;

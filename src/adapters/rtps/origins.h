@@ -69,6 +69,8 @@ class Origins {
   // For so long after the end of a process no other one may speak in its name: leases of
   // participants run that long.
   static constexpr Duration kAfterEnd = std::chrono::seconds(30);
+  // A process may take so long to end: its threads, one after the other, close its sockets.
+  static constexpr Duration kEnds = std::chrono::seconds(1);
   static constexpr std::size_t kMostAddresses = 64;  // kept of one participant that are not its own
   static constexpr std::size_t kMostSources = 64;    // that are reported
 
@@ -132,7 +134,8 @@ class Origins {
     std::vector<Socket> sockets;
     bool spoke_alone = false;  // from a socket that it does not share
     Time looked = kLongAgo;
-    std::optional<Time> ended;
+    std::optional<Time> ending;             // it was found not to run any more
+    std::optional<Time> ended;              // and its sockets to be closed
     bool is_forgotten_once = false;         // to be discovered again
     std::map<UdpAddress, Foreign> foreign;  // addresses that are not its
   };

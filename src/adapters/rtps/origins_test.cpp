@@ -67,6 +67,11 @@ class FakeMachine {
     std::erase(sockets_[inode].holders, pid);
     write();
   }
+  // Its threads end one after the other: the first has closed the files, the last holds the sockets.
+  void begin_to_end(int pid) {
+    fs::remove_all(process(pid) / "fd");
+    fs::create_directory(process(pid) / "fd");
+  }
   void hide_tables() { fs::remove_all(folder_ / "net"); }
   void hide_files(int pid) { fs::remove_all(process(pid) / "fd"); }
   const fs::path& path() const { return folder_.path(); }
@@ -253,6 +258,16 @@ TEST_F(OriginsOfAMachine, NobodySpeaksForAProcessThatHasEnded) {
   EXPECT_TRUE(counts({kOwn, 50'000}, later(kStart, 2s + Origins::kAfterEnd)));
 }
 
+// A stranger speaks in its name at the instant of its death, before it is found dead.
+TEST_F(OriginsOfAMachine, NobodySpeaksForAProcessThatIsJustEnding) {
+  prove();
+  machine.begin_to_end(kPid);
+  EXPECT_FALSE(counts({kOwn, 50'000}, later(kStart, 1s)));
+  EXPECT_TRUE(counts({kOwn, 40'000}, later(kStart, 1s))) << "its good-bye, which was under way";
+  machine.end(kPid);
+  EXPECT_FALSE(counts({kOwn, 50'000}, later(kStart, 2s)));
+}
+
 TEST_F(OriginsOfAMachine, WhoWasSpokenForByOthersIsDiscoveredAgainOnce) {
   const std::array spoke_from = {UdpAddress{kOwn, 40'000}, UdpAddress{kElsewhere, 5}};
   EXPECT_FALSE(origins.prove(camera(), kPid, spoke_from));
@@ -280,6 +295,10 @@ TEST_F(OriginsOfAMachine, AForkThatLivesOnMaySpeak) {
   machine.end(kPid);
   origins.check(later(kStart, 1s));
   EXPECT_TRUE(counts({kOwn, 40'000}, later(kStart, 1s)));
+  EXPECT_FALSE(counts({kOwn, 50'000}, later(kStart, 1s)));
+  origins.check(later(kStart, 1s + Origins::kEnds));
+  EXPECT_TRUE(counts({kOwn, 50'000}, later(kStart, 1s + Origins::kEnds)))
+      << "its process is unknown";
 }
 
 TEST_F(OriginsOfAMachine, OfASystemThatTellsNoInterfacesTheKnownOnesStay) {

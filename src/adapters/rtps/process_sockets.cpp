@@ -8,10 +8,11 @@ namespace culprit::ros2 {
 
 namespace fs = std::filesystem;
 
-std::set<std::string> descriptors_of(const fs::path& process) {
-  std::set<std::string> links;
+std::optional<std::set<std::string>> descriptors_of(const fs::path& process) {
   std::error_code error;
   fs::directory_iterator files(process / "fd", error);
+  if (error) return std::nullopt;
+  std::set<std::string> links;
   while (!error && files != fs::directory_iterator()) {
     const fs::path target = fs::read_symlink(files->path(), error);
     if (!error) links.insert(target.native());
