@@ -7,12 +7,12 @@
 namespace culprit {
 namespace {
 
-// Can the attempt end a process? One that only reconfigures cannot.
+// Can the attempt end a process? One that only reconfigures, or goes through the lifecycle, cannot.
 bool may_end(const Attempt* attempt, const RuleSet& rules) {
   if (attempt == nullptr) return false;
   return std::ranges::any_of(rules[attempt->strategy].adaptations, [](const Adaptation& each) {
-    return each.type == AdaptationType::kRestart || each.type == AdaptationType::kRedeploy ||
-           each.type == AdaptationType::kStop || each.type == AdaptationType::kStart;
+    return each.type == AdaptationType::kRedeploy || each.type == AdaptationType::kStop ||
+           each.type == AdaptationType::kStart;
   });
 }
 
