@@ -24,6 +24,7 @@ EvidenceSource source_of(Trouble trouble) {
     case Trouble::kSilent:
       return EvidenceSource::kMeasured;
     case Trouble::kLeft:
+    case Trouble::kStarting:
     case Trouble::kNotActive:
     case Trouble::kNotYetActive:
     case Trouble::kNeverSeen:

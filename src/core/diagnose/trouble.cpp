@@ -25,6 +25,8 @@ std::optional<TroubleSeen> own_trouble(ComponentId component, const Knowledge& k
   if (state.hangs() || is_overdue(component, knowledge))
     return TroubleSeen{Trouble::kHung, onset_of_hang(state)};
   if (state.alive == false) return TroubleSeen{Trouble::kLeft, at(state.alive_since)};
+  // When it went down is not known.
+  if (state.is_coming_up()) return TroubleSeen{Trouble::kStarting, {kLongAgo, state.process_since}};
   const bool is_managed = state.lifecycle != Lifecycle::kUnknown;
   if (is_managed && state.lifecycle != Lifecycle::kActive)
     return TroubleSeen{state.was_active ? Trouble::kNotActive : Trouble::kNotYetActive,
@@ -42,6 +44,8 @@ std::string_view to_string(Trouble trouble) {
       return "is stopped";
     case Trouble::kLeft:
       return "left the graph";
+    case Trouble::kStarting:
+      return "is being started";
     case Trouble::kHung:
       return "hangs";
     case Trouble::kNotActive:

@@ -14,6 +14,7 @@ enum class Trouble : std::uint8_t {
   kExited,     // its process is gone
   kStopped,    // its process is stopped (SIGSTOP)
   kLeft,       // its node left the graph
+  kStarting,   // its process runs, and its node is not there yet
   kHung,       // its process runs and does not answer: any more, or what it was asked (questions.h)
   kNotActive,  // its lifecycle was active, and is not any more
   kNotYetActive,  // its lifecycle is known and was never active

@@ -34,6 +34,20 @@ Governor::Held paused() {
   return {Restraint::kPaused, "paused by a person; culprit resume lets it go on", kNever};
 }
 
+// When all values that the condition reads are what the robot says now.
+Time confirmed_by(const Program& condition, const SignalStore& signals) {
+  Time by = kLongAgo;
+  for (const Instruction& each : condition.code) {
+    if (each.op == Op::kInput) by = std::max(by, signals.confirmed_by(InputId(each.operand)));
+  }
+  return by;
+}
+
+Governor::Held is_back(const std::string& component, Time until) {
+  return {Restraint::kLaunchEnded, component + " was started again a moment ago, by somebody",
+          until};
+}
+
 Governor::Held in_words(const Departures::Departure& departure, const std::string& component) {
   using What = Departures::What;
   const std::string launcher = "process " + std::to_string(departure.launcher);
@@ -54,8 +68,7 @@ Governor::Held in_words(const Departures::Departure& departure, const std::strin
     case What::kIsBack:
       break;
   }
-  return {Restraint::kLaunchEnded, component + " was started again a moment ago, by somebody",
-          departure.until};
+  return is_back(component, departure.until);
 }
 
 }  // namespace
@@ -352,8 +365,20 @@ std::optional<Governor::Held> Governor::departure(const Strategy& strategy, Time
   for (const ComponentId component : strategy.components) {
     const auto departure = knowledge_.departures.of(component, now);
     if (departure) return in_words(*departure, knowledge_.rules[component].name);
+    const Time until = comes_up_by(component);
+    if (now < until) return is_back(knowledge_.rules[component].name, until);
   }
   return std::nullopt;
+}
+
+// When a process that somebody else started again will have shown what its node does.
+Time Governor::comes_up_by(ComponentId component) const {
+  const ComponentState& state = knowledge_.components[component];
+  const Time returned = knowledge_.departures.returned(component);
+  if (returned == kLongAgo) return kLongAgo;
+  const Time latest = later(returned, Departures::kBack);
+  return state.is_coming_up() ? latest
+                              : std::min(latest, later(state.node_seen, Departures::kAlone));
 }
 
 // The container loads it again; to unload or to load it meanwhile would be in the way of that.
@@ -406,10 +431,16 @@ std::optional<Governor::Held> Governor::restraint_by_person(StrategyId id) const
 std::optional<Governor::Held> Governor::interlock() const {
   for (const Interlock& interlock : knowledge_.rules.interlocks) {
     const Slot value = evaluate(interlock.condition, knowledge_.signals.slots());
-    if (value.known && value.b) continue;
-    return Held{Restraint::kInterlock,
-                "INTERLOCK " + interlock.text + (value.known ? " is false" : " is unknown"),
-                kNever};
+    if (!value.known || !value.b)
+      return Held{Restraint::kInterlock,
+                  "INTERLOCK " + interlock.text + (value.known ? " is false" : " is unknown"),
+                  kNever};
+    const Time until = confirmed_by(interlock.condition, knowledge_.signals);
+    if (knowledge_.now < until)
+      return Held{Restraint::kInterlock,
+                  "INTERLOCK " + interlock.text +
+                      " was true before culprit missed messages, and no new value came yet",
+                  until};
   }
   return std::nullopt;
 }

@@ -133,6 +133,7 @@ class Governor {
   std::optional<Held> lack_of_evidence(const Strategy& strategy, Time now) const;
   // Holds against a person's order, too.
   std::optional<Held> interlock() const;
+  Time comes_up_by(ComponentId component) const;
   void tell(StrategyId strategy, const Held& held, Time now);
   Question* question_of(StrategyId strategy);
   const Question* question_of(StrategyId strategy) const;

@@ -89,6 +89,9 @@ struct ComponentState {
   // Its process runs, or is somewhere else, and it does nothing more.
   bool hangs() const { return in_graph && process == ProcessState::kRunning && alive == false; }
 
+  // Its process runs, and its node is not there, or not there yet.
+  bool is_coming_up() const { return !in_graph && pid != 0 && process == ProcessState::kRunning; }
+
   // The process to stop: the node's own, or else the one that was started or adopted.
   int known_pid() const { return node_pid != 0 ? node_pid : pid; }
 };

@@ -38,8 +38,10 @@ void Departures::arrived(ComponentId component, int pid, Time at) {
   }
   // A launch whose end was not seen may have a successor that has run for long.
   const bool is_back = member.down && member.down != StaysDown::Why::kUnseen;
+  const bool had_ended = member.has_left;
   member = {.is_there = true, .has_owner = member.has_owner};
   if (is_back) member.back = at;
+  if (had_ended) member.returned = at;
   forget_unused_launches();
 }
 
@@ -49,6 +51,7 @@ void Departures::started_here(const StartedHere& seen, Time at) {
   member.started_pid = seen.pid;
   member.since = at - seen.runs_for;
   member.is_ours = true;
+  member.returned = kLongAgo;
   member.launcher = seen.launcher;
   if (seen.launcher != 0 && launch_of(seen.component) == nullptr)
     launches_.push_back({.launcher = seen.launcher});
@@ -129,8 +132,8 @@ void Departures::ended_here(ComponentId component, Time at) {
   Launch* launch = launch_of(component);
   if (launch == nullptr) return;
   launch->ended_here_at = at;
-  // It had outlived the launch.
-  if (launch->verdict.what == Verdict::What::kEnded) members_[component.index].launcher = 0;
+  // It had outlived its launcher.
+  if (launch->ended != kNever) members_[component.index].launcher = 0;
 }
 
 void Departures::lost(ComponentId component) {

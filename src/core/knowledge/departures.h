@@ -102,6 +102,9 @@ class Departures {
     return members_[component.index].down.has_value();
   }
 
+  // When somebody else started it again, after its process had ended; kLongAgo: that did not happen last.
+  Time returned(ComponentId component) const { return members_[component.index].returned; }
+
   // A process that culprit started and that runs.
   struct Started {
     ComponentId component;
@@ -152,6 +155,7 @@ class Departures {
     Time since{};              // when it did
     bool is_ours = false;      // the process that is there, or was last
     Time back = kLongAgo;      // after it had stayed down
+    Time returned = kLongAgo;  // after its process had ended, by somebody else
     Time owner_is_asked_until = kLongAgo;
     std::optional<StaysDown::Why> down{};
     bool is_told = false;  // that it stays down

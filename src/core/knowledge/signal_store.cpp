@@ -29,6 +29,7 @@ SignalStore::SignalStore(const RuleSet& rules, const SignalStore& other)
       latencies_(other.latencies_),
       read_at_(other.read_at_),
       arrivals_(other.arrivals_),
+      hears_since_(other.hears_since_),
       is_unusual_(other.is_unusual_),
       rhythms_(other.rhythms_),
       touched_(other.touched_),
@@ -85,6 +86,14 @@ Time SignalStore::heard_again_by(RuleId id) const {
     if (is_rhythm) by = std::max(by, rhythm(input.topic).heard_again_by);
   }
   return by;
+}
+
+Time SignalStore::confirmed_by(InputId id) const {
+  constexpr Duration kUsuallyThen = std::chrono::seconds(2);  // if values come irregularly
+  const Arrivals& values = arrivals_[id.index];
+  const bool is_missed =
+      hears_since_ != kLongAgo && values.last != kLongAgo && values.last < hears_since_;
+  return is_missed ? later(hears_since_, values.gap + kUsuallyThen) : kLongAgo;
 }
 
 bool SignalStore::is_read_since(RuleId id, Time since) const {

@@ -67,6 +67,12 @@ class SignalStore {
   const Arrivals& arrivals(InputId id) const { return arrivals_[id.index]; }
   void set_arrivals(InputId id, const Arrivals& arrivals) { arrivals_[id.index] = arrivals; }
 
+  // culprit receives again since then, and may have missed values before.
+  void hear_again(Time since) { hears_since_ = since; }
+  // When a value that came before that would have been followed by another one: until then it may not
+  // be what the robot says now. kLongAgo: it came since, or none was missed.
+  Time confirmed_by(InputId id) const;
+
   // Has every signal that the trigger of the rule reads been read after `since`? Not if it reads
   // anything else.
   bool is_read_since(RuleId id, Time since) const;
@@ -109,6 +115,7 @@ class SignalStore {
   std::vector<Duration> latencies_;
   std::vector<Time> read_at_;
   std::vector<Arrivals> arrivals_;
+  Time hears_since_ = kLongAgo;
   std::vector<bool> is_unusual_;
   std::vector<Rhythm> rhythms_;  // by TopicId
   std::vector<RuleId> touched_;

@@ -259,6 +259,29 @@ TEST(Hearing, AVerdictWaitsUntilTheRobotWouldHaveBeenReceivedAgain) {
   EXPECT_EQ(robot.count("redeploy camera: done"), 1u) << transcript(robot);
 }
 
+// The robot may have begun to drive while culprit received nothing.
+TEST(Hearing, AnInterlockCountsOnlyByAValueThatCameAfterwards) {
+  for (const bool is_read_again : {true, false}) {
+    TestRobot robot("INTERLOCK speed < 0.1\n" + std::string(kHearingRules));
+    robot.add("camera", {}, "/rgb");
+    robot.add("lidar", {}, "/scan");
+    robot.discover();
+    robot.signal("speed", Value(0.0));
+    robot.run_for(3s);
+    robot.tell(HearingLost{"nothing came back"});
+    robot.kill("lidar");
+    robot.run_for(1s);
+    robot.tell(HearingRegained{});
+    robot.run_for(1500ms);
+    EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+    EXPECT_EQ(robot.count("INTERLOCK speed < 0.1 was true before culprit missed messages"), 1u)
+        << transcript(robot);
+    if (is_read_again) robot.signal("speed", Value(1.5));
+    robot.run_for(20s);
+    EXPECT_EQ(robot.was_asked("lidar: start process"), !is_read_again) << transcript(robot);
+  }
+}
+
 TEST(Hearing, NothingIsRunByHandWhileDeaf) {
   TestRobot robot = test::robot();
   robot.tell(HearingLost{"nothing came back"});

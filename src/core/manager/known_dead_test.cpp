@@ -289,6 +289,49 @@ TEST(KnownDead, WhatSomebodyElseStartedAgainIsLeftAlone) {
   EXPECT_EQ(robot.count_asked("camera:"), 0u) << transcript(robot);
 }
 
+// Its launcher starts it again (respawn). Its process runs, its node is not there yet.
+TEST(KnownDead, WhatALauncherStartedAgainHasItsTimeToComeUp) {
+  for (const bool comes_up : {true, false}) {
+    Manager::Options options;
+    options.governor.quiet_at_start = 6500ms;  // so that nothing is begun before that
+    TestRobot robot = robot_with(kPatientRules, options);
+    robot.kill("camera");
+    robot.run_for(100ms);
+    const int pid = robot["fusion"].pid + 1;  // the next one
+    robot.tell(ProcessSeen{robot.id("camera"), ProcessState::kRunning, pid, ""});
+    robot.run_for(Departures::kBack - 500ms);
+    EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+    EXPECT_EQ(robot.count("camera was started again a moment ago, by somebody"), 1u)
+        << transcript(robot);
+    if (comes_up) robot.start_by_hand("camera");
+    robot.run_for(10s);
+    EXPECT_EQ(robot.was_asked("camera: stop process"), !comes_up) << transcript(robot);
+  }
+}
+
+// A healthy consumer is no culprit while its supplier is being started by somebody else.
+TEST(KnownDead, AConsumerOfWhatIsBeingStartedWaits) {
+  TestRobot robot = robot_with(R"(
+CYCLE 100ms
+COMPONENT camera NODE /camera
+COMPONENT fusion NODE /fusion LAUNCH "fusion"
+RULE FusionSilent
+  POLICIES ERROR
+  TRIGGER age(/fused) > 500ms
+    STRATEGY redeploy 90 10
+      ADAPTATION fusion redeploy 10
+)");
+  robot.kill("camera");
+  robot.run_for(2s);
+  EXPECT_EQ(robot.count("FusionSilent waits: it depends on camera, which exited"), 1u)
+      << transcript(robot);
+  const int pid = robot["camera"].pid + 1000;
+  robot.tell(ProcessSeen{robot.id("camera"), ProcessState::kRunning, pid, ""});
+  robot.tell(Overslept{2s});  // so that it is unknown whether the node is there
+  robot.run_for(5s);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+}
+
 TEST(KnownDead, NothingIsBegunInTheQuietTimeAfterItsOwnRedeployment) {
   Manager::Options options;
   options.governor = Governor::Options::recommended();
@@ -442,6 +485,22 @@ RULE Drift
   robot.run_for(1min);
   EXPECT_FALSE(robot.was_asked("a: start process")) << transcript(robot);
   EXPECT_EQ(robot.count("a and b stay down: a person ended the launch"), 1u) << transcript(robot);
+}
+
+// b and c run on after their launcher has ended. culprit ends b, and that is no end of the launch.
+TEST(ALaunch, IsNotEndedByWhatCulpritEndsAfterItsLauncher) {
+  TestRobot robot = launch_of_five();
+  for (const std::string name : {"a", "d", "e"})
+    robot.tell(LauncherSeen{robot.id(name), kLauncher + 1, false});
+  robot.leave("c");
+  robot.run_for(200ms);
+  for (const std::string name : {"b", "c"})
+    robot.tell(LauncherSeen{robot.id(name), kLauncher, true});
+  robot.run_for(Departures::kAlone + 1s);
+  robot["b"].launcher = 0;
+  robot["b"].fault = "redeploy";
+  robot.run_for(30s);
+  EXPECT_TRUE(robot.works("b")) << transcript(robot);
 }
 
 // A process that ignores SIGTERM is killed by its launcher.

@@ -124,6 +124,7 @@ void Monitor::restart(Time since, Time now) {
   is_deaf_ = false;
   expect_no_more();
   awake_ = now;
+  write_.signals.hear_again(now);
   graced_ = later(now, kGrace);
   deadlines_.set(knowledge_.rules.inputs.size() + 1, graced_);
   for (Topic& topic : topics_) {
