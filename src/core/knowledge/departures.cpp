@@ -28,7 +28,7 @@ Departures::Launch* Departures::launch_of(ComponentId component) {
 
 // ---- what is seen
 
-void Departures::arrived(ComponentId component, int pid, Time at) {
+void Departures::arrived(ComponentId component, int pid, Time at, By by) {
   Member& member = members_[component.index];
   has_changed_ = true;
   if (pid != 0 && member.started_pid == pid) {
@@ -38,10 +38,10 @@ void Departures::arrived(ComponentId component, int pid, Time at) {
   }
   // A launch whose end was not seen may have a successor that has run for long.
   const bool is_back = member.down && member.down != StaysDown::Why::kUnseen;
-  const bool had_ended = member.has_left;
+  const bool is_returned = member.has_left && by == By::kOther;
   member = {.is_there = true, .has_owner = member.has_owner};
   if (is_back) member.back = at;
-  if (had_ended) member.returned = at;
+  if (is_returned) member.returned = at;
   forget_unused_launches();
 }
 

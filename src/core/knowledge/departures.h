@@ -45,8 +45,9 @@ class Departures {
 
   // ---- observations
 
-  // A process of the component began.
-  void arrived(ComponentId component, int pid, Time at);
+  // A process of the component began: for a strategy of culprit that was under way, or not.
+  enum class By : std::uint8_t { kCulprit, kOther };
+  void arrived(ComponentId component, int pid, Time at, By by);
   // culprit started that process; reported before it arrives.
   void started_here(const StartedHere& seen, Time at);
   // Another process, `launcher`, which is no supervisor, started it.

@@ -262,6 +262,7 @@ class Monitor {
   void forget_process(ComponentId component, Time at);
   void forget_usage(ComponentId component);
   void note_process(const ProcessSeen& seen, Time at);
+  void note_begin(const ProcessSeen& seen, Time at);
   void note_end(const ProcessSeen& seen, Time at);
   void note_farewell(ComponentId component, Time at);
   void note_known_dead(ComponentId component, Time at);

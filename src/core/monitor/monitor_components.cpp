@@ -291,8 +291,7 @@ void Monitor::on(Time at, const ProcessSeen& seen) {
   const bool is_other =
       seen.pid != present && (seen.pid != 0 || knowledge_.rules[seen.component].has_owner());
   if (is_other && state.in_graph && seen.state != ProcessState::kRunning) return;
-  if (seen.state == ProcessState::kRunning && seen.pid != state.pid)
-    write_.departures.arrived(seen.component, seen.pid, at);
+  if (seen.state == ProcessState::kRunning && seen.pid != state.pid) note_begin(seen, at);
   set_process(state, seen.state, at);
   state.pid = seen.pid;
   state.process_remark = seen.remark;

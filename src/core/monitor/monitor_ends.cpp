@@ -65,6 +65,12 @@ void Monitor::note_process(const ProcessSeen& seen, Time at) {
   }
 }
 
+void Monitor::note_begin(const ProcessSeen& seen, Time at) {
+  using By = Departures::By;
+  const bool is_ours = is_ended_here(seen.component, knowledge_);
+  write_.departures.arrived(seen.component, seen.pid, at, is_ours ? By::kCulprit : By::kOther);
+}
+
 void Monitor::note_end(const ProcessSeen& seen, Time at) {
   const ComponentId component = seen.component;
   const bool has_said_good_bye = !knowledge_.components[component].in_graph;
