@@ -217,7 +217,7 @@ int run(const RunOptions& options) {
   web::RuleDesk desk(options.rules, options.may_edit_commands ? web::RuleDesk::Commands::kMayChange
                                                               : web::RuleDesk::Commands::kStay);
   live::RobotNames names(options.message_path);
-  Expected<std::unique_ptr<web::Server>> server(nullptr);
+  Expected<std::unique_ptr<web::HttpServer>> server(nullptr);
   if (options.is_on_web) {
     std::vector<web::Route> routes = local_routes(hub, metrics, orders, live, recording->get());
     add(routes,

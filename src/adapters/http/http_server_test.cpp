@@ -1,5 +1,5 @@
 // The server as browsers, scripts and attackers meet it: real sockets on loopback.
-#include "http/server.h"
+#include "http/http_server.h"
 
 #include <algorithm>
 #include <arpa/inet.h>
@@ -48,12 +48,12 @@ std::span<const Asset> test_app() {
   return kAssets;
 }
 
-std::unique_ptr<Server> start(Hub* hub = nullptr, bool is_local = true) {
-  Server::Options options;
+std::unique_ptr<HttpServer> start(Hub* hub = nullptr, bool is_local = true) {
+  HttpServer::Options options;
   options.access = {kToken, {}, is_local};
   options.app = test_app();
   options.openapi = "{}";
-  auto server = Server::start(options, {echo(Method::kGet), echo(Method::kPost)}, hub);
+  auto server = HttpServer::start(options, {echo(Method::kGet), echo(Method::kPost)}, hub);
   EXPECT_TRUE(server) << server.error();
   return std::move(*server);
 }
@@ -73,7 +73,7 @@ struct WebServer : testing::Test {
   }
 
   Hub hub;
-  std::unique_ptr<Server> server = start(&hub);
+  std::unique_ptr<HttpServer> server = start(&hub);
 };
 
 // A connection whose bytes are ours.
@@ -182,17 +182,17 @@ TEST_F(WebServer, NeedsTheTokenForEverythingWhereOthersCanReachIt) {
 }
 
 TEST_F(WebServer, LetsEachTokenDoWhatItsRoleAllows) {
-  Server::Options options;
+  HttpServer::Options options;
   options.access = {kToken, {}, false};
   options.access.operate_token = "operate-0123456789";
   options.access.look_token = "look-0123456789abc";
   const auto ok = [](const Json&) { return Answer{}; };
-  auto started = Server::start(options,
-                               {{Method::kGet, "/api/state", ok},
-                                {Method::kPost, "/api/ask", ok, Role::kLook},
-                                {Method::kPost, "/api/orders", ok, Role::kOperate},
-                                {Method::kPut, "/api/rules", ok}},
-                               nullptr);
+  auto started = HttpServer::start(options,
+                                   {{Method::kGet, "/api/state", ok},
+                                    {Method::kPost, "/api/ask", ok, Role::kLook},
+                                    {Method::kPost, "/api/orders", ok, Role::kOperate},
+                                    {Method::kPut, "/api/rules", ok}},
+                                   nullptr);
   ASSERT_TRUE(started) << started.error();
   server = std::move(*started);
   const auto status = [&](const std::string& token, const char* method, const char* path) {
@@ -245,11 +245,11 @@ struct TlsServer : testing::Test {
     EXPECT_EQ(std::system(make.c_str()), 0);
     auto tls = TlsContext::load(certificate, key);
     EXPECT_TRUE(tls) << tls.error();
-    Server::Options options;
+    HttpServer::Options options;
     options.access = {kToken, {}, false};
     options.access.is_encrypted = true;
     options.tls = *tls;
-    auto started = Server::start(options, {echo(Method::kGet), echo(Method::kPost)}, &hub);
+    auto started = HttpServer::start(options, {echo(Method::kGet), echo(Method::kPost)}, &hub);
     EXPECT_TRUE(started) << started.error();
     server = std::move(*started);
   }
@@ -258,7 +258,7 @@ struct TlsServer : testing::Test {
   const std::string key = folder / "robot.key";
   const std::string certificate = folder / "robot.crt";
   Hub hub;
-  std::unique_ptr<Server> server;
+  std::unique_ptr<HttpServer> server;
 };
 
 TEST_F(TlsServer, AnswersWhoSpeaksTls) {
@@ -341,7 +341,7 @@ TEST_F(WebServer, HasNoFilesToReach) {
 }
 
 TEST_F(WebServer, RefusesBodiesThatAreTooLarge) {
-  EXPECT_EQ(post(with_token, std::string(Server::kMostBytes + 1, ' ')), 413);
+  EXPECT_EQ(post(with_token, std::string(HttpServer::kMostBytes + 1, ' ')), 413);
 }
 
 TEST_F(WebServer, RefusesBodiesOfUnknownSize) {
@@ -361,7 +361,7 @@ TEST_F(WebServer, SurvivesDeepJson) { EXPECT_EQ(post(with_token, std::string(100
 TEST_F(WebServer, SlowsDownWhoAsksTooOften) {
   int refused = 0;
   // A slow machine asks hardly more often than is allowed in the long run.
-  for (int i = 0; i < 100 * static_cast<int>(Server::kBurst) && refused == 0; ++i)
+  for (int i = 0; i < 100 * static_cast<int>(HttpServer::kBurst) && refused == 0; ++i)
     refused += client().Get("/api/echo")->status == 429 ? 1 : 0;
   EXPECT_EQ(refused, 1);
 }
@@ -371,7 +371,7 @@ TEST_F(WebServer, SlowsDownWhoAsksTooOften) {
 TEST_F(WebServer, TakesOrdersWithTheTokenWhileSomebodyElseAsksTooOften) {
   const auto ask_too_often = [&] {
     int refused = 0;
-    for (int i = 0; i < 100 * static_cast<int>(Server::kBurst) && refused == 0; ++i)
+    for (int i = 0; i < 100 * static_cast<int>(HttpServer::kBurst) && refused == 0; ++i)
       refused += client().Get("/api/echo")->status == 429 ? 1 : 0;
     return refused;
   };
@@ -384,7 +384,7 @@ TEST_F(WebServer, TakesOrdersWithTheTokenWhileSomebodyElseAsksTooOften) {
 
 TEST_F(WebServer, SlowsDownOrdersWithTheTokenByThemselves) {
   int refused = 0;
-  for (int i = 0; i < 100 * static_cast<int>(Server::kBurst) && refused == 0; ++i)
+  for (int i = 0; i < 100 * static_cast<int>(HttpServer::kBurst) && refused == 0; ++i)
     refused += post(with_token) == 429 ? 1 : 0;
   EXPECT_EQ(refused, 1);
   EXPECT_EQ(client().Get("/api/echo")->status, 200);
@@ -400,7 +400,7 @@ TEST_F(WebServer, StreamsWhatIsPublished) {
 
 TEST_F(WebServer, BoundsTheNumberOfStreams) {
   std::vector<std::unique_ptr<Raw>> readers;
-  for (std::size_t i = 0; i < Server::kMostStreams; ++i) {
+  for (std::size_t i = 0; i < HttpServer::kMostStreams; ++i) {
     readers.push_back(std::make_unique<Raw>(server->port()));
     readers.back()->send("GET /api/stream HTTP/1.1\r\nHost: localhost\r\n\r\n");
     ASSERT_THAT(readers.back()->receive("hello"), HasSubstr("hello"));
@@ -498,10 +498,10 @@ TEST(WebServerStart, LeavesDescriptorsToTheManager) {
 
 TEST(WebServerStart, SaysWhenThePortIsTaken) {
   const auto first = start();
-  Server::Options options;
+  HttpServer::Options options;
   options.port = first->port();
   options.access.token = kToken;
-  const auto second = Server::start(options, {}, nullptr);
+  const auto second = HttpServer::start(options, {}, nullptr);
   ASSERT_FALSE(second);
   EXPECT_THAT(second.error(), HasSubstr("--port"));
 }
@@ -509,11 +509,11 @@ TEST(WebServerStart, SaysWhenThePortIsTaken) {
 // A server that is asked from this machine only.
 struct LocalServer : testing::Test {
   LocalServer() {
-    Server::Options options;
+    HttpServer::Options options;
     options.socket = path;
     options.access.token = kToken;
     options.about = {{"robot", "rover"}};
-    auto started = Server::start(options, {echo(Method::kGet), echo(Method::kPost)}, &hub);
+    auto started = HttpServer::start(options, {echo(Method::kGet), echo(Method::kPost)}, &hub);
     EXPECT_TRUE(started) << started.error();
     server = std::move(*started);
   }
@@ -521,7 +521,7 @@ struct LocalServer : testing::Test {
   const test::TestFolder folder;
   const std::string path = folder / "7-1.sock";
   Hub hub;
-  std::unique_ptr<Server> server;
+  std::unique_ptr<HttpServer> server;
   const LocalClient client{path, std::chrono::seconds(20), geteuid()};
 };
 
@@ -577,10 +577,10 @@ TEST_F(LocalServer, RefusesConnectionsThatItHasNoThreadFor) {
 
 TEST(Servers, SayThatTheyHaveNoThread) {
   const test::TestFolder folder;
-  Server::Options options;
+  HttpServer::Options options;
   options.socket = folder / "7-1.sock";
   const NoThreads none;
-  EXPECT_THAT(Server::start(options, {}, nullptr).error(), HasSubstr("gives no thread"));
+  EXPECT_THAT(HttpServer::start(options, {}, nullptr).error(), HasSubstr("gives no thread"));
 }
 
 TEST_F(LocalServer, ServesItsOwnUserWithoutAToken) {
@@ -610,9 +610,9 @@ TEST_F(LocalServer, TakesThePlaceOfWhatAKilledOneLeft) {
   const int left = socket(AF_UNIX, SOCK_STREAM, 0);
   ASSERT_EQ(bind(left, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
   close(left);
-  Server::Options options;
+  HttpServer::Options options;
   options.socket = path;
-  EXPECT_TRUE(Server::start(options, {}, nullptr));
+  EXPECT_TRUE(HttpServer::start(options, {}, nullptr));
 }
 
 // The kernel shows which user asks: also where the file's permissions were opened by mistake.

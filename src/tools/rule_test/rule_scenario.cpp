@@ -1,4 +1,4 @@
-#include "rule_test/scenario.h"
+#include "rule_test/rule_scenario.h"
 
 namespace culprit::rule_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "http/server.h"
+#include "http/http_server.h"
 
 #include <algorithm>
 #include <array>
@@ -166,7 +166,7 @@ std::string exactly(const std::string& path) {
 
 }  // namespace
 
-class Server::Http {
+class HttpServer::Http {
  public:
   Http(Options options, std::vector<Route> routes, Hub* hub)
       : options_(std::move(options)),
@@ -385,12 +385,12 @@ class Server::Http {
   bool is_bound_ = false;  // to the socket
 };
 
-Server::Server(std::unique_ptr<Http> http) : http_(std::move(http)) {
+HttpServer::HttpServer(std::unique_ptr<Http> http) : http_(std::move(http)) {
   thread_ = std::thread([this] { http_->listen(); });
 }
 
-Expected<std::unique_ptr<Server>> Server::start(Options options, std::vector<Route> routes,
-                                                Hub* hub) {
+Expected<std::unique_ptr<HttpServer>> HttpServer::start(Options options, std::vector<Route> routes,
+                                                        Hub* hub) {
   auto http = std::make_unique<Http>(std::move(options), std::move(routes), hub);
   const bool is_bound = http->bind();
   if (!is_bound && http->is_on_socket())
@@ -401,22 +401,22 @@ Expected<std::unique_ptr<Server>> Server::start(Options options, std::vector<Rou
         fmt::format("cannot listen at {} port {}; is the port taken? --port chooses another",
                     http->options().address, http->options().port)};
   try {
-    return std::unique_ptr<Server>(new Server(std::move(http)));
+    return std::unique_ptr<HttpServer>(new HttpServer(std::move(http)));
   } catch (const std::system_error& no_thread) {
     return Error{fmt::format("the system gives no thread to serve on: {}", no_thread.what())};
   }
 }
 
-Server::~Server() {
+HttpServer::~HttpServer() {
   // stop() before it listens would be lost.
   while (!http_->has_begun()) std::this_thread::yield();
   http_->stop();
   thread_.join();
 }
 
-int Server::port() const { return http_->port(); }
+int HttpServer::port() const { return http_->port(); }
 
-std::string Server::address() const {
+std::string HttpServer::address() const {
   return fmt::format("{}://{}:{}/#token={}", http_->options().tls ? "https" : "http",
                      http_->options().address, http_->port(), http_->options().access.token);
 }

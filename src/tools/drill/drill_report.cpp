@@ -1,4 +1,4 @@
-#include "drill/report.h"
+#include "drill/drill_report.h"
 
 #include <algorithm>
 #include <cmath>

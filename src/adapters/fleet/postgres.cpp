@@ -1,4 +1,4 @@
-#include "fleet/server.h"
+#include "fleet/postgres.h"
 
 #include <cstdlib>
 #include <poll.h>
@@ -67,23 +67,23 @@ std::int64_t integer_in(const Field& field) {
 double real_in(const Field& field) { return field ? std::strtod(field->c_str(), nullptr) : 0; }
 std::string text_in(const Field& field) { return field.value_or(""); }
 
-void Server::Close::operator()(pg_conn* connection) const { libpq().finish(connection); }
+void Postgres::Close::operator()(pg_conn* connection) const { libpq().finish(connection); }
 
-Error Server::error(const std::string& what) { return {one_line(what)}; }
+Error Postgres::error(const std::string& what) { return {one_line(what)}; }
 
-bool Server::is_usable() const { return libpq().status(connection_.get()) == CONNECTION_OK; }
+bool Postgres::is_usable() const { return libpq().status(connection_.get()) == CONNECTION_OK; }
 
-std::string Server::user() const {
+std::string Postgres::user() const {
   const char* user = libpq().user(connection_.get());
   return user != nullptr ? user : "";
 }
 
 // Data that do not fit (22), or break a constraint (23), and what a policy or a type refuses.
-bool Server::blames_rows() const {
+bool Postgres::blames_rows() const {
   return state_.starts_with("22") || state_.starts_with("23") || state_ == "42501";
 }
 
-Expected<void> Server::wait(bool for_writing, Time until) {
+Expected<void> Postgres::wait(bool for_writing, Time until) {
   while (true) {
     if (*stop_) return Error{"culprit ends"};
     if (live_now() >= until) return Error{"it does not answer"};
@@ -96,14 +96,14 @@ Expected<void> Server::wait(bool for_writing, Time until) {
   }
 }
 
-Expected<Server> Server::connect(const Address& address, const std::atomic<bool>& stop,
-                                 Duration patience) {
+Expected<Postgres> Postgres::connect(const Address& address, const std::atomic<bool>& stop,
+                                     Duration patience) {
   if (const auto loaded = load_libpq(); !loaded) return Error{loaded.error()};
   const char* const keywords[] = {"dbname", "fallback_application_name", "client_encoding",
                                   nullptr};
   const char* const values[] = {address.text.c_str(), "culprit", "UTF8", nullptr};
   constexpr int kExpands = 1;
-  Server server(libpq().connect_start_params(keywords, values, kExpands), stop, patience);
+  Postgres server(libpq().connect_start_params(keywords, values, kExpands), stop, patience);
   if (server.connection_ == nullptr) return Error{"there is no memory for a connection"};
   if (const auto established = server.establish(); !established) return Error{established.error()};
   const auto set = server.run(
@@ -114,7 +114,7 @@ Expected<Server> Server::connect(const Address& address, const std::atomic<bool>
   return server;
 }
 
-Expected<void> Server::establish() {
+Expected<void> Postgres::establish() {
   const Time until = later(live_now(), patience_);
   PGconn* connection = connection_.get();
   if (libpq().status(connection) == CONNECTION_BAD) return error(libpq().error_message(connection));
@@ -130,7 +130,7 @@ Expected<void> Server::establish() {
   return {};
 }
 
-Expected<Rows> Server::results() {
+Expected<Rows> Postgres::results() {
   PGconn* connection = connection_.get();
   const Time until = later(live_now(), patience_);
   for (int flushed = libpq().flush(connection); flushed != 0; flushed = libpq().flush(connection)) {
@@ -176,7 +176,7 @@ Expected<Rows> Server::results() {
   return rows;
 }
 
-Expected<Rows> Server::query(const std::string& sql, const std::vector<Field>& parameters) {
+Expected<Rows> Postgres::query(const std::string& sql, const std::vector<Field>& parameters) {
   state_.clear();
   if (connection_ == nullptr) return Error{"its connection is broken"};
   std::vector<const char*> values;
@@ -188,7 +188,7 @@ Expected<Rows> Server::query(const std::string& sql, const std::vector<Field>& p
   return results();
 }
 
-Expected<void> Server::run(const std::string& sql) {
+Expected<void> Postgres::run(const std::string& sql) {
   state_.clear();
   if (connection_ == nullptr) return Error{"its connection is broken"};
   if (libpq().send_query(connection_.get(), sql.c_str()) == 0)

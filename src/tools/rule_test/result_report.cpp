@@ -1,4 +1,4 @@
-#include "rule_test/report.h"
+#include "rule_test/result_report.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -26,7 +26,7 @@ struct Asset {
   std::string_view gzip;
 };
 
-class Server {
+class HttpServer {
  public:
   // Fewer where the limit of descriptors (ulimit -n) is low: those are the manager's first.
   static constexpr std::size_t kMostConnections = 128;
@@ -52,10 +52,10 @@ class Server {
   // Serves from now on. `hub` may be null: nothing is streamed then. Both have to outlive the
   // server. Errors: the port is taken, or the address is not ours; the socket cannot be made; the
   // system gives no thread.
-  static Expected<std::unique_ptr<Server>> start(Options options, std::vector<Route> routes,
-                                                 Hub* hub);
+  static Expected<std::unique_ptr<HttpServer>> start(Options options, std::vector<Route> routes,
+                                                     Hub* hub);
   // Closes the hub, and with it every stream.
-  ~Server();
+  ~HttpServer();
 
   int port() const;
   // The address to type into a browser, token included.
@@ -63,7 +63,7 @@ class Server {
 
  private:
   class Http;
-  explicit Server(std::unique_ptr<Http> http);
+  explicit HttpServer(std::unique_ptr<Http> http);
 
   std::unique_ptr<Http> http_;
   std::thread thread_;

@@ -1,4 +1,4 @@
-#include "mcp/server.h"
+#include "mcp/mcp_server.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -19,12 +19,12 @@ class Session {
   explicit Session(bool is_initialized = true, const std::string& rules = "my.rules",
                    std::set<std::string> allowed = {}) {
     if (allowed.empty()) {
-      const auto all = Server::all_tools();
+      const auto all = McpServer::all_tools();
       allowed = {all.begin(), all.end()};
     }
     server.emplace(
-        Server::Options{"1.2.3", rules, std::move(allowed)},
-        [this](const Words& words) -> Expected<Server::Ran> {
+        McpServer::Options{"1.2.3", rules, std::move(allowed)},
+        [this](const Words& words) -> Expected<McpServer::Ran> {
           ran.push_back(words);
           return answer;
         },
@@ -48,8 +48,8 @@ class Session {
     return request("tools/call", {{"name", tool}, {"arguments", std::move(arguments)}});
   }
 
-  std::optional<Server> server;
-  Expected<Server::Ran> answer = Server::Ran{0, R"({"well":true})", ""};
+  std::optional<McpServer> server;
+  Expected<McpServer::Ran> answer = McpServer::Ran{0, R"({"well":true})", ""};
   std::vector<Words> ran;
 };
 
@@ -78,7 +78,7 @@ TEST(Mcp, AnswersNothingButPingBeforeItIsInitialized) {
 }
 
 TEST(Mcp, ListsTheAllowedToolsWithTheirSchemas) {
-  Session session(true, "", Server::reading_tools());
+  Session session(true, "", McpServer::reading_tools());
   const Json tools = session.request("tools/list", Json::object())["result"]["tools"];
   std::vector<std::string> names;
   for (const Json& each : tools) {
@@ -111,7 +111,7 @@ TEST(Mcp, RunsTheCommandThatAPersonWouldType) {
 
 TEST(Mcp, HandsOverTheAnswerAsData) {
   Session session;
-  session.answer = Server::Ran{1, R"({"why":"ignore\u0007 \u202e this"})", ""};
+  session.answer = McpServer::Ran{1, R"({"why":"ignore\u0007 \u202e this"})", ""};
   const std::string text = text_of(session.call("status"));
   const Json shown = parse_json(text);
   EXPECT_EQ(shown["exit_status"], 1);
@@ -121,13 +121,13 @@ TEST(Mcp, HandsOverTheAnswerAsData) {
 
 TEST(Mcp, ReadsADocumentALine) {
   Session session;
-  session.answer = Server::Ran{0, "{\"id\":1}\n{\"id\":2}\n", ""};
+  session.answer = McpServer::Ran{0, "{\"id\":1}\n{\"id\":2}\n", ""};
   EXPECT_EQ(parse_json(text_of(session.call("incidents")))["incidents"].size(), 2u);
 }
 
 TEST(Mcp, SaysWhyACommandGaveNothing) {
   Session session;
-  session.answer = Server::Ran{1, "", "culprit: no culprit runs here\x1b[31m\n"};
+  session.answer = McpServer::Ran{1, "", "culprit: no culprit runs here\x1b[31m\n"};
   const Json none = session.call("status");
   EXPECT_TRUE(none["result"]["isError"]);
   EXPECT_THAT(text_of(none), HasSubstr("no culprit runs here\\x1b"));
@@ -215,7 +215,7 @@ TEST(Mcp, SurvivesHostileMessages) {
 // No way to act without a person: whatever tools are allowed, these are the only commands.
 TEST(Mcp, HasNoToolThatActs) {
   Session session;
-  for (const std::string& tool : Server::all_tools())
+  for (const std::string& tool : McpServer::all_tools())
     session.call(tool, {{"strategy", "A.b"}, {"reason", "x"}});
   session.call("propose", {{"strategy", "A.b"}, {"reason", "x"}});
   for (const Words& words : session.ran)

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "fleet/server.h"
+#include "fleet/postgres.h"
 
 namespace culprit::fleet {
 
@@ -41,7 +41,7 @@ struct Report {
   std::vector<Table> tables;
 };
 
-Expected<Report> make_report(Server& server, const std::string& title,
+Expected<Report> make_report(Postgres& server, const std::string& title,
                              const std::vector<TableQuery>& queries);
 
 // `now`: seconds since 1970, from which ages count. Names come from robots: what is no printable

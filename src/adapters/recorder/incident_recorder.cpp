@@ -1,4 +1,4 @@
-#include "recorder/recorder.h"
+#include "recorder/incident_recorder.h"
 
 #include <algorithm>
 #include <sys/resource.h>
@@ -28,15 +28,15 @@ void stamp(RingMessage& message) {
   if (message.received == 0) message.received = wall_now();
 }
 
-MessageRing::Limits limits_of(const Recorder::Options& options) {
-  const std::size_t large = Recorder::large_share(options.memory);
-  const std::size_t latched = Recorder::latched_share(options.memory);
+MessageRing::Limits limits_of(const IncidentRecorder::Options& options) {
+  const std::size_t large = IncidentRecorder::large_share(options.memory);
+  const std::size_t latched = IncidentRecorder::latched_share(options.memory);
   return {options.memory - large - latched, large, latched, options.before + kSlack};
 }
 
 }  // namespace
 
-Recorder::Recorder(Options options)
+IncidentRecorder::IncidentRecorder(Options options)
     : options_(std::move(options)),
       folder_(options_.folder, options_.disk, options_.space),
       ring_(limits_of(options_)) {
@@ -45,7 +45,7 @@ Recorder::Recorder(Options options)
   thread_ = std::thread([this] { work(); });
 }
 
-Recorder::~Recorder() {
+IncidentRecorder::~IncidentRecorder() {
   {
     const MutexLock lock(mutex_);
     is_ending_ = true;
@@ -54,7 +54,7 @@ Recorder::~Recorder() {
   thread_.join();
 }
 
-std::size_t Recorder::add_topic(RecordedTopic topic) {
+std::size_t IncidentRecorder::add_topic(RecordedTopic topic) {
   const std::string key = topic.name + ' ' + topic.type + ' ' + topic.type_hash;
   const MutexLock lock(topics_mutex_);
   const auto known = numbers_.find(key);
@@ -68,35 +68,35 @@ std::size_t Recorder::add_topic(RecordedTopic topic) {
   return topics_.size() - 1;
 }
 
-Recorder::SharedTopic Recorder::topic_of(const RingMessage& message) {
+IncidentRecorder::SharedTopic IncidentRecorder::topic_of(const RingMessage& message) {
   const MutexLock lock(topics_mutex_);
   return topics_[message.topic];
 }
 
-void Recorder::take(RingMessage message, Share share) {
+void IncidentRecorder::take(RingMessage message, Share share) {
   if (message.topic == kNoTopic) return;
   stamp(message);
   ring_.push(std::move(message), share);
 }
 
-void Recorder::take_latched(RingMessage message, const ros2::Guid& publisher, Share share) {
+void IncidentRecorder::take_latched(RingMessage message, const ros2::Guid& publisher, Share share) {
   if (message.topic == kNoTopic) return;
   stamp(message);
   ring_.latch(message, publisher);
   ring_.push(std::move(message), share);
 }
 
-RingMessage Recorder::told(std::size_t topic, const std::string& json) const {
+RingMessage IncidentRecorder::told(std::size_t topic, const std::string& json) const {
   return {.topic = topic, .sent = wall_now(), .payload = ros2::encode(ros2::msg::String{json})};
 }
 
-void Recorder::note_event(const std::string& json) { take(told(events_, json)); }
+void IncidentRecorder::note_event(const std::string& json) { take(told(events_, json)); }
 
-void Recorder::note_graph(const std::string& json) {
+void IncidentRecorder::note_graph(const std::string& json) {
   take_latched(told(graph_, json), {}, Share::kSmall);
 }
 
-void Recorder::want(const std::string& why) {
+void IncidentRecorder::want(const std::string& why) {
   until_ = std::max(until_, later(live_now(), options_.after));
   ++wishes_;
   // The first of several requests gives the name.
@@ -105,20 +105,21 @@ void Recorder::want(const std::string& why) {
   changed_.notify_all();
 }
 
-void Recorder::begin(const std::string& why) {
+void IncidentRecorder::begin(const std::string& why) {
   const MutexLock lock(mutex_);
   is_ill_ = true;
   want(why);
 }
 
-void Recorder::over() {
+void IncidentRecorder::over() {
   const MutexLock lock(mutex_);
   if (!std::exchange(is_ill_, false)) return;
   until_ = std::max(until_, later(live_now(), options_.after));
   changed_.notify_all();
 }
 
-Expected<std::filesystem::path> Recorder::record_now(const std::string& why, Duration patience) {
+Expected<std::filesystem::path> IncidentRecorder::record_now(const std::string& why,
+                                                             Duration patience) {
   MutexLock lock(mutex_);
   want(why);
   const std::uint64_t mine = wishes_;
@@ -128,7 +129,7 @@ Expected<std::filesystem::path> Recorder::record_now(const std::string& why, Dur
   return answer_;
 }
 
-void Recorder::work() {
+void IncidentRecorder::work() {
   be_less_urgent();
   MutexLock lock(mutex_);
   while (true) {
@@ -166,7 +167,7 @@ void Recorder::work() {
   }
 }
 
-void Recorder::open(const Wish& wish) {
+void IncidentRecorder::open(const Wish& wish) {
   auto file = RecordingFile::create(folder_, recording_name(options_.robot, wish.when, wish.why),
                                     options_.library);
   if (!file) return say_once("nothing is recorded: " + file.error());
@@ -183,7 +184,7 @@ void Recorder::open(const Wish& wish) {
   }
 }
 
-void Recorder::write_new(Time since) {
+void IncidentRecorder::write_new(Time since) {
   while (file_->trouble().empty()) {
     const std::vector<SharedMessage> messages = ring_.after(written_, since, kMostAtOnce);
     if (messages.empty()) break;
@@ -193,7 +194,7 @@ void Recorder::write_new(Time since) {
   file_->flush();
 }
 
-void Recorder::close() {
+void IncidentRecorder::close() {
   const std::uint64_t lost = ring_.stop_counting();
   if (file_->trouble().empty()) file_->end();
   if (!file_->trouble().empty()) {
@@ -210,7 +211,7 @@ void Recorder::close() {
   file_.reset();
 }
 
-void Recorder::say_once(const std::string& text) {
+void IncidentRecorder::say_once(const std::string& text) {
   if (text == trouble_) return;
   trouble_ = text;
   options_.say(text);

@@ -19,7 +19,7 @@
 
 namespace culprit::mcp {
 
-class Server {
+class McpServer {
  public:
   // How a command of culprit ended.
   struct Ran {
@@ -38,7 +38,7 @@ class Server {
     std::set<std::string> allowed{};  // names of tools; see all_tools()
   };
 
-  Server(Options options, Run run, Check check)
+  McpServer(Options options, Run run, Check check)
       : options_(std::move(options)), run_(std::move(run)), check_(std::move(check)) {}
 
   // The names of all tools, and of those that are allowed unless the user lists others.

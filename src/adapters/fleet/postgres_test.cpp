@@ -1,4 +1,4 @@
-#include "fleet/server.h"
+#include "fleet/postgres.h"
 
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ TEST(FleetAddress, WhatIsNoneIsNotRepeated) {
 
 TEST(FleetServer, ThatIsNotThereIsAnErrorInOneLine) {
   const std::atomic<bool> stop = false;
-  const auto server = Server::connect({"postgresql:///x?host=/nowhere/at/all"}, stop);
+  const auto server = Postgres::connect({"postgresql:///x?host=/nowhere/at/all"}, stop);
   ASSERT_FALSE(server);
   EXPECT_EQ(server.error().find('\n'), std::string::npos);
   EXPECT_NE(server.error().find("/nowhere/at/all"), std::string::npos) << server.error();

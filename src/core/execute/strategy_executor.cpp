@@ -1,4 +1,4 @@
-#include "execute/executor.h"
+#include "execute/strategy_executor.h"
 
 #include <algorithm>
 #include <utility>
@@ -12,12 +12,12 @@ namespace culprit {
 using execute::Goal;
 using execute::Pursuit;
 
-Executor::Executor(const Knowledge& knowledge, Writes writes)
+StrategyExecutor::StrategyExecutor(const Knowledge& knowledge, Writes writes)
     : knowledge_(knowledge), write_(writes) {}
 
-Executor::~Executor() = default;
+StrategyExecutor::~StrategyExecutor() = default;
 
-void Executor::begin(StrategyId strategy, Time now) {
+void StrategyExecutor::begin(StrategyId strategy, Time now) {
   const Strategy& begun = knowledge_.rules[strategy];
   CULPRIT_ASSERT(begun.is_last_resort ||
                  std::none_of(begun.components.begin(), begun.components.end(), [&](ComponentId c) {
@@ -27,7 +27,7 @@ void Executor::begin(StrategyId strategy, Time now) {
   add_run(strategy);
 }
 
-Executor::Run& Executor::add_run(StrategyId strategy) {
+StrategyExecutor::Run& StrategyExecutor::add_run(StrategyId strategy) {
   const RuleId rule = knowledge_.rules[strategy].rule;
   std::erase_if(runs_, [&](const Run& old) {
     return old.rule == rule && knowledge_.rules[old.strategy].is_last_resort ==
@@ -39,7 +39,7 @@ Executor::Run& Executor::add_run(StrategyId strategy) {
   return run;
 }
 
-void Executor::resume(Interrupted interrupted, Time now, Time from) {
+void StrategyExecutor::resume(Interrupted interrupted, Time now, Time from) {
   CULPRIT_ASSERT(
       std::all_of(runs_.begin(), runs_.end(), [](const Run& r) { return r.interrupted; }));
   write_.attempts.resume(interrupted.strategy, now);
@@ -52,7 +52,7 @@ void Executor::resume(Interrupted interrupted, Time now, Time from) {
 }
 
 // Gives false while a resumed attempt has to wait, or if it cannot go on.
-bool Executor::take_up(Run& run, Time now) {
+bool StrategyExecutor::take_up(Run& run, Time now) {
   if (!run.interrupted) return true;
   if (now < run.from) return false;
   const Interrupted interrupted = *std::exchange(run.interrupted, std::nullopt);
@@ -72,7 +72,7 @@ bool Executor::take_up(Run& run, Time now) {
   return false;
 }
 
-void Executor::restart(Time now) {
+void StrategyExecutor::restart(Time now) {
   for (Run& run : runs_) {
     if (run.pursuit) run.pursuit->restart(now);
   }
@@ -80,8 +80,8 @@ void Executor::restart(Time now) {
   unsure_until_ = later(now, kUnsure);
 }
 
-void Executor::ask(ComponentId component, StrategyId strategy, Duration timeout, Time now,
-                   std::vector<Command>& commands) {
+void StrategyExecutor::ask(ComponentId component, StrategyId strategy, Duration timeout, Time now,
+                           std::vector<Command>& commands) {
   Questioned& questioned = write_.components[component].questioned;
   questioned.at = now;
   questioned.is_open = true;
@@ -90,13 +90,13 @@ void Executor::ask(ComponentId component, StrategyId strategy, Duration timeout,
   commands.push_back({questions_.back().command, component, Probe{}, timeout, {strategy}});
 }
 
-void Executor::forget_questions() {
+void StrategyExecutor::forget_questions() {
   for (const Question& each : questions_)
     write_.components[each.component].questioned.is_open = false;
   questions_.clear();
 }
 
-std::optional<ComponentId> Executor::proven_by(const Reply& reply) const {
+std::optional<ComponentId> StrategyExecutor::proven_by(const Reply& reply) const {
   const auto question = std::ranges::find(questions_, reply.command, &Question::command);
   const bool is_proven = question != questions_.end() && reply.outcome == Outcome::kDone &&
                          is_of_present_process(*question);
@@ -104,12 +104,12 @@ std::optional<ComponentId> Executor::proven_by(const Reply& reply) const {
 }
 
 // A process that began since then was not asked.
-bool Executor::is_of_present_process(const Question& question) const {
+bool StrategyExecutor::is_of_present_process(const Question& question) const {
   return knowledge_.components[question.component].questioned.is_open;
 }
 
 // A component that could not be asked, or that never answered, may work all the same.
-void Executor::note_answer(const Question& question, Outcome outcome) {
+void StrategyExecutor::note_answer(const Question& question, Outcome outcome) {
   if (!is_of_present_process(question)) return;
   ComponentState& state = write_.components[question.component];
   Questioned& questioned = state.questioned;
@@ -120,7 +120,7 @@ void Executor::note_answer(const Question& question, Outcome outcome) {
   if (!questioned.unanswered && !questioned.is_pointless) questioned.unanswered = questioned.at;
 }
 
-void Executor::answered(const Reply& reply, Time now) {
+void StrategyExecutor::answered(const Reply& reply, Time now) {
   const auto question = std::ranges::find(questions_, reply.command, &Question::command);
   if (question != questions_.end()) {
     note_answer(*question, reply.outcome);
@@ -136,14 +136,14 @@ void Executor::answered(const Reply& reply, Time now) {
   }
 }
 
-void Executor::advance(Time now, std::vector<Command>& commands) {
+void StrategyExecutor::advance(Time now, std::vector<Command>& commands) {
   if (!owed_.empty()) forget_what_others_started(now);
   // An attempt that succeeded left its rule; nothing of it is left to do.
   std::erase_if(runs_, [&](const Run& run) { return attempt_of(run) == nullptr; });
   for (Run& run : runs_) advance(run, now, commands);
 }
 
-void Executor::advance(Run& run, Time now, std::vector<Command>& commands) {
+void StrategyExecutor::advance(Run& run, Time now, std::vector<Command>& commands) {
   if (!take_up(run, now)) return;
   const Attempt::Stage stage = attempt_of(run)->stage;
   if (stage == Attempt::Stage::kUndoing && !run.is_undoing) {
@@ -177,7 +177,7 @@ void Executor::advance(Run& run, Time now, std::vector<Command>& commands) {
   }
 }
 
-Purpose Executor::purpose_of(const Run& run) const {
+Purpose StrategyExecutor::purpose_of(const Run& run) const {
   Purpose purpose{run.strategy, static_cast<std::uint32_t>(run.adaptation), run.is_undoing};
   const Pursuit& pursuit = *run.pursuit;
   const bool is_process = std::holds_alternative<execute::GoneGoal>(pursuit.goal()) ||
@@ -191,7 +191,7 @@ Purpose Executor::purpose_of(const Run& run) const {
 }
 
 // Sets out for the next goal; gives false if the attempt has none left.
-bool Executor::next_goal(Run& run, Time now) {
+bool StrategyExecutor::next_goal(Run& run, Time now) {
   const auto& adaptations = knowledge_.rules[run.strategy].adaptations;
   while (run.adaptation < adaptations.size()) {
     const Adaptation& adaptation = adaptations[run.adaptation];
@@ -241,7 +241,7 @@ bool Executor::next_goal(Run& run, Time now) {
 
 // A member of a group that was brought up, and is not up any more though its process lives: to bring it up
 // again would be a fight with whoever did that.
-std::optional<ComponentId> Executor::deactivated_meanwhile(const Run& run) const {
+std::optional<ComponentId> StrategyExecutor::deactivated_meanwhile(const Run& run) const {
   for (const Run::BroughtUp& each : run.brought_up) {
     const ComponentState& state = knowledge_.components[each.component];
     const bool is_down =
@@ -254,7 +254,7 @@ std::optional<ComponentId> Executor::deactivated_meanwhile(const Run& run) const
 }
 
 // The manager of a group in which nothing had to be changed: it has brought up all of them by itself.
-bool Executor::is_managed_still(const Run& run) const {
+bool StrategyExecutor::is_managed_still(const Run& run) const {
   const Adaptation& adaptation = knowledge_.rules[run.strategy].adaptations[run.adaptation];
   return adaptation.group && adaptation.type == AdaptationType::kRedeploy &&
          knowledge_.components[adaptation.component].alive == true &&
@@ -262,7 +262,7 @@ bool Executor::is_managed_still(const Run& run) const {
 }
 
 // Consumers may show the gap of a restart after it is over.
-void Executor::note_begun_anew(const Run& run, Time now) {
+void StrategyExecutor::note_begun_anew(const Run& run, Time now) {
   const Adaptation& adaptation = knowledge_.rules[run.strategy].adaptations[run.adaptation];
   if (adaptation.type != AdaptationType::kRestart && adaptation.type != AdaptationType::kRedeploy)
     return;
@@ -274,7 +274,7 @@ void Executor::note_begun_anew(const Run& run, Time now) {
 
 // A process that was there, and ended before its component's READY was over, is started again: that is
 // a try of the same attempt.
-bool Executor::start_again(Run& run, Time now) {
+bool StrategyExecutor::start_again(Run& run, Time now) {
   if (run.started == kNever) return false;
   const auto& adaptations = knowledge_.rules[run.strategy].adaptations;
   for (std::size_t i = 0; i < adaptations.size(); ++i) {
@@ -301,7 +301,7 @@ bool Executor::start_again(Run& run, Time now) {
   return false;
 }
 
-void Executor::finish_goal(Run& run, Time now) {
+void StrategyExecutor::finish_goal(Run& run, Time now) {
   const Pursuit& pursuit = *run.pursuit;
   const Adaptation& adaptation = knowledge_.rules[run.strategy].adaptations[run.adaptation];
   // A last resort is to last, even after its failure has cleared.
@@ -334,7 +334,7 @@ void Executor::finish_goal(Run& run, Time now) {
 
 // How the goal that was pursued last is taken back. A state that two steps change is brought
 // back to where it was before the first.
-void Executor::note_undo(Run& run) {
+void StrategyExecutor::note_undo(Run& run) {
   const Pursuit& pursuit = *run.pursuit;
   const auto& adaptations = knowledge_.rules[run.strategy].adaptations;
   const Adaptation& adaptation = adaptations[run.adaptation];
@@ -353,7 +353,7 @@ void Executor::note_undo(Run& run) {
   }
 }
 
-bool Executor::next_undo(Run& run, Time now) {
+bool StrategyExecutor::next_undo(Run& run, Time now) {
   for (; !run.undo.empty(); run.undo.pop_back()) {
     const execute::Undo& undo = run.undo.back();
     const ComponentState& state = knowledge_.components[undo.component];
@@ -384,8 +384,8 @@ bool Executor::next_undo(Run& run, Time now) {
 
 // The component that keeps another one, which the strategy took down, from being brought up again: one
 // that was adapted after it, or that it depends on, and that is down or could not be brought up.
-std::optional<Executor::Missing> Executor::missing_for(const Run& run,
-                                                       const execute::Undo& undo) const {
+std::optional<StrategyExecutor::Missing> StrategyExecutor::missing_for(
+    const Run& run, const execute::Undo& undo) const {
   const Strategy& strategy = knowledge_.rules[run.strategy];
   const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&undo.goal);
   const bool activates = lifecycle != nullptr && lifecycle->target == Lifecycle::kActive &&
@@ -414,7 +414,7 @@ std::optional<Executor::Missing> Executor::missing_for(const Run& run,
 }
 
 // A last resort has changed the same since, and that stays.
-bool Executor::is_held_by_last_resort(const execute::Undo& undo) const {
+bool StrategyExecutor::is_held_by_last_resort(const execute::Undo& undo) const {
   const auto* parameter = std::get_if<execute::ParameterGoal>(&undo.goal);
   const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&undo.goal);
   const bool is_mode = std::holds_alternative<execute::ModeGoal>(undo.goal);
@@ -434,7 +434,8 @@ bool Executor::is_held_by_last_resort(const execute::Undo& undo) const {
 
 // No process is there to be asked. The next process may start with the values of the last one: many
 // nodes keep their parameters.
-void Executor::undo_at_next_start(StrategyId strategy, const execute::Undo& undo, Time now) {
+void StrategyExecutor::undo_at_next_start(StrategyId strategy, const execute::Undo& undo,
+                                          Time now) {
   if (const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&undo.goal)) {
     write_.components.intend_lifecycle(undo.component, lifecycle->target, now, write_.events);
   } else if (const auto* parameter = std::get_if<execute::ParameterGoal>(&undo.goal)) {
@@ -444,7 +445,7 @@ void Executor::undo_at_next_start(StrategyId strategy, const execute::Undo& undo
 }
 
 // Values to be undone in a process that `adaptation` starts become its last goals.
-void Executor::take_owed(const Adaptation& adaptation, std::vector<execute::Goal>& goals) {
+void StrategyExecutor::take_owed(const Adaptation& adaptation, std::vector<execute::Goal>& goals) {
   if (adaptation.type != AdaptationType::kRedeploy && adaptation.type != AdaptationType::kStart)
     return;
   std::erase_if(owed_, [&](Owed& owed) {
@@ -456,7 +457,7 @@ void Executor::take_owed(const Adaptation& adaptation, std::vector<execute::Goal
 
 // A process that somebody else started has the values that they want, and a person may have changed
 // them since. So culprit reports the pending undo, and does not set it at some redeploy much later.
-void Executor::forget_what_others_started(Time now) {
+void StrategyExecutor::forget_what_others_started(Time now) {
   std::erase_if(owed_, [&](const Owed& owed) {
     const ComponentId component = owed.undo.component;
     if (knowledge_.components[component].process == ProcessState::kGone) return false;
@@ -468,14 +469,14 @@ void Executor::forget_what_others_started(Time now) {
   });
 }
 
-void Executor::forget_owed(ComponentId component, const std::string& parameter) {
+void StrategyExecutor::forget_owed(ComponentId component, const std::string& parameter) {
   std::erase_if(owed_, [&](const Owed& owed) {
     return owed.undo.component == component &&
            std::get<execute::ParameterGoal>(owed.undo.goal).name == parameter;
   });
 }
 
-void Executor::finish_undo(Run& run, Time now) {
+void StrategyExecutor::finish_undo(Run& run, Time now) {
   const Pursuit& pursuit = *run.pursuit;
   const bool reached = pursuit.is_reached();
   if (reached) note_lifecycle(pursuit, now);
@@ -493,21 +494,21 @@ void Executor::finish_undo(Run& run, Time now) {
   run.pursuit.reset();
 }
 
-void Executor::note_change(Run& run, Time now) {
+void StrategyExecutor::note_change(Run& run, Time now) {
   if (run.is_undoing || attempt_of(run)->first_change != kNever) return;
   write_.attempts.change_begins(run.strategy, now);
   mark_ambiguous(knowledge_, run.strategy, write_.attempts, write_.outcomes);
 }
 
 // The component's lifecycle is now where it was brought on purpose.
-void Executor::note_lifecycle(const Pursuit& pursuit, Time now) {
+void StrategyExecutor::note_lifecycle(const Pursuit& pursuit, Time now) {
   const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&pursuit.goal());
   if (lifecycle != nullptr)
     write_.components.intend_lifecycle(pursuit.component(), lifecycle->target, now, write_.events);
 }
 
 // It stayed unconfigured until a rule had culprit bring it up: it has no other driver.
-bool Executor::is_first_rise(const Pursuit& pursuit) const {
+bool StrategyExecutor::is_first_rise(const Pursuit& pursuit) const {
   const auto& before = pursuit.before();
   const auto* state = before ? std::get_if<Lifecycle>(&before->value) : nullptr;
   const auto driver = knowledge_.components[pursuit.component()].coming_up.driver;
@@ -516,7 +517,7 @@ bool Executor::is_first_rise(const Pursuit& pursuit) const {
 }
 
 // How long it took, and who brought it up.
-void Executor::note_coming_up(const Pursuit& pursuit, Time now) {
+void StrategyExecutor::note_coming_up(const Pursuit& pursuit, Time now) {
   ComponentState& state = write_.components[pursuit.component()];
   ComingUp how = state.coming_up;
   if (std::holds_alternative<execute::PresentGoal>(pursuit.goal()) &&
@@ -532,7 +533,7 @@ void Executor::note_coming_up(const Pursuit& pursuit, Time now) {
 }
 
 // A component that once took too long gets more time at its next start.
-void Executor::note_too_long(const Pursuit& pursuit, Time now) {
+void StrategyExecutor::note_too_long(const Pursuit& pursuit, Time now) {
   const ComponentState& state = knowledge_.components[pursuit.component()];
   ComingUp how = state.coming_up;
   if (std::holds_alternative<execute::PresentGoal>(pursuit.goal())) {
@@ -544,7 +545,8 @@ void Executor::note_too_long(const Pursuit& pursuit, Time now) {
 }
 
 // A node may not report a transition before it is over.
-void Executor::note_transition(const Pursuit& pursuit, const Pursuit::Request& request, Time now) {
+void StrategyExecutor::note_transition(const Pursuit& pursuit, const Pursuit::Request& request,
+                                       Time now) {
   if (!std::holds_alternative<ChangeLifecycle>(request)) return;
   ComponentState& state = write_.components[pursuit.component()];
   state.transition_patience = std::get<execute::LifecycleGoal>(pursuit.goal()).patience;
@@ -552,7 +554,7 @@ void Executor::note_transition(const Pursuit& pursuit, const Pursuit::Request& r
 }
 
 // Which mode was set, and from which: something else may set it back.
-void Executor::note_mode(const Pursuit& pursuit, Time now) {
+void StrategyExecutor::note_mode(const Pursuit& pursuit, Time now) {
   const auto* mode = std::get_if<execute::ModeGoal>(&pursuit.goal());
   const auto* value = pursuit.before() ? std::get_if<Value>(&pursuit.before()->value) : nullptr;
   const auto* before = value == nullptr ? nullptr : std::get_if<std::string>(value);
@@ -564,25 +566,26 @@ void Executor::note_mode(const Pursuit& pursuit, Time now) {
                         knowledge_.began(pursuit.component()), now);
 }
 
-void Executor::note_rival(const Run& run, Time now) {
+void StrategyExecutor::note_rival(const Run& run, Time now) {
   const ComponentId system = run.pursuit->component();
   write_.rivals.leave_alone(system, now);
   write_.events.tell(now, RivalSeen{system});
   write_.attempts.make_ambiguous(run.strategy);  // that nothing was tried proves nothing
 }
 
-const Attempt* Executor::attempt_of(const Run& run) const {
+const Attempt* StrategyExecutor::attempt_of(const Run& run) const {
   return knowledge_.states.attempt_of(run.strategy);
 }
 
 // The adaptation could not be carried out; the analysis takes it from here.
-void Executor::obstruct(const Run& run, std::string obstacle, const std::string& reason, Time now) {
+void StrategyExecutor::obstruct(const Run& run, std::string obstacle, const std::string& reason,
+                                Time now) {
   write_.attempts.obstruct(run.strategy, std::move(obstacle));
   write_.events.tell(now, AdaptationFailed{run.strategy, run.adaptation, reason});
   write_.signals.touch(run.rule);
 }
 
-Time Executor::next_deadline() const {
+Time StrategyExecutor::next_deadline() const {
   Time next = kNever;
   for (const Run& run : runs_) {
     if (attempt_of(run) == nullptr) continue;

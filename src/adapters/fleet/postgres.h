@@ -35,13 +35,13 @@ std::int64_t integer_in(const Field& field);
 double real_in(const Field& field);
 std::string text_in(const Field& field);
 
-class Server {
+class Postgres {
  public:
   static constexpr Duration kPatience = std::chrono::seconds(20);
 
   // `stop` must outlive the server. Errors: in one line, without secrets.
-  static Expected<Server> connect(const Address& address, const std::atomic<bool>& stop,
-                                  Duration patience = kPatience);
+  static Expected<Postgres> connect(const Address& address, const std::atomic<bool>& stop,
+                                    Duration patience = kPatience);
 
   // One statement, with parameters $1, $2 ... as texts.
   Expected<Rows> query(const std::string& sql, const std::vector<Field>& parameters = {});
@@ -62,7 +62,7 @@ class Server {
   struct Close {
     void operator()(pg_conn* connection) const;
   };
-  Server(pg_conn* connection, const std::atomic<bool>& stop, Duration patience)
+  Postgres(pg_conn* connection, const std::atomic<bool>& stop, Duration patience)
       : connection_(connection), stop_(&stop), patience_(patience) {}
   Error error(const std::string& what);
   Expected<void> wait(bool for_writing, Time until);

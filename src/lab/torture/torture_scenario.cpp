@@ -1,4 +1,4 @@
-#include "torture/scenario.h"
+#include "torture/torture_scenario.h"
 
 #include <algorithm>
 #include <array>

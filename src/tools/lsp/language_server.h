@@ -11,7 +11,7 @@
 
 namespace culprit::lsp {
 
-class Server {
+class LanguageServer {
  public:
   using Send = std::function<void(const Json& message)>;
 
@@ -23,7 +23,7 @@ class Server {
   };
 
   // `version` is what the server says of itself.
-  Server(std::string version, Send send, Files files = {})
+  LanguageServer(std::string version, Send send, Files files = {})
       : version_(std::move(version)), send_(std::move(send)), files_(std::move(files)) {}
 
   // One message of the client, of any content; answers and diagnostics go through Send. False when

@@ -1,7 +1,7 @@
 // A black box: keeps the last seconds of a robot in memory, and writes a recording when something goes wrong, from some
 // seconds before to some seconds after.
 //
-//     Recorder recorder({.folder = "recordings", .robot = "submarine"});
+//     IncidentRecorder recorder({.folder = "recordings", .robot = "submarine"});
 //     const std::size_t chatter = recorder.add_topic({"/chatter", "std_msgs/msg/String", …});
 //     recorder.take(chatter, {…});                      // each message, on whichever thread it comes
 //     recorder.begin("CameraDead");                     // a failure
@@ -27,7 +27,7 @@
 namespace culprit::recorder {
 
 // All members may be called from any thread.
-class Recorder {
+class IncidentRecorder {
  public:
   // A recording that is not ended is ended after so long.
   static constexpr Duration kLongest = std::chrono::minutes(5);
@@ -55,10 +55,10 @@ class Recorder {
     std::function<void(const std::string&)> say = [](const std::string&) {};
   };
 
-  explicit Recorder(Options options);
+  explicit IncidentRecorder(Options options);
   // Ends the recording that is on.
-  ~Recorder();
-  Recorder(const Recorder&) = delete;
+  ~IncidentRecorder();
+  IncidentRecorder(const IncidentRecorder&) = delete;
 
   // The parts of the memory for large messages, and for latched ones.
   static std::size_t large_share(std::size_t memory) { return memory / 4; }

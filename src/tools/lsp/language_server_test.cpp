@@ -1,4 +1,4 @@
-#include "lsp/server.h"
+#include "lsp/language_server.h"
 
 #include <sstream>
 
@@ -75,7 +75,7 @@ class Session {
   }
 
   std::vector<Json> sent;
-  Server server{"1.0", [this](const Json& message) { sent.push_back(message); }};
+  LanguageServer server{"1.0", [this](const Json& message) { sent.push_back(message); }};
 
  private:
   int last_id_ = 0;
@@ -419,7 +419,7 @@ class ReuseSession {
 
   std::string on_disk = kDriver;
   std::vector<Json> sent;
-  Server server{
+  LanguageServer server{
       "1.0",
       [this](const Json& message) { sent.push_back(message); },
       {[this](const std::string& file, const std::string& from) -> Expected<Source> {

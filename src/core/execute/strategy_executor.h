@@ -18,7 +18,7 @@
 
 namespace culprit {
 
-class Executor {
+class StrategyExecutor {
  public:
   static constexpr Duration kUnsure = std::chrono::seconds(10);
 
@@ -33,8 +33,8 @@ class Executor {
   };
 
   // `knowledge` must outlive the executor.
-  Executor(const Knowledge& knowledge, Writes writes);
-  ~Executor();
+  StrategyExecutor(const Knowledge& knowledge, Writes writes);
+  ~StrategyExecutor();
 
   // The rule's attempt begins. @pre none of the rule is under way (a last resort:
   // none of its last resorts); none has its components, or it is a last resort

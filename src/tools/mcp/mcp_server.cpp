@@ -1,4 +1,4 @@
-#include "mcp/server.h"
+#include "mcp/mcp_server.h"
 
 #include <algorithm>
 #include <array>
@@ -166,13 +166,13 @@ std::string text_of(const Json& arguments, const char* key) {
 
 }  // namespace
 
-std::vector<std::string> Server::all_tools() {
+std::vector<std::string> McpServer::all_tools() {
   std::vector<std::string> names;
   for (const Tool& each : tools()) names.emplace_back(each.name);
   return names;
 }
 
-std::set<std::string> Server::reading_tools() {
+std::set<std::string> McpServer::reading_tools() {
   std::set<std::string> names;
   for (const Tool& each : tools()) {
     if (each.reads) names.emplace(each.name);
@@ -180,7 +180,7 @@ std::set<std::string> Server::reading_tools() {
   return names;
 }
 
-std::optional<Json> Server::handle(const Json& message) {
+std::optional<Json> McpServer::handle(const Json& message) {
   const auto with_id = [](Json answer, Json id) -> Json {
     Json whole{{"jsonrpc", "2.0"}, {"id", std::move(id)}};
     whole.update(answer);
@@ -206,7 +206,7 @@ std::optional<Json> Server::handle(const Json& message) {
   return with_id(answer(message["method"].get<std::string>(), params), id);
 }
 
-Json Server::answer(const std::string& method, const Json& params) {
+Json McpServer::answer(const std::string& method, const Json& params) {
   if (!params.is_object()) return error(kInvalidParams, "'params' has to be an object");
   if (method == "initialize") return initialize(params);
   if (method == "ping") return {{"result", Json::object()}};
@@ -216,7 +216,7 @@ Json Server::answer(const std::string& method, const Json& params) {
   return error(kMethodNotFound, "there is no method '" + printable(method) + "'");
 }
 
-Json Server::initialize(const Json& params) {
+Json McpServer::initialize(const Json& params) {
   const Json wanted = params.value("protocolVersion", Json());
   if (!wanted.is_string()) return error(kInvalidParams, "'protocolVersion' has to be a text");
   is_initialized_ = true;
@@ -230,7 +230,7 @@ Json Server::initialize(const Json& params) {
         {"instructions", kInstructions}}}};
 }
 
-Json Server::list(const Json& params) const {
+Json McpServer::list(const Json& params) const {
   if (params.contains("cursor")) return error(kInvalidParams, "there is only one page of tools");
   Json all = Json::array();
   for (const Tool& each : tools()) {
@@ -244,7 +244,7 @@ Json Server::list(const Json& params) const {
   return {{"result", {{"tools", all}}}};
 }
 
-Json Server::call(const Json& params) const {
+Json McpServer::call(const Json& params) const {
   const Json name = params.value("name", Json());
   const auto tool = std::ranges::find_if(tools(), [&](const Tool& each) {
     return name == std::string(each.name) && options_.allowed.contains(each.name);
@@ -295,7 +295,7 @@ Json Server::call(const Json& params) const {
   return run(called, {called, "--json"});
 }
 
-Json Server::run(const std::string& tool, const std::vector<std::string>& words) const {
+Json McpServer::run(const std::string& tool, const std::vector<std::string>& words) const {
   const auto ran = run_(words);
   if (!ran) return failed_call(tool + ": " + ran.error());
   // Some commands print a document a line.

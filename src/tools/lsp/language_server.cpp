@@ -1,4 +1,4 @@
-#include "lsp/server.h"
+#include "lsp/language_server.h"
 
 #include <algorithm>
 #include <array>
@@ -203,7 +203,7 @@ bool is_name(const std::string& text) {
 
 }  // namespace
 
-bool Server::handle(const Json& message) {
+bool LanguageServer::handle(const Json& message) {
   if (message.is_discarded()) {
     Json reply{{"jsonrpc", "2.0"}, {"id", nullptr}};
     reply.update(failed(kParseError, "this is no JSON"));
@@ -228,7 +228,7 @@ bool Server::handle(const Json& message) {
   return true;
 }
 
-void Server::notice(const std::string& method, const Json& params) {
+void LanguageServer::notice(const std::string& method, const Json& params) {
   const std::string uri = text_at(params, {"textDocument", "uri"});
   if (method == "textDocument/didOpen") {
     open(uri, text_at(params, {"textDocument", "text"}));
@@ -250,7 +250,7 @@ void Server::notice(const std::string& method, const Json& params) {
 }
 
 // The text that is open counts, not the one on the disk.
-Expected<Source> Server::load(const std::string& file, const std::string& from) const {
+Expected<Source> LanguageServer::load(const std::string& file, const std::string& from) const {
   if (!files_.load) return Error{"no other file can be read here"};
   auto loaded = files_.load(file, from);
   if (!loaded) return loaded;
@@ -259,7 +259,7 @@ Expected<Source> Server::load(const std::string& file, const std::string& from) 
   return Source(loaded->name(), std::string(open->second.source().text()));
 }
 
-void Server::read(const std::string& uri, std::string text) {
+void LanguageServer::read(const std::string& uri, std::string text) {
   const auto load_file = [this](const std::string& file, const std::string& from) {
     return load(file, from);
   };
@@ -274,7 +274,7 @@ void Server::read(const std::string& uri, std::string text) {
   if (robot_) document.compare_with(*robot_);
 }
 
-std::set<std::string> Server::concerned(const std::string& uri, const Document& document) {
+std::set<std::string> LanguageServer::concerned(const std::string& uri, const Document& document) {
   std::set<std::string> uris = {uri};
   for (const auto& [file, diagnostics] : document.elsewhere)
     uris.insert(uri_of(document.rules.source.file(file).name()));
@@ -282,7 +282,7 @@ std::set<std::string> Server::concerned(const std::string& uri, const Document& 
 }
 
 // Reads the documents that include `uri` anew. Gives all that are concerned.
-std::set<std::string> Server::read_includers_of(const std::string& uri) {
+std::set<std::string> LanguageServer::read_includers_of(const std::string& uri) {
   const std::string path = path_of(uri);
   std::set<std::string> uris;
   std::vector<std::string> includers;
@@ -301,7 +301,7 @@ std::set<std::string> Server::read_includers_of(const std::string& uri) {
   return uris;
 }
 
-void Server::open(const std::string& uri, std::string text) {
+void LanguageServer::open(const std::string& uri, std::string text) {
   std::set<std::string> uris;
   if (const auto before = documents_.find(uri); before != documents_.end())
     uris = concerned(uri, before->second);
@@ -311,7 +311,7 @@ void Server::open(const std::string& uri, std::string text) {
   publish(uris);
 }
 
-void Server::see(LiveInventory robot) {
+void LanguageServer::see(LiveInventory robot) {
   robot_ = std::move(robot);
   std::set<std::string> uris;
   for (auto& [uri, document] : documents_) {
@@ -323,7 +323,7 @@ void Server::see(LiveInventory robot) {
   publish(uris);
 }
 
-LiveInterest Server::interest() const {
+LiveInterest LanguageServer::interest() const {
   LiveInterest all;
   for (const auto& [uri, interest] : interests_) {
     all.nodes.insert(interest.nodes.begin(), interest.nodes.end());
@@ -333,13 +333,13 @@ LiveInterest Server::interest() const {
   return all;
 }
 
-void Server::publish(const std::set<std::string>& uris) {
+void LanguageServer::publish(const std::set<std::string>& uris) {
   for (const std::string& uri : uris) publish(uri);
 }
 
 // Publishes the diagnostics of the document, and those that its including documents have in it;
 // each once.
-void Server::publish(const std::string& uri) {
+void LanguageServer::publish(const std::string& uri) {
   Json diagnostics = Json::array();
   std::set<std::tuple<Code, TextPosition, TextPosition>> said;
   const auto add = [&](const Diagnostic& d, const Source& source) {
@@ -362,7 +362,7 @@ void Server::publish(const std::string& uri) {
          {"params", {{"uri", uri}, {"diagnostics", std::move(diagnostics)}}}});
 }
 
-Json Server::answer(const std::string& method, const Json& params) {
+Json LanguageServer::answer(const std::string& method, const Json& params) {
   if (is_shut_down_) return failed(kInvalidRequest, "the server was shut down");
   if (method == "initialize") {
     return succeeded({{"capabilities", capabilities()},
@@ -393,7 +393,7 @@ Json Server::answer(const std::string& method, const Json& params) {
   return failed(kMethodNotFound, "there is no method '" + method + "'");
 }
 
-Json Server::capabilities() const {
+Json LanguageServer::capabilities() const {
   constexpr int kWholeText = 1;
   Json legend{{"tokenTypes", kTokenTypes}, {"tokenModifiers", {"declaration"}}};
   return {{"textDocumentSync", {{"openClose", true}, {"change", kWholeText}}},
@@ -408,12 +408,12 @@ Json Server::capabilities() const {
           {"semanticTokensProvider", {{"legend", std::move(legend)}, {"full", true}}}};
 }
 
-const Occurrence* Server::pointed_at(const Document& document, const Json& params) const {
+const Occurrence* LanguageServer::pointed_at(const Document& document, const Json& params) const {
   return occurrence_at(document.names(), place_in(document, params));
 }
 
-Json Server::completion(const std::string& uri, const Document& document,
-                        const Json& params) const {
+Json LanguageServer::completion(const std::string& uri, const Document& document,
+                                const Json& params) const {
   Json items = Json::array();
   const std::uint32_t place = place_in(document, params);
   std::vector<std::string> files;
@@ -429,7 +429,7 @@ Json Server::completion(const std::string& uri, const Document& document,
   return items;
 }
 
-Json Server::hover_at(const Document& document, const Json& params) const {
+Json LanguageServer::hover_at(const Document& document, const Json& params) const {
   const Occurrence* thing = pointed_at(document, params);
   const std::string text = thing == nullptr ? "" : hover(document, *thing, robot());
   if (text.empty()) return nullptr;
@@ -437,8 +437,8 @@ Json Server::hover_at(const Document& document, const Json& params) const {
           {"range", to_json(document.source(), thing->span)}};
 }
 
-Json Server::definition(const std::string& uri, const Document& document,
-                        const Json& params) const {
+Json LanguageServer::definition(const std::string& uri, const Document& document,
+                                const Json& params) const {
   const Occurrence* thing = pointed_at(document, params);
   if (thing == nullptr) return nullptr;
   for (const Occurrence& o : document.names()) {
@@ -466,8 +466,8 @@ Json Server::definition(const std::string& uri, const Document& document,
   return nullptr;
 }
 
-Json Server::references(const std::string& uri, const Document& document,
-                        const Json& params) const {
+Json LanguageServer::references(const std::string& uri, const Document& document,
+                                const Json& params) const {
   const Occurrence* thing = pointed_at(document, params);
   if (thing == nullptr) return nullptr;
   const Json* wanted = at(params, {"context", "includeDeclaration"});
@@ -480,8 +480,8 @@ Json Server::references(const std::string& uri, const Document& document,
   return places;
 }
 
-Expected<Json> Server::rename(const std::string& uri, const Document& document,
-                              const Json& params) const {
+Expected<Json> LanguageServer::rename(const std::string& uri, const Document& document,
+                                      const Json& params) const {
   const Occurrence* thing = pointed_at(document, params);
   if (thing == nullptr) return Error{"there is no name here"};
   const bool is_ours = std::any_of(document.names().begin(), document.names().end(),
@@ -504,7 +504,7 @@ Expected<Json> Server::rename(const std::string& uri, const Document& document,
 }
 
 // One edit, of the whole text. A file with mistakes stays as it is: they are shown already.
-Json Server::formatting(const Document& document) const {
+Json LanguageServer::formatting(const Document& document) const {
   const auto text = format(document.source());
   if (!text || *text == document.source().text()) return Json::array();
   const auto end = static_cast<std::uint32_t>(document.source().text().size());
@@ -512,8 +512,8 @@ Json Server::formatting(const Document& document) const {
 }
 
 // The fixes of mistakes within the range that the client asks about.
-Json Server::code_actions(const std::string& uri, const Document& document,
-                          const Json& params) const {
+Json LanguageServer::code_actions(const std::string& uri, const Document& document,
+                                  const Json& params) const {
   Json actions = Json::array();
   if (!wants_quick_fixes(params)) return actions;
   const std::uint32_t begin = place_in(document, params, {"range", "start"});
@@ -533,7 +533,7 @@ Json Server::code_actions(const std::string& uri, const Document& document,
 }
 
 // Rules hold their strategies; everything else that is declared stands beside them.
-Json Server::symbols(const Document& document) const {
+Json LanguageServer::symbols(const Document& document) const {
   Json all = Json::array();
   for (const Occurrence& o : document.names()) {
     if (!o.declares || o.kind == OccurrenceKind::kHole) continue;
@@ -550,7 +550,7 @@ Json Server::symbols(const Document& document) const {
 }
 
 // Five numbers for each: line and start relative to the one before, length, type, modifiers.
-Json Server::semantic_tokens(const Document& document) const {
+Json LanguageServer::semantic_tokens(const Document& document) const {
   Json data = Json::array();
   TextPosition last;
   for (const Occurrence& o : document.names()) {

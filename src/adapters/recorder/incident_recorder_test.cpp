@@ -1,4 +1,4 @@
-#include "recorder/recorder.h"
+#include "recorder/incident_recorder.h"
 
 #include <csignal>
 #include <sys/resource.h>
@@ -11,6 +11,7 @@
 #include "bag/bag_file.h"
 #include "base/live_clock.h"
 #include "base/test_folder.h"
+#include "base/text_file.h"
 #include "ros2/message_library.h"
 #include "ros2/messages.h"
 
@@ -49,7 +50,7 @@ class Said {
 };
 
 struct Recorders : testing::Test {
-  Recorder::Options options() {
+  IncidentRecorder::Options options() {
     return {.folder = own / "recordings",
             .robot = "robot",
             .library = "test",
@@ -89,7 +90,7 @@ std::multimap<std::string, std::string> texts_in(const std::filesystem::path& pa
 }
 
 TEST_F(Recorders, WriteWhatCameBeforeAndAfterAFailure) {
-  Recorder recorder(options());
+  IncidentRecorder recorder(options());
   const std::size_t chatter = recorder.add_topic(topic_called("/chatter"));
   recorder.take(text(chatter, "before"));
   recorder.note_event(R"({"type": "failure_detected"})");
@@ -105,7 +106,7 @@ TEST_F(Recorders, WriteWhatCameBeforeAndAfterAFailure) {
 }
 
 TEST_F(Recorders, GoOnUntilAllIsWell) {
-  Recorder recorder(options());
+  IncidentRecorder recorder(options());
   const std::size_t chatter = recorder.add_topic(topic_called("/chatter"));
   recorder.begin("First");
   recorder.begin("Second");
@@ -121,7 +122,7 @@ TEST_F(Recorders, GoOnUntilAllIsWell) {
 
 TEST_F(Recorders, EndTheRecordingWithTheRun) {
   {
-    Recorder recorder(options());
+    IncidentRecorder recorder(options());
     recorder.begin("Dead");
     recorder.note_event("{}");
   }
@@ -130,9 +131,9 @@ TEST_F(Recorders, EndTheRecordingWithTheRun) {
 }
 
 TEST_F(Recorders, KnowWhatWasLatchedLongAgo) {
-  Recorder::Options short_memory = options();
+  IncidentRecorder::Options short_memory = options();
   short_memory.before = 0s;
-  Recorder recorder(short_memory);
+  IncidentRecorder recorder(short_memory);
   const std::size_t map = recorder.add_topic(topic_called("/map"));
   recorder.take_latched(text(map, "walls"), {}, Share::kSmall);
   recorder.note_graph(R"({"nodes": []})");
@@ -146,7 +147,7 @@ TEST_F(Recorders, KnowWhatWasLatchedLongAgo) {
 TEST_F(Recorders, KeepWhatATypeLooksLikeAndMessagesOfWhichNobodyKnows) {
   std::filesystem::path path;
   {
-    Recorder recorder(options());
+    IncidentRecorder recorder(options());
     const auto known =
         recorder.add_topic({"/pose",
                             "my_msgs/msg/Pose",
@@ -173,11 +174,11 @@ TEST_F(Recorders, KeepWhatATypeLooksLikeAndMessagesOfWhichNobodyKnows) {
 }
 
 TEST_F(Recorders, KnowNoMoreTopicsThanTheyMay) {
-  Recorder recorder(options());
+  IncidentRecorder recorder(options());
   std::size_t last = 0;
-  for (std::size_t i = 0; i <= Recorder::kMostTopics; ++i)
+  for (std::size_t i = 0; i <= IncidentRecorder::kMostTopics; ++i)
     last = recorder.add_topic(topic_called(("/t" + std::to_string(i)).c_str()));
-  EXPECT_EQ(last, Recorder::kNoTopic);
+  EXPECT_EQ(last, IncidentRecorder::kNoTopic);
   recorder.take(text(last, "of nobody"));
   recorder.take_latched(text(last, "of nobody"), {}, Share::kSmall);
   const auto path = recorder.record_now("a person", 20s);
@@ -188,7 +189,7 @@ TEST_F(Recorders, KnowNoMoreTopicsThanTheyMay) {
 
 TEST_F(Recorders, SayOnceThatTheFolderIsLostAndTryAgain) {
   ASSERT_TRUE(write_text(own / "recordings", "a file is in the way"));
-  Recorder recorder(options());
+  IncidentRecorder recorder(options());
   recorder.note_event("{}");
   EXPECT_FALSE(recorder.record_now("first", 20s));
   const auto again = recorder.record_now("second", 20s);
@@ -200,11 +201,11 @@ TEST_F(Recorders, SayOnceThatTheFolderIsLostAndTryAgain) {
 }
 
 TEST_F(Recorders, WriteNothingWhereTheDiskIsNearlyFull) {
-  Recorder::Options full = options();
+  IncidentRecorder::Options full = options();
   full.space = [](const std::filesystem::path&) {
     return Expected<RecordingFolder::Space>({10'000'000'000, 1'000'000'100});
   };
-  Recorder recorder(full);
+  IncidentRecorder recorder(full);
   const auto path = recorder.record_now("a person", 20s);
   ASSERT_FALSE(path);
   EXPECT_THAT(path.error(), HasSubstr("stay free"));
@@ -221,7 +222,7 @@ TEST_F(Recorders, LeaveAFileThatCanBeReadWhenTheDiskIsFull) {
     setrlimit(RLIMIT_FSIZE, &kSmall);
     bool is_right = false;
     {
-      Recorder recorder(options());
+      IncidentRecorder recorder(options());
       const std::size_t noise = recorder.add_topic(topic_called("/noise"));
       recorder.begin("Dead");
       unsigned random = 1;
@@ -255,7 +256,7 @@ TEST_F(Recorders, HoldNobodyUpWhileTheDiskDoesNotAnswer) {
   ConditionVariable changed;
   bool answers = false;
   bool is_asked = false;
-  Recorder::Options slow = options();
+  IncidentRecorder::Options slow = options();
   slow.memory = 10'000'000;
   slow.space = [&](const std::filesystem::path&) {
     MutexLock lock(mutex);
@@ -265,7 +266,7 @@ TEST_F(Recorders, HoldNobodyUpWhileTheDiskDoesNotAnswer) {
     return Expected<RecordingFolder::Space>({1'000'000'000'000, 900'000'000'000});
   };
   {
-    Recorder recorder(slow);
+    IncidentRecorder recorder(slow);
     const std::size_t chatter = recorder.add_topic(topic_called("/chatter"));
     recorder.begin("Dead");
     {

@@ -1,4 +1,4 @@
-#include "fleet_reports/report.h"
+#include "fleet_reports/table_report.h"
 
 #include <algorithm>
 #include <cmath>
@@ -126,7 +126,7 @@ Json cell_json(const Field& field, Kind kind) {
 
 }  // namespace
 
-Expected<Report> make_report(Server& server, const std::string& title,
+Expected<Report> make_report(Postgres& server, const std::string& title,
                              const std::vector<TableQuery>& queries) {
   Report report{title, {}};
   for (const TableQuery& query : queries) {
