@@ -1,12 +1,13 @@
-// The messages of geometry_msgs that the live robot speaks.
+// The messages of geometry_msgs that several robots speak. Field for field as in the files that kType names.
 #pragma once
 
 #include <string_view>
 
-#include "exemplars/suave/model/position.h"
 #include "ros2/messages.h"
 
-namespace culprit::suave::msg {
+namespace culprit::geometry::msg {
+
+using ros2::msg::Header;
 
 struct Point {
   static constexpr std::string_view kType = "geometry_msgs/msg/Point";
@@ -34,22 +35,9 @@ struct Pose {
 
 struct PoseStamped {
   static constexpr std::string_view kType = "geometry_msgs/msg/PoseStamped";
-  ros2::msg::Header header;
+  Header header;
   Pose pose;
   static void visit(auto& self, auto& each) { each(self.header, self.pose); }
 };
 
-inline PoseStamped to_message(const model::Position& p) {
-  PoseStamped message;
-  message.header.stamp = ros2::msg::to_time(std::chrono::system_clock::now());
-  message.header.frame_id = "map";
-  message.pose.position = {p.x, p.y, p.z};
-  return message;
-}
-
-inline model::Position to_position(const PoseStamped& message) {
-  const Point& p = message.pose.position;
-  return {p.x, p.y, p.z};
-}
-
-}  // namespace culprit::suave::msg
+}  // namespace culprit::geometry::msg
