@@ -11,6 +11,8 @@
 
 namespace culprit::lsp {
 
+struct Asked;
+
 class LanguageServer {
  public:
   using Send = std::function<void(const Json& message)>;
@@ -45,16 +47,8 @@ class LanguageServer {
   Json answer(const std::string& method, const Json& params);
   void notice(const std::string& method, const Json& params);
 
+  Json answer_about(const Asked& asked, const std::string& what) const;
   Json capabilities() const;
-  Json completion(const std::string& uri, const Document& document, const Json& params) const;
-  Json hover_at(const Document& document, const Json& params) const;
-  Json definition(const std::string& uri, const Document& document, const Json& params) const;
-  Json references(const std::string& uri, const Document& document, const Json& params) const;
-  Expected<Json> rename(const std::string& uri, const Document& document, const Json& params) const;
-  Json formatting(const Document& document) const;
-  Json code_actions(const std::string& uri, const Document& document, const Json& params) const;
-  Json symbols(const Document& document) const;
-  Json semantic_tokens(const Document& document) const;
 
   void open(const std::string& uri, std::string text);
   void read(const std::string& uri, std::string text);
@@ -64,9 +58,6 @@ class LanguageServer {
   void publish(const std::set<std::string>& uris);
   // The documents that `document` is about: those in which something is wrong with it, too.
   static std::set<std::string> concerned(const std::string& uri, const Document& document);
-  const LiveInventory* robot() const { return robot_ ? &*robot_ : nullptr; }
-  // The thing that the request's position points at; null if at none.
-  const Occurrence* pointed_at(const Document& document, const Json& params) const;
 
   const std::string version_;
   const Send send_;
