@@ -12,7 +12,7 @@
 #include "claims.h"
 #include "language/checker.h"
 #include "live.h"
-#include "lsp/server.h"
+#include "lsp/language_server.h"
 
 namespace culprit::bench {
 namespace {
@@ -182,7 +182,7 @@ constexpr Keystroke kKeystrokes[] = {
 // From the editor's message to the diagnostics: for a character that comes, and goes again.
 void keystroke(benchmark::State& state) {
   bool is_published = false;
-  lsp::Server server("", [&](const Json&) { is_published = true; });
+  lsp::LanguageServer server("", [&](const Json&) { is_published = true; });
   const std::string text = large_robot(1000);
   const auto message = [](const char* method, Json params) {
     return Json{{"jsonrpc", "2.0"}, {"method", method}, {"params", std::move(params)}};

@@ -12,7 +12,7 @@
 #include <fmt/core.h>
 
 #include "claims.h"
-#include "http/server.h"
+#include "http/http_server.h"
 #include "journal/session.h"
 #include "journal/writer.h"
 #include "language/checker.h"
@@ -102,9 +102,9 @@ void step_with_pages(benchmark::State& state) {
   const RuleSet rules = large_robot();
   Watched alone(rules);
   Watched seen(rules);
-  web::Server::Options options;
+  web::HttpServer::Options options;
   options.access.token = web::make_token();
-  const auto server = web::Server::start(options, {}, &seen.hub());
+  const auto server = web::HttpServer::start(options, {}, &seen.hub());
   const Pages reading((*server)->port(), kPages, [] {});
   while (!seen.hub().has_readers()) std::this_thread::yield();
 
@@ -127,9 +127,9 @@ BENCHMARK(step_with_pages)->Iterations(5000);
 
 void event_to_page(benchmark::State& state) {
   web::Hub hub;
-  web::Server::Options options;
+  web::HttpServer::Options options;
   options.access.token = web::make_token();
-  const auto server = web::Server::start(options, {}, &hub);
+  const auto server = web::HttpServer::start(options, {}, &hub);
   std::atomic<int> arrived = 0;
   const Pages reading((*server)->port(), 1, [&] { ++arrived; });
   while (!hub.has_readers()) std::this_thread::yield();

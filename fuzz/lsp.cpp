@@ -6,8 +6,8 @@
 #include <string>
 
 #include "language/test_example_robot.h"
+#include "lsp/language_server.h"
 #include "lsp/message_stream.h"
-#include "lsp/server.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace culprit::lsp;

@@ -18,22 +18,27 @@ std::optional<ProcessStat> process_stat(const std::string& process) {
     for (int i = 0; i < count; ++i) rest >> skipped;
   };
   ProcessStat stat;
-  std::uint64_t user_ticks = 0;
-  std::uint64_t system_ticks = 0;
-  std::uint64_t start_ticks = 0;
+  std::int64_t user_ticks = 0;
+  std::int64_t system_ticks = 0;
   std::uint64_t resident_pages = 0;
-  rest >> stat.state;
-  skip(10);  // fields 4 to 13
+  rest >> stat.state >> stat.parent >> stat.group >> stat.session;
+  skip(7);  // fields 7 to 13
   rest >> user_ticks >> system_ticks;
   skip(4);  // to field 19
   rest >> stat.threads;
   skip(1);
-  rest >> start_ticks >> stat.virtual_bytes >> resident_pages;
+  rest >> stat.start_ticks >> stat.virtual_bytes >> resident_pages;
   if (rest.fail()) return std::nullopt;
-  const auto ticks = static_cast<double>(sysconf(_SC_CLK_TCK));
-  stat.processor_seconds = static_cast<double>(user_ticks + system_ticks) / ticks;
-  stat.started_after_boot = static_cast<double>(start_ticks) / ticks;
+  const std::int64_t ticks = sysconf(_SC_CLK_TCK);
+  stat.processor = std::chrono::nanoseconds((user_ticks + system_ticks) * (1'000'000'000 / ticks));
+  stat.processor_seconds =
+      static_cast<double>(user_ticks + system_ticks) / static_cast<double>(ticks);
+  stat.started_after_boot = static_cast<double>(stat.start_ticks) / static_cast<double>(ticks);
   stat.resident_bytes = resident_pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  if (stat.state == 'Z') {
+    skip(27);  // fields 25 to 51
+    rest >> stat.exit_status;
+  }
   return stat;
 }
 

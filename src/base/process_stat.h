@@ -5,18 +5,26 @@
 #include <optional>
 #include <string>
 
+#include "base/time.h"
+
 namespace culprit {
 
 struct ProcessStat {
-  char state = 0;                // 'R': running, 'T': stopped, 'Z': a zombie …
-  double processor_seconds = 0;  // that it has used, of all its threads
+  char state = 0;  // 'R': running, 'T': stopped, 'Z': a zombie …
+  int parent = 0;
+  int group = 0;
+  int session = 0;
+  Duration processor{};          // that it has used, of all its threads
+  double processor_seconds = 0;  // the same
   std::uint64_t threads = 0;
-  double started_after_boot = 0;  // seconds
+  std::int64_t start_ticks = 0;   // when it began, in ticks of the kernel after boot
+  double started_after_boot = 0;  // the same in seconds
   std::uint64_t virtual_bytes = 0;
   std::uint64_t resident_bytes = 0;
+  int exit_status = 0;  // of a zombie, as in wait(2)
 };
 
-// `process`: its number, or "self". Nothing: there is no such process.
+// `process`: its number, "self", or a thread of it ("12/task/13"). Nothing: there is no such process.
 std::optional<ProcessStat> process_stat(const std::string& process);
 
 }  // namespace culprit

@@ -26,10 +26,10 @@ struct FleetCommand {
 // The only way to interrupt a command is to end it.
 const std::atomic<bool> kGoesOn = false;
 
-Expected<fleet::Server> connect(const FleetCommand& options) {
+Expected<fleet::Postgres> connect(const FleetCommand& options) {
   const auto address = fleet::address_from(options.address);
   if (!address) return Error{address.error()};
-  auto server = fleet::Server::connect(*address, kGoesOn);
+  auto server = fleet::Postgres::connect(*address, kGoesOn);
   if (!server) return Error{"the fleet's database cannot be used: " + server.error()};
   return server;
 }

@@ -8,6 +8,8 @@
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
+#include <iterator>
+#include <memory>
 #include <optional>
 #include <thread>
 
@@ -15,12 +17,11 @@
 #include <gtest/gtest.h>
 
 #include "base/environment.h"
-#include "base/live_clock.h"
+#include "cli/test_attacked_robot.h"
 #include "cli/test_attacks.h"
-#include "exemplars/sunset/node_process.h"
 #include "ros2/options.h"
+#include "ros2/test_forger.h"
 #include "rtps/test_network.h"
-#include "terminal/test_program.h"
 
 namespace culprit::cli {
 namespace {
@@ -29,30 +30,6 @@ using namespace std::chrono_literals;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr const char* kHostileRules = R"(
-ROBOT attacked
-COMPONENT camera NODE /managed_subsystem/camera LAUNCH "sunset-node camera"
-RULE CameraGone
-  POLICIES ERROR
-  TRIGGER alive(camera) == false
-    STRATEGY camera_redeploy 90 10
-      ADAPTATION camera redeploy 5
-RULE CameraSilent
-  POLICIES ERROR
-  TRIGGER age(/managed_subsystem/rgb_camera) > 5s
-    STRATEGY camera_replace 90 10
-      ADAPTATION camera redeploy 5
-RULE CameraOff
-  POLICIES ERROR
-  TRIGGER lifecycle(camera) == "inactive" || lifecycle(camera) == "finalized"
-    STRATEGY camera_again 90 10
-      ADAPTATION camera redeploy 5
-RULE CameraSick
-  POLICIES ERROR
-  TRIGGER level(camera) >= 2 || parameter(camera, image_degradation) > 0.5
-    STRATEGY camera_anew 90 10
-      ADAPTATION camera redeploy 5
-)";
 constexpr Duration kHealedWithin = 10s;
 constexpr std::size_t kMostGrowth = 64 * 1024;  // KiB
 
@@ -68,54 +45,13 @@ std::vector<Attack> tried_attacks() {
   return all;
 }
 
-std::size_t times(const std::string& text, const std::string& what) {
-  std::size_t count = 0;
-  for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;
-  return count;
-}
-
-template <class Done>
-bool within(Duration patience, Done done) {
-  for (const Time end = later(live_now(), patience); !done();) {
-    if (live_now() > end) return false;
-    std::this_thread::sleep_for(10ms);
-  }
-  return true;
-}
-
-class Hostile : public testing::TestWithParam<Attack> {
+class Hostile : public AttackedRobot, public testing::WithParamInterface<Attack> {
  protected:
-  ~Hostile() override {
-    for (const int pid : cameras()) kill(pid, SIGKILL);
-  }
-
-  std::vector<int> cameras() const {
-    return sunset::processes_of(sunset::Member::kCamera, ros2::options_from_environment()->domain);
-  }
-  TestProgram start_culprit() const {
+  TestProgram start_hostile_culprit() const {
     // So much is never broken in so short a time but here.
-    return TestProgram(world, {"culprit",
-                               "run",
-                               world.write("attacked.rules", kHostileRules),
-                               "--settle",
-                               "1",
-                               "--state-dir",
-                               (world.folder() / "state").string(),
-                               "--web",
-                               "--port",
-                               "0",
-                               "--intensity",
-                               "none",
-                               "--intensity-kind",
-                               "none",
-                               "--intensity-component",
-                               "none",
-                               "--restarts",
-                               "none",
-                               "--backoff",
-                               "0",
-                               "--healthy",
-                               "1"});
+    return start_culprit({"--web", "--port", "0", "--intensity", "none", "--intensity-kind", "none",
+                          "--intensity-component", "none", "--restarts", "none", "--backoff", "0",
+                          "--healthy", "1"});
   }
   static int page_of(const TestProgram& culprit) {
     const std::string said = "http://127.0.0.1:";
@@ -127,28 +63,19 @@ class Hostile : public testing::TestWithParam<Attack> {
                       const std::string& before, const TestProgram& bystander) {
     const std::string said = culprit.output();
     const bool is_harmed = cameras() != camera || kill(bystander.pid(), 0) != 0 ||
-                           times(said, " detected") != times(before, " detected") ||
-                           times(said, "resolved by") != times(before, "resolved by");
+                           count_of(said, " detected") != count_of(before, " detected") ||
+                           count_of(said, "resolved by") != count_of(before, "resolved by");
     harmed += is_harmed ? 1 : 0;
     EXPECT_FALSE(is_harmed) << said.substr(before.size());
   }
-  void expect_healed(const TestProgram& culprit) {
-    const std::string before = culprit.output();
-    for (const int pid : cameras()) kill(pid, SIGKILL);
-    const Time broken = live_now();
-    const bool is_healed = within(std::max(kHealedWithin, Duration(TestProgram::kPatience)), [&] {
-      return times(culprit.output(), "resolved by") > times(before, "resolved by");
-    });
-    const Duration took = live_now() - broken;
+  void expect_healed_soon(const TestProgram& culprit) {
+    const Duration took = expect_healed(culprit);
     longest = std::max(longest, took);
-    EXPECT_TRUE(is_healed) << culprit.output();
-    EXPECT_EQ(cameras().size(), 1u) << "resolved, and it is not there";
     if (hostile_tries() > 0) {
-      EXPECT_LE(took, kHealedWithin) << culprit.output().substr(before.size());
+      EXPECT_LE(took, kHealedWithin) << culprit.output();
     }
   }
 
-  TestWorld world;
   int harmed = 0;
   Duration longest{};
 };
@@ -166,7 +93,7 @@ TEST_P(Hostile, NeitherHarmsTheRobotNorKeepsItFromHealing) {
   }
   const TestProgram bystander(world, {"sunset-node", "world"});
   const TestProgram camera(world, {"sunset-node", "camera"});
-  const TestProgram culprit = start_culprit();
+  const TestProgram culprit = start_hostile_culprit();
   ASSERT_TRUE(culprit.prints("camera is there")) << culprit.output();
   Target target{world, culprit.pid(), 0, page_of(culprit), nullptr};
   if (is_elsewhere) {
@@ -175,7 +102,7 @@ TEST_P(Hostile, NeitherHarmsTheRobotNorKeepsItFromHealing) {
   }
   ros2::Eavesdropper eavesdropper(*ros2::options_from_environment());
   target.eavesdropper = &eavesdropper;
-  expect_healed(culprit);  // with all that it needs for that
+  expect_healed_soon(culprit);  // with all that it needs for that
   const std::size_t at_first = holdings_of(culprit.pid()).kilobytes;
   const int tries = std::max(1, hostile_tries());
   int tried = 0;
@@ -188,8 +115,9 @@ TEST_P(Hostile, NeitherHarmsTheRobotNorKeepsItFromHealing) {
     if (attack == nullptr) GTEST_SKIP() << "not possible here";
     std::this_thread::sleep_for(4s);
     expect_no_harm(culprit, healthy, before, bystander);
-    expect_healed(culprit);
+    expect_healed_soon(culprit);
     EXPECT_LE(holdings_of(culprit.pid()).kilobytes, at_first + kMostGrowth);
+    EXPECT_TRUE(culprit.prints(GetParam().reported)) << culprit.output();
     EXPECT_THAT(culprit.output(), Not(HasSubstr("\x1b"))) << "it steers the terminal";
   }
   std::cout << "hostile | " << GetParam().name << " | " << tried << " | " << harmed << " | "
@@ -198,6 +126,35 @@ TEST_P(Hostile, NeitherHarmsTheRobotNorKeepsItFromHealing) {
 
 INSTANTIATE_TEST_SUITE_P(All, Hostile, testing::ValuesIn(tried_attacks()),
                          [](const auto& each) { return std::string(each.param.name); });
+
+// A stranger on another computer holds the node's name, and announces a port of a process here.
+TEST_F(AttackedRobot, StrangerOnAnotherComputerDoesNotChooseWhichProcessEnds) {
+  auto network = TestNetwork::create();
+  if (!network) GTEST_SKIP() << network.error();
+  setenv("ROS_LOCALHOST_ONLY", "0", 1);
+  std::optional<TestNetwork::Visit> here(std::in_place, **network, TestNetwork::kRobot);
+  const ros2::Bound port = ros2::bound();
+  TestProgram victim(world, {"sleep", "600"});  // inherits it
+  close(port.descriptor);
+  const TestProgram run = start_culprit({"--quiet", "0", "--no-evidence"}, R"(
+ROBOT attacked
+COMPONENT camera NODE /camera LAUNCH "sleep 600"
+RULE CameraThere
+  POLICIES ERROR
+  TRIGGER alive(camera)
+    STRATEGY camera_redeploy 90 10
+      ADAPTATION camera redeploy 5
+)");
+  ASSERT_TRUE(run.prints("watching attacked")) << run.output();
+  here.reset();
+  here.emplace(**network, TestNetwork::kDesk);
+  ros2::Forger stranger(*ros2::options_from_environment(), port.port, "10.77.0.2");
+  stranger.says_that_it_holds({"/", "camera", {}, {}});
+  EXPECT_TRUE(run.prints("its process is not known; is it on another machine?")) << run.output();
+  std::this_thread::sleep_for(3s);
+  EXPECT_FALSE(victim.wait(0s)) << "it was ended: " << run.output();
+  EXPECT_THAT(run.output(), Not(HasSubstr("redeploy camera: done")));
+}
 
 }  // namespace
 }  // namespace culprit::cli

@@ -6,8 +6,8 @@
 
 #include "cli/commands.h"
 #include "live/robot_survey.h"
+#include "lsp/language_server.h"
 #include "lsp/message_stream.h"
-#include "lsp/server.h"
 #include "robot/inbox.h"
 #include "rule_files/rule_files.h"
 
@@ -39,7 +39,7 @@ bool input_by(Time end) {
 // server needs none.
 class Watch {
  public:
-  Watch(lsp::Server& server, ros2::Survey& survey)
+  Watch(lsp::LanguageServer& server, ros2::Survey& survey)
       : server_(server), survey_(survey), next_(live_now() + kDiscovery) {}
 
   // Returns when the client has sent something.
@@ -60,7 +60,7 @@ class Watch {
     asked_ = std::move(interest);
   }
 
-  lsp::Server& server_;
+  lsp::LanguageServer& server_;
   ros2::Survey& survey_;
   Time next_;
   LiveInterest asked_;
@@ -72,8 +72,9 @@ int serve(const std::string& version, const LspOptions& options) {
     if (from.empty()) return Error{"save this file first: others are found beside it"};
     return rule_files::load(file, from);
   };
-  lsp::Server server(version, [](const Json& message) { lsp::write_message(std::cout, message); },
-                     {load, rule_files::includable});
+  lsp::LanguageServer server(version,
+                             [](const Json& message) { lsp::write_message(std::cout, message); },
+                             {load, rule_files::includable});
   std::unique_ptr<ros2::Survey> survey;
   std::optional<Watch> watch;
   if (options.robot) {

@@ -6,7 +6,7 @@
 #include "cli/diagnostic_report.h"
 #include "language/checker.h"
 #include "language/reuse/expansion.h"
-#include "mcp/server.h"
+#include "mcp/mcp_server.h"
 #include "owners/piped_program.h"
 #include "owners/spawn.h"
 #include "terminal/console.h"
@@ -25,7 +25,7 @@ struct McpOptions {
 
 // culprit itself, as the command that a person would type: the same answer, and a crash or a hang of it
 // ends nothing here.
-Expected<mcp::Server::Ran> run_culprit(const std::vector<std::string>& words) {
+Expected<mcp::McpServer::Ran> run_culprit(const std::vector<std::string>& words) {
   std::vector<std::string> command{"/proc/self/exe"};
   command.insert(command.end(), words.begin(), words.end());
   auto ran = owners::run_piped(std::move(command), owners::environment_with({}), kLimit);
@@ -33,7 +33,7 @@ Expected<mcp::Server::Ran> run_culprit(const std::vector<std::string>& words) {
   using End = owners::PipedRun::End;
   if (ran->end == End::kTime) return Error{"it did not end within a minute"};
   if (ran->end == End::kTooMuch) return Error{"its answer is longer than 1 MiB"};
-  return mcp::Server::Ran{ran->status, std::move(ran->out), std::move(ran->err)};
+  return mcp::McpServer::Ran{ran->status, std::move(ran->out), std::move(ran->err)};
 }
 
 Json check_text(const std::string& text) {
@@ -61,8 +61,8 @@ std::optional<std::string> next_line(std::istream& in) {
 
 int serve(const std::string& version, const McpOptions& options) {
   std::set<std::string> allowed(options.allowed.begin(), options.allowed.end());
-  if (allowed.empty()) allowed = mcp::Server::reading_tools();
-  mcp::Server server({version, options.rules, std::move(allowed)}, run_culprit, check_text);
+  if (allowed.empty()) allowed = mcp::McpServer::reading_tools();
+  mcp::McpServer server({version, options.rules, std::move(allowed)}, run_culprit, check_text);
   while (const auto line = next_line(std::cin)) {
     if (line->find_first_not_of(" \t\r") == std::string::npos && !line->empty()) continue;
     const auto answer = server.handle(parse_strict_json(*line));
@@ -87,7 +87,7 @@ void add_mcp(CLI::App& app, const std::string& version, int& exit_code) {
       ->add_option("--allow", options->allowed,
                    "Allowed tools (default: all that only read: not propose)")
       ->delimiter(',')
-      ->check(CLI::IsMember(mcp::Server::all_tools()));
+      ->check(CLI::IsMember(mcp::McpServer::all_tools()));
   command->callback([version, options, &exit_code] { exit_code = serve(version, *options); });
 }
 

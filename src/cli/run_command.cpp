@@ -99,29 +99,6 @@ std::vector<web::Route> page_routes(web::Hub& hub, const web::Histories& histori
   return all;
 }
 
-// Null: nothing is recorded.
-Expected<std::unique_ptr<RunRecording>> open_recording(const RunOptions& options,
-                                                       const std::string& robot,
-                                                       const live::LiveSession::Options& session) {
-  return RunRecording::open(options.recording,
-                            {options.version, robot, options.state_path(),
-                             session.robot.link.participant, session.robot.link.types});
-}
-
-// On a domain with keys, the owner of the keys vouches for every participant. Empty: no orders are taken.
-ros_api::OrderServices::Give orders_over_dds(const RunOptions& options,
-                                             const live::LiveSession::Options& session,
-                                             web::OrderDesk& desk, web::Hub& hub,
-                                             std::FILE* remarks) {
-  const bool has_keys = session.robot.link.participant.security.has_value();
-  if (!has_keys && !options.takes_orders_from_anyone) return {};
-  if (!has_keys)
-    say(remarks,
-        "culprit: takes orders over DDS from any participant of this domain "
-        "(--orders-from-anyone)\n");
-  return [&desk, &hub](const Json& order) { return web::give_order(desk, hub, order); };
-}
-
 // After Ctrl-C. A disk can stall, and the middleware can hang with its locks held.
 constexpr Duration kEndsWithin = std::chrono::milliseconds(2800);
 // Of that: until the other processes of a launch that had started culprit, too.
@@ -141,13 +118,159 @@ void name_what_runs_on(const std::string& robot, const std::vector<int>& others,
     say(remarks, "  {}\n", escape_controls(to_string(each, live_now())));
 }
 
+// The parts of a run whose making can fail. Null: the run has none.
+struct Opened {
+  live::LiveSession::Options session;
+  std::unique_ptr<live::Fleet> fleet;
+  std::unique_ptr<RunAlerts> alerts;
+  std::unique_ptr<RunRecording> recording;
+};
+
+// One run, put together: each part is made after those that it uses, and ends before them.
+class Run {
+ public:
+  Run(const RunOptions& options, const RuleSet& rules, Opened opened, live::RoleOfCulprit role,
+      std::FILE* remarks);
+
+  // Manages the robot until it is stopped. Errors: it cannot be joined, or not be served.
+  Expected<void> manage(live::LoadedRules rules, StopSignals& signals);
+  // The processes of the launch that started culprit, when it was told to end.
+  const std::vector<int>& others_of_launch() const { return others_; }
+
+ private:
+  std::vector<live::Observer*> observers();
+  ros_api::OrderServices::Give orders_over_dds(bool has_keys);
+  Expected<void> serve_page();
+
+  const RunOptions& options_;
+  std::FILE* const remarks_;
+  WhoServes who_;
+  const std::filesystem::path journal_;  // empty: none is written
+  const std::unique_ptr<live::Fleet> fleet_;
+  const std::unique_ptr<RunAlerts> alerts_;
+  const std::unique_ptr<live::Listener> listener_;
+  web::Hub hub_;
+  web::Metrics metrics_;
+  web::HubObserver observer_;
+  web::Histories histories_;
+  live::OrderKeeper keeper_;
+  web::OrderDesk orders_;
+  ros_api::RosApi ros_api_;
+  const std::unique_ptr<RunRecording> recording_;
+  live::Snapshots snapshots_;
+  live::Observers observers_;
+  live::LiveRun live_;
+  std::vector<int> others_;
+  web::RuleDesk desk_;
+  live::RobotNames names_;
+  std::unique_ptr<web::HttpServer> page_;
+  std::unique_ptr<web::HttpServer> local_;
+};
+
+Run::Run(const RunOptions& options, const RuleSet& rules, Opened opened, live::RoleOfCulprit role,
+         std::FILE* remarks)
+    : options_(options),
+      remarks_(remarks),
+      who_{options.version,
+           rules.robot,
+           options.rules,
+           opened.session.robot.link.participant.domain,
+           opened.session.robot.link.name.name,
+           ""},
+      journal_(options.no_journal ? std::filesystem::path() : options.journal_path(rules)),
+      fleet_(std::move(opened.fleet)),
+      alerts_(std::move(opened.alerts)),
+      listener_(listener_for(options.json ? Audience::kPrograms : Audience::kPeople)),
+      hub_([this] { live_.interrupt(); }),
+      observer_(hub_, metrics_),
+      keeper_("the run has not begun"),
+      orders_(keeper_.keeping()),
+      ros_api_({options.version,
+                orders_over_dds(opened.session.robot.link.participant.security.has_value()),
+                [this](const std::string& trouble) {
+                  listener_->on_remark("culprit: " + trouble + "\n");
+                }}),
+      recording_(std::move(opened.recording)),
+      snapshots_({.recorder = options.recording.snapshot_of, .say = say_of_recording}),
+      observers_(observers()),
+      live_({std::move(opened.session), options.dry_run, options.improvise, fleet_.get()},
+            std::move(role), keeper_, *listener_, &observers_),
+      desk_(options.rules, options.may_edit_commands ? web::RuleDesk::Commands::kMayChange
+                                                     : web::RuleDesk::Commands::kStay),
+      names_(options.message_path) {}
+
+std::vector<live::Observer*> Run::observers() {
+  std::vector<live::Observer*> all{&observer_, &histories_.usage, &histories_.signals, &ros_api_};
+  if (alerts_) all.push_back(&alerts_->observer());
+  if (recording_) all.push_back(&recording_->observer());
+  if (!options_.recording.snapshot_of.empty()) all.push_back(&snapshots_);
+  return all;
+}
+
+// On a domain with keys, the owner of the keys vouches for every participant. Empty: no orders are taken.
+ros_api::OrderServices::Give Run::orders_over_dds(bool has_keys) {
+  if (!has_keys && !options_.takes_orders_from_anyone) return {};
+  if (!has_keys)
+    say(remarks_,
+        "culprit: takes orders over DDS from any participant of this domain "
+        "(--orders-from-anyone)\n");
+  return [this](const Json& order) { return web::give_order(orders_, hub_, order); };
+}
+
+Expected<void> Run::serve_page() {
+  std::vector<web::Route> routes = local_routes(hub_, metrics_, orders_, live_, recording_.get());
+  add(routes,
+      page_routes(hub_, histories_, desk_, names_, journal_,
+                  options_.recording.folder_in(options_.state_path()), options_.planner.factory()));
+  auto server = serve(options_.web, std::move(routes), &hub_, remarks_);
+  if (!server) return Error{server.error()};
+  page_ = std::move(*server);
+  histories_.start();
+  who_.page = page_->address();
+  if (alerts_) alerts_->set_page(who_.page);
+  return {};
+}
+
+Expected<void> Run::manage(live::LoadedRules rules, StopSignals& signals) {
+  const std::string robot = name_of(rules.rules);
+  const std::size_t count = rules.rules.rules.size();
+  if (const auto joined = live_.join(std::move(rules)); !joined) return Error{joined.error()};
+  signals.on_stop([this] {
+    others_ = owners::others_of_own_launch();
+    live_.leave();
+  });
+  say(remarks_,
+      "culprit: watching {} with {} rules{}; Ctrl-C ends it and leaves the robot "
+      "as it is\n",
+      robot, count, options_.dry_run ? " (dry run)" : "");
+  live_.begin(orders_, signals.stopped());
+  if (options_.is_on_web) {
+    if (const auto served = serve_page(); !served) return Error{served.error()};
+  }
+  signals.on_user_signal([this] {
+    if (recording_) (void)recording_->recorder().record_now("SIGUSR1", Duration::zero());
+  });
+  local_ = serve_this_machine(who_, local_routes(hub_, metrics_, orders_, live_, recording_.get()),
+                              hub_, remarks_);
+  signals.on_reload([this] {
+    if (const auto reloaded = live_.reload("SIGHUP"); !reloaded)
+      say(stderr, "culprit: the rules are not reloaded: {}\n", reloaded.error());
+  });
+  const auto ended = live_.run(orders_, signals.stopped());
+  signals.on_stop({});
+  signals.on_reload({});
+  signals.on_user_signal({});
+  return ended;
+}
+
 int run(const RunOptions& options) {
   owners::keep_files_private();
   auto rules = live::trusted_rules(options.rules, options.improvise, colour_of(STDERR_FILENO));
   if (!rules) return fail(rules.error());
-  const auto trusted = live::trust_state(options.state_path(), options.journal_path(rules->rules));
+  const std::filesystem::path journal = options.journal_path(rules->rules);
+  const auto trusted = live::trust_state(options.state_path(), journal);
   if (!trusted) return fail(trusted.error());
-  live::make_private(options.journal_path(rules->rules));
+  live::make_private(journal);
   say(stderr, "{}", rules->remarks);
   auto session = options.session(rules->rules);
   if (!session) return fail(session.error(), kUsage);
@@ -160,91 +283,26 @@ int run(const RunOptions& options) {
   auto role = claim_robot(rules->rules, options);
   if (!role) return fail(role.error(), kUsage);
   if (!role->reason().empty()) say(remarks, "culprit: {}\n", role->reason());
-  WhoServes who{options.version,
-                rules->rules.robot,
-                options.rules,
-                session->robot.link.participant.domain,
-                session->robot.link.name.name,
-                ""};
   StopSignals signals(Hangup::kReloads);
   signals.end_within(kEndsWithin);
   // Its thread is not to be ended by a signal.
-  const auto fleet = join_fleet(options.fleet, options.journal_path(rules->rules));
+  auto fleet = join_fleet(options.fleet, journal);
   if (!fleet) return fail(fleet.error(), kUsage);
-  const auto alerts = RunAlerts::open(options.alerts);
+  auto alerts = RunAlerts::open(options.alerts);
   if (!alerts) return fail(alerts.error());
-  const auto listener = listener_for(options.json ? Audience::kPrograms : Audience::kPeople);
-  live::LiveRun* running = nullptr;
-  web::Hub hub([&] { running->interrupt(); });
-  web::Metrics metrics;
-  web::HubObserver observer(hub, metrics);
-  web::Histories histories;
-  live::OrderKeeper keeper("the run has not begun");
-  web::OrderDesk orders(keeper.keeping());
-  ros_api::RosApi ros_api({options.version,
-                           orders_over_dds(options, *session, orders, hub, remarks),
-                           [&listener](const std::string& trouble) {
-                             listener->on_remark("culprit: " + trouble + "\n");
-                           }});
-  std::vector<live::Observer*> onlookers{&observer, &histories.usage, &histories.signals, &ros_api};
-  if (*alerts) onlookers.push_back(&(*alerts)->observer());
-  const auto recording = open_recording(options, rules->rules.robot, *session);
+  auto recording = RunRecording::open(options.recording,
+                                      {options.version, rules->rules.robot, options.state_path(),
+                                       session->robot.link.participant, session->robot.link.types});
   if (!recording) return fail(recording.error());
-  if (*recording) onlookers.push_back(&(*recording)->observer());
-  live::Snapshots snapshots({.recorder = options.recording.snapshot_of, .say = say_of_recording});
-  if (!options.recording.snapshot_of.empty()) onlookers.push_back(&snapshots);
-  live::Observers observers(std::move(onlookers));
-  live::LiveRun live({std::move(*session), options.dry_run, options.improvise, fleet->get()},
-                     std::move(*role), keeper, *listener, &observers);
-  running = &live;
-  const std::string robot = name_of(rules->rules);
-  const std::string robot_key = fmt::format("{}/{}", who.domain, rules->rules.robot);
-  const auto journal =
-      options.no_journal ? std::filesystem::path() : options.journal_path(rules->rules);
-  const std::size_t count = rules->rules.rules.size();
-  if (const auto joined = live.join(std::move(*rules)); !joined) return fail(joined.error());
-  std::vector<int> others;  // of the launch that started culprit, when it is told to end
-  signals.on_stop([&] {
-    others = owners::others_of_own_launch();
-    live.leave();
-  });
-  say(remarks,
-      "culprit: watching {} with {} rules{}; Ctrl-C ends it and leaves the robot "
-      "as it is\n",
-      robot, count, options.dry_run ? " (dry run)" : "");
-  live.begin(orders, signals.stopped());
-
-  web::RuleDesk desk(options.rules, options.may_edit_commands ? web::RuleDesk::Commands::kMayChange
-                                                              : web::RuleDesk::Commands::kStay);
-  live::RobotNames names(options.message_path);
-  Expected<std::unique_ptr<web::Server>> server(nullptr);
-  if (options.is_on_web) {
-    std::vector<web::Route> routes = local_routes(hub, metrics, orders, live, recording->get());
-    add(routes,
-        page_routes(hub, histories, desk, names, journal,
-                    options.recording.folder_in(options.state_path()), options.planner.factory()));
-    server = serve(options.web, std::move(routes), &hub, remarks);
-    if (!server) return fail(server.error());
-    histories.start();
-    who.page = (*server)->address();
-    if (*alerts) (*alerts)->set_page(who.page);
-  }
-  signals.on_user_signal([&] {
-    if (*recording) (void)(*recording)->recorder().record_now("SIGUSR1", Duration::zero());
-  });
-  const auto local = serve_this_machine(
-      who, local_routes(hub, metrics, orders, live, recording->get()), hub, remarks);
-  signals.on_reload([&] {
-    if (const auto reloaded = live.reload("SIGHUP"); !reloaded)
-      say(stderr, "culprit: the rules are not reloaded: {}\n", reloaded.error());
-  });
-  const auto ended = live.run(orders, signals.stopped());
-  signals.on_stop({});
-  signals.on_reload({});
-  signals.on_user_signal({});
-  if (!ended) return fail(ended.error());
+  const std::string robot =
+      fmt::format("{}/{}", session->robot.link.participant.domain, rules->rules.robot);
+  Run whole(options, rules->rules,
+            {std::move(*session), std::move(*fleet), std::move(*alerts), std::move(*recording)},
+            std::move(*role), remarks);
+  if (const auto ended = whole.manage(std::move(*rules), signals); !ended)
+    return fail(ended.error());
   say(remarks, "culprit: stopped; the robot goes on as it is\n");
-  name_what_runs_on(robot_key, others, remarks);
+  name_what_runs_on(robot, whole.others_of_launch(), remarks);
   return kOk;
 }
 

@@ -62,6 +62,21 @@ std::string variable_of(const std::string& option) {
 }  // namespace
 
 void RunOptions::add_to(CLI::App& command) {
+  add_ways(command);
+  add_files(command);
+  add_node(command);
+  add_reports(command);
+  planner.add_to(command);
+  command.add_flag("--web", is_on_web, "Show the robot, decisions and repairs in a browser");
+  command.add_flag("--edit-rules", may_edit_commands,
+                   "Let the page also change executed commands: LAUNCH, UNIT, call and the like");
+  web.add_to(command);
+  recording.add_to(command);
+  governor.add_to(command);
+  add_configuration(command);
+}
+
+void RunOptions::add_ways(CLI::App& command) {
   command.add_option("RULES", rules, "The rule file")->type_name("FILE")->required();
   command.add_flag("--dry-run", dry_run, "Report decisions without carrying them out");
   command.add_flag("--launch", launch,
@@ -71,6 +86,9 @@ void RunOptions::add_to(CLI::App& command) {
                    "Also repair components without a rule, by restart or redeploy where possible");
   add_seconds(command, "--settle", settle_seconds,
               "Grace period for discovery; nothing is reported missing before it ends", 0, 3600);
+}
+
+void RunOptions::add_files(CLI::App& command) {
   command.add_option("--state-dir", state_folder, "Folder for logs of started components")
       ->type_name("FOLDER")
       ->default_str("~/.local/state/culprit");
@@ -91,6 +109,9 @@ void RunOptions::add_to(CLI::App& command) {
       .add_option("--message-path", message_path,
                   "Folders with .msg files: <folder>/<package>/msg/<Type>.msg")
       ->type_name("FOLDER");
+}
+
+void RunOptions::add_node(CLI::App& command) {
   command.add_flag("--use-sim-time", use_sim_time,
                    "The robot is simulated; judge nothing while its /clock stands still");
   command
@@ -104,6 +125,9 @@ void RunOptions::add_to(CLI::App& command) {
       "--orders-from-anyone", takes_orders_from_anyone,
       "Take orders over DDS (~/pause, ~/run_strategy ...) also on a domain without keys, where any "
       "participant can then pause culprit or have it restart nodes (docs/ros2-packages.md)");
+}
+
+void RunOptions::add_reports(CLI::App& command) {
   command.add_option("--forgetting", forgetting, "Discount factor per outcome (1 = never forget)")
       ->check(CLI::Range(0.5, 1.0))
       ->capture_default_str();
@@ -115,13 +139,9 @@ void RunOptions::add_to(CLI::App& command) {
           "--alerts", alerts,
           "Private file with the receivers of alerts: webhooks or programs (docs/alerts.md)")
       ->type_name("FILE");
-  planner.add_to(command);
-  command.add_flag("--web", is_on_web, "Show the robot, decisions and repairs in a browser");
-  command.add_flag("--edit-rules", may_edit_commands,
-                   "Let the page also change executed commands: LAUNCH, UNIT, call and the like");
-  web.add_to(command);
-  recording.add_to(command);
-  governor.add_to(command);
+}
+
+void RunOptions::add_configuration(CLI::App& command) {
   // Before the variables are named: CULPRIT_CONFIG names the file.
   command.add_option("--config", config, "Options in a file, as --print-config prints them")
       ->type_name("FILE")

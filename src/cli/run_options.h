@@ -49,6 +49,13 @@ struct RunOptions {
   std::filesystem::path journal_path(const RuleSet& rules) const;
   // Errors: the environment names no DDS domain, or the governor's options are wrong.
   Expected<live::LiveSession::Options> session(const RuleSet& rules) const;
+
+ private:
+  void add_ways(CLI::App& command);
+  void add_files(CLI::App& command);
+  void add_node(CLI::App& command);
+  void add_reports(CLI::App& command);
+  void add_configuration(CLI::App& command);
 };
 
 }  // namespace culprit::cli

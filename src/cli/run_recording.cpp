@@ -73,7 +73,7 @@ void RecordingOptions::add_to(CLI::App& command) {
 Expected<std::unique_ptr<RunRecording>> RunRecording::open(const RecordingOptions& options,
                                                            const About& about) {
   if (!options.is_on) return std::unique_ptr<RunRecording>();
-  recorder::Recorder::Options box;
+  recorder::IncidentRecorder::Options box;
   box.folder = options.folder_in(about.state);
   box.robot = about.robot;
   box.library = "culprit " + about.version;
@@ -87,7 +87,7 @@ Expected<std::unique_ptr<RunRecording>> RunRecording::open(const RecordingOption
   tap.types = about.types;
   tap.topics = recorder::TopicChoice(options.topics);
   tap.before = box.before;
-  tap.large_bytes = recorder::Recorder::large_share(box.memory);
+  tap.large_bytes = recorder::IncidentRecorder::large_share(box.memory);
   tap.say = say_of_recording;
   std::unique_ptr<RunRecording> run(new RunRecording(std::move(box)));
   auto opened = recorder::RobotTap::open(std::move(tap), run->recorder_);

@@ -19,12 +19,12 @@ CLI::Option* add_snapshot(CLI::App& command, std::string& node, const std::strin
 
 struct RecordingOptions {
   bool is_on = false;
-  double before_seconds = seconds(recorder::Recorder::Options().before);
-  double after_seconds = seconds(recorder::Recorder::Options().after);
-  std::vector<std::string> topics;                              // patterns; empty: all
-  std::uint64_t memory = recorder::Recorder::Options().memory;  // bytes
-  std::uint64_t disk = recorder::Recorder::Options().disk;      // bytes
-  std::string folder;                                           // empty: in the state folder
+  double before_seconds = seconds(recorder::IncidentRecorder::Options().before);
+  double after_seconds = seconds(recorder::IncidentRecorder::Options().after);
+  std::vector<std::string> topics;                                      // patterns; empty: all
+  std::uint64_t memory = recorder::IncidentRecorder::Options().memory;  // bytes
+  std::uint64_t disk = recorder::IncidentRecorder::Options().disk;      // bytes
+  std::string folder;       // empty: in the state folder
   std::string snapshot_of;  // a recorder's node, absolute; empty: nobody is asked for snapshots
 
   std::filesystem::path folder_in(const std::filesystem::path& state) const {
@@ -51,13 +51,13 @@ class RunRecording {
                                                       const About& about);
 
   live::Observer& observer() { return observer_; }
-  recorder::Recorder& recorder() { return recorder_; }
+  recorder::IncidentRecorder& recorder() { return recorder_; }
 
  private:
-  explicit RunRecording(recorder::Recorder::Options options)
+  explicit RunRecording(recorder::IncidentRecorder::Options options)
       : recorder_(std::move(options)), observer_(recorder_) {}
 
-  recorder::Recorder recorder_;
+  recorder::IncidentRecorder recorder_;
   live::BlackBox observer_;
   std::unique_ptr<recorder::RobotTap> tap_;  // last: it fills the recorder
 };

@@ -36,7 +36,8 @@ struct Attack {
   const char* name;  // of words, with '_' between them
   std::function<Ongoing(const Target&)> begin;
   Place from = Place::kHere;
-  bool is_in_short = false;  // is one of those that `make test` tries
+  bool is_in_short = false;   // is one of those that `make test` tries
+  const char* reported = "";  // by culprit, while it is attacked
 };
 
 // In the names of tests.

@@ -90,27 +90,39 @@ Ongoing transitions_in_its_name(const Target& target) {
   event.goal_state.id = static_cast<std::uint8_t>(LifecycleState::kInactive);
   return sends(target, samples(writer_of(target, "/transition_event"), ros2::encode(event)), 20ms);
 }
+// The writers of the camera and of culprit itself, those that announce others too.
+std::vector<Guid> writers_of_both(const Target& target) {
+  std::vector<Guid> all;
+  for (const int process : {target.camera, target.culprit}) {
+    const auto learned = target.eavesdropper->of(process);
+    for (const auto& each : learned.endpoints)
+      if (!each.guid.is_reader()) all.push_back(each.guid);
+    for (const std::uint8_t entity : {3, 4}) {
+      Guid guid = learned.participant;
+      guid.bytes[13] = 0, guid.bytes[14] = entity, guid.bytes[15] = 0xc2;
+      all.push_back(guid);
+    }
+  }
+  return all;
+}
 Ongoing absurd_heartbeats(const Target& target) {
   constexpr std::int64_t kAbsurd = std::int64_t{1} << 60;
   std::vector<Bytes> all;
-  for (const auto& each : target.eavesdropper->of(target.camera).endpoints) {
-    if (each.guid.is_reader()) continue;
-    const TestDatagram from(each.guid.prefix());
-    all.push_back(TestDatagram(from).gap(each.guid, 1, kAbsurd).bytes());
-    all.push_back(TestDatagram(from).heartbeat(each.guid, kAbsurd, kAbsurd, 1 << 30).bytes());
-    all.push_back(TestDatagram(from).heartbeat(each.guid, 1, kAbsurd, 1 << 29).bytes());
-    all.push_back(TestDatagram(from).data(each.guid, kAbsurd).bytes());
+  for (const Guid& each : writers_of_both(target)) {
+    const TestDatagram from(each.prefix());
+    all.push_back(TestDatagram(from).gap(each, 1, kAbsurd).bytes());
+    all.push_back(TestDatagram(from).heartbeat(each, kAbsurd, kAbsurd, 1 << 30).bytes());
+    all.push_back(TestDatagram(from).heartbeat(each, 1, kAbsurd, 1 << 29).bytes());
+    all.push_back(TestDatagram(from).data(each, kAbsurd).bytes());
   }
   return sends(target, all, 20ms);
 }
 // Each would take 20 MB.
 Ongoing huge_fragments(const Target& target) {
   std::vector<Bytes> all;
-  for (const auto& each : target.eavesdropper->of(target.camera).endpoints) {
-    if (each.guid.is_reader()) continue;
+  for (const Guid& each : writers_of_both(target)) {
     for (int i = 0; i < 20; ++i)
-      all.push_back(
-          TestDatagram(each.guid.prefix()).fragment(each.guid, 2 + i, 1, 1000, 20'000'000).bytes());
+      all.push_back(TestDatagram(each.prefix()).fragment(each, 2 + i, 1, 1000, 20'000'000).bytes());
   }
   return sends(target, all, 20ms);
 }
@@ -221,9 +233,9 @@ std::vector<Attack> attacks_by_datagrams() {
       {"diagnostics_in_its_name_from_elsewhere", diagnostics_in_its_name, there},
       {"transitions_in_its_name", transitions_in_its_name},
       {"transitions_in_its_name_from_elsewhere", transitions_in_its_name, there},
-      {"absurd_heartbeats", absurd_heartbeats},
+      {"absurd_heartbeats", absurd_heartbeats, Place::kHere, true, "datagrams were kept out"},
       {"absurd_heartbeats_from_elsewhere", absurd_heartbeats, there},
-      {"huge_fragments", huge_fragments},
+      {"huge_fragments", huge_fragments, Place::kHere, true},
       {"huge_fragments_from_elsewhere", huge_fragments, there},
       {"replays", replays, Place::kHere, true},
       {"a_thousand_participants", a_thousand_participants},

@@ -1,8 +1,11 @@
 // Attackers with a middleware of their own: nodes that publish, claim and answer what they should not.
+#include <atomic>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "base/lifecycle_state.h"
 #include "base/value.h"
@@ -121,7 +124,8 @@ class FalseAnswers {
         states_(std::move(*ros2::ServiceServer::create(
             node_, {std::string(kCamera) + "/get_state", std::string(ros2::srv::GetState::kType)},
             ros2::qos::kServices,
-            [](ros2::ByteView) {
+            [this](ros2::ByteView) {
+              ++asked_;
               ros2::srv::GetState::Response response;
               response.current_state.id = static_cast<std::uint8_t>(LifecycleState::kFinalized);
               return ros2::encode(response);
@@ -133,7 +137,13 @@ class FalseAnswers {
             [](ros2::ByteView) { return ros2::encode(ros2::srv::ChangeState::Response{true}); }))) {
   }
 
+  // culprit asks each server of the service.
+  ~FalseAnswers() { EXPECT_GT(asked_, 0); }
+  FalseAnswers(const FalseAnswers&) = delete;
+  FalseAnswers& operator=(const FalseAnswers&) = delete;
+
  private:
+  std::atomic<int> asked_ = 0;
   ros2::LiveContext context_;
   ros2::NodeEntry node_;
   std::unique_ptr<ros2::ServiceServer> states_;
@@ -203,8 +213,10 @@ std::vector<Attack> attacks_by_participants() {
       {"garbage_as_a_lease", garbage_as_a_lease},
       {"garbage_as_discovery_info", garbage_as_discovery_info},
       {"a_namesake", a_namesake, there},
-      {"false_answers", false_answers, there},
-      {"claims_the_camera", claims_the_camera},
+      {"false_answers", false_answers, Place::kHere, true},
+      {"false_answers_from_elsewhere", false_answers, there},
+      {"claims_the_camera", claims_the_camera, Place::kHere, true,
+       "claims the name /managed_subsystem/camera"},
       {"claims_names_that_steer_terminals", claims_names_that_steer_terminals},
       {"claims_endless_names", claims_endless_names},
       {"claims_two_thousand_nodes", claims_two_thousand_nodes},

@@ -116,7 +116,7 @@ Ongoing a_thousand_requests_a_second(const Target& target) {
 std::vector<Attack> attacks_on_the_page() {
   return {
       {"many_connections", many_connections},
-      {"endless_headers", endless_headers},
+      {"endless_headers", endless_headers, Place::kHere, true},
       {"slow_requests", slow_requests},
       {"slow_bodies", slow_bodies},
       {"endless_bodies", endless_bodies},

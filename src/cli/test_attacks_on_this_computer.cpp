@@ -276,7 +276,7 @@ std::vector<Attack> attacks_on_this_computer() {
       {"a_busy_machine", a_busy_machine},
       {"culprit_is_frozen", culprit_is_frozen},
       {"little_memory", little_memory},
-      {"few_descriptors", few_descriptors},
+      {"few_descriptors", few_descriptors, Place::kHere, true},
       {"few_threads", few_threads},
   };
 }

@@ -3,14 +3,14 @@
 #pragma once
 
 #include "live/observer.h"
-#include "recorder/recorder.h"
+#include "recorder/incident_recorder.h"
 
 namespace culprit::live {
 
 class BlackBox : public Observer {
  public:
   // The recorder must outlive this.
-  explicit BlackBox(recorder::Recorder& recorder) : recorder_(recorder) {}
+  explicit BlackBox(recorder::IncidentRecorder& recorder) : recorder_(recorder) {}
 
   void begins(const Manager& manager, std::function<Remarks()> remarks, Time start) override;
   void stepped(const Runtime::Step& step) override;
@@ -18,7 +18,7 @@ class BlackBox : public Observer {
   void announced(Time at, const EventWords& words, const std::string& text) override;
 
  private:
-  recorder::Recorder& recorder_;
+  recorder::IncidentRecorder& recorder_;
   const Manager* manager_ = nullptr;  // null: none has begun
 };
 

@@ -409,15 +409,29 @@ void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
     is_bequest_new_ = true;
   }
   if (frame_.advises && frame_.lease) seen_.emplace(rules_, robot_->now());
-  if (frame_.records) {
-    journal::Recorder::Options recorder;
-    recorder.path = frame_.options.journal;
-    recorder.wall_clock = wall_now;
-    recorder.unwritten = std::move(beginning.unwritten);
-    recorder.on_trouble = [this](const std::string& what) { robot_->report(what); };
-    recorder_ = std::make_unique<journal::Recorder>(
-        std::move(beginning.writer), std::move(recorder), session, manager_->knowledge());
+  if (frame_.records) record(session, beginning);
+  make_runtime();
+  robot_->link().publish(health(manager_->knowledge()));
+  // No order was before the beginning.
+  for (Observation& each : seen) {
+    if (std::holds_alternative<Order>(each.what)) each.at = session.start;
   }
+  join_fleet();
+  runtime_->step(seen);
+  bequeath();
+}
+
+void LiveSession::record(const journal::Session& session, RunBeginning& beginning) {
+  journal::Recorder::Options recorder;
+  recorder.path = frame_.options.journal;
+  recorder.wall_clock = wall_now;
+  recorder.unwritten = std::move(beginning.unwritten);
+  recorder.on_trouble = [this](const std::string& what) { robot_->report(what); };
+  recorder_ = std::make_unique<journal::Recorder>(std::move(beginning.writer), std::move(recorder),
+                                                  session, manager_->knowledge());
+}
+
+void LiveSession::make_runtime() {
   runtime_ = std::make_unique<Runtime>(*manager_, *robot_);
   if (Observer* observer = frame_.observer; observer != nullptr) {
     is_observed_ = true;
@@ -442,14 +456,6 @@ void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
     end_with_launches();
   };
   runtime_->on_events = [this](std::span<const Event> events) { tell(events); };
-  robot_->link().publish(health(manager_->knowledge()));
-  // No order was before the beginning.
-  for (Observation& each : seen) {
-    if (std::holds_alternative<Order>(each.what)) each.at = session.start;
-  }
-  join_fleet();
-  runtime_->step(seen);
-  bequeath();
 }
 
 // Sends the successor what was learned and tried, if it is new, and not for each step of many.

@@ -137,6 +137,8 @@ class LiveSession {
   std::vector<Order> to_leave_alone(const std::map<std::string, std::string>& nodes) const;
   void manage(RunBeginning beginning, std::vector<Observation> seen, std::string occasion,
               std::optional<Time> watched_since = {});
+  void record(const journal::Session& session, RunBeginning& beginning);
+  void make_runtime();
   void bequeath();
   void join_fleet();
   void leave_fleet();

@@ -8,20 +8,20 @@
 
 namespace culprit {
 
-std::unique_ptr<web::Server> serve_this_machine(const WhoServes& who,
-                                                std::vector<web::Route> routes, web::Hub& hub,
-                                                std::FILE* out) {
+std::unique_ptr<web::HttpServer> serve_this_machine(const WhoServes& who,
+                                                    std::vector<web::Route> routes, web::Hub& hub,
+                                                    std::FILE* out) {
   live::remove_left_sockets();
   const auto socket = live::own_socket(who.domain);
-  Expected<std::unique_ptr<web::Server>> server(nullptr);
+  Expected<std::unique_ptr<web::HttpServer>> server(nullptr);
   if (socket) {
-    web::Server::Options options;
+    web::HttpServer::Options options;
     options.socket = socket->string();
     options.openapi = web::openapi();
     options.about = {{"version", who.version}, {"robot", who.robot}, {"rules", who.rules},
                      {"domain", who.domain},   {"node", who.node},   {"process", getpid()},
                      {"page", who.page}};
-    server = web::Server::start(std::move(options), std::move(routes), &hub);
+    server = web::HttpServer::start(std::move(options), std::move(routes), &hub);
   }
   if (!socket || !server) {
     say(stderr, "culprit: status, pause and the like cannot be asked of this culprit: {}\n",

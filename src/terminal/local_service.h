@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "http/server.h"
+#include "http/http_server.h"
 
 namespace culprit {
 
@@ -20,8 +20,8 @@ struct WhoServes {
 
 // Serves until the server is destroyed, and says on `out` how to ask. Null, and said, if that is
 // impossible: a robot is managed all the same.
-std::unique_ptr<web::Server> serve_this_machine(const WhoServes& who,
-                                                std::vector<web::Route> routes, web::Hub& hub,
-                                                std::FILE* out = stdout);
+std::unique_ptr<web::HttpServer> serve_this_machine(const WhoServes& who,
+                                                    std::vector<web::Route> routes, web::Hub& hub,
+                                                    std::FILE* out = stdout);
 
 }  // namespace culprit

@@ -90,13 +90,13 @@ Expected<web::Access> access_for(const WebOptions& options) {
 
 }  // namespace
 
-Expected<std::unique_ptr<web::Server>> serve(const WebOptions& options,
-                                             std::vector<web::Route> routes, web::Hub* hub,
-                                             std::FILE* out) {
+Expected<std::unique_ptr<web::HttpServer>> serve(const WebOptions& options,
+                                                 std::vector<web::Route> routes, web::Hub* hub,
+                                                 std::FILE* out) {
   auto access = access_for(options);
   if (!access) return Error{access.error()};
-  web::Server::Options server{options.address, options.port.value_or(WebOptions::kUsualPort),
-                              std::move(*access)};
+  web::HttpServer::Options server{options.address, options.port.value_or(WebOptions::kUsualPort),
+                                  std::move(*access)};
   if (!options.certificate.empty()) {
     auto tls = web::TlsContext::load(options.certificate, options.key);
     if (!tls) return Error{tls.error()};
@@ -104,10 +104,10 @@ Expected<std::unique_ptr<web::Server>> serve(const WebOptions& options,
   }
   server.app = web::app();
   server.openapi = web::openapi();
-  auto started = web::Server::start(server, routes, hub);
+  auto started = web::HttpServer::start(server, routes, hub);
   if (!started && !options.port) {
     server.port = 0;
-    started = web::Server::start(server, std::move(routes), hub);
+    started = web::HttpServer::start(server, std::move(routes), hub);
   }
   if (!started) return started;
   if (server.access.is_local) {

@@ -8,7 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "http/server.h"
+#include "http/http_server.h"
 
 namespace culprit {
 
@@ -30,8 +30,8 @@ struct WebOptions {
 
 // Serves until the server is destroyed, and says on `out` where. `hub` may be null.
 // Errors: the address is not local and there is no token file; a file cannot be used; or it cannot be listened at.
-Expected<std::unique_ptr<web::Server>> serve(const WebOptions& options,
-                                             std::vector<web::Route> routes, web::Hub* hub,
-                                             std::FILE* out = stdout);
+Expected<std::unique_ptr<web::HttpServer>> serve(const WebOptions& options,
+                                                 std::vector<web::Route> routes, web::Hub* hub,
+                                                 std::FILE* out = stdout);
 
 }  // namespace culprit

@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-#include "http/server.h"
+#include "http/http_server.h"
 
 namespace culprit::web {
 

@@ -153,6 +153,19 @@ void Metrics::look(const Manager& manager, Counts& counts) {
   counts.is_storm = manager.governor().storm().has_value();
 }
 
+std::string Metrics::step_times() const {
+  std::string out;
+  std::uint64_t below = 0;
+  for (std::size_t i = 0; i < kStepBounds.size(); ++i) {
+    below += step_times_[i];
+    out += fmt::format("culprit_step_seconds_bucket{{le=\"{}\"}} {}\n", kStepBounds[i], below);
+  }
+  below += step_times_.back();
+  out += fmt::format("culprit_step_seconds_bucket{{le=\"+Inf\"}} {}\n", below);
+  return out + fmt::format("culprit_step_seconds_sum {}\nculprit_step_seconds_count {}\n",
+                           static_cast<double>(step_nanoseconds_) / 1e9, below);
+}
+
 std::string Metrics::text() const {
   Counts counts;
   {
@@ -205,15 +218,7 @@ std::string Metrics::text() const {
   one("culprit_observations_total", "counter", "Observations of the robot.", observations_);
 
   begin("culprit_step_seconds", "histogram", "How long the manager's steps took.");
-  std::uint64_t below = 0;
-  for (std::size_t i = 0; i < kStepBounds.size(); ++i) {
-    below += step_times_[i];
-    out += fmt::format("culprit_step_seconds_bucket{{le=\"{}\"}} {}\n", kStepBounds[i], below);
-  }
-  below += step_times_.back();
-  out += fmt::format("culprit_step_seconds_bucket{{le=\"+Inf\"}} {}\n", below);
-  out += fmt::format("culprit_step_seconds_sum {}\nculprit_step_seconds_count {}\n",
-                     static_cast<double>(step_nanoseconds_) / 1e9, below);
+  out += step_times();
   begin("culprit_robot_info", "gauge", "Always 1; the robot's name.");
   out += fmt::format("culprit_robot_info{{{}}} 1\n", counts.info);
   return out + process_metrics();

@@ -66,6 +66,7 @@ class Metrics {
 
   static void count(const Event& event, const RuleSet& rules, Counts& counts);
   static void look(const Manager& manager, Counts& counts);
+  std::string step_times() const;
 
   std::array<std::atomic<std::uint64_t>, kStepBounds.size() + 1> step_times_{};  // by bucket
   std::atomic<std::uint64_t> steps_ = 0;

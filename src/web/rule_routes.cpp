@@ -3,7 +3,7 @@
 #include <array>
 
 #include "language/checker.h"
-#include "lsp/server.h"
+#include "lsp/language_server.h"
 #include "rule_files/rule_files.h"
 #include "rule_json/from_json.h"
 #include "rule_json/to_json.h"
@@ -46,18 +46,18 @@ Answer ask(const RuleDesk& desk, const Json& body) {
   const auto text = text_of(body, "text");
   if (!text) return refuse(400, "send the rules as 'text'");
   Json reply{{"diagnostics", Json::array()}, {"result", nullptr}};
-  lsp::Server server("web",
-                     [&](const Json& message) {
-                       if (message.contains("id")) {
-                         reply["result"] = message.value("result", Json());
-                       } else if (message["params"]["uri"] == kUri) {
-                         reply["diagnostics"] = message["params"]["diagnostics"];
-                       }
-                     },
-                     {desk.loader(), [&](const std::string&) {
-                        return desk.can_save() ? rule_files::includable(desk.path())
-                                               : std::vector<std::string>{};
-                      }});
+  lsp::LanguageServer server("web",
+                             [&](const Json& message) {
+                               if (message.contains("id")) {
+                                 reply["result"] = message.value("result", Json());
+                               } else if (message["params"]["uri"] == kUri) {
+                                 reply["diagnostics"] = message["params"]["diagnostics"];
+                               }
+                             },
+                             {desk.loader(), [&](const std::string&) {
+                                return desk.can_save() ? rule_files::includable(desk.path())
+                                                       : std::vector<std::string>{};
+                              }});
   const Json document{{"uri", kUri}};
   server.handle({{"method", "textDocument/didOpen"},
                  {"params", {{"textDocument", {{"uri", kUri}, {"text", *text}}}}}});

@@ -102,7 +102,7 @@ SET component = EXCLUDED.component, ended = EXCLUDED.ended, repair_s = EXCLUDED.
 
 Field uuid_or_null(const std::string& id) { return id.empty() ? Field() : Field(id); }
 
-Expected<void> introduce(Server& server, const Outbox& outbox, const Introduction& introduction) {
+Expected<void> introduce(Postgres& server, const Outbox& outbox, const Introduction& introduction) {
   const Identity& identity = outbox.identity();
   const auto dropped = outbox.dropped();
   if (!dropped) return Error{dropped.error()};
@@ -120,7 +120,7 @@ Expected<void> introduce(Server& server, const Outbox& outbox, const Introductio
   return {};
 }
 
-Expected<void> write(Server& server, const Outbox& outbox, const Introduction& introduction,
+Expected<void> write(Postgres& server, const Outbox& outbox, const Introduction& introduction,
                      const Waiting& waiting) {
   if (const auto told = introduce(server, outbox, introduction); !told) return told;
   const std::pair<const char*, std::vector<Field>> statements[] = {
@@ -134,7 +134,7 @@ Expected<void> write(Server& server, const Outbox& outbox, const Introduction& i
   return {};
 }
 
-Expected<void> in_transaction(Server& server, const Outbox& outbox,
+Expected<void> in_transaction(Postgres& server, const Outbox& outbox,
                               const Introduction& introduction, const Waiting& waiting) {
   if (const auto begun = server.run("BEGIN"); !begun) return begun;
   auto done = write(server, outbox, introduction, waiting);
@@ -146,7 +146,7 @@ Expected<void> in_transaction(Server& server, const Outbox& outbox,
 }
 
 // Those rows alone that are wrong are not sent.
-Expected<void> one_by_one(Server& server, Outbox& outbox, const Introduction& introduction,
+Expected<void> one_by_one(Postgres& server, Outbox& outbox, const Introduction& introduction,
                           const Waiting& waiting,
                           const std::function<void(const std::string&)>& refused) {
   const auto attempt = [&](Waiting one, const std::string& what) -> Expected<void> {
@@ -171,7 +171,7 @@ Expected<void> one_by_one(Server& server, Outbox& outbox, const Introduction& in
 
 }  // namespace
 
-Expected<void> send(Server& server, Outbox& outbox, const Introduction& introduction,
+Expected<void> send(Postgres& server, Outbox& outbox, const Introduction& introduction,
                     const std::function<void(const std::string&)>& refused) {
   while (true) {
     const auto waiting = outbox.waiting(kAtOnce);
@@ -190,7 +190,7 @@ Expected<void> send(Server& server, Outbox& outbox, const Introduction& introduc
   }
 }
 
-Expected<Twin> find_twin(Server& server, const Identity& identity, const Run& run) {
+Expected<Twin> find_twin(Postgres& server, const Identity& identity, const Run& run) {
   // Heard again after this one was first: neither is the other's forerunner.
   const auto rows = server.query(
       "SELECT (other.first_heard, other.run) < (mine.first_heard, mine.run) FROM culprit.run mine "
@@ -204,7 +204,7 @@ Expected<Twin> find_twin(Server& server, const Identity& identity, const Run& ru
   return text_in((*rows)[0][0]) == "t" ? Twin::kElder : Twin::kYounger;
 }
 
-Expected<FleetKnowledge> ask(Server& server, const Identity& identity, const RuleSet& rules,
+Expected<FleetKnowledge> ask(Postgres& server, const Identity& identity, const RuleSet& rules,
                              const std::string& context) {
   if (const auto made = server.query("SELECT culprit.refresh_pool()"); !made)
     return Error{made.error()};

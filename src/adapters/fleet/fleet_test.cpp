@@ -71,7 +71,7 @@ class SimulatedRobot {
   }
   // The database is visited, and what goes wrong goes wrong.
   enum class Luck : std::uint8_t { kAny, kGood };
-  void visits(Server& server, Luck luck = Luck::kAny) {
+  void visits(Postgres& server, Luck luck = Luck::kAny) {
     const std::atomic<bool> stop = false;
     const bool has_luck = luck == Luck::kGood;
     auto outbox = Outbox::open(outbox_beside(journal_->path()), machine_);
@@ -174,7 +174,7 @@ TEST_F(Fleet, CountsAreTheSumOfWhatHappenedWhateverHappensToRobots) {
   for (int i = 0; i < count; ++i)
     robots.push_back(std::make_unique<SimulatedRobot>(
         folder / std::to_string(i), "machine " + std::to_string(i), random, heard));
-  Server server = postgres->connect("rover");
+  Postgres server = postgres->connect("rover");
   const auto one_of = [&](int most) { return std::uniform_int_distribution(0, most - 1)(random); };
   for (int step = 0; step < 40 * count; ++step) {
     SimulatedRobot& robot =
@@ -239,7 +239,7 @@ TEST_F(Fleet, NothingIsLostOrCountedTwiceByOneThatIsKilledAtAnyInstant) {
   ASSERT_TRUE(outbox) << outbox.error();
   JournalTail tail(journal);
   ASSERT_TRUE(tail.follow(*outbox, stop));
-  Server server = postgres->connect("rover");
+  Postgres server = postgres->connect("rover");
   ASSERT_TRUE(send(server, *outbox, {"robot", *tail.run()}, {}));
   Counts happened;
   const auto reader = journal::Reader::open(journal);
@@ -386,7 +386,7 @@ TEST_F(Fleet, WhoeverDoesNotAnswerIsNotWaitedFor) {
   TestJournal journal(folder / "a.journal");
   journal.begins();
   journal.outcome("restart", true);
-  Server owner = postgres->connect();
+  Postgres owner = postgres->connect();
   ASSERT_TRUE(owner.run("BEGIN; LOCK TABLE culprit.robot"));
   {
     Listening robot(*postgres, journal.path());
@@ -428,11 +428,11 @@ TEST_F(Fleet, ARobotReadsAndChangesNoRowsButItsOwn) {
   auto outbox = Outbox::open(outbox_beside(journal.path()), "");
   JournalTail tail(journal.path());
   ASSERT_TRUE(tail.follow(*outbox, stop));
-  Server rover = postgres->connect("rover");
+  Postgres rover = postgres->connect("rover");
   ASSERT_TRUE(send(rover, *outbox, {"rover", *tail.run()}, {}));
   const std::string robot = outbox->identity().robot;
   const std::string run = tail.run()->id;
-  Server stranger = postgres->connect("stranger");
+  Postgres stranger = postgres->connect("stranger");
   for (const char* table : {"robot", "run", "outcome", "failure"}) {
     const std::string name = std::string("culprit.") + table;
     EXPECT_EQ(text_in((*rover.query("SELECT count(*) FROM " + name))[0][0]), "1") << table;
@@ -474,7 +474,7 @@ TEST_F(Fleet, ARobotReadsAndChangesNoRowsButItsOwn) {
   EXPECT_TRUE(stranger.query("SELECT culprit.refresh_pool()"));
   EXPECT_EQ(text_in((*stranger.query("SELECT robots FROM culprit.pool"))[0][0]), "1");
   postgres->run("CREATE ROLE boss LOGIN IN ROLE culprit_reader");
-  Server boss = postgres->connect("boss");
+  Postgres boss = postgres->connect("boss");
   EXPECT_EQ(text_in((*boss.query("SELECT count(*) FROM culprit.failure"))[0][0]), "1");
   EXPECT_FALSE(boss.query("UPDATE culprit.robot SET name = 'x'"));
 }
@@ -489,7 +489,7 @@ INSERT INTO culprit.run(run, robot, began, culprit, model, rule_set, context)
   SELECT md5('u' || i)::uuid, md5('r' || i)::uuid, now(), '', '', '', '' FROM generate_series(1, 5000) i;
 ANALYZE;
 )sql");
-  Server rover = postgres->connect("rover");
+  Postgres rover = postgres->connect("rover");
   for (const std::string statement :
        {"UPDATE culprit.run SET last_heard = now() WHERE run = md5('u1')::uuid",
         "SELECT 1 FROM culprit.outcome WHERE robot = md5('r1')::uuid",
@@ -507,7 +507,7 @@ TEST_F(Fleet, ManyShareTheSessionsOfAPooler) {
   postgres->run("CREATE ROLE other LOGIN IN ROLE culprit_robot");
   const TestPooler pooler(*postgres, {"rover", "other"});
   const auto session = [&](const std::string& login) {
-    auto server = Server::connect(pooler.address(login), stop);
+    auto server = Postgres::connect(pooler.address(login), stop);
     EXPECT_TRUE(server) << server.error();
     return std::move(*server);
   };
@@ -520,7 +520,7 @@ TEST_F(Fleet, ManyShareTheSessionsOfAPooler) {
       auto outbox = Outbox::open(outbox_beside(journal.path()), "");
       JournalTail tail(journal.path());
       ASSERT_TRUE(tail.follow(*outbox, stop));
-      Server server = session(login);
+      Postgres server = session(login);
       ASSERT_TRUE(check_schema(server));
       const auto sent = send(server, *outbox, {login, *tail.run()}, {});
       ASSERT_TRUE(sent) << sent.error();
@@ -544,7 +544,7 @@ TEST_F(Fleet, ANewRobotBeginsWithWhatTheOthersLearned) {
     auto outbox = Outbox::open(outbox_beside(journal.path()), "");
     JournalTail tail(journal.path());
     ASSERT_TRUE(tail.follow(*outbox, stop));
-    Server server = postgres->connect("rover");
+    Postgres server = postgres->connect("rover");
     ASSERT_TRUE(send(server, *outbox, {"veteran", *tail.run()}, {}));
   }
   TestJournal journal(folder / "novice.journal");
@@ -612,7 +612,7 @@ TEST_F(Fleet, OfTwoThatReportAsOneTheSecondBecomesARobotOfItsOwn) {
 }
 
 TEST_F(Fleet, ADatabaseIsSetUpAsOftenAsOneLikes) {
-  Server owner = postgres->connect();
+  Postgres owner = postgres->connect();
   const auto again = set_up(owner, {});
   ASSERT_TRUE(again) << again.error();
   EXPECT_TRUE(again->empty()) << again->front();
@@ -630,7 +630,7 @@ TEST_F(Fleet, ADatabaseIsSetUpAsOftenAsOneLikes) {
   EXPECT_NE(newer.error().find("newer culprit"), std::string::npos);
   // A login that may not.
   postgres->run("CREATE ROLE somebody LOGIN");
-  Server somebody = postgres->connect("somebody");
+  Postgres somebody = postgres->connect("somebody");
   EXPECT_FALSE(set_up(somebody, {}));
 }
 

@@ -32,7 +32,7 @@ struct Member::State {
   Expected<void> open_outbox();
   void tell_of_dropped();
   void tell_of_deviations(const FleetKnowledge& knowledge);
-  Expected<void> look_for_twin(Server& server);
+  Expected<void> look_for_twin(Postgres& server);
   Duration jittered(Duration about);
 
   const Options options;
@@ -209,7 +209,7 @@ void Member::State::fail_to_keep(const std::string& why) {
 }
 
 Expected<void> Member::State::visit() {
-  auto server = Server::connect(options.address, stop);
+  auto server = Postgres::connect(options.address, stop);
   if (!server) return Error{server.error()};
   if (const auto fits = check_schema(*server); !fits) return fits;
   const auto refused = [this](const std::string& what) {
@@ -283,7 +283,7 @@ void Member::State::tell_of_deviations(const FleetKnowledge& knowledge) {
 }
 
 // A copy of this robot's disk on a computer that cannot be distinguished from this one.
-Expected<void> Member::State::look_for_twin(Server& server) {
+Expected<void> Member::State::look_for_twin(Postgres& server) {
   const auto twin = find_twin(server, outbox->identity(), *tail.run());
   if (!twin) return Error{twin.error()};
   if (*twin != Twin::kElder) return {};

@@ -16,7 +16,7 @@
 #include <string>
 
 #include "base/time.h"
-#include "fleet/server.h"
+#include "fleet/postgres.h"
 #include "language/rule_set.h"
 #include "robot/observation.h"
 

@@ -8,7 +8,7 @@ namespace {
 // One set-up at a time, of whatever version.
 constexpr const char* kLock = "SELECT pg_advisory_xact_lock(hashtext('culprit fleet init'))";
 
-Expected<int> version_of(Server& server) {
+Expected<int> version_of(Postgres& server) {
   const auto there = server.query("SELECT to_regclass('culprit.schema_version') IS NOT NULL");
   if (!there) return Error{there.error()};
   if (there->empty() || text_in((*there)[0][0]) != "t") return 0;
@@ -17,7 +17,7 @@ Expected<int> version_of(Server& server) {
   return version->empty() ? 0 : static_cast<int>(integer_in((*version)[0][0]));
 }
 
-Expected<void> make_roles(Server& server, Done& done) {
+Expected<void> make_roles(Postgres& server, Done& done) {
   for (const std::string role : {"culprit_robot", "culprit_reader"}) {
     const auto there = server.query("SELECT 1 FROM pg_roles WHERE rolname = $1", {role});
     if (!there) return Error{there.error()};
@@ -32,7 +32,7 @@ Expected<void> make_roles(Server& server, Done& done) {
   return {};
 }
 
-Expected<void> migrate(Server& server, int from, Done& done) {
+Expected<void> migrate(Postgres& server, int from, Done& done) {
   for (int version = from; version < schema_version(); ++version) {
     const auto made = server.run(migration(version));
     if (!made) return Error{"version " + std::to_string(version + 1) + ": " + made.error()};
@@ -45,7 +45,7 @@ Expected<void> migrate(Server& server, int from, Done& done) {
   return {};
 }
 
-Expected<void> maintain(Server& server, const Setup& setup, Done& done) {
+Expected<void> maintain(Postgres& server, const Setup& setup, Done& done) {
   const auto kept = server.query(
       "INSERT INTO culprit.setting VALUES('keep_days', $1) ON CONFLICT (name) DO UPDATE SET value "
       "= "
@@ -58,7 +58,7 @@ Expected<void> maintain(Server& server, const Setup& setup, Done& done) {
   return {};
 }
 
-Expected<Done> set_up_in_transaction(Server& server, const Setup& setup) {
+Expected<Done> set_up_in_transaction(Postgres& server, const Setup& setup) {
   Done done;
   if (const auto locked = server.query(kLock); !locked) return Error{locked.error()};
   const auto version = version_of(server);
@@ -77,7 +77,7 @@ Expected<Done> set_up_in_transaction(Server& server, const Setup& setup) {
 
 int schema_version() { return migration_count(); }
 
-Expected<Done> set_up(Server& server, const Setup& setup) {
+Expected<Done> set_up(Postgres& server, const Setup& setup) {
   if (const auto begun = server.run("BEGIN"); !begun) return Error{begun.error()};
   auto done = set_up_in_transaction(server, setup);
   if (!done) {
@@ -88,7 +88,7 @@ Expected<Done> set_up(Server& server, const Setup& setup) {
   return done;
 }
 
-Expected<void> check_schema(Server& server) {
+Expected<void> check_schema(Postgres& server) {
   const auto version = version_of(server);
   if (!version) return Error{version.error()};
   if (*version == 0)

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "fleet/server.h"
+#include "fleet/postgres.h"
 
 namespace culprit::fleet {
 
@@ -25,9 +25,9 @@ struct Setup {
 // Makes the schema and the roles, or brings them up to date; makes partitions for the months that
 // come, and drops those that are over. May be repeated. Errors: the database is of a newer culprit,
 // or the login may not do so.
-Expected<Done> set_up(Server& server, const Setup& setup);
+Expected<Done> set_up(Postgres& server, const Setup& setup);
 
 // Whether it is a database that this culprit can speak with. Errors say what to do.
-Expected<void> check_schema(Server& server);
+Expected<void> check_schema(Postgres& server);
 
 }  // namespace culprit::fleet

@@ -30,7 +30,7 @@ TestPooler::TestPooler(const TestPostgres& postgres, const std::vector<std::stri
   users.close();
   pid_ = start_as_nobody({kProgram, folder_ / "pgbouncer.ini"}, folder_ / "log");
   for (int i = 0; i < 1500; ++i) {
-    if (Server::connect(address(logins.front()), kGoesOn)) return;
+    if (Postgres::connect(address(logins.front()), kGoesOn)) return;
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   throw std::runtime_error("pgbouncer does not start");

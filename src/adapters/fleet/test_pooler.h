@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/test_folder.h"
-#include "fleet/server.h"
+#include "fleet/postgres.h"
 #include "fleet/test_postgres.h"
 
 namespace culprit::fleet {

@@ -89,7 +89,7 @@ void TestPostgres::start() {
                           "-c", "max_connections=40", "-c", "autovacuum=off"},
                          folder_ / "log");
   for (int i = 0; i < 1500; ++i) {
-    if (Server::connect(address(), kGoesOn)) return;
+    if (Postgres::connect(address(), kGoesOn)) return;
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   throw std::runtime_error("PostgreSQL does not start");
@@ -106,26 +106,26 @@ Address TestPostgres::address(const std::string& login) const {
   return {"postgresql:///postgres?host=" + folder_.path().string() + "&user=" + login};
 }
 
-Server TestPostgres::connect(const std::string& login) const {
-  auto server = Server::connect(address(login), kGoesOn);
+Postgres TestPostgres::connect(const std::string& login) const {
+  auto server = Postgres::connect(address(login), kGoesOn);
   if (!server) throw std::runtime_error(server.error());
   return std::move(*server);
 }
 
 Rows TestPostgres::query(const std::string& sql) const {
-  Server server = connect();
+  Postgres server = connect();
   auto rows = server.query(sql);
   if (!rows) throw std::runtime_error(sql + ": " + rows.error());
   return *rows;
 }
 
 void TestPostgres::run(const std::string& sql) const {
-  Server server = connect();
+  Postgres server = connect();
   if (const auto done = server.run(sql); !done) throw std::runtime_error(sql + ": " + done.error());
 }
 
 void TestPostgres::set_up_fleet(const std::string& login) const {
-  Server server = connect();
+  Postgres server = connect();
   if (const auto done = set_up(server, {}); !done) throw std::runtime_error(done.error());
   run("CREATE ROLE " + login + " LOGIN IN ROLE culprit_robot");
 }

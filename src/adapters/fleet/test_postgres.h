@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/test_folder.h"
-#include "fleet/server.h"
+#include "fleet/postgres.h"
 
 namespace culprit::fleet {
 
@@ -39,7 +39,7 @@ class TestPostgres {
   // As this login, which needs no password.
   Address address(const std::string& login = "postgres") const;
   // Throws if that is impossible.
-  Server connect(const std::string& login = "postgres") const;
+  Postgres connect(const std::string& login = "postgres") const;
   // Runs a query as the owner of the database; throws if it fails.
   Rows query(const std::string& sql) const;
   void run(const std::string& sql) const;

@@ -1,4 +1,4 @@
-// Asks a running culprit of this machine, over its socket (Server::Options): the calls of its API.
+// Asks a running culprit of this machine, over its socket (HttpServer::Options): the calls of its API.
 //
 //     const LocalClient client("/run/culprit/0-4711.sock", std::chrono::seconds(1), user);
 //     const auto robot = client.get("/api/robot", LocalClient::kLargeAnswer);

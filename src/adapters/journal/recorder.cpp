@@ -66,17 +66,11 @@ Recorder::Recorder(std::optional<Writer> writer, Options options, const Session&
     : options_(std::move(options)),
       knowledge_(knowledge),
       rules_(knowledge.rules),
+      changes_(knowledge),
       writer_(std::move(writer)),
       where_{session.domain, session.boot},
       session_(to_json(session)),
       known_(session.learned) {
-  for (std::size_t s = 0; s < rules_.strategies.size(); ++s)
-    beliefs_.push_back(knowledge.beliefs[StrategyId(s)]);
-  for (std::size_t r = 0; r < rules_.rules.size(); ++r) {
-    const auto all = knowledge.couplings.of(RuleId(r));
-    couplings_.emplace_back(all.begin(), all.end());
-    latencies_.push_back(knowledge.latencies.learned(RuleId(r)));
-  }
   is_failing_ = !writer_;
   for (Entry& row : options_.unwritten) add(std::move(row));
   options_.unwritten.clear();
@@ -149,7 +143,7 @@ void Recorder::hand_over(Pending& step, std::span<const Command> commands,
     }
   }
   if (asks && !has_to_wait) has_to_wait = !is_with_the_kernel(*step.decided, step.now);
-  if (auto robot = newly_known(step.now)) decided(step).robot = std::move(robot);
+  if (auto robot = changes_.robot(step.now)) decided(step).robot = std::move(robot);
   hand_over(has_to_wait               ? Urgency::kNow
             : asks                    ? Urgency::kSynced
             : step.decided != nullptr ? Urgency::kSoon
@@ -186,7 +180,7 @@ void Recorder::take_outcomes(Pending& step) {
   }
   if (step.decided != nullptr && step.decided->number == 0) {
     step.decided->number = ++decisions_;
-    remember_rows(*step.decided);
+    keep_rows(*step.decided);
   }
 }
 
@@ -235,7 +229,7 @@ void Recorder::decide(Pending& step, std::span<const Command> commands,
   Decided& decision = decided(step);
   decision.commands.assign(commands.begin(), commands.end());
   decision.events.assign(events.begin(), events.end());
-  if (!events.empty()) decision.learned = changes();
+  if (!events.empty()) decision.learned = changes_.learned();
   const auto add_row = [&](std::string_view kind, std::string body) {
     decision.rows.push_back({0, step.wall, std::string(kind), std::move(body)});
   };
@@ -248,40 +242,15 @@ void Recorder::decide(Pending& step, std::span<const Command> commands,
   if (decision.rows.empty()) return;
   // Rows that were kept for this step earlier are among them.
   if (decision.number == 0) decision.number = ++decisions_;
-  remember_rows(decision);
+  keep_rows(decision);
 }
 
 // In case an intent follows before the journal has them.
-void Recorder::remember_rows(const Decided& decision) {
-  constexpr std::size_t kMaxRecent = IntentFile::kMaxBytes / 2;
-  if (recent_.empty() || recent_.back().decision != decision.number)
-    recent_.push_back({decision.number, {}});
-  std::string& rows = recent_.back().rows;
-  recent_bytes_ -= rows.size();
-  rows.clear();
-  constexpr std::size_t kMostBeside = 30;  // of each row, beside its kind and its body
-  std::size_t size = 0;
-  for (const Entry& row : decision.rows) size += kMostBeside + row.kind.size() + row.body.size();
-  rows.reserve(size);
-  for (const Entry& row : decision.rows) append_row(row, rows);
-  recent_bytes_ += rows.size();
-  if (recent_bytes_ <= kMaxRecent) return;
-  std::uint64_t saved = 0;
-  {
+void Recorder::keep_rows(const Decided& decision) {
+  recent_.keep(decision.number, decision.rows, [this] {
     const MutexLock lock(mutex_);
-    saved = saved_;
-  }
-  forget_recent(saved);
-  if (recent_bytes_ <= kMaxRecent) return;
-  forgotten_ = decision.number;
-  forget_recent(decision.number);
-}
-
-void Recorder::forget_recent(std::uint64_t upto) {
-  while (!recent_.empty() && recent_.front().decision <= upto) {
-    recent_bytes_ -= recent_.front().rows.size();
-    recent_.pop_front();
-  }
+    return saved_;
+  });
 }
 
 // Writes what an intent of `decision` follows from, and the intent itself, to the intent file. False:
@@ -302,11 +271,11 @@ bool Recorder::is_with_the_kernel(const Decided& decision, Time now) {
     saved = saved_;
     if (in_file_ <= saved) head = head_;
   }
-  if (!intents_ || forgotten_ > saved) return false;
-  forget_recent(saved);
+  if (!intents_ || recent_.forgotten() > saved) return false;
+  recent_.forget(saved);
   if (in_file_ <= saved) intents_->begin_after(std::move(head));
   rows_.clear();
-  for (const Recent& each : recent_) rows_ += each.rows;
+  recent_.append_to(rows_);
   if (const auto written = intents_->append(now, rows_); !written) {
     const MutexLock lock(mutex_);
     intents_.reset();
@@ -314,30 +283,8 @@ bool Recorder::is_with_the_kernel(const Decided& decision, Time now) {
     return false;
   }
   in_file_ = decision.number;
-  forget_recent(decision.number);
+  recent_.forget(decision.number);
   return true;
-}
-
-std::optional<KnownRobot> Recorder::newly_known(Time now) {
-  const std::uint64_t sightings = knowledge_.sightings.count();
-  const std::uint64_t changes =
-      knowledge_.graph.changes() + sightings + knowledge_.sightings.heard_count();
-  const bool is_old = robot_written_ != kLongAgo && later(robot_written_, kRobotAtLatest) <= now;
-  const bool was_looked_at =
-      robot_looked_at_ != kLongAgo && now < later(robot_looked_at_, kRobotPeriod);
-  // A first sighting is written at once: if the node died together with culprit, the journal would
-  // otherwise lack it. First sightings are rare; topics' publishers come and go all the time.
-  const bool is_first_sight = sightings != robot_sightings_;
-  if ((changes == robot_changes_ && !is_old) || (was_looked_at && !is_first_sight))
-    return std::nullopt;
-  robot_changes_ = changes;
-  robot_sightings_ = sightings;
-  robot_looked_at_ = now;
-  KnownRobot known = knowledge_.known_robot();
-  if (known == known_robot_ && !is_old) return std::nullopt;
-  robot_written_ = now;
-  known_robot_ = known;
-  return known;
 }
 
 void Recorder::wait_until_written() {
@@ -346,36 +293,6 @@ void Recorder::wait_until_written() {
   const std::uint64_t mine = handed_over_;
   done_.wait_for(lock, kPatience,
                  [&]() CULPRIT_REQUIRES(mutex_) { return written_ >= mine || is_failing_; });
-}
-
-Learned Recorder::changes() {
-  Learned learned;
-  for (std::size_t s = 0; s < beliefs_.size(); ++s) {
-    const Belief& belief = knowledge_.beliefs[StrategyId(s)];
-    if (belief == beliefs_[s]) continue;
-    beliefs_[s] = belief;
-    const Strategy& strategy = rules_.strategies[s];
-    learned.beliefs.push_back({rules_[strategy.rule].name, strategy.name, belief,
-                               knowledge_.beliefs.prior(StrategyId(s))});
-  }
-  for (std::size_t r = 0; r < couplings_.size(); ++r) {
-    const auto all = knowledge_.couplings.of(RuleId(r));
-    for (const Couplings::Learned& each : all) {
-      const auto is_same = [&](const Couplings::Learned& old) {
-        return old.cause == each.cause && old.coupling == each.coupling;
-      };
-      if (std::any_of(couplings_[r].begin(), couplings_[r].end(), is_same)) continue;
-      learned.couplings.push_back({rules_[each.cause].name, rules_.rules[r].name, each.coupling});
-    }
-    couplings_[r].assign(all.begin(), all.end());
-  }
-  for (std::size_t r = 0; r < latencies_.size(); ++r) {
-    const Latencies::Learned& latency = knowledge_.latencies.learned(RuleId(r));
-    if (latency == latencies_[r]) continue;
-    latencies_[r] = latency;
-    learned.latencies.push_back(named(rules_.rules[r].name, latency));
-  }
-  return learned;
 }
 
 void Recorder::run() {

@@ -15,7 +15,6 @@
 
 #include <array>
 #include <chrono>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -25,7 +24,8 @@
 
 #include "base/mutex.h"
 #include "journal/intent_file.h"
-#include "journal/known_robot.h"
+#include "journal/knowledge_changes.h"
+#include "journal/recent_rows.h"
 #include "journal/session.h"
 #include "journal/step_codec.h"
 #include "journal/writer.h"
@@ -53,10 +53,6 @@ class Recorder {
   // How long, and how many, steps that decide nothing are kept before they are handed over.
   static constexpr Duration kKept = std::chrono::milliseconds(100);
   static constexpr std::size_t kMaxKept = 16;
-  // The known robot is written once it has changed, and at the latest after kRobotAtLatest: old
-  // rows are dropped.
-  static constexpr Duration kRobotPeriod = std::chrono::seconds(1);
-  static constexpr Duration kRobotAtLatest = std::chrono::hours(1);
   static constexpr Duration kRetry = std::chrono::seconds(1);
   // How long an action waits for a disk that does not answer.
   static constexpr Duration kPatience = std::chrono::seconds(2);
@@ -144,13 +140,9 @@ class Recorder {
   void take_outcomes(Pending& step);
   void decide(Pending& step, std::span<const Command> commands, std::span<const Event> events);
   Decided& decided(Pending& step);
-  void remember_rows(const Decided& decision);
-  void forget_recent(std::uint64_t upto);
+  void keep_rows(const Decided& decision);
   bool is_with_the_kernel(const Decided& decision, Time now);
   void wait_until_written();
-  Learned changes();
-  // Nothing: it was written already.
-  std::optional<KnownRobot> newly_known(Time now);
   void run();
   void make_rows(Pending& pending);
   void make_decision(std::int64_t wall, Decided& decision);
@@ -173,30 +165,13 @@ class Recorder {
   const RuleSet& rules_;
 
   // Used by the manager's thread only.
-  std::vector<Belief> beliefs_;  // as written last
-  std::vector<std::vector<Couplings::Learned>> couplings_;
-  std::vector<Latencies::Learned> latencies_;
-
+  KnowledgeChanges changes_;
   std::unordered_map<std::uint64_t, std::string> asked_;  // changes that wait for their outcome
   std::uint64_t decisions_ = 0;
   std::optional<IntentFile> intents_;  // nothing: what is asked for waits for the journal
   std::uint64_t in_file_ = 0;          // the newest decision that it has
-  // The rows of decisions that are in no file yet, as far as is known: an intent may follow from
-  // them.
-  struct Recent {
-    std::uint64_t decision;
-    std::string rows;
-  };
-  std::deque<Recent> recent_;
+  RecentRows recent_;
   std::string rows_;  // memory that is used again
-  std::size_t recent_bytes_ = 0;
-  std::uint64_t forgotten_ = 0;  // the newest decision whose rows were too many to be kept here
-
-  KnownRobot known_robot_;  // as written last
-  std::uint64_t robot_changes_ = 0;
-  std::uint64_t robot_sightings_ = 0;
-  Time robot_looked_at_ = kLongAgo;
-  Time robot_written_ = kLongAgo;
 
   bool is_writer_needed_ = false;  // and not woken yet
 

@@ -1,78 +1,56 @@
 #include "journal/step_codec.h"
 
+#include <type_traits>
+#include <utility>
+
+#include "journal/fields.h"
+
 namespace culprit::journal {
 namespace {
 
+// A kind of observation or order, by its number in files.
+template <std::uint8_t kNumber, class T>
+struct Kind {
+  static constexpr std::uint8_t number = kNumber;
+  using Type = T;
+};
+
+template <class... Each>
+struct Kinds {
+  // The first one. A kind without a number does not compile.
+  template <class T>
+  static constexpr std::uint8_t number_of() {
+    constexpr std::uint8_t number = [] {
+      std::uint8_t first = 0;
+      ((first = first == 0 && std::is_same_v<T, typename Each::Type> ? Each::number : first), ...);
+      return first;
+    }();
+    static_assert(number > 0);
+    return number;
+  }
+  // Calls `read` with an empty one of the kind. False: no kind has this number.
+  template <class Read>
+  static bool make(std::uint8_t number, Read read) {
+    return ((number == Each::number && (read(typename Each::Type{}), true)) || ...);
+  }
+};
+
 // Files hold these numbers: they must not change.
-enum class Tag : std::uint8_t {
-  kNodeAppeared = 1,
-  kNodeVanished = 2,
-  kEndpointAppeared = 3,
-  kEndpointVanished = 4,
-  kSampleArrived = 5,
-  kSignalRead = 6,
-  kDiagnosticRead = 7,
-  kParameterRead = 8,
-  kLifecycleRead = 9,
-  kProcessSeen = 10,
-  kProbed = 11,
-  kReply = 12,
-  kLinkTrouble = 13,
-  kOrder = 14,
-  kNamesakesSeen = 15,
-  kHearingLost = 16,
-  kHearingRegained = 17,
-  kOverslept = 18,
-  kStatusHeard = 19,
-  kParametersListed = 20,
-  kProcessWorked = 21,
-  kHostReached = 22,
-  kEndsWith = 23,
-  kProcessSeenWithCause = 24,
-  kLauncherSeen = 25,
-  kPriorsTold = 26,
-  kLivesOn = 27,
-  kHostHeard = 28,
-  kListenerKnown = 29,
-  kStartedHere = 30,
-  kUsageSeen = 31,
-  kStartBarred = 32,
-  kPublisherKnown = 33,
-  kGoalsSeen = 34
-};
-
-enum class OrderTag : std::uint8_t {
-  kPause = 1,
-  kResume = 2,
-  kSetDryRun = 3,
-  kApprove = 4,
-  kRefuse = 5,
-  kSilence = 6,
-  kLiftSilence = 7,
-  kRunStrategy = 8,
-  kForget = 9,
-  kRevive = 10,
-  kEndStarted = 11,
-  kPropose = 12
-};
-
-// Flags of a launcher; together.
-constexpr std::uint8_t kEnded = 1;
-constexpr std::uint8_t kCrashed = 2;
-constexpr std::uint8_t kRanOthers = 4;
-
-// Beside a state of the lifecycle.
-constexpr std::uint8_t kShutDown = 0x80;
-
-enum class ValueTag : std::uint8_t {
-  kNone = 0,
-  kFalse = 1,
-  kTrue = 2,
-  kInteger = 3,
-  kReal = 4,
-  kText = 5,
-  kLifecycle = 6
-};
+constexpr std::uint8_t kProcessSeenWithCause = 24;
+using ObservationKinds = Kinds<
+    Kind<1, NodeAppeared>, Kind<2, NodeVanished>, Kind<3, EndpointAppeared>,
+    Kind<4, EndpointVanished>, Kind<5, SampleArrived>, Kind<6, SignalRead>, Kind<7, DiagnosticRead>,
+    Kind<8, ParameterRead>, Kind<9, LifecycleRead>, Kind<10, ProcessSeen>, Kind<11, Probed>,
+    Kind<12, Reply>, Kind<13, LinkTrouble>, Kind<14, Order>, Kind<15, NamesakesSeen>,
+    Kind<16, HearingLost>, Kind<17, HearingRegained>, Kind<18, Overslept>, Kind<19, StatusHeard>,
+    Kind<20, ParametersListed>, Kind<21, ProcessWorked>, Kind<22, HostReached>, Kind<23, EndsWith>,
+    Kind<kProcessSeenWithCause, ProcessSeen>, Kind<25, LauncherSeen>, Kind<26, PriorsTold>,
+    Kind<27, LivesOn>, Kind<28, HostHeard>, Kind<29, ListenerKnown>, Kind<30, StartedHere>,
+    Kind<31, UsageSeen>, Kind<32, StartBarred>, Kind<33, PublisherKnown>, Kind<34, GoalsSeen>>;
+using OrderKinds =
+    Kinds<Kind<1, Pause>, Kind<2, Resume>, Kind<3, SetDryRun>, Kind<4, Approve>, Kind<5, Refuse>,
+          Kind<6, Silence>, Kind<7, LiftSilence>, Kind<8, RunStrategy>, Kind<9, Forget>,
+          Kind<10, Revive>, Kind<11, EndStarted>, Kind<12, Propose>>;
 
 // Robots' clocks count from the start of the machine, or from 1970. A time beyond that by a century
 // is damage, and must not enter calculations.
@@ -81,583 +59,201 @@ bool is_plausible(Time time) {
   return time.time_since_epoch() > -kCentury && time.time_since_epoch() < 2 * kCentury;
 }
 
-class Encoder {
+// The fields of each kind in the order in which files hold them. `Codec` is FieldWriter or FieldReader.
+template <class Codec>
+class Fields {
  public:
-  explicit Encoder(ByteWriter& out) : out_(out) {}
+  explicit Fields(Codec codec) : codec_(codec) {}
 
-  void operator()(const Observation& observation, Time now) {
-    const Duration age = now - observation.at;
-    std::visit([&](const auto& what) { write(what, age); }, observation.what);
+  template <class T>
+  using Of = typename Codec::template Field<T>;
+
+  template <class T>
+  void of_kind(std::uint8_t number, T& o) {
+    of(o);
+    if constexpr (std::is_same_v<std::remove_const_t<T>, ProcessSeen>) {
+      if (number == kProcessSeenWithCause) codec_.word(o.cause, Cause::kOrder);
+    }
   }
 
  private:
-  void head(Tag tag, Duration age) {
-    out_.byte(static_cast<std::uint8_t>(tag));
-    out_.integer(age.count());
+  void of(Of<NodeAppeared> o) { codec_.text(o.node), codec_.pid(o.pid); }
+  void of(Of<NodeVanished> o) { codec_.text(o.node); }
+  void of(Of<EndpointAppeared> o) { endpoint(o); }
+  void of(Of<EndpointVanished> o) { endpoint(o); }
+  void of(Of<SampleArrived> o) {
+    codec_.id(o.topic);
+    codec_.natural_below(1ull << 32, o.published);
   }
-  void tag(ValueTag t) { out_.byte(static_cast<std::uint8_t>(t)); }
-  template <class Enum>
-  void word(Enum value) {
-    out_.byte(static_cast<std::uint8_t>(value));
+  void of(Of<SignalRead> o) { codec_.id(o.signal), codec_.value(o.value); }
+  void of(Of<DiagnosticRead> o) { codec_.id(o.diagnostic), codec_.byte(o.level); }
+  void of(Of<ParameterRead> o) { codec_.id(o.parameter), codec_.value(o.value); }
+  void of(Of<LifecycleRead> o) {
+    codec_.id(o.component);
+    codec_.lifecycle(o.state, o.is_shut_down);
   }
-
-  void write(const NodeAppeared& o, Duration age) {
-    head(Tag::kNodeAppeared, age);
-    out_.text(o.node);
-    out_.integer(o.pid);
+  void of(Of<ProcessSeen> o) {  // and the cause, if it has one (of_kind)
+    codec_.id(o.component);
+    codec_.word(o.state, ProcessState::kGone);
+    codec_.pid(o.pid);
+    codec_.text(o.remark);
   }
-  void write(const NodeVanished& o, Duration age) {
-    head(Tag::kNodeVanished, age);
-    out_.text(o.node);
+  void of(Of<LauncherSeen> o) {
+    codec_.id(o.component);
+    codec_.pid(o.pid);
+    codec_.truths(o.has_ended, o.has_crashed, o.ran_others);
   }
-  void write(const EndpointAppeared& o, Duration age) {
-    head(Tag::kEndpointAppeared, age);
-    endpoint(o);
+  void of(Of<StartedHere> o) {
+    codec_.id(o.component);
+    codec_.pid(o.pid);
+    codec_.pid(o.launcher);
+    codec_.duration(o.runs_for);
   }
-  void write(const EndpointVanished& o, Duration age) {
-    head(Tag::kEndpointVanished, age);
-    endpoint(o);
+  void of(Of<ProcessWorked> o) { codec_.id(o.component), codec_.pid(o.pid); }
+  void of(Of<UsageSeen> o) {
+    codec_.id(o.component);
+    codec_.real(o.cores);
+    codec_.real(o.mib);
   }
-  void write(const SampleArrived& o, Duration age) {
-    head(Tag::kSampleArrived, age);
-    out_.natural(o.topic.index);
-    out_.natural(o.published);
+  void of(Of<GoalsSeen> o) {
+    codec_.id(o.topic);
+    codec_.list(o.goals, [this](auto& goal) {
+      codec_.natural(goal.id);
+      codec_.goal_status(goal.status);
+    });
   }
-  void write(const SignalRead& o, Duration age) {
-    head(Tag::kSignalRead, age);
-    out_.natural(o.signal.index);
-    value(o.value);
+  void of(Of<HostReached> o) { codec_.id(o.component), codec_.truth(o.is_reached); }
+  void of(Of<LivesOn> o) { codec_.id(o.component), codec_.text(o.host); }
+  void of(Of<HostHeard> o) { codec_.text(o.host), codec_.truth(o.is_heard); }
+  void of(Of<EndsWith> o) {
+    codec_.id(o.component);
+    codec_.list(o.others, [this](auto& other) { codec_.id(other); });
   }
-  void write(const DiagnosticRead& o, Duration age) {
-    head(Tag::kDiagnosticRead, age);
-    out_.natural(o.diagnostic.index);
-    out_.byte(o.level);
+  void of(Of<Probed> o) {
+    codec_.id(o.component);
+    codec_.truth_and_number(o.answered, o.node);
   }
-  void write(const ParameterRead& o, Duration age) {
-    head(Tag::kParameterRead, age);
-    out_.natural(o.parameter.index);
-    value(o.value);
+  void of(Of<Reply> o) {
+    codec_.natural(o.command.number);
+    codec_.word(o.outcome, Outcome::kTimedOut);
+    codec_.answer(o.value);
+    codec_.text(o.text);
   }
-  void write(const LifecycleRead& o, Duration age) {
-    head(Tag::kLifecycleRead, age);
-    out_.natural(o.component.index);
-    out_.byte(static_cast<std::uint8_t>(o.state) | (o.is_shut_down ? kShutDown : 0));
+  void of(Of<LinkTrouble> o) { codec_.text(o.text); }
+  void of(Of<NamesakesSeen> o) {
+    codec_.text(o.node);
+    codec_.natural_below(1ull << 31, o.others);
   }
-  void write(const ProcessSeen& o, Duration age) {
-    const bool has_cause = o.cause != Cause::kUnknown;
-    head(has_cause ? Tag::kProcessSeenWithCause : Tag::kProcessSeen, age);
-    out_.natural(o.component.index);
-    word(o.state);
-    out_.integer(o.pid);
-    out_.text(o.remark);
-    if (has_cause) word(o.cause);
-  }
-  void write(const LauncherSeen& o, Duration age) {
-    head(Tag::kLauncherSeen, age);
-    out_.natural(o.component.index);
-    out_.integer(o.pid);
-    out_.byte(static_cast<std::uint8_t>((o.has_ended ? kEnded : 0) |
-                                        (o.has_crashed ? kCrashed : 0) |
-                                        (o.ran_others ? kRanOthers : 0)));
-  }
-  void write(const StartedHere& o, Duration age) {
-    head(Tag::kStartedHere, age);
-    out_.natural(o.component.index);
-    out_.integer(o.pid);
-    out_.integer(o.launcher);
-    out_.integer(o.runs_for.count());
-  }
-  void write(const ProcessWorked& o, Duration age) {
-    head(Tag::kProcessWorked, age);
-    out_.natural(o.component.index);
-    out_.integer(o.pid);
-  }
-  void write(const UsageSeen& o, Duration age) {
-    head(Tag::kUsageSeen, age);
-    out_.natural(o.component.index);
-    out_.real(o.cores);
-    out_.real(o.mib);
-  }
-  void write(const GoalsSeen& o, Duration age) {
-    head(Tag::kGoalsSeen, age);
-    out_.natural(o.topic.index);
-    out_.natural(o.goals.size());
-    for (const GoalsSeen::Goal& goal : o.goals) {
-      out_.natural(goal.id);
-      word(goal.status);
-    }
-  }
-  void write(const HostReached& o, Duration age) {
-    head(Tag::kHostReached, age);
-    out_.natural(o.component.index);
-    out_.byte(o.is_reached ? 1 : 0);
-  }
-  void write(const LivesOn& o, Duration age) {
-    head(Tag::kLivesOn, age);
-    out_.natural(o.component.index);
-    out_.text(o.host);
-  }
-  void write(const HostHeard& o, Duration age) {
-    head(Tag::kHostHeard, age);
-    out_.text(o.host);
-    out_.byte(o.is_heard ? 1 : 0);
-  }
-  void write(const EndsWith& o, Duration age) {
-    head(Tag::kEndsWith, age);
-    out_.natural(o.component.index);
-    out_.natural(o.others.size());
-    for (const ComponentId other : o.others) out_.natural(other.index);
-  }
-  void write(const Probed& o, Duration age) {
-    head(Tag::kProbed, age);
-    out_.natural(o.component.index);
-    out_.byte(static_cast<std::uint8_t>((o.node & 0x7f) << 1 | (o.answered ? 1 : 0)));
-  }
-  void write(const Reply& o, Duration age) {
-    head(Tag::kReply, age);
-    out_.natural(o.command.number);
-    word(o.outcome);
-    if (const auto* v = std::get_if<Value>(&o.value)) {
-      value(*v);
-    } else if (const auto* state = std::get_if<Lifecycle>(&o.value)) {
-      tag(ValueTag::kLifecycle);
-      word(*state);
-    } else {
-      tag(ValueTag::kNone);
-    }
-    out_.text(o.text);
-  }
-  void write(const LinkTrouble& o, Duration age) {
-    head(Tag::kLinkTrouble, age);
-    out_.text(o.text);
-  }
-
-  void write(const NamesakesSeen& o, Duration age) {
-    head(Tag::kNamesakesSeen, age);
-    out_.text(o.node);
-    out_.natural(static_cast<std::uint64_t>(o.others));
-  }
-  void write(const HearingLost& o, Duration age) {
-    head(Tag::kHearingLost, age);
-    out_.text(o.reason);
-  }
-  void write(const HearingRegained&, Duration age) { head(Tag::kHearingRegained, age); }
-  void write(const Overslept& o, Duration age) {
-    head(Tag::kOverslept, age);
-    out_.integer(o.by.count());
-  }
-  void write(const StatusHeard& o, Duration age) {
-    head(Tag::kStatusHeard, age);
-    out_.text(o.name);
-    out_.text(o.hardware_id);
+  void of(Of<HearingLost> o) { codec_.text(o.reason); }
+  void of(Of<HearingRegained>) {}
+  void of(Of<Overslept> o) { codec_.duration(o.by); }
+  void of(Of<StatusHeard> o) {
+    codec_.text(o.name);
+    codec_.text(o.hardware_id);
     texts(o.keys);
   }
-  void write(const ParametersListed& o, Duration age) {
-    head(Tag::kParametersListed, age);
-    out_.natural(o.component.index);
-    texts(o.names);
+  void of(Of<ParametersListed> o) { codec_.id(o.component), texts(o.names); }
+  void of(Of<StartBarred> o) { codec_.id(o.component), codec_.text(o.missing); }
+  void of(Of<ListenerKnown> o) { codec_.id(o.topic); }
+  void of(Of<PublisherKnown> o) { codec_.text(o.status), codec_.text(o.node); }
+  void of(Of<PriorsTold> o) {
+    codec_.list(o.priors, [this](auto& prior) {
+      codec_.id(prior.strategy);
+      codec_.real(prior.alpha);
+      codec_.real(prior.beta);
+    });
+    codec_.text(o.source);
   }
-  void write(const StartBarred& o, Duration age) {
-    head(Tag::kStartBarred, age);
-    out_.natural(o.component.index);
-    out_.text(o.missing);
+
+  void of(Of<Order> o) {
+    codec_.natural(o.number);
+    codec_.text(o.author);
+    codec_.text(o.reason);
+    what_of(o);
   }
-  void write(const ListenerKnown& o, Duration age) {
-    head(Tag::kListenerKnown, age);
-    out_.natural(o.topic.index);
+  void what_of(const Order& order) {
+    std::visit(
+        [this]<class What>(const What& what) {
+          codec_.byte(OrderKinds::number_of<What>());
+          of(what);
+        },
+        order.what);
   }
-  void write(const PublisherKnown& o, Duration age) {
-    head(Tag::kPublisherKnown, age);
-    out_.text(o.status);
-    out_.text(o.node);
+  void what_of(Order& order) {
+    std::uint8_t number = 0;
+    codec_.byte(number);
+    const bool is_known = OrderKinds::make(number, [&](auto what) {
+      of(what);
+      order.what = std::move(what);
+    });
+    if (!is_known) codec_.fail();
   }
-  void write(const PriorsTold& o, Duration age) {
-    head(Tag::kPriorsTold, age);
-    out_.natural(o.priors.size());
-    for (const PriorsTold::Prior& each : o.priors) {
-      out_.natural(each.strategy.index);
-      out_.real(each.alpha);
-      out_.real(each.beta);
-    }
-    out_.text(o.source);
+  void of(Of<Pause>) {}
+  void of(Of<Resume>) {}
+  void of(Of<SetDryRun> o) { codec_.truth(o.is_on); }
+  void of(Of<Approve> o) { codec_.id(o.strategy); }
+  void of(Of<Refuse> o) { codec_.id(o.strategy); }
+  void of(Of<Propose> o) { codec_.id(o.strategy); }
+  void of(Of<Silence> o) {
+    codec_.silenced(o.what);
+    codec_.optional(o.lasts, [this](auto& lasts) { codec_.duration(lasts); });
   }
-  void texts(const std::vector<std::string>& all) {
-    out_.natural(all.size());
-    for (const std::string& each : all) out_.text(each);
+  void of(Of<LiftSilence> o) { codec_.silenced(o.what); }
+  void of(Of<RunStrategy> o) { codec_.id(o.strategy); }
+  void of(Of<Forget> o) {
+    codec_.optional(o.rule, [this](auto& rule) { codec_.id(rule); });
   }
-  void write(const Order& o, Duration age) {
-    head(Tag::kOrder, age);
-    out_.natural(o.number);
-    out_.text(o.author);
-    out_.text(o.reason);
-    std::visit([&](const auto& order) { write_order(order); }, o.what);
-  }
-  void write_order(const Pause&) { word(OrderTag::kPause); }
-  void write_order(const Resume&) { word(OrderTag::kResume); }
-  void write_order(const SetDryRun& o) {
-    word(OrderTag::kSetDryRun);
-    out_.byte(o.is_on ? 1 : 0);
-  }
-  void write_order(const Approve& o) {
-    word(OrderTag::kApprove);
-    out_.natural(o.strategy.index);
-  }
-  void write_order(const Refuse& o) {
-    word(OrderTag::kRefuse);
-    out_.natural(o.strategy.index);
-  }
-  void write_order(const Propose& o) {
-    word(OrderTag::kPropose);
-    out_.natural(o.strategy.index);
-  }
-  void write_order(const Silence& o) {
-    word(OrderTag::kSilence);
-    silenced(o.what);
-    out_.byte(o.lasts ? 1 : 0);
-    if (o.lasts) out_.integer(o.lasts->count());
-  }
-  void write_order(const LiftSilence& o) {
-    word(OrderTag::kLiftSilence);
-    silenced(o.what);
-  }
-  void write_order(const RunStrategy& o) {
-    word(OrderTag::kRunStrategy);
-    out_.natural(o.strategy.index);
-  }
-  void write_order(const Revive&) { word(OrderTag::kRevive); }
-  void write_order(const EndStarted&) { word(OrderTag::kEndStarted); }
-  void write_order(const Forget& o) {
-    word(OrderTag::kForget);
-    out_.byte(o.rule ? 1 : 0);
-    if (o.rule) out_.natural(o.rule->index);
-  }
-  void silenced(const Silenceable& what) {
-    const auto* component = std::get_if<ComponentId>(&what);
-    out_.byte(component != nullptr ? 0 : 1);
-    out_.natural(component != nullptr ? component->index : std::get<RuleId>(what).index);
-  }
+  void of(Of<Revive>) {}
+  void of(Of<EndStarted>) {}
 
   template <class Endpoint>
-  void endpoint(const Endpoint& o) {
-    out_.text(o.node);
-    word(o.kind);
-    out_.text(o.name);
+  void endpoint(Endpoint& o) {
+    codec_.text(o.node);
+    codec_.word(o.kind, EndpointKind::kClient);
+    codec_.text(o.name);
   }
-  void value(const Value& v) {
-    if (const auto* truth = std::get_if<bool>(&v)) {
-      tag(*truth ? ValueTag::kTrue : ValueTag::kFalse);
-    } else if (const auto* whole = std::get_if<std::int64_t>(&v)) {
-      tag(ValueTag::kInteger);
-      out_.integer(*whole);
-    } else if (const auto* number = std::get_if<double>(&v)) {
-      tag(ValueTag::kReal);
-      out_.real(*number);
-    } else {
-      tag(ValueTag::kText);
-      out_.text(std::get<std::string>(v));
-    }
+  template <class Texts>
+  void texts(Texts& all) {
+    codec_.list(all, [this](auto& text) { codec_.text(text); });
   }
 
-  ByteWriter& out_;
+  Codec codec_;
 };
 
-class Decoder {
- public:
-  Decoder(ByteReader& in, const RuleSet& rules) : in_(in), rules_(rules) {}
-
-  Observation operator()(Time now) {
-    const auto tag = static_cast<Tag>(in_.byte());
-    const Time at = earlier(now, in_.integer());
-    return {at, what(tag)};
-  }
-
- private:
-  // Damaged bytes may hold anything; time must not overflow over it.
-  Time earlier(Time now, std::int64_t nanoseconds) {
-    std::int64_t at = 0;
-    const bool overflows = __builtin_sub_overflow(now.time_since_epoch().count(), nanoseconds, &at);
-    if (overflows || !is_plausible(Time(Duration(at)))) in_.fail();
-    return in_.is_good() ? Time(Duration(at)) : now;
-  }
-
-  ObservationWhat what(Tag tag) {
-    // One field after the other: the order of evaluation of a call's arguments is unspecified.
-    switch (tag) {
-      case Tag::kNodeAppeared: {
-        std::string node = in_.text();
-        return NodeAppeared{std::move(node), pid()};
-      }
-      case Tag::kNodeVanished:
-        return NodeVanished{in_.text()};
-      case Tag::kEndpointAppeared:
-        return endpoint<EndpointAppeared>();
-      case Tag::kEndpointVanished:
-        return endpoint<EndpointVanished>();
-      case Tag::kSampleArrived: {
-        const auto topic = id<TopicId>(rules_.topics.size());
-        return SampleArrived{topic, static_cast<std::uint32_t>(below(1ull << 32))};
-      }
-      case Tag::kSignalRead: {
-        const auto signal = id<SignalId>(rules_.signals.size());
-        return SignalRead{signal, value()};
-      }
-      case Tag::kDiagnosticRead: {
-        const auto diagnostic = id<DiagnosticId>(rules_.diagnostics.size());
-        return DiagnosticRead{diagnostic, in_.byte()};
-      }
-      case Tag::kParameterRead: {
-        const auto parameter = id<ParameterId>(rules_.parameters.size());
-        return ParameterRead{parameter, value()};
-      }
-      case Tag::kLifecycleRead: {
-        const auto component = id<ComponentId>(rules_.components.size());
-        const std::uint8_t state = in_.byte();
-        const std::uint8_t primary = state & ~kShutDown;
-        if (primary > static_cast<std::uint8_t>(Lifecycle::kTransition)) in_.fail();
-        return LifecycleRead{component, static_cast<Lifecycle>(primary), (state & kShutDown) != 0};
-      }
-      case Tag::kProcessSeen:
-      case Tag::kProcessSeenWithCause: {
-        ProcessSeen seen;
-        seen.component = id<ComponentId>(rules_.components.size());
-        seen.state = word(ProcessState::kGone);
-        seen.pid = pid();
-        seen.remark = in_.text();
-        if (tag == Tag::kProcessSeenWithCause) seen.cause = word(Cause::kOrder);
-        return seen;
-      }
-      case Tag::kLauncherSeen: {
-        const auto component = id<ComponentId>(rules_.components.size());
-        const int launcher = pid();
-        const std::uint8_t how = in_.byte();
-        return LauncherSeen{component, launcher, (how & kEnded) != 0, (how & kCrashed) != 0,
-                            (how & kRanOthers) != 0};
-      }
-      case Tag::kStartedHere: {
-        StartedHere seen;
-        seen.component = id<ComponentId>(rules_.components.size());
-        seen.pid = pid();
-        seen.launcher = pid();
-        seen.runs_for = Duration(in_.integer());
-        return seen;
-      }
-      case Tag::kProcessWorked: {
-        const auto component = id<ComponentId>(rules_.components.size());
-        return ProcessWorked{component, pid()};
-      }
-      case Tag::kUsageSeen: {
-        UsageSeen seen{id<ComponentId>(rules_.components.size())};
-        seen.cores = in_.real();
-        seen.mib = in_.real();
-        return seen;
-      }
-      case Tag::kGoalsSeen: {
-        GoalsSeen seen{id<TopicId>(rules_.topics.size()), {}};
-        for (std::uint64_t left = in_.natural(); left > 0 && in_.is_good(); --left) {
-          const std::uint64_t goal = in_.natural();
-          seen.goals.push_back({goal, GoalStatus(in_.byte() % 7)});
+void write_observation(const Observation& observation, Time now, ByteWriter& out) {
+  Fields fields{FieldWriter(out)};
+  std::visit(
+      [&]<class What>(const What& what) {
+        std::uint8_t number = ObservationKinds::number_of<What>();
+        if constexpr (std::is_same_v<What, ProcessSeen>) {
+          if (what.cause != Cause::kUnknown) number = kProcessSeenWithCause;
         }
-        return seen;
-      }
-      case Tag::kHostReached: {
-        const auto component = id<ComponentId>(rules_.components.size());
-        return HostReached{component, in_.byte() != 0};
-      }
-      case Tag::kLivesOn: {
-        const auto component = id<ComponentId>(rules_.components.size());
-        return LivesOn{component, in_.text()};
-      }
-      case Tag::kHostHeard: {
-        std::string host = in_.text();
-        return HostHeard{std::move(host), in_.byte() != 0};
-      }
-      case Tag::kEndsWith: {
-        EndsWith seen;
-        seen.component = id<ComponentId>(rules_.components.size());
-        for (std::uint64_t left = in_.natural(); left > 0 && in_.is_good(); --left)
-          seen.others.push_back(id<ComponentId>(rules_.components.size()));
-        return seen;
-      }
-      case Tag::kProbed: {
-        const auto component = id<ComponentId>(rules_.components.size());
-        const std::uint8_t how = in_.byte();
-        return Probed{component, (how & 1) != 0, static_cast<std::uint8_t>(how >> 1)};
-      }
-      case Tag::kReply:
-        return reply();
-      case Tag::kLinkTrouble:
-        return LinkTrouble{in_.text()};
-      case Tag::kOrder:
-        return order();
-      case Tag::kNamesakesSeen: {
-        std::string node = in_.text();
-        return NamesakesSeen{std::move(node), static_cast<int>(below(1ull << 31))};
-      }
-      case Tag::kHearingLost:
-        return HearingLost{in_.text()};
-      case Tag::kHearingRegained:
-        return HearingRegained{};
-      case Tag::kOverslept:
-        return Overslept{Duration(in_.integer())};
-      case Tag::kStartBarred: {
-        const auto component = id<ComponentId>(rules_.components.size());
-        return StartBarred{component, in_.text()};
-      }
-      case Tag::kListenerKnown:
-        return ListenerKnown{id<TopicId>(rules_.topics.size())};
-      case Tag::kPublisherKnown: {
-        std::string status = in_.text();
-        return PublisherKnown{std::move(status), in_.text()};
-      }
-      case Tag::kPriorsTold: {
-        PriorsTold told;
-        for (std::uint64_t left = in_.natural(); left > 0 && in_.is_good(); --left) {
-          const auto strategy = id<StrategyId>(rules_.strategies.size());
-          const double alpha = in_.real();
-          told.priors.push_back({strategy, alpha, in_.real()});
-        }
-        told.source = in_.text();
-        return told;
-      }
-      case Tag::kStatusHeard: {
-        StatusHeard heard;
-        heard.name = in_.text();
-        heard.hardware_id = in_.text();
-        heard.keys = texts();
-        return heard;
-      }
-      case Tag::kParametersListed: {
-        const auto component = id<ComponentId>(rules_.components.size());
-        return ParametersListed{component, texts()};
-      }
-    }
-    in_.fail();
-    return LinkTrouble{};
-  }
+        out.byte(number);
+        out.integer((now - observation.at).count());
+        fields.of_kind(number, what);
+      },
+      static_cast<const ObservationWhat::Variant&>(observation.what));
+}
 
-  std::vector<std::string> texts() {
-    std::vector<std::string> all;
-    for (std::uint64_t left = in_.natural(); left > 0 && in_.is_good(); --left)
-      all.push_back(in_.text());
-    return all;
-  }
+// Damaged bytes may hold anything; time must not overflow over it.
+Time read_time(ByteReader& in, Time now) {
+  std::int64_t at = 0;
+  const bool overflows = __builtin_sub_overflow(now.time_since_epoch().count(), in.integer(), &at);
+  if (overflows || !is_plausible(Time(Duration(at)))) in.fail();
+  return in.is_good() ? Time(Duration(at)) : now;
+}
 
-  Order order() {
-    Order order;
-    order.number = in_.natural();
-    order.author = in_.text();
-    order.reason = in_.text();
-    order.what = what_order(static_cast<OrderTag>(in_.byte()));
-    return order;
-  }
-  decltype(Order::what) what_order(OrderTag tag) {
-    switch (tag) {
-      case OrderTag::kPause:
-        return Pause{};
-      case OrderTag::kResume:
-        return Resume{};
-      case OrderTag::kSetDryRun:
-        return SetDryRun{in_.byte() != 0};
-      case OrderTag::kApprove:
-        return Approve{id<StrategyId>(rules_.strategies.size())};
-      case OrderTag::kRefuse:
-        return Refuse{id<StrategyId>(rules_.strategies.size())};
-      case OrderTag::kPropose:
-        return Propose{id<StrategyId>(rules_.strategies.size())};
-      case OrderTag::kSilence: {
-        Silence silence{silenced(), {}};
-        if (in_.byte() != 0) silence.lasts = Duration(in_.integer());
-        return silence;
-      }
-      case OrderTag::kLiftSilence:
-        return LiftSilence{silenced()};
-      case OrderTag::kRunStrategy:
-        return RunStrategy{id<StrategyId>(rules_.strategies.size())};
-      case OrderTag::kForget:
-        if (in_.byte() == 0) return Forget{};
-        return Forget{id<RuleId>(rules_.rules.size())};
-      case OrderTag::kRevive:
-        return Revive{};
-      case OrderTag::kEndStarted:
-        return EndStarted{};
-    }
-    in_.fail();
-    return Pause{};
-  }
-  Silenceable silenced() {
-    if (in_.byte() == 0) return id<ComponentId>(rules_.components.size());
-    return id<RuleId>(rules_.rules.size());
-  }
-
-  Reply reply() {
-    Reply reply;
-    reply.command.number = in_.natural();
-    reply.outcome = word(Outcome::kTimedOut);
-    const auto tag = static_cast<ValueTag>(in_.byte());
-    if (tag == ValueTag::kLifecycle) {
-      reply.value = word(Lifecycle::kTransition);
-    } else if (tag != ValueTag::kNone) {
-      reply.value = value(tag);
-    }
-    reply.text = in_.text();
-    return reply;
-  }
-
-  template <class Endpoint>
-  Endpoint endpoint() {
-    Endpoint endpoint;
-    endpoint.node = in_.text();
-    endpoint.kind = word(EndpointKind::kClient);
-    endpoint.name = in_.text();
-    return endpoint;
-  }
-
-  Value value() { return value(static_cast<ValueTag>(in_.byte())); }
-  Value value(ValueTag tag) {
-    switch (tag) {
-      case ValueTag::kFalse:
-        return false;
-      case ValueTag::kTrue:
-        return true;
-      case ValueTag::kInteger:
-        return in_.integer();
-      case ValueTag::kReal:
-        return in_.real();
-      case ValueTag::kText:
-        return in_.text();
-      default:
-        in_.fail();
-        return false;
-    }
-  }
-
-  std::uint64_t below(std::uint64_t limit) {
-    const std::uint64_t number = in_.natural();
-    if (number >= limit) in_.fail();
-    return number < limit ? number : 0;
-  }
-  template <class Id>
-  Id id(std::size_t count) {
-    return Id(static_cast<std::size_t>(below(count)));
-  }
-  template <class Enum>
-  Enum word(Enum last) {
-    const std::uint8_t number = in_.byte();
-    if (number > static_cast<std::uint8_t>(last)) {
-      in_.fail();
-      return Enum{};
-    }
-    return static_cast<Enum>(number);
-  }
-  int pid() {
-    const std::int64_t number = in_.integer();
-    if (number < 0 || number > INT32_MAX) in_.fail();
-    return static_cast<int>(number);
-  }
-
-  ByteReader& in_;
-  const RuleSet& rules_;
-};
+Observation read_observation(ByteReader& in, const RuleSet& rules, Time now) {
+  Fields fields{FieldReader(in, rules)};
+  const std::uint8_t number = in.byte();
+  Observation observation{read_time(in, now), LinkTrouble{}};
+  const bool is_known = ObservationKinds::make(number, [&](auto what) {
+    fields.of_kind(number, what);
+    observation.what = std::move(what);
+  });
+  if (!is_known) in.fail();
+  return observation;
+}
 
 }  // namespace
 
@@ -665,8 +261,7 @@ void encode(Time now, std::span<const Observation> observations, std::optional<D
             ByteWriter& out) {
   out.integer(now.time_since_epoch().count());
   out.natural(observations.size() << 1 | (digest ? 1 : 0));
-  Encoder encoder(out);
-  for (const Observation& observation : observations) encoder(observation, now);
+  for (const Observation& observation : observations) write_observation(observation, now, out);
   if (!digest) return;
   for (int shift = 0; shift < 64; shift += 8) out.byte(static_cast<std::uint8_t>(*digest >> shift));
 }
@@ -678,9 +273,8 @@ Expected<bool> StepReader::next(Step& step) {
   step.now = Time(Duration(in_.integer()));
   if (!is_plausible(step.now)) in_.fail();
   const std::uint64_t head = in_.natural();
-  Decoder decode(in_, rules_);
   for (std::uint64_t i = 0; i < head >> 1 && in_.is_good(); ++i)
-    step.observations.push_back(decode(step.now));
+    step.observations.push_back(read_observation(in_, rules_, step.now));
   if ((head & 1) != 0) {
     Digest digest = 0;
     for (int shift = 0; shift < 64; shift += 8) digest |= Digest{in_.byte()} << shift;

@@ -10,8 +10,7 @@ std::optional<ProcessUsage> usage_of(int pid) {
   const auto stat = process_stat(std::to_string(pid));
   if (!stat) return std::nullopt;
   constexpr double kMib = 1024.0 * 1024.0;
-  return ProcessUsage{from_seconds(stat->processor_seconds),
-                      static_cast<double>(stat->resident_bytes) / kMib};
+  return ProcessUsage{stat->processor, static_cast<double>(stat->resident_bytes) / kMib};
 }
 
 std::optional<double> UsageMeter::look(int pid, const ProcessUsage& usage, Time now) {

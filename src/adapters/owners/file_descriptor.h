@@ -1,6 +1,7 @@
 // A file descriptor with an owner.
 #pragma once
 
+#include <poll.h>
 #include <unistd.h>
 #include <utility>
 
@@ -25,5 +26,11 @@ class FileDescriptor {
  private:
   int fd_ = -1;
 };
+
+// Whether a read would not wait.
+inline bool is_readable(int descriptor) {
+  pollfd file{descriptor, POLLIN, 0};
+  return poll(&file, 1, 0) > 0;
+}
 
 }  // namespace culprit::owners

@@ -14,6 +14,7 @@
 #include <system_error>
 #include <unistd.h>
 
+#include "base/process_stat.h"
 #include "base/tracer.h"
 #include "owners/file_descriptor.h"
 
@@ -21,15 +22,6 @@ namespace culprit::owners {
 namespace {
 
 namespace fs = std::filesystem;
-
-// The rest of /proc/<pid>/stat after the command, which is in parentheses and may hold anything.
-std::string stat_after_command(int pid) {
-  std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
-  std::string line;
-  std::getline(file, line);
-  const auto end = line.rfind(')');
-  return end == std::string::npos || end + 2 >= line.size() ? "" : line.substr(end + 2);
-}
 
 // The numbers that a process has, from the PID namespace of this /proc to the innermost that it is in (NSpid). `process` is a
 // number, or "self". Empty if there is no such process.
@@ -44,18 +36,9 @@ std::vector<int> numbers_of(const std::string& process) {
   return numbers;
 }
 
-struct Family {
-  char state = 'X';
-  int parent = 0;
-  int group = 0;
-  int session = 0;
-};
-
-Family family_of(int pid) {
-  std::istringstream rest(stat_after_command(pid));
-  Family family;
-  rest >> family.state >> family.parent >> family.group >> family.session;
-  return family;
+// Its state is 'X' if there is no such process.
+ProcessStat family_of(int pid) {
+  return process_stat(std::to_string(pid)).value_or(ProcessStat{.state = 'X'});
 }
 
 std::vector<std::string> arguments_of(int pid) {
@@ -114,8 +97,8 @@ std::string service_around(int pid) {
 
 // A child is born in its parent's session, and leaves it only to make one of its own.
 bool has_lost_its_parent(int pid) {
-  const Family it = family_of(pid);
-  const Family heir = family_of(it.parent);
+  const ProcessStat it = family_of(pid);
+  const ProcessStat heir = family_of(it.parent);
   const bool is_heir =
       it.parent == kInit || (command_name(it.parent) == "systemd" && heir.session == it.parent);
   return is_heir && it.session != 0 && it.session != pid && it.session != heir.session &&
@@ -184,18 +167,14 @@ std::optional<int> status_of_zombie(int pid) {
   const std::string folder = "/proc/" + std::to_string(pid);
   const bool may_be_told =
       geteuid() == 0 || (stat(folder.c_str(), &owner) == 0 && owner.st_uid == geteuid());
-  std::istringstream rest(stat_after_command(pid));
-  const std::vector<std::string> fields{std::istream_iterator<std::string>(rest), {}};
-  constexpr std::size_t kExitCode = 52 - 3;  // the state is the third
-  if (!may_be_told || fields.size() <= kExitCode || fields.front() != "Z") return std::nullopt;
-  return std::atoi(fields[kExitCode].c_str());
+  const auto process = process_stat(std::to_string(pid));
+  if (!may_be_told || !process || process->state != 'Z') return std::nullopt;
+  return process->exit_status;
 }
 
 std::optional<int> parent_of(int pid) {
-  std::istringstream rest(stat_after_command(pid));
-  char state = 0;
-  int parent = 0;
-  return rest >> state >> parent ? std::optional(parent) : std::nullopt;
+  const auto process = process_stat(std::to_string(pid));
+  return process ? std::optional(process->parent) : std::nullopt;
 }
 
 Origin origin_of(int pid) {
@@ -247,12 +226,8 @@ std::vector<int> all_processes() {
 }
 
 std::optional<std::int64_t> start_ticks_of(int pid) {
-  std::istringstream rest(stat_after_command(pid));
-  std::string skipped;
-  constexpr int kBefore = 19;  // fields between the command and starttime (proc(5))
-  for (int i = 0; i < kBefore; ++i) rest >> skipped;
-  std::int64_t ticks = 0;
-  return rest >> ticks ? std::optional(ticks) : std::nullopt;
+  const auto process = process_stat(std::to_string(pid));
+  return process ? std::optional(process->start_ticks) : std::nullopt;
 }
 
 std::optional<Time> started_at(int pid) {
@@ -337,7 +312,7 @@ std::string to_string(const Identity& identity) {
 std::vector<Relative> descendants_of(int pid) {
   std::vector<std::pair<int, int>> parents;  // child, parent
   for (const int each : all_processes()) {
-    const Family family = family_of(each);
+    const ProcessStat family = family_of(each);
     if (family.state != 'Z' && family.state != 'X') parents.emplace_back(each, family.parent);
   }
   std::vector<Relative> found;
@@ -365,7 +340,7 @@ std::vector<int> children_of(int pid) {
   // The kernel lists them by the thread that started them, if it was built to list them.
   if (pids.empty()) pids = all_processes();
   std::erase_if(pids, [&](int each) {
-    const Family family = family_of(each);
+    const ProcessStat family = family_of(each);
     return family.parent != pid || family.state == 'Z' || family.state == 'X';
   });
   return pids;
@@ -374,7 +349,7 @@ std::vector<int> children_of(int pid) {
 std::vector<int> members_of_group(int leader) {
   std::vector<int> pids = all_processes();
   std::erase_if(pids, [&](int pid) {
-    const Family family = family_of(pid);
+    const ProcessStat family = family_of(pid);
     return family.group != leader || family.session != leader || family.state == 'Z';
   });
   return pids;
@@ -389,14 +364,9 @@ bool Work::is_more_than(const Work& before) const {
 Work work_of_group(int leader) {
   Work work;
   for (const int pid : members_of_group(leader)) {
-    // proc(5): utime and stime are the 14th and 15th field, rss the 24th; the state is the third.
-    std::istringstream rest(stat_after_command(pid));
-    std::vector<std::string> fields{std::istream_iterator<std::string>(rest), {}};
-    if (fields.size() < 22) continue;
-    const auto number = [&](std::size_t field) { return std::atoll(fields[field - 3].c_str()); };
-    work.processor += std::chrono::nanoseconds(std::chrono::seconds(number(14) + number(15))) /
-                      sysconf(_SC_CLK_TCK);
-    work.bytes += number(24) * sysconf(_SC_PAGESIZE);
+    const ProcessStat process = family_of(pid);
+    work.processor += process.processor;
+    work.bytes += static_cast<std::int64_t>(process.resident_bytes);
   }
   return work;
 }

@@ -250,6 +250,29 @@ std::vector<std::string> environment_with(const std::vector<std::string>& added)
   return all;
 }
 
+namespace {
+
+// The new process becomes the program, or reports why it cannot. Minus the error number where there is none.
+pid_t fork_into(const Preparation& ready, int report) {
+  sigset_t all;
+  sigset_t before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);  // no handler of ours runs in the child
+  const pid_t pid = fork();
+  if (pid == 0) {
+    const Failure failure = become(ready, report);
+    if (failure.why != 0) {
+      [[maybe_unused]] const auto written = write(kReport, &failure, sizeof failure);
+    }
+    _exit(127);
+  }
+  const int why = errno;
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  return pid < 0 ? -why : pid;
+}
+
+}  // namespace
+
 Expected<Launch> Launch::begin(const Program& program, Until until) {
   if (program.arguments.empty()) return Error{"the launch command is empty"};
   std::error_code error;
@@ -296,21 +319,8 @@ Expected<Launch> Launch::begin(const Program& program, Until until) {
   if (pipe2(report.data(), O_CLOEXEC) != 0) return failed(errno);
   FileDescriptor read_end(report[0]);
   const FileDescriptor write_end(report[1]);
-  sigset_t all;
-  sigset_t before;
-  sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, &before);  // no handler of ours runs in the child
-  const pid_t pid = fork();
-  if (pid == 0) {
-    const Failure failure = become(ready, write_end.get());
-    if (failure.why != 0) {
-      [[maybe_unused]] const auto written = write(kReport, &failure, sizeof failure);
-    }
-    _exit(127);
-  }
-  const int why = errno;
-  pthread_sigmask(SIG_SETMASK, &before, nullptr);
-  if (pid < 0) return failed(why);
+  const pid_t pid = fork_into(ready, write_end.get());
+  if (pid < 0) return failed(-pid);
   return Launch(pid, std::move(read_end), until, program);
 }
 

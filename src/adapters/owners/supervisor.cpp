@@ -1,22 +1,16 @@
 #include "owners/supervisor.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <csignal>
-#include <cstring>
-#include <fcntl.h>
 #include <poll.h>
 #include <sys/eventfd.h>
-#include <sys/file.h>
-#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "owners/bounded_log.h"
-#include "owners/launch_file.h"
 #include "owners/launch_note.h"
 #include "owners/mark.h"
-#include "owners/start_needs.h"
+#include "owners/process_tree.h"
 
 namespace culprit::owners {
 namespace {
@@ -34,17 +28,18 @@ bool is_child(int pid) {
   return waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOHANG | WNOWAIT) == 0;
 }
 
-bool is_readable(int descriptor) {
-  pollfd file{descriptor, POLLIN, 0};
-  return poll(&file, 1, 0) > 0;
-}
-
 }  // namespace
 
 Supervisor::Supervisor(const RuleSet& rules, Options options, Inbox& inbox)
     : rules_(rules),
-      options_(std::move(options)),
       inbox_(inbox),
+      programs_{rules,
+                std::move(options.log_folder),
+                std::move(options.search_first),
+                std::move(options.robot),
+                options.lifetime,
+                std::move(options.environments)},
+      launchers_(rules, programs_.log_folder, inbox),
       wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
   for (std::size_t c = 0; c < rules_.components.size(); ++c) take_over(ComponentId(c));
   thread_ = std::thread([this] { run(); });
@@ -59,78 +54,24 @@ Supervisor::~Supervisor() {
   thread_.join();
 }
 
-std::string Supervisor::marked_as(ComponentId component) const {
-  return options_.robot + "/" + rules_[component].name;
-}
-
 void Supervisor::answer(CommandId command, Outcome outcome, std::string text) const {
   inbox_.put(Reply{command, outcome, {}, std::move(text)});
 }
 
 void Supervisor::take_over(ComponentId component) {
-  if (options_.robot.empty() || rules_[component].launch.empty()) return;
-  for (const int pid : launched_as(marked_as(component))) {
+  if (programs_.robot.empty() || rules_[component].launch.empty()) return;
+  for (const int pid : launched_as(programs_.mark(component))) {
     if (!is_known(component, pid)) watch(component, pid, Relation::kMarked);
   }
 }
 
 // ---- starting
 
-std::filesystem::path Supervisor::log_of(ComponentId component) const {
-  return options_.log_folder / (rules_[component].name + ".log");
-}
-
-// `launcher`: the launcher whose process it stands in for; 0: none.
-Program Supervisor::program_of(ComponentId component, int launcher) const {
-  const Component& what = rules_[component];
-  Program program{what.launch, options_.search_first, log_of(component), {}, {}};
-  program.lifetime = options_.lifetime;
-  program.folder = what.folder;
-  if (const auto environment = environment_of(component)) program.environment = *environment;
-  const std::string prefixes = value_in_environment("AMENT_PREFIX_PATH", program.environment);
-  program.needs = start_needs(what.launch, prefixes);
-  program.arguments = program_of_launch(what.launch, prefixes);
-  if (!options_.robot.empty()) {
-    for (std::string& each : mark_of(marked_as(component)))
-      program.environment.push_back(std::move(each));
-    if (std::string place = in_place_of(launcher); !place.empty())
-      program.environment.push_back(std::move(place));
-    program.pid_variable = kPidVariable;
-  }
-  return program;
-}
-
-Expected<std::vector<std::string>> Supervisor::environment_of(ComponentId component) const {
-  if (component.index < options_.environments.size()) return options_.environments[component.index];
-  return std::vector<std::string>();
-}
-
-// From the decision to start until the program runs, and carries the mark, no other culprit may start it. The kernel
-// lets go of the lock when the last process that holds it has ended or runs the program. The file is its user's alone
-// from the beginning: any user that can open a file can lock it.
-Expected<FileDescriptor> Supervisor::lock_start_of(ComponentId component) const {
-  const std::filesystem::path log = log_of(component);
-  std::error_code error;
-  std::filesystem::create_directories(log.parent_path(), error);
-  const std::filesystem::path path = log.parent_path() / (rules_[component].name + ".start");
-  FileDescriptor lock(
-      open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW, 0600));
-  const std::string& name = rules_[component].name;
-  if (!lock)
-    return Error{"cannot start " + name + ": its lock file, " + path.string() +
-                 ", cannot be made: " + std::strerror(errno)};
-  if (flock(lock.get(), LOCK_EX | LOCK_NB) == 0) return Expected<FileDescriptor>(std::move(lock));
-  return Error{errno == EWOULDBLOCK
-                   ? name + " is being started already; look at what its program waits for"
-                   : "cannot start " + name + ": " + path.string() +
-                         " cannot be locked: " + std::strerror(errno)};
-}
-
 void Supervisor::start(CommandId command, ComponentId component) {
   const Component& what = rules_[component];
   const MutexLock lock(mutex_);
   // The parent of its launcher may be what restarts it; without a LAUNCH there is no other way.
-  if (is_left_to_launcher(component) || (what.is_respawned && what.launch.empty()))
+  if (launchers_.restarts(component) || (what.is_respawned && what.launch.empty()))
     return answer(command, Outcome::kDone, "its launcher starts it again");
   if (what.launch.empty())
     return answer(command, Outcome::kUnreachable, what.name + " has no LAUNCH command");
@@ -154,9 +95,9 @@ void Supervisor::meet(CommandId command, ComponentId component) {
 }
 
 Expected<void> Supervisor::begin_start(CommandId command, ComponentId component) {
-  if (const auto environment = environment_of(component); !environment)
+  if (const auto environment = programs_.environment(component); !environment)
     return Error{environment.error()};
-  auto lock = lock_start_of(component);
+  auto lock = programs_.lock_start(component);
   if (!lock) return Error{lock.error()};
   // A process that was started before no longer holds the lock, and is found here.
   take_over(component);
@@ -164,10 +105,10 @@ Expected<void> Supervisor::begin_start(CommandId command, ComponentId component)
     meet(command, component);
     return {};
   }
-  kill_left(component, "");
-  const int launcher = place_of(component);
-  note_launch(options_.log_folder, rules_[component].name, launcher);
-  Program program = program_of(component, launcher);
+  end_what_is_left(component, "");
+  const int launcher = launchers_.running(component);
+  note_launch(programs_.log_folder, rules_[component].name, launcher);
+  Program program = programs_.program(component, launcher);
   program.kept_until_it_runs = lock->get();
   auto launch = Launch::begin(program, Until::kItRuns);
   if (!launch) return Error{launch.error()};
@@ -227,7 +168,7 @@ void Supervisor::look_for_missing(Time now) {
     }
     if (each.trial || now < each.next) return false;
     each.next = later(now, kMissingPeriod);
-    if (auto launch = Launch::begin(program_of(each.component, 0), Until::kItIsReady))
+    if (auto launch = Launch::begin(programs_.program(each.component, 0), Until::kItIsReady))
       each.trial = std::move(*launch);
     return false;
   });
@@ -264,14 +205,15 @@ void Supervisor::watch(ComponentId component, int pid, Relation relation) {
     inbox_.put(ProcessSeen{component, ProcessState::kGone, pid, process.error()});
     return;
   }
-  const bool is_others = relation == Relation::kAdopted && !carries_mark(pid, marked_as(component));
+  const bool is_others =
+      relation == Relation::kAdopted && !carries_mark(pid, programs_.mark(component));
   if (const auto identity = is_others ? identity_of(pid) : std::nullopt) {
     const bool is_first = identities_.try_emplace(component, *identity).second;
     if (is_first) tell_of_unit(component, pid);
   }
-  note_launcher(component, pid, is_others);
+  launchers_.note_process(component, pid, is_others);
   Member& member = members_.emplace_back(Member{++numbers_, component, std::move(*process)});
-  const bool is_marked = carries_mark(pid, marked_as(component));
+  const bool is_marked = carries_mark(pid, programs_.mark(component));
   if (relation != Relation::kAdopted && is_marked) member.awaited = live_now();
   const PlaceHeld place = is_marked ? place_held_by(pid) : PlaceHeld{};
   if (is_marked) {
@@ -281,9 +223,7 @@ void Supervisor::watch(ComponentId component, int pid, Relation relation) {
   }
   inbox_.put(ProcessSeen{component, ProcessState::kRunning, pid, ""});
   if (was_started(member)) member.variable = variable_of(pid);
-  const auto launcher = launchers_.find(component);
-  if (launcher != launchers_.end() && launcher->second.held)
-    inbox_.put(LauncherSeen{component, launcher->second.pid, false});
+  launchers_.report(component);
   if (place.launcher != 0 && !place.goes_on)
     inbox_.put(LauncherSeen{component, place.launcher, true});
   wake();
@@ -305,7 +245,7 @@ void Supervisor::tell_of_unit(ComponentId component, int pid) const {
 std::optional<std::string> Supervisor::doubt(const Member& member) const {
   const int pid = member.process.pid();
   if (member.process.relation() != Relation::kAdopted ||
-      carries_mark(pid, marked_as(member.component)))
+      carries_mark(pid, programs_.mark(member.component)))
     return std::nullopt;
   const auto found = identities_.find(member.component);
   const auto identity = identity_of(pid);
@@ -329,70 +269,6 @@ std::optional<std::string> Supervisor::hold_of(const Member& member) {
   return std::nullopt;
 }
 
-// Another one of the component may run in place of a process of that launch.
-void Supervisor::hold_launcher(ComponentId component, int launcher) {
-  Launcher& held = launchers_[component] = Launcher{launcher, started_at(launcher)};
-  held.held = FileDescriptor(static_cast<int>(syscall(SYS_pidfd_open, launcher, 0)));
-  look_at_children(held);
-}
-
-// A launcher may end before it is noticed that what it started has, and while its children are read.
-void Supervisor::look_at_children(Launcher& launcher) {
-  if (!launcher.held || !goes_on(launcher)) return;
-  std::vector<int> children = children_of(launcher.pid);
-  if (goes_on(launcher)) launcher.children = std::move(children);
-}
-
-// The launcher of the component, if it runs; 0: there is none.
-int Supervisor::place_of(ComponentId component) const {
-  const auto launcher = launchers_.find(component);
-  return launcher != launchers_.end() && goes_on(launcher->second) ? launcher->second.pid : 0;
-}
-
-void Supervisor::note_launcher(ComponentId component, int pid, bool is_others) {
-  const PlaceHeld place = is_others ? PlaceHeld{} : place_held_by(pid);
-  Origin origin = is_others ? origin_of(pid) : Origin{Origin::What::kEnded, 0};
-  if (place.goes_on) origin = {Origin::What::kKnown, place.launcher};
-  const bool is_known = origin.what == Origin::What::kKnown;
-  if (is_others)
-    note_launch(options_.log_folder, rules_[component].name, is_known ? origin.pid : 0);
-  switch (origin.what) {
-    case Origin::What::kEnded:
-      launchers_[component] = Launcher{};
-      return;
-    case Origin::What::kUnknown:
-      launchers_.erase(component);
-      return;
-    case Origin::What::kKnown:
-      return hold_launcher(component, origin.pid);
-  }
-}
-
-bool Supervisor::goes_on(const Launcher& launcher) {
-  if (launcher.pid == 0 || state_letter(launcher.pid).value_or('Z') == 'Z') return false;
-  constexpr Duration kSame = 100ms;  // two readings of one start differ by the clocks' rounding
-  const auto begins = started_at(launcher.pid);
-  return begins && launcher.began && std::chrono::abs(*begins - *launcher.began) < kSame;
-}
-
-void Supervisor::tell_ended_launchers() {
-  for (auto& [component, launcher] : launchers_) {
-    if (!launcher.held || !is_readable(launcher.held.get())) continue;
-    const ProcessEnd end = end_of(launcher.pid, launcher.held.get());
-    launcher.held = FileDescriptor();
-    inbox_.put(LauncherSeen{component, launcher.pid, true, end.cause == Cause::kFault,
-                            launcher.ran_others});
-  }
-}
-
-// Also if its launcher is unknown: two of one name would be worse than none.
-bool Supervisor::is_left_to_launcher(ComponentId component) const {
-  if (!rules_[component].is_respawned) return false;
-  const auto launcher = launchers_.find(component);
-  if (launcher == launchers_.end()) return true;
-  return goes_on(launcher->second);
-}
-
 std::optional<std::string> Supervisor::why_not_end(ComponentId component, Ending ending) const {
   for (const Member& member : members_) {
     if (member.component != component) continue;
@@ -402,7 +278,7 @@ std::optional<std::string> Supervisor::why_not_end(ComponentId component, Ending
   }
   const Component& what = rules_[component];
   if (!what.is_respawned) return std::nullopt;
-  if (!is_left_to_launcher(component)) {
+  if (!launchers_.restarts(component)) {
     if (!what.launch.empty() || ending == Ending::kForGood) return std::nullopt;
     return "the launcher of " + what.name +
            " has exited, and nothing else would start it again: it has no LAUNCH command";
@@ -424,18 +300,18 @@ void Supervisor::stop(CommandId command, ComponentId component, int pid, Ending 
   if (trial != trials_.end()) {
     trial->commands.push_back(command);
     if (hangs == Hangs::kYes) trial->hangs = hangs;
-  } else if (ending == Ending::kForGood || is_gone(component) || is_left_to_launcher(component) ||
+  } else if (ending == Ending::kForGood || is_gone(component) || launchers_.restarts(component) ||
              shutdown_of(component) != nullptr) {
     begin_shutdown(command, component, hangs, std::move(meant));
   } else {
-    const auto environment = environment_of(component);
+    const auto environment = programs_.environment(component);
     if (!environment)
       return answer(command, Outcome::kRefused,
                     rules_[component].name +
                         " is not ended, for it could not be started again: " + environment.error());
-    const auto lock_of_start = lock_start_of(component);
+    const auto lock_of_start = programs_.lock_start(component);
     if (!lock_of_start) return answer(command, Outcome::kRefused, lock_of_start.error());
-    auto launch = Launch::begin(program_of(component, 0), Until::kItCouldRun);
+    auto launch = Launch::begin(programs_.program(component, 0), Until::kItCouldRun);
     if (!launch) return answer(command, Outcome::kRefused, launch.error());
     trials_.push_back({{command},
                        component,
@@ -569,7 +445,7 @@ void Supervisor::end_with_launch(ComponentId component) {
 
 bool Supervisor::was_started(const Member& member) const {
   return member.process.relation() != Relation::kAdopted ||
-         carries_mark(member.process.pid(), marked_as(member.component));
+         carries_mark(member.process.pid(), programs_.mark(member.component));
 }
 
 bool Supervisor::is_meant(const Shutdown& shutdown, const Member& member) {
@@ -621,67 +497,25 @@ void Supervisor::end_member(Member& member) {
   const bool is_ours =
       std::ranges::any_of(shutdowns_, [&](const Shutdown& s) { return is_meant(s, member); });
   if (is_ours || end.cause == Cause::kFault) {
-    for (const FileDescriptor& each : member.tree)
-      syscall(SYS_pidfd_send_signal, each.get(), SIGKILL, nullptr, 0);
-    if (!member.variable.empty()) kill_left(member.component, member.variable);
+    for (const FileDescriptor& each : member.tree) send_signal(each, SIGKILL);
+    if (!member.variable.empty()) end_what_is_left(member.component, member.variable);
   }
   inbox_.put(ProcessSeen{member.component, ProcessState::kGone, member.process.pid(), end.remark,
                          is_ours ? Cause::kWish : end.cause});
   ended_[member.component] = {member.process.pid(), member.number};
   tell_what_stays(member);
-  const auto launcher = launchers_.find(member.component);
-  const bool is_others = member.process.relation() == Relation::kAdopted;
-  if (is_others && launcher != launchers_.end()) {
-    look_at_children(launcher->second);
-    launcher->second.ran_others = std::ranges::any_of(
-        launcher->second.children, [&](int child) { return child != member.process.pid(); });
-  }
+  if (member.process.relation() == Relation::kAdopted)
+    launchers_.note_end(member.component, member.process.pid());
 }
 
-// Its children may leave its group, and clear their environment: then they are found by their
-// parents. Not processes of another component, for example if it is a culprit of its own.
-void Supervisor::signal_tree(Member& member, int signal) const {
-  if (member.variable.empty()) return;
-  const std::vector<int> group = members_of_group(member.process.pid());
-  for (const Relative& each : descendants_of(member.process.pid())) {
-    FileDescriptor held(static_cast<int>(syscall(SYS_pidfd_open, each.pid, 0)));
-    if (!held || is_anothers(each.pid, member.variable)) continue;
-    if (std::ranges::find(group, each.pid) == group.end())
-      syscall(SYS_pidfd_send_signal, held.get(), signal, nullptr, 0);
-    member.tree.push_back(std::move(held));
-  }
-}
-
-// It may start others while it is killed. It is waited for, but not for long: the successor needs what it holds.
-void Supervisor::kill_left(ComponentId component, const std::string& process) const {
-  constexpr int kRounds = 5;
-  if (options_.robot.empty()) return;
-  const std::string mark = marked_as(component);
-  const Time end = later(live_now(), kLeftEnds);
-  for (int round = 0; round < kRounds; ++round) {
-    std::vector<FileDescriptor> killed;
-    for (const int pid : left_by(mark, process)) {
-      FileDescriptor held(static_cast<int>(syscall(SYS_pidfd_open, pid, 0)));
-      // Its number may be another process's by now.
-      if (!held || !carries_mark(pid, mark) || is_what_was_launched(pid)) continue;
-      syscall(SYS_pidfd_send_signal, held.get(), SIGKILL, nullptr, 0);
-      killed.push_back(std::move(held));
-    }
-    if (killed.empty()) return;
-    for (const FileDescriptor& each : killed) {
-      pollfd ended{each.get(), POLLIN, 0};
-      const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - live_now()).count();
-      poll(&ended, 1, static_cast<int>(std::max<std::int64_t>(left, 0)));
-    }
-  }
+// It is waited for, but not for long: the successor needs what it holds.
+void Supervisor::end_what_is_left(ComponentId component, const std::string& variable) const {
+  if (!programs_.robot.empty()) kill_left(programs_.mark(component), variable, kLeftEnds);
 }
 
 // Ctrl-Z stops the processes that were started together, and their launcher.
 Cause Supervisor::cause_of_stop(const Member& member) const {
-  const auto launcher = launchers_.find(member.component);
-  const bool is_wish = launcher != launchers_.end() && launcher->second.held &&
-                       state_letter(launcher->second.pid) == 'T';
-  return is_wish ? Cause::kWish : Cause::kFault;
+  return launchers_.is_stopped(member.component) ? Cause::kWish : Cause::kFault;
 }
 
 // Children of a process that somebody else started are not ours to end.
@@ -732,9 +566,7 @@ void Supervisor::run() {
     for (const Barred& each : barred_) {
       if (each.trial) watched.push_back({each.trial->descriptor(), POLLIN, 0});
     }
-    for (const auto& [component, launcher] : launchers_) {
-      if (launcher.held) watched.push_back({launcher.held.get(), POLLIN, 0});
-    }
+    launchers_.add_to(watched);
     const Time until = members_.empty() ? next_deadline() : std::min(next_look, next_deadline());
     const auto wait =
         until == kNever ? Duration(-1) : std::max(Duration::zero(), until - live_now());
@@ -757,8 +589,8 @@ void Supervisor::run() {
     next_look = later(now, kStatePeriod);
     if (now < next_look_at_logs) continue;
     next_look_at_logs = later(now, kLogPeriod);
-    for (const Member& member : members_) logs.push_back(log_of(member.component));
-    for (auto& [component, launcher] : launchers_) look_at_children(launcher);
+    for (const Member& member : members_) logs.push_back(programs_.log(member.component));
+    launchers_.look_at_children();
   }
 }
 
@@ -781,7 +613,7 @@ void Supervisor::look(Time now) {
   finish_trials(now);
   look_for_missing(now);
   finish_shutdowns(now);
-  tell_ended_launchers();
+  launchers_.report_ended();
   something_ended_.notify_all();
 }
 
@@ -839,7 +671,8 @@ void Supervisor::escalate(Shutdown& shutdown, Time now) {
   for (Member& member : members_) {
     if (!is_meant(shutdown, member)) continue;
     member.tree.clear();
-    signal_tree(member, shutdown.signal);
+    if (!member.variable.empty())
+      member.tree = signal_descendants(member.process.pid(), member.variable, shutdown.signal);
     member.process.signal(shutdown.signal);
   }
 }

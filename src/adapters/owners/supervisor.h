@@ -57,6 +57,8 @@
 
 #include "base/mutex.h"
 #include "language/rule_set.h"
+#include "owners/component_programs.h"
+#include "owners/launchers.h"
 #include "owners/proc.h"
 #include "owners/spawn.h"
 #include "owners/watched_process.h"
@@ -201,20 +203,6 @@ class Supervisor {
     Time escalate = kNever;  // when the next one is due; kNever: another shutdown sees to that
   };
 
-  // The process that started a component that culprit did not start.
-  struct Launcher {
-    int pid = 0;  // 0: it has ended, or it was a supervisor, since that had ended
-    std::optional<Time> began{};
-    std::vector<int> children{};  // when it was looked last, each kLogPeriod
-    bool ran_others = false;      // when the component's process had ended
-    FileDescriptor held{};        // until its end, which is reported
-  };
-
-  std::string marked_as(ComponentId component) const;
-  std::filesystem::path log_of(ComponentId component) const;
-  Program program_of(ComponentId component, int launcher) const;
-  Expected<std::vector<std::string>> environment_of(ComponentId component) const;
-  Expected<FileDescriptor> lock_start_of(ComponentId component) const;
   void answer(CommandId command, Outcome outcome, std::string text) const;
 
   void take_over(ComponentId component) CULPRIT_REQUIRES(mutex_);
@@ -224,12 +212,8 @@ class Supervisor {
   std::optional<std::string> doubt(const Member& member) const CULPRIT_REQUIRES(mutex_);
   static std::optional<std::string> hold_of(const Member& member);
   void tell_of_unit(ComponentId component, int pid) const;
-  void note_launcher(ComponentId component, int pid, bool is_others) CULPRIT_REQUIRES(mutex_);
-  void hold_launcher(ComponentId component, int launcher) CULPRIT_REQUIRES(mutex_);
-  int place_of(ComponentId component) const CULPRIT_REQUIRES(mutex_);
   std::set<std::uint64_t> members_of(ComponentId component) const CULPRIT_REQUIRES(mutex_);
   std::set<std::uint64_t> meant_by(ComponentId component, int pid) const CULPRIT_REQUIRES(mutex_);
-  bool is_left_to_launcher(ComponentId component) const CULPRIT_REQUIRES(mutex_);
   std::optional<std::string> why_not_end(ComponentId component, Ending ending) const
       CULPRIT_REQUIRES(mutex_);
   void finish_starts() CULPRIT_REQUIRES(mutex_);
@@ -239,8 +223,6 @@ class Supervisor {
   void look_for_missing(Time now) CULPRIT_REQUIRES(mutex_);
   void finish_shutdowns(Time now) CULPRIT_REQUIRES(mutex_);
   void tell_what_stays(const Member& member) const;
-  static bool goes_on(const Launcher& launcher);
-  static void look_at_children(Launcher& launcher);
 
   void run();
   void look(Time now) CULPRIT_REQUIRES(mutex_);
@@ -257,17 +239,15 @@ class Supervisor {
                       std::set<std::uint64_t> meant) CULPRIT_REQUIRES(mutex_);
   std::set<std::uint64_t> started_members_of(ComponentId component) const CULPRIT_REQUIRES(mutex_);
   void end_member(Member& member) CULPRIT_REQUIRES(mutex_);
-  void signal_tree(Member& member, int signal) const;
-  void kill_left(ComponentId component, const std::string& process) const;
+  void end_what_is_left(ComponentId component, const std::string& variable) const;
   Cause cause_of_stop(const Member& member) const CULPRIT_REQUIRES(mutex_);
   static bool is_settled(Member& member, ProcessState state, Time now);
-  void tell_ended_launchers() CULPRIT_REQUIRES(mutex_);
   Time next_deadline() const CULPRIT_REQUIRES(mutex_);
   void wake();
 
   const RuleSet& rules_;
-  Options options_;
   Inbox& inbox_;
+  const ComponentPrograms programs_;
 
   mutable Mutex mutex_;
   ConditionVariable something_ended_;
@@ -277,7 +257,7 @@ class Supervisor {
   std::vector<Shutdown> shutdowns_ CULPRIT_GUARDED_BY(mutex_);
   std::map<ComponentId, Identity> identities_
       CULPRIT_GUARDED_BY(mutex_);  // of what others started, when it was found first
-  std::map<ComponentId, Launcher> launchers_ CULPRIT_GUARDED_BY(mutex_);
+  Launchers launchers_ CULPRIT_GUARDED_BY(mutex_);
   std::uint64_t numbers_ CULPRIT_GUARDED_BY(mutex_) = 0;  // of members
   std::map<ComponentId, std::pair<int, std::uint64_t>> ended_
       CULPRIT_GUARDED_BY(mutex_);  // the last process that ended, and which member it was

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "base/test_folder.h"
-#include "recorder/recorder.h"
+#include "recorder/incident_recorder.h"
 #include "ros2/message_library.h"
 #include "ros2/messages.h"
 
@@ -37,7 +37,7 @@ struct PeerMcap : testing::Test {
   void SetUp() override {
     if (!std::filesystem::exists(peer / "node_modules"))
       GTEST_SKIP() << "npm ci was not run in " << peer;
-    Recorder recorder({.folder = own.path(), .robot = "robot", .library = "test"});
+    IncidentRecorder recorder({.folder = own.path(), .robot = "robot", .library = "test"});
     const auto log = recorder.add_topic(topic_of_type<ros2::msg::Log>("/rosout"));
     const auto health =
         recorder.add_topic(topic_of_type<ros2::msg::DiagnosticArray>("/diagnostics"));

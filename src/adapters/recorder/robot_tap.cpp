@@ -110,13 +110,13 @@ class RobotTap::Listening {
   std::unique_ptr<ros2::TopicListener> listener_;  // last: its callbacks use the others
 };
 
-Expected<std::unique_ptr<RobotTap>> RobotTap::open(Options options, Recorder& recorder) {
+Expected<std::unique_ptr<RobotTap>> RobotTap::open(Options options, IncidentRecorder& recorder) {
   std::unique_ptr<RobotTap> tap(new RobotTap(std::move(options), recorder));
   if (const auto started = tap->start(); !started) return Error{started.error()};
   return tap;
 }
 
-RobotTap::RobotTap(Options options, Recorder& recorder)
+RobotTap::RobotTap(Options options, IncidentRecorder& recorder)
     : options_(std::move(options)),
       recorder_(recorder),
       tasks_(std::make_unique<ros2::TaskGroup>(executor_)) {}

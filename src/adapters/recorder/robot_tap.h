@@ -24,7 +24,7 @@
 
 #include "link/topic_listener.h"
 #include "link/type_finder.h"
-#include "recorder/recorder.h"
+#include "recorder/incident_recorder.h"
 #include "recorder/topic_choice.h"
 #include "ros2/node.h"
 
@@ -48,7 +48,7 @@ class RobotTap {
   };
 
   // `recorder` must outlive the tap. Errors: the domain cannot be joined.
-  static Expected<std::unique_ptr<RobotTap>> open(Options options, Recorder& recorder);
+  static Expected<std::unique_ptr<RobotTap>> open(Options options, IncidentRecorder& recorder);
   ~RobotTap();
   RobotTap(const RobotTap&) = delete;
 
@@ -62,7 +62,7 @@ class RobotTap {
     bool is_given_up = false;                               // it is too large
   };
 
-  RobotTap(Options options, Recorder& recorder);
+  RobotTap(Options options, IncidentRecorder& recorder);
   Expected<void> start();
 
   // On the executor's thread.
@@ -80,7 +80,7 @@ class RobotTap {
   void tell_graph();
 
   const Options options_;
-  Recorder& recorder_;
+  IncidentRecorder& recorder_;
   std::map<std::string, TopicUse> topics_;
   std::map<std::string, int> pids_;      // of the nodes that are there
   std::set<std::string> unknown_types_;  // that were reported

@@ -66,11 +66,11 @@ struct RobotTaps : testing::Test {
   test::TestFolder own;
   ros2::EventLog<std::string> said;
   ros2::EventLog<std::string> written_down;
-  Recorder recorder{{.folder = own.path(),
-                     .robot = "robot",
-                     .library = "test",
-                     .after = Duration::zero(),
-                     .say = [this](const std::string& text) { written_down.add(text); }}};
+  IncidentRecorder recorder{{.folder = own.path(),
+                             .robot = "robot",
+                             .library = "test",
+                             .after = Duration::zero(),
+                             .say = [this](const std::string& text) { written_down.add(text); }}};
   ros2::LiveContext robot{domain.options()};
   ros2::NodeEntry node{*robot, {"/", "robot"}};
 };

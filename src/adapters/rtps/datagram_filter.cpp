@@ -25,6 +25,30 @@ bool is_builtin(const Guid& writer) { return (writer.bytes[15] & 0xc0) == 0xc0; 
 // True for a writer of a program, false for one of the middleware's own (RTPS 2.3 §9.3.1.2).
 bool is_of_user(const Guid& writer) { return (writer.bytes[15] & 0xc0) == 0; }
 
+struct Extent {
+  std::size_t length = 0;  // without the header
+  bool is_last = false;
+  const char* objection = nullptr;
+};
+// The submessage is at the beginning of `rest`, the rest of its datagram.
+Extent extent_of(ByteView rest) {
+  if (rest.size() < rtps::kSubmessageHeader) return {0, true, "a submessage is cut"};
+  const std::size_t room = rest.size() - rtps::kSubmessageHeader;
+  const std::size_t length =
+      (rest[1] & 1) != 0 ? rest[2] | (rest[3] << 8) : (rest[2] << 8) | rest[3];
+  if (length == 0 && rest[0] != rtps::kPad && rest[0] != rtps::kInfoTime) return {room, true};
+  if (length > room) return {length, true, "a submessage is longer than its datagram"};
+  return {length};
+}
+
+void pad(std::span<std::uint8_t> place) {
+  const std::size_t length = place.size() - rtps::kSubmessageHeader;
+  place[0] = rtps::kPad;
+  place[1] = 1;  // little endian
+  place[2] = static_cast<std::uint8_t>(length);
+  place[3] = static_cast<std::uint8_t>(length >> 8);
+}
+
 }  // namespace
 
 // One submessage: a cursor over its body. A read beyond the end gives zero, and makes it not ok().
@@ -160,6 +184,18 @@ ByteView DatagramFilter::pass(std::span<std::uint8_t> datagram, Clock::time_poin
   return passed;
 }
 
+// An INFO submessage says from whom, to whom and when the submessages after it are.
+void DatagramFilter::follow(std::span<std::uint8_t> submessage, ByteView body, Course& course) {
+  if (submessage[0] == rtps::kInfoSource) {
+    std::copy_n(body.data() + 8, course.source.bytes.size(), course.source.bytes.begin());
+    course.sent.reset();
+  }
+  if (submessage[0] == rtps::kInfoDestination)
+    std::copy_n(body.data(), course.destination.bytes.size(), course.destination.bytes.begin());
+  if (submessage[0] == rtps::kInfoTime)
+    course.sent = Submessage(submessage, body, course.source).read_time();
+}
+
 ByteView DatagramFilter::look_at(std::span<std::uint8_t> datagram, Clock::time_point now,
                                  SystemTime received) {
   if (!is_header(datagram)) {
@@ -168,8 +204,7 @@ ByteView DatagramFilter::look_at(std::span<std::uint8_t> datagram, Clock::time_p
   }
   Course course{};
   course.received = received;
-  GuidPrefix& source = course.source;
-  std::copy_n(datagram.data() + 8, source.bytes.size(), source.bytes.begin());
+  std::copy_n(datagram.data() + 8, course.source.bytes.size(), course.source.bytes.begin());
   const bool addresses = addresses_ && changes_ == 0;
   bool is_for_nobody = false;  // something of it
   bool is_for_somebody = false;
@@ -177,32 +212,11 @@ ByteView DatagramFilter::look_at(std::span<std::uint8_t> datagram, Clock::time_p
   std::size_t end = datagram.size();
   for (std::size_t at = rtps::kHeader; at < end;) {
     const std::span<std::uint8_t> rest = datagram.subspan(at, end - at);
-    const char* objection = nullptr;
-    std::size_t length = 0;
-    bool is_last = false;
-    if (rest.size() < rtps::kSubmessageHeader) {
-      objection = "a submessage is cut";
-      is_last = true;
-    } else {
-      length = (rest[1] & 1) != 0 ? rest[2] | (rest[3] << 8) : (rest[2] << 8) | rest[3];
-      is_last = length == 0 && rest[0] != rtps::kPad && rest[0] != rtps::kInfoTime;
-      if (is_last) length = rest.size() - rtps::kSubmessageHeader;
-      if (length > rest.size() - rtps::kSubmessageHeader) {
-        objection = "a submessage is longer than its datagram";
-        is_last = true;
-      } else {
-        const ByteView body = rest.subspan(rtps::kSubmessageHeader, length);
-        objection = this->objection(Submessage(rest, body, source), now);
-        if (rest[0] == rtps::kInfoSource && objection == nullptr) {
-          std::copy_n(body.data() + 8, source.bytes.size(), source.bytes.begin());
-          course.sent.reset();
-        }
-        if (rest[0] == rtps::kInfoDestination && objection == nullptr)
-          std::copy_n(body.data(), course.destination.bytes.size(),
-                      course.destination.bytes.begin());
-        if (rest[0] == rtps::kInfoTime && objection == nullptr)
-          course.sent = Submessage(rest, body, source).read_time();
-      }
+    auto [length, is_last, objection] = extent_of(rest);
+    if (objection == nullptr) {
+      const ByteView body = rest.subspan(rtps::kSubmessageHeader, length);
+      objection = this->objection(Submessage(rest, body, course.source), now);
+      if (objection == nullptr) follow(rest, body, course);
     }
     if (objection != nullptr) refused_ = {refused_.count + 1, objection};
     const std::size_t size = rtps::kSubmessageHeader + length;
@@ -225,17 +239,11 @@ ByteView DatagramFilter::look_at(std::span<std::uint8_t> datagram, Clock::time_p
     const std::size_t next = at + rtps::kSubmessageHeader + ((length + 3) & ~std::size_t{3});
     if (announcement == Announcement::kGap) {
       // It is shorter than what was there.
-      constexpr std::size_t kPadHeader = rtps::kSubmessageHeader;
       if (is_last || next >= end) {
         end = at + kGapSize;
         break;
       }
-      const std::size_t padding = next - at - kGapSize - kPadHeader;
-      const std::span<std::uint8_t> pad = rest.subspan(kGapSize, kPadHeader);
-      pad[0] = rtps::kPad;
-      pad[1] = 1;  // little endian
-      pad[2] = static_cast<std::uint8_t>(padding);
-      pad[3] = static_cast<std::uint8_t>(padding >> 8);
+      pad(rest.subspan(kGapSize, next - at - kGapSize));
     }
     at = next;
   }

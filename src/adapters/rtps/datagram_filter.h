@@ -165,6 +165,7 @@ class DatagramFilter {
     std::optional<SystemTime> sent;
   };
 
+  static void follow(std::span<std::uint8_t> submessage, ByteView body, Course& course);
   ByteView look_at(std::span<std::uint8_t> datagram, Clock::time_point now, SystemTime received)
       CULPRIT_REQUIRES(mutex_);
   bool address(std::span<std::uint8_t> submessage, const Course& course, Clock::time_point now)

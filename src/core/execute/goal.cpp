@@ -177,6 +177,44 @@ Expected<std::vector<Goal>> bringing_up_member(const Adaptation& adaptation,
   return goals;
 }
 
+Expected<std::vector<Goal>> setting(const Adaptation& adaptation, const Knowledge& knowledge) {
+  const Slot slot = evaluate(adaptation.value, knowledge.signals.slots());
+  if (!slot.known) return Error{"the new value of " + adaptation.subject + " is unknown now"};
+  const Value value = to_value(slot, adaptation.value.type);
+  if (adaptation.type == AdaptationType::kSetParameter) {
+    return std::vector<Goal>{ParameterGoal{adaptation.subject, value, ParameterGoal::Kind::kSet,
+                                           knowledge.components[adaptation.parameter]}};
+  }
+  const bool up = adaptation.type == AdaptationType::kIncreaseParameter;
+  return std::vector<Goal>{
+      ParameterGoal{adaptation.subject, up ? value : negated(value), ParameterGoal::Kind::kAdd}};
+}
+
+// A managed node comes back unconfigured unless it brings itself up: it is brought to where it was, or to where a rule
+// says that it must be.
+std::vector<Goal> redeploying(const Adaptation& adaptation, const Knowledge& knowledge) {
+  const ComponentState& state = knowledge.components[adaptation.component];
+  std::vector<Goal> goals = replacing(adaptation, knowledge);
+  if (state.intended_lifecycle == Lifecycle::kUnknown ||
+      is_left_to_group(adaptation.component, knowledge))
+    return goals;
+  const Lifecycle target =
+      demanded(adaptation.component, knowledge).value_or(state.intended_lifecycle);
+  if (target == Lifecycle::kActive || target == Lifecycle::kInactive)
+    goals.push_back(bringing_up(adaptation, target, knowledge));
+  return goals;
+}
+
+std::vector<Goal> starting(const Adaptation& adaptation, const Knowledge& knowledge) {
+  const ComponentState& state = knowledge.components[adaptation.component];
+  if (state.alive == true) return {};  // somebody else was there first
+  std::vector<Goal> goals{present(adaptation, knowledge)};
+  if (state.intended_lifecycle != Lifecycle::kUnknown &&
+      !is_left_to_group(adaptation.component, knowledge))
+    goals.push_back(bringing_up(adaptation, Lifecycle::kActive, knowledge));
+  return goals;
+}
+
 }  // namespace
 
 Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowledge& knowledge) {
@@ -186,18 +224,8 @@ Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowled
   switch (adaptation.type) {
     case AdaptationType::kSetParameter:
     case AdaptationType::kIncreaseParameter:
-    case AdaptationType::kDecreaseParameter: {
-      const Slot slot = evaluate(adaptation.value, knowledge.signals.slots());
-      if (!slot.known) return Error{"the new value of " + adaptation.subject + " is unknown now"};
-      const Value value = to_value(slot, adaptation.value.type);
-      if (adaptation.type == AdaptationType::kSetParameter) {
-        return std::vector<Goal>{ParameterGoal{adaptation.subject, value, ParameterGoal::Kind::kSet,
-                                               knowledge.components[adaptation.parameter]}};
-      }
-      const bool up = adaptation.type == AdaptationType::kIncreaseParameter;
-      return std::vector<Goal>{ParameterGoal{adaptation.subject, up ? value : negated(value),
-                                             ParameterGoal::Kind::kAdd}};
-    }
+    case AdaptationType::kDecreaseParameter:
+      return setting(adaptation, knowledge);
     case AdaptationType::kChangeCommunication:
       return std::vector<Goal>{ParameterGoal{adaptation.subject, adaptation.topic,
                                              ParameterGoal::Kind::kSet,
@@ -209,27 +237,10 @@ Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowled
     case AdaptationType::kRestart:
       return std::vector<Goal>{LifecycleGoal{Lifecycle::kInactive, {}},
                                LifecycleGoal{Lifecycle::kActive, {}}};
-    case AdaptationType::kRedeploy: {
-      std::vector<Goal> goals = replacing(adaptation, knowledge);
-      // A managed node comes back unconfigured unless it brings itself up: it is brought to where
-      // it was, or to where a rule says that it must be.
-      if (state.intended_lifecycle == Lifecycle::kUnknown ||
-          is_left_to_group(adaptation.component, knowledge))
-        return goals;
-      const Lifecycle target =
-          demanded(adaptation.component, knowledge).value_or(state.intended_lifecycle);
-      if (target == Lifecycle::kActive || target == Lifecycle::kInactive)
-        goals.push_back(bringing_up(adaptation, target, knowledge));
-      return goals;
-    }
-    case AdaptationType::kStart: {
-      if (state.alive == true) return std::vector<Goal>{};  // somebody else was there first
-      std::vector<Goal> goals{present(adaptation, knowledge)};
-      if (state.intended_lifecycle != Lifecycle::kUnknown &&
-          !is_left_to_group(adaptation.component, knowledge))
-        goals.push_back(bringing_up(adaptation, Lifecycle::kActive, knowledge));
-      return goals;
-    }
+    case AdaptationType::kRedeploy:
+      return redeploying(adaptation, knowledge);
+    case AdaptationType::kStart:
+      return starting(adaptation, knowledge);
     case AdaptationType::kStop:
       if (state.alive == false && state.known_pid() == 0) return std::vector<Goal>{};
       return std::vector<Goal>{GoneGoal{}};

@@ -16,9 +16,16 @@ StrategyKind kind_of(AdaptationType type) {
     case AdaptationType::kDeactivate:
     case AdaptationType::kRestart:
       return StrategyKind::kLifecycle;
-    default:
-      return StrategyKind::kConfiguration;
+    case AdaptationType::kSetParameter:
+    case AdaptationType::kIncreaseParameter:
+    case AdaptationType::kDecreaseParameter:
+    case AdaptationType::kChangeCommunication:
+    case AdaptationType::kChangeMode:
+    case AdaptationType::kCall:
+    case AdaptationType::kStartGroup:
+      break;
   }
+  return StrategyKind::kConfiguration;
 }
 
 bool restarts(const Adaptation& adaptation) {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "execute/executor.h"
+#include "execute/strategy_executor.h"
 #include "language/checker.h"
 
 namespace culprit::execute {
@@ -24,7 +24,7 @@ struct Left {
   StrategyId again{1};
   ComponentId c{0};
 
-  Executor executor() {
+  StrategyExecutor executor() {
     return {knowledge,
             {Attempts(knowledge.states), knowledge.components, knowledge.signals,
              knowledge.outcomes, knowledge.rivals, knowledge.events}};
@@ -48,7 +48,7 @@ struct Left {
 
 TEST(Resumption, BeginsWhenTheRobotHadTheTimeToShowItself) {
   Left left;
-  Executor executor = left.executor();
+  StrategyExecutor executor = left.executor();
   executor.resume(left.tuned(), Time(10s), Time(12s));
   EXPECT_EQ(executor.next_deadline(), Time(12s));
 }
@@ -57,7 +57,7 @@ TEST(Resumption, BeginsWhenTheRobotHadTheTimeToShowItself) {
 // same.
 TEST(Resumption, IsAnAttemptAtItsFailureOfWhichNothingIsLearned) {
   Left left;
-  Executor executor = left.executor();
+  StrategyExecutor executor = left.executor();
   executor.resume(left.tuned(), Time(10s), Time(12s));
   const auto& attempt = left.knowledge.states[left.rules[left.tune].rule].attempt;
   ASSERT_TRUE(attempt);
@@ -84,7 +84,7 @@ TEST(Resumption, UndoesNoUndoing) {
 }
 
 // Lets the executor go on with a robot that obeys; gives how often something was changed.
-int changes_of(Executor& executor, Time now) {
+int changes_of(StrategyExecutor& executor, Time now) {
   int changes = 0;
   Lifecycle state = Lifecycle::kInactive;
   Value gain = 0.7;
@@ -112,7 +112,7 @@ int changes_of(Executor& executor, Time now) {
 
 TEST(Resumption, GoesOnUndoingAStrategyThatHadFailed) {
   Left left;
-  Executor executor = left.executor();
+  StrategyExecutor executor = left.executor();
   Interrupted tuned = left.tuned();
   tuned.has_failed = true;
   tuned.adaptations_done = 2;

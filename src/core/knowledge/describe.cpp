@@ -559,9 +559,13 @@ std::string describe(const Adaptation& adaptation, const RuleSet& rules) {
     case AdaptationType::kStop:
       return std::string(keyword(adaptation.type)) + " " + component +
              by_whom(rules[adaptation.component]);
-    default:
-      return std::string(keyword(adaptation.type)) + " " + component;
+    case AdaptationType::kActivate:
+    case AdaptationType::kDeactivate:
+    case AdaptationType::kRestart:
+    case AdaptationType::kStartGroup:
+      break;
   }
+  return std::string(keyword(adaptation.type)) + " " + component;
 }
 
 std::string describe(const Order& order, const RuleSet& rules) {

@@ -25,9 +25,17 @@ bool was_read(const Input& input, const Sightings& sightings) {
       return sightings.was_read(input.parameter);
     case Input::Kind::kLevel:
       return sightings.was_read(input.diagnostic);
-    default:
+    case Input::Kind::kSignal:
+    case Input::Kind::kMean:
+    case Input::Kind::kMin:
+    case Input::Kind::kMax:
+    case Input::Kind::kStddev:
+    case Input::Kind::kChanged:
+    case Input::Kind::kIsNan:
+    case Input::Kind::kFrozen:
       return sightings.was_read(input.signal);
   }
+  return false;
 }
 
 void note_heard(const Knowledge& knowledge, KnownRobot& known) {
@@ -103,9 +111,17 @@ std::string value_name(const Input& input, const RuleSet& rules) {
     }
     case Input::Kind::kLevel:
       return "diagnostic " + rules.diagnostics[input.diagnostic.index].name;
-    default:
+    case Input::Kind::kSignal:
+    case Input::Kind::kMean:
+    case Input::Kind::kMin:
+    case Input::Kind::kMax:
+    case Input::Kind::kStddev:
+    case Input::Kind::kChanged:
+    case Input::Kind::kIsNan:
+    case Input::Kind::kFrozen:
       return "signal " + rules[input.signal].name;
   }
+  return "";
 }
 
 KnownRobot Knowledge::known_robot() const {

@@ -40,7 +40,14 @@ class Finder {
         return add(input.parameter, knowledge_.components[input.parameter].has_value());
       case Input::Kind::kLevel:
         return add(input.diagnostic, knowledge_.signals[id].known);
-      default:
+      case Input::Kind::kSignal:
+      case Input::Kind::kMean:
+      case Input::Kind::kMin:
+      case Input::Kind::kMax:
+      case Input::Kind::kStddev:
+      case Input::Kind::kChanged:
+      case Input::Kind::kIsNan:
+      case Input::Kind::kFrozen:
         return add(input.signal, is_read(id, input.signal));
     }
   }

@@ -25,9 +25,14 @@ Kind kind_of(const Adaptation& adaptation) {
       return Kind::kMode;
     case Type::kCall:
       return Kind::kCall;
-    default:
-      return Kind::kValue;
+    case Type::kSetParameter:
+    case Type::kIncreaseParameter:
+    case Type::kDecreaseParameter:
+    case Type::kChangeCommunication:
+    case Type::kStartGroup:
+      break;
   }
+  return Kind::kValue;
 }
 
 bool undoes(const Adaptation& after, const Adaptation& before) {

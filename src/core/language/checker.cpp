@@ -457,15 +457,7 @@ class Checker {
     }
   }
 
-  void add_strategy(const syntax::Strategy& written, RuleId rule) {
-    const StrategyId id(rules_.strategies.size());
-    const bool has_trigger = !conditions_.empty() && conditions_.back().rule == rule;
-    if (has_trigger) conditions_.back().strategies.push_back(&written);
-    Strategy strategy;
-    strategy.name = written.name.text;
-    strategy.rule = rule;
-    strategy.is_last_resort = written.is_last_resort;
-    if (written.is_last_resort) strategy.within = written.within.value_or(kWithin);
+  void check_numbers(const syntax::Strategy& written) {
     const auto in_percent = [](const syntax::Number& n) { return n.value > 0 && n.value <= 100; };
     if (!in_percent(written.probability)) {
       report(Code::kProbabilityRange, written.probability.span,
@@ -484,6 +476,18 @@ class Checker {
       report(Code::kConfidenceRange, written.confidence.span,
              "a confidence is above 0 and at most 100", "it counts as that many past attempts");
     }
+  }
+
+  void add_strategy(const syntax::Strategy& written, RuleId rule) {
+    const StrategyId id(rules_.strategies.size());
+    const bool has_trigger = !conditions_.empty() && conditions_.back().rule == rule;
+    if (has_trigger) conditions_.back().strategies.push_back(&written);
+    Strategy strategy;
+    strategy.name = written.name.text;
+    strategy.rule = rule;
+    strategy.is_last_resort = written.is_last_resort;
+    if (written.is_last_resort) strategy.within = written.within.value_or(kWithin);
+    check_numbers(written);
     strategy.success = percent(written.probability.value);
     strategy.confidence = written.confidence.value;
     if (written.when) {

@@ -101,9 +101,14 @@ std::optional<Effect> effect_of(const Adaptation& a) {
       return Effect{of_component(" parameter " + a.subject), "more", "increases its " + a.subject};
     case AdaptationType::kDecreaseParameter:
       return Effect{of_component(" parameter " + a.subject), "less", "decreases its " + a.subject};
-    default:
-      return std::nullopt;
+    case AdaptationType::kRestart:
+    case AdaptationType::kRedeploy:
+    case AdaptationType::kChangeMode:
+    case AdaptationType::kCall:
+    case AdaptationType::kStartGroup:
+      break;
   }
+  return std::nullopt;
 }
 
 // An adaptation that leaves something behind.

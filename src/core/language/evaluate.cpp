@@ -52,6 +52,7 @@ Slot unary(Op op, const Slot& a) {
     case Op::kSquareRoot:
       return finite(std::sqrt(a.d));
     default:
+      CULPRIT_ASSERT(false);  // each instruction of one operand is here
       return {};
   }
 }
@@ -97,6 +98,7 @@ Slot arithmetic(Op op, const Slot& a, const Slot& b) {
     case Op::kMaxDouble:
       return a.d < b.d ? b : a;
     default:
+      CULPRIT_ASSERT(false);  // each instruction of two operands is here or in a caller
       return {};
   }
 }

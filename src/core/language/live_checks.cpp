@@ -99,7 +99,13 @@ class LiveChecks {
         return routine(o);
       case OccurrenceKind::kAction:
         return action(o);
-      default:
+      case OccurrenceKind::kConstant:
+      case OccurrenceKind::kRule:
+      case OccurrenceKind::kStrategy:
+      case OccurrenceKind::kFunction:
+      case OccurrenceKind::kTemplate:
+      case OccurrenceKind::kHole:
+      case OccurrenceKind::kFile:
         return;
     }
   }
@@ -273,7 +279,10 @@ class LiveChecks {
                       "only nodes with a set_parameters service can be told new values");
       case kCall:
         return request(a);
-      default:
+      case kRedeploy:
+      case kStart:
+      case kStop:
+      case kStartGroup:
         return;
     }
   }

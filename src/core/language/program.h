@@ -106,9 +106,39 @@ constexpr int operand_count(Op op) {
       return 1;
     case Op::kSelect:
       return 3;
-    default:
+    case Op::kAnd:
+    case Op::kOr:
+    case Op::kAddInt:
+    case Op::kAddDouble:
+    case Op::kSubtractInt:
+    case Op::kSubtractDouble:
+    case Op::kMultiplyInt:
+    case Op::kMultiplyDouble:
+    case Op::kDivideInt:
+    case Op::kDivideDouble:
+    case Op::kRemainderInt:
+    case Op::kRemainderDouble:
+    case Op::kScale:
+    case Op::kShrink:
+    case Op::kRatio:
+    case Op::kLessInt:
+    case Op::kLessDouble:
+    case Op::kLessString:
+    case Op::kLessEqualInt:
+    case Op::kLessEqualDouble:
+    case Op::kLessEqualString:
+    case Op::kEqualBool:
+    case Op::kEqualInt:
+    case Op::kEqualDouble:
+    case Op::kEqualString:
+    case Op::kMinInt:
+    case Op::kMinDouble:
+    case Op::kMaxInt:
+    case Op::kMaxDouble:
+    case Op::kPower:
       return 2;
   }
+  return 0;
 }
 
 struct Instruction {

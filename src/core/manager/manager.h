@@ -19,8 +19,8 @@
 #include <vector>
 
 #include "analyze/analyzer.h"
-#include "execute/executor.h"
 #include "execute/governor.h"
+#include "execute/strategy_executor.h"
 #include "incidents/incidents.h"
 #include "knowledge/knowledge.h"
 #include "manager/managing_system.h"
@@ -122,7 +122,7 @@ class Manager : public ManagingSystem {
   Monitor monitor_;
   Analyzer analyzer_;
   std::unique_ptr<const Planner> planner_;
-  Executor executor_;
+  StrategyExecutor executor_;
   Governor governor_;
   Incidents incidents_;
   Autonomy autonomy_;

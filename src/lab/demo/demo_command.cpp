@@ -236,15 +236,47 @@ void print_how_to_break(const std::string& address, std::uint32_t domain) {
 }
 
 template <class Robot>
+typename Robot::Demo::Options setup_of(const DemoOptions& options, live::Observer& observer) {
+  typename Robot::Demo::Options setup;
+  Robot::set(setup, options);
+  setup.seed = options.seed;
+  setup.domain = options.domain;
+  setup.planner = options.planner.factory();
+  setup.on_event = [colour = colour_of(STDOUT_FILENO)](const Event& event, const RuleSet& rules,
+                                                       Time start) {
+    const std::string text = line(event, rules, start, colour);
+    if (!text.empty()) say(stdout, "{}\n", text);
+  };
+  setup.observer = &observer;
+  return setup;
+}
+
+// Errors: a play could not go on.
+template <class Demo, class Plays>
+Expected<std::vector<PlayOutcome>> play_each(Demo& demo, const Plays& plays) {
+  std::vector<PlayOutcome> outcomes;
+  for (const auto& play : plays) {
+    say(stdout, "\nScenario {} of {}: {}\nInjecting {}\n", outcomes.size() + 1, plays.size(),
+        play.name, joined(play.fault_names()));
+    auto outcome = demo.play(play);
+    if (!outcome) return Error{outcome.error()};
+    print_outcome(*outcome);
+    outcomes.push_back(std::move(*outcome));
+  }
+  return outcomes;
+}
+
+bool are_all_healed(const std::vector<PlayOutcome>& outcomes) {
+  return std::all_of(outcomes.begin(), outcomes.end(),
+                     [](const PlayOutcome& o) { return o.is_resolved(); });
+}
+
+template <class Robot>
 int demo_robot(const DemoOptions& options) {
   using Demo = typename Robot::Demo;
   const auto plays = Robot::plays_for(options);
-  if (!plays) {
-    say(stderr, "culprit: {}\n", plays.error());
-    return kUsage;
-  }
+  if (!plays) return fail(plays.error(), kUsage);
   StopSignals signals;
-  const Colour colour = colour_of(STDOUT_FILENO);
   say(stdout, "Starting {}: {}\n", Robot::kName, Robot::kNodes);
   Demo* running = nullptr;
   web::Hub hub([&] { running->interrupt(); });
@@ -252,21 +284,8 @@ int demo_robot(const DemoOptions& options) {
   web::HubObserver observer(hub, metrics);
   web::Histories histories;
   live::Observers observers({&observer, &histories.usage, &histories.signals});
-  typename Demo::Options setup;
-  Robot::set(setup, options);
-  setup.seed = options.seed;
-  setup.domain = options.domain;
-  setup.planner = options.planner.factory();
-  setup.on_event = [colour](const Event& event, const RuleSet& rules, Time start) {
-    const std::string text = line(event, rules, start, colour);
-    if (!text.empty()) say(stdout, "{}\n", text);
-  };
-  setup.observer = &observers;
-  auto demo = Demo::start(std::move(setup), signals.stopped());
-  if (!demo) {
-    say(stderr, "culprit: {}\n", demo.error());
-    return kFailed;
-  }
+  auto demo = Demo::start(setup_of<Robot>(options, observers), signals.stopped());
+  if (!demo) return fail(demo.error(), kFailed);
   running = demo->get();
   say_domain(Robot::kName, (*demo)->domain());
   web::RuleDesk desk(Robot::kRules, Demo::rule_text());
@@ -278,10 +297,7 @@ int demo_robot(const DemoOptions& options) {
                             web_routes(Robot::faults_of(**demo), hub, metrics, histories, orders,
                                        desk, studies, names, options.planner.factory()),
                             &hub);
-  if (!server) {
-    say(stderr, "culprit: {}\n", server.error());
-    return kUsage;
-  }
+  if (!server) return fail(server.error(), kUsage);
   histories.start();
   std::vector<web::Route> local = web::live_routes(hub);
   for (web::Route& route : web::order_routes(orders, hub)) local.push_back(std::move(route));
@@ -294,30 +310,15 @@ int demo_robot(const DemoOptions& options) {
     signals.wait_until_stopped();
     return kOk;
   }
-  std::vector<PlayOutcome> outcomes;
-  for (std::size_t i = 0; i < plays->size(); ++i) {
-    const auto& play = (*plays)[i];
-    say(stdout, "\nScenario {} of {}: {}\nInjecting {}\n", i + 1, plays->size(), play.name,
-        joined(play.fault_names()));
-    auto outcome = (*demo)->play(play);
-    if (!outcome) {
-      say(stderr, "culprit: {}\n", outcome.error());
-      return kFailed;
-    }
-    print_outcome(*outcome);
-    outcomes.push_back(std::move(*outcome));
-  }
-  print_summary(outcomes);
-  const bool all_healed = std::all_of(outcomes.begin(), outcomes.end(),
-                                      [](const PlayOutcome& o) { return o.is_resolved(); });
+  const auto outcomes = play_each(**demo, *plays);
+  if (!outcomes) return fail(outcomes.error(), kFailed);
+  print_summary(*outcomes);
+  const bool all_healed = are_all_healed(*outcomes);
   if (!all_healed)
     say(stdout, "The logs of the nodes are in {}\n", ((*demo)->keep_state() / "log").string());
   if (!options.output.empty()) {
-    const auto written = write_text(options.output, to_indented(to_json(outcomes)) + "\n");
-    if (!written) {
-      say(stderr, "culprit: {}\n", written.error());
-      return kFailed;
-    }
+    const auto written = write_text(options.output, to_indented(to_json(*outcomes)) + "\n");
+    if (!written) return fail(written.error(), kFailed);
   }
   const bool is_watched = isatty(STDIN_FILENO) != 0 && isatty(STDOUT_FILENO) != 0;
   if (is_watched && !options.ends) {

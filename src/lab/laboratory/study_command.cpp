@@ -268,11 +268,8 @@ int merge(const std::vector<std::string>& files, const StudyOutput& output) {
   return written ? kOk : fail(written.error(), kFailed);
 }
 
-void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
-  auto options = std::make_shared<StudyOptions>();
-  options->version = version;
-  CLI::App* command = study.add_subcommand(
-      "sunset", "The paper's evaluation on SUNSET, in virtual time; without a choice, all of it");
+// The compared planners and detectors, and the robot.
+void add_comparison(CLI::App* command, const std::shared_ptr<StudyOptions>& options) {
   command->add_flag("--ablation", options->ablation, "Eight configurations of D, C and S");
   command->add_flag("--robustness", options->robustness,
                     "Compare success probabilities that are 20 % off with ideal ones");
@@ -311,6 +308,14 @@ void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
       ->check(CLI::IsMember({"own", "age", "phi", "known"}))
       ->capture_default_str()
       ->excludes(live);
+}
+
+void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
+  auto options = std::make_shared<StudyOptions>();
+  options->version = version;
+  CLI::App* command = study.add_subcommand(
+      "sunset", "The paper's evaluation on SUNSET, in virtual time; without a choice, all of it");
+  add_comparison(command, options);
   command->add_option("--runs", options->runs, "Of each configuration")
       ->check(CLI::Range(1U, 1'000'000'000U))
       ->capture_default_str();
@@ -332,7 +337,7 @@ void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
   auto* run = command->add_option(
       "--run", options->single_run,
       "With --explain: the run to explain, from 0. With --live: the run to play, metrics as JSON");
-  command->add_flag("--explain")->needs(run)->excludes(live);
+  command->add_flag("--explain")->needs(run)->excludes("--live");
   command->add_option("--switches", options->switches, "With --run: of this configuration")
       ->capture_default_str();
   command

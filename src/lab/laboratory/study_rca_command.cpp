@@ -359,11 +359,13 @@ int study_rca(const RcaOptions& options) {
 
 }  // namespace
 
-void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) {
-  auto options = std::make_shared<RcaOptions>();
-  options->version = version;
-  CLI::App* command = study.add_subcommand(
-      "rca", "A benchmark of root-cause analysis: random robots with several faults at once");
+namespace {
+
+const std::vector<std::string> kFactors = {
+    "--detector-latency", "--stated",        "--pass",         "--delay",        "--unwatched",
+    "--hidden",           "--common-causes", "--false-alarms", "--faults-before"};
+
+void add_random_robots(CLI::App* command, const std::shared_ptr<RcaOptions>& options) {
   command->add_option("--components", options->components, "Sizes of the robots")
       ->delimiter(',')
       ->check(CLI::Range(std::size_t{2}, std::size_t{10'000}))
@@ -387,6 +389,10 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
   command->add_flag("--ignore", options->ignore,
                     "The rules IGNORE the infrastructure topics, as a user's would");
   add_factors(*command, options->factors);
+}
+
+// Which planners play which scenario.
+void add_play(CLI::App* command, const std::shared_ptr<RcaOptions>& options) {
   command
       ->add_option("--planner", options->planners,
                    fmt::format("Only these of {}; patient:2s waits 2 s instead of 3.4 s; without a "
@@ -398,13 +404,10 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
                                     "Play this scenario (docs/study-rca.md), with other luck in "
                                     "each episode, instead of random ones")
                        ->type_name("FILE");
-  const std::vector<std::string> factors = {
-      "--detector-latency", "--stated",        "--pass",         "--delay",        "--unwatched",
-      "--hidden",           "--common-causes", "--false-alarms", "--faults-before"};
   for (const std::string random : {"--components", "--faults", "--noise", "--cyclic",
                                    "--mixed-levels", "--flapping", "--unfixable", "--ignore"})
     scenario->excludes(random);
-  for (const std::string& factor : factors) scenario->excludes(factor);
+  for (const std::string& factor : kFactors) scenario->excludes(factor);
   command
       ->add_option("--write-scenario", options->scenario_output,
                    "Write the first episode's scenario there, and play nothing")
@@ -412,12 +415,15 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
   command->add_option("--explain", options->explained,
                       "Explain this episode, from 0, with each planner");
   add_cases(*command, *options);
+}
+
+void add_learning_and_regret(CLI::App* command, const std::shared_ptr<RcaOptions>& options) {
   auto* learn = command
                     ->add_option("--learn", options->learned,
                                  "Faults that bayes learns from on one robot, before its accuracy "
                                  "is measured on as many or more")
                     ->check(CLI::Range(1U, 1'000'000U))
-                    ->excludes(scenario);
+                    ->excludes("--scenario");
   // It counts every rule as that of the component with its number, and every effect as one that
   // illness came to.
   for (const std::string factor : {"--unwatched", "--common-causes", "--false-alarms"})
@@ -432,9 +438,9 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
   auto* regret = command->add_flag(
       "--regret", options->regret,
       "Measure bayes' regret for each objective, on random robots of up to four components");
-  regret->excludes(scenario)->excludes(learn);
+  regret->excludes("--scenario")->excludes(learn);
   for (CLI::Option* other : {learn, regret}) other->excludes("--export-cases");
-  for (const std::string& factor : factors) regret->excludes(factor);
+  for (const std::string& factor : kFactors) regret->excludes(factor);
   command->add_option("--systems", options->systems, "Number of robots")
       ->check(CLI::Range(1U, 1'000'000U))
       ->capture_default_str()
@@ -446,6 +452,18 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
   command->add_option("--html", options->html, "Also a page with calibration plots")
       ->type_name("FILE")
       ->needs(learn);
+}
+
+}  // namespace
+
+void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) {
+  auto options = std::make_shared<RcaOptions>();
+  options->version = version;
+  CLI::App* command = study.add_subcommand(
+      "rca", "A benchmark of root-cause analysis: random robots with several faults at once");
+  add_random_robots(command, options);
+  add_play(command, options);
+  add_learning_and_regret(command, options);
   command->add_option("--objective", options->objective, "Cost that the bayes planner minimizes")
       ->check(CLI::IsMember({"balanced", "downtime", "adaptations", "redeployments"}))
       ->capture_default_str();

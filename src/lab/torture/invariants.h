@@ -37,7 +37,7 @@
 #include <vector>
 
 #include "manager/manager.h"
-#include "torture/scenario.h"
+#include "torture/torture_scenario.h"
 
 namespace culprit::torture {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "torture/invariants.h"
-#include "torture/scenario.h"
+#include "torture/torture_scenario.h"
 
 namespace culprit::torture {
 

@@ -18,7 +18,7 @@
 #include "simulation/simulated_robot.h"
 #include "simulation/topic.h"
 #include "simulation/world.h"
-#include "torture/scenario.h"
+#include "torture/torture_scenario.h"
 
 namespace culprit::torture {
 

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "base/live_clock.h"
+#include "base/process_stat.h"
 #include "doctor/start_parameters.h"
 #include "owners/proc.h"
 #include "owners/start_of.h"
@@ -24,35 +25,11 @@ namespace fs = std::filesystem;
 
 fs::path folder_of(int pid) { return "/proc/" + std::to_string(pid); }
 
-Duration ticks(std::int64_t count) {
-  static const std::int64_t per_second = sysconf(_SC_CLK_TCK);
-  return std::chrono::nanoseconds(count * (1'000'000'000 / per_second));
-}
-
-// Processor time and memory of a process, or of one of its threads (proc(5), stat).
-struct Use {
-  Duration processor{};
-  std::int64_t bytes = 0;
-};
-// Nothing: it has ended, whether its parent has taken note of that or not.
-std::optional<Use> use_of(const fs::path& folder) {
-  std::ifstream file(folder / "stat");
-  std::string line;
-  std::getline(file, line);
-  const auto end = line.rfind(')');  // the command before it may hold anything
-  if (end == std::string::npos) return std::nullopt;
-  std::istringstream rest(line.substr(end + 1));
-  char state = 0;
-  rest >> state;
-  if (state == 'Z' || state == 'X') return std::nullopt;
-  std::string skipped;
-  for (int i = 0; i < 10; ++i) rest >> skipped;
-  std::int64_t user = 0, system = 0, pages = 0;
-  rest >> user >> system;
-  for (int i = 0; i < 8; ++i) rest >> skipped;
-  if (!(rest >> pages)) return std::nullopt;
-  static const std::int64_t page = sysconf(_SC_PAGESIZE);
-  return Use{ticks(user + system), pages * page};
+// The statistics of a process, or of one of its threads. Nothing: it has ended, whether its parent has taken note of that
+// or not.
+std::optional<ProcessStat> use_of(const std::string& process) {
+  const auto stat = process_stat(process);
+  return stat && stat->state != 'Z' && stat->state != 'X' ? stat : std::nullopt;
 }
 
 std::string command_of(int pid) {
@@ -129,7 +106,7 @@ std::set<int> ProcessWatch::sample(const std::map<std::string, int>& nodes, Offs
     if (pid != 0) by_process[pid].push_back(node);
   }
   for (const auto& [pid, names] : by_process) {
-    const auto use = use_of(folder_of(pid));
+    const auto use = use_of(std::to_string(pid));
     if (!use) {
       ended.insert(pid);
       continue;
@@ -137,7 +114,7 @@ std::set<int> ProcessWatch::sample(const std::map<std::string, int>& nodes, Offs
     const auto known = processes_.find(pid);
     Process& process =
         known != processes_.end() ? known->second : processes_[pid] = started(pid, names);
-    process.samples.push_back({at, use->processor, use->bytes});
+    process.samples.push_back({at, use->processor, static_cast<std::int64_t>(use->resident_bytes)});
     look_at_threads(pid, process, at);
   }
   std::erase_if(processes_, [&](const auto& entry) { return !by_process.contains(entry.first); });
@@ -161,8 +138,9 @@ void ProcessWatch::look_at_threads(int pid, Process& process, Offset at) {
   std::error_code error;
   for (fs::directory_iterator i(folder_of(pid) / "task", error);
        !error && i != fs::directory_iterator(); i.increment(error)) {
-    if (const auto use = use_of(i->path()))
-      used[std::atoi(i->path().filename().c_str())] = use->processor;
+    const std::string thread = i->path().filename();
+    if (const auto use = use_of(std::to_string(pid) + "/task/" + thread))
+      used[std::atoi(thread.c_str())] = use->processor;
   }
   if (const auto last = threads_.find(pid); last != threads_.end()) {
     double most = 0;

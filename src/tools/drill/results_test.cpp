@@ -6,7 +6,7 @@
 #include "base/test_folder.h"
 #include "base/text_file.h"
 #include "drill/drill_record.h"
-#include "drill/report.h"
+#include "drill/drill_report.h"
 #include "drill/write_back.h"
 #include "language/checker.h"
 

@@ -227,7 +227,7 @@ void add_differences(const std::vector<std::string>& key, const std::vector<OfRo
 
 }  // namespace
 
-Expected<Report> compare(Server& server, const Scope& scope) {
+Expected<Report> compare(Postgres& server, const Scope& scope) {
   TableQuery query{
       "Robots that are not like the others of their model",
       "none: all are like the others",

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "fleet_reports/report.h"
+#include "fleet_reports/table_report.h"
 
 namespace culprit::fleet {
 
@@ -25,7 +25,7 @@ std::vector<TableQuery> belief_queries(const Scope& scope);
 // Versions beside each other.
 std::vector<TableQuery> version_queries(const Scope& scope);
 // Robots that are not like the others of their model, and versions beside each other.
-Expected<Report> compare(Server& server, const Scope& scope);
+Expected<Report> compare(Postgres& server, const Scope& scope);
 
 // The statements as text, for other programs.
 std::string sql_of(const std::vector<TableQuery>& queries);

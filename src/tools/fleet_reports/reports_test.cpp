@@ -40,7 +40,7 @@ struct FleetReports : testing::Test {
     JournalTail tail(journal.path());
     const std::atomic<bool> stop = false;
     ASSERT_TRUE(tail.follow(*outbox, stop));
-    Server robot = postgres->connect("rover");
+    Postgres robot = postgres->connect("rover");
     ASSERT_TRUE(send(robot, *outbox, {name, *tail.run()}, {}));
   }
   std::string text_of(const std::vector<TableQuery>& queries) {
@@ -48,7 +48,7 @@ struct FleetReports : testing::Test {
     return report ? to_text(*report, 0) : report.error();
   }
   std::unique_ptr<TestPostgres> postgres;
-  std::optional<Server> server;
+  std::optional<Postgres> server;
   const test::TestFolder folder;
 };
 

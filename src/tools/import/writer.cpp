@@ -27,9 +27,17 @@ int usual_impact(AdaptationType type) {
       return 50;
     case kChangeCommunication:
       return 2;
-    default:
-      return 1;
+    case kSetParameter:
+    case kIncreaseParameter:
+    case kDecreaseParameter:
+    case kStart:
+    case kStop:
+    case kChangeMode:
+    case kCall:
+    case kStartGroup:
+      break;
   }
+  return 1;
 }
 
 std::string number_text(double number) {

@@ -12,7 +12,7 @@
 #include "bag/number_fields.h"
 #include "journal/json.h"
 #include "knowledge/describe.h"
-#include "recorder/recorder.h"
+#include "recorder/incident_recorder.h"
 #include "robot/component_binding.h"
 #include "ros2/messages.h"
 
@@ -71,7 +71,7 @@ Json first_graph(const fs::path& path, const CurveLimits& limits) {
   if (!file) return nullptr;
   for (bag::BagMessage message; file->next(message);) {
     const bag::BagTopic& topic = file->contents().topics()[message.topic];
-    if (topic.name != recorder::Recorder::kGraphTopic || message.bytes.size() > kMostGraph)
+    if (topic.name != recorder::IncidentRecorder::kGraphTopic || message.bytes.size() > kMostGraph)
       continue;
     const auto text = ros2::decode<ros2::msg::String>(bytes_of(message));
     if (text) return parse_json(text->data);

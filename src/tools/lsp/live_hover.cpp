@@ -82,9 +82,17 @@ std::string live_facts(const Document& document, const Occurrence& thing,
       return of_status(thing.name, robot);
     case OccurrenceKind::kService:
       return of_service(document, thing, robot);
-    default:
-      return "";
+    case OccurrenceKind::kConstant:
+    case OccurrenceKind::kRule:
+    case OccurrenceKind::kStrategy:
+    case OccurrenceKind::kFunction:
+    case OccurrenceKind::kAction:
+    case OccurrenceKind::kTemplate:
+    case OccurrenceKind::kHole:
+    case OccurrenceKind::kFile:
+      break;
   }
+  return "";
 }
 
 }  // namespace culprit::lsp

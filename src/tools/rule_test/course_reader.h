@@ -7,7 +7,7 @@
 #include "language/line_reader.h"
 #include "language/rule_set.h"
 #include "language/scanner.h"
-#include "rule_test/scenario.h"
+#include "rule_test/rule_scenario.h"
 
 namespace culprit::rule_test {
 

@@ -6,7 +6,7 @@
 
 #include "language/diagnostic.h"
 #include "plan/planner.h"
-#include "rule_test/report.h"
+#include "rule_test/result_report.h"
 
 namespace culprit::rule_test {
 

@@ -11,7 +11,7 @@
 #include "language/diagnostic.h"
 #include "language/rule_set.h"
 #include "language/syntax.h"
-#include "rule_test/scenario.h"
+#include "rule_test/rule_scenario.h"
 
 namespace culprit::rule_test {
 

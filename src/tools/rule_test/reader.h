@@ -10,7 +10,7 @@
 #include "language/diagnostic.h"
 #include "language/source.h"
 #include "rule_test/expectation.h"
-#include "rule_test/scenario.h"
+#include "rule_test/rule_scenario.h"
 
 namespace culprit::rule_test {
 

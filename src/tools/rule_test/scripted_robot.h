@@ -17,7 +17,7 @@
 #include "knowledge/event.h"
 #include "knowledge/known_robot.h"
 #include "robot/robot.h"
-#include "rule_test/scenario.h"
+#include "rule_test/rule_scenario.h"
 #include "simulation/body.h"
 
 namespace culprit::rule_test {

@@ -11,7 +11,7 @@
 #include "language/scanner.h"
 #include "language/source.h"
 #include "rule_test/names.h"
-#include "rule_test/scenario.h"
+#include "rule_test/rule_scenario.h"
 
 namespace culprit::rule_test {
 

@@ -9,7 +9,7 @@
 #include "knowledge/knowledge.h"
 #include "language/diagnostic.h"
 #include "language/source.h"
-#include "rule_test/scenario.h"
+#include "rule_test/rule_scenario.h"
 
 namespace culprit::rule_test {
 

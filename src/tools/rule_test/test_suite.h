@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "rule_test/report.h"
+#include "rule_test/result_report.h"
 
 namespace culprit::rule_test {
 

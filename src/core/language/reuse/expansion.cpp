@@ -217,53 +217,70 @@ class Expander {
     return out;
   }
 
-  ComposedText instance(const Surroundings& unit, const syntax::Use& use,
-                        std::vector<const syntax::Template*> open) {
-    const auto refuse = [&](Code code, Span span, std::string cause, std::string remedy,
-                            std::optional<Edit> fix = {}) {
-      Diagnostic d{code, Severity::kError, span, std::move(cause), std::move(remedy), fix};
-      unit.file ? blame(*unit.file, std::move(d)) : blame(unit.text, {std::move(d)});
-      return ComposedText{};
-    };
-    if (mistakes_.size() >= kEnoughMistakes) return {};
+  void refuse_use(const Surroundings& unit, Code code, Span span, std::string cause,
+                  std::string remedy, std::optional<Edit> fix = {}) {
+    Diagnostic d{code, Severity::kError, span, std::move(cause), std::move(remedy), fix};
+    unit.file ? blame(*unit.file, std::move(d)) : blame(unit.text, {std::move(d)});
+  }
+
+  // The template that is used. Null, and said, if there is none, or if it would have no end.
+  const Known* used_template(const Surroundings& unit, const syntax::Use& use,
+                             const std::vector<const syntax::Template*>& open) {
     const std::string& name = use.pattern.text;
     const auto known = templates_.find(name);
     if (known == templates_.end()) {
       std::vector<std::string_view> all;
       for (const auto& [each, where] : templates_) all.push_back(each);
       const std::string near = closest(name, all);
-      return refuse(Code::kUnknownTemplate, use.pattern.span, "there is no template '" + name + "'",
-                    near.empty() ? "INCLUDE the file that has it" : "did you mean '" + near + "'?",
-                    replacement(use.pattern.span, near));
+      refuse_use(unit, Code::kUnknownTemplate, use.pattern.span,
+                 "there is no template '" + name + "'",
+                 near.empty() ? "INCLUDE the file that has it" : "did you mean '" + near + "'?",
+                 replacement(use.pattern.span, near));
+      return nullptr;
     }
-    const syntax::Template& pattern = *known->second.pattern;
-    if (std::find(open.begin(), open.end(), &pattern) != open.end()) {
+    if (std::find(open.begin(), open.end(), known->second.pattern) != open.end()) {
       std::string circle;
       for (const syntax::Template* each : open) circle += each->name.text + " uses ";
-      return refuse(Code::kEndlessTemplate, use.pattern.span,
-                    "template '" + name + "' would use itself: " + circle + name,
-                    "leave one of the USEs out");
+      refuse_use(unit, Code::kEndlessTemplate, use.pattern.span,
+                 "template '" + name + "' would use itself: " + circle + name,
+                 "leave one of the USEs out");
+      return nullptr;
     }
-    if (open.size() >= kMaxDepth)
-      return refuse(Code::kEndlessTemplate, use.pattern.span,
-                    "templates use one another more than " + std::to_string(kMaxDepth) + " deep",
-                    "leave some of them out");
-    const auto arguments = arguments_of(unit.text, use, pattern, known->second.file, steps_);
-    if (!arguments)
-      return refuse(Code::kTemplateArguments, use.span, wrong_count(use, pattern),
-                    "it is USE " + usage_of(pattern));
+    if (open.size() >= kMaxDepth) {
+      refuse_use(unit, Code::kEndlessTemplate, use.pattern.span,
+                 "templates use one another more than " + std::to_string(kMaxDepth) + " deep",
+                 "leave some of them out");
+      return nullptr;
+    }
+    return &known->second;
+  }
+
+  ComposedText instance(const Surroundings& unit, const syntax::Use& use,
+                        std::vector<const syntax::Template*> open) {
+    if (mistakes_.size() >= kEnoughMistakes) return {};
+    const Known* known = used_template(unit, use, open);
+    if (known == nullptr) return {};
+    const syntax::Template& pattern = *known->pattern;
+    const auto arguments = arguments_of(unit.text, use, pattern, known->file, steps_);
+    if (!arguments) {
+      refuse_use(unit, Code::kTemplateArguments, use.span, wrong_count(use, pattern),
+                 "it is USE " + usage_of(pattern));
+      return {};
+    }
 
     const Piece& piece = piece_of(unit.text, use.span.begin);
     steps_.push_back({Step::Kind::kUse,
                       origin_of(use.span, unit.text.pieces, steps_, unit.text.size()).place,
                       piece.step});
-    const File& file = files_[known->second.file];
+    const File& file = files_[known->file];
     const auto step = static_cast<std::uint32_t>(steps_.size() - 1);
-    Unit body(filled_in(pattern, known->second.file, file.source, file.lexemes, *arguments, step));
+    Unit body(filled_in(pattern, known->file, file.source, file.lexemes, *arguments, step));
     expanded_ += body.text.text.size() + 1;
-    if (expanded_ > kMaxExpanded)
-      return refuse(Code::kEndlessTemplate, use.pattern.span,
-                    "the expanded templates are larger than 16 MiB", "");
+    if (expanded_ > kMaxExpanded) {
+      refuse_use(unit, Code::kEndlessTemplate, use.pattern.span,
+                 "the expanded templates are larger than 16 MiB", "");
+      return {};
+    }
     if (!body.said.empty()) {
       blame(body.text, of_arguments(body));
       return {};

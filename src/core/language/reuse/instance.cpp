@@ -151,15 +151,23 @@ bool DeclaredNames::has_component(const std::string& name) const {
          });
 }
 
-std::vector<Replacement> DeclaredNames::below(const std::string& space, const syntax::File& tree,
-                                              const Source& source) const {
-  std::string prefix = space.substr(1) + "_";
-  std::replace(prefix.begin(), prefix.end(), '/', '_');
+namespace {
+
+std::set<std::string> own_names(const syntax::File& tree) {
   std::set<std::string> own;
   for (const syntax::Component& c : tree.components) own.insert(c.name.text);
   for (const syntax::Signal& s : tree.signals) own.insert(s.name.text);
   for (const syntax::Group& g : tree.groups) own.insert(g.name.text);
+  return own;
+}
 
+}  // namespace
+
+std::vector<Replacement> DeclaredNames::below(const std::string& space, const syntax::File& tree,
+                                              const Source& source) const {
+  std::string prefix = space.substr(1) + "_";
+  std::replace(prefix.begin(), prefix.end(), '/', '_');
+  const std::set<std::string> own = own_names(tree);
   std::vector<Replacement> out;
   const auto insert = [&](std::uint32_t at, const std::string& text) {
     out.push_back({{at, at}, text});
@@ -204,7 +212,14 @@ std::vector<Replacement> DeclaredNames::below(const std::string& space, const sy
       case kAction:
         full_name({o.name, o.span});
         break;
-      default:
+      case kConstant:
+      case kParameter:
+      case kStrategy:
+      case kFunction:
+      case kDiagnostic:
+      case kTemplate:
+      case kHole:
+      case kFile:
         break;
     }
   }

@@ -2,6 +2,7 @@
 // that kType names.
 #pragma once
 
+#include "exemplars/geometry_messages.h"
 #include "ros2/messages.h"
 
 namespace culprit::rover::msg {
@@ -30,36 +31,10 @@ struct Vector3 {
   static void visit(auto& self, auto& each) { each(self.x, self.y, self.z); }
 };
 
-struct Point {
-  static constexpr std::string_view kType = "geometry_msgs/msg/Point";
-  double x = 0;
-  double y = 0;
-  double z = 0;
-  static void visit(auto& self, auto& each) { each(self.x, self.y, self.z); }
-};
-
-struct Quaternion {
-  static constexpr std::string_view kType = "geometry_msgs/msg/Quaternion";
-  double x = 0;
-  double y = 0;
-  double z = 0;
-  double w = 1;
-  static void visit(auto& self, auto& each) { each(self.x, self.y, self.z, self.w); }
-};
-
-struct Pose {
-  static constexpr std::string_view kType = "geometry_msgs/msg/Pose";
-  Point position;
-  Quaternion orientation;
-  static void visit(auto& self, auto& each) { each(self.position, self.orientation); }
-};
-
-struct PoseStamped {
-  static constexpr std::string_view kType = "geometry_msgs/msg/PoseStamped";
-  Header header;
-  Pose pose;
-  static void visit(auto& self, auto& each) { each(self.header, self.pose); }
-};
+using geometry::msg::Point;
+using geometry::msg::Pose;
+using geometry::msg::PoseStamped;
+using geometry::msg::Quaternion;
 
 struct PoseWithCovariance {
   static constexpr std::string_view kType = "geometry_msgs/msg/PoseWithCovariance";

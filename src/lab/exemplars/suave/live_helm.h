@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "exemplars/suave/geometry.h"
 #include "exemplars/suave/model/helm.h"
+#include "exemplars/suave/position_messages.h"
 #include "ros2/node.h"
 #include "ros2/services.h"
 

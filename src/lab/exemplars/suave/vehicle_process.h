@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "exemplars/suave/bridge.h"
-#include "exemplars/suave/geometry.h"
 #include "exemplars/suave/live_names.h"
 #include "exemplars/suave/model/autopilot.h"
 #include "exemplars/suave/model/monitors.h"
 #include "exemplars/suave/paced_world.h"
+#include "exemplars/suave/position_messages.h"
 
 namespace culprit::suave {
 

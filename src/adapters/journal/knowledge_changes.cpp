@@ -1,0 +1,71 @@
+#include "journal/knowledge_changes.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace culprit::journal {
+
+KnowledgeChanges::KnowledgeChanges(const Knowledge& knowledge) : knowledge_(knowledge) {
+  for (std::size_t s = 0; s < knowledge.rules.strategies.size(); ++s)
+    beliefs_.push_back(knowledge.beliefs[StrategyId(s)]);
+  for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
+    const auto all = knowledge.couplings.of(RuleId(r));
+    couplings_.emplace_back(all.begin(), all.end());
+    latencies_.push_back(knowledge.latencies.learned(RuleId(r)));
+  }
+}
+
+Learned KnowledgeChanges::learned() {
+  const RuleSet& rules = knowledge_.rules;
+  Learned learned;
+  for (std::size_t s = 0; s < beliefs_.size(); ++s) {
+    const Belief& belief = knowledge_.beliefs[StrategyId(s)];
+    if (belief == beliefs_[s]) continue;
+    beliefs_[s] = belief;
+    const Strategy& strategy = rules.strategies[s];
+    learned.beliefs.push_back({rules[strategy.rule].name, strategy.name, belief,
+                               knowledge_.beliefs.prior(StrategyId(s))});
+  }
+  for (std::size_t r = 0; r < couplings_.size(); ++r) {
+    const auto all = knowledge_.couplings.of(RuleId(r));
+    for (const Couplings::Learned& each : all) {
+      const auto is_same = [&](const Couplings::Learned& old) {
+        return old.cause == each.cause && old.coupling == each.coupling;
+      };
+      if (std::any_of(couplings_[r].begin(), couplings_[r].end(), is_same)) continue;
+      learned.couplings.push_back({rules[each.cause].name, rules.rules[r].name, each.coupling});
+    }
+    couplings_[r].assign(all.begin(), all.end());
+  }
+  for (std::size_t r = 0; r < latencies_.size(); ++r) {
+    const Latencies::Learned& latency = knowledge_.latencies.learned(RuleId(r));
+    if (latency == latencies_[r]) continue;
+    latencies_[r] = latency;
+    learned.latencies.push_back(named(rules.rules[r].name, latency));
+  }
+  return learned;
+}
+
+std::optional<KnownRobot> KnowledgeChanges::robot(Time now) {
+  const std::uint64_t sightings = knowledge_.sightings.count();
+  const std::uint64_t changes =
+      knowledge_.graph.changes() + sightings + knowledge_.sightings.heard_count();
+  const bool is_old = robot_written_ != kLongAgo && later(robot_written_, kRobotAtLatest) <= now;
+  const bool was_looked_at =
+      robot_looked_at_ != kLongAgo && now < later(robot_looked_at_, kRobotPeriod);
+  // A first sighting is written at once: if the node died together with culprit, the journal would
+  // otherwise lack it. First sightings are rare; topics' publishers come and go all the time.
+  const bool is_first_sight = sightings != robot_sightings_;
+  if ((changes == robot_changes_ && !is_old) || (was_looked_at && !is_first_sight))
+    return std::nullopt;
+  robot_changes_ = changes;
+  robot_sightings_ = sightings;
+  robot_looked_at_ = now;
+  KnownRobot known = knowledge_.known_robot();
+  if (known == robot_ && !is_old) return std::nullopt;
+  robot_written_ = now;
+  robot_ = known;
+  return known;
+}
+
+}  // namespace culprit::journal

@@ -1,0 +1,68 @@
+// The programs that started the components which culprit did not start: a launch file, a shell. For each component: which
+// one it is, whether it runs, and, once, that it has exited (LauncherSeen).
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <poll.h>
+#include <string>
+#include <vector>
+
+#include "base/time.h"
+#include "language/rule_set.h"
+#include "owners/file_descriptor.h"
+#include "robot/inbox.h"
+
+namespace culprit::owners {
+
+// Not thread-safe: the supervisor's mutex guards it.
+class Launchers {
+ public:
+  // `notes`: the folder of what culprit remembers of launchers (launch_note.h). `rules` and `inbox` must outlive it.
+  Launchers(const RuleSet& rules, std::filesystem::path notes, Inbox& inbox)
+      : rules_(rules), notes_(std::move(notes)), inbox_(inbox) {}
+
+  // The component's process `pid` runs. `is_others`: culprit did not start it.
+  void note_process(ComponentId component, int pid, bool is_others);
+  // The component's process, which culprit did not start, has ended.
+  void note_end(ComponentId component, int pid);
+
+  // Reports the component's launcher, if it runs.
+  void report(ComponentId component) const;
+  // Reports those that have ended since.
+  void report_ended();
+
+  // The launcher of the component, if it runs; 0: there is none.
+  int running(ComponentId component) const;
+  // Whether it, and not culprit, starts the component again. Also if it is unknown: two processes of one name would be
+  // worse than none.
+  bool restarts(ComponentId component) const;
+  // By SIGSTOP.
+  bool is_stopped(ComponentId component) const;
+
+  // Looks which children they have.
+  void look_at_children();
+  // Adds what becomes readable when one of them ends.
+  void add_to(std::vector<pollfd>& watched) const;
+
+ private:
+  struct Launcher {
+    int pid = 0;  // 0: it has ended, or it was a supervisor, since that had ended
+    std::optional<Time> began{};
+    std::vector<int> children{};  // when it was looked last
+    bool ran_others = false;      // when the component's process had ended
+    FileDescriptor held{};        // until its end, which is reported
+  };
+
+  void hold(ComponentId component, int launcher);
+  static bool goes_on(const Launcher& launcher);
+  static void look_at_children_of(Launcher& launcher);
+
+  const RuleSet& rules_;
+  const std::filesystem::path notes_;
+  Inbox& inbox_;
+  std::map<ComponentId, Launcher> launchers_;
+};
+
+}  // namespace culprit::owners

@@ -1,0 +1,598 @@
+#include "execute/strategy_executor.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/invariant.h"
+#include "execute/limits.h"
+#include "knowledge/ambiguity.h"
+
+namespace culprit {
+
+using execute::Goal;
+using execute::Pursuit;
+
+StrategyExecutor::StrategyExecutor(const Knowledge& knowledge, Writes writes)
+    : knowledge_(knowledge), write_(writes) {}
+
+StrategyExecutor::~StrategyExecutor() = default;
+
+void StrategyExecutor::begin(StrategyId strategy, Time now) {
+  const Strategy& begun = knowledge_.rules[strategy];
+  CULPRIT_ASSERT(begun.is_last_resort ||
+                 std::none_of(begun.components.begin(), begun.components.end(), [&](ComponentId c) {
+                   return knowledge_.states.reservation(c) != nullptr;
+                 }));
+  write_.attempts.begin(strategy, now);
+  add_run(strategy);
+}
+
+StrategyExecutor::Run& StrategyExecutor::add_run(StrategyId strategy) {
+  const RuleId rule = knowledge_.rules[strategy].rule;
+  std::erase_if(runs_, [&](const Run& old) {
+    return old.rule == rule && knowledge_.rules[old.strategy].is_last_resort ==
+                                   knowledge_.rules[strategy].is_last_resort;
+  });
+  Run& run = runs_.emplace_back();
+  run.rule = rule;
+  run.strategy = strategy;
+  return run;
+}
+
+void StrategyExecutor::resume(Interrupted interrupted, Time now, Time from) {
+  CULPRIT_ASSERT(
+      std::all_of(runs_.begin(), runs_.end(), [](const Run& r) { return r.interrupted; }));
+  write_.attempts.resume(interrupted.strategy, now);
+  Run& run = add_run(interrupted.strategy);
+  // An answer to a request of the earlier process must not be taken for one to ours.
+  for (const Interrupted::Request& request : interrupted.requests)
+    last_command_ = std::max(last_command_, request.command.id.number);
+  run.interrupted = std::move(interrupted);
+  run.from = from;
+}
+
+// Gives false while a resumed attempt has to wait, or if it cannot go on.
+bool StrategyExecutor::take_up(Run& run, Time now) {
+  if (!run.interrupted) return true;
+  if (now < run.from) return false;
+  const Interrupted interrupted = *std::exchange(run.interrupted, std::nullopt);
+  write_.events.tell(now, StrategyResumed{run.strategy});
+  run.undo = execute::undo_of(interrupted, knowledge_);
+  if (interrupted.has_failed) {
+    run.adaptation = interrupted.adaptations_done;
+    write_.attempts.undo(run.strategy);
+    write_.signals.touch(run.rule);
+    return true;
+  }
+  execute::Resumption rest = execute::resumption_of(interrupted, knowledge_);
+  run.adaptation = rest.adaptation;
+  run.goals = std::move(rest.goals);
+  if (rest.obstacle.empty()) return true;
+  obstruct(run, rest.obstacle, rest.obstacle, now);
+  return false;
+}
+
+void StrategyExecutor::restart(Time now) {
+  for (Run& run : runs_) {
+    if (run.pursuit) run.pursuit->restart(now);
+  }
+  forget_questions();
+  unsure_until_ = later(now, kUnsure);
+}
+
+void StrategyExecutor::ask(ComponentId component, StrategyId strategy, Duration timeout, Time now,
+                           std::vector<Command>& commands) {
+  Questioned& questioned = write_.components[component].questioned;
+  questioned.at = now;
+  questioned.is_open = true;
+  std::erase_if(questions_, [&](const Question& old) { return old.component == component; });
+  questions_.push_back({{++last_command_}, component});
+  commands.push_back({questions_.back().command, component, Probe{}, timeout, {strategy}});
+}
+
+void StrategyExecutor::forget_questions() {
+  for (const Question& each : questions_)
+    write_.components[each.component].questioned.is_open = false;
+  questions_.clear();
+}
+
+std::optional<ComponentId> StrategyExecutor::proven_by(const Reply& reply) const {
+  const auto question = std::ranges::find(questions_, reply.command, &Question::command);
+  const bool is_proven = question != questions_.end() && reply.outcome == Outcome::kDone &&
+                         is_of_present_process(*question);
+  return is_proven ? std::optional(question->component) : std::nullopt;
+}
+
+// A process that began since then was not asked.
+bool StrategyExecutor::is_of_present_process(const Question& question) const {
+  return knowledge_.components[question.component].questioned.is_open;
+}
+
+// A component that could not be asked, or that never answered, may work all the same.
+void StrategyExecutor::note_answer(const Question& question, Outcome outcome) {
+  if (!is_of_present_process(question)) return;
+  ComponentState& state = write_.components[question.component];
+  Questioned& questioned = state.questioned;
+  questioned.is_open = false;
+  if (outcome == Outcome::kDone) return;  // the monitor notes it
+  if (outcome == Outcome::kTimedOut && knowledge_.now < unsure_until_) return;
+  questioned.is_pointless = outcome != Outcome::kTimedOut || !state.answers_probes;
+  if (!questioned.unanswered && !questioned.is_pointless) questioned.unanswered = questioned.at;
+}
+
+void StrategyExecutor::answered(const Reply& reply, Time now) {
+  const auto question = std::ranges::find(questions_, reply.command, &Question::command);
+  if (question != questions_.end()) {
+    note_answer(*question, reply.outcome);
+    questions_.erase(question);
+    return;
+  }
+  for (Run& run : runs_) {
+    if (run.pursuit && run.pending == reply.command) {
+      run.pending = {};
+      run.pursuit->answered(reply, now);
+      return;
+    }
+  }
+}
+
+void StrategyExecutor::advance(Time now, std::vector<Command>& commands) {
+  if (!owed_.empty()) forget_what_others_started(now);
+  // An attempt that succeeded left its rule; nothing of it is left to do.
+  std::erase_if(runs_, [&](const Run& run) { return attempt_of(run) == nullptr; });
+  for (Run& run : runs_) advance(run, now, commands);
+}
+
+void StrategyExecutor::advance(Run& run, Time now, std::vector<Command>& commands) {
+  if (!take_up(run, now)) return;
+  const Attempt::Stage stage = attempt_of(run)->stage;
+  if (stage == Attempt::Stage::kUndoing && !run.is_undoing) {
+    run.is_undoing = true;
+    run.pursuit.reset();
+  }
+  const bool is_at_rest = stage == Attempt::Stage::kWaiting ||
+                          stage == Attempt::Stage::kSuspended || stage == Attempt::Stage::kOver;
+  const bool may_start_again = stage == Attempt::Stage::kWaiting;
+  if (is_at_rest && !(may_start_again && start_again(run, now))) return;
+  // The analysis has not taken it from here yet.
+  if (!attempt_of(run)->obstacle.empty() && !run.is_undoing) return;
+  while (run.pursuit || (run.is_undoing ? next_undo(run, now) : next_goal(run, now))) {
+    const bool had_changed = run.pursuit->has_changed_anything();
+    if (run.pending == CommandId{} || run.pursuit->next_deadline() <= now ||
+        run.pursuit->is_lost(knowledge_) || run.pursuit->must_insist(knowledge_)) {
+      if (auto request = run.pursuit->advance(knowledge_, now)) {
+        run.pending = {++last_command_};
+        if (std::holds_alternative<StopProcess>(*request))
+          write_.components[run.pursuit->component()].culprit_raised = kLongAgo;
+        note_transition(*run.pursuit, *request, now);
+        commands.push_back({run.pending, run.pursuit->component(), *request,
+                            run.pursuit->timeout(*request), purpose_of(run)});
+      }
+    }
+    if (!had_changed && run.pursuit->has_changed_anything()) note_change(run, now);
+    if (run.pursuit->is_under_way()) return;
+    run.is_undoing ? finish_undo(run, now) : finish_goal(run, now);
+    if (!attempt_of(run)->obstacle.empty() && !run.is_undoing)
+      return;  // the analysis takes it from here
+  }
+}
+
+Purpose StrategyExecutor::purpose_of(const Run& run) const {
+  Purpose purpose{run.strategy, static_cast<std::uint32_t>(run.adaptation), run.is_undoing};
+  const Pursuit& pursuit = *run.pursuit;
+  const bool is_process = std::holds_alternative<execute::GoneGoal>(pursuit.goal()) ||
+                          std::holds_alternative<execute::PresentGoal>(pursuit.goal());
+  if (is_process) {
+    purpose.before = knowledge_.components[pursuit.component()].intended_lifecycle;
+  } else if (pursuit.before()) {
+    purpose.before = pursuit.before()->value;
+  }
+  return purpose;
+}
+
+// Sets out for the next goal; gives false if the attempt has none left.
+bool StrategyExecutor::next_goal(Run& run, Time now) {
+  const auto& adaptations = knowledge_.rules[run.strategy].adaptations;
+  while (run.adaptation < adaptations.size()) {
+    const Adaptation& adaptation = adaptations[run.adaptation];
+    if (run.goals.empty()) {
+      if (const auto other = deactivated_meanwhile(run)) {
+        write_.attempts.make_ambiguous(run.strategy);
+        const std::string reason = knowledge_.rules[*other].name +
+                                   " was deactivated meanwhile, by something else: a person, or "
+                                   "the manager";
+        obstruct(run, reason, reason, now);
+        return false;
+      }
+      auto goals =
+          is_managed_still(run) ? std::vector<Goal>() : execute::goals_of(adaptation, knowledge_);
+      if (!goals) {
+        obstruct(run, goals.error(), goals.error(), now);
+        return false;
+      }
+      run.goals = std::move(*goals);
+      take_owed(adaptation, run.goals);
+      run.goal = 0;
+      if (adaptation.begins_step) run.started = kNever;
+    }
+    if (run.goal < run.goals.size()) {
+      execute::Goal& goal = run.goals[run.goal];
+      const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&goal);
+      if (lifecycle != nullptr && launches(adaptation))
+        goal = execute::bringing_up(adaptation, lifecycle->target, knowledge_);
+      if (auto* present = std::get_if<execute::PresentGoal>(&goal)) {
+        run.started = std::min(run.started, now);
+        present->tries_until = later(run.started, knowledge_.rules[adaptation.component].ready);
+      }
+      run.pursuit.emplace(goal, adaptation.component, now);
+      return true;
+    }
+    write_.events.tell(now, AdaptationDone{run.strategy, run.adaptation, run.remark});
+    note_begun_anew(run, now);
+    if (adaptation.group) run.brought_up.push_back({adaptation.component, now});
+    run.goals.clear();
+    run.remark.clear();
+    ++run.adaptation;
+  }
+  write_.attempts.took_effect(run.strategy, now);
+  write_.signals.touch(run.rule);
+  return false;
+}
+
+// A member of a group that was brought up, and is not up any more though its process lives: to bring it up
+// again would be a fight with whoever did that.
+std::optional<ComponentId> StrategyExecutor::deactivated_meanwhile(const Run& run) const {
+  for (const Run::BroughtUp& each : run.brought_up) {
+    const ComponentState& state = knowledge_.components[each.component];
+    const bool is_down =
+        state.lifecycle == Lifecycle::kInactive || state.lifecycle == Lifecycle::kUnconfigured;
+    if (is_down && state.alive == true && state.lifecycle_since > each.at &&
+        state.node_seen <= each.at)
+      return each.component;
+  }
+  return std::nullopt;
+}
+
+// The manager of a group in which nothing had to be changed: it has brought up all of them by itself.
+bool StrategyExecutor::is_managed_still(const Run& run) const {
+  const Adaptation& adaptation = knowledge_.rules[run.strategy].adaptations[run.adaptation];
+  return adaptation.group && adaptation.type == AdaptationType::kRedeploy &&
+         knowledge_.components[adaptation.component].alive == true &&
+         attempt_of(run)->first_change == kNever;
+}
+
+// Consumers may show the gap of a restart after it is over.
+void StrategyExecutor::note_begun_anew(const Run& run, Time now) {
+  const Adaptation& adaptation = knowledge_.rules[run.strategy].adaptations[run.adaptation];
+  if (adaptation.type != AdaptationType::kRestart && adaptation.type != AdaptationType::kRedeploy)
+    return;
+  const BegunAnew done{run.strategy, std::min(attempt_of(run)->first_change, now), now};
+  write_.components[adaptation.component].begun_anew = done;
+  for (const ComponentId other : knowledge_.components[adaptation.component].ends_with)
+    write_.components[other].begun_anew = done;
+}
+
+// A process that was there, and ended before its component's READY was over, is started again: that is
+// a try of the same attempt.
+bool StrategyExecutor::start_again(Run& run, Time now) {
+  if (run.started == kNever) return false;
+  const auto& adaptations = knowledge_.rules[run.strategy].adaptations;
+  for (std::size_t i = 0; i < adaptations.size(); ++i) {
+    const Adaptation& adaptation = adaptations[i];
+    const Time until = later(run.started, knowledge_.rules[adaptation.component].ready);
+    if (!launches(adaptation) || now >= until || !knowledge_.is_known_gone(adaptation.component))
+      continue;
+    auto goals = execute::goals_of(adaptation, knowledge_);
+    if (!goals) return false;
+    std::erase_if(*goals,
+                  [](const Goal& goal) { return std::holds_alternative<execute::GoneGoal>(goal); });
+    for (Goal& goal : *goals) {
+      if (auto* present = std::get_if<execute::PresentGoal>(&goal))
+        present->not_before = std::min(
+            until, later(now, execute::PresentGoal::kPause * (1 << std::min(run.starts, 10))));
+    }
+    ++run.starts;
+    run.adaptation = i;
+    run.goals = std::move(*goals);
+    run.goal = 0;
+    write_.attempts.adapts_again(run.strategy);
+    return true;
+  }
+  return false;
+}
+
+void StrategyExecutor::finish_goal(Run& run, Time now) {
+  const Pursuit& pursuit = *run.pursuit;
+  const Adaptation& adaptation = knowledge_.rules[run.strategy].adaptations[run.adaptation];
+  // A last resort is to last, even after its failure has cleared.
+  const bool is_to_last = knowledge_.rules[run.strategy].is_last_resort;
+  // Members that are up stay up: a part of the group is better than nothing.
+  if (!is_to_last && !adaptation.group && pursuit.has_changed_anything()) note_undo(run);
+  if (pursuit.is_reached()) {
+    // Where it was brought last counts; a restart takes it through another state.
+    const auto rest = run.goals.begin() + static_cast<std::ptrdiff_t>(run.goal) + 1;
+    const bool is_last = std::none_of(rest, run.goals.end(), [](const execute::Goal& goal) {
+      return std::holds_alternative<execute::LifecycleGoal>(goal);
+    });
+    if (is_last) note_lifecycle(pursuit, now);
+    if (const auto* parameter = std::get_if<execute::ParameterGoal>(&pursuit.goal()))
+      forget_owed(pursuit.component(), parameter->name);
+    // The manager of a group goes on being the driver of its members.
+    if (launches(adaptation) || (!adaptation.group && is_first_rise(pursuit)))
+      note_coming_up(pursuit, now);
+    if (!pursuit.remark().empty()) run.remark = pursuit.remark();
+    note_mode(pursuit, now);
+    ++run.goal;
+  } else if (!start_again(run, now)) {
+    if (pursuit.met_rival()) note_rival(run, now);
+    if (launches(adaptation) && pursuit.took_too_long()) note_too_long(pursuit, now);
+    obstruct(run, knowledge_.rules[pursuit.component()].name + ": " + pursuit.remark(),
+             pursuit.remark(), now);
+  }
+  run.pursuit.reset();
+}
+
+// How the goal that was pursued last is taken back. A state that two steps change is brought
+// back to where it was before the first.
+void StrategyExecutor::note_undo(Run& run) {
+  const Pursuit& pursuit = *run.pursuit;
+  const auto& adaptations = knowledge_.rules[run.strategy].adaptations;
+  const Adaptation& adaptation = adaptations[run.adaptation];
+  if (adaptation.type == AdaptationType::kStop) {
+    if (!pursuit.is_reached() || !execute::is_started_again(run.adaptation, adaptations)) return;
+    const Lifecycle before = knowledge_.components[adaptation.component].intended_lifecycle;
+    for (Goal& goal : execute::starting_again(adaptation, before, knowledge_))
+      run.undo.push_back({adaptation.component, std::move(goal)});
+  } else if (pursuit.before()) {
+    auto goal = execute::undoing(pursuit.goal(), adaptation.type, *pursuit.before());
+    const bool is_known = goal && std::ranges::any_of(run.undo, [&](const execute::Undo& known) {
+                            return known.component == pursuit.component() &&
+                                   execute::are_of_one_thing(known.goal, *goal);
+                          });
+    if (goal && !is_known) run.undo.push_back({pursuit.component(), std::move(*goal)});
+  }
+}
+
+bool StrategyExecutor::next_undo(Run& run, Time now) {
+  for (; !run.undo.empty(); run.undo.pop_back()) {
+    const execute::Undo& undo = run.undo.back();
+    const ComponentState& state = knowledge_.components[undo.component];
+    const bool starts = std::holds_alternative<execute::PresentGoal>(undo.goal);
+    if (is_held_by_last_resort(undo)) continue;
+    if (starts && (state.alive == true || (state.pid != 0 && state.process != ProcessState::kGone)))
+      continue;  // it is there
+    if (const auto missing = missing_for(run, undo)) {
+      write_.events.tell(
+          now, Undone{run.strategy,
+                      knowledge_.rules[undo.component].name + ": " + execute::describe(undo.goal) +
+                          ": it may depend on " + knowledge_.rules[missing->component].name +
+                          ", which " + missing->why,
+                      false});
+      continue;
+    }
+    if (!starts && state.process == ProcessState::kGone) {
+      undo_at_next_start(run.strategy, undo, now);
+      continue;
+    }
+    run.pursuit.emplace(undo.goal, undo.component, now);
+    return true;
+  }
+  write_.attempts.undone(run.strategy);
+  write_.signals.touch(run.rule);
+  return false;
+}
+
+// The component that keeps another one, which the strategy took down, from being brought up again: one
+// that was adapted after it, or that it depends on, and that is down or could not be brought up.
+std::optional<StrategyExecutor::Missing> StrategyExecutor::missing_for(
+    const Run& run, const execute::Undo& undo) const {
+  const Strategy& strategy = knowledge_.rules[run.strategy];
+  const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&undo.goal);
+  const bool activates = lifecycle != nullptr && lifecycle->target == Lifecycle::kActive &&
+                         knowledge_.components[undo.component].lifecycle != Lifecycle::kActive;
+  const bool starts = std::holds_alternative<execute::PresentGoal>(undo.goal);
+  if (strategy.components.size() < 2 || (!activates && !starts)) return std::nullopt;
+  const auto is_down = [&](ComponentId c) {
+    return c != undo.component && knowledge_.components[c].alive == false;
+  };
+  bool is_later = false;
+  for (std::size_t i = 0; i < strategy.adaptations.size(); ++i) {
+    const Adaptation& adaptation = strategy.adaptations[i];
+    const bool brings_up = adaptation.type == AdaptationType::kActivate ||
+                           adaptation.type == AdaptationType::kRestart || launches(adaptation);
+    const bool has_failed = i == run.adaptation && brings_up;
+    if (adaptation.component == undo.component) {
+      is_later = true;
+    } else if (is_later && is_down(adaptation.component)) {
+      return Missing{adaptation.component, "is down"};
+    } else if (is_later && has_failed) {
+      return Missing{adaptation.component, "could not be brought up"};
+    }
+  }
+  const auto upstream = knowledge_.graph.first_upstream(undo.component, is_down);
+  return upstream ? std::optional(Missing{*upstream, "is down"}) : std::nullopt;
+}
+
+// A last resort has changed the same since, and that stays.
+bool StrategyExecutor::is_held_by_last_resort(const execute::Undo& undo) const {
+  const auto* parameter = std::get_if<execute::ParameterGoal>(&undo.goal);
+  const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&undo.goal);
+  const bool is_mode = std::holds_alternative<execute::ModeGoal>(undo.goal);
+  bool is_held = false;
+  knowledge_.states.for_each_standing([&](StrategyId strategy) {
+    for (const Adaptation& held : knowledge_.rules[strategy].adaptations) {
+      if (held.component != undo.component) continue;
+      is_held |=
+          parameter != nullptr && names_parameter(held.type) && held.subject == parameter->name;
+      is_held |= lifecycle != nullptr && (held.type == AdaptationType::kActivate ||
+                                          held.type == AdaptationType::kDeactivate);
+      is_held |= is_mode && held.type == AdaptationType::kChangeMode;
+    }
+  });
+  return is_held;
+}
+
+// No process is there to be asked. The next process may start with the values of the last one: many
+// nodes keep their parameters.
+void StrategyExecutor::undo_at_next_start(StrategyId strategy, const execute::Undo& undo,
+                                          Time now) {
+  if (const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&undo.goal)) {
+    write_.components.intend_lifecycle(undo.component, lifecycle->target, now, write_.events);
+  } else if (const auto* parameter = std::get_if<execute::ParameterGoal>(&undo.goal)) {
+    forget_owed(undo.component, parameter->name);
+    owed_.push_back({strategy, undo});
+  }
+}
+
+// Values to be undone in a process that `adaptation` starts become its last goals.
+void StrategyExecutor::take_owed(const Adaptation& adaptation, std::vector<execute::Goal>& goals) {
+  if (adaptation.type != AdaptationType::kRedeploy && adaptation.type != AdaptationType::kStart)
+    return;
+  std::erase_if(owed_, [&](Owed& owed) {
+    if (owed.undo.component != adaptation.component) return false;
+    goals.push_back(std::move(owed.undo.goal));
+    return true;
+  });
+}
+
+// A process that somebody else started has the values that they want, and a person may have changed
+// them since. So culprit reports the pending undo, and does not set it at some redeploy much later.
+void StrategyExecutor::forget_what_others_started(Time now) {
+  std::erase_if(owed_, [&](const Owed& owed) {
+    const ComponentId component = owed.undo.component;
+    if (knowledge_.components[component].process == ProcessState::kGone) return false;
+    const std::string what =
+        knowledge_.rules[component].name + ": " + execute::describe(owed.undo.goal);
+    write_.events.tell(
+        now, Undone{owed.strategy, what + ": something else had started it again", false});
+    return true;
+  });
+}
+
+void StrategyExecutor::forget_owed(ComponentId component, const std::string& parameter) {
+  std::erase_if(owed_, [&](const Owed& owed) {
+    return owed.undo.component == component &&
+           std::get<execute::ParameterGoal>(owed.undo.goal).name == parameter;
+  });
+}
+
+void StrategyExecutor::finish_undo(Run& run, Time now) {
+  const Pursuit& pursuit = *run.pursuit;
+  const bool reached = pursuit.is_reached();
+  if (reached) note_lifecycle(pursuit, now);
+  // A mode that is back by itself was set back, and that is remembered.
+  if (std::holds_alternative<execute::ModeGoal>(pursuit.goal()) && pursuit.has_changed_anything())
+    write_.rivals.forget(pursuit.component());
+  // A value that came back by itself was not undone.
+  if (!reached || pursuit.has_changed_anything()) {
+    const std::string what =
+        knowledge_.rules[pursuit.component()].name + ": " + describe(pursuit.goal());
+    write_.events.tell(
+        now, Undone{run.strategy, reached ? what : what + ": " + pursuit.remark(), reached});
+  }
+  run.undo.pop_back();
+  run.pursuit.reset();
+}
+
+void StrategyExecutor::note_change(Run& run, Time now) {
+  if (run.is_undoing || attempt_of(run)->first_change != kNever) return;
+  write_.attempts.change_begins(run.strategy, now);
+  mark_ambiguous(knowledge_, run.strategy, write_.attempts, write_.outcomes);
+}
+
+// The component's lifecycle is now where it was brought on purpose.
+void StrategyExecutor::note_lifecycle(const Pursuit& pursuit, Time now) {
+  const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&pursuit.goal());
+  if (lifecycle != nullptr)
+    write_.components.intend_lifecycle(pursuit.component(), lifecycle->target, now, write_.events);
+}
+
+// It stayed unconfigured until a rule had culprit bring it up: it has no other driver.
+bool StrategyExecutor::is_first_rise(const Pursuit& pursuit) const {
+  const auto& before = pursuit.before();
+  const auto* state = before ? std::get_if<Lifecycle>(&before->value) : nullptr;
+  const auto driver = knowledge_.components[pursuit.component()].coming_up.driver;
+  return state != nullptr && *state == Lifecycle::kUnconfigured &&
+         driver == ComingUp::Driver::kUnknown;
+}
+
+// How long it took, and who brought it up.
+void StrategyExecutor::note_coming_up(const Pursuit& pursuit, Time now) {
+  ComponentState& state = write_.components[pursuit.component()];
+  ComingUp how = state.coming_up;
+  if (std::holds_alternative<execute::PresentGoal>(pursuit.goal()) &&
+      pursuit.has_changed_anything()) {
+    how.joining = now - pursuit.changed();
+  } else if (std::holds_alternative<execute::LifecycleGoal>(pursuit.goal())) {
+    const bool is_ours = pursuit.has_changed_anything() && !pursuit.met_driver();
+    how.driver = is_ours ? ComingUp::Driver::kCulprit : ComingUp::Driver::kOther;
+    how.rising = now - (is_ours ? pursuit.first_changed() : state.node_seen);
+    if (is_ours) state.culprit_raised = now;
+  }
+  write_.components.note_coming_up(pursuit.component(), how, now, write_.events);
+}
+
+// A component that once took too long gets more time at its next start.
+void StrategyExecutor::note_too_long(const Pursuit& pursuit, Time now) {
+  const ComponentState& state = knowledge_.components[pursuit.component()];
+  ComingUp how = state.coming_up;
+  if (std::holds_alternative<execute::PresentGoal>(pursuit.goal())) {
+    how.joining = std::max(how.joining, now - pursuit.changed());
+  } else if (std::holds_alternative<execute::LifecycleGoal>(pursuit.goal())) {
+    how.rising = std::max(how.rising, now - pursuit.first_changed());
+  }
+  write_.components.note_coming_up(pursuit.component(), how, now, write_.events);
+}
+
+// A node may not report a transition before it is over.
+void StrategyExecutor::note_transition(const Pursuit& pursuit, const Pursuit::Request& request,
+                                       Time now) {
+  if (!std::holds_alternative<ChangeLifecycle>(request)) return;
+  ComponentState& state = write_.components[pursuit.component()];
+  state.transition_patience = std::get<execute::LifecycleGoal>(pursuit.goal()).patience;
+  state.changes_until = later(now, state.transition_patience);
+}
+
+// Which mode was set, and from which: something else may set it back.
+void StrategyExecutor::note_mode(const Pursuit& pursuit, Time now) {
+  const auto* mode = std::get_if<execute::ModeGoal>(&pursuit.goal());
+  const auto* value = pursuit.before() ? std::get_if<Value>(&pursuit.before()->value) : nullptr;
+  const auto* before = value == nullptr ? nullptr : std::get_if<std::string>(value);
+  // An odd remark says that it does not read back what was set.
+  if (mode == nullptr || before == nullptr || !pursuit.has_changed_anything() ||
+      !pursuit.remark().empty())
+    return;
+  write_.rivals.changed(pursuit.component(), *before, mode->mode,
+                        knowledge_.began(pursuit.component()), now);
+}
+
+void StrategyExecutor::note_rival(const Run& run, Time now) {
+  const ComponentId system = run.pursuit->component();
+  write_.rivals.leave_alone(system, now);
+  write_.events.tell(now, RivalSeen{system});
+  write_.attempts.make_ambiguous(run.strategy);  // that nothing was tried proves nothing
+}
+
+const Attempt* StrategyExecutor::attempt_of(const Run& run) const {
+  return knowledge_.states.attempt_of(run.strategy);
+}
+
+// The adaptation could not be carried out; the analysis takes it from here.
+void StrategyExecutor::obstruct(const Run& run, std::string obstacle, const std::string& reason,
+                                Time now) {
+  write_.attempts.obstruct(run.strategy, std::move(obstacle));
+  write_.events.tell(now, AdaptationFailed{run.strategy, run.adaptation, reason});
+  write_.signals.touch(run.rule);
+}
+
+Time StrategyExecutor::next_deadline() const {
+  Time next = kNever;
+  for (const Run& run : runs_) {
+    if (attempt_of(run) == nullptr) continue;
+    if (run.pursuit) next = std::min(next, run.pursuit->next_deadline());
+    if (run.interrupted) next = std::min(next, run.from);
+  }
+  return next;
+}
+
+}  // namespace culprit

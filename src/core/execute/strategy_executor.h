@@ -1,0 +1,149 @@
+// Strategies -> commands (paper, "Execution").
+//
+// A strategy's adaptations are carried out in the order they are written, each to its proof
+// (goal.h), before the next begins. If one cannot be carried out, or the verdict is that the
+// strategy failed, its changes are undone in reverse order where they can be. A component that was
+// taken down while another one was adapted is not brought up again where that one is down. From its choice to
+// the end of its undoing a strategy has its components to itself, but for last resorts: these go
+// beside it and are not undone, and no other undoing touches their changes.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "execute/pursuit.h"
+#include "execute/resumption.h"
+#include "knowledge/attempts.h"
+#include "knowledge/knowledge.h"
+
+namespace culprit {
+
+class StrategyExecutor {
+ public:
+  static constexpr Duration kUnsure = std::chrono::seconds(10);
+
+  // What it writes; all else it only reads.
+  struct Writes {
+    Attempts attempts;
+    ComponentStates& components;  // what it brought about, and what it asked
+    SignalStore& signals;         // rules whose attempt came to another stage are to be looked at
+    PendingOutcomes& outcomes;    // those that a change voids
+    Rivals& rivals;
+    EventLog& events;
+  };
+
+  // `knowledge` must outlive the executor.
+  StrategyExecutor(const Knowledge& knowledge, Writes writes);
+  ~StrategyExecutor();
+
+  // The rule's attempt begins. @pre none of the rule is under way (a last resort:
+  // none of its last resorts); none has its components, or it is a last resort
+  void begin(StrategyId strategy, Time now);
+
+  // Goes on from `from` on with an attempt of an earlier process; its outcome will prove nothing.
+  // @pre nothing was begun yet
+  void resume(Interrupted interrupted, Time now, Time from);
+
+  // Answers until `now` could not be received: every goal under way has its whole time again, and
+  // looks before it acts. For kUnsure no question counts as unanswered.
+  void restart(Time now);
+
+  // Asks the component whether it answers, before the strategy is begun. It has `timeout` to do so.
+  void ask(ComponentId component, StrategyId strategy, Duration timeout, Time now,
+           std::vector<Command>& commands);
+  // Open questions prove nothing: culprit could not receive the answers.
+  void forget_questions();
+  // The component that `reply` proves to answer; before answered().
+  std::optional<ComponentId> proven_by(const Reply& reply) const;
+
+  // An answer; it is ignored if the request is no longer open.
+  void answered(const Reply& reply, Time now);
+
+  // Takes every attempt as far as it goes, and appends the requests that are due. Touches the rules
+  // whose attempt came to another stage.
+  void advance(Time now, std::vector<Command>& commands);
+
+  Time next_deadline() const;
+
+ private:
+  struct Run {
+    RuleId rule;
+    StrategyId strategy;
+    bool is_undoing = false;
+    std::size_t adaptation = 0;
+    std::vector<execute::Goal> goals;  // of the adaptation
+    std::size_t goal = 0;
+    std::optional<execute::Pursuit> pursuit;
+    CommandId pending;
+    std::string remark;
+    std::vector<execute::Undo> undo;
+    Time started = kNever;  // the first process that it started
+    int starts = 0;         // that its process ended after it had been there
+    struct BroughtUp {
+      ComponentId component;
+      Time at{};
+    };
+    std::vector<BroughtUp> brought_up{};  // of a group
+    // For a resumed run, until the robot had the time to show itself.
+    std::optional<Interrupted> interrupted;
+    Time from = kLongAgo;
+  };
+
+  struct Question {
+    CommandId command;
+    ComponentId component;
+  };
+
+  Run& add_run(StrategyId strategy);
+  void advance(Run& run, Time now, std::vector<Command>& commands);
+  bool take_up(Run& run, Time now);
+  Purpose purpose_of(const Run& run) const;
+  bool next_goal(Run& run, Time now);
+  bool start_again(Run& run, Time now);
+  bool is_first_rise(const execute::Pursuit& pursuit) const;
+  std::optional<ComponentId> deactivated_meanwhile(const Run& run) const;
+  bool is_managed_still(const Run& run) const;
+  void note_begun_anew(const Run& run, Time now);
+  void note_undo(Run& run);
+  bool next_undo(Run& run, Time now);
+  struct Missing {
+    ComponentId component;
+    const char* why = "";
+  };
+  std::optional<Missing> missing_for(const Run& run, const execute::Undo& undo) const;
+  bool is_held_by_last_resort(const execute::Undo& undo) const;
+  void finish_goal(Run& run, Time now);
+  void finish_undo(Run& run, Time now);
+  void undo_at_next_start(StrategyId strategy, const execute::Undo& undo, Time now);
+  void take_owed(const Adaptation& adaptation, std::vector<execute::Goal>& goals);
+  void forget_owed(ComponentId component, const std::string& parameter);
+  void forget_what_others_started(Time now);
+  bool is_of_present_process(const Question& question) const;
+  void note_answer(const Question& question, Outcome outcome);
+  void note_change(Run& run, Time now);
+  void note_mode(const execute::Pursuit& pursuit, Time now);
+  void note_rival(const Run& run, Time now);
+  void note_lifecycle(const execute::Pursuit& pursuit, Time now);
+  void note_coming_up(const execute::Pursuit& pursuit, Time now);
+  void note_too_long(const execute::Pursuit& pursuit, Time now);
+  void note_transition(const execute::Pursuit& pursuit, const execute::Pursuit::Request& request,
+                       Time now);
+  const Attempt* attempt_of(const Run& run) const;
+  void obstruct(const Run& run, std::string obstacle, const std::string& reason, Time now);
+
+  const Knowledge& knowledge_;
+  Writes write_;
+  std::vector<Run> runs_;
+  // Parameters to be undone in processes that had exited by then; kept until the process is there
+  // again, whoever starts it.
+  struct Owed {
+    StrategyId strategy;  // whose change it was
+    execute::Undo undo;
+  };
+  std::vector<Owed> owed_;
+  std::vector<Question> questions_;  // that were not answered yet
+  Time unsure_until_ = kLongAgo;
+  std::uint64_t last_command_ = 0;
+};
+
+}  // namespace culprit
