@@ -39,6 +39,11 @@ struct CheckOptions {
   double wait_seconds = 3;
 };
 
+std::ptrdiff_t own_templates(const Expansion& file) {
+  return std::ranges::count_if(file.templates,
+                               [](const auto& each) { return each.second.name.file == 0; });
+}
+
 // For people: mistakes go to stderr, a line for each good file to stdout.
 void print_text(const Expansion& file, const Checked& checked) {
   fmt::print(stderr, "{}", render(checked.diagnostics, file.source, colour_of(STDERR_FILENO)));
@@ -47,8 +52,7 @@ void print_text(const Expansion& file, const Checked& checked) {
     return;
   }
   const RuleSet& rules = *checked.rules;
-  const auto own = std::count_if(file.templates.begin(), file.templates.end(),
-                                 [](const auto& each) { return each.second.name.file == 0; });
+  const auto own = own_templates(file);
   const std::string templates = own > 0 ? fmt::format(", {} templates", own) : "";
   fmt::print("{}: {} rules, {} strategies, {} components{}: ok\n", file.source.name(),
              rules.rules.size(), rules.strategies.size(), rules.components.size(), templates);
@@ -79,9 +83,19 @@ Expected<LiveInventory> look(const std::vector<Expansion>& files, Duration wait)
 // likely not the robot's: then only one of them is reported.
 void check_launches(const Expansion& file, Checked& checked) {
   const RuleSet& rules = *checked.rules;
-  const auto troubles = live::launch_troubles(rules);
+  auto troubles = live::launch_troubles(rules);
   const auto launches = std::ranges::count_if(
       rules.components, [](const Component& each) { return !each.launch.empty(); });
+  // A word that only a shell understands was reported.
+  const auto is_reported = [&](const LiveInventory::LaunchTrouble& trouble) {
+    return std::ranges::any_of(checked.file.components, [&](const syntax::Component& each) {
+      return each.name.text == trouble.component && each.launch &&
+             std::ranges::any_of(checked.diagnostics, [&](const Diagnostic& d) {
+               return d.code == Code::kNoShell && d.span == each.launch->span;
+             });
+    });
+  };
+  std::erase_if(troubles, is_reported);
   if (troubles.empty()) return;
   if (std::ssize(troubles) == launches) {
     fmt::print(
@@ -96,6 +110,17 @@ void check_launches(const Expansion& file, Checked& checked) {
   std::stable_sort(
       checked.diagnostics.begin(), checked.diagnostics.end(),
       [](const Diagnostic& a, const Diagnostic& b) { return a.span.begin < b.span.begin; });
+}
+
+// An empty file is most likely the wrong one. One that others include may have declarations only.
+void check_emptiness(const Expansion& file, Checked& checked) {
+  const bool has_something = !checked.rules->rules.empty() || !checked.rules->components.empty() ||
+                             !checked.file.constants.empty() || !checked.file.signals.empty() ||
+                             own_templates(file) > 0;
+  if (has_something) return;
+  checked.diagnostics.push_back({Code::kIncomplete, Severity::kWarning, Span{},
+                                 "this file has no rule",
+                                 "culprit init -o my.rules drafts rules from the robot"});
 }
 
 int check_all(std::vector<Expansion> all, int exit_code, const CheckOptions& options) {
@@ -118,6 +143,7 @@ int check_all(std::vector<Expansion> all, int exit_code, const CheckOptions& opt
     checked = robot ? check_against(*robot, file, strictness) : check(file, strictness);
     if (!checked.rules) exit_code = kFailed;
     if (!robot && checked.rules) check_launches(file, checked);
+    if (checked.rules) check_emptiness(file, checked);
     if (options.fail_on == "warning" && !checked.diagnostics.empty()) exit_code = kFailed;
     if (options.format == "text") {
       if (robot && checked.rules) print_findings(*checked.rules, *robot);

@@ -35,7 +35,11 @@ bool names_it(const Json& document, const std::string& name) {
 void print_row(const journal::Entry& entry, const LogOptions& options, std::int64_t earliest) {
   if (entry.at < earliest || (!options.kind.empty() && entry.kind != options.kind)) return;
   if (!options.component.empty() && !names_it(parse_json(entry.body), options.component)) return;
-  fmt::print("{}\n", options.json ? to_line(log_document(entry)) : log_line(entry));
+  // Some events are for programs only.
+  const bool is_for_people = entry.kind != journal::kind::kEvent ||
+                             !journal::text_of(parse_json(entry.body), "text").empty();
+  if (options.json || is_for_people)
+    fmt::print("{}\n", options.json ? to_line(log_document(entry)) : log_line(entry));
 }
 
 // Prints the rows from `from` on. Gives the number of the row behind them.
