@@ -430,10 +430,15 @@ class Checker {
              "rule '" + rule.name.text + "' only reports, so none of its strategies would be used",
              "remove REPORT from its POLICIES, or its strategies");
     if (missing.empty()) return;
+    const char* remedy =
+        missing == "POLICIES"  ? "add how critical the failure is, as in POLICIES ERROR"
+        : missing == "TRIGGER" ? "add when the failure is there, as in TRIGGER age(/topic) > 1s"
+        : missing == "STRATEGY"
+            ? "add a STRATEGY with what may help, or REPORT to its POLICIES to notify a person"
+            : "a rule says how critical the failure is (POLICIES), when it is there (TRIGGER) and "
+              "what may help (STRATEGY), or that a person is notified (POLICIES ... REPORT)";
     report(Code::kIncomplete, rule.name.span,
-           "rule '" + rule.name.text + "' is incomplete: no " + missing,
-           "a rule says how critical the failure is (POLICIES), when it is there (TRIGGER) and "
-           "what may help (STRATEGY), or that a person is notified (POLICIES ... REPORT)");
+           "rule '" + rule.name.text + "' is incomplete: no " + missing, remedy);
   }
 
   void policies(const syntax::Policies& written, const syntax::Rule& rule, Policies& policies) {

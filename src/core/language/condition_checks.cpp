@@ -276,6 +276,22 @@ void find_short_windows(const Typed& e, const RuleSet& rules, std::vector<Diagno
   }
 }
 
+// Comparisons of cores with a number that was meant as a percentage.
+void find_percentages(const Typed& e, const RuleSet& rules, std::vector<Diagnostic>& found) {
+  const Typed* input = e.type == Type::kBool && !is_connective(e) ? compared_input(e) : nullptr;
+  if (input == nullptr || rules[input->input].kind != Input::Kind::kCpu) {
+    for (const Typed& child : e.children) find_percentages(child, rules, found);
+    return;
+  }
+  for (const double cores : thresholds_of(e)) {
+    if (cores < 20 || cores > 100) continue;
+    found.push_back({Code::kNeverTrueInRange, Severity::kWarning, e.span,
+                     "this is hardly ever true: cpu counts the cores that the process uses",
+                     "write " + plain_number(cores / 100) + " for " + plain_number(cores) +
+                         " percent of a core"});
+  }
+}
+
 }  // namespace
 
 void check_true_when_well(const RuleConditions& rule, const RuleSet& rules,
@@ -298,6 +314,7 @@ void check_true_when_well(const RuleConditions& rule, const RuleSet& rules,
 void check_windows(const RuleConditions& rule, const RuleSet& rules,
                    std::vector<Diagnostic>& diagnostics) {
   find_short_windows(rule.trigger, rules, diagnostics);
+  find_percentages(rule.trigger, rules, diagnostics);
 }
 
 void check_conditions(const RuleConditions& rule, const RuleSet& rules,
