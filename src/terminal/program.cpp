@@ -100,6 +100,17 @@ std::vector<std::string_view> commands_with(const CLI::App& app, const std::stri
   return names;
 }
 
+// The argument that has the option's name: BAG for "--bag"; empty: there is none.
+std::string positional_called(const CLI::App& command, const std::string& option) {
+  std::string upper(option);
+  std::transform(upper.begin(), upper.end(), upper.begin(),
+                 [](unsigned char c) { return std::toupper(c); });
+  for (const CLI::Option* each : command.get_options()) {
+    if (each->get_positional() && "--" + each->get_name(true) == upper) return each->get_name(true);
+  }
+  return "";
+}
+
 // The mistake, where the name of a command or of an option is not known; nothing where something
 // else is wrong.
 std::optional<std::string> unknown_word(const CLI::App& app, const Chosen& line, int argc,
@@ -123,6 +134,13 @@ std::optional<std::string> unknown_word(const CLI::App& app, const Chosen& line,
                                       : meant(option, {known.begin(), known.end()});
   if (near.empty() && option == "--domain")
     return cause + "; set ROS_DOMAIN_ID, which every command heeds";
+  if (near.empty() && !parts.empty() && line.command != &app) {
+    const auto own = commands_with(*line.command, option);
+    if (!own.empty()) return cause + "; it stands behind " + comma_separated(own);
+  }
+  if (const std::string word = positional_called(*line.command, option);
+      near.empty() && !word.empty())
+    return cause + "; write " + word + " without it";
   const auto others = near.empty() ? commands_with(app, option) : std::vector<std::string_view>{};
   constexpr std::size_t kMostNamed = 4;
   if (others.empty() || others.size() > kMostNamed) return cause + near;

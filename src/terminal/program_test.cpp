@@ -51,7 +51,9 @@ Ended ended(std::vector<std::string> words) {
         test->add_flag("--verbose", robot, "All");
         test->add_option("FILES", files, "Files")->required();
         CLI::App* beliefs = app.add_subcommand("beliefs", "Beliefs")->require_subcommand(1);
-        beliefs->add_subcommand("show", "Show")->callback([] {});
+        CLI::App* show = beliefs->add_subcommand("show", "Show");
+        show->add_flag("--verbose", robot, "All");
+        show->callback([] {});
         add_help(app, code);
       },
       static_cast<int>(words.size()), argv.data());
@@ -93,6 +95,8 @@ TEST(Program, ExplainsEachKindOfMistakeInOneLine) {
       {{"beliefs"}, "beliefs needs a command: show\n"},
       {{"beliefs", "shwo"}, "beliefs has no command 'shwo'; did you mean 'show'?\n"},
       {{"beliefs", "all"}, "beliefs has no command 'all'; it has show\n"},
+      {{"beliefs", "--verbose"}, "beliefs has no option '--verbose'; it stands behind show\n"},
+      {{"check", "--file", "a"}, "check has no option '--file'; write FILE without it\n"},
       {{"CHECK"}, "there is no command 'CHECK'; did you mean 'check'?\n"},
       {{"-v"}, "there is no option '-v'; did you mean '--version'?\n"},
       {{"--verison"}, "there is no option '--verison'\n"},
