@@ -44,6 +44,14 @@ std::ptrdiff_t own_templates(const Expansion& file) {
                                [](const auto& each) { return each.second.name.file == 0; });
 }
 
+// "1 rule", "2 rules"
+std::string counted(std::size_t number, const char* what) {
+  return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
+}
+std::string counted(std::size_t number, const char* one, const char* several) {
+  return fmt::format("{} {}", number, number == 1 ? one : several);
+}
+
 // For people: mistakes go to stderr, a line for each good file to stdout.
 void print_text(const Expansion& file, const Checked& checked) {
   fmt::print(stderr, "{}", render(checked.diagnostics, file.source, colour_of(STDERR_FILENO)));
@@ -53,9 +61,11 @@ void print_text(const Expansion& file, const Checked& checked) {
   }
   const RuleSet& rules = *checked.rules;
   const auto own = own_templates(file);
-  const std::string templates = own > 0 ? fmt::format(", {} templates", own) : "";
-  fmt::print("{}: {} rules, {} strategies, {} components{}: ok\n", file.source.name(),
-             rules.rules.size(), rules.strategies.size(), rules.components.size(), templates);
+  const std::string templates =
+      own > 0 ? ", " + counted(static_cast<std::size_t>(own), "template") : "";
+  fmt::print("{}: {}, {}, {}{}: ok\n", file.source.name(), counted(rules.rules.size(), "rule"),
+             counted(rules.strategies.size(), "strategy", "strategies"),
+             counted(rules.components.size(), "component"), templates);
 }
 
 void print_findings(const RuleSet& rules, const LiveInventory& robot) {
@@ -98,11 +108,11 @@ void check_launches(const Expansion& file, Checked& checked) {
   std::erase_if(troubles, is_reported);
   if (troubles.empty()) return;
   if (std::ssize(troubles) == launches) {
-    fmt::print(
-        stderr,
-        "culprit: {}: if this is the robot's computer, none of its {} components with a LAUNCH "
-        "could be started: {}\n",
-        file.source.name(), launches, troubles.front().why);
+    fmt::print(stderr, "culprit: {}: if this is the robot's computer, {} could be started: {}\n",
+               file.source.name(),
+               launches == 1 ? "no component with a LAUNCH"
+                             : fmt::format("none of its {} components with a LAUNCH", launches),
+               troubles.front().why);
     return;
   }
   for (Diagnostic& d : cannot_launch(checked.file, rules, troubles))
