@@ -9,6 +9,7 @@
 #include "base/live_clock.h"
 #include "cli/commands.h"
 #include "cli/journal_file.h"
+#include "journal/json.h"
 #include "json/json.h"
 
 namespace culprit::cli {
