@@ -96,6 +96,7 @@ void check_launches(const Expansion& file, Checked& checked) {
   auto troubles = live::launch_troubles(rules);
   const auto launches = std::ranges::count_if(
       rules.components, [](const Component& each) { return !each.launch.empty(); });
+  const bool is_elsewhere = std::ssize(troubles) == launches;
   // A word that only a shell understands was reported.
   const auto is_reported = [&](const LiveInventory::LaunchTrouble& trouble) {
     return std::ranges::any_of(checked.file.components, [&](const syntax::Component& each) {
@@ -107,7 +108,7 @@ void check_launches(const Expansion& file, Checked& checked) {
   };
   std::erase_if(troubles, is_reported);
   if (troubles.empty()) return;
-  if (std::ssize(troubles) == launches) {
+  if (is_elsewhere) {
     fmt::print(stderr, "culprit: {}: if this is the robot's computer, {} could be started: {}\n",
                file.source.name(),
                launches == 1 ? "no component with a LAUNCH"

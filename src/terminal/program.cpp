@@ -111,6 +111,29 @@ std::string positional_called(const CLI::App& command, const std::string& option
   return "";
 }
 
+// What may be meant by the option that `command`, with the options `known`, has not: "; test has it".
+std::string remedy_of(const CLI::App& app, const CLI::App& command, const std::string& option,
+                      const std::vector<std::string>& known) {
+  const bool is_program = &command == &app;
+  if (is_program && (option == "-v" || option == "-V")) return "; did you mean '--version'?";
+  if (std::string near = meant(option, {known.begin(), known.end()}); !near.empty()) return near;
+  if (option == "--domain") return "; set ROS_DOMAIN_ID, which every command heeds";
+  if (const auto parts = commands_with(command, option); !is_program && !parts.empty())
+    return "; it stands behind " + comma_separated(parts);
+  if (const std::string word = positional_called(command, option); !word.empty())
+    return "; write " + word + " without it";
+  constexpr std::size_t kFew = 3;
+  std::vector<std::string_view> own;
+  for (const std::string& each : known) {
+    if (each.starts_with("--") && each != "--help") own.push_back(each);
+  }
+  if (!is_program && !own.empty() && own.size() <= kFew) return "; it has " + comma_separated(own);
+  const auto others = commands_with(app, option);
+  constexpr std::size_t kMostNamed = 4;
+  if (others.empty() || others.size() > kMostNamed) return "";
+  return "; " + comma_separated(others) + (others.size() == 1 ? " has it" : " have it");
+}
+
 // The mistake, where the name of a command or of an option is not known; nothing where something
 // else is wrong.
 std::optional<std::string> unknown_word(const CLI::App& app, const Chosen& line, int argc,
@@ -129,22 +152,7 @@ std::optional<std::string> unknown_word(const CLI::App& app, const Chosen& line,
   const std::string cause =
       (line.command == &app ? "there is" : line.command->get_name() + " has") + " no option '" +
       printable(option) + "'";
-  const bool is_version = line.command == &app && (option == "-v" || option == "-V");
-  const std::string near = is_version ? std::string("; did you mean '--version'?")
-                                      : meant(option, {known.begin(), known.end()});
-  if (near.empty() && option == "--domain")
-    return cause + "; set ROS_DOMAIN_ID, which every command heeds";
-  if (near.empty() && !parts.empty() && line.command != &app) {
-    const auto own = commands_with(*line.command, option);
-    if (!own.empty()) return cause + "; it stands behind " + comma_separated(own);
-  }
-  if (const std::string word = positional_called(*line.command, option);
-      near.empty() && !word.empty())
-    return cause + "; write " + word + " without it";
-  const auto others = near.empty() ? commands_with(app, option) : std::vector<std::string_view>{};
-  constexpr std::size_t kMostNamed = 4;
-  if (others.empty() || others.size() > kMostNamed) return cause + near;
-  return cause + "; " + comma_separated(others) + (others.size() == 1 ? " has it" : " have it");
+  return cause + remedy_of(app, *line.command, option, known);
 }
 
 std::string without(std::string text, std::string_view prefix) {
