@@ -9,7 +9,6 @@
 #include "base/live_clock.h"
 #include "cli/commands.h"
 #include "cli/journal_file.h"
-#include "journal/json.h"
 #include "json/json.h"
 
 namespace culprit::cli {
@@ -36,11 +35,8 @@ bool names_it(const Json& document, const std::string& name) {
 void print_row(const journal::Entry& entry, const LogOptions& options, std::int64_t earliest) {
   if (entry.at < earliest || (!options.kind.empty() && entry.kind != options.kind)) return;
   if (!options.component.empty() && !names_it(parse_json(entry.body), options.component)) return;
-  // Some events are for programs only.
-  const bool is_for_people = entry.kind != journal::kind::kEvent ||
-                             !journal::text_of(parse_json(entry.body), "text").empty();
-  if (options.json || is_for_people)
-    fmt::print("{}\n", options.json ? to_line(log_document(entry)) : log_line(entry));
+  const std::string line = options.json ? to_line(log_document(entry)) : log_line(entry);
+  if (!line.empty()) fmt::print("{}\n", line);
 }
 
 // Prints the rows from `from` on. Gives the number of the row behind them.
