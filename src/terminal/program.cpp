@@ -111,7 +111,7 @@ std::string positional_called(const CLI::App& command, const std::string& option
   return "";
 }
 
-// What may be meant by the option that `command`, with the options `known`, has not: "; test has it".
+// The remedy for an option that `command`, with the options `known`, has not: "; test has it".
 std::string remedy_of(const CLI::App& app, const CLI::App& command, const std::string& option,
                       const std::vector<std::string>& known) {
   const bool is_program = &command == &app;
