@@ -45,10 +45,10 @@ std::ptrdiff_t own_templates(const Expansion& file) {
 }
 
 // "1 rule", "2 rules"
-std::string counted(std::size_t number, const char* what) {
+std::string amount_of(std::size_t number, const char* what) {
   return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
 }
-std::string counted(std::size_t number, const char* one, const char* several) {
+std::string amount_of(std::size_t number, const char* one, const char* several) {
   return fmt::format("{} {}", number, number == 1 ? one : several);
 }
 
@@ -62,10 +62,10 @@ void print_text(const Expansion& file, const Checked& checked) {
   const RuleSet& rules = *checked.rules;
   const auto own = own_templates(file);
   const std::string templates =
-      own > 0 ? ", " + counted(static_cast<std::size_t>(own), "template") : "";
-  fmt::print("{}: {}, {}, {}{}: ok\n", file.source.name(), counted(rules.rules.size(), "rule"),
-             counted(rules.strategies.size(), "strategy", "strategies"),
-             counted(rules.components.size(), "component"), templates);
+      own > 0 ? ", " + amount_of(static_cast<std::size_t>(own), "template") : "";
+  fmt::print("{}: {}, {}, {}{}: ok\n", file.source.name(), amount_of(rules.rules.size(), "rule"),
+             amount_of(rules.strategies.size(), "strategy", "strategies"),
+             amount_of(rules.components.size(), "component"), templates);
 }
 
 void print_findings(const RuleSet& rules, const LiveInventory& robot) {

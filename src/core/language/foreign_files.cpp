@@ -15,7 +15,7 @@ constexpr std::string_view kDraft =
     "a rule file is plain text; culprit init -o my.rules drafts one from the robot";
 
 // The lines that have something else than a comment.
-std::vector<std::string_view> lines_of(const Source& source) {
+std::vector<std::string_view> statement_lines(const Source& source) {
   constexpr std::size_t kEnough = 100;
   std::vector<std::string_view> lines;
   for (std::uint32_t number = 1; number <= source.line_count() && lines.size() < kEnough;
@@ -51,7 +51,7 @@ bool is_of_python(std::string_view line) {
 // The other language; empty: none is known.
 std::string_view language_of(const Source& source) {
   if (source.text().find('\0') != std::string_view::npos) return "binary";
-  const auto lines = lines_of(source);
+  const auto lines = statement_lines(source);
   if (lines.empty() || std::any_of(lines.begin(), lines.end(), is_of_rules)) return "";
   const std::string_view first = lines.front();
   if (first.starts_with('{') || first.starts_with('[')) return "JSON";
@@ -68,7 +68,7 @@ std::optional<Diagnostic> foreign_language(const Source& source) {
   const std::string_view language = language_of(source);
   if (language.empty()) return std::nullopt;
   const auto begin = static_cast<std::uint32_t>(
-      language == "binary" ? 0 : lines_of(source).front().data() - source.text().data());
+      language == "binary" ? 0 : statement_lines(source).front().data() - source.text().data());
   const std::string remedy = language == "JSON"
                                  ? "culprit import reads the JSON that culprit export --json wrote"
                                  : std::string(kDraft);
