@@ -34,7 +34,7 @@ test:
 # What takes longer than a test may, some six hours in all: all tests as users build, a robot that is broken and healed for an hour, three robots that nothing
 # is wrong with for ten minutes each, 500 kills of culprit, 67 attacks 20 times each, 1,000 robots of a fleet, 100 random sequences of faults for each kind of
 # owner, 40 changes of the core that its tests should notice, the laboratory and the commands under the address sanitizer, all but robots, laboratory and
-# commands under the thread sanitizer, each file compiled by itself, each fuzzer for five minutes, every figure in the documents that its command makes again,
+# commands under the thread sanitizer, each file compiled by itself, each fuzzer for five minutes, every figure in the documents that its command makes again, the commands of the tutorial,
 # Debian packages that are installed, upgraded and removed, and clang-tidy on every file.
 soak:
 	@scripts/install-dependencies --tests
@@ -59,6 +59,7 @@ soak:
 	cmake --build --preset walls-soak --parallel $(JOBS)
 	scripts/fuzz --seconds 300
 	scripts/figures --check
+	scripts/pictures --check
 	scripts/install-dependencies --arm64
 	scripts/arm64
 	scripts/install-dependencies --packages

@@ -39,6 +39,19 @@ struct CheckOptions {
   double wait_seconds = 3;
 };
 
+std::ptrdiff_t own_templates(const Expansion& file) {
+  return std::ranges::count_if(file.templates,
+                               [](const auto& each) { return each.second.name.file == 0; });
+}
+
+// "1 rule", "2 rules"
+std::string amount_of(std::size_t number, const char* what) {
+  return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
+}
+std::string amount_of(std::size_t number, const char* one, const char* several) {
+  return fmt::format("{} {}", number, number == 1 ? one : several);
+}
+
 // For people: mistakes go to stderr, a line for each good file to stdout.
 void print_text(const Expansion& file, const Checked& checked) {
   fmt::print(stderr, "{}", render(checked.diagnostics, file.source, colour_of(STDERR_FILENO)));
@@ -47,11 +60,12 @@ void print_text(const Expansion& file, const Checked& checked) {
     return;
   }
   const RuleSet& rules = *checked.rules;
-  const auto own = std::count_if(file.templates.begin(), file.templates.end(),
-                                 [](const auto& each) { return each.second.name.file == 0; });
-  const std::string templates = own > 0 ? fmt::format(", {} templates", own) : "";
-  fmt::print("{}: {} rules, {} strategies, {} components{}: ok\n", file.source.name(),
-             rules.rules.size(), rules.strategies.size(), rules.components.size(), templates);
+  const auto own = own_templates(file);
+  const std::string templates =
+      own > 0 ? ", " + amount_of(static_cast<std::size_t>(own), "template") : "";
+  fmt::print("{}: {}, {}, {}{}: ok\n", file.source.name(), amount_of(rules.rules.size(), "rule"),
+             amount_of(rules.strategies.size(), "strategy", "strategies"),
+             amount_of(rules.components.size(), "component"), templates);
 }
 
 void print_findings(const RuleSet& rules, const LiveInventory& robot) {
@@ -79,16 +93,27 @@ Expected<LiveInventory> look(const std::vector<Expansion>& files, Duration wait)
 // likely not the robot's: then only one of them is reported.
 void check_launches(const Expansion& file, Checked& checked) {
   const RuleSet& rules = *checked.rules;
-  const auto troubles = live::launch_troubles(rules);
+  auto troubles = live::launch_troubles(rules);
   const auto launches = std::ranges::count_if(
       rules.components, [](const Component& each) { return !each.launch.empty(); });
+  const bool is_elsewhere = std::ssize(troubles) == launches;
+  // A word that only a shell understands was reported.
+  const auto is_reported = [&](const LiveInventory::LaunchTrouble& trouble) {
+    return std::ranges::any_of(checked.file.components, [&](const syntax::Component& each) {
+      return each.name.text == trouble.component && each.launch &&
+             std::ranges::any_of(checked.diagnostics, [&](const Diagnostic& d) {
+               return d.code == Code::kNoShell && d.span == each.launch->span;
+             });
+    });
+  };
+  std::erase_if(troubles, is_reported);
   if (troubles.empty()) return;
-  if (std::ssize(troubles) == launches) {
-    fmt::print(
-        stderr,
-        "culprit: {}: if this is the robot's computer, none of its {} components with a LAUNCH "
-        "could be started: {}\n",
-        file.source.name(), launches, troubles.front().why);
+  if (is_elsewhere) {
+    fmt::print(stderr, "culprit: {}: if this is the robot's computer, {} could be started: {}\n",
+               file.source.name(),
+               launches == 1 ? "no component with a LAUNCH"
+                             : fmt::format("none of its {} components with a LAUNCH", launches),
+               troubles.front().why);
     return;
   }
   for (Diagnostic& d : cannot_launch(checked.file, rules, troubles))
@@ -96,6 +121,17 @@ void check_launches(const Expansion& file, Checked& checked) {
   std::stable_sort(
       checked.diagnostics.begin(), checked.diagnostics.end(),
       [](const Diagnostic& a, const Diagnostic& b) { return a.span.begin < b.span.begin; });
+}
+
+// An empty file is most likely the wrong one. One that others include may have declarations only.
+void check_emptiness(const Expansion& file, Checked& checked) {
+  const bool has_something = !checked.rules->rules.empty() || !checked.rules->components.empty() ||
+                             !checked.file.constants.empty() || !checked.file.signals.empty() ||
+                             own_templates(file) > 0;
+  if (has_something) return;
+  checked.diagnostics.push_back({Code::kIncomplete, Severity::kWarning, Span{},
+                                 "this file has no rule",
+                                 "culprit init -o my.rules drafts rules from the robot"});
 }
 
 int check_all(std::vector<Expansion> all, int exit_code, const CheckOptions& options) {
@@ -118,6 +154,7 @@ int check_all(std::vector<Expansion> all, int exit_code, const CheckOptions& opt
     checked = robot ? check_against(*robot, file, strictness) : check(file, strictness);
     if (!checked.rules) exit_code = kFailed;
     if (!robot && checked.rules) check_launches(file, checked);
+    if (checked.rules) check_emptiness(file, checked);
     if (options.fail_on == "warning" && !checked.diagnostics.empty()) exit_code = kFailed;
     if (options.format == "text") {
       if (robot && checked.rules) print_findings(*checked.rules, *robot);

@@ -14,6 +14,7 @@ namespace culprit::cli {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 class CheckCommand : public testing::Test {
  protected:
@@ -31,7 +32,7 @@ class CheckCommand : public testing::Test {
         app, [&](int& exit_code) { add_check(app, exit_code); }, static_cast<int>(words.size()),
         argv.data());
     printed_ = testing::internal::GetCapturedStdout();
-    testing::internal::GetCapturedStderr();
+    said_ = testing::internal::GetCapturedStderr();
     return code;
   }
   std::string written() const {
@@ -41,7 +42,7 @@ class CheckCommand : public testing::Test {
 
   test::TestFolder folder_;
   const std::string file_ = folder_ / "my.rules";
-  std::string printed_;
+  std::string printed_, said_;
 };
 
 constexpr const char* kGood =
@@ -70,6 +71,23 @@ TEST_F(CheckCommand, LeavesAFileWithoutFixesAsItIs) {
   EXPECT_EQ(written(), kGood);
   EXPECT_EQ(check_file("CYCLE 200\n", {"--fix"}), kFailed) << "which unit?";
   EXPECT_EQ(written(), "CYCLE 200\n");
+}
+
+TEST_F(CheckCommand, WarnsOfAFileWithoutARule) {
+  for (const char* empty : {"", "# later\n", "IGNORE TOPIC /clock\n"}) {
+    EXPECT_EQ(check_file(empty, {}), kOk);
+    EXPECT_THAT(said_, HasSubstr("warning[R006]: this file has no rule")) << empty;
+  }
+  EXPECT_EQ(check_file("CONST limit = 2s\n", {}), kOk) << "another file may include it";
+  EXPECT_EQ(said_, "");
+}
+
+TEST_F(CheckCommand, ReportsAWordOfTheShellOnce) {
+  std::string rules = kGood;
+  rules.replace(rules.find("sh -c true"), 10, "~/start.sh");
+  EXPECT_EQ(check_file(rules, {}), kOk);
+  EXPECT_THAT(said_, HasSubstr("no shell reads this command"));
+  EXPECT_THAT(said_, Not(HasSubstr("could be started")));
 }
 
 TEST_F(CheckCommand, FailsOnWarningsIfAsked) {

@@ -147,7 +147,9 @@ Expected<std::string> explain_decision(const journal::Reader& journal, std::int6
   if (!is_decision(entry, body)) return out + to_indented(body) + "\n";
   out += suspects_of(body) + candidates_of(body);
   if (!sequel.empty()) out += "\nOutcome\n";
-  for (const Entry& each : sequel) out += log_line(each) + "\n";
+  for (const Entry& each : sequel) {
+    if (const std::string line = log_line(each); !line.empty()) out += line + "\n";
+  }
   return out;
 }
 

@@ -116,7 +116,9 @@ int explain(const ExplainOptions& options) {
     const std::string near = nearest_term(options.what);
     return fail("there is no code and no term '" + printable(options.what) + "'" +
                     (near.empty() ? "" : "; did you mean '" + near + "'?") +
-                    "\nculprit explain lists all codes, culprit explain --terms all terms.",
+                    "\nculprit explain lists all codes, culprit explain --terms all terms; culprit "
+                    "explain --last "
+                    "explains the latest decision.",
                 kUsage);
   }
   if (options.json) {

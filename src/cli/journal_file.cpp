@@ -97,6 +97,7 @@ std::string log_line(const journal::Entry& entry) {
   if (text.empty() && body.contains("lifecycle"))
     text = fmt::format("{} is to be {}", journal::text_of(body, "component"),
                        journal::text_of(body, "lifecycle"));
+  if (text.empty() && entry.kind == journal::kind::kEvent) return "";
   return fmt::format("{:>7}  {}  {:<18}  {}", entry.id, local_time(entry.at), what, text);
 }
 

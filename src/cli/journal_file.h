@@ -26,7 +26,8 @@ std::string local_time(std::int64_t at);
 // "2026-11-21T17:36:01.123Z"
 std::string utc_time(std::int64_t at);
 
-// "   123  2026-11-21 18:36:01.123  strategy chosen    camera is held responsible …"
+// "   123  2026-11-21 18:36:01.123  strategy chosen    camera is held responsible …"; empty for an
+// event that has nothing to say to people.
 std::string log_line(const journal::Entry& entry);
 // {"id", "at": "2026-11-21T17:36:01.123Z", "kind", "body"}
 Json log_document(const journal::Entry& entry);

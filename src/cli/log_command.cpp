@@ -35,7 +35,8 @@ bool names_it(const Json& document, const std::string& name) {
 void print_row(const journal::Entry& entry, const LogOptions& options, std::int64_t earliest) {
   if (entry.at < earliest || (!options.kind.empty() && entry.kind != options.kind)) return;
   if (!options.component.empty() && !names_it(parse_json(entry.body), options.component)) return;
-  fmt::print("{}\n", options.json ? to_line(log_document(entry)) : log_line(entry));
+  const std::string line = options.json ? to_line(log_document(entry)) : log_line(entry);
+  if (!line.empty()) fmt::print("{}\n", line);
 }
 
 // Prints the rows from `from` on. Gives the number of the row behind them.

@@ -97,7 +97,8 @@ int run_tests(const TestOptions& options) {
   }
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
   if (options.json) fmt::print("{}\n", to_text(results_as_json(totals, suites)));
-  if (!options.json)
+  const bool has_run = totals.tests > 0 || totals.unusable_files == 0;
+  if (!options.json && has_run)
     fmt::print("{} tests, {} failed; {:g} s of the robot's time in {:.3f} s\n", totals.tests,
                totals.failed, seconds(totals.robot_time), took.count());
   if (!options.junit.empty() && !write_junit(options.junit, suites)) return kFailed;

@@ -341,8 +341,9 @@ std::vector<std::string> event_lines(const WhatCulpritSays& said, std::size_t mo
 std::vector<std::string> about_lines(const WhatCulpritSays& said) {
   const auto domain = number_at(said.about, "domain");
   const auto process = number_at(said.about, "process");
-  Lines lines{fmt::format("culprit {}, process {}, domain {}, node /{}, rules {}",
-                          text_at(said.about, "version"),
+  const std::string version = text_at(said.about, "version");  // a demonstration has none
+  Lines lines{fmt::format("culprit{}, process {}, domain {}, node /{}, rules {}",
+                          version.empty() ? "" : " " + version,
                           process ? fmt::format("{:.0f}", *process) : "?",
                           domain ? fmt::format("{:.0f}", *domain) : "?",
                           text_at(said.about, "node"), text_at(said.about, "rules"))};

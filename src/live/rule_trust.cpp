@@ -81,7 +81,9 @@ std::vector<fs::path> files_of(const fs::path& journal) {
 }  // namespace
 
 Expected<void> trust_rules(const std::string& path) {
-  if (const std::string why = weakness_of_all(path); !why.empty())
+  const std::string why = weakness_of_all(path);
+  if (why.starts_with("cannot find")) return Error{why};
+  if (!why.empty())
     return Error{fmt::format(
         "{} decides what is done to the robot, and another user could change it: {}", path, why)};
   return {};

@@ -73,7 +73,8 @@ void add_help(CLI::App& app, int& exit_code) {
         for (const CLI::App* each : commands_in(*about)) known.push_back(each->get_name());
         const std::string near = closest(word, known);
         exit_code = fail("there is no command '" + printable(word) + "'" +
-                             (near.empty() ? "" : "; did you mean '" + near + "'?"),
+                             (near.empty() ? "; " + app.get_name() + " help lists them"
+                                           : "; did you mean '" + near + "'?"),
                          kUsage);
         return;
       }

@@ -42,7 +42,11 @@ std::vector<std::string> options_of(const CLI::App& command) {
 
 // "; did you mean 'check'?", or nothing.
 std::string meant(std::string_view word, const std::vector<std::string_view>& known) {
-  const std::string near = closest(word, known);
+  std::string lower(word);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  const bool is_case_only = lower != word && std::ranges::find(known, lower) != known.end();
+  const std::string near = is_case_only ? lower : closest(word, known);
   return near.empty() ? "" : "; did you mean '" + near + "'?";
 }
 
@@ -96,6 +100,40 @@ std::vector<std::string_view> commands_with(const CLI::App& app, const std::stri
   return names;
 }
 
+// The argument that has the option's name: BAG for "--bag"; empty: there is none.
+std::string positional_called(const CLI::App& command, const std::string& option) {
+  std::string upper(option);
+  std::transform(upper.begin(), upper.end(), upper.begin(),
+                 [](unsigned char c) { return std::toupper(c); });
+  for (const CLI::Option* each : command.get_options()) {
+    if (each->get_positional() && "--" + each->get_name(true) == upper) return each->get_name(true);
+  }
+  return "";
+}
+
+// The remedy for an option that `command`, with the options `known`, has not: "; test has it".
+std::string remedy_of(const CLI::App& app, const CLI::App& command, const std::string& option,
+                      const std::vector<std::string>& known) {
+  const bool is_program = &command == &app;
+  if (is_program && (option == "-v" || option == "-V")) return "; did you mean '--version'?";
+  if (std::string near = meant(option, {known.begin(), known.end()}); !near.empty()) return near;
+  if (option == "--domain") return "; set ROS_DOMAIN_ID, which every command heeds";
+  if (const auto parts = commands_with(command, option); !is_program && !parts.empty())
+    return "; it stands behind " + comma_separated(parts);
+  if (const std::string word = positional_called(command, option); !word.empty())
+    return "; write " + word + " without it";
+  constexpr std::size_t kFew = 3;
+  std::vector<std::string_view> own;
+  for (const std::string& each : known) {
+    if (each.starts_with("--") && each != "--help") own.push_back(each);
+  }
+  if (!is_program && !own.empty() && own.size() <= kFew) return "; it has " + comma_separated(own);
+  const auto others = commands_with(app, option);
+  constexpr std::size_t kMostNamed = 4;
+  if (others.empty() || others.size() > kMostNamed) return "";
+  return "; " + comma_separated(others) + (others.size() == 1 ? " has it" : " have it");
+}
+
 // The mistake, where the name of a command or of an option is not known; nothing where something
 // else is wrong.
 std::optional<std::string> unknown_word(const CLI::App& app, const Chosen& line, int argc,
@@ -103,8 +141,10 @@ std::optional<std::string> unknown_word(const CLI::App& app, const Chosen& line,
   const auto parts = commands_in(*line.command);
   if (!parts.empty() && line.depth + 1 < argc && !is_option(argv[line.depth + 1])) {
     const char* word = argv[line.depth + 1];
-    return (line.command == &app ? "there is" : line.command->get_name() + " has") +
-           " no command '" + printable(word) + "'" + meant(word, names_of(parts));
+    const std::string near = meant(word, names_of(parts));
+    if (line.command == &app) return "there is no command '" + printable(word) + "'" + near;
+    return line.command->get_name() + " has no command '" + printable(word) + "'" +
+           (near.empty() ? "; it has " + comma_separated(names_of(parts)) : near);
   }
   const std::vector<std::string> known = options_of(*line.command);
   const std::string option = unknown_option(known, argc, argv);
@@ -112,15 +152,24 @@ std::optional<std::string> unknown_word(const CLI::App& app, const Chosen& line,
   const std::string cause =
       (line.command == &app ? "there is" : line.command->get_name() + " has") + " no option '" +
       printable(option) + "'";
-  const std::string near = meant(option, {known.begin(), known.end()});
-  const auto others = near.empty() ? commands_with(app, option) : std::vector<std::string_view>{};
-  constexpr std::size_t kMostNamed = 4;
-  if (others.empty() || others.size() > kMostNamed) return cause + near;
-  return cause + "; " + comma_separated(others) + (others.size() == 1 ? " has it" : " have it");
+  return cause + remedy_of(app, *line.command, option, known);
 }
 
 std::string without(std::string text, std::string_view prefix) {
   return text.starts_with(prefix) ? text.substr(prefix.size()) : text;
+}
+
+// "0.100000" as people write it.
+std::string plain_range(std::string text) {
+  for (auto at = text.find('.'); at != std::string::npos; at = text.find('.', at + 1)) {
+    auto end = text.find_first_not_of("0123456789", at + 1);
+    if (end == std::string::npos) end = text.size();
+    auto last = end;
+    while (last > at + 1 && text[last - 1] == '0') --last;
+    if (last == at + 1) --last;
+    text.erase(last, end - last);
+  }
+  return text;
 }
 
 // "Value 99999 not in range 0 to 65535", "xml not in {text,json}"
@@ -132,7 +181,7 @@ std::string invalid_value(const std::string& text) {
   constexpr std::string_view kRange = " not in range ";
   if (const auto at = rest.find(kRange); at != std::string::npos)
     return option + "'" + rest.substr(0, at) + "' is no number from " +
-           rest.substr(at + kRange.size());
+           plain_range(rest.substr(at + kRange.size()));
   constexpr std::string_view kSet = " not in {";
   const auto at = rest.find(kSet);
   if (at == std::string::npos || !rest.ends_with('}')) return text;
@@ -164,6 +213,18 @@ std::string missing(const CLI::RequiredError& error, const CLI::App& command) {
                                    : text;
 }
 
+// " too many", and which word stands in its place already.
+std::string too_many(const std::string& extra, const CLI::App& command) {
+  std::string text = "'" + printable(extra) + "' is one argument too many";
+  for (const CLI::Option* option : command.get_options()) {
+    const bool is_one = option->get_positional() && option->get_items_expected_max() == 1;
+    if (!is_one || option->results().empty()) continue;
+    return text + "; " + option->get_name(true) + " is '" + printable(option->results().front()) +
+           "' already";
+  }
+  return text;
+}
+
 // The mistake in the words of people. CLI11 has its own for each.
 std::string cause_of(const CLI::ParseError& error, const CLI::App& command) {
   const std::string text = error.what();
@@ -176,18 +237,26 @@ std::string cause_of(const CLI::ParseError& error, const CLI::App& command) {
     // Several come in the order from the last to the first.
     if (const auto blank = extra.rfind(' '); blank != std::string::npos)
       extra = extra.substr(blank + 1);
-    return "'" + printable(extra) + "' is one argument too many";
+    return too_many(extra, command);
   }
   constexpr std::string_view kNoConversion = "Could not convert: ";
   if (text.starts_with(kNoConversion)) {
     const std::string rest = text.substr(kNoConversion.size());
     const auto equals = rest.find(" = ");
+    const CLI::Option* option =
+        equals != std::string::npos ? command.get_option_no_throw(rest.substr(0, equals)) : nullptr;
+    if (option != nullptr && option->get_items_expected_max() == 0)
+      return rest.substr(0, equals) + " takes no value, as '" + printable(rest.substr(equals + 3)) +
+             "'";
     if (equals != std::string::npos)
       return rest.substr(0, equals) + ": '" + printable(rest.substr(equals + 3)) + "' is no number";
   }
   constexpr std::string_view kOneMissing = ": 1 required ";
   if (const auto at = text.find(kOneMissing); at != std::string::npos)
     return text.substr(0, at) + " needs a value";
+  constexpr std::string_view kTwice = ": At Most 1 required but received";
+  if (const auto at = text.find(kTwice); at != std::string::npos)
+    return text.substr(0, at) + " is given more than once; give it once";
   constexpr std::string_view kMoreMissing = ": At least ";
   if (const auto at = text.find(kMoreMissing); at != std::string::npos)
     return text.substr(0, at) + " needs at least " +

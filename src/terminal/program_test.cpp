@@ -51,7 +51,9 @@ Ended ended(std::vector<std::string> words) {
         test->add_flag("--verbose", robot, "All");
         test->add_option("FILES", files, "Files")->required();
         CLI::App* beliefs = app.add_subcommand("beliefs", "Beliefs")->require_subcommand(1);
-        beliefs->add_subcommand("show", "Show")->callback([] {});
+        CLI::App* show = beliefs->add_subcommand("show", "Show");
+        show->add_flag("--verbose", robot, "All");
+        show->callback([] {});
         add_help(app, code);
       },
       static_cast<int>(words.size()), argv.data());
@@ -81,7 +83,10 @@ TEST(Program, ExplainsEachKindOfMistakeInOneLine) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> mistakes = {
       {{"check", "-x"}, "check has no option '-x'\n"},
       {{"check", "--verbose"}, "check has no option '--verbose'; test has it\n"},
-      {{"check", "a", "b"}, "'b' is one argument too many\n"},
+      {{"check", "a", "b"}, "'b' is one argument too many"},
+      {{"check", "--format", "json", "--format", "text"},
+       "--format is given more than once; give it once\n"},
+      {{"check", "--domain", "3"}, "check has no option '--domain'; set ROS_DOMAIN_ID"},
       {{"check", "--format", "jsn"}, "'jsn' is none of text, json; did you mean 'json'?\n"},
       {{"check", "--port", "12"}, "--port: '12' is no number from 1 to 9\n"},
       {{"check", "--port", "abc"}, "--port: 'abc' is no number from 1 to 9\n"},
@@ -89,6 +94,11 @@ TEST(Program, ExplainsEachKindOfMistakeInOneLine) {
       {{"check", "--pair", "a"}, "--pair needs at least 2 values\n"},
       {{"beliefs"}, "beliefs needs a command: show\n"},
       {{"beliefs", "shwo"}, "beliefs has no command 'shwo'; did you mean 'show'?\n"},
+      {{"beliefs", "all"}, "beliefs has no command 'all'; it has show\n"},
+      {{"beliefs", "--verbose"}, "beliefs has no option '--verbose'; it stands behind show\n"},
+      {{"check", "--file", "a"}, "check has no option '--file'; write FILE without it\n"},
+      {{"CHECK"}, "there is no command 'CHECK'; did you mean 'check'?\n"},
+      {{"-v"}, "there is no option '-v'; did you mean '--version'?\n"},
       {{"--verison"}, "there is no option '--verison'\n"},
       {{"help", "chekc"}, "there is no command 'chekc'; did you mean 'check'?\n"}};
   for (const auto& [words, cause] : mistakes) {

@@ -47,7 +47,7 @@ std::string text_of(const YAML::Node& node, const char* what) {
 // Calls `visit(key, value)` for each entry, and fails where one is there twice.
 template <class Visit>
 void for_each(const YAML::Node& map, const std::string& what, Visit visit) {
-  if (!map.IsMap()) fail(map, what + " must be a mapping");
+  if (!map.IsMap()) fail(map, what + " must be a mapping: one \"name: ...\" for each entry");
   std::set<std::string> seen;
   for (const auto& entry : map) {
     const std::string key = text_of(entry.first, "a key");

@@ -65,10 +65,12 @@ std::string headline_of(const Incident& incident, const Knowledge& knowledge) {
   return knowledge.rules[incident.root].name + " fails";
 }
 
-// "3.2s"
+// "3.2 s"
 std::string time_until(Time at, Time now) {
   using Tenths = std::chrono::duration<std::int64_t, std::deci>;
-  return to_string(Duration(std::chrono::ceil<Tenths>(std::max(at - now, Duration::zero()))));
+  const auto tenths = std::chrono::ceil<Tenths>(std::max(at - now, Duration::zero())).count();
+  const std::string seconds = std::to_string(tenths / 10);
+  return tenths % 10 == 0 ? seconds + " s" : seconds + "." + std::to_string(tenths % 10) + " s";
 }
 
 // The next step for a failure that is being repaired, and its time.

@@ -10,6 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 using test::TestRobot;
+using testing::AllOf;
 using testing::HasSubstr;
 
 constexpr const char* kIncidentRules = R"(
@@ -146,7 +147,8 @@ TEST(Incidents, SaysWhatComesNextAndWhen) {
   camera.fault = "nothing helps";
   for (int i = 0; i < 100 && watched.course().next.find("if the symptom") != 0; ++i)
     watched.robot->run_for(100ms);
-  EXPECT_THAT(watched.course().next, HasSubstr("if the symptom is not gone in "));
+  EXPECT_THAT(watched.course().next, AllOf(HasSubstr("if the symptom is not gone in "),
+                                           HasSubstr(" s, the next strategy is tried")));
   watched.robot->run_for(2min);
   const auto incidents = watched.incidents();
   ASSERT_FALSE(incidents.empty());

@@ -10,6 +10,7 @@
 #include "language/conflict_checks.h"
 #include "language/evaluate.h"
 #include "language/facts.h"
+#include "language/foreign_files.h"
 #include "language/likely_slips.h"
 #include "language/parser.h"
 #include "language/place_index.h"
@@ -50,7 +51,9 @@ class Checker {
     for (const syntax::Rule& rule : file_.rules) strategies += rule.strategies.size();
     rules_.strategies.reserve(strategies);
     header();
+    const std::size_t said = diagnostics_.size();
     symbols_.declare(file_);
+    has_broken_declaration_ = diagnostics_.size() > said;
     constants();
     dependencies();
     infer();
@@ -61,7 +64,8 @@ class Checker {
     for (const syntax::Rule& rule : file_.rules) {
       if (rule.name.text.empty()) continue;  // its line was broken
       check_name(rule);
-      memory_ == nullptr ? add_rule(rule) : add_or_recall_rule(rule);
+      const bool has_memory = memory_ != nullptr && !has_broken_declaration_;
+      has_memory ? add_or_recall_rule(rule) : add_rule(rule);
     }
     symbols_.drop_forgotten_reports();
     for (Input& input : rules_.inputs) sort_unique(input.thresholds);
@@ -216,10 +220,6 @@ class Checker {
   }
 
   void infer() {
-    for (const syntax::Interlock& abort : file_.aborts)
-      infer_types(abort.condition, Type::kBool, symbols_);
-    for (const syntax::Interlock& interlock : file_.interlocks)
-      infer_types(interlock.condition, Type::kBool, symbols_);
     for (const syntax::Rule& rule : file_.rules) {
       if (rule.trigger) infer_types(*rule.trigger, Type::kBool, symbols_);
       for (const syntax::Strategy& strategy : rule.strategies) {
@@ -232,6 +232,11 @@ class Checker {
         }
       }
     }
+    // Behind the rules, which compare a signal more often than these do.
+    for (const syntax::Interlock& abort : file_.aborts)
+      infer_types(abort.condition, Type::kBool, symbols_);
+    for (const syntax::Interlock& interlock : file_.interlocks)
+      infer_types(interlock.condition, Type::kBool, symbols_);
   }
 
   void declare_signal_type(SignalId id) {
@@ -367,7 +372,8 @@ class Checker {
       add_strategy(strategy, id);
     }
     sort_unique(rules_.rules[id.index].components);
-    if (!written.has_broken_part) {
+    // How a component of a broken line is started is not known.
+    if (!written.has_broken_part && !has_broken_declaration_) {
       check_launches(written, rules_, id, diagnostics_);
       check_required(written, rules_, id, diagnostics_);
     }
@@ -424,10 +430,15 @@ class Checker {
              "rule '" + rule.name.text + "' only reports, so none of its strategies would be used",
              "remove REPORT from its POLICIES, or its strategies");
     if (missing.empty()) return;
+    const char* remedy =
+        missing == "POLICIES"  ? "add how critical the failure is, as in POLICIES ERROR"
+        : missing == "TRIGGER" ? "add when the failure is there, as in TRIGGER age(/topic) > 1s"
+        : missing == "STRATEGY"
+            ? "add a STRATEGY with what may help, or REPORT to its POLICIES to notify a person"
+            : "a rule says how critical the failure is (POLICIES), when it is there (TRIGGER) and "
+              "what may help (STRATEGY), or that a person is notified (POLICIES ... REPORT)";
     report(Code::kIncomplete, rule.name.span,
-           "rule '" + rule.name.text + "' is incomplete: no " + missing,
-           "a rule says how critical the failure is (POLICIES), when it is there (TRIGGER) and "
-           "what may help (STRATEGY), or that a person is notified (POLICIES ... REPORT)");
+           "rule '" + rule.name.text + "' is incomplete: no " + missing, remedy);
   }
 
   void policies(const syntax::Policies& written, const syntax::Rule& rule, Policies& policies) {
@@ -518,7 +529,7 @@ class Checker {
       each.begins_step = is_next_of_group || begins_step[each.written];
     }
     strategy.impact = impact_of(strategy.adaptations);
-    check_contradictions(written, diagnostics_);
+    if (!written.has_broken_adaptation) check_contradictions(written, diagnostics_);
 
     sort_unique(strategy.components);
     auto& touched = rules_.rules[rule.index].components;
@@ -693,6 +704,7 @@ class Checker {
   std::vector<Diagnostic>& diagnostics_;
   RuleSet rules_;
   Symbols symbols_;
+  bool has_broken_declaration_ = false;
   PlaceIndex rule_names_;
   std::vector<RuleConditions> conditions_;  // of each rule that has a trigger
   RuleMemory* memory_ = nullptr;  // of the last check and for the next one; null: nobody wants it
@@ -746,12 +758,15 @@ Checked check(const Source& source, Strictness strictness) {
     return checked;
   }
   Checked checked = check_tree(file, std::move(said), strictness);
+  condense(source, checked.diagnostics);
   checked.file = std::move(file);
   return checked;
 }
 
 Checked check(const Parsed& whole, Strictness strictness) {
-  return check_tree(whole.file, whole.said, strictness);
+  Checked checked = check_tree(whole.file, whole.said, strictness);
+  condense(whole.source, checked.diagnostics);
+  return checked;
 }
 
 Checked check(const Expansion& rules, Strictness strictness) {
@@ -762,7 +777,10 @@ Checked check(const Expansion& rules, Strictness strictness) {
 }
 
 Checked check_again(const Parsed& whole, RuleMemory& memory) {
-  return check_tree(whole.file, whole.said, Strictness::kLenient, &memory, whole.source.text());
+  Checked checked =
+      check_tree(whole.file, whole.said, Strictness::kLenient, &memory, whole.source.text());
+  condense(whole.source, checked.diagnostics);
+  return checked;
 }
 
 Checked check_again(const Expansion& rules, const Parsed& whole, RuleMemory& memory) {

@@ -1,6 +1,7 @@
 #include "language/condition_checks.h"
 
 #include <algorithm>
+#include <cctype>
 #include <limits>
 #include <optional>
 
@@ -99,8 +100,31 @@ struct Finding {
   bool always = false;  // otherwise never
   Span span;
   std::string reason;  // of the cause
-  bool is_by_range = false;
+  std::string remedy;
 };
+
+// "Active" for "active", 20 for a share of 20 percent; empty: neither.
+std::string meant_value(const Typed& comparison, const Input& input) {
+  if (comparison.op == Op::kNot) return meant_value(comparison.children[0], input);
+  if (input.kind == Input::Kind::kLoss) {
+    for (const double percent : thresholds_of(comparison)) {
+      if (percent > 1 && percent <= 100) return "write " + plain_number(percent / 100);
+    }
+  }
+  if (input.kind != Input::Kind::kLifecycle) return "";
+  for (const Typed& side : comparison.children) {
+    if (side.op != Op::kConstant) continue;
+    std::string lower = side.constant->text;
+    std::transform(lower.begin(), lower.end(), lower.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
+    const std::vector<std::string_view> states = {"unconfigured", "inactive", "active",
+                                                  "finalized"};
+    const bool is_case_only = std::ranges::find(states, lower) != states.end();
+    const std::string near = is_case_only ? lower : closest(lower, states);
+    if (!near.empty()) return "did you mean \"" + near + "\"?";
+  }
+  return "";
+}
 
 // The smallest parts of `condition` that are always or never true. `known`: whether the whole is
 // never true, if that is known.
@@ -123,14 +147,19 @@ void find_constant_parts(const Typed& condition, const RuleSet& rules,
       std::all_of(condition.children.begin(), condition.children.end(), compares_with_constant);
   if (!never && (has_plain_parts || !is_never(false, condition, rules))) return;
   std::string reason;
+  std::string remedy;
   bool is_by_range = false;
   if (is_connective(condition)) {
     reason = never ? ": its parts exclude one another" : ": one of its parts always holds";
   } else if (const Typed* input = compared_input(condition)) {
     reason = known_of(input->input, rules);
     is_by_range = has_declared_range(input->input, rules);
+    if (never) remedy = meant_value(condition, rules[input->input]);
   }
-  findings.push_back({!never, condition.span, std::move(reason), is_by_range});
+  if (remedy.empty())
+    remedy = is_by_range ? "correct the condition, or the RANGE if the value can be another"
+                         : "correct the condition, or remove it";
+  findings.push_back({!never, condition.span, std::move(reason), std::move(remedy)});
 }
 
 // Neither can be true when the other is.
@@ -215,6 +244,8 @@ void live(const Typed& e, const RuleSet& rules, Facts& facts) {
   if (e.op != Op::kInput) return;
   switch (rules[e.input].kind) {
     case Input::Kind::kAge:
+      facts.know(e.input, Interval{1, 1});  // ns: no message is as young as 0
+      return;
     case Input::Kind::kPhi:
       facts.know(e.input, Interval{0, 0});
       return;
@@ -245,6 +276,22 @@ void find_short_windows(const Typed& e, const RuleSet& rules, std::vector<Diagno
   }
 }
 
+// Comparisons of cores with a number that was meant as a percentage.
+void find_percentages(const Typed& e, const RuleSet& rules, std::vector<Diagnostic>& found) {
+  const Typed* input = e.type == Type::kBool && !is_connective(e) ? compared_input(e) : nullptr;
+  if (input == nullptr || rules[input->input].kind != Input::Kind::kCpu) {
+    for (const Typed& child : e.children) find_percentages(child, rules, found);
+    return;
+  }
+  for (const double cores : thresholds_of(e)) {
+    if (cores < 20 || cores > 100) continue;
+    found.push_back({Code::kNeverTrueInRange, Severity::kWarning, e.span,
+                     "this is hardly ever true: cpu counts the cores that the process uses",
+                     "write " + plain_number(cores / 100) + " for " + plain_number(cores) +
+                         " percent of a core"});
+  }
+}
+
 }  // namespace
 
 void check_true_when_well(const RuleConditions& rule, const RuleSet& rules,
@@ -267,6 +314,7 @@ void check_true_when_well(const RuleConditions& rule, const RuleSet& rules,
 void check_windows(const RuleConditions& rule, const RuleSet& rules,
                    std::vector<Diagnostic>& diagnostics) {
   find_short_windows(rule.trigger, rules, diagnostics);
+  find_percentages(rule.trigger, rules, diagnostics);
 }
 
 void check_conditions(const RuleConditions& rule, const RuleSet& rules,
@@ -278,8 +326,7 @@ void check_conditions(const RuleConditions& rule, const RuleSet& rules,
     diagnostics.push_back(
         {f.always ? Code::kAlwaysTrueInRange : Code::kNeverTrueInRange, Severity::kWarning, f.span,
          std::string(f.always ? "this is always true" : "this is never true") + f.reason,
-         f.is_by_range ? "correct the condition, or the RANGE if the value can be another"
-                       : "correct the condition, or remove it"});
+         f.remedy});
   }
   if (rule.never_fires) return;  // with which every WHEN would be at odds
   for (const RuleConditions::When& when : rule.whens) check_when(rule, when, rules, diagnostics);

@@ -121,13 +121,18 @@ std::string shown(const Source& source, Span span, const std::string& what, std:
   const std::string number = std::to_string(at.line);
   const std::string margin(std::max<std::size_t>(number.size(), 4), ' ');
   std::string out = source.name() + ":" + number + ":" + std::to_string(at.column) + ": " + what;
-  out += "\n" + std::string(paint.place) + margin.substr(number.size()) + number + " | " +
-         std::string(paint.off) + std::string(before) + printable(source.text(part)) +
-         (is_cut_behind ? " ..." : "") + "\n";
-  out += std::string(paint.place) + margin + " | " + std::string(paint.off) + blanks_like(before) +
-         blanks_like(source.text({part.begin, marked.begin})) + std::string(mark) +
-         std::string(std::max<std::size_t>(character_count(source.text(marked)), 1), '^') +
-         std::string(paint.off) + "\n";
+  out += "\n";
+  const bool is_text = source.text(line).find('\0') == std::string_view::npos;
+  if (is_text) {
+    out += std::string(paint.place) + margin.substr(number.size()) + number + " | " +
+           std::string(paint.off) + std::string(before) + printable(source.text(part)) +
+           (is_cut_behind ? " ..." : "") + "\n";
+    out += std::string(paint.place) + margin + " | " + std::string(paint.off) +
+           blanks_like(before) + blanks_like(source.text({part.begin, marked.begin})) +
+           std::string(mark) +
+           std::string(std::max<std::size_t>(character_count(source.text(marked)), 1), '^') +
+           std::string(paint.off) + "\n";
+  }
   if (remedy.empty()) return out;
   return out + std::string(paint.place) + margin + " = " + std::string(paint.off) +
          std::string(paint.remedy) + printable(remedy) + std::string(paint.off) + "\n";

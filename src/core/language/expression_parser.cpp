@@ -72,11 +72,14 @@ class ExpressionParser {
     int length = 0;
     while (const BinaryOperator* found = binary_operator(scanner_.peek())) {
       if (found->precedence < min_precedence) break;
-      if (++length + depth > kMaxNesting) return too_deep();
+      if (++length + depth > kMaxNesting) return too_long();
       const Token op = scanner_.next();
       if (const Token& second = scanner_.peek(); op.span.end == second.span.begin) {
         if (auto slip = doubled(op, second)) return fail(std::move(*slip));
       }
+      if (op.is("%") && !begins_value(scanner_.peek()))
+        return fail(Code::kSyntax, op.span, "no '%' stands behind a number",
+                    "write a share from 0 to 1, as in 0.2 for 20 percent");
       auto right = binary(found->precedence + 1, depth + length);
       if (!right) return std::nullopt;
       Expression e;
@@ -88,6 +91,12 @@ class ExpressionParser {
     }
     if (auto slip = foreign_operator()) return fail(std::move(*slip));
     return left;
+  }
+
+  static bool begins_value(const Token& token) {
+    return token.kind != Token::Kind::kEnd &&
+           (token.kind != Token::Kind::kSymbol || token.is("(") || token.is("-") || token.is("+") ||
+            token.is("!"));
   }
 
   static Diagnostic wrong_operator(Span span, const std::string& written,
@@ -215,6 +224,12 @@ class ExpressionParser {
                       "write ! for 'not', as in !docked",
                       Edit{{token.span.begin, scanner_.position()}, "!"});
         }
+        if ((token.text == "if" || token.text == "IF" || token.text == "when") &&
+            continues(scanner_.peek()) && !scanner_.peek().is("(")) {
+          return fail(Code::kSyntax, token.span,
+                      "no '" + std::string(token.text) + "' stands in front of a condition",
+                      "remove it", Edit{{token.span.begin, scanner_.position()}, ""});
+        }
         e.kind = Kind::kName;
         e.name = {std::string(token.text), token.span};
         return scanner_.peek().is("(") ? call(std::move(e), depth) : std::optional(std::move(e));
@@ -232,8 +247,7 @@ class ExpressionParser {
 
   // "500 ms", "5 Hz"
   std::optional<Diagnostic> unit_behind_blank(const Token& number, std::string_view unit) {
-    const std::uint32_t begin = scanner_.position();
-    const auto end = begin + static_cast<std::uint32_t>(unit.size());
+    const auto end = scanner_.position() + static_cast<std::uint32_t>(unit.size());
     if (is_hertz(unit))
       return Diagnostic{Code::kSyntax,
                         Severity::kError,
@@ -241,13 +255,14 @@ class ExpressionParser {
                         "rates are in Hz and have no unit",
                         "leave the unit out",
                         Edit{{number.span.end, end}, ""}};
-    if (!parse_duration("1" + std::string(unit))) return std::nullopt;
+    const std::string meant(duration_unit(unit));
+    if (meant.empty()) return std::nullopt;
     return Diagnostic{Code::kSyntax,
                       Severity::kError,
                       {number.span.begin, end},
                       "a duration has no blank in it",
-                      "write the number and '" + std::string(unit) + "' as one word: 500ms",
-                      Edit{{number.span.end, begin}, ""}};
+                      "write the number and '" + meant + "' as one word, as in 2" + meant,
+                      Edit{{number.span.end, end}, meant}};
   }
 
   std::nullopt_t value_is_missing(const Token& token) {
@@ -387,8 +402,16 @@ class ExpressionParser {
         remedy = "rates are in Hz and have no unit: write " + std::string(number.substr(0, end));
         fix = Edit{token.span, std::string(number.substr(0, end))};
       }
+      if (end != std::string_view::npos && is_mebibyte(number.substr(end))) {
+        remedy = "memory is in MiB and has no unit: write " + std::string(number.substr(0, end));
+        fix = Edit{token.span, std::string(number.substr(0, end))};
+      }
     }
     return fail(Code::kBadToken, token.span, cause, remedy, fix);
+  }
+
+  static bool is_mebibyte(std::string_view word) {
+    return word == "MB" || word == "MiB" || word == "mb" || word == "M";
   }
 
   // `next` is what stands where the ')' was missed, `end` where it would have come.
@@ -401,6 +424,13 @@ class ExpressionParser {
   std::nullopt_t too_deep() {
     return fail(Code::kTooDeep, scanner_.rest(), "this expression is nested too deeply",
                 "split it into several rules, or name parts of it with CONST");
+  }
+
+  std::nullopt_t too_long() {
+    return fail(
+        Code::kTooDeep, scanner_.peek().span,
+        "this expression has more than " + std::to_string(kMaxNesting) + " operators in a row",
+        "split it into several rules, or put parts of it in parentheses");
   }
 
   std::nullopt_t fail(Diagnostic diagnostic) {

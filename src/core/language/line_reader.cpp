@@ -78,6 +78,12 @@ std::span<const std::string_view> reserved_words() { return kReservedWords; }
 std::optional<Name> LineReader::identifier(Scanner& s, std::string_view what) {
   const Token token = s.next();
   if (token.kind == Token::Kind::kIdentifier) return Name{std::string(token.text), token.span};
+  if (token.flaw == Token::Flaw::kNumber) {
+    fail(Code::kBadToken, token.span,
+         "'" + std::string(source_.text(token.span)) + "' begins with a digit",
+         "a name is made of letters, digits and '_', and begins with no digit");
+    return std::nullopt;
+  }
   fail_token(token, what, "a name is made of letters, digits and '_', and begins with no digit");
   return std::nullopt;
 }
@@ -159,7 +165,8 @@ std::optional<Duration> LineReader::positive_duration(Scanner& s, std::string_vi
   const Span span = s.peek().span;
   const auto d = duration(s, what);
   if (!d || *d > Duration::zero()) return d;
-  fail(Code::kPolicyRange, span, "this duration must be longer than zero", "");
+  fail(Code::kPolicyRange, span, "this duration must be longer than zero",
+       "write for example 500ms, or leave it out with its keyword");
   return std::nullopt;
 }
 
@@ -177,9 +184,10 @@ std::optional<syntax::Number> LineReader::number(Scanner& s, std::string_view wh
   if (token.kind == Token::Kind::kEnd && remedy.empty())
     remedy = "a number is missing at the end of this line";
   if (token.is("%")) {
-    remedy = "the number counts in percent already: write it without the %";
     const bool separates = s.position() == token.span.end;  // the next number follows at once
-    fix = {token.span, separates ? " " : ""};
+    fail(Code::kSyntax, token.span, "no '%' stands behind a number",
+         "remove it: a probability is in percent already", Edit{token.span, separates ? " " : ""});
+    return std::nullopt;
   }
   if (token.is("-")) remedy = "write a positive number";
   if (token.kind == Token::Kind::kDuration && remedy.empty())
@@ -206,11 +214,11 @@ std::optional<double> LineReader::signed_number(Scanner& s) {
   return negative ? -magnitude->value : magnitude->value;
 }
 
-bool LineReader::expect_word(Scanner& s, std::string_view word) {
+bool LineReader::expect_word(Scanner& s, std::string_view word, std::string remedy) {
   const Token token = s.next();
   if (token.text == word) return true;
   std::optional<Edit> fix;
-  std::string remedy = "write " + std::string(word) + " here";
+  if (remedy.empty()) remedy = "write " + std::string(word) + " here";
   if (is_nearly(token, word)) {
     fix = {token.span, std::string(word)};
     remedy = "did you mean " + std::string(word) + "?";
@@ -245,9 +253,12 @@ bool LineReader::is_one_word(const Scanner& s, const Name& name,
               "write " + meant, Edit{span, meant});
 }
 
-bool LineReader::expect_symbol(Scanner& s, std::string_view symbol) {
+bool LineReader::expect_symbol(Scanner& s, std::string_view symbol, std::string remedy) {
   const Token token = s.next();
-  return token.is(symbol) || fail_token(token, "'" + std::string(symbol) + "'", "");
+  if (token.is(symbol)) return true;
+  const bool is_other = token.kind == Token::Kind::kSymbol;
+  return fail_token(token, "'" + std::string(symbol) + "'", std::move(remedy),
+                    is_other ? std::optional(Edit{token.span, std::string(symbol)}) : std::nullopt);
 }
 
 bool LineReader::fail(Code code, Span span, std::string cause, std::string remedy,
@@ -321,6 +332,14 @@ bool LineReader::line_ends(Scanner& s) {
       is_digit(token.span.end))
     return fail(Code::kExtraText, token.span, "a number has a point, and no comma", "write a '.'",
                 Edit{token.span, "."});
+  // The scanner takes the two characters for signs.
+  const Span line = source_.line(source_.position(token.span.begin).line);
+  const auto dashes = text.substr(0, token.span.begin).rfind(" --");
+  if (dashes != std::string_view::npos && dashes >= line.begin) {
+    const auto begin = static_cast<std::uint32_t>(dashes) + 1;
+    return fail(Code::kExtraText, {begin, begin + 2}, "no comment begins with '--'",
+                "begin a comment with #", Edit{{begin, begin + 2}, "#"});
+  }
   if (is_reserved(token.text))
     return fail(Code::kExtraText, token.span,
                 std::string(token.text) + " has no place in this line",

@@ -51,12 +51,12 @@ class LineReader {
   std::optional<double> signed_number(Scanner& s);
   std::optional<syntax::Expression> expression(Scanner& s);
 
-  bool expect_word(Scanner& s, std::string_view word);
+  bool expect_word(Scanner& s, std::string_view word, std::string remedy = "");
   // Whether `name` is all of a name: not so in "front camera NODE", where NODE is one of the words
   // that may follow it. Any may if there are none. Takes nothing.
   bool is_one_word(const Scanner& s, const syntax::Name& name,
                    std::span<const std::string_view> followers = {});
-  bool expect_symbol(Scanner& s, std::string_view symbol);
+  bool expect_symbol(Scanner& s, std::string_view symbol, std::string remedy = "");
   // Does the line end here, except for a comment?
   bool line_ends(Scanner& s);
 

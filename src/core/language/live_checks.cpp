@@ -142,7 +142,9 @@ class LiveChecks {
       const bool runs_otherwise = each->clause == Clause::kRunning;
       if (place && text == each->text)
         warn(runs_otherwise ? Code::kRunsOtherwise : Code::kCannotLaunch, place->span, each->why,
-             "");
+             each->clause == Clause::kLaunch
+                 ? "correct its path, or add SETUP with the file to source first"
+                 : "");
     }
   }
 

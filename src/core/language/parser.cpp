@@ -79,7 +79,10 @@ class Parser {
     };
     const Token head = s.next();
     if (head.kind == Token::Kind::kBad) {
-      read_.fail_token(head, "a statement", "");
+      if (source_.text(head.span) == ";")
+        foreign_comment(head.span);
+      else
+        read_.fail_token(head, "a statement", "");
       return broken();
     }
     const auto known = [](std::string_view word) -> const Statement* {
@@ -91,6 +94,12 @@ class Parser {
     };
     const Statement* meant = known(head.text);
     const std::size_t complaints = read_.complaints() + 1;
+    keyword_ = head.span;
+    bool is_good_head = meant != nullptr;
+    if (meant == nullptr && (meant = known(s.peek().text)) != nullptr) {
+      keyword_ = s.next().span;
+      superfluous_word(head);
+    }
     if (meant == nullptr) {
       std::vector<std::string_view> keywords;
       for (const Statement& each : kStatements) keywords.push_back(each.keyword);
@@ -101,8 +110,7 @@ class Parser {
       meant = is_foreign ? nullptr : known(near);
       if (meant == nullptr) return broken();
     }
-    keyword_ = head.span;
-    bool is_good_head = meant->keyword == head.text && !has_placeholder(s);
+    if (has_placeholder(s)) is_good_head = false;
     if (has_colon(s)) is_good_head = false;  // it is taken, so that the line can be read
     const Scanner behind_keyword = s;
     const bool is_good = (this->*meant->parse)(s) && read_.line_ends(s);
@@ -141,9 +149,20 @@ class Parser {
         adjoins && ((head.is("-") && second.is("-")) || (head.is("/") && second.is("*")));
     if (!is_comment) return false;
     const Span both{head.span.begin, second.span.end};
-    return !read_.fail(Code::kUnknownStatement, both,
-                       "no comment begins with '" + std::string(source_.text(both)) + "'",
-                       "begin each line of a comment with #", Edit{both, "#"});
+    return foreign_comment(both);
+  }
+  bool foreign_comment(Span mark) {
+    return !read_.fail(Code::kUnknownStatement, mark,
+                       "no comment begins with '" + std::string(source_.text(mark)) + "'",
+                       "begin each line of a comment with #", Edit{mark, "#"});
+  }
+
+  // "ELSE STRATEGY …": all strategies of a rule are alternatives.
+  void superfluous_word(const Token& head) {
+    const std::string keyword(source_.text(keyword_));
+    read_.fail(Code::kUnknownStatement, head.span,
+               "no '" + std::string(source_.text(head.span)) + "' stands in front of " + keyword,
+               "remove it", Edit{{head.span.begin, keyword_.begin}, ""});
   }
 
   // Where people who know alerting or behaviour tools look first.
@@ -186,9 +205,13 @@ class Parser {
             {Broken::kSignal, {std::string(name.text), name.span}});
     };
     // All words of a name with blanks in it: each may be how the rules call it.
+    const auto reserved = reserved_words();
+    bool is_first = true;  // which is the name, even if it may be none
     for (Token name = s.next(); name.kind == Token::Kind::kIdentifier; name = s.next()) {
-      const auto reserved = reserved_words();
-      if (std::find(reserved.begin(), reserved.end(), name.text) != reserved.end()) return;
+      const bool is_reserved =
+          std::find(reserved.begin(), reserved.end(), name.text) != reserved.end();
+      if (is_reserved && !std::exchange(is_first, false)) return;
+      is_first = false;
       declare(name);
     }
   }
@@ -340,6 +363,10 @@ class Parser {
                  component.lifecycle == syntax::LifecycleDriver::kUndeclared) {
         s.next();
         if (!lifecycle(s, component)) return false;
+      } else if (const auto near = clause_of_other_tools(clause.text); !near.empty()) {
+        return read_.fail(Code::kSyntax, clause.span,
+                          "a component has no " + std::string(clause.text),
+                          "did you mean " + std::string(near) + "?");
       } else {
         return read_.unexpected_clause(clause,
                                        {kComponentClauses.begin(), kComponentClauses.end()});
@@ -347,6 +374,24 @@ class Parser {
     }
     into_->components.push_back(std::move(component));
     return true;
+  }
+
+  static std::string_view clause_of_other_tools(std::string_view word) {
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kWords = {
+        {{"COMMAND", "LAUNCH"},
+         {"CMD", "LAUNCH"},
+         {"EXEC", "LAUNCH"},
+         {"EXECUTABLE", "LAUNCH"},
+         {"START", "LAUNCH"},
+         {"SERVICE", "UNIT"},
+         {"SYSTEMD", "UNIT"},
+         {"DOCKER", "CONTAINER docker"},
+         {"PODMAN", "CONTAINER podman"}}};
+    const std::string upper = upper_case(word);
+    for (const auto& [theirs, ours] : kWords) {
+      if (theirs == upper) return ours;
+    }
+    return "";
   }
 
   // Whether the next word is none of these `clauses` nor one of them written wrong.
@@ -407,6 +452,9 @@ class Parser {
                               "write the components in braces: GROUP navigation { planner, "
                               "controller } MANAGER lifecycle_manager");
     do {
+      if (const Span next = s.peek().span; source_.text(next) == "}")
+        return read_.fail(Code::kSyntax, next, "a component is missing here",
+                          "write the components of the group, with commas between them");
       auto member = read_.identifier(s, "a component of the group");
       if (!member) return false;
       group.members.push_back(std::move(*member));
@@ -422,6 +470,10 @@ class Parser {
   }
 
   bool ignore(Scanner& s) {
+    if (const Span rest = s.rest(); source_.text(rest).starts_with('/'))
+      return read_.fail(Code::kSyntax, rest,
+                        "expected TOPIC, not '" + std::string(source_.text(rest)) + "'",
+                        "write TOPIC in front of it", Edit{{rest.begin, rest.begin}, "TOPIC "});
     if (!read_.expect_word(s, "TOPIC")) return false;
     do {
       auto topic = read_.ros_name(s, "a topic");
@@ -467,7 +519,9 @@ class Parser {
       if (!times) return false;
       drill.times = *times;
     } else {
-      return read_.unexpected_clause(word, {"set_parameter", "without", "limit"});
+      return read_.unexpected_clause(
+          word, {"set_parameter", "without", "limit"},
+          "write the component and what drills may do to it, as in DRILL camera limit 3");
     }
     into_->drills.push_back(std::move(drill));
     return true;
@@ -493,9 +547,11 @@ class Parser {
         const bool is_publisher = clause.text == "FROM";
         return read_.unexpected_clause(
             clause, {"STALE", "RANGE"},
-            is_publisher ? "one FROM may stand behind the key or the field; a parameter is its "
-                           "component's own"
-                         : "");
+            !is_publisher ? ""
+            : std::holds_alternative<syntax::ParameterSource>(signal.source)
+                ? "remove it: a parameter is its component's own"
+            : signal.from ? "remove it: one FROM is enough"
+                          : "write FROM behind the key or the field, in front of STALE and RANGE");
       }
     }
     into_->signals.push_back(std::move(signal));
@@ -506,13 +562,16 @@ class Parser {
     const Token kind = s.next();
     if (kind.text == "DIAGNOSTIC") {
       auto status = read_.name_or_text(s, "the status's name or hardware id");
-      if (!status || !read_.expect_word(s, "KEY")) return false;
+      if (!status || !read_.expect_word(s, "KEY", "write KEY and the key, as in KEY temperature"))
+        return false;
       auto key = read_.name_or_text(s, "the key");
       if (!key || !publisher(s, signal)) return false;
       signal.source = syntax::DiagnosticSource{std::move(*status), std::move(*key)};
     } else if (kind.text == "TOPIC") {
       auto topic = read_.ros_name(s, "the topic");
-      if (!topic || !read_.expect_word(s, "FIELD")) return false;
+      if (!topic ||
+          !read_.expect_word(s, "FIELD", "write FIELD and the path of the field, as in FIELD data"))
+        return false;
       auto field = read_.name_or_text(s, "the field, for example data or pose.position.x");
       if (!field || !publisher(s, signal)) return false;
       signal.source = syntax::TopicSource{std::move(*topic), std::move(*field)};
@@ -523,7 +582,9 @@ class Parser {
       if (!parameter) return false;
       signal.source = syntax::ParameterSource{std::move(*component), std::move(*parameter)};
     } else {
-      return read_.unexpected_clause(kind, {kSignalSources.begin(), kSignalSources.end()});
+      return read_.unexpected_clause(
+          kind, {kSignalSources.begin(), kSignalSources.end()},
+          "write where its value comes from, as in TOPIC /battery FIELD percentage");
     }
     return true;
   }
@@ -541,7 +602,8 @@ class Parser {
   bool range(Scanner& s, syntax::Signal& signal) {
     const Span span = s.rest();
     const auto low = read_.signed_number(s);
-    if (!low || !read_.expect_symbol(s, "..")) return false;
+    if (!low || !read_.expect_symbol(s, "..", "write the two ends, as in RANGE 0..100"))
+      return false;
     const auto high = read_.signed_number(s);
     if (!high) return false;
     signal.range = {*low, *high, span};
@@ -624,6 +686,7 @@ class Parser {
     into_->rules.emplace_back();
     into_->rules.back().begin = line_.begin;
     is_in_rule_ = true;
+    has_duplicate_line_ = false;
     // A part that stands before the rule may be the one that the rule then lacks.
     into_->rules.back().has_broken_part = std::exchange(stray_part_, false);
     auto name = read_.declared_name(s, "the rule's name");
@@ -650,11 +713,23 @@ class Parser {
   bool criticality(Scanner& s, syntax::Policies& policies) {
     using enum syntax::Criticality;
     const Token level = s.next();
-    if (level.text == "CRITICAL" || level.text == "FATAL") {
-      // The nearest word would be NON_CRITICAL.
+    struct Other {
+      std::string_view word, meant, remedy;
+    };
+    constexpr std::array<Other, 8> kOthers = {
+        {{"CRITICAL", "ERROR", "did you mean ERROR, the highest one?"},
+         {"FATAL", "ERROR", "did you mean ERROR, the highest one?"},
+         {"HIGH", "ERROR", "did you mean ERROR, the highest one?"},
+         {"WARN", "WARNING", "did you mean WARNING?"},
+         {"MEDIUM", "WARNING", "did you mean WARNING, the middle one?"},
+         {"INFO", "NON_CRITICAL", "did you mean NON_CRITICAL, the lowest one?"},
+         {"NOTICE", "NON_CRITICAL", "did you mean NON_CRITICAL, the lowest one?"},
+         {"LOW", "NON_CRITICAL", "did you mean NON_CRITICAL, the lowest one?"}}};
+    for (const auto& [word, meant, remedy] : kOthers) {
+      if (upper_case(level.text) != word) continue;
       return read_.fail(Code::kSyntax, level.span,
-                        "there is no criticality " + std::string(level.text),
-                        "did you mean ERROR, the highest one?", Edit{level.span, "ERROR"});
+                        "there is no criticality " + std::string(level.text), std::string(remedy),
+                        Edit{level.span, std::string(meant)});
     }
     if (level.text == "ERROR" || level.text == "FAILURE") {
       policies.criticality = kError;
@@ -685,7 +760,9 @@ class Parser {
     if (clause.text == "HOLD" && !policies.hold) {
       const Span span = s.rest();
       const auto needed = read_.whole_number(s, "a number of evaluations");
-      if (!needed || !read_.expect_symbol(s, "/")) return false;
+      if (!needed || !read_.expect_symbol(
+                         s, "/", "write two numbers: HOLD 3/5 is true in 3 of the last 5 cycles"))
+        return false;
       const auto window = read_.whole_number(s, "a number of evaluations");
       if (!window) return false;
       policies.hold = {*needed, *window, span};
@@ -722,9 +799,13 @@ class Parser {
     rule.strategies.back().has_broken_adaptation = true;  // until the line is understood
     auto name = read_.identifier(s, "the strategy's name");
     if (!name || !read_.is_one_word(s, *name)) return false;
-    const auto probability = read_.number(s, "the success probability in percent");
+    const auto probability = read_.number(
+        s, "the success probability in percent",
+        s.at_end() ? "write how often it helps and how sure that is, as in 80 10" : "");
     if (!probability) return false;
-    const auto confidence = read_.number(s, "the confidence in it (1 to 100)");
+    const auto confidence = read_.number(
+        s, "the confidence in it (1 to 100)",
+        s.at_end() ? "write how many past attempts the probability is worth, as 10" : "");
     if (!confidence) return false;
     const bool is_last_resort = s.peek().text == "LASTRESORT";
     if (is_last_resort) s.next();
@@ -779,7 +860,7 @@ class Parser {
     const Token word = s.next();
     const auto type = syntax::adaptation_type(word.text);
     if (!type && syntax::adaptation_type(component->text)) return lacks_component(*component, word);
-    if (!type) return unknown_adaptation(word);
+    if (!type) return unknown_adaptation(word, s);
     syntax::Adaptation adaptation;
     adaptation.component = std::move(*component);
     adaptation.type = *type;
@@ -796,8 +877,14 @@ class Parser {
     using enum syntax::AdaptationType;
     const auto take_name = [&](Name& name, std::string_view what) {
       auto found = read_.name_or_text(s, what);
-      if (found) name = std::move(*found);
-      return found.has_value();
+      if (!found) return false;
+      name = std::move(*found);
+      // The impact, which a name stands in front of.
+      const bool is_number = s.at_end() && source_.text(name.span).find_first_not_of(
+                                               "0123456789") == std::string_view::npos;
+      return !is_number || read_.fail(Code::kSyntax, name.span,
+                                      "expected " + std::string(what) + ", not '" + name.text + "'",
+                                      "write it in front of the impact");
     };
     switch (adaptation.type) {
       case kSetParameter:
@@ -836,7 +923,11 @@ class Parser {
   static std::string impact_remedy(const syntax::Adaptation& adaptation, Scanner& s) {
     if (s.peek().kind == Token::Kind::kDuration)
       return "an impact counts cycles, not time: write it without a unit";
-    if (!adaptation.value) return s.at_end() ? "add it at the end: a usual impact is 10" : "";
+    if (!adaptation.value && s.at_end()) return "add it at the end: a usual impact is 10";
+    if (!adaptation.value && adaptation.subject.text.empty() &&
+        s.peek().kind != Token::Kind::kSymbol)
+      return "remove it: " + std::string(keyword(adaptation.type)) + " takes the impact only";
+    if (!adaptation.value) return "";
     if (!s.at_end()) return "";
     const std::string word(keyword(adaptation.type));
     return "the value and the impact stand at the end: " + word + " " + adaptation.subject.text +
@@ -877,7 +968,8 @@ class Parser {
     return "";
   }
 
-  bool unknown_adaptation(const Token& word) {
+  bool unknown_adaptation(const Token& word, Scanner& s) {
+    if (hyphenated_adaptation(word, s)) return false;
     if (word.kind != Token::Kind::kIdentifier)
       return read_.fail_token(word, "what to do with the component", "");
     std::string plain(word.text);
@@ -896,6 +988,23 @@ class Parser {
         replacement(word.span, near));
   }
 
+  // "re-deploy", "set-parameter": reported.
+  bool hyphenated_adaptation(const Token& word, Scanner& s) {
+    const Token dash = s.peek();
+    if (!dash.is("-") || dash.span.begin != word.span.end) return false;
+    s.next();
+    const Token second = s.next();
+    for (const char* between : {"", "_"}) {
+      const std::string meant = std::string(word.text) + between + std::string(second.text);
+      if (!syntax::adaptation_type(meant)) continue;
+      const Span span{word.span.begin, second.span.end};
+      return !read_.fail(Code::kUnknownAdaptation, span,
+                         "there is no adaptation '" + std::string(source_.text(span)) + "'",
+                         "did you mean '" + meant + "'?", Edit{span, meant});
+    }
+    return false;
+  }
+
   bool inside_rule(std::string_view keyword) {
     if (is_in_rule_) return true;
     stray_part_ = true;
@@ -906,7 +1015,9 @@ class Parser {
             : "put a RULE line before it: INCLUDE, TEMPLATE and USE end the one above");
   }
 
+  // Where one line is there twice, a RULE line is missing more likely, and the other lines follow.
   bool duplicate_line(const std::string& keyword) {
+    if (std::exchange(has_duplicate_line_, true)) return false;
     return read_.fail(Code::kOutOfPlace, keyword_, "this rule has a " + keyword + " line already",
                       "keep one, or begin a new RULE before this line");
   }
@@ -923,11 +1034,12 @@ class Parser {
   LineReader read_;
   std::vector<Lexeme>* lexemes_;
   syntax::File& file_;
-  syntax::File* into_ = &file_;  // what statements become part of: this, or a template's body
-  Span line_;                    // that is at hand
-  Span keyword_;                 // of it
-  bool is_in_rule_ = false;      // a part of a rule would belong to the last one
-  bool stray_part_ = false;      // a part of a rule stood before any RULE line
+  syntax::File* into_ = &file_;      // what statements become part of: this, or a template's body
+  Span line_;                        // that is at hand
+  Span keyword_;                     // of it
+  bool is_in_rule_ = false;          // a part of a rule would belong to the last one
+  bool stray_part_ = false;          // a part of a rule stood before any RULE line
+  bool has_duplicate_line_ = false;  // of the rule at hand, which was reported
   std::optional<syntax::Template> template_;  // that is not closed yet
   Span template_keyword_;
 };

@@ -166,7 +166,9 @@ Complaint meaningless(Span span, std::string_view rest) {
   switch (first) {
     case '{':
     case '}':
-      return {cause + "; a parameter in braces stands for something in a TEMPLATE only"};
+      if (hole_length(rest) > 0)
+        return {cause + "; a parameter in braces stands for something in a TEMPLATE only"};
+      return {cause, Edit{span, ""}, "remove it: a rule ends where the next one begins"};
     case ';':
       return {cause, Edit{span, ""}, "remove it: a statement ends with its line"};
     case '[':

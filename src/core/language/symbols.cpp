@@ -427,6 +427,18 @@ SystemdUnit Symbols::declared_unit(const syntax::Component& written) {
   return unit;
 }
 
+// "pose/position/x"
+void Symbols::check_field(const syntax::Name& field) {
+  if (field.text.find('/') == std::string::npos ||
+      field.text.find_first_of("[(") != std::string::npos)
+    return;
+  std::string meant = field.text;
+  std::replace(meant.begin(), meant.end(), '/', '.');
+  diagnostics_.push_back({Code::kSyntax, Severity::kError, field.span,
+                          "a path of fields has dots, and no '/'", "write " + meant,
+                          Edit{field.span, meant}});
+}
+
 void Symbols::declare_signal(const syntax::Signal& s) {
   Signal signal{s.name.text, LookedUp{}, Type::kDouble, s.stale, {}};
   std::optional<ComponentId> publisher;
@@ -434,6 +446,7 @@ void Symbols::declare_signal(const syntax::Signal& s) {
   if (const auto* d = std::get_if<syntax::DiagnosticSource>(&s.source)) {
     signal.source = DiagnosticKey{d->status.text, d->key.text, publisher};
   } else if (const auto* t = std::get_if<syntax::TopicSource>(&s.source)) {
+    check_field(t->field);
     signal.source = TopicField{topic(t->topic.text, publisher), t->field.text};
   } else {
     const auto& p = std::get<syntax::ParameterSource>(s.source);

@@ -156,6 +156,7 @@ class Symbols {
   void declare_engine(const syntax::Component& written, Component& component);
   void declare_composition(const syntax::Component& written, Component& component);
   SystemdUnit declared_unit(const syntax::Component& written);
+  void check_field(const syntax::Name& field);
   void declare_signal(const syntax::Signal& signal);
   void declare_group(const syntax::Group& group);
   std::optional<ComponentId> declared_part(const syntax::Name& name, const std::string& what);

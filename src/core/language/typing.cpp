@@ -222,6 +222,7 @@ class Typer {
     if (!alike(left, right))
       return mismatch(e, type_at(e, 0, a, b), type_at(e, 1, a, b), "compare");
     if (a == Type::kString) warn_of_bare_text(e);
+    if (a == Type::kInt && !check_bare_level(e)) return std::nullopt;
     const Op op = member(family, left.type);
     if (op == kNone) {
       return fail(Code::kTypeMismatch, e.span, "true and false have no order",
@@ -240,10 +241,45 @@ class Typer {
       if (std::find(kStates.begin(), kStates.end(), name) == kStates.end()) continue;
       diagnostics_.push_back(
           {Code::kUnknownName, Severity::kWarning, side.span,
-           "signal '" + name + "' is not declared and will be looked up on the robot",
-           "a text needs quotes: did you mean \"" + name + "\"?",
+           "without quotes, '" + name + "' is a signal, which is looked up on the robot",
+           "a state stands in quotes: write \"" + name + "\"",
            Edit{side.span, "\"" + name + "\""}});
     }
+  }
+
+  static bool is_call_of(const Expression& e, std::string_view function) {
+    return e.kind == Kind::kCall && e.name.text == function;
+  }
+
+  // The number of a diagnostic's level; null: the word is none.
+  static std::optional<std::string> level_number(std::string_view word) {
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kLevels = {
+        {{"OK", "0"}, {"WARN", "1"}, {"WARNING", "1"}, {"ERROR", "2"}, {"STALE", "3"}}};
+    const std::string upper = upper_case(word);
+    for (const auto& [level, number] : kLevels) {
+      if (level == upper) return std::string(number);
+    }
+    return std::nullopt;
+  }
+
+  static std::string level_remedy(const std::string& number) {
+    return "a level is a number (0 OK, 1 WARN, 2 ERROR, 3 STALE): write " + number;
+  }
+
+  // `level(motors) == ERROR` would wait for a signal of that name. False: it was reported.
+  bool check_bare_level(const Expression& e) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Expression& side = e.children[i];
+      if (!is_call_of(e.children[1 - i], "level") || side.kind != Kind::kName ||
+          !symbols_.is_looked_up(side.name.text))
+        continue;
+      const auto number = level_number(side.name.text);
+      if (!number) continue;
+      fail(Code::kUnknownName, side.span, "signal '" + side.name.text + "' is not declared",
+           level_remedy(*number), Edit{side.span, *number});
+      return false;
+    }
+    return true;
   }
 
   static bool is_comparison(const Expression& e) {
@@ -554,6 +590,7 @@ class Typer {
 
   std::nullopt_t mismatch(const Expression& e, Type left, Type right, const std::string& verb) {
     std::string remedy;
+    std::optional<Edit> fix;
     const bool duration_and_number = (left == Type::kDuration && is_numeric(right)) ||
                                      (right == Type::kDuration && is_numeric(left));
     if (duration_and_number) remedy = unit_remedy(e, left == Type::kDuration ? 1 : 0);
@@ -561,9 +598,19 @@ class Typer {
       remedy = text_remedy(e, left == Type::kString ? 1 : 0);
     if (verb == "compare" && is_comparison(e.children[0]))
       remedy = "to test a range, write a < x && x < b";
+    for (std::size_t i = 0; i < 2 && verb == "compare"; ++i) {
+      const Expression& text = e.children[i];
+      const bool is_text =
+          text.kind == Kind::kLiteral && std::holds_alternative<std::string>(*text.literal);
+      if (!is_text || !is_call_of(e.children[1 - i], "level")) continue;
+      const auto number = level_number(std::get<std::string>(*text.literal));
+      if (!number) continue;
+      remedy = level_remedy(*number);
+      fix = Edit{text.span, *number};
+    }
     return fail(Code::kTypeMismatch, e.span,
                 "cannot " + verb + " " + describe(left) + " and " + describe(right),
-                std::move(remedy));
+                std::move(remedy), std::move(fix));
   }
 
   // `number`: which side of `e` is none of a duration.
@@ -571,6 +618,9 @@ class Typer {
     const Expression& side = e.children[number];
     if (side.kind == Kind::kCall && side.name.text == "rate")
       return "a rate is a number in Hz: write the number without a unit";
+    constexpr std::array<std::string_view, 5> kNumbers = {"phi", "loss", "cpu", "memory", "goals"};
+    if (side.kind == Kind::kCall && std::ranges::find(kNumbers, side.name.text) != kNumbers.end())
+      return side.name.text + " is a number: write the other side without a unit";
     const auto* whole =
         side.kind == Kind::kLiteral ? std::get_if<std::int64_t>(&*side.literal) : nullptr;
     if (whole != nullptr)

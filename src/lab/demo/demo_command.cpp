@@ -229,7 +229,7 @@ template <class Robot>
 void print_how_to_break(const std::string& address, std::uint32_t domain) {
   say(stdout,
       "  in the browser             {0}\n"
-      "  a crash                    pkill -f '{2} {3}'\n"
+      "  a crash                    pkill -KILL -f '{2} {3}'\n"
       "  a hang                     pkill -STOP -f '{2} {4}'\n"
       "  and see what culprit does  culprit status --domain {1}\n",
       address, domain, Robot::kProgram, Robot::kCrashes, Robot::kHangs);

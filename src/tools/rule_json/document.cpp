@@ -46,7 +46,7 @@ class Inspector : public nlohmann::json_sax<Json> {
   }
 
   bool parse_error(std::size_t position, const std::string&, const Json::exception&) override {
-    complaint_ = "this is no JSON; its reader expects something else here";
+    complaint_ = "this is no JSON: a value, a comma or a bracket is missing here";
     offset_ = position;
     return false;
   }

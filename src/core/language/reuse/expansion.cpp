@@ -128,7 +128,11 @@ class Expander {
       return refuse("this includes more than " + std::to_string(kMaxFiles) + " files", "");
     if (!load_) return refuse("no other file can be read here", "write its rules into this one");
     auto loaded = load_(include.file.text, files_[from].source.name());
-    if (!loaded) return refuse(loaded.error(), "");
+    if (!loaded) {
+      const bool is_missing = loaded.error().starts_with("there is no ") &&
+                              loaded.error().find("did you mean") == std::string::npos;
+      return refuse(loaded.error(), is_missing ? "correct the name, or put the file there" : "");
+    }
     size_ += loaded->text().size();
     if (size_ > Source::kMaxSize) return refuse(kTooLarge, "");
     const std::string key = key_of(*loaded);
