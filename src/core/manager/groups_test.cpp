@@ -235,6 +235,20 @@ TEST(Groups, AMemberIsWellOnceItsGroupIs) {
   EXPECT_GE(robot.count("resolved"), 2u) << transcript(robot);
 }
 
+// The others depend on it, so that it explains why the group is half up. It is over only with the group.
+TEST(Groups, AMemberThatHungDoesNotHoldUpWhatBringsUpItsGroup) {
+  TestRobot robot = robot_with_group(rules_of_group(gone_rule("controller") +
+                                                    "DEPENDENCY navigator ON controller planner\n"
+                                                    "DEPENDENCY planner ON controller\n"));
+  robot.stop("controller");
+  robot.run_for(5s);
+  for (const char* name : {"navigator", "planner"}) put(robot, name, Lifecycle::kInactive);
+  robot.run_for(25s);
+  EXPECT_EQ(robot.count_asked("controller: start"), 1u) << transcript(robot);
+  EXPECT_TRUE(are_active(robot)) << transcript(robot);
+  EXPECT_EQ(robot.count("resolved"), 2u) << transcript(robot);
+}
+
 // Its manager brings it up in time.
 TEST(Groups, AMemberWhoseManagerBringsItUpNeedsNoMore) {
   TestRobot robot = robot_with_group(rules_of_group(gone_rule("planner")));

@@ -56,6 +56,7 @@ class PlanningStep {
   bool exclude_coincidence(WeighedCandidate& weighed) const;
   bool exclude_unproven(WeighedCandidate& weighed, double chance) const;
   void exclude_for(WeighedCandidate& weighed, std::size_t cause) const;
+  bool ends_wait_of(StrategyId strategy, std::size_t cause) const;
   bool is_quicker_than_repair(StrategyId strategy, std::size_t cause) const;
   void revive();
   void go_round();
