@@ -81,6 +81,18 @@ TEST(Groups, OneThatIsHalfUpIsDrivenUpInItsOrderAndItsManagerBegunAnew) {
   EXPECT_EQ(robot.count("HalfUp resolved by start_navigation"), 1u) << transcript(robot);
 }
 
+TEST(Groups, OfAGroupThatIsHalfUpTheFirstMemberThatIsNotUpIsBlamed) {
+  TestRobot robot = robot_with_group(rules_of_group());
+  put(robot, "navigator", Lifecycle::kInactive);
+  robot.run_for(12s);
+  std::vector<ComponentId> blamed;
+  for (const Event& event : robot.events) {
+    if (const auto* chosen = std::get_if<StrategyChosen>(&event.what))
+      blamed.push_back(chosen->suspects.front().component);
+  }
+  EXPECT_EQ(blamed, std::vector{robot.id("navigator")}) << transcript(robot);
+}
+
 TEST(Groups, AManagerThatResetsIsBusyAndLeftAlone) {
   TestRobot robot = robot_with_group(rules_of_group());
   // One server after the other, each taking its time, and up again.

@@ -624,9 +624,26 @@ std::vector<PlanningStep::WeighedCandidate*> PlanningStep::weigh_together(
   return together;
 }
 
+// The first member that is not up, of a group that a strategy of the rule brings up; its manager if all are.
+std::optional<ComponentId> PlanningStep::missing_member(RuleId rule) const {
+  for (const StrategyId strategy : knowledge_.rules[rule].strategies) {
+    for (const Adaptation& adaptation : knowledge_.rules[strategy].adaptations) {
+      if (!adaptation.group) continue;
+      const Group& group = knowledge_.rules[*adaptation.group];
+      const auto missing = std::ranges::find_if(group.members, [&](ComponentId id) {
+        const ComponentState& state = knowledge_.components[id];
+        return state.alive == false || state.lifecycle != Lifecycle::kActive;
+      });
+      return missing == group.members.end() ? group.manager : *missing;
+    }
+  }
+  return std::nullopt;
+}
+
 // The component at which the rule's untried strategies are most likely to help.
 ComponentId PlanningStep::likeliest_component(RuleId rule) const {
   if (knowledge_.rules[rule].components.size() == 1) return knowledge_.rules[rule].components[0];
+  if (const auto missing = missing_member(rule)) return *missing;
   std::pair<std::int64_t, ComponentId> best{-1, {}};
   for (const ComponentId c : knowledge_.rules[rule].components) {
     double chance = 0;

@@ -68,6 +68,7 @@ class PlanningStep {
   std::vector<WeighedCandidate*> weigh_together(const std::vector<WeighedCandidate*>& open,
                                                 const std::vector<WeighedCandidate*>& chosen) const;
   bool is_taken(WeighedCandidate& weighed) const;
+  std::optional<ComponentId> missing_member(RuleId rule) const;
   ComponentId likeliest_component(RuleId rule) const;
   ComponentId component_of(std::size_t node) const;
   std::vector<Suspect> suspects(std::size_t failure) const;
