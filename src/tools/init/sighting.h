@@ -29,7 +29,7 @@ struct Start {
 struct Sighting {
   LiveInventory robot;
   std::map<std::string, ros2::Rhythm> rhythms;  // by topic
-  // Of each node that publishes the topic; by topic and node.
+  // The same for each node that publishes the topic; by topic and node.
   std::map<std::string, std::map<std::string, ros2::Rhythm>> rhythms_of_publishers;
   std::map<std::string, Start> starts;  // by node, of those whose process is proven
   // For topics that command movements, by topic and field.
