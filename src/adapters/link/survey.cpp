@@ -139,6 +139,26 @@ std::map<std::string, Rhythm> Survey::rhythms() const {
   return all;
 }
 
+std::map<std::string, std::map<std::string, Rhythm>> Survey::rhythms_of_publishers() const {
+  using All = std::map<std::string, std::map<std::string, Rhythm>>;
+  auto found = std::make_shared<std::promise<All>>();
+  tasks_->post([this, found] {
+    All all;
+    const MutexLock lock(mutex_);
+    for (const auto& [topic, reading] : topics_read_) {
+      const std::unordered_map<Guid, Rhythm> of_writers = reading->rhythms();
+      std::map<std::string, int> writers;
+      for (const auto& [writer, node] : context_->graph().publishers_of(topic)) {
+        const auto rhythm = of_writers.find(writer);
+        if (rhythm != of_writers.end()) all[topic][node] = rhythm->second;
+        if (++writers[node] > 1) all[topic].erase(node);
+      }
+    }
+    found->set_value(std::move(all));
+  });
+  return found->get_future().get();
+}
+
 std::map<std::string, std::map<std::string, ValueCourse>> Survey::fields() const {
   std::map<std::string, std::map<std::string, ValueCourse>> all;
   const MutexLock lock(mutex_);

@@ -48,6 +48,9 @@ class Survey {
   std::vector<msg::Log> log_of(const std::string& logger) const;
   // How the messages came of the topics that were asked for, since they are.
   std::map<std::string, Rhythm> rhythms() const;
+  // The same of each node that publishes the topic with one writer; by topic and node. Waits for the executor's thread, so it
+  // must not be called there.
+  std::map<std::string, std::map<std::string, Rhythm>> rhythms_of_publishers() const;
 
   // The courses of the requested fields of a topic, since the request; by topic and field.
   std::map<std::string, std::map<std::string, ValueCourse>> fields() const;

@@ -113,6 +113,31 @@ TEST(Survey, ReadsWhatIsAskedForAndFollowsIt) {
   })) << "after the request ends, it is no longer read";
 }
 
+TEST(Survey, MeasuresTheRhythmOfEachPublisherOfATopic) {
+  const TestDomain domain;
+  const SurveyedRobot robot(domain);
+  LiveContext other(domain.options());
+  std::unique_ptr<Node> node;
+  std::optional<Publisher<msg::Float64>> also;
+  other.run([&] {
+    node = std::move(*Node::create(*other, {"/", "other"}));
+    also.emplace(std::move(*node->create_publisher<msg::Float64>("/visibility")));
+  });
+  const auto survey = survey_of(domain);
+  survey->ask_for({.nodes = {}, .fields_of_topics = {{"/visibility", {}}}});
+  EXPECT_TRUE(shows(*survey, [&](const LiveInventory& seen) {
+    const auto all = survey->rhythms_of_publishers();
+    const auto found = all.find("/visibility");
+    return seen.nodes.contains("/other") && found != all.end() &&
+           found->second.contains("/robot") && found->second.at("/robot").messages > 3 &&
+           !found->second.contains("/other");
+  }));
+  other.run([&] {
+    also.reset();
+    node.reset();
+  });
+}
+
 TEST(Survey, ForgetsWhatIsGone) {
   const TestDomain domain;
   const auto survey = survey_of(domain);

@@ -25,7 +25,7 @@ std::unique_ptr<TopicReading> TopicReading::open(NodeEntry& self, const std::str
   auto listener = TopicListener::open(
       self, topic, type, keys,
       reading->readers_.empty() ? PayloadUse::kBeginning : PayloadUse::kWhole,
-      {.on_arrival = [raw = reading.get()](const Sample&) { raw->on_arrival(); },
+      {.on_arrival = [raw = reading.get()](const Sample& sample) { raw->on_arrival(sample); },
        .on_message = [raw = reading.get()](const Sample& sample) { raw->on_message(sample); },
        .on_unheard = {}});
   if (!listener) return nullptr;
@@ -38,16 +38,25 @@ void TopicReading::publisher_offers(const Qos& offered) {
   (void)listener_->publisher_offers(offered);
 }
 
-void TopicReading::on_arrival() {
+void TopicReading::note(Arrivals& arrivals, Time now) {
+  Rhythm& rhythm = arrivals.rhythm;
+  if (rhythm.messages++ > 0) {
+    rhythm.first_to_last += now - arrivals.last;
+    rhythm.longest_pause = std::max(rhythm.longest_pause, now - arrivals.last);
+  }
+  arrivals.last = now;
+}
+
+void TopicReading::on_arrival(const Sample& sample) {
   constexpr std::size_t kMaxArrivals = 100'000;  // a flood must not eat the memory
+  constexpr std::size_t kMaxWriters = 64;        // the network decides how many there are
   const Time now = live_now();
   const MutexLock lock(mutex_);
   arrivals_.push_back(now);
-  if (rhythm_.messages++ > 0) {
-    rhythm_.first_to_last += now - last_;
-    rhythm_.longest_pause = std::max(rhythm_.longest_pause, now - last_);
-  }
-  last_ = now;
+  note(all_, now);
+  const Guid& writer = sample.identity.writer;
+  if (of_writers_.size() < kMaxWriters || of_writers_.contains(writer))
+    note(of_writers_[writer], now);
   while (arrivals_.front() < now - kWindow || arrivals_.size() > kMaxArrivals)
     arrivals_.pop_front();
 }
@@ -75,7 +84,14 @@ void TopicReading::tell(LiveInventory::Topic& topic) const {
 
 Rhythm TopicReading::rhythm() const {
   const MutexLock lock(mutex_);
-  return rhythm_;
+  return all_.rhythm;
+}
+
+std::unordered_map<Guid, Rhythm> TopicReading::rhythms() const {
+  std::unordered_map<Guid, Rhythm> all;
+  const MutexLock lock(mutex_);
+  for (const auto& [writer, arrivals] : of_writers_) all[writer] = arrivals.rhythm;
+  return all;
 }
 
 std::map<std::string, ValueCourse> TopicReading::courses() const {

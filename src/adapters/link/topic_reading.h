@@ -7,6 +7,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "base/mutex.h"
@@ -39,6 +40,8 @@ class TopicReading {
 
   // The rhythm of all messages since it was opened. From any thread.
   Rhythm rhythm() const;
+  // The same of each writer.
+  std::unordered_map<Guid, Rhythm> rhythms() const;
   // The courses of its fields, as above.
   std::map<std::string, ValueCourse> courses() const;
 
@@ -48,8 +51,14 @@ class TopicReading {
     FieldReader reader;
   };
 
+  struct Arrivals {
+    Rhythm rhythm;
+    Time last{};
+  };
+
   TopicReading() = default;
-  void on_arrival();
+  static void note(Arrivals& arrivals, Time now);
+  void on_arrival(const Sample& sample);
   void on_message(const Sample& sample);
 
   std::vector<Field> readers_;
@@ -57,8 +66,8 @@ class TopicReading {
   Time since_{};
   mutable Mutex mutex_;
   std::deque<Time> arrivals_ CULPRIT_GUARDED_BY(mutex_);
-  Time last_ CULPRIT_GUARDED_BY(mutex_){};
-  Rhythm rhythm_ CULPRIT_GUARDED_BY(mutex_);
+  Arrivals all_ CULPRIT_GUARDED_BY(mutex_);
+  std::unordered_map<Guid, Arrivals> of_writers_ CULPRIT_GUARDED_BY(mutex_);
   std::map<std::string, Value> values_ CULPRIT_GUARDED_BY(mutex_);
   std::map<std::string, ValueCourse> courses_ CULPRIT_GUARDED_BY(mutex_);
   std::unique_ptr<TopicListener> listener_;

@@ -81,6 +81,18 @@ TEST(Groups, OneThatIsHalfUpIsDrivenUpInItsOrderAndItsManagerBegunAnew) {
   EXPECT_EQ(robot.count("HalfUp resolved by start_navigation"), 1u) << transcript(robot);
 }
 
+TEST(Groups, OfAGroupThatIsHalfUpTheFirstMemberThatIsNotUpIsBlamed) {
+  TestRobot robot = robot_with_group(rules_of_group());
+  put(robot, "navigator", Lifecycle::kInactive);
+  robot.run_for(12s);
+  std::vector<ComponentId> blamed;
+  for (const Event& event : robot.events) {
+    if (const auto* chosen = std::get_if<StrategyChosen>(&event.what))
+      blamed.push_back(chosen->suspects.front().component);
+  }
+  EXPECT_EQ(blamed, std::vector{robot.id("navigator")}) << transcript(robot);
+}
+
 TEST(Groups, AManagerThatResetsIsBusyAndLeftAlone) {
   TestRobot robot = robot_with_group(rules_of_group());
   // One server after the other, each taking its time, and up again.
@@ -233,6 +245,20 @@ TEST(Groups, AMemberIsWellOnceItsGroupIs) {
   EXPECT_TRUE(are_active(robot)) << transcript(robot);
   EXPECT_EQ(robot.count_asked("planner: start"), 1u) << transcript(robot);
   EXPECT_GE(robot.count("resolved"), 2u) << transcript(robot);
+}
+
+// The others depend on it, so that it explains why the group is half up. It is over only with the group.
+TEST(Groups, AMemberThatHungDoesNotHoldUpWhatBringsUpItsGroup) {
+  TestRobot robot = robot_with_group(rules_of_group(gone_rule("controller") +
+                                                    "DEPENDENCY navigator ON controller planner\n"
+                                                    "DEPENDENCY planner ON controller\n"));
+  robot.stop("controller");
+  robot.run_for(5s);
+  for (const char* name : {"navigator", "planner"}) put(robot, name, Lifecycle::kInactive);
+  robot.run_for(25s);
+  EXPECT_EQ(robot.count_asked("controller: start"), 1u) << transcript(robot);
+  EXPECT_TRUE(are_active(robot)) << transcript(robot);
+  EXPECT_EQ(robot.count("resolved"), 2u) << transcript(robot);
 }
 
 // Its manager brings it up in time.

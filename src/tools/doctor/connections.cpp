@@ -1,6 +1,5 @@
 // Finds endpoints that do not connect, and the reason.
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <fnmatch.h>
 #include <map>
@@ -183,11 +182,7 @@ using Channels = std::map<std::string, Channel>;
 
 // Names that each node has, or that belong to a larger protocol: no person mistypes these.
 bool is_internal(const std::string& name) {
-  constexpr std::array kOfEachNode = {
-      "get_parameters",      "get_parameter_types",       "set_parameters",      "list_parameters",
-      "describe_parameters", "set_parameters_atomically", "get_type_description"};
-  return is_topic_of_ros(name) || name.find("/_action/") != std::string::npos ||
-         std::ranges::find(kOfEachNode, own_name(name)) != kOfEachNode.end();
+  return is_name_of_each_node(name) || name.find("/_action/") != std::string::npos;
 }
 
 bool has_type(const std::vector<End>& ends, const std::string& type) {

@@ -265,6 +265,18 @@ TEST(Examine, D011WhatHasEndedAndD012WhatHangs) {
   busy.asked = 10;
   EXPECT_THAT(examine(busy), SizeIs(5));
 
+  Picture clients = robot();
+  clients.nodes.push_back(node("/slam_clients", 12,
+                               {publishes("/rosout"), serves("/slam_clients/get_parameters"),
+                                publishes("/tree_log"), calls("/lidar/reset")}));
+  clients.unanswered["/slam_clients"] = {4, false};
+  EXPECT_THAT(examine(clients), IsEmpty()) << "its process answers, and nobody asks this node";
+  clients.unanswered["/slam"] = {4, false};
+  EXPECT_THAT(examine(clients), SizeIs(2)) << "no node of the process answers";
+  clients.unanswered.erase("/slam");
+  clients.nodes.front().endpoints.push_back(reads("/tree_log"));
+  EXPECT_EQ(only_finding(clients).who, "/slam_clients");
+
   Picture lost = robot();
   lost.comings["/remote"] = {{.at = 3s, .is_there = false, .was_lost = true}};
   EXPECT_EQ(only_finding(lost).code, "D011");

@@ -50,10 +50,41 @@ void examine_names(const Picture& picture, Findings& all) {
          {name}});
 }
 
+// Nodes made for their clients: they offer nothing that is used, and another node of the process answers. The process runs
+// callbacks of such a node only while it waits for an answer itself, as Nav2's bt_navigator does while a goal runs.
+std::set<std::string> nodes_for_clients(const Picture& picture) {
+  std::set<int> answering;
+  std::set<std::string> used;
+  for (const Node& each : picture.nodes) {
+    if (!picture.unanswered.contains(each.node.name)) answering.insert(each.node.pid);
+    for (const ros2::GraphEndpoint& end : each.endpoints) {
+      if (end.kind == EndpointKind::kSubscriber || end.kind == EndpointKind::kClient)
+        used.insert(end.name);
+    }
+  }
+  const auto is_client = [](const ros2::GraphEndpoint& end) {
+    return end.kind == EndpointKind::kClient;
+  };
+  const auto is_needed = [&](const ros2::GraphEndpoint& end) {
+    const bool is_offered =
+        end.kind == EndpointKind::kPublisher || end.kind == EndpointKind::kServer;
+    return is_offered && !is_name_of_each_node(end.name) && used.contains(end.name);
+  };
+  std::set<std::string> found;
+  for (const Node& each : picture.nodes) {
+    if (each.node.pid != 0 && answering.contains(each.node.pid) &&
+        std::ranges::any_of(each.endpoints, is_client) &&
+        std::ranges::none_of(each.endpoints, is_needed))
+      found.insert(each.node.name);
+  }
+  return found;
+}
+
 // A killed node is in the graph until its lease ends; one that hangs is there for good. Where most of a
 // robot does not answer, its nodes do not all hang.
 void examine_answers(const Picture& picture, Findings& all) {
   constexpr std::size_t kMany = 5;
+  const std::set<std::string> for_clients = nodes_for_clients(picture);
   std::vector<std::string> silent;
   double waited = 0;
   for (const auto& [name, asked] : picture.unanswered) {
@@ -65,7 +96,7 @@ void examine_answers(const Picture& picture, Findings& all) {
                      "others take it for alive until its lease ends (20 s)",
                      "start it again; its log says why it ended",
                      {name}});
-    } else {
+    } else if (!for_clients.contains(name)) {
       silent.push_back(name);
       waited = asked.seconds;
     }

@@ -1,6 +1,7 @@
 #include "doctor/wiring.h"
 
 #include <algorithm>
+#include <array>
 
 #include "base/ros_names.h"
 #include "base/tool_names.h"
@@ -21,6 +22,13 @@ Wiring wiring_of(const Picture& picture) {
     }
   }
   return wiring;
+}
+
+bool is_name_of_each_node(const std::string& name) {
+  constexpr std::array kServices = {
+      "get_parameters",      "get_parameter_types",       "set_parameters",      "list_parameters",
+      "describe_parameters", "set_parameters_atomically", "get_type_description"};
+  return is_topic_of_ros(name) || std::ranges::find(kServices, own_name(name)) != kServices.end();
 }
 
 bool has_robots_end(const std::vector<End>& ends) {

@@ -31,6 +31,9 @@ struct Wiring {
 Wiring wiring_of(const Picture& picture);
 Wiring wiring_of(Picture&& picture) = delete;
 
+// A topic or service that each node has: those of its parameters, and the topics of ROS 2 itself.
+bool is_name_of_each_node(const std::string& name);
+
 // Whether any of them is of a node of the robot, not of a tool.
 bool has_robots_end(const std::vector<End>& ends);
 

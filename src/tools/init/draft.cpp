@@ -317,23 +317,41 @@ class Draft {
     const bool is_managed = seen_.robot.nodes.at(node).lifecycle == "active";
     std::string text;
     std::string trigger = "!alive(" + name + ")";
-    for (const auto& [topic, what] : seen_.robot.topics) {
-      const auto is_its = [&](const std::string& each) {
-        const auto component = names_.find(each);
-        return component != names_.end() && component->second == name;
-      };
-      if (is_topic_of_ros(topic) || !is_valid_topic_name(topic) || what.publishers.empty() ||
-          !std::ranges::all_of(what.publishers, is_its))
-        continue;
-      const auto limit = silence_of(seen_, topic);
+    for (const auto& each : seen_.robot.topics) {
+      const std::string& topic = each.first;
+      const auto publisher = watched_publisher(name, topic);
+      if (!publisher) continue;
+      const auto limit = silence_of(seen_, topic, *publisher);
       if (!limit) continue;
-      text += evidence_of_silence(seen_, topic);
-      trigger += " || age(" + topic + ") > " + to_string(*limit);
+      text += evidence_of_silence(seen_, topic, *publisher);
+      trigger += " || age(" + topic + (publisher->empty() ? "" : " FROM " + name) + ") > " +
+                 to_string(*limit);
     }
     text += "RULE " + name + "_failed\n  POLICIES ERROR\n  TRIGGER " + trigger + "\n";
     text += "    # guess: how often it helps, in percent; culprit learns that from every attempt\n";
     if (is_managed) text += strategy(name, "restart", 50, 10);
     add(Part::Kind::kRule, node, text + strategy(name, "redeploy", 90, 25));
+  }
+
+  std::string component_of(const std::string& node) const {
+    const auto found = names_.find(node);
+    return found == names_.end() ? "" : found->second;
+  }
+
+  // The node of the component whose messages on that topic show that it is silent, if others publish it, too; empty: the
+  // component alone publishes it. Nothing: its silence shows nothing. Bonds come and go with the states of their nodes.
+  std::optional<std::string> watched_publisher(const std::string& component,
+                                               const std::string& topic) const {
+    const LiveInventory::Topic& what = seen_.robot.topics.at(topic);
+    if (is_topic_of_ros(topic) || !is_valid_topic_name(topic) || what.type == "bond/msg/Status")
+      return std::nullopt;
+    std::vector<std::string> own;
+    for (const std::string& node : what.publishers) {
+      if (component_of(node) == component) own.push_back(node);
+    }
+    if (own.empty()) return std::nullopt;
+    if (own.size() == what.publishers.size()) return "";
+    return own.size() == 1 ? std::optional(own.front()) : std::nullopt;
   }
 
   // The impact is in cycles: until the failure is gone.
@@ -357,8 +375,13 @@ class Draft {
     for (const auto& [topic, what] : seen_.robot.topics) {
       if (is_topic_of_ros(topic) || !what.is_published()) continue;
       if (are_of_several(what.publishers)) {
-        left_out_.push_back(topic +
-                            ": several nodes publish it, so its silence has no one to blame");
+        const bool has_rule = std::ranges::any_of(what.publishers, [&](const std::string& node) {
+          return names_.contains(node) && pack_of(node) == nullptr &&
+                 watched_publisher(component_of(node), topic) && silence_of(seen_, topic, node);
+        });
+        if (!has_rule)
+          left_out_.push_back(topic +
+                              ": several nodes publish it, so its silence has no one to blame");
       } else if (const auto limit = silence_of(seen_, topic);
                  !limit && names_.contains(*what.publishers.begin())) {
         left_out_.push_back(topic + ": " + limit.error());

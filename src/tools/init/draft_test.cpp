@@ -209,6 +209,29 @@ TEST(Draft, TheSilenceOfATopicOfSeveralNodesIsNobodys) {
   EXPECT_THAT(text, HasSubstr("# /scan: several nodes publish it"));
 }
 
+TEST(Draft, OfSeveralPublishersEachInARhythmIsWatchedByItself) {
+  Sighting seen = robot();
+  seen.robot.topics["/tf"] = {"tf2_msgs/msg/TFMessage", {"/robot/camera", "/lidar"}, {}, {}, {}};
+  seen.rhythms["/tf"] = {640, 30s, 60ms};
+  seen.rhythms_of_publishers["/tf"] = {{"/lidar", {601, 30s, 120ms}},
+                                       {"/robot/camera", {39, 30s, 9s}}};
+  const std::string text = draft(seen);
+  EXPECT_THAT(text,
+              HasSubstr("!alive(lidar) || age(/scan) > 500ms || age(/tf FROM lidar) > 500ms"));
+  EXPECT_THAT(text, HasSubstr("# guess: /tf from /lidar came 20 times a second"));
+  EXPECT_THAT(text, Not(HasSubstr("FROM camera"))) << "it publishes from time to time";
+  EXPECT_THAT(text, Not(HasSubstr("# /tf: several nodes publish it")));
+  (void)rules_of(seen);
+}
+
+TEST(Draft, BondsAreNotWatchedForSilence) {
+  Sighting seen = robot();
+  seen.robot.topics["/bond"] = {"bond/msg/Status", {"/robot/camera", "/lidar"}, {}, {}, {}};
+  seen.rhythms_of_publishers["/bond"] = {{"/lidar", {31, 30s, 1s}},
+                                         {"/robot/camera", {31, 30s, 1s}}};
+  EXPECT_THAT(draft(seen), Not(HasSubstr("age(/bond")));
+}
+
 TEST(Draft, ToolsAndNamesThatRosDoesNotTakeAreNoComponents) {
   Sighting seen = robot();
   for (const char* name : {"/rviz2", "/_ros2cli_4711", "/launch_ros_12", "/bad name\nRULE x"}) {

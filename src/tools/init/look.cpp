@@ -98,6 +98,7 @@ Sighting look(ros2::Survey& survey, std::uint32_t domain, Duration time) {
   }
   Sighting seen{.robot = survey.inventory(),
                 .rhythms = survey.rhythms(),
+                .rhythms_of_publishers = survey.rhythms_of_publishers(),
                 .starts = {},
                 .fields = survey.fields(),
                 .statuses = survey.statuses(),

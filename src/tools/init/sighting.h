@@ -29,7 +29,9 @@ struct Start {
 struct Sighting {
   LiveInventory robot;
   std::map<std::string, ros2::Rhythm> rhythms;  // by topic
-  std::map<std::string, Start> starts;          // by node, of those whose process is proven
+  // The same for each node that publishes the topic; by topic and node.
+  std::map<std::string, std::map<std::string, ros2::Rhythm>> rhythms_of_publishers;
+  std::map<std::string, Start> starts;  // by node, of those whose process is proven
   // For topics that command movements, by topic and field.
   std::map<std::string, std::map<std::string, ros2::ValueCourse>> fields;
   std::map<ros2::Survey::StatusKey, ros2::StatusCourse> statuses;

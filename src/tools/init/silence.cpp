@@ -23,18 +23,25 @@ std::string in_milliseconds(Duration time) {
   return fmt::format("{:.0f}ms", std::ceil(seconds(time) * 1000));
 }
 
-ros2::Rhythm rhythm_of(const Sighting& seen, const std::string& topic) {
+ros2::Rhythm rhythm_of(const Sighting& seen, const std::string& topic, const std::string& node) {
+  if (!node.empty()) {
+    const auto publishers = seen.rhythms_of_publishers.find(topic);
+    if (publishers == seen.rhythms_of_publishers.end()) return {};
+    const auto own = publishers->second.find(node);
+    return own == publishers->second.end() ? ros2::Rhythm{} : own->second;
+  }
   const auto found = seen.rhythms.find(topic);
   return found == seen.rhythms.end() ? ros2::Rhythm{} : found->second;
 }
 
 }  // namespace
 
-Expected<Duration> silence_of(const Sighting& seen, const std::string& topic) {
-  const ros2::Rhythm rhythm = rhythm_of(seen, topic);
+Expected<Duration> silence_of(const Sighting& seen, const std::string& topic,
+                              const std::string& node) {
+  const ros2::Rhythm rhythm = rhythm_of(seen, topic, node);
   if (rhythm.messages < kFewestMessages)
     return Error{fmt::format("{} messages came, too few for a rhythm", rhythm.messages)};
-  const double mean = 1 / rate_of(seen, topic);
+  const double mean = 1 / rate_of(seen, topic, node);
   const Duration limit =
       rounded_up(std::max(kShortest, from_seconds(kMargin * seconds(rhythm.longest_pause))));
   if (seconds(rhythm.longest_pause) > kMostIrregular * mean || limit > kLongest)
@@ -44,19 +51,21 @@ Expected<Duration> silence_of(const Sighting& seen, const std::string& topic) {
   return limit;
 }
 
-double rate_of(const Sighting& seen, const std::string& topic) {
-  const ros2::Rhythm rhythm = rhythm_of(seen, topic);
+double rate_of(const Sighting& seen, const std::string& topic, const std::string& node) {
+  const ros2::Rhythm rhythm = rhythm_of(seen, topic, node);
   return static_cast<double>(rhythm.messages - 1) / seconds(rhythm.first_to_last);
 }
 
-std::string evidence_of_silence(const Sighting& seen, const std::string& topic) {
-  const ros2::Rhythm rhythm = rhythm_of(seen, topic);
+std::string evidence_of_silence(const Sighting& seen, const std::string& topic,
+                                const std::string& node) {
+  const ros2::Rhythm rhythm = rhythm_of(seen, topic, node);
   return fmt::format(
       "# guess: {} came {:.3g} times a second, {} messages, at most {} apart.\n"
       "# Less than {:.2g} % of its pauses are longer (95 % certain); silence is {:.0f} times that, "
       "{} at least.\n",
-      topic, rate_of(seen, topic), rhythm.messages, in_milliseconds(rhythm.longest_pause),
-      100 * share_above(rhythm.messages - 1), kMargin, to_string(kShortest));
+      node.empty() ? topic : topic + " from " + node, rate_of(seen, topic, node), rhythm.messages,
+      in_milliseconds(rhythm.longest_pause), 100 * share_above(rhythm.messages - 1), kMargin,
+      to_string(kShortest));
 }
 
 }  // namespace culprit::init

@@ -8,13 +8,15 @@
 
 namespace culprit::init {
 
-// Silence is what is longer. Errors: why no rhythm can be found.
-Expected<Duration> silence_of(const Sighting& seen, const std::string& topic);
+// Silence is what is longer; with a node: of what that node publishes there. Errors: why no rhythm can be found.
+Expected<Duration> silence_of(const Sighting& seen, const std::string& topic,
+                              const std::string& node = "");
 
 // Messages in a second, in those that came. @pre silence_of() it is known
-double rate_of(const Sighting& seen, const std::string& topic);
+double rate_of(const Sighting& seen, const std::string& topic, const std::string& node = "");
 
 // The measurements behind it, as comments. @pre likewise
-std::string evidence_of_silence(const Sighting& seen, const std::string& topic);
+std::string evidence_of_silence(const Sighting& seen, const std::string& topic,
+                                const std::string& node = "");
 
 }  // namespace culprit::init

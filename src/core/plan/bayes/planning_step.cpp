@@ -432,10 +432,25 @@ void PlanningStep::go_round() {
   }
 }
 
+// The cause has been repaired, and counts as over once a group is active that this strategy brings up. If it waited for the
+// cause, each would wait for the other.
+bool PlanningStep::ends_wait_of(StrategyId id, std::size_t cause) const {
+  if (causes_[cause].kind != CauseNode::Kind::kFailure) return false;
+  const RuleId rule = causes_[cause].rule;
+  const RuleState& state = knowledge_.states[rule];
+  const auto& awaited = knowledge_.rules[rule].groups;
+  const Slot& trigger = state.detection.trigger;
+  return !state.attempt && trigger.known && !trigger.b &&
+         std::ranges::any_of(knowledge_.rules[id].adaptations, [&](const Adaptation& each) {
+           return each.group && std::ranges::find(awaited, *each.group) != awaited.end();
+         });
+}
+
 // Does it wait for a cause that more likely explains it?
 bool PlanningStep::exclude_effect(WeighedCandidate& weighed) const {
   const StrategyId strategy = weighed.candidate.strategy;
   if (const auto cause = cause_of(weighed.failure)) {
+    if (ends_wait_of(strategy, *cause)) return false;
     const bool goes_round =
         may_be_tried_beside_exhausted(strategy, knowledge_) && is_left_to_person(*cause);
     weighed.goes_round = !goes_round && is_quicker_than_repair(strategy, *cause);
@@ -609,9 +624,26 @@ std::vector<PlanningStep::WeighedCandidate*> PlanningStep::weigh_together(
   return together;
 }
 
+// The first member that is not up, of a group that a strategy of the rule brings up; its manager if all are.
+std::optional<ComponentId> PlanningStep::missing_member(RuleId rule) const {
+  for (const StrategyId strategy : knowledge_.rules[rule].strategies) {
+    for (const Adaptation& adaptation : knowledge_.rules[strategy].adaptations) {
+      if (!adaptation.group) continue;
+      const Group& group = knowledge_.rules[*adaptation.group];
+      const auto missing = std::ranges::find_if(group.members, [&](ComponentId id) {
+        const ComponentState& state = knowledge_.components[id];
+        return state.alive == false || state.lifecycle != Lifecycle::kActive;
+      });
+      return missing == group.members.end() ? group.manager : *missing;
+    }
+  }
+  return std::nullopt;
+}
+
 // The component at which the rule's untried strategies are most likely to help.
 ComponentId PlanningStep::likeliest_component(RuleId rule) const {
   if (knowledge_.rules[rule].components.size() == 1) return knowledge_.rules[rule].components[0];
+  if (const auto missing = missing_member(rule)) return *missing;
   std::pair<std::int64_t, ComponentId> best{-1, {}};
   for (const ComponentId c : knowledge_.rules[rule].components) {
     double chance = 0;

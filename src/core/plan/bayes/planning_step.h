@@ -56,6 +56,7 @@ class PlanningStep {
   bool exclude_coincidence(WeighedCandidate& weighed) const;
   bool exclude_unproven(WeighedCandidate& weighed, double chance) const;
   void exclude_for(WeighedCandidate& weighed, std::size_t cause) const;
+  bool ends_wait_of(StrategyId strategy, std::size_t cause) const;
   bool is_quicker_than_repair(StrategyId strategy, std::size_t cause) const;
   void revive();
   void go_round();
@@ -67,6 +68,7 @@ class PlanningStep {
   std::vector<WeighedCandidate*> weigh_together(const std::vector<WeighedCandidate*>& open,
                                                 const std::vector<WeighedCandidate*>& chosen) const;
   bool is_taken(WeighedCandidate& weighed) const;
+  std::optional<ComponentId> missing_member(RuleId rule) const;
   ComponentId likeliest_component(RuleId rule) const;
   ComponentId component_of(std::size_t node) const;
   std::vector<Suspect> suspects(std::size_t failure) const;
