@@ -83,7 +83,7 @@ int run_study(const std::string& arguments, const std::string& output, const All
   return exit_code;
 }
 
-// What a finished file begins with; another version or command makes it anew.
+// The first line of a finished file. Another version or command makes the file anew.
 std::string head_of(const std::string& arguments, const std::string& version) {
   return fmt::format("<!-- culprit study {} (culprit {}) -->\n\n", arguments, version);
 }

@@ -206,7 +206,7 @@ TEST_F(StudyCommand, TellsWhatHappenedInARun) {
 TEST_F(StudyCommand, AllOfItGoesOnWhereItWas) {
   const std::string folder = path("all");
   std::filesystem::create_directories(folder);
-  // What is there with this head counts as done.
+  // A file with this head counts as done.
   for (const auto& [name, arguments] : std::vector<std::pair<std::string, std::string>>{
            {"sunset",
             "sunset --planner paper --planner reference --runs 54 --experiments 100 --repetitions "

@@ -45,7 +45,7 @@ void BanditArm::add(double reward) {
 }
 
 double draw_beta(double alpha, double beta, simulation::Random& random) {
-  // Of shapes below 1: Gamma(a) = Gamma(a + 1) U^(1/a).
+  // For shapes below 1, Gamma(a) = Gamma(a + 1) U^(1/a).
   const auto gamma = [&](double shape) {
     return shape >= 1 ? draw_gamma(shape, random)
                       : draw_gamma(shape + 1, random) * std::pow(1 - random.uniform(), 1 / shape);

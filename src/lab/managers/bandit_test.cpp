@@ -21,7 +21,7 @@ TEST(Bandits, OfUcbPlayEachArmOnceAndThenTheHighestBound) {
   EXPECT_EQ(ranked(BanditPolicy::kUcb, arms({{0, 0}, {0, 0}, {0, 0}}), random).front(), 0u);
   EXPECT_EQ(ranked(BanditPolicy::kUcb, arms({{1, 1}, {0, 0}, {0, 0}}), random).front(), 1u);
   EXPECT_EQ(ranked(BanditPolicy::kUcb, arms({{100, 90}, {100, 10}}), random).front(), 0u);
-  // Of the same mean the one that was played less.
+  // With equal means, the arm that was played less.
   EXPECT_EQ(ranked(BanditPolicy::kUcb, arms({{100, 50}, {10, 5}}), random).front(), 1u);
 }
 

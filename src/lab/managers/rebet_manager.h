@@ -10,7 +10,7 @@
 //                  widest strip that the camera sees, 0 above what the water lets it see
 //
 // The thrusters are recovered as soon as the tree is ticked, by AdaptThrusterRecovery. The node
-// begins at its own 2 m, though the decorator believes that it is at 1 m. Nothing is said about the
+// begins at its own 2 m, though the decorator believes that it is at 1 m. The port does not handle the
 // battery.
 //
 // Where its delays come from: ticks at 100 Hz, one to ask and one to see the answer.

@@ -33,7 +33,7 @@ std::optional<Style> find_style(std::string_view name);
 
 class StylePlanner : public Planner {
  public:
-  // Of a rule's strategies, best first.
+  // A rule's strategies, best first.
   using Ranking = std::function<std::vector<StrategyId>(const Rule& rule)>;
 
   // With a ranking, strategies come in its order among those that are worth the same.

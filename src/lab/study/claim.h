@@ -57,7 +57,7 @@ struct Claim {
 
   // The part that decides: the strongest against a contradicted claim, else the weakest for it.
   const ClaimPart& decisive() const;
-  // Of the parts, how many are significant by themselves, without a correction.
+  // The number of parts that are significant by themselves, without a correction.
   std::size_t supported() const;
 };
 

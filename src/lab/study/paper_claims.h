@@ -22,8 +22,8 @@ std::vector<Claim> paper_claims(const Findings& findings, const Ablation& ablati
 // Do the eight configurations come in the paper's order?
 struct OrderAgreement {
   Metric metric = Metric::kRatio;
-  // Of the 28 pairs, those that differ significantly in the paper (Tukey's HSD on its summaries),
-  // and of these the ones that we order the same way.
+  // The pairs, of 28, that differ significantly in the paper (Tukey's HSD on its summaries), and the
+  // number of them that we order the same way.
   int pairs = 0;
   int same = 0;
   std::optional<double> spearman_rho;

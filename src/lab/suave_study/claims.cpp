@@ -38,7 +38,7 @@ class Mission {
     }
     return {manager, row.battery.answered_s};
   }
-  // Of the search and the distance.
+  // The printed search or distance.
   Group paper(const std::string& manager, Of what) const {
     const auto* row = published::find_suave(result_.campaign.plan->name, manager);
     CULPRIT_ASSERT(row != nullptr);

@@ -34,7 +34,7 @@ SuaveResult as_published(const char* mission) {
   return result;
 }
 
-// What the paper's table says of the paper's claims.
+// The paper's own table, judged by the same tests.
 TEST(SuaveClaims, OfThePaperOnItsOwnFigures) {
   const std::vector<Claim> claims =
       suave_claims(as_published("standard"), as_published("extended"));

@@ -17,7 +17,7 @@ Table claims_table(const Findings& findings, const std::vector<Ablation>& ablati
 // The rank correlation of each metric. @pre !ablations.empty()
 Table order_table(const std::vector<Ablation>& ablations);
 
-// What tables of claims have in common: our result, p, and the verdict.
+// Shared by all tables of claims: our result, p, and the verdict.
 std::vector<Column> claim_columns(const std::string& group);
 void add_claim_cells(std::vector<Cell>& cells, const Claim& claim);
 std::vector<std::string> claim_notes();
