@@ -11,6 +11,7 @@
 #include "laboratory/commands.h"
 #include "laboratory/live_campaign.h"
 #include "laboratory/live_run.h"
+#include "laboratory/study_all_command.h"
 #include "laboratory/study_fleet_command.h"
 #include "laboratory/study_output.h"
 #include "laboratory/study_rca_command.h"
@@ -20,6 +21,7 @@
 #include "shards/merge.h"
 #include "study/run_record.h"
 #include "sunset_study/study.h"
+#include "sunset_study/sweep.h"
 
 namespace culprit::lab {
 namespace {
@@ -28,6 +30,7 @@ struct StudyOptions {
   bool ablation = false;
   bool robustness = false;
   bool learning = false;
+  bool sweep = false;
   std::vector<std::string> planners = {"paper"};
   std::vector<std::string> objectives = {"balanced"};
   std::string profile = "paper";
@@ -233,7 +236,25 @@ int explain(const StudyOptions& options) {
   return kOk;
 }
 
+// The unpublished constants, varied.
+int sweep(const StudyOptions& options) {
+  const study::SweepCampaign campaign{options.planners, options.profile, options.runs,
+                                      options.seed};
+  const StopSignals signals;
+  Progress progress(0, study::sweep_size(campaign));
+  const auto points = study::sweep(campaign, options.jobs(), [&](std::uint64_t done) {
+    progress.show(done);
+    return !signals.stopped();
+  });
+  progress.end();
+  if (!points) return fail(points.error(), kUsage);
+  if (signals.stopped()) return fail("interrupted; nothing is written", kFailed);
+  const auto written = write(study::sweep_tables(*points, campaign), options.output);
+  return written ? kOk : fail(written.error(), kFailed);
+}
+
 int study_sunset(const StudyOptions& options) {
+  if (options.sweep) return sweep(options);
   if (options.single_run) return options.live ? play_one_live(options) : explain(options);
   if (options.live && options.learning)
     return fail("--learning goes through hundreds of runs: it is for the model", kUsage);
@@ -276,12 +297,17 @@ void add_comparison(CLI::App* command, const std::shared_ptr<StudyOptions>& opti
   command->add_flag(
       "--learning", options->learning,
       "Show the learned rates of each strategy; uses the first learning planner (paper, bayes)");
+  command->add_flag("--sweep", options->sweep,
+                    "Vary the constants that the paper leaves open, and rank the configurations at "
+                    "each point; --runs 54 plays each scenario three times");
   command
       ->add_option(
           "--planner", options->planners,
           "paper (Algorithm 1 as meant), reference (the authors' public code with its slips), "
           "bayes (culprit's own); bt, metacontrol, rosa (others': one failure and one strategy at "
-          "a time), rebet, ac-ros, vogel, ghahremani (others': each failure for itself); oracle "
+          "a time), rebet, rebet-ucb, rebet-greedy, rebet-random, ac-ros, vogel, ghahremani "
+          "(others': each failure for itself); bandit (Thompson sampling, no graph), random; "
+          "oracle "
           "(knows each fault and its remedy at once: a bound); several, one after the other")
       ->capture_default_str();
   command
@@ -372,6 +398,7 @@ void add_study(CLI::App& app, const std::string& version, int& exit_code) {
   add_study_fleet(*command, exit_code);
   add_study_rover(*command, exit_code);
   add_merge(*command, exit_code);
+  add_study_all(*command, version, exit_code);
 }
 
 }  // namespace culprit::lab

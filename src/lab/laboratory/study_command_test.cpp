@@ -139,7 +139,8 @@ TEST_F(StudyCommand, ShardsOfSuaveMergeToTheSameBytes) {
 
 TEST_F(StudyCommand, SaysWhichManagersOfSuaveThereAre) {
   EXPECT_EQ(run({"suave", "--managers", "me"}), kUsage);
-  EXPECT_THAT(complaint, HasSubstr("there are none, random, bt, metacontrol, rosa, culprit"));
+  EXPECT_THAT(complaint, HasSubstr("there are none, random, bt, metacontrol, rosa, rebet, "
+                                   "rebet-ucb, rebet-greedy, rebet-random, bandit, culprit"));
   EXPECT_EQ(run({"suave", "--managers", "bt,culprit,bt"}), kUsage);
   EXPECT_THAT(complaint, HasSubstr("manager 'bt' is there twice"));
 }
@@ -200,6 +201,31 @@ TEST_F(StudyCommand, TellsWhatHappenedInARun) {
   EXPECT_THAT(said, HasSubstr("fault: sync_issue"));
   EXPECT_THAT(said, HasSubstr("fusion is held responsible for SensorFusionDead"));
   EXPECT_THAT(said, HasSubstr("SensorFusionDead resolved by fusion_restart"));
+}
+
+TEST_F(StudyCommand, AllOfItGoesOnWhereItWas) {
+  const std::string folder = path("all");
+  std::filesystem::create_directories(folder);
+  // A file with this head counts as done.
+  for (const auto& [name, arguments] : std::vector<std::pair<std::string, std::string>>{
+           {"sunset",
+            "sunset --planner paper --planner reference --runs 54 --experiments 100 --repetitions "
+            "4"},
+           {"sunset-managers",
+            "sunset --ablation --planner bt --planner rosa --planner rebet --planner rebet-ucb "
+            "--planner bandit --planner random --planner bayes --runs 54"},
+           {"rca", "rca --components 20 --faults 3 --episodes 40 --planner naive,paper,bayes"},
+           {"rca-learning", "rca --components 5 --faults 1 --learn 500"},
+           {"rca-regret", "rca --regret --systems 30"},
+           {"fleet", "fleet --models 4 --robots 3"}})
+    write(folder + "/" + name + ".md",
+          "<!-- culprit study " + arguments + " (culprit test) -->\n\nkept");
+  ASSERT_EQ(run({"all", "--quick", "--folder", folder}), kOk) << complaint;
+  EXPECT_THAT(text(folder + "/sunset.md"), testing::EndsWith("kept"));
+  EXPECT_THAT(text(folder + "/suave-claims.md"), HasSubstr("**Claims of the paper on SUAVE**"));
+  EXPECT_THAT(complaint, HasSubstr("sunset.md is there already"));
+  EXPECT_THAT(complaint, HasSubstr("suave-claims, about"));
+  EXPECT_FALSE(std::filesystem::exists(folder + "/suave.md.part"));
 }
 
 }  // namespace

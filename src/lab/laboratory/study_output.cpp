@@ -102,6 +102,14 @@ Expected<void> write(const study::Validation& validation, const StudyOutput& out
                         : tables_as(study::validation_tables(validation), output.format));
 }
 
+Expected<void> write(const std::vector<study::Table>& tables, const StudyOutput& output) {
+  const bool is_table =
+      output.format == "text" || output.format == "markdown" || output.format == "latex";
+  if (!is_table || !output.html.empty() || !output.plot_folder.empty())
+    return Error{"this table is written as text, markdown or latex"};
+  return write_text(output.output, tables_as(tables, output.format));
+}
+
 std::string timeline_text(const study::Timeline& timeline) {
   std::string out = fmt::format("run {} of {}: {}\n", timeline.run,
                                 study::label(timeline.configuration), timeline.scenario);

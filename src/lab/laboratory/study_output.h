@@ -8,6 +8,7 @@
 
 #include "base/expected.h"
 #include "study/findings.h"
+#include "study/tables/table.h"
 #include "suave_study/campaign.h"
 #include "suave_study/validation.h"
 
@@ -33,6 +34,8 @@ struct StudyOutput {
 Expected<void> write(const study::Findings& findings, const StudyOutput& output);
 Expected<void> write(const study::SuaveResult& result, const StudyOutput& output);
 Expected<void> write(const study::Validation& validation, const StudyOutput& output);
+// As text, markdown or latex.
+Expected<void> write(const std::vector<study::Table>& tables, const StudyOutput& output);
 
 // One run, a line for each happening.
 std::string timeline_text(const study::Timeline& timeline);

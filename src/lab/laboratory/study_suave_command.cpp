@@ -12,6 +12,7 @@
 #include "base/text_file.h"
 #include "laboratory/study_output.h"
 #include "laboratory/study_runs.h"
+#include "suave_study/claims.h"
 #include "suave_study/fit.h"
 #include "suave_study/settings_json.h"
 #include "suave_study/suave_record.h"
@@ -40,8 +41,10 @@ struct SuaveOptions {
   std::uint64_t seed = 1;
   unsigned jobs = std::max(1U, std::thread::hardware_concurrency());
   SettingTexts settings;
-  std::string vehicle;                // a file; empty: the one fitted to the published runs
+  std::string vehicle;  // a file; empty: the one fitted to the published runs
+  bool claims = false;
   std::vector<std::string> fit;       // files of recorded runs
+  std::vector<std::string> fit_rows;  // of the paper's table
   std::vector<std::string> validate;  // likewise
   double margin_sd = 0.5;
   ShardOptions shard;
@@ -169,20 +172,49 @@ Expected<study::SuaveCampaign> campaign_of(const SuaveOptions& options) {
 }
 
 int fit(const study::SuaveCampaign& campaign, const SuaveOptions& options) {
-  const auto recorded = study::read_recorded(options.fit);
-  if (!recorded) return fail(recorded.error(), kUsage);
-  study::FitCampaign target{campaign, {}};
-  for (const study::RecordedRow& row : recorded->rows)
-    target.targets.push_back({row.manager, row.search_s, row.distance_m});
+  Expected<std::vector<study::FitCampaign>> targets = study::published_targets(options.fit_rows);
+  std::vector<std::string> left_out;
+  if (!options.fit.empty()) {
+    const auto recorded = study::read_recorded(options.fit);
+    if (!recorded) return fail(recorded.error(), kUsage);
+    study::FitCampaign target{campaign, {}};
+    for (const study::RecordedRow& row : recorded->rows)
+      target.targets.push_back({row.manager, row.search_s, row.distance_m});
+    left_out = recorded->unknown;
+    targets = std::vector<study::FitCampaign>{std::move(target)};
+  }
+  if (!targets) return fail(targets.error(), kUsage);
   const auto fit =
-      study::fit_vehicle({std::move(target)}, campaign.vehicle, options.runs, options.jobs,
+      study::fit_vehicle(std::move(*targets), campaign.vehicle, options.runs, options.jobs,
                          [](const std::string& step) { fmt::print(stderr, "{}\n", step); });
   if (!fit) return fail(fit.error(), kUsage);
-  const Json document = {
-      {"fitted_to", options.fit},      {"campaign", study::to_json(campaign)},
-      {"left_out", recorded->unknown}, {"misfit_before", fit->misfit_before},
-      {"misfit", fit->misfit},         {"vehicle", study::to_json(fit->vehicle)}};
+  const Json document = {{"fitted_to", options.fit.empty() ? options.fit_rows : options.fit},
+                         {"campaign", study::to_json(campaign)},
+                         {"left_out", left_out},
+                         {"misfit_before", fit->misfit_before},
+                         {"misfit", fit->misfit},
+                         {"vehicle", study::to_json(fit->vehicle)}};
   const auto written = write_text(options.output.output, to_indented(document) + "\n");
+  return written ? kOk : fail(written.error(), kFailed);
+}
+
+// Both missions as the paper has them.
+int judge_claims(const study::SuaveCampaign& campaign, const SuaveOptions& options) {
+  std::vector<study::SuaveResult> results;
+  const StopSignals signals;
+  for (const char* mission : {"standard", "extended"}) {
+    study::SuaveCampaign each = campaign;
+    each.plan = *suave::model::find_mission_plan(mission);
+    each.managers = {"none", "bt", "metacontrol", "rosa", study::kCulprit};
+    Progress progress(0, each.size());
+    auto result = run_whole(each, options.jobs, signals, progress,
+                            [&](study::RunId id) { return study::play(each, id); });
+    progress.end();
+    if (!result) return kFailed;
+    results.push_back(std::move(*result));
+  }
+  const auto written = write(
+      std::vector{study::suave_claims_table(results.front(), results.back())}, options.output);
   return written ? kOk : fail(written.error(), kFailed);
 }
 
@@ -197,7 +229,8 @@ int validate(const study::SuaveCampaign& campaign, const SuaveOptions& options) 
 int study_suave(const SuaveOptions& options) {
   const auto campaign = campaign_of(options);
   if (!campaign) return fail(campaign.error(), kUsage);
-  if (!options.fit.empty()) return fit(*campaign, options);
+  if (!options.fit.empty() || !options.fit_rows.empty()) return fit(*campaign, options);
+  if (options.claims) return judge_claims(*campaign, options);
   if (!options.validate.empty()) return validate(*campaign, options);
   const auto play = [&](study::RunId id) { return study::play(*campaign, id); };
   const StopSignals signals;
@@ -258,6 +291,12 @@ void add_validation(CLI::App& command, SuaveOptions& options) {
                   ->type_name("FILE")
                   ->group(kGroup);
   command
+      .add_option("--fit-rows", options.fit_rows,
+                  "Fit the vehicle to these rows of the paper's table, as none,bt,extended:rosa")
+      ->delimiter(',')
+      ->excludes(fit)
+      ->group(kGroup);
+  command
       .add_option("--validate", options.validate,
                   "Compare the model with these runs, which it should not be fitted to; repeatable")
       ->type_name("FILE")
@@ -286,8 +325,13 @@ void add_study_suave(CLI::App& study, const std::string& version, int& exit_code
                  "Ours: processes that die and a mode manager that hangs, on top of it")
       ->excludes(extended);
   command
+      ->add_flag("--claims", options->claims,
+                 "Each claim of the paper on both missions, with a test and a verdict")
+      ->excludes(extended);
+  command
       ->add_option("--managers", options->managers,
-                   "Only these of none, random, bt, metacontrol, rosa, culprit")
+                   "Only these of none, random, bt, metacontrol, rosa, rebet, rebet-ucb, "
+                   "rebet-greedy, rebet-random, bandit, culprit")
       ->delimiter(',');
   command->add_option("--generation", options->generation, "Which SUAVE: era (published) or new")
       ->capture_default_str();

@@ -16,11 +16,15 @@ struct Named {
 // A tick of the tree; an inference every 1.5 s; about thirty transactions of 24 to 48 ms; ticks at
 // the 100 Hz of BehaviorTree.ROS2's execution server, which ReBeT's is, one to ask for an
 // adaptation and one to see the answer.
-constexpr std::array<Named, 4> kPaces = {
+constexpr Pace kTree{milliseconds(10), {milliseconds(10), {}}};
+constexpr std::array<Named, 7> kPaces = {
     {{"bt", {milliseconds(150), {}}},
      {"metacontrol", {milliseconds(1500), {milliseconds(600), milliseconds(250)}}},
      {"rosa", {milliseconds(36), {milliseconds(720), milliseconds(720)}}},
-     {"rebet", {milliseconds(10), {milliseconds(10), {}}}}}};
+     {"rebet", kTree},
+     {"rebet-ucb", kTree},
+     {"rebet-greedy", kTree},
+     {"rebet-random", kTree}}};
 
 }  // namespace
 

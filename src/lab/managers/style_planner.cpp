@@ -96,7 +96,8 @@ std::vector<Decision> StylePlanner::plan(std::span<const RuleId> failures,
   };
   std::vector<Decision> decisions;
   for (const RuleId id : failures) {
-    std::vector<StrategyId> order = knowledge.rules[id].strategies;
+    const Rule& rule = knowledge.rules[id];
+    std::vector<StrategyId> order = ranking_ ? ranking_(rule) : rule.strategies;
     std::stable_sort(order.begin(), order.end(), is_worthier);
     Decision& decision = decisions.emplace_back();
     decision.rule = id;

@@ -1,9 +1,9 @@
 // How managers plan that the paper names beside those of the SUAVE study, each after its own
 // description. None asks which failure is another one's effect.
 //
-//   rebet       Alberts et al., ReBeT: decorators of a behaviour tree, one around each action. Each
-//               adapts by itself when its own condition holds, and goes through its options in
-//               their order.
+//   rebet       Alberts et al., ReBeT, its reactive adaptation logic: decorators of a behaviour
+//               tree, one around each action. Each adapts by itself when its own condition holds,
+//               and goes through its options in their order. Its bandits: bandit_manager.h.
 //   ac-ros      Cheng et al., AC-ROS: the goal model is evaluated, and for each violated goal its
 //               one predefined plan is executed, over and over; no goal comes before another.
 //   vogel       Vogel and Giese, executable runtime megamodels: one feedback loop repairs
@@ -16,8 +16,11 @@
 // Where they leave open which strategy is meant (vogel, ac-ros) it is the likeliest.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "plan/planner.h"
 
@@ -30,7 +33,12 @@ std::optional<Style> find_style(std::string_view name);
 
 class StylePlanner : public Planner {
  public:
-  explicit StylePlanner(Style style) : style_(style) {}
+  // A rule's strategies, best first.
+  using Ranking = std::function<std::vector<StrategyId>(const Rule& rule)>;
+
+  // With a ranking, strategies come in its order among those that are worth the same.
+  explicit StylePlanner(Style style, Ranking ranking = nullptr)
+      : style_(style), ranking_(std::move(ranking)) {}
   std::vector<Decision> plan(std::span<const RuleId> failures,
                              const Knowledge& knowledge) const override;
 
@@ -41,6 +49,7 @@ class StylePlanner : public Planner {
   double worth(StrategyId id, const Knowledge& knowledge) const;
 
   Style style_;
+  Ranking ranking_;
 };
 
 }  // namespace culprit::study

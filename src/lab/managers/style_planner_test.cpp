@@ -15,6 +15,11 @@ SunsetRun played(const char* planner, std::uint32_t run) {
   return study->play({0, run});
 }
 
+// A bandit is trained with it, so that several runs share one.
+SunsetStudy study_of(const char* planner) {
+  return std::move(*SunsetStudy::make({{{}, planner, "live", Probabilities::kIdeal}}, 1));
+}
+
 RuleSet rules_of(const char* planner) {
   return SunsetStudy::make({{{}, planner, "live", Probabilities::kIdeal}}, 1)->rules(0);
 }
@@ -62,6 +67,58 @@ TEST(Styles, OnlyAcRosHasOnePlanForEachFailure) {
       EXPECT_GT(executed.size(), repaired.size()) << planner;
     }
   }
+}
+
+// None of them asks which failure is an effect; only Random repairs one after the other.
+TEST(Bandits, RepairEachFailureByItself) {
+  for (const char* planner : {"rebet-ucb", "rebet-greedy", "rebet-random", "bandit", "random"}) {
+    SCOPED_TRACE(planner);
+    const SunsetStudy study = study_of(planner);
+    const RuleSet& rules = study.rules(0);
+    std::size_t most = 0;
+    std::set<StrategyId> executed;
+    for (std::uint32_t run = 0; run < 18; ++run) {
+      std::set<RuleId> open;
+      const SunsetRun story = study.play({0, run});
+      for (const Event& event : story.events) {
+        if (const auto* chosen = std::get_if<StrategyChosen>(&event.what)) {
+          open.insert(rules[chosen->strategy].rule);
+          executed.insert(chosen->strategy);
+        }
+        if (const auto* failed = std::get_if<StrategyFailed>(&event.what))
+          open.erase(rules[failed->strategy].rule);
+        if (const auto* done = std::get_if<FailureResolved>(&event.what)) open.erase(done->rule);
+        most = std::max(most, open.size());
+      }
+    }
+    if (std::string_view(planner) == "random") {
+      EXPECT_EQ(most, 1u);
+    } else {
+      EXPECT_GE(most, 2u);
+    }
+    EXPECT_GE(executed.size(), 6u);
+  }
+}
+
+// Redeploying always ends an outage, restarting does in half of the scenarios.
+TEST(Bandits, PlayWhatHelpedInTheirTraining) {
+  int redeployed = 0;
+  int first = 0;
+  const SunsetStudy study = study_of("bandit");
+  const RuleSet& rules = study.rules(0);
+  for (std::uint32_t run = 0; run < 36; ++run) {
+    std::set<RuleId> seen;
+    const SunsetRun story = study.play({0, run});
+    for (const SunsetRun::Choice& choice : story.choices) {
+      const Strategy& strategy = rules[choice.strategy];
+      const bool is_outage =
+          strategy.name.ends_with("restart") || strategy.name.ends_with("redeploy");
+      if (!is_outage || !seen.insert(strategy.rule).second) continue;
+      ++first;
+      redeployed += strategy.name.ends_with("redeploy") ? 1 : 0;
+    }
+  }
+  EXPECT_GT(redeployed, first * 3 / 4);
 }
 
 // A picture that is poor is not optimised while something is out.

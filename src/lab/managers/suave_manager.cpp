@@ -7,6 +7,7 @@
 #include "managers/bt_manager.h"
 #include "managers/metacontrol_manager.h"
 #include "managers/random_manager.h"
+#include "managers/rebet_manager.h"
 #include "managers/rosa_manager.h"
 
 namespace culprit::study {
@@ -63,6 +64,20 @@ std::unique_ptr<ManagingSystem> make(const SuaveManager::Setting& setting) {
   return std::make_unique<Manager>(setting);
 }
 
+enum class RebetVariant : std::uint8_t { kInternal, kUcb, kGreedy, kRandom, kThompson };
+
+template <RebetVariant variant>
+std::unique_ptr<ManagingSystem> make_rebet(const SuaveManager::Setting& setting) {
+  std::optional<BanditPolicy> policy;
+  if (variant == RebetVariant::kUcb) policy = BanditPolicy::kUcb;
+  if (variant == RebetVariant::kGreedy) policy = BanditPolicy::kGreedy;
+  if (variant == RebetVariant::kRandom) policy = BanditPolicy::kRandom;
+  if (variant == RebetVariant::kThompson) policy = BanditPolicy::kThompson;
+  const auto reward = variant == RebetVariant::kThompson ? RebetManager::Reward::kStrip
+                                                         : RebetManager::Reward::kConstant;
+  return std::make_unique<RebetManager>(setting, policy, reward);
+}
+
 constexpr std::array kBaselines = {
     SuaveBaseline{"none", "nothing is adapted", Leader::kMission,
                   [](const SuaveManager::Setting&) -> std::unique_ptr<ManagingSystem> {
@@ -74,6 +89,16 @@ constexpr std::array kBaselines = {
                   Leader::kBridge, make<MetacontrolManager>},
     SuaveBaseline{"rosa", "ROSA: a knowledge base that plans on every message", Leader::kManager,
                   make<RosaManager>},
+    SuaveBaseline{"rebet", "ReBeT: decorators of a behaviour tree", Leader::kManager,
+                  make_rebet<RebetVariant::kInternal>},
+    SuaveBaseline{"rebet-ucb", "ReBeT with its UCB", Leader::kManager,
+                  make_rebet<RebetVariant::kUcb>},
+    SuaveBaseline{"rebet-greedy", "ReBeT with its greedy bandit", Leader::kManager,
+                  make_rebet<RebetVariant::kGreedy>},
+    SuaveBaseline{"rebet-random", "ReBeT with any altitude", Leader::kManager,
+                  make_rebet<RebetVariant::kRandom>},
+    SuaveBaseline{"bandit", "Thompson sampling of the altitude", Leader::kManager,
+                  make_rebet<RebetVariant::kThompson>},
 };
 
 }  // namespace

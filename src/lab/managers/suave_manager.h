@@ -54,7 +54,8 @@ struct SuaveBaseline {
   std::unique_ptr<ManagingSystem> (*make)(const SuaveManager::Setting& setting);
 };
 
-// "none", "random", "bt", "metacontrol", "rosa".
+// "none", "random", "bt", "metacontrol", "rosa"; "rebet", "rebet-ucb", "rebet-greedy",
+// "rebet-random" and "bandit" (rebet_manager.h).
 std::span<const SuaveBaseline> suave_baselines();
 
 }  // namespace culprit::study

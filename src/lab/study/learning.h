@@ -26,6 +26,14 @@ struct LearningCurve {
   // can be compared only with the executions that were observed.
   double truth_of_all = 0;
   double confidence = 0;  // how many outcomes the designer's belief is worth
+  std::string planner{};  // that executed it
+  // Executions of a series that were not learned from, by the reason.
+  double hidden = 0;     // a more critical failure was there before the outcome counted
+  double beside = 0;     // something else can have had the same effect, or nothing was changed
+  double undecided = 0;  // the run ended first
+  // The share of all executions after which the failure was gone: what is estimated if every
+  // verdict counts at once, as in the paper.
+  double verdicts = 0;
 
   // The belief at the end, and its distance from the truth.
   double believed() const { return learned.empty() ? initial : learned.back().mean(); }

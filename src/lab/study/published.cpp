@@ -1,5 +1,7 @@
 #include "study/published.h"
 
+#include <cmath>
+
 namespace culprit::study::published {
 namespace {
 
@@ -87,6 +89,11 @@ constexpr std::array<Effect, 12> kEffects = {{
 }};
 
 }  // namespace
+
+Moments sample(const MeanSd& value) {
+  const double n = kRuns;
+  return Moments::of_summary(value.mean, value.sd * std::sqrt(n / (n - 1)), kRuns);
+}
 
 std::span<const Result, 8> ablation() { return kAblation; }
 std::span<const Result, 2> robustness() { return kRobustness; }

@@ -13,6 +13,7 @@
 
 #include "study/campaign.h"
 #include "study/metric.h"
+#include "study/statistics/moments.h"
 
 namespace culprit::study::published {
 
@@ -22,6 +23,9 @@ struct MeanSd {
   double mean = 0;
   double sd = 0;
 };
+
+// As a sample of kRuns. The printed deviations are the population's.
+Moments sample(const MeanSd& value);
 
 using Values = std::array<MeanSd, kPublishedMetrics.size()>;  // in the order of kPublishedMetrics
 

@@ -24,6 +24,8 @@ LearningCurve synthetic_curve(std::string failure, std::string rule, std::string
                               double initial, double truth) {
   LearningCurve curve{
       std::move(failure), std::move(rule), std::move(strategy), initial, truth, {}, 162};
+  curve.counted = curve.executed;
+  curve.planner = "paper";
   std::mt19937 engine(static_cast<unsigned>(truth * 1000));
   double alpha = 10 * initial;
   double beta = 10 - alpha;

@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "suave_study/published.h"
 namespace culprit::study {
 namespace {
 
@@ -99,6 +100,29 @@ Expected<VehicleFit> fit_vehicle(std::vector<FitCampaign> campaigns, VehicleTrai
     if (!is_better) ++halving;
   }
   return fit;
+}
+
+Expected<std::vector<FitCampaign>> published_targets(const std::vector<std::string>& rows) {
+  constexpr std::uint64_t kSeed = 0xf17;
+  std::vector<FitCampaign> campaigns;
+  std::vector<std::string> left = rows;
+  for (const char* mission : {"standard", "extended"}) {
+    FitCampaign each;
+    each.campaign.plan = *suave::model::find_mission_plan(mission);
+    each.campaign.generation = *suave::model::find_generation("era");
+    each.campaign.seed = kSeed;
+    for (const published::SuaveResult& row : published::suave()) {
+      if (row.mission != mission || row.manager == kCulprit) continue;
+      const std::string prefix = row.mission == "standard" ? "" : std::string(row.mission) + ":";
+      if (!rows.empty() && std::erase(left, prefix + std::string(row.manager)) == 0) continue;
+      each.targets.push_back({std::string(row.manager), row.search_s, row.distance_m});
+    }
+    campaigns.push_back(std::move(each));
+  }
+  if (!left.empty())
+    return Error{"the paper's table has no row '" + left.front() +
+                 "' of others; there are none, bt, metacontrol, rosa, extended:bt, extended:rosa"};
+  return campaigns;
 }
 
 }  // namespace culprit::study

@@ -47,4 +47,8 @@ Expected<VehicleFit> fit_vehicle(std::vector<FitCampaign> campaigns,
                                  unsigned jobs,
                                  const std::function<void(const std::string&)>& tell);
 
+// Targets from the paper's table: all rows, or these: "bt" of the standard mission,
+// "extended:bt" of the other. Error: there is no such row, or it is culprit's own.
+Expected<std::vector<FitCampaign>> published_targets(const std::vector<std::string>& rows = {});
+
 }  // namespace culprit::study

@@ -7,32 +7,15 @@
 #include <fmt/core.h>
 
 #include "suave_study/fit.h"
-#include "suave_study/published.h"
 #include "suave_study/settings_json.h"
 
 namespace culprit::study {
 namespace {
 
-std::vector<FitCampaign> published_campaigns() {
-  constexpr std::uint64_t kSeed = 0xf17;
-  std::vector<FitCampaign> campaigns;
-  for (const char* mission : {"standard", "extended"}) {
-    FitCampaign& each = campaigns.emplace_back();
-    each.campaign.plan = *suave::model::find_mission_plan(mission);
-    each.campaign.generation = *suave::model::find_generation("era");
-    each.campaign.seed = kSeed;
-    for (const published::SuaveResult& row : published::suave()) {
-      if (row.mission == mission)
-        each.targets.push_back({std::string(row.manager), row.search_s, row.distance_m});
-    }
-  }
-  return campaigns;
-}
-
 int fit(std::uint32_t runs) {
   const auto fit =
-      fit_vehicle(published_campaigns(), {}, runs,
-                  std::max(1U, std::thread::hardware_concurrency()), [](const std::string& step) {
+      fit_vehicle(*published_targets(), {}, runs, std::max(1U, std::thread::hardware_concurrency()),
+                  [](const std::string& step) {
                     fmt::print("{}\n", step);
                     std::fflush(stdout);
                   });

@@ -42,19 +42,23 @@ Json curve_json(const LearningCurve& curve) {
   Json learned = Json::array();
   for (const Moments& after : curve.learned)
     learned.push_back({{"mean", after.mean()}, {"sd", after.population_sd()}});
-  return {{"failure", curve.failure},
-          {"rule", curve.rule},
-          {"strategy", curve.strategy},
-          {"executed", curve.executed},
-          {"counted", curve.counted},
-          {"initial", curve.initial},
-          {"truth", curve.truth},
-          {"truth_of_all", curve.truth_of_all},
-          {"believed", curve.believed()},
-          {"error", curve.error()},
-          {"error_of_prior", curve.error_of_prior()},
-          {"standard_error", curve.standard_error()},
-          {"learned", std::move(learned)}};
+  return {
+      {"failure", curve.failure},
+      {"rule", curve.rule},
+      {"strategy", curve.strategy},
+      {"executed", curve.executed},
+      {"counted", curve.counted},
+      {"not_counted",
+       {{"outage", curve.hidden}, {"repair_beside", curve.beside}, {"run_over", curve.undecided}}},
+      {"cleared_of_all", curve.verdicts},
+      {"initial", curve.initial},
+      {"truth", curve.truth},
+      {"truth_of_all", curve.truth_of_all},
+      {"believed", curve.believed()},
+      {"error", curve.error()},
+      {"error_of_prior", curve.error_of_prior()},
+      {"standard_error", curve.standard_error()},
+      {"learned", std::move(learned)}};
 }
 
 }  // namespace

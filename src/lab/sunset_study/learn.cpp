@@ -6,28 +6,87 @@
 namespace culprit::study {
 namespace {
 
+// The failures of a run, from their detection to their end.
+struct FailureSpan {
+  RuleId rule;
+  Time begin;
+  Time end = kNever;
+};
+
+std::vector<FailureSpan> failures_of(const SunsetRun& run) {
+  std::vector<FailureSpan> all;
+  for (const Event& event : run.events) {
+    if (const auto* detected = std::get_if<FailureDetected>(&event.what))
+      all.push_back({detected->rule, event.at});
+    const auto* resolved = std::get_if<FailureResolved>(&event.what);
+    if (resolved == nullptr) continue;
+    for (FailureSpan& failure : all) {
+      if (failure.rule == resolved->rule && failure.end == kNever) failure.end = event.at;
+    }
+  }
+  return all;
+}
+
 struct Learner {
   StrategyId strategy;
   LearningCurve curve;
   // For each execution, and for each that was learned from: whether it ends the fault.
   Moments remedies;
   Moments learned_remedies;
+  Moments verdicts;  // for each execution: whether the failure was gone
 
   void note(const SunsetRun& run, const RuleSet& rules);
+  // An outcome that counts for nothing.
+  void note_dropped(const SunsetRun& run, const RuleSet& rules, Time verdict, Time dropped);
 };
 
 // A strategy that had ended the fault already, and is executed again since an
 // outage hides that, is still the one that this failure needs.
 void Learner::note(const SunsetRun& run, const RuleSet& rules) {
   const double is_remedy = judge(strategy, rules, run.scenario.faults).is_remedy ? 1 : 0;
+  double open = 0;
+  Time verdict{};
   for (const Event& event : run.events) {
     if (const auto* chosen = std::get_if<StrategyChosen>(&event.what)) {
-      if (chosen->strategy == strategy) remedies.add(is_remedy);
+      if (chosen->strategy != strategy) continue;
+      remedies.add(is_remedy);
+      open += 1;
+      verdict = event.at;
     } else if (const auto* counted = std::get_if<OutcomeCounted>(&event.what)) {
-      if (counted->strategy == strategy && counted->as != OutcomeCounted::As::kNothing)
+      if (counted->strategy != strategy) continue;
+      open -= 1;
+      if (counted->as == OutcomeCounted::As::kNothing) {
+        note_dropped(run, rules, verdict, event.at);
+      } else {
         learned_remedies.add(is_remedy);
+      }
+    } else if (const auto* failed = std::get_if<StrategyFailed>(&event.what)) {
+      if (failed->strategy == strategy) verdicts.add(0);
+    } else if (const auto* resolved = std::get_if<FailureResolved>(&event.what)) {
+      if (resolved->strategy == strategy && resolved->how == FailureResolved::How::kByStrategy)
+        verdicts.add(1);
     }
   }
+  curve.undecided += std::max(0.0, open);
+}
+
+void Learner::note_dropped(const SunsetRun& run, const RuleSet& rules, Time verdict, Time dropped) {
+  const Criticality own = rules[rules[strategy].rule].policies.criticality;
+  const std::vector<FailureSpan> failures = failures_of(run);
+  const bool is_hidden = std::any_of(failures.begin(), failures.end(), [&](const auto& failure) {
+    return rules[failure.rule].policies.criticality > own && failure.begin <= dropped &&
+           failure.end >= verdict;
+  });
+  (is_hidden ? curve.hidden : curve.beside) += 1;
+}
+
+// The exemplar's scenarios, and each fault alone: three times the same fault is that one. In all
+// scenarios an outage begins beside the other two failures and hides, until it is repaired, what
+// the strategies for these did.
+std::vector<sunset::Scenario> experiments_to_learn_from() {
+  std::vector<sunset::Scenario> all = sunset::scenarios();
+  for (const sunset::Fault& fault : sunset::faults()) all.push_back({0, {&fault, &fault, &fault}});
+  return all;
 }
 
 // The paper's name of the failure; empty: no fault of SUNSET causes it.
@@ -49,7 +108,10 @@ std::vector<Learner> learners(const RuleSet& rules, std::uint32_t experiments) {
     if (failure.empty()) continue;
     Learner learner;
     learner.strategy = StrategyId(s);
-    learner.curve = {failure, rule, strategy.name, strategy.success.value, 0, {}, 0, 0, 0};
+    learner.curve.failure = failure;
+    learner.curve.rule = rule;
+    learner.curve.strategy = strategy.name;
+    learner.curve.initial = strategy.success.value;
     learner.curve.learned.resize(experiments);
     learner.curve.confidence = strategy.confidence;
     all.push_back(std::move(learner));
@@ -71,7 +133,7 @@ std::vector<LearningCurve> SunsetStudy::learn(
     const std::function<void(std::uint64_t)>& told) const {
   const LearningRuns runs = learning_runs();
   const RuleSet& rules = runs.rules();
-  const std::vector<sunset::Scenario> scenarios = sunset::scenarios();
+  const std::vector<sunset::Scenario> scenarios = experiments_to_learn_from();
   std::vector<Learner> all = learners(rules, experiments);
   std::vector<Belief> initial;
   for (const Strategy& strategy : rules.strategies)
@@ -100,11 +162,15 @@ std::vector<LearningCurve> SunsetStudy::learn(
   std::vector<LearningCurve> curves;
   for (Learner& learner : all) {
     LearningCurve& curve = learner.curve;
+    curve.planner = settings_.front().configuration.planner;
     const Moments& executed = learner.remedies;
     const Moments& judged = learner.learned_remedies;
     curve.truth_of_all = executed.count() > 0 ? executed.mean() : 0;
     curve.truth = judged.count() > 0 ? judged.mean() : curve.truth_of_all;
-    curve.executed = static_cast<double>(executed.count()) / std::max(1U, repetitions);
+    const double series = std::max(1U, repetitions);
+    curve.executed = static_cast<double>(executed.count()) / series;
+    for (double* share : {&curve.hidden, &curve.beside, &curve.undecided}) *share /= series;
+    curve.verdicts = learner.verdicts.mean();
     curves.push_back(std::move(learner.curve));
   }
   return curves;

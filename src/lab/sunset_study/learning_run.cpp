@@ -29,14 +29,18 @@ sunset::model::Profile to_learn_from(sunset::model::Profile profile) {
   return profile;
 }
 
-// The fusion passes on old pictures first. A strategy that is judged before these are gone loses
-// its success: it is undone, and the next one gets the credit.
-void wait_for_pictures(RuleSet& rules, const sunset::model::Profile& profile) {
-  const Duration lag = kFramePeriod * static_cast<std::int64_t>(profile.fusion_keeps);
-  const Cycles cycles{lag / rules.cycle + 1};
+// The fusion passes on old pictures first. A camera that does not focus has a second of pictures
+// waiting, and the blackboard, which is published at its period, has the last of them. A strategy that is judged before the robot can show its effect loses its success: it is undone, and
+// the next one gets the credit.
+void wait_for_effects(RuleSet& rules, const sunset::model::Profile& profile) {
+  const Duration queue = std::chrono::seconds(1) + 2 * profile.blackboard_period;
+  const Duration pictures = kFramePeriod * static_cast<std::int64_t>(profile.fusion_keeps);
   for (Strategy& strategy : rules.strategies) {
-    if (rules[strategy.rule].name == "SegmentationBad")
-      strategy.impact = std::max(strategy.impact, cycles);
+    const std::string& rule = rules[strategy.rule].name;
+    const Duration lag = rule == "SegmentationBad"   ? pictures
+                         : rule == "AutoFocusNeeded" ? queue
+                                                     : Duration::zero();
+    strategy.impact = std::max(strategy.impact, Cycles{lag / rules.cycle + 1});
     rules.heaviest = std::max(rules.heaviest, strategy.impact);
   }
 }
@@ -49,7 +53,7 @@ LearningRuns::LearningRuns(const RuleSet& rules, const sunset::model::Profile& p
   RuleSet learned = rules;
   for (Strategy& strategy : learned.strategies)
     strategy.confidence = published::kLearning.confidence;
-  wait_for_pictures(learned, profile_);
+  wait_for_effects(learned, profile_);
   rules_ = std::make_unique<const RuleSet>(std::move(learned));
   options_.governor.limits.backoff.healthy = proof(profile_);
 }

@@ -12,6 +12,7 @@
 #include "plan/paper_planner.h"
 #include "reference/reference_manager.h"
 #include "reference/sunset_blackboard.h"
+#include "study/published.h"
 #include "sunset_study/detectors.h"
 #include "sunset_study/rules.h"
 
@@ -112,9 +113,14 @@ std::vector<std::string_view> sunset_planners() {
           "metacontrol",
           "rosa",
           "rebet",
+          "rebet-ucb",
+          "rebet-greedy",
+          "rebet-random",
           "ac-ros",
           "vogel",
           "ghahremani",
+          "bandit",
+          "random",
           "oracle"};
 }
 
@@ -122,15 +128,16 @@ bool has_switches(std::string_view planner) { return planner == "paper" || plann
 
 bool can_learn(std::string_view planner) { return planner == "paper" || objective_of(planner); }
 
-Expected<SunsetStudy> SunsetStudy::make(std::vector<Configuration> rows, std::uint64_t seed) {
+Expected<SunsetStudy> SunsetStudy::make(std::vector<Configuration> rows, std::uint64_t seed,
+                                        const Variation& variation) {
   std::vector<Setting> settings;
   for (Configuration& row : rows) {
     const auto planners = sunset_planners();
     if (std::find(planners.begin(), planners.end(), row.planner) == planners.end())
       return Error{"there is no planner '" + row.planner +
                    "'; there are paper, reference, bayes, bayes with an objective "
-                   "(bayes:downtime), bt, metacontrol, rosa, rebet, ac-ros, vogel, ghahremani, "
-                   "oracle"};
+                   "(bayes:downtime), bt, metacontrol, rosa, rebet, rebet-ucb, rebet-greedy, "
+                   "rebet-random, ac-ros, vogel, ghahremani, bandit, random, oracle"};
     const auto named = parse_profile(row.profile);
     if (!named) return Error{named.error()};
     const bool is_live = row.profile == kLiveRobot;
@@ -145,12 +152,33 @@ Expected<SunsetStudy> SunsetStudy::make(std::vector<Configuration> rows, std::ui
                    "' has none"};
     const Checked checked =
         check(Source("study.rules", rules_of(row.planner, **profile, named->second)));
-    RuleSet rules = *checked.rules;  // a test checks what is built in
+    RuleSet rules = varied(*checked.rules, variation);  // a test checks what is built in
     if (row.probabilities == Probabilities::kMisspecified) misspecify(rules);
     settings.push_back(
-        {std::move(row), *profile, std::make_unique<const RuleSet>(std::move(rules))});
+        {std::move(row),
+         std::make_unique<const sunset::model::Profile>(varied(**profile, variation)),
+         std::make_unique<const RuleSet>(std::move(rules)),
+         {}});
   }
-  return SunsetStudy(std::move(settings), seed);
+  SunsetStudy study(std::move(settings), seed);
+  for (Setting& setting : study.settings_) study.train(setting);
+  return study;
+}
+
+void SunsetStudy::train(Setting& setting) const {
+  constexpr std::uint64_t kTraining = 0x7ea1;
+  const BanditKind* kind = find_bandit(setting.configuration.planner);
+  if (kind == nullptr) return;
+  setting.experience = no_experience(*setting.rules);
+  if (!kind->learns()) return;
+  for (std::uint32_t run = 0; run < published::kRuns; ++run) {
+    const std::uint64_t seed = simulation::mix(simulation::mix(seed_ ^ kTraining) + run);
+    sunset::model::SunsetModel model(*setting.profile, seed);
+    BanditManager manager(*setting.rules, *kind, setting.experience, seed,
+                          manager_options(*setting.profile));
+    (void)study::play(model, *setting.rules, manager, scenario_of({0, run}));
+    setting.experience = manager.experience();
+  }
 }
 
 std::uint64_t SunsetStudy::seed_of(RunId id) const {
@@ -175,8 +203,13 @@ std::unique_ptr<ManagingSystem> SunsetStudy::manager(RunId id,
     // The rules are made for it.
     return std::move(*ReferenceManager::make(*setting.rules, std::move(reference)));
   }
-  auto manager =
-      std::make_unique<Manager>(*setting.rules, planner_of(setting.configuration), options);
+  std::unique_ptr<ManagingSystem> manager;
+  if (const BanditKind* kind = find_bandit(setting.configuration.planner)) {
+    manager = std::make_unique<BanditManager>(*setting.rules, *kind, setting.experience,
+                                              seed_of(id), options);
+  } else {
+    manager = std::make_unique<Manager>(*setting.rules, planner_of(setting.configuration), options);
+  }
   if (const Pace* pace = find_pace(setting.configuration.planner))
     return std::make_unique<PacedManager>(std::move(manager), *pace, options.start, seed_of(id));
   return manager;

@@ -14,12 +14,14 @@
 #include "base/expected.h"
 #include "language/rule_set.h"
 #include "manager/manager.h"
+#include "managers/bandit_manager.h"
 #include "study/campaign.h"
 #include "study/learning.h"
 #include "study/single_run.h"
 #include "study/timeline.h"
 #include "sunset_study/learning_run.h"
 #include "sunset_study/run.h"
+#include "sunset_study/variation.h"
 
 namespace culprit::study {
 
@@ -28,7 +30,8 @@ class SunsetStudy {
   // Errors: an unknown planner or profile; a planner that cannot watch a profile (the reference
   // needs a blackboard), or cannot play the live robot (the oracle needs a model's truth). A
   // profile may name its detectors (detectors.h).
-  static Expected<SunsetStudy> make(std::vector<Configuration> rows, std::uint64_t seed);
+  static Expected<SunsetStudy> make(std::vector<Configuration> rows, std::uint64_t seed,
+                                    const Variation& variation = {});
 
   // From several threads if you like. @pre the row is not of profile kLiveRobot
   RunMetrics run(RunId id) const;
@@ -63,12 +66,16 @@ class SunsetStudy {
   // The part that all runs of a row share.
   struct Setting {
     Configuration configuration;
-    const sunset::model::Profile* profile = nullptr;
+    std::unique_ptr<const sunset::model::Profile> profile;
     std::unique_ptr<const RuleSet> rules;  // managers keep its address
+    BanditExperience experience;           // of a bandit, that each run begins with
   };
 
   SunsetStudy(std::vector<Setting> settings, std::uint64_t seed)
       : settings_(std::move(settings)), seed_(seed) {}
+
+  // A bandit learns from as many experiments as the paper's learning has, with seeds of their own.
+  void train(Setting& setting) const;
 
   static Manager::Options manager_options(const sunset::model::Profile& profile);
   // For all planners but "reference".
@@ -80,8 +87,8 @@ class SunsetStudy {
 
 // The existing planners: "paper", "reference", "bayes" (balanced), and "bayes:downtime" and so on
 // with another objective. Then the managers of others, "bt", "metacontrol", "rosa", "rebet",
-// "ac-ros", "vogel" and "ghahremani". Last, "oracle", which knows each fault, and its remedy, at
-// once.
+// "rebet-ucb", "rebet-greedy", "rebet-random", "ac-ros", "vogel" and "ghahremani"; "bandit" and
+// "random". Last, "oracle", which knows each fault, and its remedy, at once.
 std::vector<std::string_view> sunset_planners();
 
 // Whether a planner has the paper's D, C and S to switch off.

@@ -108,6 +108,11 @@ TEST_P(WhatIsLearned, OfAStrategyThatIsLearnedFromOftenIsHowOftenItHelps) {
   constexpr std::uint32_t kSeries = 2;
   int judged = 0;
   for (const LearningCurve& curve : study->learn(400, kSeries, nullptr)) {
+    EXPECT_NEAR(curve.executed, curve.counted + curve.hidden + curve.beside + curve.undecided, 0.01)
+        << curve.strategy << ": each execution is learned from, or there is a reason";
+    if (curve.strategy == "autofocus") {
+      EXPECT_GT(curve.counted, 0);
+    }
     if (curve.executed < 50) continue;
     EXPECT_LE(curve.error(), 0.1) << curve.strategy << ": " << curve.believed() << ", true "
                                   << curve.truth;

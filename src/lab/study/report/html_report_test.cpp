@@ -29,7 +29,7 @@ std::size_t count(const std::string& text, const std::string& part) {
 TEST(HtmlReport, HoldsEverything) {
   if (const char* path = std::getenv("CULPRIT_WRITE_REPORT"))
     std::ofstream(path, std::ios::binary) << report();
-  EXPECT_EQ(count(report(), "<table"), 8u);
+  EXPECT_EQ(count(report(), "<table"), 10u);
   EXPECT_EQ(count(report(), "<figure id=\"plot-"), kMetricCount + 2);
   EXPECT_NE(report().find("SYNTHETIC DATA OF A TEST, NOT MEASURED"), std::string::npos);
   EXPECT_NE(report().find("<strong>32 of 32</strong>"), std::string::npos);

@@ -42,6 +42,30 @@ std::optional<double> spearman_rho(std::span<const double> a, std::span<const do
   return products / std::sqrt(squares_a * squares_b);
 }
 
+std::optional<double> spearman_p(std::span<const double> a, std::span<const double> b) {
+  constexpr std::size_t kMany = 9;
+  const std::optional<double> rho = spearman_rho(a, b);
+  if (!rho || a.size() > kMany) return std::nullopt;
+  const std::vector<double> fixed = ranks(a);
+  std::vector<double> moved = ranks(b);
+  std::sort(moved.begin(), moved.end());
+  const double mean = (static_cast<double>(a.size()) + 1) / 2;
+  double own = 0;
+  const std::vector<double> present = ranks(b);
+  for (std::size_t i = 0; i < fixed.size(); ++i) own += (fixed[i] - mean) * (present[i] - mean);
+  // Orders of equal ranks are all visited once, which leaves the share as it is.
+  double orders = 0;
+  double as_far = 0;
+  do {
+    double products = 0;
+    for (std::size_t i = 0; i < fixed.size(); ++i)
+      products += (fixed[i] - mean) * (moved[i] - mean);
+    orders += 1;
+    as_far += std::abs(products) >= std::abs(own) - 1e-9 ? 1 : 0;
+  } while (std::next_permutation(moved.begin(), moved.end()));
+  return as_far / orders;
+}
+
 std::optional<double> kendall_tau(std::span<const double> a, std::span<const double> b) {
   CULPRIT_ASSERT(a.size() == b.size());
   double balance = 0;

@@ -17,4 +17,8 @@ namespace culprit::study {
 std::optional<double> spearman_rho(std::span<const double> a, std::span<const double> b);
 std::optional<double> kendall_tau(std::span<const double> a, std::span<const double> b);
 
+// The share of all orders of `b` whose |rho| is at least as large as that of `a` and `b`: the exact
+// two-sided p of no relation. Empty as rho is, and for more than nine. @pre as many of either
+std::optional<double> spearman_p(std::span<const double> a, std::span<const double> b);
+
 }  // namespace culprit::study

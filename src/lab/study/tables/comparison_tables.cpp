@@ -6,6 +6,7 @@
 
 #include "base/invariant.h"
 #include "study/statistics/welch.h"
+#include "study/tables/claims_tables.h"
 #include "study/tables/columns.h"
 #include "study/tables/study_tables.h"
 
@@ -117,12 +118,6 @@ const Row* model_of(const Row& row, const CampaignResult& result) {
   return result.find(model);
 }
 
-// Their standard deviations are the population's.
-Moments published_moments(const published::MeanSd& value) {
-  const double n = published::kRuns;
-  return Moments::of_summary(value.mean, value.sd * std::sqrt(n / (n - 1)), published::kRuns);
-}
-
 std::string difference(const std::optional<WelchTest>& test) {
   return test ? stated(test->p) : "–";
 }
@@ -135,8 +130,8 @@ std::vector<Cell> welch_row(const Row& ideal, const Row& misspecified) {
     cells.push_back(
         {difference(welch_test(ideal[metric].moments(), misspecified[metric].moments()))});
     const bool is_count_known = metric != Metric::kReaction;
-    cells.push_back({is_count_known ? difference(welch_test(published_moments(theirs[0].values[i]),
-                                                            published_moments(theirs[1].values[i])))
+    cells.push_back({is_count_known ? difference(welch_test(published::sample(theirs[0].values[i]),
+                                                            published::sample(theirs[1].values[i])))
                                     : "–"});
   }
   return cells;
@@ -255,7 +250,8 @@ std::vector<Table> tables(const Findings& findings) {
     tables.push_back(honest_table(result));
     tables.push_back(root_cause_table(result));
   }
-  for (const Ablation& ablation : ablations(result)) {
+  const std::vector<Ablation> compared = ablations(result);
+  for (const Ablation& ablation : compared) {
     tables.push_back(comparison_table(ablation));
     tables.push_back(effects_table(ablation));
   }
@@ -269,6 +265,10 @@ std::vector<Table> tables(const Findings& findings) {
     if (const Row* beside = result.find(ideal)) tables.push_back(robustness_table(*beside, row));
   }
   if (!findings.learning.empty()) tables.push_back(learning_table(findings.learning));
+  if (!compared.empty()) {
+    tables.push_back(order_table(compared));
+    tables.push_back(claims_table(findings, compared));
+  }
   return tables;
 }
 

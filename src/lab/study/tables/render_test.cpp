@@ -110,9 +110,10 @@ TEST(Tables, OfAStudyAreAllThere) {
     ids.push_back(table.id);
     for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.columns.size()) << table.id;
   }
-  EXPECT_EQ(
-      ids, (std::vector<std::string>{"ablation", "honest", "root-causes", "comparison-paper-paper",
-                                     "effects-paper-paper", "robustness-paper-paper", "learning"}));
+  EXPECT_EQ(ids,
+            (std::vector<std::string>{"ablation", "honest", "root-causes", "comparison-paper-paper",
+                                      "effects-paper-paper", "robustness-paper-paper", "learning",
+                                      "order", "claims"}));
   EXPECT_TRUE(tables({}).empty());
 }
 

@@ -119,13 +119,17 @@ Table learning_table(const std::vector<LearningCurve>& curves) {
                {"", "strategy", "", "", Align::kLeft},
                {"", "executed"},
                {"", "learned from"},
+               {"not learned from", "outage"},
+               {"not learned from", "repair beside"},
+               {"not learned from", "run over"},
                {"", "initial P", "", "Initial $P_s$"},
                {"", "learned P", "", "Learned $P_s$"},
                {"", "true rate"},
                {"", "error"},
                {"", "of it the prior"},
                {"", "standard error"},
-               {"", "true rate of all executed"}},
+               {"all executed", "cleared"},
+               {"all executed", "true rate"}},
               {},
               {}};
   for (const LearningCurve& curve : curves) {
@@ -140,12 +144,16 @@ Table learning_table(const std::vector<LearningCurve>& curves) {
                           {curve.strategy},
                           {number(curve.executed, 0)},
                           {number(curve.counted, 0)},
+                          {number(curve.hidden, 0)},
+                          {number(curve.beside, 0)},
+                          {number(curve.undecided, 0)},
                           {number(curve.initial)},
                           {learned},
                           {number(curve.truth)},
                           {last.count() == 0 ? "–" : number(curve.error())},
                           {last.count() == 0 ? "–" : number(curve.error_of_prior())},
                           {curve.counted == 0 ? "–" : number(curve.standard_error())},
+                          {number(curve.verdicts)},
                           {number(curve.truth_of_all)}});
   }
   table.notes.push_back(fmt::format(
@@ -155,8 +163,11 @@ Table learning_table(const std::vector<LearningCurve>& curves) {
   table.notes.push_back(
       "The true rate is how often a strategy ends the fault, of the times that it was learned "
       "from; last, of all. Of the error, what is left of the initial P, which weighs as much as "
-      "c_p "
-      "outcomes; and the standard error of as many outcomes as one series learns from.");
+      "c_p outcomes; and the standard error of as many outcomes as one series learns from.");
+  table.notes.push_back(
+      "Not learned from: an outage may have hidden the outcome; another repair can have had the "
+      "same effect, or nothing was changed; the run ended first. Cleared: the share of all "
+      "executions after which the failure was gone, which counts what others did.");
   return table;
 }
 

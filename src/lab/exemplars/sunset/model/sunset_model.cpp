@@ -49,7 +49,11 @@ std::vector<SunsetModel::Injection> SunsetModel::inject(const Scenario& scenario
   const simulation::Span race{{}, profile_.injection_jitter};
   std::vector<Injection> injections;
   for (const Fault* fault : scenario.faults) {
-    injections.push_back({later(begin, race.draw(random_)), fault});
+    const Time at = later(begin, race.draw(random_));
+    const bool is_there = std::any_of(injections.begin(), injections.end(),
+                                      [&](const Injection& each) { return each.fault == fault; });
+    if (is_there) continue;  // named again, it would come back after its repair
+    injections.push_back({at, fault});
     // The exemplar's faults are parameters that its nodes have.
     (void)simulation::inject(world_,
                              {injections.back().at, sunset::node_of(fault->member).full(),

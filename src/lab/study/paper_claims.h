@@ -1,0 +1,36 @@
+// Every claim of the paper's evaluation on SUNSET that its runs can test, judged on ours.
+//
+// Bounds, stated before any run: two means are alike if they differ by less than half of the
+// paper's standard deviation in that configuration. A learned rate is right within 0.1.
+//
+// The paper does not print how many reaction times it pooled. They count as one a run, which
+// understates how many there were.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "study/claim.h"
+#include "study/comparison.h"
+#include "study/findings.h"
+
+namespace culprit::study {
+
+// Judged. Claims on robustness and learning are there if `findings` has the runs for them.
+std::vector<Claim> paper_claims(const Findings& findings, const Ablation& ablation);
+
+// Do the eight configurations come in the paper's order?
+struct OrderAgreement {
+  Metric metric = Metric::kRatio;
+  // The pairs, of 28, that differ significantly in the paper (Tukey's HSD on its summaries), and the
+  // number of them that we order the same way.
+  int pairs = 0;
+  int same = 0;
+  std::optional<double> spearman_rho;
+  std::optional<double> p;  // of rho, two-sided, over all permutations
+};
+
+// For each published metric.
+std::vector<OrderAgreement> order_agreement(const Ablation& ablation);
+
+}  // namespace culprit::study

@@ -1,0 +1,60 @@
+#include "study/paper_claims.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "study/tables/claims_tables.h"
+#include "study/test_findings.h"
+
+namespace culprit::study {
+namespace {
+
+const Claim& named(const std::vector<Claim>& claims, std::string_view text) {
+  return *std::find_if(claims.begin(), claims.end(),
+                       [&](const Claim& claim) { return claim.text == text; });
+}
+
+// Drawn around the paper's means, all that its means say must be found again.
+TEST(PaperClaims, HoldForDataAsThePaperPrintsIt) {
+  const Findings findings = synthetic_findings(800);
+  const std::vector<Ablation> compared = ablations(findings.campaign);
+  const std::vector<Claim> claims = paper_claims(findings, compared.front());
+  for (const char* text :
+       {"means of resolved / executed", "means of downtime [s]", "D and C: highest ratio",
+        "D, C and S: next highest ratio", "D raises the ratio where C is on",
+        "C delays reactions where only D is on", "S spares redeployments everywhere",
+        "S lowers the ratio of D and C", "S shortens reactions where C is on",
+        "P off by 20 % changes nothing"})
+    EXPECT_EQ(named(claims, text).verdict, Verdict::kHolds) << text;
+  EXPECT_EQ(
+      std::count_if(claims.begin(), claims.end(),
+                    [](const Claim& claim) { return claim.verdict == Verdict::kContradicted; }),
+      0);
+}
+
+TEST(PaperClaims, ComeWithTheOrderOfTheConfigurations) {
+  const CampaignResult result = synthetic_result(800);
+  const std::vector<OrderAgreement> all = order_agreement(ablations(result).front());
+  ASSERT_EQ(all.size(), kPublishedMetrics.size());
+  for (const OrderAgreement& each : all) {
+    EXPECT_GT(each.pairs, 0);
+    EXPECT_EQ(each.same, each.pairs);
+    EXPECT_GT(*each.spearman_rho, 0.8);
+    EXPECT_LT(*each.p, 0.05);
+  }
+}
+
+TEST(PaperClaims, StandSideBySideForSeveralPlanners) {
+  Findings findings = synthetic_findings(20);
+  const Ablation one = ablations(findings.campaign).front();
+  Ablation other = one;
+  other.planner = "reference";
+  const Table table = claims_table(findings, {one, other});
+  EXPECT_EQ(table.columns.size(), 8u);
+  for (const auto& row : table.rows) EXPECT_EQ(row.size(), 8u);
+  EXPECT_EQ(table.rows.back()[5].text, "–") << "the reference planner did not learn";
+}
+
+}  // namespace
+}  // namespace culprit::study

@@ -1,0 +1,112 @@
+#include "study/tables/claims_tables.h"
+
+#include <algorithm>
+
+#include <fmt/core.h>
+
+#include "study/paper_claims.h"
+#include "study/tables/columns.h"
+
+namespace culprit::study {
+namespace {
+
+std::string verdict_text(const Claim& claim) {
+  switch (claim.verdict) {
+    case Verdict::kHolds:
+      return "holds";
+    case Verdict::kContradicted:
+      return "contradicted";
+    case Verdict::kOpen:
+      break;
+  }
+  return "open";
+}
+
+// The planner, and its profile if not all have the same.
+std::string group_of(const Ablation& ablation, const std::vector<Ablation>& all) {
+  const bool is_one_profile = std::all_of(all.begin(), all.end(), [&](const Ablation& each) {
+    return each.profile == ablation.profile;
+  });
+  return is_one_profile ? ablation.planner : played(ablation.planner, ablation.profile);
+}
+
+}  // namespace
+
+void add_claim_cells(std::vector<Cell>& cells, const Claim& claim) {
+  const bool is_against = claim.verdict == Verdict::kContradicted;
+  const std::string parts =
+      claim.parts.size() == 1 ? "" : fmt::format("{}/{}: ", claim.supported(), claim.parts.size());
+  cells.push_back({parts + claim.decisive().shown});
+  cells.push_back({p_value(is_against ? claim.p_against : claim.p)});
+  cells.push_back({verdict_text(claim)});
+}
+
+std::vector<Column> claim_columns(const std::string& group) {
+  return {{group, "ours", "", "", Align::kLeft},
+          {group, "p"},
+          {group, "verdict", "", "", Align::kLeft}};
+}
+
+std::vector<std::string> claim_notes() {
+  return {
+      "k/n: parts of the claim that are significant by themselves, and the deciding part: the "
+      "weakest, or the strongest against the claim. g: Hedges' effect size.",
+      "p by Holm over the table, against the claim where it is contradicted. Open: neither is "
+      "significant at 5 %."};
+}
+
+Table claims_table(const Findings& findings, const std::vector<Ablation>& ablations) {
+  Table table{"claims",
+              "Claims of the paper on SUNSET",
+              {{"", "claim", "", "", Align::kLeft}, {"", "test", "", "", Align::kLeft}},
+              {},
+              claim_notes()};
+  for (const Ablation& ablation : ablations) {
+    for (Column& column : claim_columns(group_of(ablation, ablations)))
+      table.columns.push_back(std::move(column));
+    const std::vector<Claim> claims = paper_claims(findings, ablation);
+    for (const Claim& claim : claims) {
+      auto row = std::find_if(table.rows.begin(), table.rows.end(),
+                              [&](const auto& cells) { return cells.front().text == claim.text; });
+      if (row == table.rows.end()) {
+        std::vector<Cell> cells = {{claim.text}, {claim.test}};
+        cells.resize(table.columns.size() - 3, {"–"});
+        row = table.rows.insert(table.rows.end(), std::move(cells));
+      }
+      add_claim_cells(*row, claim);
+    }
+    for (auto& cells : table.rows) cells.resize(table.columns.size(), {"–"});
+  }
+  table.notes.push_back(
+      "TOST: two means are alike if they differ by less than half of the paper's sd. Reaction "
+      "times of one run are not independent.");
+  return table;
+}
+
+Table order_table(const std::vector<Ablation>& ablations) {
+  Table table{"order",
+              "Order of the eight configurations beside the paper's",
+              {{"", "metric", "", "", Align::kLeft}, {"", "pairs that differ in the paper"}},
+              {},
+              {"Pairs of the 28 that differ significantly in the paper (Tukey's HSD on its "
+               "summaries), and how many of them ours order the same way. Spearman's rho over all "
+               "eight, with its exact p."}};
+  for (const Ablation& ablation : ablations) {
+    const std::string group = group_of(ablation, ablations);
+    for (const char* title : {"same order", "rho", "p"}) table.columns.push_back({group, title});
+    const auto agreements = order_agreement(ablation);
+    for (std::size_t i = 0; i < agreements.size(); ++i) {
+      const OrderAgreement& agreement = agreements[i];
+      if (table.rows.size() == i) {
+        table.rows.push_back(
+            {{std::string(traits(agreement.metric).title)}, {fmt::format("{}", agreement.pairs)}});
+      }
+      table.rows[i].push_back({fmt::format("{}", agreement.same)});
+      table.rows[i].push_back({agreement.spearman_rho ? number(*agreement.spearman_rho) : "–"});
+      table.rows[i].push_back({agreement.p ? p_value(*agreement.p) : "–"});
+    }
+  }
+  return table;
+}
+
+}  // namespace culprit::study
