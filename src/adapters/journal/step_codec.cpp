@@ -38,7 +38,8 @@ enum class Tag : std::uint8_t {
   kUsageSeen = 31,
   kStartBarred = 32,
   kPublisherKnown = 33,
-  kGoalsSeen = 34
+  kGoalsSeen = 34,
+  kLogSeen = 35
 };
 
 enum class OrderTag : std::uint8_t {
@@ -186,6 +187,11 @@ class Encoder {
       out_.natural(goal.id);
       word(goal.status);
     }
+  }
+  void write(const LogSeen& o, Duration age) {
+    head(Tag::kLogSeen, age);
+    out_.natural(o.component.index);
+    word(o.level);
   }
   void write(const HostReached& o, Duration age) {
     head(Tag::kHostReached, age);
@@ -458,6 +464,10 @@ class Decoder {
           seen.goals.push_back({goal, GoalStatus(in_.byte() % 7)});
         }
         return seen;
+      }
+      case Tag::kLogSeen: {
+        const auto component = id<ComponentId>(rules_.components.size());
+        return LogSeen{component, log_level(in_.byte())};
       }
       case Tag::kHostReached: {
         const auto component = id<ComponentId>(rules_.components.size());
