@@ -237,13 +237,6 @@ void BagReading::read_log(const ros2::msg::Log& log) {
     if (logger == loggers_.end()) continue;
     return count_log(node_seen(logger->second), log);
   }
-  // A component without a NODE may be in any namespace.
-  std::string node = "/" + log.name;
-  std::replace(node.begin(), node.end(), '.', '/');
-  if (const auto component = binding_.bind(node)) {
-    node_seen(node);
-    count_log(component, log);
-  }
 }
 
 void BagReading::count_log(std::optional<ComponentId> component, const ros2::msg::Log& log) {
