@@ -235,7 +235,7 @@ struct Plot {
   std::set<double> limits{};
 };
 
-// What of the inputs can be drawn, each once.
+// The inputs that can be drawn, each once.
 std::vector<Plot> plots_of(const RuleSet& rules) {
   std::vector<Plot> plots;
   const auto add = [&](const std::string& topic, const std::string& title, const Input& input,

@@ -1,4 +1,4 @@
-// What rules see in a recording, for Foxglove: an MCAP file that is opened beside the recording, and a layout for both.
+// A recording as rules see it, for Foxglove: an MCAP file that is opened beside the recording, and a layout for both.
 //
 // All messages are JSON with a schema, at the times at which the recorder wrote what caused them:
 //
