@@ -229,18 +229,18 @@ Json stacked(const std::vector<std::string>& panels, std::size_t from = 0) {
           {"splitPercentage", 100.0 / static_cast<double>(panels.size() - from)}};
 }
 
-struct Plot {
+struct LayoutPlot {
   std::string topic;
   std::string title;
   std::set<double> limits{};
 };
 
 // The inputs that can be drawn, each once.
-std::vector<Plot> plots_of(const RuleSet& rules) {
-  std::vector<Plot> plots;
+std::vector<LayoutPlot> plots_of(const RuleSet& rules) {
+  std::vector<LayoutPlot> plots;
   const auto add = [&](const std::string& topic, const std::string& title, const Input& input,
                        bool is_limited) {
-    auto found = std::ranges::find(plots, topic, &Plot::topic);
+    auto found = std::ranges::find(plots, topic, &LayoutPlot::topic);
     if (found == plots.end()) found = plots.insert(plots.end(), {topic, title});
     if (is_limited) found->limits.insert(input.thresholds.begin(), input.thresholds.end());
   };
@@ -307,7 +307,7 @@ std::string foxglove_layout(const RuleSet& rules) {
     states.push_back(path(topic_of("rules", rule.name) + ".state", rule.name));
   left.push_back(place("StateTransitions", 1, {{"paths", std::move(states)}, {"isSynced", true}}));
   std::size_t number = 0;
-  for (const Plot& plot : plots_of(rules)) {
+  for (const LayoutPlot& plot : plots_of(rules)) {
     if (number >= kMostPlots) break;
     Json paths{path(plot.topic + ".value", plot.title)};
     // A number by itself is a line across the plot.
