@@ -16,6 +16,7 @@
 #include "cli/commands.h"
 #include "cli/load_rules.h"
 #include "incident_reports/bag_page.h"
+#include "incident_reports/foxglove.h"
 #include "knowledge/describe.h"
 #include "replay/bag_replay.h"
 #include "terminal/console.h"
@@ -179,6 +180,17 @@ Expected<void> write_page(const BagReplayOptions& options, const RuleSet& rules)
   return write_text(options.html, *page);
 }
 
+Expected<void> write_mcap(const BagReplayOptions& options, const RuleSet& rules) {
+  const auto written = incident_reports::write_foxglove(
+      rules, options.planner.planner(),
+      {options.bag,
+       ros2::message_directories(options.message_path, environment("AMENT_PREFIX_PATH")),
+       options.mcap});
+  if (!written) return Error{written.error()};
+  return write_text(incident_reports::layout_beside(options.mcap).string(),
+                    incident_reports::foxglove_layout(rules));
+}
+
 int bag_exit_code(const BagReplayOptions& options, const std::vector<RuleOutcome>& outcomes,
                   const RuleSet& rules, bool is_whole) {
   if (options.fail_on == "never") return kOk;
@@ -229,6 +241,9 @@ int replay_bag(const BagReplayOptions& options) {
   output.finish(replay, *bag, reading);
   if (!options.html.empty()) {
     if (const auto written = write_page(options, *rules); !written) return fail(written.error());
+  }
+  if (!options.mcap.empty()) {
+    if (const auto written = write_mcap(options, *rules); !written) return fail(written.error());
   }
   const bool is_whole = bag->contents().losses().empty() && reading.undecoded().empty();
   return bag_exit_code(options, replay.outcomes(), *rules, is_whole);

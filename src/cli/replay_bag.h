@@ -18,6 +18,7 @@ struct BagReplayOptions {
   std::string fail_on;  // "error", "warning", "unjudged", "never"; empty: what cannot be read
   PlannerOptions planner;
   std::string html{};  // also as a page, in this file; empty: none
+  std::string mcap{};  // likewise for Foxglove, with its layout beside it
 };
 
 // Prints what happens, and a line for each rule; gives the exit code.

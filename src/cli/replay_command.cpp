@@ -31,6 +31,7 @@ struct ReplayOptions {
   bool json = false;
   std::string fail_on;
   std::string html;  // of a bag: the file of its page
+  std::string mcap;  // likewise for Foxglove
   std::vector<std::filesystem::path> message_path;
   PlannerOptions planner;
 };
@@ -266,7 +267,7 @@ int replay_recording(const ReplayOptions& options) {
     return fail("'" + options.journal + "' is a bag, which has no rules: add --rules my.rules",
                 kUsage);
   return replay_bag({options.journal, options.rules, options.message_path, options.since,
-                     options.json, options.fail_on, options.planner, options.html});
+                     options.json, options.fail_on, options.planner, options.html, options.mcap});
 }
 
 int replay_any(const ReplayOptions& options, bool other_planner) {
@@ -276,6 +277,7 @@ int replay_any(const ReplayOptions& options, bool other_planner) {
   if (!options.message_path.empty()) return fail("--message-path is for a bag", kUsage);
   if (!options.html.empty())
     return fail("--html is for a bag; culprit incident ID -o FILE writes one of a journal", kUsage);
+  if (!options.mcap.empty()) return fail("--mcap is for a bag", kUsage);
   if (!options.fail_on.empty()) return fail("--fail-on is for a bag", kUsage);
   const auto journal = journal::Reader::open(options.journal);
   if (!journal) return fail(journal.error());
@@ -312,6 +314,10 @@ void add_replay(CLI::App& app, int& exit_code) {
   command
       ->add_option("--html", options->html,
                    "For a bag: also write a page of its incidents and curves to this file")
+      ->type_name("FILE");
+  command
+      ->add_option("--mcap", options->mcap,
+                   "For a bag: also write events, rules and signals for Foxglove, and a layout")
       ->type_name("FILE");
   command
       ->add_option("--fail-on", options->fail_on,

@@ -46,6 +46,7 @@ std::vector<ComponentId> read_by(const Rule& rule, const RuleSet& rules) {
       case Input::Kind::kLifecycle:
       case Input::Kind::kCpu:
       case Input::Kind::kMemory:
+      case Input::Kind::kLogs:
         all.push_back(input.component);
         break;
       case Input::Kind::kParameter:

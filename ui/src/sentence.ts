@@ -16,6 +16,7 @@ export const kKinds = {
   parameter: 'a parameter of a component',
   level: 'the level of a diagnostic',
   goals: 'how many goals of an action ended within',
+  logs: 'how many lines a component logs within',
   goalAge: 'how long a goal of an action takes',
   cpu: 'the cores that a component uses',
   memory: 'the memory that a component uses, in MiB',
@@ -43,8 +44,8 @@ export const kComparisons: Record<string, string> = {
   '==': 'is',
   '!=': 'is not',
 }
-export const kCompared: Kind[] = ['state', 'value', 'mean', 'least', 'most', 'spread', 'parameter', 'level', 'goals', 'goalAge', 'cpu', 'memory']
-export const kWindows: Kind[] = ['mean', 'least', 'most', 'spread', 'frozen', 'goals']
+export const kCompared: Kind[] = ['state', 'value', 'mean', 'least', 'most', 'spread', 'parameter', 'level', 'goals', 'goalAge', 'logs', 'cpu', 'memory']
+export const kWindows: Kind[] = ['mean', 'least', 'most', 'spread', 'frozen', 'goals', 'logs']
 const kFunctions: Partial<Record<Kind, string>> = { mean: 'mean', least: 'min', most: 'max', spread: 'stddev' }
 
 const overWindow = ({ kind, name, how, value, second }: Clause) => `${kFunctions[kind]}(${name}, ${second}) ${how} ${value}`
@@ -61,6 +62,7 @@ const kWritten: Record<Kind, (c: Clause) => string> = {
   spread: overWindow,
   frozen: ({ name, second }) => `frozen(${name}, ${second})`,
   goals: ({ name, how, value, second }) => `goals(${name}, ${second.replace(' in ', ', ')}) ${how} ${value}`,
+  logs: ({ name, how, value, second }) => `logs(${name}, ${second.replace(' in ', ', ')}) ${how} ${value}`,
   goalAge: ({ name, how, value }) => `goal_age(${name}) ${how} ${value}`,
   cpu: ({ name, how, value }) => `cpu(${name}) ${how} ${value}`,
   memory: ({ name, how, value }) => `memory(${name}) ${how} ${value}`,
@@ -89,6 +91,7 @@ const kForms = (
     ['spread', `stddev\\(${kWord}, ${kSecond}\\) ${kHow} ${kValue}`],
     ['frozen', `frozen\\(${kWord}, ${kSecond}\\)`],
     ['goals', `goals\\(${kName}, (?<second>\\w+, [\\d.]+[a-z]+)\\) ${kHow} ${kValue}`],
+    ['logs', `logs\\(${kWord}, (?<second>\\w+, [\\d.]+[a-z]+)\\) ${kHow} ${kValue}`],
     ['goalAge', `goal_age\\(${kName}\\) ${kHow} ${kValue}`],
     ['cpu', `cpu\\(${kWord}\\) ${kHow} ${kValue}`],
     ['memory', `memory\\(${kWord}\\) ${kHow} ${kValue}`],
@@ -104,7 +107,7 @@ const kEmpty = { name: '', how: '', value: '', second: '' }
 function clauseOf(text: string): Clause {
   for (const [kind, form] of kForms) {
     const groups = form.exec(text)?.groups
-    if (groups) return { kind, name: groups.name, how: groups.how ?? '', value: groups.value ?? '', second: kind === 'goals' ? groups.second.replace(', ', ' in ') : (groups.second ?? '') }
+    if (groups) return { kind, name: groups.name, how: groups.how ?? '', value: groups.value ?? '', second: kind === 'goals' || kind === 'logs' ? groups.second.replace(', ', ' in ') : (groups.second ?? '') }
   }
   return { ...kEmpty, kind: 'text', value: text }
 }
@@ -156,6 +159,7 @@ const kUsual: Partial<Record<Kind, Partial<Clause>>> = {
   frozen: { second: '2s' },
   goals: { how: '>=', value: '2', second: 'aborted in 60s' },
   goalAge: { how: '>', value: '5min' },
+  logs: { how: '>=', value: '3', second: 'ERROR in 10s' },
   cpu: { how: '>', value: '0.9' },
   memory: { how: '>', value: '1000' },
   parameter: { how: '==', value: '0', second: 'my_parameter' },

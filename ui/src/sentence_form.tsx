@@ -13,7 +13,7 @@ const kStates = ['unconfigured', 'inactive', 'active', 'finalized']
 type About = 'topics' | 'components' | 'signals' | 'diagnostics' | 'actions' | ''
 const kAbout: Record<Kind, About> = {
   silent: 'topics', slow: 'topics', odd: 'topics', dead: 'components', state: 'components', parameter: 'components', level: 'diagnostics',
-  value: 'signals', mean: 'signals', least: 'signals', most: 'signals', spread: 'signals', frozen: 'signals', changed: 'signals', goals: 'actions', goalAge: 'actions', cpu: 'components', memory: 'components', text: '',
+  value: 'signals', mean: 'signals', least: 'signals', most: 'signals', spread: 'signals', frozen: 'signals', changed: 'signals', goals: 'actions', goalAge: 'actions', logs: 'components', cpu: 'components', memory: 'components', text: '',
 }
 const kStandIns: Record<About, string> = { topics: '/topic', components: 'my_node', signals: 'my_signal', diagnostics: 'my_status', actions: '/my_action', '': '' }
 
@@ -98,7 +98,7 @@ function ClauseForm({ document, clause, word, take, remove }: ClauseProps) {
           <option value={each}>{words}</option>
         ))}
       </select>
-      {kWindows.includes(kind) && <Typed label={kind === 'goals' ? 'how they ended, in how long' : 'over how long'} class="amount" value={second} take={(entered) => take({ ...clause, second: entered })} />}
+      {kWindows.includes(kind) && <Typed label={kind === 'goals' ? 'how they ended, in how long' : kind === 'logs' ? 'from which level on, in how long' : 'over how long'} class="amount" value={second} take={(entered) => take({ ...clause, second: entered })} />}
       {about !== '' && <Typed label="its name" value={name} list={about} take={(entered) => take({ ...clause, name: entered })} />}
       {kind === 'parameter' && (
         <Typed label="which parameter" value={second} list={`parameters of ${name}`} take={(entered) => take({ ...clause, second: entered })} />

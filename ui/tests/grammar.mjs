@@ -49,7 +49,7 @@ ADAPTATION slam redeploy 10
 
 RULE Changed
 POLICIES OK REPORT
-TRIGGER changed(heat) && heat > 80 && frozen(heat, 2s) && cpu(arm) > 1.5 && memory(arm) >= 800 && goals(/go, aborted, 60s) >= 2 && goal_age(/go) > 5min
+TRIGGER changed(heat) && heat > 80 && frozen(heat, 2s) && cpu(arm) > 1.5 && memory(arm) >= 800 && goals(/go, aborted, 60s) >= 2 && goal_age(/go) > 5min && logs(arm, ERROR, 10s) >= 3
 
 RULE Level
 POLICIES DEGRADED
@@ -229,6 +229,7 @@ export async function writesEveryRow() {
     await clause(rule, 4, 'memory', { [name]: 'arm', 'how it compares': '>=', [much]: '800' })
     await clause(rule, 5, 'goals', { 'how they ended, in how long': 'aborted in 60s', [name]: '/go', 'how it compares': '>=', [much]: '2' })
     await clause(rule, 6, 'goalAge', { [name]: '/go', 'how it compares': '>', [much]: '5min' })
+    await clause(rule, 7, 'logs', { 'from which level on, in how long': 'ERROR in 10s', [name]: 'arm', 'how it compares': '>=', [much]: '3' })
     rule = await newRule('Level', 'DEGRADED')
     await clause(rule, 0, 'level', { [name]: 'motor', 'how it compares': '>=', [much]: '2' })
     await clause(rule, 1, 'parameter', { [name]: 'eye', 'which parameter': 'exposure', 'how it compares': '==', [much]: '7' })

@@ -19,6 +19,8 @@ std::size_t BagContents::place_of(BagTopic topic) {
 
 void BagContents::define(std::string_view type, std::string_view text) {
   constexpr std::size_t kMostBytes = std::size_t{64} << 20;  // of all definitions
+  // Recorders that do not find the definition of a type write an empty one.
+  if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) return;
   if (text.size() > kMostBytes - definition_bytes_) return;
   const bool is_new = definitions_.try_emplace(std::string(type), text).second;
   if (is_new) definition_bytes_ += text.size();

@@ -42,7 +42,8 @@ class BagContents {
   std::size_t place_of(BagTopic topic);
   const std::vector<BagTopic>& topics() const { return topics_; }
 
-  // The recorder's definition of a message type (ros2::MessageLibrary::learn). The first one counts.
+  // The recorder's definition of a message type (ros2::MessageLibrary::learn). The first one counts, an
+  // empty one does not.
   void define(std::string_view type, std::string_view text);
   // Null if the bag has none.
   const std::string* definition_of(const std::string& type) const;

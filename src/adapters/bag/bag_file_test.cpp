@@ -310,7 +310,7 @@ TEST_F(BagTest, MetadataSaysWhichPartsBelong) {
   test::write_db3(folder_ / "z_first.db3", part(0, 100));
   test::write_db3(folder_ / "a_last.db3", part(200, 300));
   test::write_db3(folder_ / "old.db3", part(0, 300));
-  test::write_metadata(folder_, {"z_first.db3", "middle.db3", "a_last.db3"}, 300);
+  test::write_metadata(folder_, {"z_first.db3", "middle.db3", "a_last.db3", "a_last.db3"}, 300);
   BagFile bag = value_of(BagFile::open(folder_));
   std::vector<std::int64_t> after_holes;
   std::size_t count = 0;
@@ -343,6 +343,16 @@ TEST_F(BagTest, ATopicMayChangeItsType) {
   EXPECT_THAT(all.messages, ElementsAre("/x@1=u", "/x@2=v"));
   const BagFile bag = value_of(BagFile::open(folder_ / "a.mcap"));
   EXPECT_EQ(bag.contents().topics().size(), 2u);
+}
+
+// Recorders that do not find the definition of a type write an empty one.
+TEST_F(BagTest, AnEmptyDefinitionIsNone) {
+  write(
+      "bag.mcap",
+      mcap(schema(1, "std_msgs/msg/String", " \n") + channel(1, 1, "/a") + message(1, 5, kCdr), 1));
+  BagFile bag = value_of(BagFile::open(folder_ / "bag.mcap"));
+  for (BagMessage each; bag.next(each);) continue;
+  EXPECT_EQ(bag.contents().definition_of("std_msgs/msg/String"), nullptr);
 }
 
 TEST_F(BagTest, ADatabaseThatWasCutOffIsReadAsFarAsItGoes) {

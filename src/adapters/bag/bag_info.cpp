@@ -65,7 +65,7 @@ void BagInfo::add(const BagMessage& message) {
   if (++info.undecoded == 1)
     info.why_undecoded = fit == ros2::PayloadFit::kTooLong
                              ? "messages are longer than their definition"
-                             : "messages are cut short, of another type, or in XCDR2";
+                             : "messages are cut short, or of another type";
 }
 
 std::vector<TopicInfo> BagInfo::topics() {

@@ -128,6 +128,7 @@ void order_by_metadata(const fs::path& folder, const Metadata& metadata,
       is_after_missing = true;
       continue;
     }
+    if (std::ranges::find(used, uncompressed_name(*path)) != used.end()) continue;
     BagPart part = part_at(*path);
     part.is_after_missing = is_after_missing;
     is_after_missing = false;

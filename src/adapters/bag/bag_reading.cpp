@@ -37,11 +37,6 @@ Lifecycle lifecycle_from(const std::string& label) {
   return Lifecycle::kTransition;
 }
 
-// The kinds of encapsulation that XCDR2 has (DDS-XTypes 1.3, 7.6.3.1.2, and as Cyclone DDS and Fast DDS count them).
-bool is_xcdr2(ros2::ByteView payload) {
-  return payload.size() >= 2 && payload[0] == 0 && payload[1] >= 0x06;
-}
-
 std::string counted(std::uint64_t count, const char* what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
@@ -59,7 +54,8 @@ BagReading::BagReading(const RuleSet& rules, const BagContents& contents,
       levels_(rules.diagnostics.size()),
       components_(rules.components.size()),
       lifecycles_(rules.components.size()),
-      parameters_(rules.parameters.size()) {
+      parameters_(rules.parameters.size()),
+      counted_logs_(ros2::counted_log_levels(rules)) {
   diagnostics_.on_level = [this](DiagnosticId id, std::uint8_t level) {
     levels_[id.index] = true;
     put(DiagnosticRead{id, level});
@@ -76,6 +72,8 @@ BagReading::BagReading(const RuleSet& rules, const BagContents& contents,
     const std::string& declared = binding_.node_of(ComponentId(c));
     const std::string node = declared.empty() ? "/" + rules.components[c].name : declared;
     loggers_.try_emplace(logger_of(node), node);
+    for (const std::string& other : binding_.other_nodes(ComponentId(c)))
+      loggers_.try_emplace(logger_of(other), other);
   }
 }
 
@@ -161,7 +159,7 @@ void BagReading::read(const BagMessage& message, std::vector<Observation>& obser
 bool BagReading::decodes(Plan& plan, const BagTopic& topic, ros2::ByteView payload) {
   const ros2::PayloadFit fit = plan.whole ? plan.whole->fit(payload) : ros2::PayloadFit::kFits;
   if (fit == ros2::PayloadFit::kFits) return true;
-  note_undecoded(plan, topic, payload, fit == ros2::PayloadFit::kTooLong);
+  note_undecoded(plan, topic, fit == ros2::PayloadFit::kTooLong);
   return false;
 }
 
@@ -169,19 +167,17 @@ template <class Message>
 std::optional<Message> BagReading::decoded(Plan& plan, const BagTopic& topic,
                                            ros2::ByteView payload) {
   auto message = ros2::decode<Message>(payload);
-  if (!message && plan.fields.empty()) note_undecoded(plan, topic, payload, false);
+  if (!message && plan.fields.empty()) note_undecoded(plan, topic, false);
   return message;
 }
 
-void BagReading::note_undecoded(Plan& plan, const BagTopic& topic, ros2::ByteView payload,
-                                bool is_longer) {
+void BagReading::note_undecoded(Plan& plan, const BagTopic& topic, bool is_longer) {
   if (++plan.undecoded > 1) return;
   const bool is_described = contents_.definition_of(topic.type) != nullptr;
   plan.why_undecoded =
-      is_xcdr2(payload) ? "they are in XCDR2, not in XCDR1"
-      : is_longer       ? "they do not fit the definition of " + topic.type +
-                        (is_described ? " in the bag" : "; give the recorder's with --message-path")
-                  : "they are cut short, or are not of " + topic.type;
+      is_longer ? "they do not fit the definition of " + topic.type +
+                      (is_described ? " in the bag" : "; give the recorder's with --message-path")
+                : "they are cut short, or are not of " + topic.type;
 }
 
 void BagReading::read_fields(const Plan& plan, ros2::ByteView payload, bool is_decoded) {
@@ -195,11 +191,14 @@ void BagReading::read_fields(const Plan& plan, ros2::ByteView payload, bool is_d
 
 void BagReading::read_signal(SignalId signal, Value value) {
   SignalSeen& seen = signals_[signal.index];
-  if (!seen.was_usable && !is_unreadable(value)) {
+  // A field has one type, so only texts may be usable now and then.
+  const bool may_differ = std::holds_alternative<std::string>(value) && seen.example.empty();
+  if ((!seen.was_usable || may_differ) && !is_unreadable(value)) {
     seen.was_read = true;
     std::string text;
-    seen.was_usable = as_type(value, rules_[signal].type, text).known;
-    if (!seen.was_usable) seen.example = to_string(value);
+    const bool is_usable = as_type(value, rules_[signal].type, text).known;
+    seen.was_usable |= is_usable;
+    if (!is_usable) seen.example = to_string(value);
   }
   put(SignalRead{signal, std::move(value)});
 }
@@ -236,9 +235,14 @@ void BagReading::read_log(const ros2::msg::Log& log) {
        end = log.name.rfind('.', end - 1)) {
     const auto logger = loggers_.find(log.name.substr(0, end));
     if (logger == loggers_.end()) continue;
-    (void)node_seen(logger->second);
-    return;
+    return count_log(node_seen(logger->second), log);
   }
+}
+
+void BagReading::count_log(std::optional<ComponentId> component, const ros2::msg::Log& log) {
+  const auto wanted = component ? counted_logs_[component->index] : std::nullopt;
+  const LogLevel level = log_level(log.level);
+  if (wanted && level >= *wanted) put(LogSeen{*component, level});
 }
 
 std::optional<ComponentId> BagReading::node_seen(const std::string& node) {
@@ -341,10 +345,10 @@ std::string BagReading::why_no_signal(SignalId signal) const {
     if (is_compared_with_text(signal))
       return declared.name + " is a number in the bag, and the rule compares it with a text";
   }
-  if (seen.was_usable) return "";
+  if (seen.was_usable && seen.example.empty()) return "";
   if (seen.was_read)
-    return declared.name + " has values such as " + seen.example +
-           ", which the rule cannot compare";
+    return declared.name + (seen.was_usable ? " also has" : " has") + " values such as " +
+           seen.example + ", which the rule cannot compare";
   if (field != nullptr) {
     for (std::size_t t = 0; t < plans_.size(); ++t) {
       const bool is_it = contents_.topics()[t].name == rules_[field->topic].name;
@@ -378,6 +382,10 @@ std::string BagReading::why_unknown(InputId id) const {
     case Input::Kind::kCpu:
     case Input::Kind::kMemory:
       return describe(input, rules_) + ": a recording does not say what processes use";
+    case Input::Kind::kLogs:
+      return has_type(ros2::msg::Log::kType)
+                 ? why_no_component(input.component)
+                 : describe(input, rules_) + ": no log (/rosout) was recorded";
     case Input::Kind::kAlive:
       return why_no_component(input.component);
     case Input::Kind::kLifecycle:
@@ -396,6 +404,7 @@ std::string BagReading::why_unknown(InputId id) const {
 bool BagReading::is_misread(InputId id) const {
   const Input& input = rules_[id];
   return input.kind == Input::Kind::kLoss ||
+         (input.kind == Input::Kind::kLogs && !has_type(ros2::msg::Log::kType)) ||
          (input.kind == Input::Kind::kSignal && is_compared_with_text(input.signal));
 }
 

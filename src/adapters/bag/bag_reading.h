@@ -17,6 +17,7 @@
 #include "bag/bag_contents.h"
 #include "language/rule_set.h"
 #include "link/diagnostics_reading.h"
+#include "link/log_watch.h"
 #include "robot/component_binding.h"
 #include "robot/observation.h"
 #include "ros2/field_reader.h"
@@ -76,11 +77,12 @@ class BagReading {
   bool decodes(Plan& plan, const BagTopic& topic, ros2::ByteView payload);
   template <class Message>
   std::optional<Message> decoded(Plan& plan, const BagTopic& topic, ros2::ByteView payload);
-  void note_undecoded(Plan& plan, const BagTopic& topic, ros2::ByteView payload, bool is_longer);
+  void note_undecoded(Plan& plan, const BagTopic& topic, bool is_longer);
   void read_fields(const Plan& plan, ros2::ByteView payload, bool is_decoded);
   void read_parameters(const ros2::msg::ParameterEvent& event);
   void read_transition(const std::string& node, const ros2::msg::TransitionEvent& event);
   void read_log(const ros2::msg::Log& log);
+  void count_log(std::optional<ComponentId> component, const ros2::msg::Log& log);
   void read_signal(SignalId signal, Value value);
   std::optional<ComponentId> node_seen(const std::string& node);
   void put(ObservationWhat what);
@@ -104,10 +106,11 @@ class BagReading {
   std::unordered_map<std::string, std::string> loggers_;  // to the nodes of components
   std::vector<Plan> plans_;                               // by topic of the bag
   std::vector<SignalSeen> signals_;
-  std::vector<bool> levels_;                  // by diagnostic: it was read
-  std::vector<bool> components_;              // its node was seen
-  std::vector<bool> lifecycles_;              // its state was read
-  std::vector<bool> parameters_;              // it was read
+  std::vector<bool> levels_;                           // by diagnostic: it was read
+  std::vector<bool> components_;                       // its node was seen
+  std::vector<bool> lifecycles_;                       // its state was read
+  std::vector<bool> parameters_;                       // it was read
+  std::vector<std::optional<LogLevel>> counted_logs_;  // by component: the least that rules count
   std::unordered_set<std::string> statuses_;  // names and hardware ids, of many the first ones
   Time now_{};
   std::int64_t recorded_at_ = 0;

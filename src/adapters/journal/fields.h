@@ -63,6 +63,7 @@ class FieldWriter {
   void word(Enum value, Enum) {
     byte(static_cast<std::uint8_t>(value));
   }
+  void log_level(LogLevel level) { byte(static_cast<std::uint8_t>(level)); }
   void goal_status(GoalStatus status) { byte(static_cast<std::uint8_t>(status)); }
   void lifecycle(Lifecycle state, bool is_shut_down) {
     byte(static_cast<std::uint8_t>(static_cast<std::uint8_t>(state) |
@@ -162,6 +163,7 @@ class FieldReader {
     if (number > static_cast<std::uint8_t>(last)) in_.fail();
     value = number > static_cast<std::uint8_t>(last) ? Enum{} : static_cast<Enum>(number);
   }
+  void log_level(LogLevel& level) { level = culprit::log_level(in_.byte()); }
   void goal_status(GoalStatus& status) { status = GoalStatus(in_.byte() % 7); }
   void lifecycle(Lifecycle& state, bool& is_shut_down) {
     const std::uint8_t both = in_.byte();

@@ -46,7 +46,8 @@ using ObservationKinds = Kinds<
     Kind<20, ParametersListed>, Kind<21, ProcessWorked>, Kind<22, HostReached>, Kind<23, EndsWith>,
     Kind<kProcessSeenWithCause, ProcessSeen>, Kind<25, LauncherSeen>, Kind<26, PriorsTold>,
     Kind<27, LivesOn>, Kind<28, HostHeard>, Kind<29, ListenerKnown>, Kind<30, StartedHere>,
-    Kind<31, UsageSeen>, Kind<32, StartBarred>, Kind<33, PublisherKnown>, Kind<34, GoalsSeen>>;
+    Kind<31, UsageSeen>, Kind<32, StartBarred>, Kind<33, PublisherKnown>, Kind<34, GoalsSeen>,
+    Kind<35, LogSeen>>;
 using OrderKinds =
     Kinds<Kind<1, Pause>, Kind<2, Resume>, Kind<3, SetDryRun>, Kind<4, Approve>, Kind<5, Refuse>,
           Kind<6, Silence>, Kind<7, LiftSilence>, Kind<8, RunStrategy>, Kind<9, Forget>,
@@ -114,6 +115,10 @@ class Fields {
     codec_.id(o.component);
     codec_.real(o.cores);
     codec_.real(o.mib);
+  }
+  void of(Of<LogSeen> o) {
+    codec_.id(o.component);
+    codec_.log_level(o.level);
   }
   void of(Of<GoalsSeen> o) {
     codec_.id(o.topic);

@@ -132,6 +132,7 @@ Link::~Link() {
   hearing_.reset();
   parameter_events_.reset();
   diagnostics_watch_.reset();
+  log_watch_.reset();
   made_clock_ = nullptr;
   clock_.reset();
   watches_.clear();
@@ -193,6 +194,10 @@ Expected<void> Link::start() {
                                [this](const std::string& name) { return binding_.bind(name); });
   if (!watch) return Error{watch.error()};
   diagnostics_watch_ = std::move(*watch);
+  auto log = LogWatch::create(node_->entry(), rules_, inbox_,
+                              [this](const std::string& name) { return binding_.bind(name); });
+  if (!log) return Error{log.error()};
+  log_watch_ = std::move(*log);
   if (auto watched = watch_parameter_events(); !watched) return watched;
   publishing_ = std::make_unique<Timer>(executor_, kPublishPeriod, [this] {
     publish_again();

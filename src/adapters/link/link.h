@@ -26,6 +26,7 @@
 #include "link/component_link.h"
 #include "link/diagnostics_watch.h"
 #include "link/lease_link.h"
+#include "link/log_watch.h"
 #include "link/namesake.h"
 #include "link/neighbour_hosts.h"
 #include "link/process_usage.h"
@@ -195,6 +196,7 @@ class Link {
   bool told_of_no_clock_ = false;
   ClockStep system_clock_;
   std::unique_ptr<DiagnosticsWatch> diagnostics_watch_;
+  std::unique_ptr<LogWatch> log_watch_;
   std::unique_ptr<RawSubscription> parameter_events_;
   std::atomic<int> parameter_events_waiting_ = 0;
   std::map<ComponentId, Time> parameters_asked_;           // because of somebody else's event

@@ -665,6 +665,26 @@ TEST(Link, ReadsTheGoalsOfAnAction) {
   EXPECT_EQ(seen->goals[0].status, GoalStatus::kAborted);
 }
 
+TEST(Link, CountsTheLogOfAComponent) {
+  const TestDomain domain;
+  Robot robot(domain);
+  auto log = robot.publisher<msg::Log>("/rosout");
+  Linked linked(domain, {},
+                "COMPONENT robot NODE /robot\nRULE R\nPOLICIES ERROR REPORT\n"
+                "TRIGGER !alive(robot) || logs(robot, ERROR, 60s) > 3\n");
+  msg::Log line;
+  line.name = "robot.driver";
+  Timer timer(robot.context->executor(), 20ms, [&] {
+    line.level = line.level == 40 ? 30 : 40;
+    log.publish(line);
+  });
+  const auto seen = linked.wait<LogSeen>([](const LogSeen&) { return true; });
+  ASSERT_TRUE(seen);
+  EXPECT_EQ(seen->component, ComponentId(0));
+  EXPECT_FALSE(
+      linked.has_seen<LogSeen>([](const LogSeen& s) { return s.level < LogLevel::kError; }));
+}
+
 TEST(Link, AsksEachNodeOfAProcessAndMeasuresIt) {
   const TestDomain domain;
   Robot robot(domain);

@@ -106,6 +106,8 @@ Rights rights_of(const RuleSet& rules, const NodeName& self) {
     rights.offers.push_back(self.full() + "/" + service);
   for (const Topic& topic : rules.topics) rights.subscribes.push_back(topic.name);
   if (DiagnosticsReading(rules).is_wanted()) rights.subscribes.emplace_back("/diagnostics");
+  const auto counts_logs = [](const Input& input) { return input.kind == Input::Kind::kLogs; };
+  if (std::ranges::any_of(rules.inputs, counts_logs)) rights.subscribes.emplace_back("/rosout");
   if (!rules.parameters.empty()) rights.subscribes.emplace_back("/parameter_events");
   for (std::size_t c = 0; c < rules.components.size(); ++c) add(ComponentId(c), rules, rights);
   for (auto* names : {&rights.publishes, &rights.subscribes, &rights.offers, &rights.calls})

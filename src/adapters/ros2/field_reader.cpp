@@ -154,7 +154,7 @@ std::optional<Hop> take_hop(std::string_view& path) {
 
 class FieldReader::Compiler {
  public:
-  explicit Compiler(MessageLibrary& library) : library_(library) {}
+  Compiler(MessageLibrary& library, bool is_xcdr2) : library_(library), is_xcdr2_(is_xcdr2) {}
 
   Expected<std::vector<Step>> compile_whole(const std::string& type) {
     const FieldDefinition whole{"", type};
@@ -179,6 +179,7 @@ class FieldReader::Compiler {
     while (true) {
       const auto definition = library_.find(current);
       if (!definition) return Error{definition.error()};
+      mark(Op::kStruct);
       if (rest.empty() && last == Op::kDelay && current == "builtin_interfaces/msg/Time") {
         plan_.push_back({.op = Op::kDelay});
         return std::move(plan_);
@@ -212,8 +213,10 @@ class FieldReader::Compiler {
     const FieldDefinition* names =
         hop.key.empty() ? nullptr : find_name(definition, kNamesOfElements, Shape::kSequence);
     for (const FieldDefinition& candidate : definition.fields) {
+      mark(Op::kField);
       if (candidate.name == hop.name) return &candidate;
       if (&candidate == names) {
+        mark(Op::kCollection);
         plan_.push_back({.op = Op::kFind, .count = key_of(hop.key)});
         has_found_ = true;
         continue;
@@ -260,6 +263,7 @@ class FieldReader::Compiler {
         plan_.push_back({.op = Op::kSkipFound, .size = size_of(*primitive)});
         return {};
       }
+      mark(Op::kCollection);
       return skip_repeatedly({.op = Op::kRepeatFound}, field, 0);
     }
     const auto* type = std::get_if<std::string>(&field.element);
@@ -270,9 +274,12 @@ class FieldReader::Compiler {
     if (name == nullptr)
       return Error{"the elements of '" + field.name + "' have no names; write " + field.name +
                    "[0] for its first element"};
+    mark(Op::kCollection);
     const std::size_t at = plan_.size();
     plan_.push_back({.op = Op::kSearch});
+    mark(Op::kStruct);
     for (const FieldDefinition& each : (*element)->fields) {
+      mark(Op::kField);
       if (&each == name) break;
       if (auto skipped = skip_field(each, 0); !skipped) return skipped;
     }
@@ -300,11 +307,13 @@ class FieldReader::Compiler {
                    " elements, the last is " + field.name + "[" + std::to_string(field.count - 1) +
                    "]"};
     }
+    mark_collection(field);
     if (field.shape == Shape::kSequence) plan_.push_back({.op = Op::kBound, .count = *hop.index});
     return skip_elements(field, *hop.index, 0);
   }
 
   Expected<void> skip_field(const FieldDefinition& field, int depth) {
+    mark_collection(field);
     if (field.shape != Shape::kSequence) return skip_elements(field, field.count, depth);
     if (const auto* primitive = std::get_if<Primitive>(&field.element);
         primitive && size_of(*primitive) > 0) {
@@ -343,11 +352,22 @@ class FieldReader::Compiler {
     }
     const auto definition = library_.find(std::get<std::string>(field.element));
     if (!definition) return Error{definition.error()};
+    mark(Op::kStruct);
     if ((*definition)->fields.empty()) plan_.push_back({.op = Op::kSkip, .size = 1, .count = 1});
     for (const FieldDefinition& inner : (*definition)->fields) {
+      mark(Op::kField);
       if (auto skipped = skip_field(inner, depth + 1); !skipped) return skipped;
     }
     return {};
+  }
+
+  void mark(Op header) {
+    if (is_xcdr2_) plan_.push_back({.op = header});
+  }
+  void mark_collection(const FieldDefinition& field) {
+    const auto* primitive = std::get_if<Primitive>(&field.element);
+    const bool is_of_primitives = primitive != nullptr && size_of(*primitive) > 0;
+    if (field.shape != Shape::kSingle && !is_of_primitives) mark(Op::kCollection);
   }
 
   static Error wide_string(const FieldDefinition& field) {
@@ -361,6 +381,7 @@ class FieldReader::Compiler {
   }
 
   MessageLibrary& library_;
+  const bool is_xcdr2_;  // the plan has the headers of XCDR2
   std::vector<Step> plan_;
   std::vector<std::string> keys_;
   bool has_found_ = false;  // the plan has a kFind whose place is not used yet
@@ -368,20 +389,23 @@ class FieldReader::Compiler {
 
 Expected<FieldReader> FieldReader::compile(MessageLibrary& library, std::string_view type,
                                            std::string_view path) {
-  Compiler compiler(library);
+  Compiler compiler(library, false);
   auto plan = compiler.compile(type, path);
   if (!plan) return Error{plan.error()};
   FieldReader reader;
   reader.plan_ = std::move(*plan);
   reader.keys_ = compiler.take_keys();
+  if (auto plan2 = Compiler(library, true).compile(type, path)) reader.plan2_ = std::move(*plan2);
   return reader;
 }
 
 Expected<FieldReader> FieldReader::compile_whole(MessageLibrary& library, std::string_view type) {
-  auto plan = Compiler(library).compile_whole(std::string(type));
+  auto plan = Compiler(library, false).compile_whole(std::string(type));
   if (!plan) return Error{plan.error()};
   FieldReader reader;
   reader.plan_ = std::move(*plan);
+  if (auto plan2 = Compiler(library, true).compile_whole(std::string(type)))
+    reader.plan2_ = std::move(*plan2);
   return reader;
 }
 
@@ -389,9 +413,10 @@ PayloadFit FieldReader::fit(ByteView payload) const {
   constexpr std::size_t kPadding = 3;  // bytes at most: some writers fill up to a multiple of four
   CdrReader reader(payload);
   Value none;
-  Run state{none};
-  const FieldStatus status = run(reader, 0, plan_.size(), state);
-  if (status != FieldStatus::kRead || !reader.ok()) return PayloadFit::kMalformed;
+  Run state{plan_for(reader), none};
+  const FieldStatus status = run(reader, 0, state.plan.size(), state);
+  if (status != FieldStatus::kRead || !reader.ok() || state.plan.empty())
+    return PayloadFit::kMalformed;
   return reader.left() <= kPadding ? PayloadFit::kFits : PayloadFit::kTooLong;
 }
 
@@ -404,13 +429,17 @@ bool FieldReader::reads_number() const {
 
 FieldStatus FieldReader::read(ByteView payload, Value& value, std::int64_t arrival) const {
   CdrReader reader(payload);
-  Run state{value, arrival};
-  return run(reader, 0, plan_.size(), state);
+  Run state{plan_for(reader), value, arrival};
+  return state.plan.empty() ? FieldStatus::kMalformed : run(reader, 0, state.plan.size(), state);
+}
+
+const std::vector<FieldReader::Step>& FieldReader::plan_for(const CdrReader& reader) const {
+  return reader.is_xcdr2() ? plan2_ : plan_;
 }
 
 // Whether there is an element with the key; the reader is at its beginning then.
 bool FieldReader::search(CdrReader& reader, std::size_t at, Run& state) const {
-  const Step& step = plan_[at];
+  const Step& step = state.plan[at];
   const std::size_t whole = at + 1 + step.length;
   const std::uint32_t count = reader.read_count(1);
   for (std::uint32_t i = 0; i < count && reader.ok(); ++i) {
@@ -445,7 +474,7 @@ FieldStatus FieldReader::fold(CdrReader& reader, const Step& step, Run& state) c
 FieldStatus FieldReader::run(CdrReader& reader, std::size_t begin, std::size_t end,
                              Run& state) const {
   for (std::size_t at = begin; at < end; ++at) {
-    const Step& step = plan_[at];
+    const Step& step = state.plan[at];
     switch (step.op) {
       case Op::kSkip:
         reader.skip(step.size, step.count);
@@ -507,7 +536,9 @@ FieldStatus FieldReader::run(CdrReader& reader, std::size_t begin, std::size_t e
       case Op::kGreatest:
         return fold(reader, step, state);
       case Op::kDelay: {
+        reader.enter_field();
         const auto whole = reader.read<std::int32_t>();
+        reader.enter_field();
         const auto rest = reader.read<std::uint32_t>();
         if (!reader.ok()) return FieldStatus::kMalformed;
         const std::int64_t stamp = std::int64_t{whole} * 1'000'000'000 + rest;
@@ -515,6 +546,15 @@ FieldStatus FieldReader::run(CdrReader& reader, std::size_t begin, std::size_t e
         state.value = static_cast<double>(state.arrival - stamp) / 1e9;
         return FieldStatus::kRead;
       }
+      case Op::kStruct:
+        reader.enter_struct();
+        break;
+      case Op::kField:
+        reader.enter_field();
+        break;
+      case Op::kCollection:
+        reader.enter_collection();
+        break;
       case Op::kRead:
         if (Value read = read_value(reader, step.primitive); reader.ok()) {
           state.value = std::move(read);

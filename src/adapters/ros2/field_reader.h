@@ -31,7 +31,7 @@ enum class FieldStatus : std::uint8_t {
 
 enum class PayloadFit : std::uint8_t {
   kFits,
-  kMalformed,  // it ends too early, or is not in XCDR1
+  kMalformed,  // it ends too early, or is not in CDR
   kTooLong     // bytes follow the last field
 };
 
@@ -72,7 +72,10 @@ class FieldReader {
     kMatch,        // a string, which may be key `count`
     kLeast,        // `count` primitives, or a count n and n of them if that is 0: the least
     kGreatest,     // likewise
-    kDelay         // a builtin_interfaces/msg/Time
+    kDelay,        // a builtin_interfaces/msg/Time
+    kStruct,       // the header of XCDR2 before a struct
+    kField,        // likewise before a field
+    kCollection    // likewise before an array or sequence of strings or messages
   };
   struct Step {
     Op op;
@@ -85,6 +88,7 @@ class FieldReader {
 
   // The state of a run of the plan.
   struct Run {
+    const std::vector<Step>& plan;
     Value& value;
     std::int64_t arrival = 0;
     std::uint32_t found = 0;  // by kFind
@@ -94,7 +98,10 @@ class FieldReader {
   bool search(CdrReader& reader, std::size_t at, Run& state) const;
   FieldStatus fold(CdrReader& reader, const Step& step, Run& state) const;
 
+  const std::vector<Step>& plan_for(const CdrReader& reader) const;
+
   std::vector<Step> plan_;
+  std::vector<Step> plan2_;  // the same for XCDR2; empty: it would be too long
   std::vector<std::string> keys_;
 };
 

@@ -10,6 +10,7 @@
 
 #include "base/test_folder.h"
 #include "ros2/messages.h"
+#include "ros2/test_xcdr2.h"
 
 namespace culprit::ros2 {
 namespace {
@@ -133,8 +134,60 @@ TEST(FieldReader, SaysWhetherAPayloadFitsItsType) {
   EXPECT_EQ(whole->fit(payload), PayloadFit::kTooLong);
   payload.resize(payload.size() - 12);
   EXPECT_EQ(whole->fit(payload), PayloadFit::kMalformed);
-  payload[1] = 7;  // XCDR2
+  payload = encode(two_statuses());
+  payload[1] = 7;  // XCDR2 has no padding before 64 bits, and headers before the statuses
+  EXPECT_NE(whole->fit(payload), PayloadFit::kFits);
+  payload[1] = 3;  // PL_CDR of XCDR1, which no message has
   EXPECT_EQ(whole->fit(payload), PayloadFit::kMalformed);
+}
+
+struct JointState {
+  static constexpr std::string_view kType = "sensor_msgs/msg/JointState";
+  msg::Header header;
+  std::vector<std::string> name;
+  std::vector<double> position, velocity, effort;
+  static void visit(auto& self, auto& each) {
+    each(self.header, self.name, self.position, self.velocity, self.effort);
+  }
+  bool operator==(const JointState&) const = default;
+};
+
+TEST(FieldReader, ReadsXcdrTwoInAllItsForms) {
+  const JointState joints{{{1000, 5}, "base"}, {"wrist", "elbow"}, {0.5}, {}, {2, 9, 1}};
+  constexpr std::string_view kStatuses = "diagnostic_msgs/msg/DiagnosticArray";
+  MessageLibrary library;
+  const auto whole = FieldReader::compile_whole(library, kStatuses);
+  const auto delay = FieldReader::compile(library, JointState::kType, "delay(header.stamp)");
+  ASSERT_TRUE(whole && delay);
+  for (const Xcdr2 form : {Xcdr2::kPlain, Xcdr2::kDelimited, Xcdr2::kMembers}) {
+    for (const Endianness endianness : {Endianness::kLittle, Endianness::kBig}) {
+      SCOPED_TRACE(static_cast<int>(form));
+      const Bytes statuses = encode_xcdr2(two_statuses(), form, endianness);
+      EXPECT_EQ(read(kStatuses, "status[1].level", statuses), Value(std::int64_t{2}));
+      EXPECT_EQ(read(kStatuses, "status[1].values[1].value", statuses), text("2"));
+      EXPECT_EQ(read(kStatuses, "status[second].values[a].value", statuses), text("second"));
+      EXPECT_EQ(read(kStatuses, "status[third].level", statuses), text("absent"));
+      EXPECT_EQ(whole->fit(statuses), PayloadFit::kFits);
+      EXPECT_EQ(decode<msg::DiagnosticArray>(statuses), two_statuses());
+      const Bytes cut(statuses.begin(), statuses.end() - 8);
+      EXPECT_EQ(whole->fit(cut), PayloadFit::kMalformed);
+
+      Bytes state = encode_xcdr2(joints, form, endianness);
+      EXPECT_EQ(read(JointState::kType, "effort[elbow]", state), Value(9.0));
+      EXPECT_EQ(read(JointState::kType, "min(effort)", state), Value(1.0));
+      EXPECT_EQ(read(JointState::kType, "name[1]", state), text("elbow"));
+      EXPECT_EQ(decode<JointState>(state), joints);
+      Value late;
+      EXPECT_EQ(delay->read(state, late, 1'001'000'000'005), FieldStatus::kRead);
+      EXPECT_EQ(late, Value(1.0));
+      // As DDS-XTypes numbers it.
+      state[1] = static_cast<std::uint8_t>((form == Xcdr2::kPlain       ? 0x10
+                                            : form == Xcdr2::kDelimited ? 0x14
+                                                                        : 0x12) |
+                                           (state[1] & 1));
+      EXPECT_EQ(read(JointState::kType, "effort[wrist]", state), Value(2.0));
+    }
+  }
 }
 
 TEST(FieldReader, ReadsThroughNestedMessagesAndArrays) {

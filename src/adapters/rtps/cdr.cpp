@@ -2,14 +2,43 @@
 
 namespace culprit::ros2 {
 
+// The two numberings of XCDR2 are those of RTPS 2.5 and of DDS-XTypes 1.3; each is even for big endian.
 CdrReader::CdrReader(ByteView payload) {
-  if (payload.size() < kEncapsulationSize || payload[0] != 0 || payload[1] > 1) return;
-  endianness_ = static_cast<Endianness>(payload[1]);
+  if (payload.size() < kEncapsulationSize || payload[0] != 0) return;
+  switch (payload[1] & ~1u) {
+    case 0x00:
+      break;
+    case 0x06:
+    case 0x10:
+      form_ = Form::kPlain2;
+      break;
+    case 0x08:
+    case 0x14:
+      form_ = Form::kDelimited2;
+      break;
+    case 0x0a:
+    case 0x12:
+      form_ = Form::kMembers2;
+      break;
+    default:
+      return;
+  }
+  endianness_ = static_cast<Endianness>(payload[1] & 1u);
   body_ = payload.subspan(kEncapsulationSize);
   ok_ = true;
 }
 
+// The length of a field stands in the header, behind it, or is the first four bytes of the field (DDS-XTypes 1.3, 7.4.3.4.2).
+void CdrReader::enter_field() {
+  if (form_ != Form::kMembers2) return;
+  constexpr std::uint32_t kLengthFollows = 4;
+  const auto header = read<std::uint32_t>();
+  if ((header >> 28 & 7) == kLengthFollows) read<std::uint32_t>();
+}
+
 bool CdrReader::align(std::size_t size) {
+  constexpr std::size_t kMost2 = 4;
+  if (is_xcdr2() && size > kMost2) size = kMost2;
   const std::size_t aligned = (at_ + size - 1) / size * size;
   if (!ok_ || aligned > body_.size()) return false;
   at_ = aligned;

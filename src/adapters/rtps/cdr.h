@@ -4,6 +4,10 @@
 // bytes of options). The fields follow in order, each aligned to its own size, counted from after
 // those four bytes.
 //
+// XCDR2 is read, too, as recorders and other DDS programs write it. There nothing is aligned to more than four bytes, and
+// headers of four bytes stand before some parts (enter_struct(), enter_field(), enter_collection()). Its fields must be all
+// there, and in the order of the definition.
+//
 // Why not Fast CDR: it throws, and it resizes a container before it checks that the bytes are
 // there, so four hostile bytes can ask for gigabytes. This reader is a cursor over bytes that it
 // does not own. It never throws, never reads outside, allocates no more than a small multiple of
@@ -48,13 +52,24 @@ concept CdrPrimitive = std::is_arithmetic_v<T>;
 
 class CdrReader {
  public:
-  // `payload` starts with the encapsulation and must outlive the reader. Not ok() if it is not
-  // PLAIN_CDR.
+  // `payload` starts with the encapsulation and must outlive the reader. Not ok() if it is neither
+  // PLAIN_CDR nor of XCDR2.
   explicit CdrReader(ByteView payload);
 
   bool ok() const { return ok_; }
   void fail() { ok_ = false; }
   std::size_t left() const { return ok_ ? body_.size() - at_ : 0; }
+  bool is_xcdr2() const { return form_ != Form::kPlain1; }
+
+  // Pass over the header of XCDR2 before a struct, a field of a struct, and an array or sequence whose elements are no
+  // primitives. Nothing in XCDR1.
+  void enter_struct() {
+    if (form_ >= Form::kDelimited2) read<std::uint32_t>();
+  }
+  void enter_field();
+  void enter_collection() {
+    if (is_xcdr2()) read<std::uint32_t>();
+  }
 
   // Zero when the bytes are not there.
   template <CdrPrimitive T>
@@ -75,10 +90,17 @@ class CdrReader {
 
   template <class... T>
   void operator()(T&... fields) {
-    (read_into(fields), ...);
+    ((enter_field(), read_into(fields)), ...);
   }
 
  private:
+  enum class Form : std::uint8_t {
+    kPlain1,      // XCDR1
+    kPlain2,      // XCDR2 of final types
+    kDelimited2,  // of types that may be extended: each struct has its size before it
+    kMembers2     // of mutable types: each field has its number before it, too
+  };
+
   bool align(std::size_t size);
 
   template <CdrPrimitive T>
@@ -88,6 +110,7 @@ class CdrReader {
   void read_into(std::string& field) { field = read_string(); }
   template <class T, std::size_t N>
   void read_into(std::array<T, N>& field) {
+    if constexpr (!CdrPrimitive<T>) enter_collection();
     for (T& element : field) read_into(element);
   }
   template <class T>
@@ -99,6 +122,7 @@ class CdrReader {
   ByteView body_;
   std::size_t at_ = 0;
   Endianness endianness_ = Endianness::kLittle;
+  Form form_ = Form::kPlain1;
   bool ok_ = false;
 };
 
@@ -203,6 +227,7 @@ void CdrReader::read_into(std::vector<T>& field) {
       }
     }
   } else {
+    if constexpr (!CdrPrimitive<T>) enter_collection();
     // Grows as elements prove to be there: a count is only a claim.
     for (std::uint32_t count = read_count(1); count > 0 && ok_; --count) {
       T element{};
@@ -215,6 +240,7 @@ void CdrReader::read_into(std::vector<T>& field) {
 template <class T>
 requires std::is_class_v<T>
 void CdrReader::read_into(T& field) {
+  enter_struct();
   if constexpr (std::is_empty_v<T>) {
     if (left() > 0) ++at_;
   } else {

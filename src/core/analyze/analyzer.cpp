@@ -32,6 +32,7 @@ bool may_be_of(ComponentId component, const Input& input, const Knowledge& knowl
     case Kind::kLifecycle:
     case Kind::kCpu:
     case Kind::kMemory:
+    case Kind::kLogs:
       return input.component == component;
     case Kind::kParameter:
       return knowledge.rules.parameters[input.parameter.index].component == component;

@@ -19,7 +19,7 @@ bool is_of_topic(const Input& input) {
 
 bool is_of_component(const Input& input) {
   return input.kind == Kind::kAlive || input.kind == Kind::kLifecycle || input.kind == Kind::kCpu ||
-         input.kind == Kind::kMemory;
+         input.kind == Kind::kMemory || input.kind == Kind::kLogs;
 }
 
 bool is_of_signal(const Input& input) {
@@ -239,6 +239,8 @@ std::optional<Unseen> BlindWatch::why_without_value(InputId id, Time now) const 
       return unless_seen(sightings.has(input.topic));
     case Kind::kGoals:
       return sightings.has(input.topic) ? Unseen::kNotCovered : Unseen::kNeverSeen;
+    case Kind::kLogs:
+      return sightings.has(input.component) ? Unseen::kNotCovered : Unseen::kNeverSeen;
     case Kind::kAge:
     case Kind::kPhi:
     case Kind::kGoalAge:

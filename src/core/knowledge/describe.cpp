@@ -446,6 +446,9 @@ std::string describe(const Input& input, const RuleSet& rules) {
                   action_of(rules[input.topic]) + ", " + std::string(to_string(input.outcome)));
     case kGoalAge:
       return call("goal_age", action_of(rules[input.topic]));
+    case kLogs:
+      return call("logs",
+                  rules[input.component].name + ", " + std::string(to_string(input.log_level)));
     case kCpu:
       return call("cpu", rules[input.component].name);
     case kMemory:

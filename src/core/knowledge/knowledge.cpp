@@ -18,6 +18,7 @@ bool was_read(const Input& input, const Sightings& sightings) {
     case Input::Kind::kMemory:
     case Input::Kind::kGoals:
     case Input::Kind::kGoalAge:
+    case Input::Kind::kLogs:
       return false;
     case Input::Kind::kLifecycle:
       return sightings.was_lifecycle_read(input.component);
@@ -102,6 +103,7 @@ std::string value_name(const Input& input, const RuleSet& rules) {
     case Input::Kind::kMemory:
     case Input::Kind::kGoals:
     case Input::Kind::kGoalAge:
+    case Input::Kind::kLogs:
       return "";
     case Input::Kind::kLifecycle:
       return "lifecycle " + rules[input.component].name;

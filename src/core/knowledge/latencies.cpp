@@ -37,6 +37,7 @@ bool reads_value(const Input& input) {
     case Kind::kMemory:
     case Kind::kGoals:
     case Kind::kGoalAge:
+    case Kind::kLogs:
       return false;
     case Kind::kSignal:
     case Kind::kLevel:

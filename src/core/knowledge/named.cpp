@@ -35,6 +35,7 @@ class Finder {
       case Input::Kind::kLifecycle:
       case Input::Kind::kCpu:
       case Input::Kind::kMemory:
+      case Input::Kind::kLogs:
         return;
       case Input::Kind::kParameter:
         return add(input.parameter, knowledge_.components[input.parameter].has_value());

@@ -75,6 +75,8 @@ std::string known_of(InputId id, const RuleSet& rules) {
       return ": phi is not negative";
     case Input::Kind::kGoals:
       return ": a number of goals is not negative";
+    case Input::Kind::kLogs:
+      return ": a number of lines is not negative";
     case Input::Kind::kGoalAge:
       return ": the age of a goal is not negative";
     case Input::Kind::kCpu:

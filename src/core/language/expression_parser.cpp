@@ -306,7 +306,7 @@ class ExpressionParser {
       return fail(Code::kUnknownFunction, e.name.span, "there is no function '" + e.name.text + "'",
                   near.empty() ? "known functions: rate age phi loss alive lifecycle parameter "
                                  "level mean min max stddev "
-                                 "changed isnan frozen cpu memory goals goal_age abs pow sqrt"
+                                 "changed isnan frozen cpu memory goals goal_age logs abs pow sqrt"
                                : "did you mean '" + near + "'?",
                   replacement(e.name.span, near));
     }

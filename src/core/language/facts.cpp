@@ -52,6 +52,7 @@ Interval first_interval(const Input& input, const RuleSet& rules) {
     case Input::Kind::kMemory:
     case Input::Kind::kGoals:
     case Input::Kind::kGoalAge:
+    case Input::Kind::kLogs:
       return {0, kInfinity};
     case Input::Kind::kLoss:
       return {0, 1};

@@ -7,7 +7,7 @@ namespace {
 
 using enum Argument;
 
-constexpr std::array<FunctionInfo, 22> kFunctions = {{
+constexpr std::array<FunctionInfo, 23> kFunctions = {{
     {Function::kRate,
      "rate",
      "rate(topic) or rate(topic, window); topic FROM component: of one publisher",
@@ -42,6 +42,12 @@ constexpr std::array<FunctionInfo, 22> kFunctions = {{
      3,
      3},
     {Function::kGoalAge, "goal_age", "goal_age(action)", {kAction}, 1, 1},
+    {Function::kLogs,
+     "logs",
+     "logs(component, ERROR, window); or DEBUG, INFO, WARN, FATAL",
+     {kComponent, kLogLevel, kExpression},
+     3,
+     3},
     {Function::kAbs, "abs", "abs(number)", {kExpression, kExpression}, 1, 1},
     {Function::kPow, "pow", "pow(base, exponent)", {kExpression, kExpression}, 2, 2},
     {Function::kSqrt, "sqrt", "sqrt(number)", {kExpression, kExpression}, 1, 1},

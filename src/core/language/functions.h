@@ -28,6 +28,7 @@ enum class Function : std::uint8_t {
   kMemory,
   kGoals,
   kGoalAge,
+  kLogs,
   kAbs,
   kPow,
   kSqrt
@@ -42,6 +43,7 @@ enum class Argument : std::uint8_t {
   kDiagnostic,
   kAction,
   kOutcome,
+  kLogLevel,
   kExpression
 };
 

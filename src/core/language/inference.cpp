@@ -122,6 +122,7 @@ class Inference {
       case Function::kAge:
         return Type::kDuration;
       case Function::kGoals:
+      case Function::kLogs:
         infer(e.children[2], Type::kDuration);
         return Type::kInt;
       case Function::kGoalAge:

@@ -127,7 +127,7 @@ void check_unused(const syntax::File& file, const RuleSet& rules,
   for (const Input& input : rules.inputs) {
     using enum Input::Kind;
     const bool is_of_component = input.kind == kAlive || input.kind == kLifecycle ||
-                                 input.kind == kCpu || input.kind == kMemory;
+                                 input.kind == kCpu || input.kind == kMemory || input.kind == kLogs;
     if (is_of_component) use(input.component);
   }
   for (const Topic& topic : rules.topics) {

@@ -152,6 +152,7 @@ class Collector {
       case Argument::kAction:
         return add(OccurrenceKind::kAction, e.name);
       case Argument::kOutcome:
+      case Argument::kLogLevel:
         return;
       case Argument::kDiagnostic:
         return add(OccurrenceKind::kDiagnostic, e.name);

@@ -13,6 +13,7 @@
 
 #include "base/goal_status.h"
 #include "base/ids.h"
+#include "base/log_level.h"
 #include "base/seldom.h"
 #include "base/units.h"
 #include "base/value.h"
@@ -173,7 +174,8 @@ struct Input {
     kCpu,      // component: cores that its process uses
     kMemory,   // component: MiB of memory that its process holds
     kGoals,    // topic of an action's status, outcome, over window: goals that ended so
-    kGoalAge   // topic of an action's status: since when its oldest goal runs
+    kGoalAge,  // topic of an action's status: since when its oldest goal runs
+    kLogs      // component, log level, over window: lines of its log at that level or above
   };
   Kind kind = Kind::kSignal;
   Type type = Type::kDouble;
@@ -184,6 +186,7 @@ struct Input {
   DiagnosticId diagnostic;
   Duration window{};
   GoalStatus outcome = GoalStatus::kUnknown;  // kGoals
+  LogLevel log_level = LogLevel::kError;      // kLogs
 
   // The constants that this input is compared with anywhere, ascending (durations in seconds).
   // Where the rules use it in no other way (`only_compared`), nothing can change while it moves

@@ -91,14 +91,15 @@ std::size_t input_hash(const Input& input) {
   for (const std::uint32_t id : {input.topic.index, input.signal.index, input.component.index,
                                  input.parameter.index, input.diagnostic.index})
     hash = mixed(hash, id);
-  return mixed(mixed(hash, static_cast<std::size_t>(input.window.count())),
-               static_cast<std::size_t>(input.outcome));
+  hash = mixed(hash, static_cast<std::size_t>(input.window.count()));
+  return mixed(mixed(hash, static_cast<std::size_t>(input.outcome)),
+               static_cast<std::size_t>(input.log_level));
 }
 
 bool is_same_input(const Input& a, const Input& b) {
   return a.kind == b.kind && a.topic == b.topic && a.signal == b.signal &&
          a.component == b.component && a.parameter == b.parameter && a.diagnostic == b.diagnostic &&
-         a.window == b.window && a.outcome == b.outcome;
+         a.window == b.window && a.outcome == b.outcome && a.log_level == b.log_level;
 }
 
 }  // namespace
@@ -826,6 +827,7 @@ void renumber(Input& input, const Symbols::Uses& uses) {
     case kLifecycle:
     case kCpu:
     case kMemory:
+    case kLogs:
       input.component = uses.now(input.component);
       return;
     case kParameter:

@@ -400,6 +400,8 @@ class Typer {
         wanted.topic = *topic;
         return input(wanted, Type::kDuration);
       }
+      case Function::kLogs:
+        return logs(e);
       case Function::kCpu:
       case Function::kMemory:
         wanted.kind = function == Function::kCpu ? Input::Kind::kCpu : Input::Kind::kMemory;
@@ -448,6 +450,26 @@ class Typer {
     wanted.kind = Input::Kind::kGoals;
     wanted.topic = *topic;
     wanted.outcome = *outcome;
+    wanted.window = *length;
+    return input(wanted, Type::kInt);
+  }
+
+  std::optional<Typed> logs(const Expression& e) {
+    const syntax::Name& word = e.children[1].name;
+    const auto level = log_level(word.text);
+    if (!level) {
+      const std::string near = closest(word.text, log_levels());
+      return fail(
+          Code::kArguments, word.span, "no log has the level '" + word.text + "'",
+          near.empty() ? "write DEBUG, INFO, WARN, ERROR or FATAL" : "did you mean '" + near + "'?",
+          replacement(word.span, near));
+    }
+    const auto length = window_argument(e.children[2]);
+    if (!length) return std::nullopt;
+    Input wanted;
+    wanted.kind = Input::Kind::kLogs;
+    wanted.component = symbols_.component(e.children[0].name);
+    wanted.log_level = *level;
     wanted.window = *length;
     return input(wanted, Type::kInt);
   }

@@ -180,5 +180,31 @@ TEST(Windows, GoalsCountByHowTheyEndOnceTheWindowIsCovered) {
               ElementsAre(std::pair("Slow", 18s + 1ns), std::pair("Aborted", 20s)));
 }
 
+TEST(Windows, LinesOfALogCountOnceTheWindowIsCovered) {
+  Played played(
+      "COMPONENT c NODE /c\n"
+      "RULE Errors\nPOLICIES WARNING REPORT\nTRIGGER logs(c, ERROR, 10s) >= 2\n"
+      "RULE Quiet\nPOLICIES WARNING REPORT\nTRIGGER logs(c, INFO, 10s) == 0\n");
+  const auto line = [](LogLevel level) { return LogSeen{ComponentId(0), level}; };
+  played.observe(1s, NodeAppeared{"/c", 7}, line(LogLevel::kError), line(LogLevel::kFatal));
+  played.observe(12s, line(LogLevel::kError), line(LogLevel::kWarn), line(LogLevel::kInfo));
+  played.wait_until(21s);
+  played.observe(21s, line(LogLevel::kFatal));
+  played.wait_until(40s);
+  EXPECT_THAT(played.detected, ElementsAre(std::pair("Errors", 10s), std::pair("Quiet", 11s),
+                                           std::pair("Errors", 21s), std::pair("Quiet", 31s)));
+}
+
+TEST(Windows, ALogOfANodeThatWasNeverSeenIsUnknown) {
+  Played played(
+      "COMPONENT c NODE /c\n"
+      "RULE Quiet\nPOLICIES WARNING REPORT\nTRIGGER logs(c, INFO, 10s) == 0\n");
+  played.wait_until(30s);
+  EXPECT_THAT(played.detected, IsEmpty());
+  // It logged nothing before it came.
+  played.observe(31s, NodeAppeared{"/c", 7});
+  EXPECT_THAT(played.detected, ElementsAre(std::pair("Quiet", 31s)));
+}
+
 }  // namespace
 }  // namespace culprit::test

@@ -94,6 +94,8 @@ Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time dis
       case Kind::kLifecycle:
       case Kind::kCpu:
       case Kind::kMemory:
+      case Kind::kLogs:
+        if (input.kind == Kind::kLogs) derived_[i].count = monitor::SlidingCount(input.window);
         component_inputs_[input.component.index].push_back(id);
         break;
       case Kind::kParameter:
@@ -140,7 +142,8 @@ void Monitor::restart(Time since, Time now) {
   }
   for (std::size_t i = 0; i < knowledge_.rules.inputs.size(); ++i) {
     const Kind kind = knowledge_.rules.inputs[i].kind;
-    if (kind == Kind::kRate || kind == Kind::kAge || kind == Kind::kPhi || kind == Kind::kLoss)
+    if (kind == Kind::kRate || kind == Kind::kAge || kind == Kind::kPhi || kind == Kind::kLoss ||
+        kind == Kind::kLogs)
       update(InputId(i), now);
   }
 }
@@ -204,7 +207,7 @@ void Monitor::remember(const KnownRobot& known) {
     const auto component = std::find_if(components.begin(), components.end(), fits);
     if (component == components.end()) continue;
     const ComponentId id(static_cast<std::size_t>(component - components.begin()));
-    write_.sightings.note(id, start_);
+    see(id, start_);
     write_.graph.remember(id, part.ends);
   }
   for (const std::string& name : known.topics) {
@@ -263,6 +266,9 @@ void Monitor::update(InputId id, Time now) {
     case Kind::kGoals:
       value = goals(id, now);
       break;
+    case Kind::kLogs:
+      value = logs(id, now);
+      break;
     case Kind::kGoalAge:
       value = goal_age(input.topic, now);
       break;
@@ -293,9 +299,11 @@ void Monitor::update(InputId id, Time now) {
     write_.signals.set(id, value);
   } else {
     const bool has_overflowed = derived_[id.index].is_overflow_told;
-    const bool is_covering =
-        (input.kind == Kind::kRate || input.kind == Kind::kLoss || input.kind == Kind::kGoals) &&
-        topics_[input.topic.index].first;
+    const bool is_covering = input.kind == Kind::kLogs
+                                 ? knowledge_.sightings.has(input.component)
+                                 : (input.kind == Kind::kRate || input.kind == Kind::kLoss ||
+                                    input.kind == Kind::kGoals) &&
+                                       topics_[input.topic.index].first;
     write_.signals.forget(id, has_overflowed ? WhyUnknown::kOverflow
                               : is_covering  ? WhyUnknown::kNotCovered
                                              : WhyUnknown::kNoValue);

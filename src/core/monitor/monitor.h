@@ -175,6 +175,7 @@ class Monitor {
   void on(Time at, const ProcessWorked& seen);
   void on(Time at, const UsageSeen& seen);
   void on(Time at, const GoalsSeen& seen);
+  void on(Time at, const LogSeen& seen);
   void on(Time at, const StatusHeard& seen);
   void on(Time at, const ParametersListed& seen);
   void on(Time at, const HostReached& seen);
@@ -231,12 +232,16 @@ class Monitor {
   Time next_of_goals(InputId id, Time now) const;
   void count_goal(TopicId topic, GoalStatus outcome, Time at);
   void forget_goals(TopicId topic, Time now);
+  Slot logs(InputId id, Time now);
+  Time logs_known_from(InputId id) const;
+  Time next_of_logs(InputId id, Time now) const;
 
   // Whether a component that publishes the topic joined the graph since then.
   bool has_begun_since(Time before, TopicId topic) const;
   std::vector<TopicId> topics_of(std::optional<ComponentId> publisher,
                                  const std::string& name) const;
   void see(TopicId topic, Time at);
+  void see(ComponentId component, Time at);
   // From when on a topic that has not spoken is silent; kNever while it was not seen.
   Time silent_from(TopicId topic) const;
   Time listened_since(TopicId topic) const;

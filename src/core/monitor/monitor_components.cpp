@@ -54,7 +54,7 @@ void Monitor::on(Time at, const NodeAppeared& seen) {
   write_.graph.node_appeared(seen.node);
   const auto component = knowledge_.graph.component_of(seen.node);
   if (!component) return;
-  write_.sightings.note(*component, at);
+  see(*component, at);
   ComponentState& state = write_.components[*component];
   const bool was_in_graph = state.in_graph;
   const bool joins_part = had_part && !was_in_graph && seen.pid == state.node_pid;
@@ -284,7 +284,7 @@ void Monitor::note_end_of_start(ComponentId component, Time at) {
 void Monitor::on(Time at, const ProcessSeen& seen) {
   ComponentState& state = write_.components[seen.component];
   // systemd's report on its unit is proof, also if its node was never seen.
-  if (knowledge_.rules[seen.component].has_owner()) write_.sightings.note(seen.component, at);
+  if (knowledge_.rules[seen.component].has_owner()) see(seen.component, at);
   // A report about a process that the node no longer runs in is no evidence about the node.
   const int present = state.node_pid != 0 ? state.node_pid : state.pid;
   // A component that its owner could not even start has no process.
@@ -374,6 +374,47 @@ void Monitor::forget_usage(ComponentId component) {
     const Kind kind = knowledge_.rules[id].kind;
     if (kind == Kind::kCpu || kind == Kind::kMemory) write_.signals.forget(id);
   }
+}
+
+// The first sign of a component: from now on it is known how often it logged.
+void Monitor::see(ComponentId component, Time at) {
+  if (!write_.sightings.note(component, at)) return;
+  for (const InputId id : component_inputs_[component.index]) {
+    if (knowledge_.rules[id].kind == Kind::kLogs) deadlines_.set(id.index, at);
+  }
+}
+
+void Monitor::on(Time at, const LogSeen& seen) {
+  see(seen.component, at);
+  for (const InputId id : component_inputs_[seen.component.index]) {
+    const Input& input = knowledge_.rules[id];
+    if (input.kind != Kind::kLogs || seen.level < input.log_level) continue;
+    if (!derived_[id.index].count.add(at, 1)) note_overflow(id, at);
+    update(id, at);
+  }
+}
+
+// The time from which its window is covered. Its node may have come later: until then it logged
+// nothing.
+Time Monitor::logs_known_from(InputId id) const {
+  const Time since =
+      std::max(heard_since(start_), derived_[id.index].overflowed.value_or(kLongAgo));
+  return later(since, knowledge_.rules[id].window);
+}
+
+Slot Monitor::logs(InputId id, Time now) {
+  Derived& derived = derived_[id.index];
+  if (!knowledge_.sightings.has(knowledge_.rules[id].component) || now < logs_known_from(id))
+    return {};
+  derived.is_overflow_told = false;
+  derived.count.advance(now);
+  return Slot::of(static_cast<std::int64_t>(derived.count.count()));
+}
+
+Time Monitor::next_of_logs(InputId id, Time now) const {
+  if (!knowledge_.sightings.has(knowledge_.rules[id].component)) return kNever;
+  const monitor::SlidingCount& count = derived_[id.index].count;
+  return now < logs_known_from(id) ? logs_known_from(id) : count.falls_below(count.count());
 }
 
 void Monitor::on(Time at, const HostReached& seen) {

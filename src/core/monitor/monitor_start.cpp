@@ -116,7 +116,8 @@ bool Monitor::is_there(TopicId topic) const {
 
 bool Monitor::is_there(InputId id) const {
   const Input& input = knowledge_.rules[id];
-  const bool is_measured = input.kind == Kind::kCpu || input.kind == Kind::kMemory;
+  const bool is_measured =
+      input.kind == Kind::kCpu || input.kind == Kind::kMemory || input.kind == Kind::kLogs;
   if (is_rhythm(input) || input.kind == Kind::kAlive || is_measured) return true;
   if (input.kind == Kind::kLifecycle || input.kind == Kind::kParameter ||
       input.kind == Kind::kLevel)

@@ -252,6 +252,7 @@ Slot Monitor::loss(InputId id, Time now) {
 Time Monitor::next_crossing(InputId id, Time now) const {
   const Input& input = knowledge_.rules[id];
   if (input.kind == Kind::kGoals || input.kind == Kind::kGoalAge) return next_of_goals(id, now);
+  if (input.kind == Kind::kLogs) return next_of_logs(id, now);
   const Topic& topic = topics_[input.topic.index];
   if (input.kind == Kind::kLoss) return topic.loss.changes();
   if (!topic.last && now < silent_from(input.topic)) return silent_from(input.topic);

@@ -13,6 +13,7 @@
 #include "base/endpoint_kind.h"
 #include "base/goal_status.h"
 #include "base/ids.h"
+#include "base/log_level.h"
 #include "base/time.h"
 #include "base/value.h"
 #include "robot/order.h"
@@ -165,6 +166,12 @@ struct GoalsSeen {
   std::vector<Goal> goals;
 };
 
+// A node of the component wrote a line into its log (/rosout).
+struct LogSeen {
+  ComponentId component;
+  LogLevel level = LogLevel::kInfo;
+};
+
 // The computer that runs a component (HOST) cannot be asked, or can be again. While nothing is
 // received from a component there, it is unknown whether it works.
 struct HostReached {
@@ -298,7 +305,7 @@ class ObservationWhat
                           HearingLost, HearingRegained, Overslept, StatusHeard, ParametersListed,
                           ProcessWorked, HostReached, EndsWith, LauncherSeen, PriorsTold, LivesOn,
                           HostHeard, ListenerKnown, StartedHere, UsageSeen, StartBarred,
-                          PublisherKnown, GoalsSeen> {
+                          PublisherKnown, GoalsSeen, LogSeen> {
  public:
   using Variant = variant;
   using variant::variant;

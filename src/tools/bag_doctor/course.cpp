@@ -160,7 +160,10 @@ class TopicLook {
     if (seconds_) course.stamps.push_back(stamp_in(payload));
     bool fits = true;
     for (FieldLook& each : looks_) fits = each.look(payload, at, course.fields) && fits;
-    course.undecoded += fits ? 0 : 1;
+    if (!fits) {
+      if (course.undecoded++ == 0) course.undecoded_from = at;
+      course.undecoded_to = at;
+    }
     if (!is_measured_whole_) return;
     // Behind the encapsulation and the stamp; the name of the frame does not change.
     constexpr std::size_t kHead = 12;
@@ -226,6 +229,8 @@ class Reading {
     if (course_.messages > limits_.most_times) return;
     TopicCourse& topic = course_.topics[places_[message.topic]];
     topic.times.push_back(message.at);
+    if (topic.other_type_from == 0 && contents_.topics()[message.topic].type != topic.type)
+      topic.other_type_from = message.at;
     TopicLook& look = looks_[message.topic];
     look.look(message, message.at, topic);
     switch (look.use()) {

@@ -46,13 +46,15 @@ struct TopicCourse {
   std::string name;
   std::string type;
   std::vector<std::string>
-      other_types{};  // that messages of this name have, too; only their times count
+      other_types{};                // that messages of this name have, too; only their times count
+  Nanoseconds other_type_from = 0;  // the first of them
   std::vector<Nanoseconds> times{};
   std::vector<Nanoseconds> stamps{};  // by message; empty: its messages have no header
   std::vector<FieldCourse> fields{};
   FieldCourse content{};      // of scans, clouds and images; else without a count
   std::size_t undecoded = 0;  // messages that do not fit their type
-  bool is_latched = false;    // all publishers offered transient local
+  Nanoseconds undecoded_from = 0, undecoded_to = 0;
+  bool is_latched = false;  // all publishers offered transient local
 };
 
 // From one frame to another.

@@ -300,6 +300,7 @@ std::vector<Owner> owners_of(const std::vector<Symptom>& symptoms, const RobotGr
   std::vector<Owner> owners;
   for (const Symptom& symptom : symptoms) {
     std::string node = symptom.node.empty() ? publisher_of(symptom.topic, graph) : symptom.node;
+    if (node.empty() && !symptom.status.empty()) node = node_of_status(symptom.status, graph.nodes);
     const bool is_node = !node.empty();
     owners.push_back({is_node                 ? std::move(node)
                       : symptom.topic.empty() ? symptom.finding.who
@@ -384,8 +385,9 @@ std::vector<BagIncident> incidents_of(const std::vector<Symptom>& symptoms,
   for (BagIncident& each : incidents) std::ranges::sort(each.own);
   if (graph.has_edges()) UnseenCauses(graph, symptoms, owners, health).join(incidents);
   std::ranges::stable_sort(incidents, [&](const BagIncident& a, const BagIncident& b) {
-    return std::tuple(-rank_of(a, symptoms), -std::ssize(a.effects), a.onset.latest) <
-           std::tuple(-rank_of(b, symptoms), -std::ssize(b.effects), b.onset.latest);
+    // A topic of which nobody knows the publisher is no cause that a person can look at.
+    return std::tuple(-rank_of(a, symptoms), -std::ssize(a.effects), !a.is_node, a.onset.latest) <
+           std::tuple(-rank_of(b, symptoms), -std::ssize(b.effects), !b.is_node, b.onset.latest);
   });
   return incidents;
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "bag_doctor/report.h"
+#include "bag_doctor/symptom.h"
 #include "bag_doctor/test_recording.h"
 #include "base/test_expected.h"
 #include "base/test_folder.h"
@@ -60,6 +61,19 @@ TEST_F(IncidentTest, TheCauseComesFirstWithItsEffects) {
       found.findings[0].seen,
       AllOf(HasSubstr("it fell silent on /image; then /detector fell silent on /detections")));
   EXPECT_THAT(found.left_out, IsEmpty());
+}
+
+TEST_F(IncidentTest, ADiagnosticIsOfTheNodeOfTheGraphThatItNames) {
+  topic("/scan");
+  topic("/image", 20);
+  for (int i = 0; i < 60; ++i)
+    recording_.add("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", i + 0.5,
+                   test::diagnostic(i, i < 20 ? 0 : 2, "camera: frames", "no frame"));
+  const BagReport found = report(value_of(parse_graph(kGraph)));
+  ASSERT_EQ(found.incidents.size(), 1u);
+  EXPECT_EQ(found.incidents[0].cause, "/camera");
+  EXPECT_EQ(node_of_status("camera: frames", {"/r1/camera"}), "/r1/camera");
+  EXPECT_EQ(node_of_status("camera: frames", {"/r1/camera", "/r2/camera"}), "");
 }
 
 TEST_F(IncidentTest, ANodeOfWhichNothingWasRecordedIsNamedIfAllThatNeedItFailedAtOnce) {

@@ -25,13 +25,22 @@ constexpr std::size_t kFewestInRow = 5;
 struct Stamped {
   std::vector<Nanoseconds> times, stamps;
   std::vector<Duration> lags;
+  Run without{};  // the longest row of messages without a stamp, after some that had one
 };
 
 // Without those that have none.
 Stamped stamped(const TopicCourse& topic, Duration other_clock) {
   Stamped all;
+  Run without;
   for (std::size_t i = 0; i < std::min(topic.times.size(), topic.stamps.size()); ++i) {
-    if (topic.stamps[i] == 0) continue;
+    if (topic.stamps[i] == 0) {
+      if (all.stamps.empty()) continue;
+      if (without.messages++ == 0) without.from = topic.times[i];
+      without.to = topic.times[i];
+      if (without.messages > all.without.messages) all.without = without;
+      continue;
+    }
+    without = {};
     all.times.push_back(topic.times[i]);
     all.stamps.push_back(topic.stamps[i]);
     all.lags.push_back(Duration(topic.times[i] - topic.stamps[i]) - other_clock);
@@ -53,6 +62,7 @@ class StampLook {
 
   void look() {
     look_back();
+    look_at_missing();
     const bool repeats = look_at_repeats();
     const Duration base = lag_at(all_.lags, 0.2);
     if (base > kOld) return report_old(base);
@@ -103,6 +113,19 @@ class StampLook {
         "stamped back in time on ");
   }
 
+  // To a reader, a stamp of zero is one of 1970.
+  void look_at_missing() {
+    const Run& run = all_.without;
+    if (run.messages < kFewestInRow || Duration(run.to - run.from) < 1s) return;
+    add("D044", Gravity::kError,
+        fmt::format("its time stamps became zero, for {} ({} messages)",
+                    duration(Duration(run.to - run.from)), run.messages),
+        "tf drops its history or later messages, and filters start anew",
+        "see whether its publisher lost its clock: /clock with use_sim_time, or the device's own",
+        {time_of(run.from), time_of(run.from)},
+        run.to == topic_.times.back() ? kNever : time_of(run.to), "stamped with zero on ");
+  }
+
   bool look_at_repeats() {
     Run row{}, longest{};
     std::size_t repeats = 0;
@@ -113,6 +136,7 @@ class StampLook {
                     : Run{all_.times[i], all_.times[i], 1};
       if (row.messages > longest.messages) longest = row;
     }
+    if (repeats_in_stretch(repeats)) return true;
     const std::size_t others = repeats + 1 - longest.messages;
     if (longest.messages <= kFewestInRow || longest.messages == all_.stamps.size() ||
         10 * others > all_.stamps.size())
@@ -124,6 +148,32 @@ class StampLook {
         "see whether its publisher repeats its last message, or its clock stands still",
         {time_of(longest.from), time_of(longest.from)},
         longest.to == all_.times.back() ? kNever : time_of(longest.to),
+        "repeated its time stamp on ");
+    return true;
+  }
+
+  // In one part of the recording most stamps are those of the message before, in the rest none is.
+  bool repeats_in_stretch(std::size_t repeats) {
+    std::size_t first = 0, last = 0;
+    for (std::size_t i = 1; i < all_.stamps.size(); ++i) {
+      if (all_.stamps[i] != all_.stamps[i - 1]) continue;
+      if (first == 0) first = i;
+      last = i;
+    }
+    constexpr std::size_t kFewest = 20;
+    const std::size_t stretch = last - first + 1;
+    const Duration length(all_.times[last] - all_.times[first]);
+    const bool is_one_row = repeats == stretch;  // which look_at_repeats() reports
+    if (repeats < kFewest || is_one_row || 2 * repeats < stretch ||
+        2 * stretch > all_.stamps.size() || length < 1s)
+      return false;
+    add("D208", Gravity::kWarning,
+        fmt::format("{} of {} messages, over {}, have the time stamp of the one before", repeats,
+                    stretch, duration(length)),
+        "tf and message filters take them for one message, or drop them",
+        "see whether its publisher repeats its last message, or its clock stands still",
+        {time_of(all_.times[first]), time_of(all_.times[first])},
+        last + 1 == all_.times.size() ? kNever : time_of(all_.times[last]),
         "repeated its time stamp on ");
     return true;
   }
@@ -147,7 +197,7 @@ class StampLook {
   // A lag that begins in the recording raises the upper percentiles only, and a lead lowers the lower ones.
   void look_at_stretches(Duration low, Duration high) {
     const Duration behind_limit =
-        low + std::max<Duration>(500ms, 5 * (low - lag_at(all_.lags, 0.02)));
+        low + std::max<Duration>(200ms, 5 * (low - lag_at(all_.lags, 0.02)));
     const Duration ahead_limit =
         high - std::max<Duration>(kAhead, 5 * (lag_at(all_.lags, 0.98) - high));
     Run behind{}, ahead{};

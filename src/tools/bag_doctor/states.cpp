@@ -48,6 +48,7 @@ void look_at_level(const StatusCourse& status, const Examined& bag, Symptoms& al
                      {},
                      ""},
          .node = node_of_status(status.name, course.nodes),
+         .status = status.name,
          .onset = {before, time_of(change.at)},
          .until = lasts ? kNever : time_of(until),
          .words = "reported \"" + printable(change.message) + "\""});
@@ -75,6 +76,7 @@ void look_at_missing_reports(const StatusCourse& status, const Examined& bag, Sy
             {},
             ""},
        .node = node_of_status(status.name, bag.course.nodes),
+       .status = status.name,
        .onset = {time_of(status.last), time_of(status.last) + usual},
        .words = "did not report \"" + printable(status.name) + "\" any more"});
 }
@@ -181,10 +183,14 @@ void look_at_offers(const std::string& topic, const std::vector<OfferedQos>& off
 
 std::string node_of_status(const std::string& status, const std::set<std::string>& nodes) {
   const std::string name = status.substr(0, status.find(':'));
+  std::string found;
   for (const std::string& node : nodes) {
     if (node == name || node == "/" + name) return node;
+    if (!node.ends_with("/" + name)) continue;
+    if (!found.empty()) return "";  // several are called so
+    found = node;
   }
-  return "";
+  return found;
 }
 
 void look_at_states(const Examined& bag, Symptoms& all) {

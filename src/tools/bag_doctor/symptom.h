@@ -24,6 +24,7 @@ struct Symptom {
   doctor::Finding finding;  // without `when`
   std::string topic{};      // that shows it; empty: none
   std::string node{};       // that it is about, where the recording says so itself
+  std::string status{};     // the diagnostic status that shows it; empty: none
   Onset onset{};            // when it began
   Time until = kNever;      // when it was over; kNever: not in this recording
   std::string words{};      // short, after the node's name: "fell silent on /scan"
@@ -39,8 +40,8 @@ struct Health {
 };
 std::vector<Health> healthy_topics(const BagCourse& course, const std::vector<Symptom>& symptoms);
 
-// The node that a status is about, by the habit of diagnostic_updater: "camera: frame rate" is of /camera. Empty: none of
-// `nodes` is called so.
+// The node that a status is about, by the habit of diagnostic_updater: "camera: frame rate" is of /camera, or else of
+// /robot1/camera. Empty: none of `nodes` is called so, or several of different namespaces are.
 std::string node_of_status(const std::string& status, const std::set<std::string>& nodes);
 
 }  // namespace culprit::bag_doctor

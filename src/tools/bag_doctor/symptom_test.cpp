@@ -131,6 +131,32 @@ TEST_F(SymptomTest, StampsThatLagRepeatOrGoBack) {
             Contains("D044 error /back at 30.1"), Contains("D043 error /ahead at 30.1")));
 }
 
+TEST_F(SymptomTest, StampsThatBecomeZeroOrRepeatNowAndThen) {
+  sensor("/zero", 20, [](double time, double& stamp, double) {
+    return stamp = time > 30 && time < 40 ? -1.7e9 : stamp, true;
+  });
+  sensor("/sticky", 20, [](double time, double& stamp, double) {
+    return stamp = time > 30 && time < 40 ? std::floor(time * 4) / 4 : stamp, true;
+  });
+  sensor("/late", 20,
+         [](double time, double& stamp, double) { return stamp -= time > 30 ? 0.3 : 0, true; });
+  EXPECT_THAT(shorts(), AllOf(Contains("D044 error /zero at 30.1"),
+                              Contains(HasSubstr("D208 warning /sticky at 30.")),
+                              Contains("D042 warning /late at 30.1")));
+}
+
+TEST_F(SymptomTest, MessagesThatAreCutFromTheTimeOn) {
+  for (int i = 0; i < 600; ++i) {
+    const std::string whole = test::number(0, test::noise(static_cast<std::uint64_t>(i)));
+    const bool is_cut = i >= 300 && i < 400;
+    recording_.add("/x", "std_msgs/msg/Float64", i * 0.1, is_cut ? whole.substr(0, 6) : whole);
+  }
+  const auto all = found();
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(short_of(all[0]), "D216 warning /x at 30.0");
+  EXPECT_NEAR(all[0].when->until, 39.9, 0.1);
+}
+
 TEST_F(SymptomTest, AFrameWithTwoParentsAndATransformThatStops) {
   sensor("/other");
   for (int i = 0; i < 1200; ++i) {

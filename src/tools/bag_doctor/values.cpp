@@ -169,8 +169,10 @@ void look_at_frozen(const TopicCourse& topic, const BagCourse& course, Symptoms&
        .words = "froze on " + topic.name});
 }
 
-void look_at_decoding(const TopicCourse& topic, const BagCourse& course, Symptoms& all) {
-  if (topic.undecoded == 0 && topic.other_types.empty()) return;
+void look_at_decoding(const TopicCourse& topic, Symptoms& all) {
+  if (topic.undecoded == 0 && topic.other_type_from == 0) return;
+  const Nanoseconds from = topic.undecoded > 0 ? topic.undecoded_from : topic.other_type_from;
+  const bool is_over = topic.undecoded > 0 && topic.undecoded_to != topic.times.back();
   const std::string seen = topic.undecoded > 0
                                ? fmt::format("{} of {} messages do not fit its type {}",
                                              topic.undecoded, topic.times.size(), topic.type)
@@ -187,7 +189,8 @@ void look_at_decoding(const TopicCourse& topic, const BagCourse& course, Symptom
                    {},
                    topic.name},
        .topic = topic.name,
-       .onset = {kLongAgo, time_of(course.begin)},
+       .onset = {from == topic.times.front() ? kLongAgo : time_of(from), time_of(from)},
+       .until = is_over ? time_of(topic.undecoded_to) : kNever,
        .words = "published messages of another type on " + topic.name});
 }
 
@@ -197,7 +200,7 @@ void look_at_values(const Examined& bag, Symptoms& all) {
   for (const JudgedTopic& each : bag.topics) {
     look_at_numbers(*each.topic, all);
     if (each.habit.is_known()) look_at_frozen(*each.topic, bag.course, all);
-    look_at_decoding(*each.topic, bag.course, all);
+    look_at_decoding(*each.topic, all);
   }
 }
 

@@ -256,6 +256,7 @@ class CurveReader {
         case Input::Kind::kMemory:
         case Input::Kind::kGoals:
         case Input::Kind::kGoalAge:
+        case Input::Kind::kLogs:
           break;  // no numbers; the marks tell
       }
     }

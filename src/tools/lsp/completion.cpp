@@ -201,6 +201,12 @@ class Completion {
           outcomes.push_back({Kind::kKeyword, std::string(word), "outcome of a goal"});
         return outcomes;
       }
+      case Argument::kLogLevel: {
+        std::vector<Proposal> levels;
+        for (const std::string_view word : log_levels())
+          levels.push_back({Kind::kKeyword, std::string(word), "lines at this level or above"});
+        return levels;
+      }
       case Argument::kDiagnostic:
         return names(&live_statuses);
       case Argument::kExpression:

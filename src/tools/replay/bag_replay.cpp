@@ -74,6 +74,10 @@ void BagReplay::step(const bag::BagMessage& message) {
     }
   }
   reading_.read(message, observations_);
+  if (listener_.on_observation) {
+    for (const Observation& each : observations_)
+      listener_.on_observation(each, message.recorded_at);
+  }
   advance(now, observations_);
 }
 

@@ -42,6 +42,8 @@ class BagReplay {
     std::function<void(const Event&, std::int64_t clock)> on_event{};
     // The copy lacks messages in between; nothing that is missing there counts.
     std::function<void(Time from, Time until, std::int64_t clock)> on_hole{};
+    // Each observation from a message, with the recorder's time of it.
+    std::function<void(const Observation&, std::int64_t clock)> on_observation{};
   };
 
   // `rules` and `reading` must outlive the replay.

@@ -89,6 +89,8 @@ std::optional<Observation> Translation::operator()(const Observation& observatio
     is_known = renumber(worked->component, components_);
   } else if (auto* goals = std::get_if<GoalsSeen>(&out.what)) {
     is_known = renumber(goals->topic, topics_);
+  } else if (auto* log = std::get_if<LogSeen>(&out.what)) {
+    is_known = renumber(log->component, components_);
   } else if (auto* usage = std::get_if<UsageSeen>(&out.what)) {
     is_known = renumber(usage->component, components_);
   } else if (auto* reached = std::get_if<HostReached>(&out.what)) {

@@ -18,6 +18,7 @@ void Scenario::append(const Scenario& other) {
   append_all(states, other.states);
   append_all(incidents, other.incidents);
   append_all(goals, other.goals);
+  append_all(logs, other.logs);
   append_all(answers, other.answers);
   append_all(cures, other.cures);
 }

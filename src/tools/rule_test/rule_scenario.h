@@ -62,6 +62,15 @@ struct GoalCourse {
   GoalStatus outcome = GoalStatus::kUnknown;
 };
 
+// Lines that a component writes into its log: one at `from`, and if `until` is given one each kLogPeriod before that.
+inline constexpr Duration kLogPeriod = std::chrono::milliseconds(100);
+struct LogCourse {
+  ComponentId component;
+  LogLevel level = LogLevel::kError;
+  Duration from{};
+  std::optional<Duration> until;
+};
+
 struct Incident {
   enum class Kind : std::uint8_t {
     kKilled,   // its process ends
@@ -101,6 +110,7 @@ struct Scenario {
   std::vector<InitialState> states;
   std::vector<Incident> incidents;
   std::vector<GoalCourse> goals;
+  std::vector<LogCourse> logs;
   std::vector<Answer> answers;
   std::vector<Cure> cures;
 

@@ -299,6 +299,16 @@ TEST(Runner, GoalsThatAreAborted) {
   EXPECT_TRUE(played.result.is_ok()) << played.text();
 }
 
+TEST(Runner, LinesOfALogAreCountedByTheirLevel) {
+  const Played played = play(
+      "COMPONENT camera\nLOG camera WARN 1s..9s\nLOG camera ERROR 20s\nLOG camera FATAL 25s\nLOG "
+      "camera ERROR "
+      "40s..42s\nRUN 1min\nEXPECT Two DETECTED AFTER 25s\nEXPECT Many DETECTED AFTER 41s\n",
+      "RULE Two\n  POLICIES WARNING REPORT\n  TRIGGER logs(camera, ERROR, 10s) >= 2\n"
+      "RULE Many\n  POLICIES WARNING REPORT\n  TRIGGER logs(camera, ERROR, 10s) > 10\n");
+  EXPECT_TRUE(played.result.is_ok()) << played.text();
+}
+
 // ---- the same again
 
 TEST(Runner, PlaysTheSameTestTheSameWay) {

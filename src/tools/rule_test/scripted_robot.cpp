@@ -59,6 +59,7 @@ ScriptedRobot::ScriptedRobot(const RuleSet& rules, const Scenario& scenario)
     plan(Time{goal.from}, [this, topic = goal.topic] { tell_goals(topic); });
     if (goal.until) plan(Time{*goal.until}, [this, topic = goal.topic] { tell_goals(topic); });
   }
+  for (const LogCourse& log : scenario.logs) plan(Time{log.from}, [this, &log] { write_log(log); });
   for (const Incident& i : scenario.incidents) plan(Time{i.at}, [this, &i] { incident(i); });
 }
 
@@ -306,6 +307,13 @@ void ScriptedRobot::tell_goals(TopicId topic) {
     seen.goals.push_back({i, has_ended ? goal.outcome : GoalStatus::kExecuting});
   }
   tell(std::move(seen));
+}
+
+void ScriptedRobot::write_log(const LogCourse& log) {
+  if (components_[log.component.index].process == ProcessState::kRunning)
+    tell(LogSeen{log.component, log.level});
+  const Time next = later(now_, kLogPeriod);
+  if (log.until && next < Time{*log.until}) plan(next, [this, &log] { write_log(log); });
 }
 
 // A topic without a FROM is that of all its publishers.

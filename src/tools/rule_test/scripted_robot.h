@@ -70,6 +70,7 @@ class ScriptedRobot : public Robot {
   void incident(const Incident& incident);
   void probe(ComponentId id, int pid);
   void tell_goals(TopicId topic);
+  void write_log(const LogCourse& log);
   void heal(const std::vector<Subject>& subjects);
   void follow_parameter(ParameterId id, const Value& value);
   void refresh_voices();

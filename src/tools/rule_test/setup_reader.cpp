@@ -40,7 +40,7 @@ std::optional<Incident::Kind> incident_of(std::string_view word) {
 
 const std::vector<std::string_view>& SetupReader::keywords() {
   static const std::vector<std::string_view> kKeywords = {"COMPONENT", "TOPIC", "SIGNAL", "LEVEL",
-                                                          "PARAMETER", "AT",    "GOAL"};
+                                                          "PARAMETER", "AT",    "GOAL",   "LOG"};
   return kKeywords;
 }
 
@@ -53,6 +53,7 @@ bool SetupReader::read(std::string_view keyword, Scanner& s, Scenario& scenario)
   if (keyword == "LEVEL") return level(s);
   if (keyword == "PARAMETER") return parameter(s);
   if (keyword == "GOAL") return goal(s);
+  if (keyword == "LOG") return log(s);
   return at(s);
 }
 
@@ -206,6 +207,26 @@ bool SetupReader::goal(Scanner& s) {
     goal.outcome = *outcome;
   }
   scenario_->goals.push_back(goal);
+  return true;
+}
+
+// LOG camera ERROR 2s, or LOG camera ERROR 2s..5s, which is ten lines a second.
+bool SetupReader::log(Scanner& s) {
+  const auto name = read_.component_reference(s);
+  const auto id = name ? names_.component(*name) : std::nullopt;
+  if (!id) return false;
+  const Token word = s.next();
+  const auto level = log_level(word.text);
+  if (!level) return read_.unexpected_clause(word, log_levels());
+  const auto from = read_.duration(s, "when it is written");
+  if (!from) return false;
+  LogCourse course{*id, *level, *from, {}};
+  if (!s.at_end()) {
+    if (!read_.expect_symbol(s, "..")) return false;
+    course.until = read_.duration(s, "until when lines are written");
+    if (!course.until) return false;
+  }
+  scenario_->logs.push_back(course);
   return true;
 }
 

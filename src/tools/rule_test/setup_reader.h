@@ -21,7 +21,7 @@ class SetupReader {
   SetupReader(const Source& source, const RuleSet& rules, LineReader& read, Names& names)
       : source_(source), rules_(rules), read_(read), names_(names) {}
 
-  // COMPONENT, TOPIC, SIGNAL, LEVEL, PARAMETER, GOAL and AT.
+  // COMPONENT, TOPIC, SIGNAL, LEVEL, PARAMETER, GOAL, LOG and AT.
   static const std::vector<std::string_view>& keywords();
 
   // Reads what follows `keyword` and adds it to `scenario`, or reports and gives false if it cannot
@@ -41,6 +41,7 @@ class SetupReader {
 
   bool topic(Scanner& s);
   bool goal(Scanner& s);
+  bool log(Scanner& s);
   bool signal(Scanner& s);
   bool level(Scanner& s);
   bool parameter(Scanner& s);

@@ -1,0 +1,62 @@
+// Reads the log of components out of /rosout: the lines that rules count with logs(). Lines may arrive 100 ms late, as
+// diagnostics do (diagnostics_watch.h).
+//
+// A line counts for the component whose node owns its writer, whatever name it is signed with. A line whose writer no node
+// claims yet waits until one does, for kClaimed at most.
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/log_level.h"
+#include "base/mutex.h"
+#include "base/time.h"
+#include "language/rule_set.h"
+#include "robot/inbox.h"
+#include "ros2/subscription.h"
+
+namespace culprit::ros2 {
+
+// By component: the least level of the lines that rules count; empty: they count none.
+std::vector<std::optional<LogLevel>> counted_log_levels(const RuleSet& rules);
+
+class LogWatch {
+ public:
+  // Subscribes if a rule counts lines. All references must outlive the watch. `component_of` is called on the
+  // executor's thread.
+  using ComponentOf = std::function<std::optional<ComponentId>(const std::string& node)>;
+  static Expected<std::unique_ptr<LogWatch>> create(NodeEntry& self, const RuleSet& rules,
+                                                    Inbox& inbox, ComponentOf component_of);
+
+ private:
+  static constexpr Duration kClaimed = std::chrono::seconds(5);
+  static constexpr Duration kRetry = std::chrono::milliseconds(200);
+  static constexpr std::size_t kMostWaiting = 1000;
+
+  struct Line {
+    Guid writer;
+    LogLevel level;
+    Time at;
+  };
+
+  LogWatch(NodeEntry& self, const RuleSet& rules, Inbox& inbox, ComponentOf component_of);
+  void on_sample(const Sample& sample);
+  void look_up();
+
+  NodeEntry& self_;
+  Inbox& inbox_;
+  const ComponentOf component_of_;
+  const std::vector<std::optional<LogLevel>> wanted_;
+  LogLevel least_ = LogLevel::kFatal;
+  Mutex mutex_;  // receive threads take it: nothing of the middleware is called with it
+  std::deque<Line> waiting_ CULPRIT_GUARDED_BY(mutex_);
+  bool is_posted_ CULPRIT_GUARDED_BY(mutex_) = false;  // look_up()
+  TaskGroup tasks_;                                    // outlives the one that posts to it
+  std::unique_ptr<RawSubscription> subscription_;
+};
+
+}  // namespace culprit::ros2
