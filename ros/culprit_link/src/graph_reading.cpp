@@ -8,10 +8,17 @@
 #define CULPRIT_LINK_HAS_HASHES
 #endif
 
+#include <rmw/rmw.h>
+
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <functional>
+#include <map>
 #include <set>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "ignore.h"
 
@@ -105,6 +112,99 @@ void read_nodes(const rcl_node_t& node, GraphSeen& seen) {
   ignore(rcutils_string_array_fini(&spaces));
 }
 
+// ---- nodes that are not announced yet
+
+// The first bytes of a GUID: the participant.
+using Participant = std::array<std::uint8_t, 12>;
+
+template <class Id>
+Participant participant_of(const Id& gid) {
+  Participant participant;
+  std::memcpy(participant.data(), &gid[0], participant.size());
+  return participant;
+}
+
+bool has_guids() {
+  const std::string middleware = rmw_get_implementation_identifier();
+  return middleware.find("fastrtps") != std::string::npos ||
+         middleware.find("cyclonedds") != std::string::npos;
+}
+
+// "a::srv::dds_::B_Response_" -> "a/srv/B"
+std::string service_type_of(const std::string& response) {
+  constexpr std::string_view kMiddle = "::srv::dds_::";
+  constexpr std::string_view kEnd = "_Response_";
+  const std::size_t middle = response.find(kMiddle);
+  if (middle == std::string::npos || !std::string_view(response).ends_with(kEnd)) return "";
+  const std::size_t begin = middle + kMiddle.size();
+  return response.substr(0, middle) + "/srv/" +
+         response.substr(begin, response.size() - kEnd.size() - begin);
+}
+
+// The services of these participants, by the names that DDS has.
+std::map<Participant, std::vector<GraphSeen::Service>> servers_of(
+    const rcl_node_t& node, const std::set<Participant>& participants) {
+  std::map<Participant, std::vector<GraphSeen::Service>> servers;
+  rcl_allocator_t allocator = rcl_get_default_allocator();
+  rcl_names_and_types_t topics = rcl_get_zero_initialized_names_and_types();
+  if (rcl_get_topic_names_and_types(&node, &allocator, true, &topics) == RCL_RET_OK) {
+    for (std::size_t i = 0; i < topics.names.size; ++i) {
+      constexpr std::string_view kReply = "Reply";
+      const std::string_view topic = topics.names.data[i];
+      if (!topic.starts_with("rr/") || !topic.ends_with(kReply)) continue;
+      const std::string service(topic.substr(2, topic.size() - 2 - kReply.size()));
+      Infos all = rcl_get_zero_initialized_topic_endpoint_info_array();
+      if (rcl_get_publishers_info_by_topic(&node, &allocator, topics.names.data[i], true, &all) ==
+          RCL_RET_OK) {
+        for (std::size_t e = 0; e < all.size; ++e) {
+          const Participant its = participant_of(all.info_array[e].endpoint_gid);
+          const std::string type = service_type_of(all.info_array[e].topic_type);
+          if (participants.contains(its) && !type.empty())
+            servers[its].push_back({true, service, type, {}});
+        }
+      }
+      rcl_reset_error();
+      ignore(rmw_topic_endpoint_info_array_fini(&all, &allocator));
+    }
+  }
+  rcl_reset_error();
+  ignore(rcl_names_and_types_fini(&topics));
+  return servers;
+}
+
+// A participant announces its nodes apart from its endpoints, and on Fast DDS that may come seconds later while a killed
+// predecessor's lease runs. A node's parameter services have its name: a participant with those of one node holds that.
+void name_unannounced(const rcl_node_t& node, GraphSeen& seen) {
+  if (!has_guids()) return;
+  std::set<Participant> nameless;
+  for (const GraphSeen::Endpoint& each : seen.endpoints) {
+    if (each.node.name.empty()) nameless.insert(participant_of(each.gid));
+  }
+  if (nameless.empty()) return;
+  for (auto& [participant, services] : servers_of(node, nameless)) {
+    constexpr std::string_view kParameters = "/get_parameters";
+    std::set<std::string> names;
+    for (const GraphSeen::Service& each : services) {
+      if (std::string_view(each.name).ends_with(kParameters))
+        names.insert(each.name.substr(0, each.name.size() - kParameters.size()));
+    }
+    if (names.size() != 1) continue;
+    const std::size_t slash = names.begin()->rfind('/');
+    if (slash == std::string::npos) continue;
+    const GraphSeen::Node its{slash == 0 ? "/" : names.begin()->substr(0, slash),
+                              names.begin()->substr(slash + 1)};
+    for (GraphSeen::Endpoint& each : seen.endpoints) {
+      if (each.node.name.empty() && participant_of(each.gid) == participant) each.node = its;
+    }
+    seen.nodes.push_back(its);
+    for (GraphSeen::Service& each : services) {
+      each.node = its;
+      if (std::find(seen.services.begin(), seen.services.end(), each) == seen.services.end())
+        seen.services.push_back(each);
+    }
+  }
+}
+
 }  // namespace
 
 Quality to_quality(const rmw_qos_profile_t& profile) {
@@ -150,6 +250,7 @@ GraphSeen read_graph(const rcl_node_t& node) {
     read_services(node, each, rcl_get_service_names_and_types_by_node, true, seen);
     read_services(node, each, rcl_get_client_names_and_types_by_node, false, seen);
   }
+  name_unannounced(node, seen);
   return seen;
 }
 

@@ -71,6 +71,8 @@ void HelperGraph::begin(const std::string& middleware, const culprit_link::Gid& 
   has_pids_ = has("fastrtps");
   has_guids_ = has_pids_ || has("cyclonedds") || has("connextdds");
   own_ = own;
+  // A killed one stays in the graph until its lease ends, and its successor's successor does not discover it any more.
+  if (has_guids_) helpers_.insert(to_guid(own).prefix());
   own_node_ = std::move(own_node);
 }
 
@@ -109,9 +111,9 @@ void HelperGraph::read_endpoints(const SeenGraph& seen, Peers& peers) {
   const auto anchors = has_guids_ ? std::map<std::string, GuidPrefix>() : anchors_of(seen);
   for (const auto& each : seen.endpoints) {
     const auto name = name_of(each.node);
-    if (name && name->full() == own_node_ &&
-        (!has_guids_ || to_guid(each.gid).prefix() == to_guid(own_).prefix()))
-      continue;
+    const bool is_own = has_guids_ ? helpers_.contains(to_guid(each.gid).prefix())
+                                   : name && name->full() == own_node_;
+    if (is_own) continue;
     if (!is_valid_topic_name(each.topic) || !is_valid_type_name(each.type)) continue;
     if (!name && !has_guids_) continue;
     const Guid given = to_guid(each.gid);
@@ -271,6 +273,14 @@ std::vector<DiscoveryInfo> HelperGraph::infos() const {
   std::vector<DiscoveryInfo> all;
   for (const auto& [prefix, peer] : peers_) all.push_back(info_of(peer.info, peer.nodes));
   return all;
+}
+
+std::vector<GuidPrefix> HelperGraph::without_nodes() const {
+  std::vector<GuidPrefix> found;
+  for (const auto& [prefix, peer] : peers_) {
+    if (peer.nodes.empty() && !peer.endpoints.empty()) found.push_back(prefix);
+  }
+  return found;
 }
 
 const std::set<Guid>& HelperGraph::matching(const std::string& topic, EndpointRole role) const {

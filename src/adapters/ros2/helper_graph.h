@@ -40,6 +40,8 @@ class HelperGraph {
   std::vector<Change> take(const culprit_link::GraphSeen& seen, Missing missing);
   // Whether something is kept that the last graph did not have.
   bool has_missing() const { return has_missing_; }
+  // Participants with endpoints and without a node: their announcement of nodes has not come, or they are not of ROS.
+  std::vector<GuidPrefix> without_nodes() const;
 
   // The announcements that hold now.
   std::vector<DiscoveryInfo> infos() const;
@@ -69,6 +71,7 @@ class HelperGraph {
   bool has_guids_ = false;  // the middleware's ids are GUIDs
   bool has_pids_ = false;   // and tell the process (Fast DDS)
   culprit_link::Gid own_{};
+  std::set<GuidPrefix> helpers_;  // participants of this helper and its predecessors
   std::string own_node_;
   Peers peers_;
   std::map<std::string, GuidPrefix> anchors_;  // of nodes, where ids are no GUIDs

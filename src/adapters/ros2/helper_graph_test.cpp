@@ -139,6 +139,26 @@ TEST(HelperGraph, KeepsWhatANewHelperHasNotDiscoveredYet) {
   EXPECT_EQ(fed.take_told(), std::vector<std::string>{});
 }
 
+TEST(HelperGraph, KnowsWhoseNodesWereNotAnnounced) {
+  Fed fed;
+  GraphSeen seen = camera(300);
+  seen.endpoints.push_back(publisher("", "/scan", gid_of(301, 1)));
+  seen.endpoints.back().node = {};
+  fed.take(seen);
+  const auto found = fed.helper.without_nodes();
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].bytes[4] | found[0].bytes[5] << 8, 301);
+}
+
+TEST(HelperGraph, DoesNotMissAKilledHelper) {
+  Fed fed;
+  fed.helper.begin("rmw_fastrtps_cpp", gid_of(500, 1), "/culprit");
+  GraphSeen seen = camera(300);
+  seen.endpoints.push_back(publisher("culprit", "/diagnostics", kOwn));  // of the one before
+  fed.take(seen);
+  EXPECT_EQ(fed.take_told().size(), 3U);
+}
+
 TEST(HelperGraph, TheOnlyPublisherOfATopicWroteItsSamples) {
   Fed fed("rmw_cyclonedds_cpp");
   fed.take(camera(300));

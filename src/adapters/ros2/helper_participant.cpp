@@ -37,6 +37,7 @@ constexpr Duration kSettles = std::chrono::seconds(5);
 constexpr Duration kSoonest = std::chrono::milliseconds(200);
 constexpr Duration kLatest = std::chrono::seconds(10);
 constexpr Duration kLivedWell = std::chrono::seconds(30);  // then the next one comes soon again
+constexpr Duration kNamesCome = std::chrono::seconds(3);   // after a participant's first endpoint
 constexpr Duration kAsks = std::chrono::seconds(1);        // whether it is at work
 constexpr Duration kHangs = std::chrono::seconds(5);       // one that sends nothing for so long
 constexpr auto kLooks = std::chrono::milliseconds(100);
@@ -237,7 +238,13 @@ class Helped final : public Participant::Impl {
       if (!send_waiting(process.socket())) return process.end();
       const Time now = live_now();
       if (is_joined_) look_whether_settled(now);
-      if (is_joined_ && now > later(asked_last_, kAsks)) ask_whether_it_works(now);
+      if (is_joined_ && now > later(asked_last_, kAsks)) {
+        ask_whether_it_works(now);
+        if (is_settled_ && lacks_announcement(now)) {
+          process.end();
+          return "its middleware has lost the announcement of a participant's nodes";
+        }
+      }
       if (is_joined_ ? now > later(came_last_, kHangs) : now > later(began, kFirstJoin)) {
         process.end();
         return is_joined_ ? "it hung" : "it did not join the robot";
@@ -248,6 +255,23 @@ class Helped final : public Participant::Impl {
       }
     }
     return "";
+  }
+
+  // Fast DDS loses one now and then, for as long as a killed participant's lease runs. A new helper is sent them all.
+  // Once for each participant: those that are not of ROS announce none.
+  bool lacks_announcement(Time now) {
+    constexpr std::size_t kMost = 1000;
+    const std::vector<GuidPrefix> all = graph_.without_nodes();
+    std::erase_if(nameless_, [&](const auto& each) {
+      return std::ranges::find(all, each.first) == all.end();
+    });
+    bool lacks = false;
+    for (const GuidPrefix& each : all) {
+      if (helped_for_.contains(each) || helped_for_.size() >= kMost) continue;
+      const auto since = nameless_.try_emplace(each, now).first->second;
+      lacks = lacks || (now > later(since, kNamesCome) && helped_for_.insert(each).second);
+    }
+    return lacks;
   }
 
   void ask_whether_it_works(Time now) {
@@ -610,6 +634,8 @@ class Helped final : public Participant::Impl {
   bool is_settled_ = false;  // it has discovered what was known before
   bool is_final_ = false;    // no other one would do better
   std::set<std::string> told_;
+  std::map<GuidPrefix, Time> nameless_;  // participants without a node, since when
+  std::set<GuidPrefix> helped_for_;      // those of them for which a helper was replaced
 
   Mutex mutex_;
   ConditionVariable changed_;
