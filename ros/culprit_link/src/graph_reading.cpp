@@ -8,8 +8,6 @@
 #define CULPRIT_LINK_HAS_HASHES
 #endif
 
-#include <rmw/rmw.h>
-
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -19,6 +17,8 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <rmw/rmw.h>
 
 #include "ignore.h"
 
@@ -220,8 +220,8 @@ Quality to_quality(const rmw_qos_profile_t& profile) {
 
 rmw_qos_profile_t to_profile(const Quality& quality) {
   rmw_qos_profile_t profile = rmw_qos_profile_default;
-  profile.history = quality.keeps_all ? RMW_QOS_POLICY_HISTORY_KEEP_ALL
-                                      : RMW_QOS_POLICY_HISTORY_KEEP_LAST;
+  profile.history =
+      quality.keeps_all ? RMW_QOS_POLICY_HISTORY_KEEP_ALL : RMW_QOS_POLICY_HISTORY_KEEP_LAST;
   profile.depth = quality.depth;
   profile.reliability = quality.is_reliable ? RMW_QOS_POLICY_RELIABILITY_RELIABLE
                                             : RMW_QOS_POLICY_RELIABILITY_BEST_EFFORT;

@@ -4,6 +4,22 @@
 // It uses rcl, the C library below rclcpp and rclpy, since that sends and takes serialized messages of any type, and
 // has been the same from Humble on. One thread waits for the middleware and does all work; another reads the socket.
 // Its only argument is the number of the socket's file descriptor. It ends when culprit closes the socket.
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <sys/socket.h>
+#include <thread>
+#include <unistd.h>
+#include <utility>
+
 #include <rcl/client.h>
 #include <rcl/error_handling.h>
 #include <rcl/graph.h>
@@ -16,26 +32,10 @@
 #include <rcl/wait.h>
 #include <rmw/rmw.h>
 #include <rmw/serialized_message.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
-#include <atomic>
-#include <chrono>
-#include <csignal>
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
-#include <deque>
-#include <map>
-#include <memory>
-#include <mutex>
-#include <string>
-#include <thread>
-#include <utility>
 
 #include "culprit_link/protocol.h"
-#include "ignore.h"
 #include "graph_reading.h"
+#include "ignore.h"
 #include "type_support.h"
 
 namespace culprit_link {
@@ -45,9 +45,10 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kBetweenGraphs = std::chrono::milliseconds(50);
 constexpr auto kGraphAnyway = std::chrono::seconds(2);
-constexpr std::size_t kMostAsked = 1000;    // requests to a service of culprit that wait for its answer
-constexpr std::size_t kMostRequests = 1000; // of culprit to one service, that wait for theirs
-constexpr std::size_t kRestOfFrame = 1024;  // an upper limit for what is beside a payload
+constexpr std::size_t kMostAsked =
+    1000;  // requests to a service of culprit that wait for its answer
+constexpr std::size_t kMostRequests = 1000;  // of culprit to one service, that wait for theirs
+constexpr std::size_t kRestOfFrame = 1024;   // an upper limit for what is beside a payload
 
 std::string last_error() {
   const std::string text = rcl_get_error_string().str;
@@ -221,8 +222,8 @@ class Helper {
 
   void wait() {
     ignore(rcl_wait_set_clear(&waits_));
-    if (rcl_wait_set_resize(&waits_, subscriptions_.size(), 2, 0, clients_.size(),
-                            services_.size(), 0) != RCL_RET_OK)
+    if (rcl_wait_set_resize(&waits_, subscriptions_.size(), 2, 0, clients_.size(), services_.size(),
+                            0) != RCL_RET_OK)
       fail(last_error());
     ignore(rcl_wait_set_add_guard_condition(&waits_, &wake_, nullptr));
     ignore(rcl_wait_set_add_guard_condition(&waits_, graph_changed_, &graph_place_));
@@ -412,7 +413,8 @@ class Helper {
       if (rcl_take_response_with_info(&from.raw, &header, response.get()) != RCL_RET_OK)
         return rcl_reset_error();
       const auto number = from.numbers.extract(header.request_id.sequence_number);
-      if (number) channel_.put(Reply{id, number.mapped(), from.response->serialize(response.get())});
+      if (number)
+        channel_.put(Reply{id, number.mapped(), from.response->serialize(response.get())});
     }
   }
 
@@ -431,8 +433,8 @@ class Helper {
 
   void look_at_graph() {
     const auto now = Clock::now();
-    const bool is_due = graph_is_due_ ? now >= read_graph_ + kBetweenGraphs
-                                      : now >= read_graph_ + kGraphAnyway;
+    const bool is_due =
+        graph_is_due_ ? now >= read_graph_ + kBetweenGraphs : now >= read_graph_ + kGraphAnyway;
     if (!is_due) return;
     graph_is_due_ = false;
     GraphSeen seen = read_graph(node_);

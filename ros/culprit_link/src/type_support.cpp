@@ -1,16 +1,16 @@
 #include "type_support.h"
 
+#include <cstdlib>
+#include <cstring>
 #include <dlfcn.h>
+#include <sstream>
+#include <vector>
+
 #include <rcutils/allocator.h>
 #include <rmw/error_handling.h>
 #include <rmw/rmw.h>
 #include <rmw/serialized_message.h>
 #include <rosidl_typesupport_introspection_c/message_introspection.h>
-
-#include <cstdlib>
-#include <cstring>
-#include <sstream>
-#include <vector>
 
 #include "ignore.h"
 
@@ -25,9 +25,9 @@ std::vector<std::string> parts_of(const std::string& type) {
   std::stringstream text(type);
   for (std::string part; std::getline(text, part, '/');) parts.push_back(part);
   const auto is_word = [](const std::string& part) {
-    return !part.empty() && part.find_first_not_of("abcdefghijklmnopqrstuvwxyz"
-                                                   "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") ==
-                                std::string::npos;
+    return !part.empty() && part.find_first_not_of(
+                                "abcdefghijklmnopqrstuvwxyz"
+                                "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") == std::string::npos;
   };
   const bool is_type =
       parts.size() == 3 && is_word(parts[0]) && is_word(parts[1]) && is_word(parts[2]);
@@ -57,8 +57,7 @@ const TypeSupport* find(const std::string& support, const std::string& kind,
   const std::string library = "lib" + parts[0] + "__" + support + ".so";
   void* loaded = load(library);
   if (loaded == nullptr) {
-    why = "the package " + parts[0] + " is not in the helper's environment (" + library +
-          "): source the robot's workspace";
+    why = "the helper's environment has no package " + parts[0];
     return nullptr;
   }
   const std::string symbol = support + "__get_" + kind + "_type_support_handle__" + parts[0] +

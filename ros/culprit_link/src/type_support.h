@@ -1,11 +1,11 @@
 // The type supports of a robot's messages and services, loaded when a topic or service first needs them.
 #pragma once
 
-#include <rosidl_runtime_c/message_type_support_struct.h>
-#include <rosidl_runtime_c/service_type_support_struct.h>
-
 #include <memory>
 #include <string>
+
+#include <rosidl_runtime_c/message_type_support_struct.h>
+#include <rosidl_runtime_c/service_type_support_struct.h>
 
 #include "culprit_link/protocol.h"
 

@@ -881,7 +881,7 @@ TEST(Link, SteersLifecycleAndParameters) {
 
 // Whatever the helper was doing when it ended: each command has one reply, and the node was asked once at most.
 TEST(Link, DoesNothingTwiceAndForgetsNothingWhenItsHelperIsKilled) {
-  constexpr int kKills = 10;
+  constexpr int kKills = 3;
   const TestDomain domain;
   const test::TestFolder folder;
   Robot robot(domain);

@@ -29,8 +29,9 @@ bool has_middleware(const fs::path& process) {
   return false;
 }
 
+// A program may be given with its folder in one of the two, and without in the other.
 bool is_path_of(const std::string& path, const std::string& name) {
-  return path == name || path.ends_with("/" + name);
+  return path == name || path.ends_with("/" + name) || name.ends_with("/" + path);
 }
 
 bool are_same(Words words, Words launch) {

@@ -25,7 +25,7 @@ TEST(NamedProcess, KnowsNodesByTheirRemapping) {
 TEST(NamedProcess, KnowsWhatALaunchStarts) {
   EXPECT_TRUE(is_launched_as({"/opt/driver", "-v"}, {"/opt/driver", "-v"}));
   EXPECT_TRUE(is_launched_as({"/usr/bin/python3", "/opt/node.py", "a"}, {"/opt/node.py", "a"}));
-  EXPECT_TRUE(is_launched_as({"python3", "node.py", "a"}, {"python3", "node.py", "a"}));
+  EXPECT_TRUE(is_launched_as({"python3", "node.py", "a"}, {"/usr/bin/python3", "node.py", "a"}));
   EXPECT_TRUE(
       is_launched_as({"/ros/lib/demo/talker", "-x"}, {"ros2", "run", "demo", "talker", "-x"}));
   EXPECT_TRUE(

@@ -36,10 +36,10 @@ constexpr Duration kFirstJoin = std::chrono::seconds(20);
 constexpr Duration kSettles = std::chrono::seconds(5);
 constexpr Duration kSoonest = std::chrono::milliseconds(200);
 constexpr Duration kLatest = std::chrono::seconds(10);
-constexpr Duration kLivedWell = std::chrono::seconds(30);  // then the next one comes soon again
-constexpr Duration kNamesCome = std::chrono::seconds(3);   // after a participant's first endpoint
-constexpr Duration kAsks = std::chrono::seconds(1);        // whether it is at work
-constexpr Duration kHangs = std::chrono::seconds(5);       // one that sends nothing for so long
+constexpr Duration kLivedWell = std::chrono::seconds(3);  // then the next one comes soon again
+constexpr Duration kNamesCome = std::chrono::seconds(3);  // after a participant's first endpoint
+constexpr Duration kAsks = std::chrono::seconds(1);       // whether it is at work
+constexpr Duration kHangs = std::chrono::seconds(5);      // one that sends nothing for so long
 constexpr auto kLooks = std::chrono::milliseconds(100);
 // The reader of a helper that takes samples in turn.
 constexpr std::uint32_t kLeastDepth = 16;
@@ -440,9 +440,12 @@ class Helped final : public Participant::Impl {
   }
 
   std::string take(const link::Refused& refused) {
-    if (const OursPtr ours = find(refused.id))
-      tell_once("over --link ros there is no " + ours->meaning.name +
-                " for culprit: " + printable(refused.why));
+    const OursPtr ours = find(refused.id);
+    constexpr std::size_t kMost = 100;
+    // Once for each reason: a missing package has many types.
+    if (ours && told_.size() < kMost && told_.insert(refused.why).second)
+      trouble("over --link ros culprit lacks " + ours->meaning.name + ": " +
+              printable(refused.why));
     return "";
   }
 

@@ -90,7 +90,9 @@ struct Use {
   std::string type;
   Quality quality;
   bool operator==(const Use&) const = default;
-  static void visit(auto& self, auto&& each) { each(self.id, self.service, self.type, self.quality); }
+  static void visit(auto& self, auto&& each) {
+    each(self.id, self.service, self.type, self.quality);
+  }
 };
 
 // A service that culprit offers.
@@ -100,7 +102,9 @@ struct Offer {
   std::string type;
   Quality quality;
   bool operator==(const Offer&) const = default;
-  static void visit(auto& self, auto&& each) { each(self.id, self.service, self.type, self.quality); }
+  static void visit(auto& self, auto&& each) {
+    each(self.id, self.service, self.type, self.quality);
+  }
 };
 
 struct Remove {
@@ -239,16 +243,18 @@ struct Trouble {
   static void visit(auto& self, auto&& each) { each(self.text); }
 };
 
-using Frame = std::variant<Join, Subscribe, Advertise, Use, Offer, Remove, Publish, Request,
-                           Respond, Echo, Welcome, Arrived, Reply, Asked, GraphSeen, Refused,
-                           Trouble>;
+using Frame =
+    std::variant<Join, Subscribe, Advertise, Use, Offer, Remove, Publish, Request, Respond, Echo,
+                 Welcome, Arrived, Reply, Asked, GraphSeen, Refused, Trouble>;
 
 // ---- coding
 
 namespace coding {
 
 template <class T>
-concept Described = requires(T& t) { T::visit(t, [](auto&...) {}); };
+concept Described = requires(T& t) {
+  T::visit(t, [](auto&...) {});
+};
 
 class Writer {
  public:
