@@ -250,7 +250,9 @@ FoundProcess Link::find_named(const ParticipantInfo& participant) const {
     const auto component = binding_.find(node);
     if (!component) continue;
     sought.launch = rules_[*component].launch;
-    sought.is_component = !rules_[*component].composed;
+    if (!rules_[*component].composed)
+      sought.mark = std::to_string(options_.participant.domain) + "/" + rules_.robot + "/" +
+                    rules_[*component].name;
   }
   return NamedProcess().find(participant, nodes);
 }

@@ -6,6 +6,8 @@
 #include <span>
 #include <system_error>
 
+#include "base/component_mark.h"
+
 namespace culprit::ros2 {
 namespace {
 
@@ -18,6 +20,26 @@ std::vector<std::string> command_line_of(const fs::path& process) {
   std::ifstream file(process / "cmdline", std::ios::binary);
   for (std::string word; std::getline(file, word, '\0');) words.push_back(word);
   return words;
+}
+
+// In the environment that the process was started with.
+bool has_mark(const fs::path& process, const std::string& mark) {
+  const std::string wanted = std::string(kComponentVariable) + "=" + mark;
+  std::ifstream file(process / "environ", std::ios::binary);
+  for (std::string variable; std::getline(file, variable, '\0');) {
+    if (variable == wanted) return true;
+  }
+  return false;
+}
+
+// The parent: "4711".
+std::string starter_of(const fs::path& process) {
+  std::ifstream file(process / "stat");
+  std::string stat;
+  std::getline(file, stat);
+  const std::size_t end = stat.rfind(')');  // of the name, which may hold anything
+  if (end == std::string::npos || end + 4 >= stat.size()) return "none";
+  return stat.substr(end + 4, stat.find(' ', end + 4) - end - 4);
 }
 
 // Unreadable for another user's process, which is then not proven.
@@ -75,6 +97,19 @@ bool is_launched_as(const std::vector<std::string>& words, const std::vector<std
   return fits(run);
 }
 
+bool is_of_launch_file(const std::vector<std::string>& words,
+                       const std::vector<std::string>& starter,
+                       const std::vector<std::string>& launch, const std::string& node) {
+  if (launch.empty() || launch[0].find(".launch.") == std::string::npos) return false;
+  const std::string file = launch[0].substr(0, launch[0].find('#'));
+  const auto has = [](const std::vector<std::string>& all, const std::string& name) {
+    return std::ranges::any_of(all, [&](const std::string& word) {
+      return fs::path(word).filename() == fs::path(name).filename();
+    });
+  };
+  return has(starter, file) && has(words, node);
+}
+
 NamedProcess::NamedProcess(fs::path proc) : proc_(std::move(proc)) {}
 
 FoundProcess NamedProcess::find(const ParticipantInfo& participant,
@@ -91,12 +126,16 @@ FoundProcess NamedProcess::find(const ParticipantInfo& participant,
     if (participant.pid != 0 && (pid & kAnnounced) != participant.pid) continue;
     const std::vector<std::string> words = command_line_of(i->path());
     const bool fits = std::ranges::any_of(nodes, [&](const Sought& each) {
-      return names_node(words, each.node) || is_launched_as(words, each.launch);
+      return names_node(words, each.node) || is_launched_as(words, each.launch) ||
+             (!each.mark.empty() && has_mark(i->path(), each.mark)) ||
+             is_of_launch_file(words, command_line_of(proc_ / starter_of(i->path())), each.launch,
+                               each.node);
     });
     if (fits && has_middleware(i->path())) found.push_back(pid);
   }
   if (found.size() == 1) return {found.front(), ""};
-  const bool is_worth_a_word = std::ranges::any_of(nodes, &Sought::is_component);
+  const bool is_worth_a_word =
+      std::ranges::any_of(nodes, [](const Sought& each) { return !each.mark.empty(); });
   if (!is_worth_a_word) return {};
   return {
       0,

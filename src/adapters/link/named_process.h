@@ -2,8 +2,11 @@
 // (helper_participant.h) a middleware shows neither sockets nor processes.
 //
 // A process is proven to be a node's by what nobody on the network can make: it runs here, has a ROS middleware
-// loaded, and its command line is the LAUNCH of the node's component or names the node (`__node:=`). Fast DDS also
-// announces the process id; then both must agree. Two processes that fit are no proof.
+// loaded, and one of these holds:
+// - its command line is the LAUNCH of the node's component, or names the node (`__node:=`);
+// - culprit started it for the component (owners/mark.h);
+// - LAUNCH names a launch file, what started it runs that file, and its command line has the node's own name.
+// Fast DDS also announces the process id; then that must agree. Two processes that fit are no proof.
 #pragma once
 
 #include <filesystem>
@@ -19,7 +22,7 @@ class NamedProcess {
   struct Sought {
     std::string node;                   // its full name
     std::vector<std::string> launch{};  // of its component; may be empty
-    bool is_component = false;          // then a missing proof is worth a word
+    std::string mark{};                 // the component's: "0/sunset/camera"; empty: it is none
   };
 
   // `proc` is where the proc file system is mounted.
@@ -37,5 +40,9 @@ bool names_node(const std::vector<std::string>& words, const std::string& node);
 // Whether a process with this command line is what `launch` starts: the same words, also behind an interpreter, or the
 // program that "ros2 run package program" runs.
 bool is_launched_as(const std::vector<std::string>& words, const std::vector<std::string>& launch);
+// Whether `starter`, the command line of what started it, runs the file of "robot.launch.py#driver", and it is for the node.
+bool is_of_launch_file(const std::vector<std::string>& words,
+                       const std::vector<std::string>& starter,
+                       const std::vector<std::string>& launch, const std::string& node);
 
 }  // namespace culprit::ros2

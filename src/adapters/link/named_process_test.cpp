@@ -38,6 +38,15 @@ TEST(NamedProcess, KnowsWhatALaunchStarts) {
   EXPECT_FALSE(is_launched_as({"a"}, {}));
 }
 
+TEST(NamedProcess, KnowsWhatALaunchFileStarts) {
+  const Words launch = {"bot/robot.launch.py#lidar", "x:=1"};
+  const Words starter = {"python3", "/ros/bin/ros2", "launch", "bot", "robot.launch.py"};
+  EXPECT_TRUE(is_of_launch_file({"python3", "node.py", "lidar"}, starter, launch, "/lidar"));
+  EXPECT_FALSE(is_of_launch_file({"python3", "node.py", "filter"}, starter, launch, "/lidar"));
+  EXPECT_FALSE(is_of_launch_file({"python3", "node.py", "lidar"}, {"bash"}, launch, "/lidar"));
+  EXPECT_FALSE(is_of_launch_file({"lidar"}, starter, {"lidar"}, "/lidar"));
+}
+
 // A /proc of these processes.
 class Processes {
  public:
@@ -52,7 +61,7 @@ class Processes {
   FoundProcess find(int announced = 0) const {
     ParticipantInfo participant;
     participant.pid = announced;
-    return NamedProcess(proc.path()).find(participant, {{"/lidar", {"lidar", "-v"}, true}});
+    return NamedProcess(proc.path()).find(participant, {{"/lidar", {"lidar", "-v"}, "0/r/lidar"}});
   }
   test::TestFolder proc;
 };
@@ -64,6 +73,14 @@ TEST(NamedProcess, ProvesTheOneThatFits) {
   all.add(302, {"python3", "/opt/lidar", "-v"}, "/lib/libc.so");  // no node: it has no middleware
   EXPECT_EQ(all.find().pid, 300);
   EXPECT_EQ(all.find(300).pid, 300);
+}
+
+TEST(NamedProcess, KnowsWhatCulpritStarted) {
+  Processes all;
+  all.add(300, {"python3", "node.py"});
+  all.add(301, {"python3", "node.py"});
+  std::ofstream(all.proc / "301/environ") << "A=b" << '\0' << "CULPRIT_COMPONENT=0/r/lidar" << '\0';
+  EXPECT_EQ(all.find().pid, 301);
 }
 
 TEST(NamedProcess, BelievesNoProcessIdAlone) {

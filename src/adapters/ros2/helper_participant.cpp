@@ -37,6 +37,7 @@ constexpr Duration kSettles = std::chrono::seconds(5);
 constexpr Duration kSoonest = std::chrono::milliseconds(200);
 constexpr Duration kLatest = std::chrono::seconds(10);
 constexpr Duration kLivedWell = std::chrono::seconds(3);  // then the next one comes soon again
+constexpr Duration kFlows = std::chrono::seconds(2);      // a topic with a sample in this time
 constexpr Duration kNamesCome = std::chrono::seconds(3);  // after a participant's first endpoint
 constexpr Duration kAsks = std::chrono::seconds(1);       // whether it is at work
 constexpr Duration kHangs = std::chrono::seconds(5);      // one that sends nothing for so long
@@ -123,6 +124,7 @@ struct Ours {
   // Of the thread that talks to the helper.
   std::set<Guid> matched;
   Guid newest{};                         // of those, that which matched last
+  Time came_last = kLongAgo;             // a sample
   std::map<Guid, std::int64_t> counted;  // samples of writers that the middleware does not count
 };
 
@@ -375,6 +377,8 @@ class Helped final : public Participant::Impl {
   std::string take(const link::Arrived& sample) {
     const OursPtr ours = find(sample.id);
     if (!ours || ours->meaning.purpose != Purpose::kTopic || !ours->on_sample) return "";
+    ours->came_last = live_now();
+    awaited_.erase(sample.id);
     const Guid writer = graph_.writer_of(ours->topic, sample.writer);
     std::int64_t number = sample.number;
     if (number == 0) number = count(*ours, writer);
@@ -483,13 +487,14 @@ class Helped final : public Participant::Impl {
         deliver_info(std::get<DiscoveryInfo>(change));
       }
     }
-    if (!graph_.has_missing()) is_settled_ = true;
     match();
   }
 
   void look_whether_settled(Time now) {
-    if (is_settled_ || now < later(joined_, kSettles)) return;
+    const bool knows_all = last_graph_ && !graph_.has_missing() && awaited_.empty();
+    if (is_settled_ || (!knows_all && now < later(joined_, kSettles))) return;
     is_settled_ = true;
+    awaited_.clear();
     if (last_graph_) take_graph();
   }
 
@@ -537,7 +542,11 @@ class Helped final : public Participant::Impl {
       sent_ = 0;
     }
     is_settled_ = false;
-    for (const OursPtr& ours : all_ours()) match(*ours, {});
+    const Time now = live_now();
+    for (const OursPtr& ours : all_ours()) {
+      if (now < later(ours->came_last, kFlows)) awaited_.insert(ours->id);
+      match(*ours, {});
+    }
   }
 
   // ---- small parts
@@ -634,8 +643,9 @@ class Helped final : public Participant::Impl {
   Time asked_last_ = kLongAgo;
   Time joined_ = kLongAgo;
   bool is_joined_ = false;
-  bool is_settled_ = false;  // it has discovered what was known before
-  bool is_final_ = false;    // no other one would do better
+  bool is_settled_ = false;          // it has discovered what was known before
+  std::set<std::uint32_t> awaited_;  // of our readers: samples came before the last helper's end
+  bool is_final_ = false;            // no other one would do better
   std::set<std::string> told_;
   std::map<GuidPrefix, Time> nameless_;  // participants without a node, since when
   std::set<GuidPrefix> helped_for_;      // those of them for which a helper was replaced

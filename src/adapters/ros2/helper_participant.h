@@ -6,9 +6,10 @@
 // difference, but for what only DDS shows: where datagrams come from, the host and process of a participant, and the
 // process that answered.
 //
-// - The helper is started again when it ends or hangs, after 0.2 s to 10 s. Meanwhile culprit is deaf: topics of the
-//   package `culprit`, by which it tests its hearing (hearing.h), go only to the helper and back. It stays deaf until the
-//   new helper has discovered what the old one knew, or for 5 s; the graph stays as it was for so long.
+// - The helper is started again when it ends or hangs, after 0.2 s to 10 s. Meanwhile culprit is
+//   deaf: topics of the package `culprit`, by which it tests its hearing (hearing.h), go only to the
+//   helper and back. It stays deaf until the new helper has discovered what the old one knew and
+//   receives the topics that the old one received, or for 5 s. The graph stays as it was for so long.
 // - A request is handed to one helper once, and never to its successor. A caller that hears nothing has to look.
 #pragma once
 
