@@ -51,6 +51,17 @@ bool has_middleware(const fs::path& process) {
   return false;
 }
 
+// As it was started, and with the program that this really is: "python3" is /usr/bin/python3.11.
+bool is_started_as(const fs::path& process, std::vector<std::string> words,
+                   const std::vector<std::string>& launch) {
+  if (is_launched_as(words, launch)) return true;
+  std::error_code error;
+  const fs::path program = fs::read_symlink(process / "exe", error);
+  if (error || words.empty()) return false;
+  words[0] = program.string();
+  return is_launched_as(words, launch);
+}
+
 // A program may be given with its folder in one of the two, and without in the other.
 bool is_path_of(const std::string& path, const std::string& name) {
   return path == name || path.ends_with("/" + name) || name.ends_with("/" + path);
@@ -126,7 +137,7 @@ FoundProcess NamedProcess::find(const ParticipantInfo& participant,
     if (participant.pid != 0 && (pid & kAnnounced) != participant.pid) continue;
     const std::vector<std::string> words = command_line_of(i->path());
     const bool fits = std::ranges::any_of(nodes, [&](const Sought& each) {
-      return names_node(words, each.node) || is_launched_as(words, each.launch) ||
+      return names_node(words, each.node) || is_started_as(i->path(), words, each.launch) ||
              (!each.mark.empty() && has_mark(i->path(), each.mark)) ||
              is_of_launch_file(words, command_line_of(proc_ / starter_of(i->path())), each.launch,
                                each.node);

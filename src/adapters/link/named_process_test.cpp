@@ -75,6 +75,13 @@ TEST(NamedProcess, ProvesTheOneThatFits) {
   EXPECT_EQ(all.find(300).pid, 300);
 }
 
+TEST(NamedProcess, KnowsAProgramByItsFile) {
+  Processes all;
+  all.add(300, {"l", "-v"});
+  std::filesystem::create_symlink("/opt/lidar", all.proc / "300/exe");
+  EXPECT_EQ(all.find().pid, 300);
+}
+
 TEST(NamedProcess, KnowsWhatCulpritStarted) {
   Processes all;
   all.add(300, {"python3", "node.py"});
