@@ -1,4 +1,4 @@
-// What a helper program sends: any bytes as frames, and each graph that it tells as discovery.
+// Frames of a helper program: any bytes as frames, and each graph in them as discovery.
 //
 // A frame that was read is written and read again as the same. The graph that is fed with what a helper graph makes of
 // any graphs stays consistent with itself.

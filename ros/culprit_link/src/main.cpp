@@ -188,7 +188,7 @@ class Helper {
     channel_.flush();
   }
 
-  // That of a publisher which lives for a moment.
+  // It is read from a publisher that lives for a moment.
   Gid own_gid() {
     Gid gid{};
     std::string why;

@@ -879,7 +879,7 @@ TEST(Link, SteersLifecycleAndParameters) {
   })) << "announced";
 }
 
-// Whatever the helper was doing when it ended: each command has one reply, and the node was asked once at most.
+// The helper is killed at any moment: each command has one reply, and the node was asked once at most.
 TEST(Link, DoesNothingTwiceAndForgetsNothingWhenItsHelperIsKilled) {
   constexpr int kKills = 3;
   const TestDomain domain;

@@ -28,7 +28,7 @@ class NamedProcess {
   // `proc` is where the proc file system is mounted.
   explicit NamedProcess(std::filesystem::path proc = "/proc");
 
-  // Of a participant with these nodes. Milliseconds: it looks through all processes.
+  // The process of a participant with these nodes. Milliseconds: it looks through all processes.
   FoundProcess find(const ParticipantInfo& participant, const std::vector<Sought>& nodes) const;
 
  private:

@@ -36,7 +36,7 @@ class HelperGraph {
   // `middleware`: "rmw_fastrtps_cpp". `own`: the id of an endpoint of the helper.
   void begin(const std::string& middleware, const culprit_link::Gid& own, std::string own_node);
 
-  // What changed, in an order that discovery could have had.
+  // Returns the changes since the last graph, in an order that discovery could have had.
   std::vector<Change> take(const culprit_link::GraphSeen& seen, Missing missing);
   // Whether something is kept that the last graph did not have.
   bool has_missing() const { return has_missing_; }

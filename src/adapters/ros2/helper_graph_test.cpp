@@ -14,7 +14,7 @@ using culprit_link::GraphSeen;
 
 constexpr Gid kOwn = {1, 15, 7, 7, 0x22, 0x11};
 
-// Of the process with this id on this machine, as Fast DDS makes them.
+// An id that Fast DDS gives an endpoint of this process on this machine.
 Gid gid_of(int pid, std::uint8_t endpoint) {
   Gid gid = {1, 15, 7, 7, static_cast<std::uint8_t>(pid), static_cast<std::uint8_t>(pid >> 8)};
   gid[14] = endpoint;
@@ -26,7 +26,7 @@ GraphSeen::Endpoint publisher(const std::string& node, const std::string& topic,
   return {true, topic, "std_msgs/msg/Float64", "", gid, {"/", node}, {}};
 }
 
-// What a graph that is fed with it reports.
+// A graph that is fed with it, and its reports.
 class Fed {
  public:
   explicit Fed(const std::string& middleware = "rmw_fastrtps_cpp") {

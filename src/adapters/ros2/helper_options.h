@@ -14,7 +14,7 @@ struct HelperOptions {
   // The node that it makes.
   std::string name_space = "/";
   std::string name = "culprit_onlooker";
-  // What a person should know about it. May be empty; called on any thread.
+  // Receives remarks for people. May be empty; called on any thread.
   std::function<void(std::string)> on_trouble{};
 };
 

@@ -45,7 +45,7 @@ constexpr auto kLooks = std::chrono::milliseconds(100);
 // The reader of a helper that takes samples in turn.
 constexpr std::uint32_t kLeastDepth = 16;
 
-// What a topic of DDS means here.
+// The meaning of a DDS topic here.
 enum class Purpose : std::uint8_t {
   kTopic,
   kRequest,
@@ -121,7 +121,7 @@ struct Ours {
   MatchCallback on_match;    // may be empty
   Gate gate;
 
-  // Of the thread that talks to the helper.
+  // Only the thread that talks to the helper uses these.
   std::set<Guid> matched;
   Guid newest{};                         // of those, that which matched last
   Time came_last = kLongAgo;             // a sample
@@ -180,7 +180,7 @@ class Helped final : public Participant::Impl {
                                                   SampleCallback on_sample) override;
   Expected<std::unique_ptr<Writer>> create_writer(WriterOptions options) override;
 
-  // Of readers and writers.
+  // Readers and writers call these.
   void remove(const Ours& ours) {
     {
       const MutexLock lock(mutex_);
@@ -303,7 +303,7 @@ class Helped final : public Participant::Impl {
       has_come = true;
       reader_.feed({buffer.data(), static_cast<std::size_t>(count)});
       while (auto frame = reader_.next()) {
-        std::string why = std::visit([this](auto& each) { return take(each); }, *frame);
+        std::string why = std::visit([this](auto& each) { return this->take(each); }, *frame);
         if (why.empty()) continue;
         process.end();
         return why;
@@ -412,7 +412,7 @@ class Helped final : public Participant::Impl {
     return "";
   }
 
-  // That which matched last.
+  // Returns the server that matched last.
   static Guid newest_of(const Ours& ours, const std::set<Guid>& servers) {
     return servers.contains(ours.newest) ? ours.newest : *servers.begin();
   }

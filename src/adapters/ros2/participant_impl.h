@@ -1,4 +1,4 @@
-// What a middleware has to do to be a Participant. participant.cpp does it on DDS, helper_participant.cpp through a helper
+// The interface of a middleware for Participant. participant.cpp implements it on DDS, helper_participant.cpp through a helper
 // program. Contracts are those of participant.h.
 #pragma once
 
