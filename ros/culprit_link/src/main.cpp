@@ -200,10 +200,11 @@ class Helper {
       rcl_reset_error();
       return gid;
     }
-    rmw_gid_t own;
-    std::memset(&own, 0, sizeof own);
-    if (rmw_get_gid_for_publisher(rcl_publisher_get_rmw_handle(&publisher), &own) == RMW_RET_OK)
-      std::memcpy(gid.data(), own.data, gid.size());
+    // As the graph has it: on Cyclone DDS the publisher itself gives another id.
+    for (const GraphSeen::Endpoint& each : read_graph(node_).endpoints) {
+      if (each.is_publisher && each.topic == rcl_publisher_get_topic_name(&publisher))
+        gid = each.gid;
+    }
     ignore(rcl_publisher_fini(&publisher, &node_));
     return gid;
   }
