@@ -5,6 +5,7 @@
 
 #include "base/environment.h"
 #include "base/name_grammar.h"
+#include "live/link_program.h"
 #include "live/robot_survey.h"
 #include "live/run_journal.h"
 #include "terminal/seconds_option.h"
@@ -29,6 +30,12 @@ Expected<live::LiveSession::Options> RunOptions::session(const RuleSet& rule_set
   out.version = version;
   out.rules_file = rules;
   out.robot.link.participant = *participant;
+  if (link == "ros") {
+    auto helper = live::link_program(rule_set, link_program);
+    if (!helper) return Error{helper.error()};
+    out.robot.link.participant.helper = std::move(*helper);
+    out.has_preflight = false;  // it looks at the robot over DDS
+  }
   out.robot.link.types = live::sources_of_types(message_path);
   out.robot.link.use_sim_time = use_sim_time;
   if (!node_name.empty()) out.robot.link.name.name = node_name;
@@ -114,6 +121,17 @@ void RunOptions::add_files(CLI::App& command) {
 void RunOptions::add_node(CLI::App& command) {
   command.add_flag("--use-sim-time", use_sim_time,
                    "The robot is simulated; judge nothing while its /clock stands still");
+  command
+      .add_option(
+          "--link", link,
+          "How culprit reaches the robot: dds, or ros, through the robot's own middleware by the "
+          "program of ros/culprit_link (docs/link-protocol.md)")
+      ->check(CLI::IsMember({"dds", "ros"}))
+      ->capture_default_str();
+  command
+      .add_option("--link-program", link_program,
+                  "The program of --link ros (default: that of the robot's workspace, or in PATH)")
+      ->type_name("FILE");
   command
       .add_option("--node-name", node_name,
                   "Name of culprit's own node (default: culprit; culprit_2 and so on beside others "

@@ -34,7 +34,9 @@ struct RunOptions {
   std::vector<std::filesystem::path> message_path;
   bool use_sim_time = false;
   bool json = false;
-  std::string node_name;  // empty: the first that no other culprit of this machine has
+  std::string link = "dds";  // or "ros": through the helper program
+  std::string link_program;  // the helper; empty: the one of the robot's workspace, or of PATH
+  std::string node_name;     // empty: the first that no other culprit of this machine has
   bool takes_orders_from_anyone = false;  // over DDS, on a domain without keys
   std::string alerts;                     // a file; empty: nobody is alerted
   RecordingOptions recording;

@@ -11,10 +11,13 @@
 #include <unistd.h>
 
 #include "base/duration_words.h"
+#include "base/environment.h"
 #include "base/live_clock.h"
 #include "base/tool_names.h"
 #include "base/tracer.h"
 #include "link/list_parameter.h"
+#include "link/named_process.h"
+#include "ros2/helper_options.h"
 #include "ros2/process_finder.h"
 #include "ros2/services.h"
 #include "rtps/origins.h"
@@ -146,8 +149,8 @@ Link::~Link() {
 Expected<void> Link::start() {
   Graph::Options graph;
   graph.listener = [this](const GraphChange& change) { on_change(change); };
-  graph.find_process = [finder = ProcessFinder()](const ParticipantInfo& participant) {
-    return finder.find(participant);
+  graph.find_process = [this, finder = ProcessFinder()](const ParticipantInfo& participant) {
+    return options_.participant.helper ? find_named(participant) : finder.find(participant);
   };
   graph.is_running = [finder = ProcessFinder()](int pid) { return finder.is_running(pid); };
   graph.is_ended_by_others = [this](const std::string& node) {
@@ -169,6 +172,13 @@ Expected<void> Link::start() {
     const auto expected = departures_.find(*component);
     return expected == departures_.end() || expected->second < live_now();
   };
+  if (options_.participant.helper) {
+    auto helper = std::make_shared<HelperOptions>(*options_.participant.helper);
+    helper->name_space = options_.name.name_space;
+    helper->name = options_.name.name;
+    helper->on_trouble = [this](std::string text) { inbox_.put(LinkTrouble{std::move(text)}); };
+    options_.participant.helper = std::move(helper);
+  }
   auto context = Context::create(executor_, options_.participant, std::move(graph));
   if (!context) return Error{context.error()};
   context_ = std::move(*context);
@@ -234,6 +244,22 @@ Expected<void> Link::start() {
   probing_ = std::make_unique<Timer>(executor_, kProbePeriod, [this] { probe(); });
   thread_ = std::thread([this] { executor_.run(); });
   return {};
+}
+
+// Within a change of the graph.
+FoundProcess Link::find_named(const ParticipantInfo& participant) const {
+  if (!participant.host.empty() && participant.host != host_name()) return {};
+  std::vector<NamedProcess::Sought> nodes;
+  for (const std::string& node : participant.nodes) {
+    NamedProcess::Sought& sought = nodes.emplace_back(NamedProcess::Sought{node});
+    const auto component = binding_.find(node);
+    if (!component) continue;
+    sought.launch = rules_[*component].launch;
+    if (!rules_[*component].composed)
+      sought.mark = std::to_string(options_.participant.domain) + "/" + rules_.robot + "/" +
+                    rules_[*component].name;
+  }
+  return NamedProcess().find(participant, nodes);
 }
 
 Time Link::sure_to_hear(Time now) const {
@@ -306,10 +332,11 @@ bool Link::is_paused() const {
 std::string Link::doubt() const {
   if (is_paused()) return clock()->doubt(live_now());
   const Time now = live_now();
-  return lease_ && lease_->sure_until(now) <= now
-             ? "culprit was away so long that another one may manage this robot now; it waits for "
-               "its messages"
-             : hearing_->doubt(now);
+  if (lease_ && lease_->sure_until(now) <= now)
+    return "culprit was away so long that another one may manage this robot now; it waits for its "
+           "messages";
+  return options_.participant.helper ? "the helper program of --link ros does not answer"
+                                     : hearing_->doubt(now);
 }
 
 Expected<void> Link::declare_parameters() {

@@ -129,6 +129,7 @@ class Link {
  private:
   Link(const RuleSet& rules, Options options, Inbox& inbox);
   Expected<void> start();
+  FoundProcess find_named(const ParticipantInfo& participant) const;
   Expected<void> declare_parameters();
   Expected<void> watch_parameter_events();
 

@@ -4,17 +4,24 @@
 #include <arpa/inet.h>
 #include <array>
 #include <atomic>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <future>
+#include <iterator>
+#include <map>
 #include <mutex>
+#include <random>
 #include <sys/socket.h>
 #include <thread>
 #include <unistd.h>
 
 #include <gtest/gtest.h>
 
+#include "base/environment.h"
+#include "base/test_folder.h"
 #include "language/checker.h"
+#include "ros2/helper_options.h"
 #include "ros2/lifecycle.h"
 #include "ros2/lifecycle_node.h"
 #include "ros2/live_test.h"
@@ -44,15 +51,34 @@ RULE R
       ADAPTATION robot restart 5
 )";
 
+// A helper program of --link ros for this domain. It adds its process id to the file, if one is named.
+std::shared_ptr<const HelperOptions> helper_of(const TestDomain& domain,
+                                               const std::string& pids = "/dev/null") {
+  HelperOptions helper;
+  helper.command = {"/bin/sh",
+                    "-c",
+                    "echo $$ >> \"$0\"; exec \"$@\"",
+                    pids,
+                    CULPRIT_PEER_HELPER,
+                    std::to_string(domain.number())};
+  for (char** each = environ; *each != nullptr; ++each) helper.environment.emplace_back(*each);
+  return std::make_shared<const HelperOptions>(std::move(helper));
+}
+
+// The variable runs the tests that are not of DDS alone over a helper (src/CMakeLists.txt).
+bool is_over_helper() { return environment("CULPRIT_LINK_OF_TESTS") == "ros"; }
+
 // A link to whatever the test puts on the domain, and what it observes.
 class Linked {
  public:
   explicit Linked(const TestDomain& domain, const std::filesystem::path& message_path = {},
-                  const char* text = kRules)
+                  const char* text = kRules, std::shared_ptr<const HelperOptions> helper = nullptr)
       : rules(*check(Source("test.rules", text)).rules) {
     Link::Options options;
     if (!message_path.empty()) options.types.message_path = {message_path};
     options.participant = domain.options();
+    options.participant.helper =
+        helper || !is_over_helper() ? std::move(helper) : helper_of(domain);
     options.parameters = {{"rules", Value(std::string("test.rules"))}};
     auto opened = Link::open(rules, std::move(options), inbox_);
     if (!opened) throw std::runtime_error(opened.error());
@@ -871,6 +897,50 @@ TEST(Link, SteersLifecycleAndParameters) {
   EXPECT_TRUE(linked.wait<ParameterRead>([](const ParameterRead& r) {
     return r.value == Value(3.0);
   })) << "announced";
+}
+
+// The helper is killed at any moment: each command has one reply, and the node was asked once at most.
+TEST(Link, DoesNothingTwiceAndForgetsNothingWhenItsHelperIsKilled) {
+  constexpr int kKills = 3;
+  const TestDomain domain;
+  const test::TestFolder folder;
+  Robot robot(domain);
+  std::mutex mutex;
+  std::map<double, int> set;
+  robot.context.run([&] {
+    robot.managed->node().parameters().on_set(
+        [&](std::span<const msg::Parameter> parameters) -> Expected<void> {
+          const std::lock_guard lock(mutex);
+          for (const msg::Parameter& each : parameters) ++set[each.value.double_value];
+          return {};
+        });
+  });
+  const std::string pids = (folder / "pids").string();
+  Linked linked(domain, {}, kRules, helper_of(domain, pids));
+  EXPECT_TRUE(linked.sees("/robot"));
+  const auto started = [&] {
+    std::ifstream file(pids);
+    return std::vector<int>{std::istream_iterator<int>(file), {}};
+  };
+  std::mt19937 random(7);
+  for (int i = 0; i < kKills; ++i) {
+    const auto before = started();
+    std::thread killer([&, after = std::chrono::milliseconds(random() % 30)] {
+      std::this_thread::sleep_for(after);
+      kill(before.back(), SIGKILL);
+    });
+    const double wished = 100.0 + i;
+    const Reply reply = linked.ask(SetParameter{"gain", Value(wished)}, 2s);
+    killer.join();
+    while (started().size() == before.size()) std::this_thread::sleep_for(10ms);
+    const Reply now = linked.ask(ReadParameter{"gain"});
+    ASSERT_EQ(now.outcome, Outcome::kDone) << now.text;
+    const std::lock_guard lock(mutex);
+    EXPECT_LE(set[wished], 1);
+    EXPECT_EQ(set[wished] == 1, std::get<Value>(now.value) == Value(wished));
+    EXPECT_TRUE(reply.outcome != Outcome::kDone || set[wished] == 1);
+  }
+  EXPECT_FALSE(linked.has_seen<NodeVanished>([](const NodeVanished&) { return true; }));
 }
 
 TEST(Link, KnowsTheStateOfANodeWhoseTransitionsItDoesNotHearOf) {

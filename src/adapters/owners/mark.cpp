@@ -5,18 +5,20 @@
 #include <sstream>
 #include <unistd.h>
 
+#include "base/component_mark.h"
 #include "owners/proc.h"
 
 namespace culprit::owners {
 namespace {
 
-constexpr const char* kComponentVariable = "CULPRIT_COMPONENT=";
 constexpr const char* kNamespaceVariable = "CULPRIT_PROCESS_COUNTS_IN=";
 constexpr const char* kNetworkVariable = "CULPRIT_NETWORK=";
 
 constexpr const char* kPlaceVariable = "CULPRIT_IN_PLACE_OF=";
 
-std::string mark(const std::string& component) { return kComponentVariable + component; }
+std::string mark(const std::string& component) {
+  return std::string(kComponentVariable) + "=" + component;
+}
 
 bool is_of_our_network(int pid) {
   const std::string network = value_of_variable(pid, kNetworkVariable);
@@ -69,7 +71,7 @@ std::string variable_of(int pid) {
 std::vector<MarkedProcess> marked_processes(const std::string& prefix) {
   std::vector<MarkedProcess> all;
   for (const int pid : all_processes()) {
-    std::string component = value_of_variable(pid, kComponentVariable);
+    std::string component = value_of_variable(pid, mark(""));
     const bool has_ended = state_letter(pid).value_or('X') == 'Z';
     if (!component.starts_with(prefix) || has_ended || pid == getpid() ||
         !is_what_was_launched(pid) || !is_of_our_network(pid))

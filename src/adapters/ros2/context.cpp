@@ -45,7 +45,7 @@ Graph::Options Context::with_context(Graph::Options options) {
   return options;
 }
 
-// Behind a discovery server all come from one address.
+// Behind a discovery server, or a helper program, all come from one address.
 std::string Context::source_of(const ParticipantInfo& info) const {
   if (has_server_) return "";
   const std::vector<UdpAddress> from = participant_->origin_of(info.guid.prefix()).addresses;
@@ -82,7 +82,7 @@ FoundProcess Context::find_process(const Graph::FindProcess& find, ParticipantIn
 
 Expected<void> Context::open(const ParticipantOptions& options) {
   gid_size_ = options.gid_size;
-  has_server_ = !options.servers.empty();
+  has_server_ = !options.servers.empty() || options.helper != nullptr;
   auto participant =
       Participant::create(options, [this](DiscoveryEvent event) { hear(std::move(event)); });
   if (!participant) return Error{participant.error()};

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -27,6 +28,8 @@ struct DiscoveryServer {
   bool operator==(const DiscoveryServer&) const = default;
 };
 
+struct HelperOptions;
+
 struct ParticipantOptions {
   std::uint32_t domain = 0;  // 0..232; above 101 the ports collide with those that Linux hands out
   Reach reach = Reach::kSubnet;
@@ -47,6 +50,9 @@ struct ParticipantOptions {
   // robot. Without effect in a secured domain and through servers. Called from any thread. Empty:
   // it may match all.
   std::function<bool(std::string_view topic, EndpointRole role)> never_meets{};
+  // Not null: the participant speaks through this helper program (helper_options.h), over the robot's own middleware, and the
+  // options above but for the domain are without effect. Null: over DDS.
+  std::shared_ptr<const HelperOptions> helper{};
 };
 
 // The value of a variable, or null.

@@ -11,7 +11,10 @@
 #include "base/live_clock.h"
 #include "base/mutex.h"
 #include "ros2/fast_dds.h"
+#include "ros2/gate.h"
+#include "ros2/helper_participant.h"
 #include "ros2/names.h"
+#include "ros2/participant_impl.h"
 #include "rtps/receive_watch.h"
 
 namespace culprit::ros2 {
@@ -75,26 +78,6 @@ class Topics {
   dds::DomainParticipant& participant_;
   Mutex mutex_;
   std::map<std::string, Entry> topics_ CULPRIT_GUARDED_BY(mutex_);
-};
-
-// The middleware fetches its listener without holding it back, so a callback could still come in
-// while its entity is being deleted. Every callback goes through this gate, one at a time, and
-// close() waits for the one inside.
-class Gate {
- public:
-  template <class Callback>
-  void pass(Callback&& callback) {
-    const MutexLock lock(mutex_);
-    if (open_) callback();
-  }
-  void close() {
-    const MutexLock lock(mutex_);
-    open_ = false;
-  }
-
- private:
-  Mutex mutex_;
-  bool open_ CULPRIT_GUARDED_BY(mutex_) = true;
 };
 
 // The writers that one reader receives, which the filter must know.
@@ -176,10 +159,10 @@ Match match_of(const Status& status) {
 
 }  // namespace
 
-class Reader::Impl final : public dds::DataReaderListener {
+class DdsReader final : public Reader::Impl, public dds::DataReaderListener {
  public:
-  Impl(dds::Subscriber& subscriber, Topics& topics, DatagramFilter& filter,
-       std::uint16_t patient_port, ReaderOptions options, SampleCallback on_sample)
+  DdsReader(dds::Subscriber& subscriber, Topics& topics, DatagramFilter& filter,
+            std::uint16_t patient_port, ReaderOptions options, SampleCallback on_sample)
       : subscriber_(subscriber),
         topics_(topics),
         filter_(filter),
@@ -207,7 +190,7 @@ class Reader::Impl final : public dds::DataReaderListener {
     return {};
   }
 
-  ~Impl() override {
+  ~DdsReader() override {
     gate_->close();
     if (reader_ != nullptr) {
       const DatagramFilter::Change change(filter_);
@@ -236,7 +219,7 @@ class Reader::Impl final : public dds::DataReaderListener {
     gate_->pass([&] { options_.on_match(writer, match_of(status)); });
   }
 
-  const Guid& guid() const { return guid_; }
+  const Guid& guid() const override { return guid_; }
 
  private:
   // If the reader has time, samples bypass the middleware, which would do nothing for them: it
@@ -290,9 +273,10 @@ Reader::Reader(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Reader::~Reader() = default;
 const Guid& Reader::guid() const { return impl_->guid(); }
 
-class Writer::Impl final : public dds::DataWriterListener {
+class DdsWriter final : public Writer::Impl, public dds::DataWriterListener {
  public:
-  Impl(dds::Publisher& publisher, Topics& topics, std::uint16_t patient_port, WriterOptions options)
+  DdsWriter(dds::Publisher& publisher, Topics& topics, std::uint16_t patient_port,
+            WriterOptions options)
       : publisher_(publisher),
         topics_(topics),
         port_(options.haste == Haste::kSoon ? patient_port : std::uint16_t{0}),
@@ -312,7 +296,7 @@ class Writer::Impl final : public dds::DataWriterListener {
     return {};
   }
 
-  ~Impl() override {
+  ~DdsWriter() override {
     gate_.close();
     if (writer_ != nullptr) {
       writer_->set_listener(nullptr);
@@ -329,15 +313,15 @@ class Writer::Impl final : public dds::DataWriterListener {
     gate_.pass([&] { options_.on_match(reader, match_of(status)); });
   }
 
-  std::optional<std::int64_t> write(ByteView payload, const SampleIdentity& related) {
+  std::optional<std::int64_t> write(ByteView payload, const SampleIdentity& related) override {
     return fast_dds::write(*writer_, payload, related);
   }
 
-  void forget_unacknowledged() { fast_dds::forget_unacknowledged(*writer_); }
+  void forget_unacknowledged() override { fast_dds::forget_unacknowledged(*writer_); }
 
-  bool is_acknowledged() const { return fast_dds::is_acknowledged(*writer_); }
+  bool is_acknowledged() const override { return fast_dds::is_acknowledged(*writer_); }
 
-  const Guid& guid() const { return guid_; }
+  const Guid& guid() const override { return guid_; }
 
  private:
   dds::Publisher& publisher_;
@@ -359,9 +343,9 @@ std::optional<std::int64_t> Writer::write(ByteView payload, const SampleIdentity
 void Writer::forget_unacknowledged() { impl_->forget_unacknowledged(); }
 bool Writer::is_acknowledged() const { return impl_->is_acknowledged(); }
 
-class Participant::Impl {
+class DdsParticipant final : public Participant::Impl {
  public:
-  explicit Impl(DiscoveryCallback on_discovery)
+  explicit DdsParticipant(DiscoveryCallback on_discovery)
       : on_discovery_(std::move(on_discovery)),
         listener_([this](DiscoveryEvent event) { on_event(std::move(event)); }) {}
 
@@ -408,7 +392,7 @@ class Participant::Impl {
     return {};
   }
 
-  ~Impl() {
+  ~DdsParticipant() override {
     gate_->close();
     if (participant_ == nullptr) return;
     participant_->set_listener(nullptr);
@@ -417,40 +401,55 @@ class Participant::Impl {
     dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
   }
 
-  Expected<std::unique_ptr<Reader>> create_reader(ReaderOptions options, SampleCallback on_sample) {
+  Expected<std::unique_ptr<Reader>> create_reader(ReaderOptions options,
+                                                  SampleCallback on_sample) override {
     if (never_meets_ && never_meets_(options.topic, EndpointRole::kWriter))
       return Error{"this participant was to read nothing of " + printable(options.topic)};
-    auto reader = std::make_unique<Reader::Impl>(*subscriber_, *topics_, *reception_.filter,
-                                                 *reception_.patient_port, std::move(options),
-                                                 std::move(on_sample));
+    auto reader = std::make_unique<DdsReader>(*subscriber_, *topics_, *reception_.filter,
+                                              *reception_.patient_port, std::move(options),
+                                              std::move(on_sample));
     if (auto opened = reader->open(likely_refusal_); !opened) return Error{opened.error()};
     return std::make_unique<Reader>(std::move(reader));
   }
 
-  Expected<std::unique_ptr<Writer>> create_writer(WriterOptions options) {
+  Expected<std::unique_ptr<Writer>> create_writer(WriterOptions options) override {
     if (never_meets_ && never_meets_(options.topic, EndpointRole::kReader))
       return Error{"this participant was to write nothing to " + printable(options.topic)};
-    auto writer = std::make_unique<Writer::Impl>(*publisher_, *topics_, *reception_.patient_port,
-                                                 std::move(options));
+    auto writer = std::make_unique<DdsWriter>(*publisher_, *topics_, *reception_.patient_port,
+                                              std::move(options));
     if (auto opened = writer->open(likely_refusal_); !opened) return Error{opened.error()};
     return std::make_unique<Writer>(std::move(writer));
   }
 
-  void leave() { *reception_.speaks = false; }
-  void hold() { *reception_.holds += is_secured_ ? 0 : 1; }
-  void release() { *reception_.holds -= is_secured_ ? 0 : 1; }
-  ReceiveThread& receiver() { return *reception_.thread; }
+  void leave() override { *reception_.speaks = false; }
+  void hold() override { *reception_.holds += is_secured_ ? 0 : 1; }
+  void release() override { *reception_.holds -= is_secured_ ? 0 : 1; }
+  void begin_hurry() override { reception_.thread->begin_hurry(); }
+  void end_hurry() override { reception_.thread->end_hurry(); }
+  void on_round(std::function<void()> on_round) override {
+    reception_.thread->on_round(std::move(on_round));
+  }
 
-  const Guid& guid() const { return guid_; }
-  const DatagramSources& sources() const { return *reception_.sources; }
-  const DatagramFilter& filter() const { return *reception_.filter; }
-  Origins& origins() { return *reception_.origins; }
-  void forget_sources(const GuidPrefix& of) { reception_.sources->forget(of); }
-  void look_at_receivers(Time now) {
+  const Guid& guid() const override { return guid_; }
+  DatagramSources::Origin origin_of(const GuidPrefix& participant) const override {
+    return reception_.sources->of(participant);
+  }
+  void prove(const GuidPrefix& participant, int pid) override {
+    // Datagrams from elsewhere in its name prove nothing about it.
+    if (!origins().prove(participant, pid, origin_of(participant).addresses))
+      reception_.sources->forget(participant);
+  }
+  Origins& origins() override { return *reception_.origins; }
+  Time heard_last(const GuidPrefix& participant) const override {
+    return reception_.sources->last_of(participant);
+  }
+  Time own_came_through() const override { return reception_.sources->own_came_through(); }
+  void look_at_receivers(Time now) override {
     reception_.thread->look_at_sockets(
         [&](std::span<const int> sockets) { watch_.look(sockets, now); });
   }
-  Time receivers_attended() const { return watch_.attended(); }
+  Time receivers_attended() const override { return watch_.attended(); }
+  DatagramFilter::Refused refused() const override { return reception_.filter->refused(); }
 
  private:
   // A participant announces itself again and again, mostly unchanged.
@@ -505,37 +504,36 @@ Participant::Hold::Hold(Participant& participant) : participant_(*participant.im
 Participant::Hold::~Hold() { participant_.release(); }
 
 Participant::Hurry::Hurry(Participant& participant) : participant_(*participant.impl_) {
-  participant_.receiver().begin_hurry();
+  participant_.begin_hurry();
 }
-Participant::Hurry::~Hurry() { participant_.receiver().end_hurry(); }
+Participant::Hurry::~Hurry() { participant_.end_hurry(); }
 
 Participant::Participant(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Participant::~Participant() = default;
 void Participant::leave() { impl_->leave(); }
 const Guid& Participant::guid() const { return impl_->guid(); }
-void Participant::on_round(std::function<void()> on_round) {
-  impl_->receiver().on_round(std::move(on_round));
-}
+void Participant::on_round(std::function<void()> on_round) { impl_->on_round(std::move(on_round)); }
 DatagramSources::Origin Participant::origin_of(const GuidPrefix& participant) const {
-  return impl_->sources().of(participant);
+  return impl_->origin_of(participant);
 }
-void Participant::prove(const GuidPrefix& participant, int pid) {
-  // Datagrams from elsewhere in its name prove nothing about it.
-  if (!impl_->origins().prove(participant, pid, origin_of(participant).addresses))
-    impl_->forget_sources(participant);
-}
+void Participant::prove(const GuidPrefix& participant, int pid) { impl_->prove(participant, pid); }
 Origins& Participant::origins() { return impl_->origins(); }
 Time Participant::heard_last(const GuidPrefix& participant) const {
-  return impl_->sources().last_of(participant);
+  return impl_->heard_last(participant);
 }
-Time Participant::own_came_through() const { return impl_->sources().own_came_through(); }
+Time Participant::own_came_through() const { return impl_->own_came_through(); }
 void Participant::look_at_receivers(Time now) { impl_->look_at_receivers(now); }
 Time Participant::receivers_attended() const { return impl_->receivers_attended(); }
-DatagramFilter::Refused Participant::refused() const { return impl_->filter().refused(); }
+DatagramFilter::Refused Participant::refused() const { return impl_->refused(); }
 
 Expected<std::unique_ptr<Participant>> Participant::create(const ParticipantOptions& options,
                                                            DiscoveryCallback on_discovery) {
-  auto impl = std::make_unique<Impl>(std::move(on_discovery));
+  if (options.helper) {
+    auto helped = HelperParticipant::join(*options.helper, std::move(on_discovery));
+    if (!helped) return Error{helped.error()};
+    return std::make_unique<Participant>(std::move(*helped));
+  }
+  auto impl = std::make_unique<DdsParticipant>(std::move(on_discovery));
   if (auto opened = impl->open(options); !opened) return Error{opened.error()};
   return std::make_unique<Participant>(std::move(impl));
 }

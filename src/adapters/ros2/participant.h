@@ -1,5 +1,7 @@
-// A participant on DDS: it discovers the others, reads and writes payloads as bytes, and knows
-// nothing of ROS but its quality of service. context.h makes a ROS 2 participant of it.
+// A participant: it discovers the others, reads and writes payloads as bytes, and knows nothing of
+// ROS but its quality of service. context.h makes a ROS 2 participant of it. It speaks DDS, or
+// through a helper program the middleware of the robot (helper_participant.h), which then looks
+// like DDS from here.
 //
 // Threads. Callbacks run on the thread that receives and on one of the middleware's, with its locks
 // held. Each reader, writer or participant gets one at a time. They copy what they need and leave:
@@ -48,6 +50,8 @@ struct ParticipantInfo {
   std::vector<UdpAddress> metatraffic;  // where it listens for discovery
   bool shares_memory = false;           // it listens in shared memory, too (Fast DDS)
   bool is_secured = false;              // it has an identity, signed by somebody
+  // The full names of its nodes, if they are known with its announcement (helper_graph.h); over DDS they are not.
+  std::vector<std::string> nodes{};
   // Not its word: where its datagrams came from. Filled in when its process is looked for.
   DatagramSources::Origin origin{};
   bool operator==(const ParticipantInfo&) const = default;

@@ -1,0 +1,804 @@
+#include "ros2/helper_participant.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <map>
+#include <optional>
+#include <poll.h>
+#include <random>
+#include <set>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <thread>
+#include <unistd.h>
+#include <utility>
+#include <variant>
+
+#include "base/live_clock.h"
+#include "base/mutex.h"
+#include "culprit_link/protocol.h"
+#include "ros2/gate.h"
+#include "ros2/helper_graph.h"
+#include "ros2/helper_process.h"
+#include "ros2/names.h"
+#include "rtps/origins.h"
+
+namespace culprit::ros2 {
+namespace {
+
+namespace link = culprit_link;
+
+constexpr Duration kFirstJoin = std::chrono::seconds(20);
+constexpr Duration kSettles = std::chrono::seconds(5);
+constexpr Duration kSoonest = std::chrono::milliseconds(200);
+constexpr Duration kLatest = std::chrono::seconds(10);
+constexpr Duration kLivedWell = std::chrono::seconds(3);  // then the next one comes soon again
+constexpr Duration kFlows = std::chrono::seconds(2);      // a topic with a sample in this time
+constexpr Duration kNamesCome = std::chrono::seconds(3);  // after a participant's first endpoint
+constexpr Duration kAsks = std::chrono::seconds(1);       // whether it is at work
+constexpr Duration kHangs = std::chrono::seconds(5);      // one that sends nothing for so long
+constexpr auto kLooks = std::chrono::milliseconds(100);
+// The reader of a helper that takes samples in turn.
+constexpr std::uint32_t kLeastDepth = 16;
+
+// The meaning of a DDS topic here.
+enum class Purpose : std::uint8_t {
+  kTopic,
+  kRequest,
+  kReply,
+  kOwn,   // of the package `culprit`: to the helper and back
+  kInfos  // ros_discovery_info
+};
+
+struct Meaning {
+  Purpose purpose = Purpose::kTopic;
+  std::string name;  // of the topic or service
+  std::string type;  // "package/srv/Type"
+};
+
+std::optional<Meaning> meaning_of(const std::string& topic, const std::string& type) {
+  if (topic == kDiscoveryInfoTopic) return Meaning{Purpose::kInfos, topic, type};
+  if (type.starts_with("culprit::")) return Meaning{Purpose::kOwn, topic, type};
+  const auto channel = demangle_topic(topic);
+  if (!channel) return std::nullopt;
+  const auto name = demangle_type(channel->channel, type);
+  if (!name) return std::nullopt;
+  const Purpose purpose = channel->channel == Channel::kTopic     ? Purpose::kTopic
+                          : channel->channel == Channel::kRequest ? Purpose::kRequest
+                                                                  : Purpose::kReply;
+  return Meaning{purpose, channel->name, *name};
+}
+
+std::int64_t to_nanoseconds(Duration duration) {
+  return duration == kInfinite ? 0 : std::int64_t{duration.count()};
+}
+
+link::Quality to_quality(const Qos& qos) {
+  link::Quality quality;
+  quality.is_reliable = qos.reliability == Reliability::kReliable;
+  quality.is_transient_local = qos.durability == Durability::kTransientLocal;
+  quality.keeps_all = qos.history == History::kKeepAll;
+  quality.depth = std::max(qos.depth, kLeastDepth);
+  quality.lifespan = to_nanoseconds(qos.lifespan);
+  return quality;
+}
+
+SystemTime to_system_time(std::int64_t nanoseconds) {
+  return SystemTime(std::chrono::nanoseconds(nanoseconds));
+}
+
+GuidPrefix random_prefix() {
+  GuidPrefix prefix;
+  std::random_device random;
+  for (std::uint8_t& byte : prefix.bytes) byte = static_cast<std::uint8_t>(random());
+  return prefix;
+}
+
+Guid own_guid(const GuidPrefix& prefix, std::uint32_t id, std::uint8_t kind) {
+  Guid guid;
+  std::ranges::copy(prefix.bytes, guid.bytes.begin());
+  guid.bytes[12] = static_cast<std::uint8_t>(id >> 16);
+  guid.bytes[13] = static_cast<std::uint8_t>(id >> 8);
+  guid.bytes[14] = static_cast<std::uint8_t>(id);
+  guid.bytes[15] = kind;
+  return guid;
+}
+
+// One of our readers or writers.
+struct Ours {
+  std::uint32_t id = 0;
+  Guid guid;
+  EndpointRole role = EndpointRole::kReader;
+  Meaning meaning;
+  std::string topic;                // as DDS has it
+  std::optional<link::Frame> wish;  // by which the helper makes it; nothing: it needs none
+  PayloadUse use = PayloadUse::kWhole;
+  SampleCallback on_sample;  // of a reader
+  MatchCallback on_match;    // may be empty
+  Gate gate;
+
+  // Only the thread that talks to the helper uses these.
+  std::set<Guid> matched;
+  Guid newest{};                         // of those, that which matched last
+  Time came_last = kLongAgo;             // a sample
+  std::map<Guid, std::int64_t> counted;  // samples of writers that the middleware does not count
+};
+
+class Helped final : public Participant::Impl {
+ public:
+  Helped(HelperOptions options, DiscoveryCallback on_discovery)
+      : options_(std::move(options)),
+        on_discovery_(std::move(on_discovery)),
+        prefix_(random_prefix()),
+        guid_(own_guid(prefix_, 1, 0xc1)),
+        wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
+
+  ~Helped() override {
+    ends_ = true;
+    wake();
+    if (thread_.joinable()) thread_.join();
+    close(wake_);
+  }
+
+  Expected<void> open() {
+    thread_ = std::thread([this] { run(); });
+    MutexLock lock(mutex_);
+    const bool is_known = changed_.wait_for(
+        lock, kFirstJoin, [this]() CULPRIT_REQUIRES(mutex_) { return has_joined_ || failure_; });
+    if (!is_known)
+      return Error{"the helper program " + options_.command.front() + " did not join the robot"};
+    if (failure_) return Error{*failure_};
+    return {};
+  }
+
+  const Guid& guid() const override { return guid_; }
+  void leave() override {}
+  void hold() override {}
+  void release() override {}
+  void begin_hurry() override {}
+  void end_hurry() override {}
+  void on_round(std::function<void()> on_round) override {
+    const MutexLock lock(mutex_);
+    on_round_ = std::move(on_round);
+  }
+
+  // The middleware shows nothing of datagrams.
+  DatagramSources::Origin origin_of(const GuidPrefix&) const override { return {}; }
+  void prove(const GuidPrefix&, int) override {}
+  Origins& origins() override { return origins_; }
+  Time heard_last(const GuidPrefix&) const override { return live_now(); }
+  Time own_came_through() const override { return kNever; }
+  void look_at_receivers(Time) override {}
+  Time receivers_attended() const override { return kNever; }
+  DatagramFilter::Refused refused() const override { return {}; }
+
+  Expected<std::unique_ptr<Reader>> create_reader(ReaderOptions options,
+                                                  SampleCallback on_sample) override;
+  Expected<std::unique_ptr<Writer>> create_writer(WriterOptions options) override;
+
+  // Readers and writers call these.
+  void remove(const Ours& ours) {
+    {
+      const MutexLock lock(mutex_);
+      ours_.erase(ours.id);
+      if (ours.wish) queue(link::Remove{ours.id});
+    }
+    wake();
+  }
+  std::optional<std::int64_t> write(const Ours& ours, ByteView payload,
+                                    const SampleIdentity& related);
+
+ private:
+  using OursPtr = std::shared_ptr<Ours>;
+
+  Expected<OursPtr> add(EndpointRole role, const std::string& topic, const std::string& type,
+                        const Qos& qos, PayloadUse use, SampleCallback on_sample,
+                        MatchCallback on_match);
+
+  // ---- the thread that talks to the helper
+
+  void run() {
+    Duration pause = kSoonest;
+    while (!ends_) {
+      const Time began = live_now();
+      auto process = HelperProcess::start(options_);
+      std::string why = process ? "" : process.error();
+      if (process) why = talk(**process);
+      is_joined_ = false;
+      lose_all();
+      if (ends_) return;
+      fail_first(why);
+      if (is_final_) return trouble(why);
+      if (live_now() > later(began, kLivedWell)) pause = kSoonest;
+      trouble("the helper program of --link ros ended (" + why +
+              "): culprit is deaf until it is back");
+      sleep(pause);
+      pause = std::min(2 * pause, kLatest);
+    }
+  }
+
+  // Until it ends. Gives why.
+  std::string talk(HelperProcess& process) {
+    reader_ = link::FrameReader();
+    begin_talk();
+    const Time began = live_now();
+    came_last_ = began;
+    while (!ends_) {
+      std::array<pollfd, 2> files{};
+      files[0] = {process.socket(), static_cast<short>(POLLIN | (has_waiting() ? POLLOUT : 0)), 0};
+      files[1] = {wake_, POLLIN, 0};
+      constexpr int kLookMs = std::chrono::milliseconds(kLooks).count();
+      (void)poll(files.data(), files.size(), kLookMs);
+      clear_wake();
+      if (const auto why = receive(process); !why.empty()) return why;
+      if (is_joined_ && last_graph_ && rematches_.exchange(false)) match();
+      if (is_joined_) deliver_infos();
+      if (!send_waiting(process.socket())) return process.end();
+      const Time now = live_now();
+      if (is_joined_) look_whether_settled(now);
+      if (is_joined_ && now > later(asked_last_, kAsks)) {
+        ask_whether_it_works(now);
+        if (is_settled_ && lacks_announcement(now)) {
+          process.end();
+          return "its middleware has lost the announcement of a participant's nodes";
+        }
+      }
+      if (is_joined_ ? now > later(came_last_, kHangs) : now > later(began, kFirstJoin)) {
+        process.end();
+        return is_joined_ ? "it hung" : "it did not join the robot";
+      }
+      if (is_stuck()) {
+        process.end();
+        return "it does not read";
+      }
+    }
+    return "";
+  }
+
+  // Fast DDS loses one now and then, for as long as a killed participant's lease runs. A new helper is sent them all.
+  // Once for each participant: those that are not of ROS announce none.
+  bool lacks_announcement(Time now) {
+    constexpr std::size_t kMost = 1000;
+    const std::vector<GuidPrefix> all = graph_.without_nodes();
+    std::erase_if(nameless_, [&](const auto& each) {
+      return std::ranges::find(all, each.first) == all.end();
+    });
+    bool lacks = false;
+    for (const GuidPrefix& each : all) {
+      if (helped_for_.contains(each) || helped_for_.size() >= kMost) continue;
+      const auto since = nameless_.try_emplace(each, now).first->second;
+      lacks = lacks || (now > later(since, kNamesCome) && helped_for_.insert(each).second);
+    }
+    return lacks;
+  }
+
+  void ask_whether_it_works(Time now) {
+    asked_last_ = now;
+    const MutexLock lock(mutex_);
+    queue(link::Echo{});
+  }
+
+  void begin_talk() {
+    const MutexLock lock(mutex_);
+    waiting_ = link::encode(link::Join{link::kVersion, options_.name_space, options_.name});
+    sent_ = 0;
+    is_up_ = false;
+    is_stuck_ = false;
+  }
+
+  // Everything that is there. Not empty: it ended, or means nothing.
+  std::string receive(HelperProcess& process) {
+    constexpr int kAtOnce = 16;  // what waits to be sent has its turn, too
+    bool has_come = false;
+    for (int i = 0; i < kAtOnce; ++i) {
+      std::array<std::uint8_t, 65536> buffer;
+      const ssize_t count = recv(process.socket(), buffer.data(), buffer.size(), 0);
+      if (count < 0 && errno == EINTR) continue;
+      if (count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) break;
+      if (count <= 0) return process.end();
+      has_come = true;
+      reader_.feed({buffer.data(), static_cast<std::size_t>(count)});
+      while (auto frame = reader_.next()) {
+        std::string why = std::visit([this](auto& each) { return this->take(each); }, *frame);
+        if (why.empty()) continue;
+        process.end();
+        return why;
+      }
+      if (reader_.has_failed()) {
+        process.end();
+        return "it sent what is no frame of the protocol";
+      }
+    }
+    if (!has_come) return "";
+    came_last_ = live_now();
+    std::function<void()> on_round;
+    {
+      const MutexLock lock(mutex_);
+      on_round = on_round_;
+    }
+    if (on_round) on_round();
+    return "";
+  }
+
+  bool send_waiting(int socket) {
+    const MutexLock lock(mutex_);
+    while (sent_ < waiting_.size()) {
+      const ssize_t count =
+          send(socket, waiting_.data() + sent_, waiting_.size() - sent_, MSG_NOSIGNAL);
+      if (count < 0 && errno == EINTR) continue;
+      if (count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return true;
+      if (count <= 0) return false;
+      sent_ += static_cast<std::size_t>(count);
+    }
+    waiting_.clear();
+    sent_ = 0;
+    return true;
+  }
+
+  bool has_waiting() {
+    const MutexLock lock(mutex_);
+    return !waiting_.empty();
+  }
+  bool is_stuck() {
+    const MutexLock lock(mutex_);
+    return is_stuck_;
+  }
+
+  // ---- what the helper says; each gives why the talk is over
+
+  std::string take(const link::Welcome& welcome) {
+    if (welcome.version != link::kVersion) {
+      is_final_ = true;
+      return "it speaks version " + std::to_string(welcome.version) +
+             " of the protocol, and culprit version " + std::to_string(link::kVersion) +
+             ": install the culprit_link of this culprit's release";
+    }
+    if (is_joined_) return "it joined twice";
+    graph_.begin(welcome.middleware, welcome.own,
+                 NodeName{options_.name_space, options_.name}.full());
+    is_joined_ = true;
+    is_settled_ = false;
+    joined_ = live_now();
+    last_graph_.reset();
+    const MutexLock lock(mutex_);
+    for (const auto& [id, ours] : ours_) {
+      if (ours->wish) append(*ours->wish);
+    }
+    is_up_ = true;
+    has_joined_ = true;
+    changed_.notify_all();
+    return "";
+  }
+
+  std::string take(const link::Arrived& sample) {
+    const OursPtr ours = find(sample.id);
+    if (!ours || ours->meaning.purpose != Purpose::kTopic || !ours->on_sample) return "";
+    ours->came_last = live_now();
+    awaited_.erase(sample.id);
+    const Guid writer = graph_.writer_of(ours->topic, sample.writer);
+    std::int64_t number = sample.number;
+    if (number == 0) number = count(*ours, writer);
+    const ByteView payload(sample.payload);
+    ours->gate.pass([&] {
+      ours->on_sample({.payload = payload.first(given_of(ours->use, payload.size())),
+                       .size = sample.size,
+                       .sent = to_system_time(sample.sent),
+                       .received = to_system_time(sample.received),
+                       .identity = {writer, number},
+                       .related = {}});
+    });
+    return "";
+  }
+
+  static std::int64_t count(Ours& ours, const Guid& writer) {
+    constexpr std::size_t kMostWriters = 1000;  // the network decides how many there are
+    if (ours.counted.size() >= kMostWriters) ours.counted.clear();
+    return ++ours.counted[writer];
+  }
+
+  // The middleware does not say who answered: a server of the service.
+  std::string take(const link::Reply& reply) {
+    const OursPtr client = find(reply.id);
+    if (!client || client->meaning.purpose != Purpose::kRequest) return "";
+    for (const OursPtr& ours : readers_of(Purpose::kReply, client->meaning.name)) {
+      const std::set<Guid>& servers = graph_.matching(ours->topic, EndpointRole::kReader);
+      const Guid server = servers.empty() ? Guid{} : newest_of(*ours, servers);
+      deliver(*ours, reply.payload, {server, reply.number}, {client->guid, reply.number});
+    }
+    return "";
+  }
+
+  // Returns the server that matched last.
+  static Guid newest_of(const Ours& ours, const std::set<Guid>& servers) {
+    return servers.contains(ours.newest) ? ours.newest : *servers.begin();
+  }
+
+  std::string take(const link::Asked& asked) {
+    const OursPtr server = find(asked.id);
+    if (server && server->meaning.purpose == Purpose::kRequest)
+      deliver(*server, asked.payload, {own_guid(prefix_, 0, 0x03), asked.number}, {});
+    return "";
+  }
+
+  std::string take(const link::Echo& echo) {
+    // An endpoint's id is before what it wrote. Our own question is empty.
+    if (echo.payload.size() < sizeof(std::uint32_t) || !is_settled_) return "";
+    std::uint32_t id = 0;
+    std::memcpy(&id, echo.payload.data(), sizeof id);
+    const OursPtr writer = find(id);
+    if (!writer || writer->meaning.purpose != Purpose::kOwn) return "";
+    const ByteView payload = ByteView(echo.payload).subspan(sizeof id);
+    for (const OursPtr& ours : readers_of(Purpose::kOwn, writer->meaning.name))
+      deliver(*ours, payload, {writer->guid, count(*ours, writer->guid)}, {});
+    return "";
+  }
+
+  std::string take(link::GraphSeen& seen) {
+    last_graph_ = std::move(seen);
+    take_graph();
+    return "";
+  }
+
+  std::string take(const link::Refused& refused) {
+    const OursPtr ours = find(refused.id);
+    constexpr std::size_t kMost = 100;
+    // Once for each reason: a missing package has many types.
+    if (ours && told_.size() < kMost && told_.insert(refused.why).second)
+      trouble("over --link ros culprit lacks " + ours->meaning.name + ": " +
+              printable(refused.why));
+    return "";
+  }
+
+  std::string take(const link::Trouble& trouble) {
+    tell_once("the helper program: " + printable(trouble.text));
+    return "";
+  }
+
+  template <class Other>
+  static std::string take(const Other&) {
+    return "it sent a frame that only culprit sends";
+  }
+
+  void deliver(Ours& ours, ByteView payload, const SampleIdentity& identity,
+               const SampleIdentity& related) {
+    ours.gate.pass([&] {
+      const SystemTime now = std::chrono::system_clock::now();
+      ours.on_sample({.payload = payload,
+                      .size = payload.size(),
+                      .sent = now,
+                      .received = now,
+                      .identity = identity,
+                      .related = related});
+    });
+  }
+
+  // ---- the graph
+
+  void take_graph() {
+    const auto missing = is_settled_ ? HelperGraph::Missing::kLeft : HelperGraph::Missing::kKeep;
+    for (HelperGraph::Change& change : graph_.take(*last_graph_, missing)) {
+      if (auto* event = std::get_if<DiscoveryEvent>(&change)) {
+        on_discovery_(std::move(*event));
+      } else {
+        deliver_info(std::get<DiscoveryInfo>(change));
+      }
+    }
+    match();
+  }
+
+  void look_whether_settled(Time now) {
+    const bool knows_all = last_graph_ && !graph_.has_missing() && awaited_.empty();
+    if (is_settled_ || (!knows_all && now < later(joined_, kSettles))) return;
+    is_settled_ = true;
+    awaited_.clear();
+    if (last_graph_) take_graph();
+  }
+
+  void deliver_info(const DiscoveryInfo& info) {
+    const Bytes payload = encode_discovery_info(info, GidSize::kHumbleAndOlder);
+    for (const OursPtr& ours : readers_of(Purpose::kInfos, std::string(kDiscoveryInfoTopic)))
+      deliver(*ours, payload, {info.participant, count(*ours, info.participant)}, {});
+  }
+
+  // To a reader that came later.
+  void deliver_infos() {
+    if (!infos_are_due_.exchange(false)) return;
+    for (const DiscoveryInfo& info : graph_.infos()) deliver_info(info);
+  }
+
+  void match() {
+    for (const OursPtr& ours : all_ours()) {
+      if (ours->meaning.purpose == Purpose::kOwn || ours->meaning.purpose == Purpose::kInfos)
+        continue;
+      match(*ours, graph_.matching(ours->topic, ours->role));
+    }
+  }
+
+  static void match(Ours& ours, const std::set<Guid>& now) {
+    if (ours.matched == now) return;
+    const std::set<Guid> before = std::exchange(ours.matched, now);
+    ours.gate.pass([&] {
+      for (const Guid& each : before) {
+        if (!now.contains(each) && ours.on_match) ours.on_match(each, Match::kLost);
+      }
+      for (const Guid& each : now) {
+        if (before.contains(each)) continue;
+        ours.newest = each;
+        if (ours.on_match) ours.on_match(each, Match::kMade);
+      }
+    });
+  }
+
+  // Its successor's endpoints are new ones, which servers have to discover.
+  void lose_all() {
+    {
+      const MutexLock lock(mutex_);
+      is_up_ = false;
+      waiting_.clear();
+      sent_ = 0;
+    }
+    is_settled_ = false;
+    const Time now = live_now();
+    for (const OursPtr& ours : all_ours()) {
+      if (now < later(ours->came_last, kFlows)) awaited_.insert(ours->id);
+      match(*ours, {});
+    }
+  }
+
+  // ---- small parts
+
+  void append(const link::Frame& frame) CULPRIT_REQUIRES(mutex_) {
+    const link::Bytes bytes = link::encode(frame);
+    if (bytes.size() > link::kLargestFrame + link::kLengthSize) return;
+    waiting_.insert(waiting_.end(), bytes.begin(), bytes.end());
+    is_stuck_ = is_stuck_ || waiting_.size() - sent_ > link::kLongestQueue;
+  }
+
+  // False: there is no helper now.
+  bool queue(const link::Frame& frame) CULPRIT_REQUIRES(mutex_) {
+    if (!is_up_ || is_stuck_) return false;
+    append(frame);
+    return true;
+  }
+
+  OursPtr find(std::uint32_t id) {
+    const MutexLock lock(mutex_);
+    const auto found = ours_.find(id);
+    return found == ours_.end() ? nullptr : found->second;
+  }
+
+  std::vector<OursPtr> all_ours() {
+    const MutexLock lock(mutex_);
+    std::vector<OursPtr> all;
+    for (const auto& [id, ours] : ours_) all.push_back(ours);
+    return all;
+  }
+
+  std::vector<OursPtr> readers_of(Purpose purpose, const std::string& name) {
+    const MutexLock lock(mutex_);
+    std::vector<OursPtr> found;
+    for (const auto& [id, ours] : ours_) {
+      if (ours->role == EndpointRole::kReader && ours->meaning.purpose == purpose &&
+          ours->meaning.name == name)
+        found.push_back(ours);
+    }
+    return found;
+  }
+
+  void wake() const {
+    constexpr std::uint64_t kOne = 1;
+    (void)!::write(wake_, &kOne, sizeof kOne);
+  }
+  void clear_wake() const {
+    std::uint64_t count = 0;
+    (void)!::read(wake_, &count, sizeof count);
+  }
+
+  void sleep(Duration pause) {
+    const Time until = later(live_now(), pause);
+    while (!ends_ && live_now() < until) {
+      pollfd file{wake_, POLLIN, 0};
+      const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - live_now());
+      (void)poll(&file, 1, static_cast<int>(std::max<std::int64_t>(left.count(), 1)));
+      clear_wake();
+    }
+  }
+
+  void fail_first(const std::string& why) {
+    const MutexLock lock(mutex_);
+    if (has_joined_) return;
+    failure_ = "the helper program of --link ros does not serve: " + why;
+    is_final_ = true;
+    changed_.notify_all();
+  }
+
+  void trouble(const std::string& text) {
+    if (options_.on_trouble) options_.on_trouble(text);
+  }
+
+  void tell_once(const std::string& text) {
+    constexpr std::size_t kMost = 100;
+    if (told_.size() < kMost && told_.insert(text).second) trouble(text);
+  }
+
+  const HelperOptions options_;
+  const DiscoveryCallback on_discovery_;
+  const GuidPrefix prefix_;
+  const Guid guid_;
+  const int wake_;
+  Origins origins_;
+  std::atomic<bool> ends_ = false;
+  std::atomic<bool> infos_are_due_ = false;
+  std::atomic<bool> rematches_ = false;  // an endpoint was added
+
+  // Of the thread.
+  link::FrameReader reader_;
+  HelperGraph graph_;
+  std::optional<link::GraphSeen> last_graph_;  // of this helper
+  Time came_last_ = kLongAgo;
+  Time asked_last_ = kLongAgo;
+  Time joined_ = kLongAgo;
+  bool is_joined_ = false;
+  bool is_settled_ = false;          // it has discovered what was known before
+  std::set<std::uint32_t> awaited_;  // of our readers: samples came before the last helper's end
+  bool is_final_ = false;            // no other one would do better
+  std::set<std::string> told_;
+  std::map<GuidPrefix, Time> nameless_;  // participants without a node, since when
+  std::set<GuidPrefix> helped_for_;      // those of them for which a helper was replaced
+
+  Mutex mutex_;
+  ConditionVariable changed_;
+  bool has_joined_ CULPRIT_GUARDED_BY(mutex_) = false;  // once
+  std::optional<std::string> failure_ CULPRIT_GUARDED_BY(mutex_);
+  bool is_up_ CULPRIT_GUARDED_BY(mutex_) = false;
+  bool is_stuck_ CULPRIT_GUARDED_BY(mutex_) = false;
+  link::Bytes waiting_ CULPRIT_GUARDED_BY(mutex_);
+  std::size_t sent_ CULPRIT_GUARDED_BY(mutex_) = 0;
+  std::map<std::uint32_t, OursPtr> ours_ CULPRIT_GUARDED_BY(mutex_);
+  std::uint32_t last_id_ CULPRIT_GUARDED_BY(mutex_) = 0;
+  std::int64_t last_number_ CULPRIT_GUARDED_BY(mutex_) = 0;
+  std::function<void()> on_round_ CULPRIT_GUARDED_BY(mutex_);
+
+  std::thread thread_;
+};
+
+class HelpedReader final : public Reader::Impl {
+ public:
+  HelpedReader(Helped& participant, std::shared_ptr<Ours> ours)
+      : participant_(participant), ours_(std::move(ours)) {}
+  ~HelpedReader() override {
+    ours_->gate.close();
+    participant_.remove(*ours_);
+  }
+  const Guid& guid() const override { return ours_->guid; }
+
+ private:
+  Helped& participant_;
+  const std::shared_ptr<Ours> ours_;
+};
+
+class HelpedWriter final : public Writer::Impl {
+ public:
+  HelpedWriter(Helped& participant, std::shared_ptr<Ours> ours)
+      : participant_(participant), ours_(std::move(ours)) {}
+  ~HelpedWriter() override {
+    ours_->gate.close();
+    participant_.remove(*ours_);
+  }
+  const Guid& guid() const override { return ours_->guid; }
+  std::optional<std::int64_t> write(ByteView payload, const SampleIdentity& related) override {
+    return participant_.write(*ours_, payload, related);
+  }
+  void forget_unacknowledged() override {}
+  bool is_acknowledged() const override { return true; }
+
+ private:
+  Helped& participant_;
+  const std::shared_ptr<Ours> ours_;
+};
+
+Expected<std::shared_ptr<Ours>> Helped::add(EndpointRole role, const std::string& topic,
+                                            const std::string& type, const Qos& qos, PayloadUse use,
+                                            SampleCallback on_sample, MatchCallback on_match) {
+  auto meaning = meaning_of(topic, type);
+  if (!meaning) return Error{printable(topic) + " is no topic of ROS 2"};
+  auto ours = std::make_shared<Ours>();
+  const bool reads = role == EndpointRole::kReader;
+  ours->role = role;
+  ours->meaning = std::move(*meaning);
+  ours->topic = topic;
+  ours->use = use;
+  ours->on_sample = std::move(on_sample);
+  ours->on_match = std::move(on_match);
+  {
+    const MutexLock lock(mutex_);
+    ours->id = ++last_id_;
+    ours->guid = own_guid(prefix_, ours->id, reads ? 0x04 : 0x03);
+    const std::string& name = ours->meaning.name;
+    const std::string& its_type = ours->meaning.type;
+    const link::Quality quality = to_quality(qos);
+    const std::uint32_t most =
+        is_whole(use) ? link::kWhole : static_cast<std::uint32_t>(given_of(use, kBeginningSize));
+    if (ours->meaning.purpose == Purpose::kTopic && reads)
+      ours->wish = link::Subscribe{ours->id, name, its_type, quality, most};
+    if (ours->meaning.purpose == Purpose::kTopic && !reads)
+      ours->wish = link::Advertise{ours->id, name, its_type, quality};
+    // The other half of each, the reply, belongs to the request's.
+    if (ours->meaning.purpose == Purpose::kRequest && !reads)
+      ours->wish = link::Use{ours->id, name, its_type, quality};
+    if (ours->meaning.purpose == Purpose::kRequest && reads)
+      ours->wish = link::Offer{ours->id, name, its_type, quality};
+    ours_.emplace(ours->id, ours);
+    if (ours->wish) queue(*ours->wish);
+    if (ours->meaning.purpose == Purpose::kInfos && reads) infos_are_due_ = true;
+    rematches_ = true;
+  }
+  wake();
+  return ours;
+}
+
+Expected<std::unique_ptr<Reader>> Helped::create_reader(ReaderOptions options,
+                                                        SampleCallback on_sample) {
+  auto ours = add(EndpointRole::kReader, options.topic, options.type, options.qos, options.payload,
+                  std::move(on_sample), std::move(options.on_match));
+  if (!ours) return Error{ours.error()};
+  return std::make_unique<Reader>(std::make_unique<HelpedReader>(*this, std::move(*ours)));
+}
+
+Expected<std::unique_ptr<Writer>> Helped::create_writer(WriterOptions options) {
+  auto ours = add(EndpointRole::kWriter, options.topic, options.type, options.qos,
+                  PayloadUse::kWhole, {}, std::move(options.on_match));
+  if (!ours) return Error{ours.error()};
+  return std::make_unique<Writer>(std::make_unique<HelpedWriter>(*this, std::move(*ours)));
+}
+
+std::optional<std::int64_t> Helped::write(const Ours& ours, ByteView payload,
+                                          const SampleIdentity& related) {
+  std::int64_t number = 0;
+  {
+    const MutexLock lock(mutex_);
+    number = ++last_number_;
+    link::Bytes bytes(payload.begin(), payload.end());
+    switch (ours.meaning.purpose) {
+      case Purpose::kTopic:
+        if (!queue(link::Publish{ours.id, std::move(bytes)})) return std::nullopt;
+        break;
+      case Purpose::kRequest:
+        if (!queue(link::Request{ours.id, number, std::move(bytes)})) return std::nullopt;
+        break;
+      case Purpose::kReply:
+        for (const auto& [id, each] : ours_) {
+          if (each->role == EndpointRole::kReader && each->meaning.purpose == Purpose::kRequest &&
+              each->meaning.name == ours.meaning.name)
+            queue(link::Respond{id, related.sequence, bytes});
+        }
+        break;
+      case Purpose::kOwn: {
+        link::Bytes echo(sizeof ours.id);
+        std::memcpy(echo.data(), &ours.id, sizeof ours.id);
+        echo.insert(echo.end(), payload.begin(), payload.end());
+        if (!queue(link::Echo{std::move(echo)})) return std::nullopt;
+        break;
+      }
+      case Purpose::kInfos:  // the helper's middleware announces its node
+        break;
+    }
+  }
+  wake();
+  return number;
+}
+
+}  // namespace
+
+Expected<std::unique_ptr<Participant::Impl>> HelperParticipant::join(
+    HelperOptions options, DiscoveryCallback on_discovery) {
+  auto helped = std::make_unique<Helped>(std::move(options), std::move(on_discovery));
+  if (auto opened = helped->open(); !opened) return Error{opened.error()};
+  return std::unique_ptr<Participant::Impl>(std::move(helped));
+}
+
+}  // namespace culprit::ros2
