@@ -109,8 +109,8 @@ class Exchange {
 
   void send_rest() {
     while (sent_ < request_.text.size()) {
-      const ssize_t sent = send(socket_, request_.text.data() + sent_, request_.text.size() - sent_,
-                                MSG_NOSIGNAL | MSG_DONTWAIT);
+      const ssize_t sent = ::send(socket_, request_.text.data() + sent_,
+                                  request_.text.size() - sent_, MSG_NOSIGNAL | MSG_DONTWAIT);
       if (sent < 0 && (errno == EAGAIN || errno == EINTR)) return;
       // It may have answered before it closed.
       if (sent < 0) sent_ = request_.text.size();

@@ -37,6 +37,11 @@ double as_number(const Slot& slot, Type type) {
   return type == Type::kDuration ? seconds(Duration(slot.i)) : slot.d;
 }
 
+// Does it count what came within a window?
+bool counts_samples(const Input& input) {
+  return input.kind == Kind::kRate || input.kind == Kind::kLoss || input.kind == Kind::kGoals;
+}
+
 }  // namespace
 
 Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time discovered)
@@ -298,15 +303,12 @@ void Monitor::update(InputId id, Time now) {
   } else if (value.known) {
     write_.signals.set(id, value);
   } else {
-    const bool has_overflowed = derived_[id.index].is_overflow_told;
-    const bool is_covering = input.kind == Kind::kLogs
-                                 ? knowledge_.sightings.has(input.component)
-                                 : (input.kind == Kind::kRate || input.kind == Kind::kLoss ||
-                                    input.kind == Kind::kGoals) &&
-                                       topics_[input.topic.index].first;
-    write_.signals.forget(id, has_overflowed ? WhyUnknown::kOverflow
-                              : is_covering  ? WhyUnknown::kNotCovered
-                                             : WhyUnknown::kNoValue);
+    const bool has_begun = input.kind == Kind::kLogs
+                               ? knowledge_.sightings.has(input.component)
+                               : counts_samples(input) && topics_[input.topic.index].first;
+    write_.signals.forget(id, derived_[id.index].is_overflow_told ? WhyUnknown::kOverflow
+                              : has_begun                         ? WhyUnknown::kNotCovered
+                                                                  : WhyUnknown::kNoValue);
   }
   deadlines_.set(id.index, next_crossing(id, now));
 }

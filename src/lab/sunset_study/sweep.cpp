@@ -95,6 +95,109 @@ std::vector<Column> rho_columns() {
   return columns;
 }
 
+void add_results(std::vector<Column>& columns) {
+  for (Column& column : rho_columns()) columns.push_back(std::move(column));
+  columns.push_back({"reaction by S, C on [%]", "without D"});
+  columns.push_back({"reaction by S, C on [%]", "with D"});
+  columns.push_back({"", "means near"});
+}
+
+// Over all points of a planner that have this value of a constant.
+struct Sum {
+  std::array<double, kPublishedMetrics.size()> rho{};
+  std::array<double, 2> reaction{};
+  double near = 0;
+  double points = 0;
+};
+using Sums = std::vector<std::pair<std::array<std::string, 3>, Sum>>;  // planner, constant, value
+
+Sums sums_of(const std::vector<SweepPoint>& points, const SweepCampaign& campaign) {
+  Sums sums;
+  const auto sum_of = [&](const std::array<std::string, 3>& key) -> Sum& {
+    const auto found =
+        std::find_if(sums.begin(), sums.end(), [&](const auto& each) { return each.first == key; });
+    return found != sums.end() ? found->second : sums.emplace_back(key, Sum{}).second;
+  };
+  for (const std::string& planner : campaign.planners) {
+    for (std::size_t constant = 0; constant < levels_of(points.front().variation).size();
+         ++constant) {
+      for (const SweepPoint& point : points) {
+        if (point.planner != planner) continue;
+        const Level level = levels_of(point.variation)[constant];
+        Sum& sum = sum_of({planner, level.constant, level.value});
+        for (std::size_t i = 0; i < sum.rho.size(); ++i) sum.rho[i] += rho(point, i);
+        for (std::size_t i = 0; i < 2; ++i) sum.reaction[i] += point.reaction_by_impact[i];
+        sum.near += point.means_near;
+        sum.points += 1;
+      }
+    }
+  }
+  return sums;
+}
+
+Table effects_table(const std::vector<SweepPoint>& points, const SweepCampaign& campaign) {
+  Table effects{"sweep",
+                "Order beside the paper's, by unpublished constant",
+                {{"", "planner", "", "", Align::kLeft},
+                 {"", "constant", "", "", Align::kLeft},
+                 {"", "value"},
+                 {"", "points"}},
+                {},
+                {}};
+  add_results(effects.columns);
+  for (const auto& [key, sum] : sums_of(points, campaign)) {
+    std::vector<Cell> cells = {{key[0]}, {key[1]}, {key[2]}, {number(sum.points, 0)}};
+    for (const double each : sum.rho) cells.push_back({number(each / sum.points)});
+    for (const double each : sum.reaction) cells.push_back({number(each / sum.points, 0)});
+    cells.push_back({number(sum.near / sum.points, 1)});
+    effects.rows.push_back(std::move(cells));
+  }
+  effects.notes.push_back(
+      "Means over all points with that value. Means near: of the 32, those that differ from the "
+      "paper's by less than half of its sd.");
+  return effects;
+}
+
+Table closest_table(const std::vector<SweepPoint>& points, const SweepCampaign& campaign) {
+  Table closest{"sweep-closest",
+                "Points whose orders of reaction and downtime come closest to the paper's",
+                {{"", "planner", "", "", Align::kLeft},
+                 {"", "relaunch, period, window, patience", "", "", Align::kLeft}},
+                {},
+                {}};
+  add_results(closest.columns);
+  constexpr std::size_t kShown = 3;
+  for (const std::string& planner : campaign.planners) {
+    std::vector<const SweepPoint*> own;
+    for (const SweepPoint& point : points)
+      if (point.planner == planner) own.push_back(&point);
+    std::stable_sort(own.begin(), own.end(), [](const SweepPoint* a, const SweepPoint* b) {
+      return weakest(*a) > weakest(*b);
+    });
+    const auto in_order =
+        std::count_if(own.begin(), own.end(), [](const SweepPoint* p) { return weakest(*p) > 0; });
+    const auto significant = std::count_if(own.begin(), own.end(), [](const SweepPoint* p) {
+      return weakest(*p) > 0 && p->order[1].p.value_or(1) < 0.05 &&
+             p->order[2].p.value_or(1) < 0.05;
+    });
+    for (std::size_t i = 0; i < std::min(kShown, own.size()); ++i) {
+      const SweepPoint& point = *own[i];
+      std::vector<Cell> cells = {{planner}, {text(point.variation)}};
+      for (std::size_t metric = 0; metric < kPublishedMetrics.size(); ++metric)
+        cells.push_back({number(rho(point, metric))});
+      for (const double each : point.reaction_by_impact) cells.push_back({number(each, 0)});
+      cells.push_back({fmt::format("{}", point.means_near)});
+      closest.rows.push_back(std::move(cells));
+    }
+    closest.notes.push_back(
+        fmt::format("{}: both correlations are positive at {} of {} points, and significant at {}.",
+                    planner, in_order, own.size(), significant));
+  }
+  closest.notes.push_back(
+      fmt::format("{} runs of each configuration, seed {}.", campaign.runs, campaign.seed));
+  return closest;
+}
+
 }  // namespace
 
 std::uint64_t sweep_size(const SweepCampaign& campaign) { return design(campaign).size(); }
@@ -126,95 +229,7 @@ Expected<std::vector<SweepPoint>> sweep(const SweepCampaign& campaign, unsigned 
 
 std::vector<Table> sweep_tables(const std::vector<SweepPoint>& points,
                                 const SweepCampaign& campaign) {
-  Table effects{"sweep",
-                "Order beside the paper's, by unpublished constant",
-                {{"", "planner", "", "", Align::kLeft},
-                 {"", "constant", "", "", Align::kLeft},
-                 {"", "value"},
-                 {"", "points"}},
-                {},
-                {}};
-  for (Column& column : rho_columns()) effects.columns.push_back(std::move(column));
-  effects.columns.push_back({"reaction by S, C on [%]", "without D"});
-  effects.columns.push_back({"reaction by S, C on [%]", "with D"});
-  effects.columns.push_back({"", "means near"});
-  struct Sum {
-    std::array<double, kPublishedMetrics.size()> rho{};
-    std::array<double, 2> reaction{};
-    double near = 0;
-    double points = 0;
-  };
-  std::vector<std::pair<std::array<std::string, 3>, Sum>> sums;
-  const auto sum_of = [&](const std::array<std::string, 3>& key) -> Sum& {
-    const auto found =
-        std::find_if(sums.begin(), sums.end(), [&](const auto& each) { return each.first == key; });
-    return found != sums.end() ? found->second : sums.emplace_back(key, Sum{}).second;
-  };
-  for (const std::string& planner : campaign.planners) {
-    for (std::size_t constant = 0; constant < levels_of(points.front().variation).size();
-         ++constant) {
-      for (const SweepPoint& point : points) {
-        if (point.planner != planner) continue;
-        const Level level = levels_of(point.variation)[constant];
-        Sum& sum = sum_of({planner, level.constant, level.value});
-        for (std::size_t i = 0; i < sum.rho.size(); ++i) sum.rho[i] += rho(point, i);
-        for (std::size_t i = 0; i < 2; ++i) sum.reaction[i] += point.reaction_by_impact[i];
-        sum.near += point.means_near;
-        sum.points += 1;
-      }
-    }
-  }
-  for (const auto& [key, sum] : sums) {
-    std::vector<Cell> cells = {{key[0]}, {key[1]}, {key[2]}, {number(sum.points, 0)}};
-    for (const double each : sum.rho) cells.push_back({number(each / sum.points)});
-    for (const double each : sum.reaction) cells.push_back({number(each / sum.points, 0)});
-    cells.push_back({number(sum.near / sum.points, 1)});
-    effects.rows.push_back(std::move(cells));
-  }
-  effects.notes.push_back(
-      "Means over all points with that value. Means near: of the 32, those that differ from the "
-      "paper's by less than half of its sd.");
-
-  Table closest{"sweep-closest",
-                "Points whose orders of reaction and downtime come closest to the paper's",
-                {{"", "planner", "", "", Align::kLeft},
-                 {"", "relaunch, period, window, patience", "", "", Align::kLeft}},
-                {},
-                {}};
-  for (Column& column : rho_columns()) closest.columns.push_back(std::move(column));
-  closest.columns.push_back({"reaction by S, C on [%]", "without D"});
-  closest.columns.push_back({"reaction by S, C on [%]", "with D"});
-  closest.columns.push_back({"", "means near"});
-  constexpr std::size_t kShown = 3;
-  for (const std::string& planner : campaign.planners) {
-    std::vector<const SweepPoint*> own;
-    for (const SweepPoint& point : points)
-      if (point.planner == planner) own.push_back(&point);
-    std::stable_sort(own.begin(), own.end(), [](const SweepPoint* a, const SweepPoint* b) {
-      return weakest(*a) > weakest(*b);
-    });
-    const auto in_order =
-        std::count_if(own.begin(), own.end(), [](const SweepPoint* p) { return weakest(*p) > 0; });
-    const auto significant = std::count_if(own.begin(), own.end(), [](const SweepPoint* p) {
-      return weakest(*p) > 0 && p->order[1].p.value_or(1) < 0.05 &&
-             p->order[2].p.value_or(1) < 0.05;
-    });
-    for (std::size_t i = 0; i < std::min(kShown, own.size()); ++i) {
-      const SweepPoint& point = *own[i];
-      std::vector<Cell> cells = {{planner}, {text(point.variation)}};
-      for (std::size_t metric = 0; metric < kPublishedMetrics.size(); ++metric)
-        cells.push_back({number(rho(point, metric))});
-      for (const double each : point.reaction_by_impact) cells.push_back({number(each, 0)});
-      cells.push_back({fmt::format("{}", point.means_near)});
-      closest.rows.push_back(std::move(cells));
-    }
-    closest.notes.push_back(
-        fmt::format("{}: both correlations are positive at {} of {} points, and significant at {}.",
-                    planner, in_order, own.size(), significant));
-  }
-  closest.notes.push_back(
-      fmt::format("{} runs of each configuration, seed {}.", campaign.runs, campaign.seed));
-  return {effects, closest};
+  return {effects_table(points, campaign), closest_table(points, campaign)};
 }
 
 }  // namespace culprit::study

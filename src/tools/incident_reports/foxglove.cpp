@@ -176,7 +176,7 @@ class FoxgloveFile {
     put(topic_of("rules", rule.name), rule_, clock,
         {{"state", is_failing ? "failing" : "ok"}, {"is_failing", is_failing ? 1 : 0}});
   }
-  void put_incident(const Incident& incident, const char* state, std::int64_t clock) {
+  void put_incident(const culprit::Incident& incident, const char* state, std::int64_t clock) {
     Json components = Json::array();
     for (const ComponentId each : incident.components) components.push_back(rules_[each].name);
     Json failures{rules_[incident.root].name};
