@@ -118,7 +118,7 @@ export async function browse(server, steps, now = null, hasTour = false) {
     page.on('pageerror', (error) => complaints.push(String(error)))
     page.on('console', (message) => {
       // The page itself reports refusals of the server, and its absence.
-      const isRefusal = /responded with a status of 4|ERR_INCOMPLETE_CHUNKED|ERR_CONNECTION_(REFUSED|RESET)|ERR_EMPTY_RESPONSE/.test(message.text())
+      const isRefusal = /responded with a status of 4|ERR_INCOMPLETE_CHUNKED|ERR_CONTENT_LENGTH_MISMATCH|ERR_CONNECTION_(REFUSED|RESET)|ERR_EMPTY_RESPONSE/.test(message.text())
       if (message.type() === 'error' && !isRefusal) complaints.push(message.text())
     })
     if (now) await page.clock.setFixedTime(now)
