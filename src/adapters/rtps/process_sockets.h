@@ -12,7 +12,7 @@
 namespace culprit::ros2 {
 
 // The targets of its open files: "socket:[12345]". Nothing: there is no such process, or its files
-// are not readable. Of a process that is just ending, they may be closed already.
+// are not readable. A process that is just ending may have closed them already.
 std::optional<std::set<std::string>> descriptors_of(const std::filesystem::path& process);
 
 // When it began, in ticks since the machine was started. Nothing: there is no such process, or it has

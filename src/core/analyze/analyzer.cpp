@@ -696,8 +696,7 @@ void Analyzer::leave(RuleId id, Time now) {
   unmask_effects_of(id, now);
 }
 
-// What fails downstream although this cause of it is gone has another one, which may have begun until
-// now.
+// A failure downstream that outlasts this cause has another cause, which may have begun until now.
 void Analyzer::unmask_effects_of(RuleId gone, Time now) {
   if (knowledge_.states.active().empty()) return;
   const Time began = diagnose::onset_of(gone, knowledge_).earliest;

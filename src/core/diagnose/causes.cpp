@@ -60,8 +60,8 @@ Time begun_last(RuleId rule, const Knowledge& knowledge) {
   return last;
 }
 
-// Until when a cause of what the failure shows now may have begun, besides its onset. Of a failure that
-// an earlier culprit detected, that is unknown.
+// Until when a cause of what the failure shows now may have begun, besides its onset. Unknown if
+// an earlier culprit detected the failure.
 Time unclear_until(RuleId failure, const Knowledge& knowledge) {
   const RuleState& state = knowledge.states[failure];
   if (!state.onset) return knowledge.now;

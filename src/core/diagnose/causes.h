@@ -13,7 +13,7 @@
 // cause of a more critical failure. Two failures that were seen to clear together count as if they
 // were connected, although the graph shows no edge. A cause begins before its effect (timing.h), or,
 // if the effect outlasts an earlier cause or its own component's new beginning, before that.
-// Nodes that may be the causes of each other, directly or through others, form a feedback loop. That
+// Nodes that may be the causes of each other, directly or through others, form a feedback loop. It
 // needs no loop in the graph, because a rule may touch several components.
 //
 // Rules are in the order of their names, components in that of theirs, so that nothing depends on the

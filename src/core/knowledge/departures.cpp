@@ -241,8 +241,8 @@ void Departures::dissolve(const Launch& launch) {
   }
 }
 
-// What ends while the launch still ends its components stays down with it. What runs on after that is
-// of no launch.
+// A component that ends while the launch still ends its components stays down with it. One that
+// runs on after that is of no launch.
 void Departures::take_down(const Launch& launch, Time now) {
   const Time over = later(launch.ended, kTogether);
   for (Member& member : members_) {

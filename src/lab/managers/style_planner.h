@@ -9,8 +9,8 @@
 //   vogel       Vogel and Giese, executable runtime megamodels: one feedback loop repairs
 //               (ERROR), the next one optimises (the other levels) once nothing is left to repair.
 //   ghahremani  Ghahremani et al., utility-driven and rule-based: of the rules that match an issue
-//               the one that gains most utility for its cost, the worthiest issue first. What a
-//               repaired component is worth: its level, 1 to 3, times itself and all that depend
+//               the one that gains most utility for its cost, the worthiest issue first. The worth
+//               of a repaired component is its level, 1 to 3, times itself and all that depend
 //               on it.
 //
 // Where they leave open which strategy is meant (vogel, ac-ros) it is the likeliest.

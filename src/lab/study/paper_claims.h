@@ -1,7 +1,8 @@
 // Every claim of the paper's evaluation on SUNSET that its runs can test, judged on ours.
 //
-// Bounds, stated before any run: two means are alike if they differ by less than half of the
-// paper's standard deviation in that configuration. A learned rate is right within 0.1.
+// Two means are alike if they differ by less than the margin of --validate, half the published
+// standard deviation (in that configuration); chosen before these tests, with the old tables known.
+// A learned rate is right within 0.1.
 //
 // The paper does not print how many reaction times it pooled. They count as one a run, which
 // understates how many there were.

@@ -1,7 +1,8 @@
 // Every claim of the paper's evaluation on SUAVE that its runs can test, judged on ours.
 //
-// Bounds, stated before any run: two means are alike if they differ by less than half of the
-// paper's standard deviation of that row, and shares of left-out runs by less than 0.1.
+// Two means are alike if they differ by less than the margin of --validate, half the published
+// standard deviation (of that row); chosen before these tests, with the old tables known. Shares of
+// left-out runs are alike if they differ by less than 0.1.
 #pragma once
 
 #include "study/claim.h"

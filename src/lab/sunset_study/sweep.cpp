@@ -68,7 +68,7 @@ double rho(const SweepPoint& point, std::size_t metric) {
   return point.order[metric].spearman_rho.value_or(0);
 }
 
-// What the paper's order is worth least in: reactions or downtime.
+// The lower correlation with the paper's order: of reactions or of downtime.
 double weakest(const SweepPoint& point) { return std::min(rho(point, 1), rho(point, 2)); }
 
 std::string text(const Variation& variation) {

@@ -1,4 +1,4 @@
-// What is wrong in a recording, found without rules: the doctor's findings, each with the time from which it is there.
+// Defects of a recording, found without rules: the doctor's findings, each with the time from which it is there.
 //
 // A finding of gravity kError is a claim that something failed. It is made only where no innocent explanation is left: a
 // topic on demand, a latched topic, a burst, a late start by design, and the recorder's own start and end are none.

@@ -29,7 +29,7 @@ class McpServer {
   };
   // Runs culprit with these words. Errors: it did not end in time, or printed too much.
   using Run = std::function<Expected<Ran>(const std::vector<std::string>& words)>;
-  // What culprit check says of a text, as its JSON report.
+  // The JSON report of culprit check on a text.
   using Check = std::function<Json(const std::string& text)>;
 
   struct Options {

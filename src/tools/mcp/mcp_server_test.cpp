@@ -150,7 +150,7 @@ TEST(Mcp, PlansOnlyWithTheRulesOfTheCommandLine) {
   EXPECT_THAT(session.ran, IsEmpty());
 }
 
-// Whatever comes, nothing is run with it, and the server goes on.
+// The server runs no command of a hostile message, and goes on.
 TEST(Mcp, SurvivesHostileMessages) {
   Session session;
   const std::string deep = std::string(5000, '[') + std::string(5000, ']');

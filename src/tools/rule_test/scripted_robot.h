@@ -2,7 +2,7 @@
 //
 // All components of the rules are there at time 0 and work, unless the scenario says otherwise. A
 // component works if its process runs and answers, its lifecycle (if it has one) is active, and
-// all that it needs works, with none of its topics and signals silent. A topic or signal of a
+// all that it needs works. None of its topics and signals may be silent. A topic or signal of a
 // component is silent while the component does not work.
 //
 // Requests are obeyed after a moment: 5 ms, 300 ms for a process to come up. A parameter that
