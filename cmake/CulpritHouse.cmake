@@ -245,7 +245,7 @@ function(culprit_library path)
     list(APPEND with ${folder}_testing)
   endif()
   culprit_check_headers(${folder}_test_headers FOLDER ${dir} HEADERS ${test_headers}
-                        USES ${with} ${ARG_TEST_PACKAGES} GTest::gtest GTest::gmock rapidcheck culprit_test_options)
+                        USES ${with} ${ARG_LIVE_TEST_USES} ${ARG_TEST_PACKAGES} GTest::gtest GTest::gmock rapidcheck culprit_test_options)
   if(ARG_TEST_ONE_THREAD AND CULPRIT_SANITIZE STREQUAL "thread")
     list(TRANSFORM ARG_TEST_ONE_THREAD PREPEND ${dir}/)
     list(TRANSFORM ARG_TEST_ONE_THREAD APPEND _test.cpp)

@@ -52,25 +52,25 @@ class HelpedDomain {
   }
   std::filesystem::path pids() const { return folder / "pids"; }
 
-  const TestDomain domain;
+  const TestDomain domain{};
   const test::TestFolder folder;
   EventLog<std::string> troubles;
 };
 
 // A node on DDS with a service of its own.
-struct Robot {
-  explicit Robot(const TestDomain& domain) : context(domain.options()) {
+struct HelpedRobot {
+  explicit HelpedRobot(const TestDomain& domain) : context(domain.options()) {
     context.run([&] { node = std::move(*Node::create(*context, {"/", "robot"})); });
   }
-  ~Robot() {
+  ~HelpedRobot() {
     context.run([&] { node.reset(); });
   }
   LiveContext context;
   std::unique_ptr<Node> node;
 };
 
-struct Manager {
-  explicit Manager(const ParticipantOptions& options)
+struct HelpedManager {
+  explicit HelpedManager(const ParticipantOptions& options)
       : context(options), node(*context, {"/", "culprit"}) {}
   LiveContext context;
   NodeEntry node;
@@ -78,8 +78,8 @@ struct Manager {
 
 TEST(HelperParticipant, ShowsTheGraphAsDiscoveryDoes) {
   HelpedDomain robots;
-  Robot robot(robots.domain);
-  Manager manager(robots.helped());
+  HelpedRobot robot(robots.domain);
+  HelpedManager manager(robots.helped());
   EXPECT_TRUE(
       manager.context.sees_endpoint("/robot", EndpointKind::kServer, "/robot/get_parameters"));
   EXPECT_TRUE(manager.context.sees_endpoint("/robot", EndpointKind::kPublisher, "/rosout"));
@@ -89,7 +89,7 @@ TEST(HelperParticipant, ShowsTheGraphAsDiscoveryDoes) {
 
 TEST(HelperParticipant, ReceivesSamplesAndPublishes) {
   HelpedDomain robots;
-  Manager manager(robots.helped());
+  HelpedManager manager(robots.helped());
   EventLog<double> there, here;
   LiveContext robot(robots.domain.options());
   const auto node = std::move(*Node::create(*robot, {"/", "robot"}));
@@ -119,8 +119,8 @@ TEST(HelperParticipant, ReceivesSamplesAndPublishes) {
 
 TEST(HelperParticipant, CallsServicesAndServes) {
   HelpedDomain robots;
-  Robot robot(robots.domain);
-  Manager manager(robots.helped());
+  HelpedRobot robot(robots.domain);
+  HelpedManager manager(robots.helped());
   const auto client = std::move(*ServiceClient::create(
       manager.node, {"/robot/get_parameters", std::string(srv::GetParameters::kType)},
       qos::kParameterServices));
@@ -164,7 +164,7 @@ TEST(HelperParticipant, SaysWhyThereIsNone) {
 
 TEST(HelperParticipant, EndsAHelperThatSendsWhatIsNoFrameAndStartsAnother) {
   HelpedDomain robots;
-  Manager manager(robots.helped({"--oversized"}));
+  HelpedManager manager(robots.helped({"--oversized"}));
   EXPECT_TRUE(robots.troubles.wait_for_one([](const std::string& text) {
     return text.find("no frame of the protocol") != std::string::npos;
   }));
@@ -174,7 +174,7 @@ TEST(HelperParticipant, EndsAHelperThatSendsWhatIsNoFrameAndStartsAnother) {
 
 TEST(HelperParticipant, IsDeafWithoutAHelperForgetsNothingAndReplacesOneThatHangs) {
   HelpedDomain robots;
-  Robot robot(robots.domain);
+  HelpedRobot robot(robots.domain);
   Executor executor;
   EventLog<GraphChange> changes;
   Graph::Options graph;
@@ -232,7 +232,7 @@ TEST(HelperParticipant, HandsARequestToOneHelperOnly) {
     return Bytes();
   }));
   const std::string counts = (robots.folder / "counts").string();
-  Manager manager(robots.helped({"--counts", counts}));
+  HelpedManager manager(robots.helped({"--counts", counts}));
   const auto client = std::move(*ServiceClient::create(manager.node, never));
   EventLog<CallOutcome> outcomes;
   client->call(encode(srv::Trigger::Request{}), Repeat::kNever, 8s,

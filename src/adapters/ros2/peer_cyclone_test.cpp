@@ -37,8 +37,8 @@ std::unique_ptr<ServiceClient> changes_state(NodeEntry& node, const std::string&
 }
 
 // A managed node of ours.
-struct Robot {
-  explicit Robot(const TestDomain& domain) : context(domain.options()) {
+struct CycloneSide {
+  explicit CycloneSide(const TestDomain& domain) : context(domain.options()) {
     context.run([&] { node = std::move(*LifecycleNode::create(*context, {"/", "robot"}, {})); });
   }
   LiveContext context;
@@ -47,7 +47,7 @@ struct Robot {
 
 TEST(PeerCyclone, HearsWhatWePublish) {
   const TestDomain domain;
-  Robot robot(domain);
+  CycloneSide robot(domain);
   auto publisher = robot.node->node().create_publisher<msg::Float64>("/t");
   ASSERT_TRUE(publisher);
   const auto peer = start_cyclone(domain, {"echo", "/t"});
@@ -60,7 +60,7 @@ TEST(PeerCyclone, HearsWhatWePublish) {
 
 TEST(PeerCyclone, ReadsOurDiagnostics) {
   const TestDomain domain;
-  Robot robot(domain);
+  CycloneSide robot(domain);
   auto publisher = robot.node->node().create_publisher<msg::DiagnosticArray>("/diagnostics");
   ASSERT_TRUE(publisher);
   msg::DiagnosticArray array;
@@ -185,7 +185,7 @@ TEST(PeerCyclone, ServesUsAgainAtOnceAfterItWasKilled) {
 
 TEST(PeerCyclone, CallsOurServices) {
   const TestDomain domain;
-  Robot robot(domain);
+  CycloneSide robot(domain);
   const auto peer = start_cyclone(domain, {"call", "/robot", "1", "3", "1", "4"});
   ASSERT_TRUE(peer->lines().wait_for_count(5)) << testing::PrintToString(peer->lines().all());
   EXPECT_THAT(peer->lines().all(), ElementsAre("state 1 unconfigured", "change 1 1", "change 3 1",
@@ -194,7 +194,7 @@ TEST(PeerCyclone, CallsOurServices) {
 
 TEST(PeerCyclone, GetsEveryFirstAnswerAlsoNextToDeadClients) {
   const TestDomain domain;
-  Robot robot(domain);
+  CycloneSide robot(domain);
   for (int i = 0; i < 20; ++i) {
     const auto peer = start_cyclone(domain, {"call", "/robot", i % 2 == 0 ? "1" : "2"});
     ASSERT_TRUE(peer->lines().wait_for_count(2))
@@ -207,7 +207,7 @@ TEST(PeerCyclone, GetsEveryFirstAnswerAlsoNextToDeadClients) {
 
 TEST(PeerCyclone, SharesAServerWithClientsOnFastDds) {
   const TestDomain domain;
-  Robot robot(domain);
+  CycloneSide robot(domain);
   LiveContext manager(domain.options());
   NodeEntry node(*manager, {"/", "manager"});
   const auto client = changes_state(node, "/robot");

@@ -31,8 +31,8 @@ Graph::Options with_processes() {
   return options;
 }
 
-struct Manager {
-  explicit Manager(const TestDomain& domain)
+struct PeersManager {
+  explicit PeersManager(const TestDomain& domain)
       : context(domain.options(), with_processes()), node(*context, {"/", "manager"}) {}
 
   std::unique_ptr<ServiceClient> changes_state_of(const std::string& robot) {
@@ -48,7 +48,7 @@ struct Manager {
 
 TEST(PeerNode, IsSeenWithItsProcess) {
   const TestDomain domain;
-  Manager manager(domain);
+  PeersManager manager(domain);
   const auto peer = start_node(domain, "/ns/peer");
   EXPECT_TRUE(manager.context.sees_process("/ns/peer", peer->pid()));
 }
@@ -56,7 +56,7 @@ TEST(PeerNode, IsSeenWithItsProcess) {
 // As one whose computer was cut off: its lease runs out, and it has announced everything before.
 TEST(PeerNode, IsSeenAgainWhenItComesBackAfterItsLeaseRanOut) {
   const TestDomain domain;
-  Manager manager(domain);
+  PeersManager manager(domain);
   const auto peer = start_node(domain, "/peer");
   ASSERT_TRUE(manager.context.sees_process("/peer", peer->pid()));
   kill(peer->pid(), SIGSTOP);
@@ -87,7 +87,7 @@ TEST(PeerNode, IsSeenAgainWhenItComesBackAfterItsLeaseRanOut) {
 
 TEST(PeerNode, IsSteeredAcrossProcesses) {
   const TestDomain domain;
-  Manager manager(domain);
+  PeersManager manager(domain);
   const auto peer = start_node(domain, "/peer");
   const auto client = manager.changes_state_of("/peer");
   for (const std::uint8_t id : {1, 3, 4, 2}) EXPECT_TRUE(change(*client, id)) << int{id};
@@ -95,7 +95,7 @@ TEST(PeerNode, IsSteeredAcrossProcesses) {
 
 TEST(PeerNode, SaysGoodByeWhenItIsTerminated) {
   const TestDomain domain;
-  Manager manager(domain);
+  PeersManager manager(domain);
   const auto peer = start_node(domain, "/peer");
   ASSERT_TRUE(manager.context.sees_node("/peer"));
   const int status = peer->end(SIGTERM);
@@ -105,7 +105,7 @@ TEST(PeerNode, SaysGoodByeWhenItIsTerminated) {
 
 TEST(PeerNode, IsReplacedWhenItIsKilledAndStartedAgain) {
   const TestDomain domain;
-  Manager manager(domain);
+  PeersManager manager(domain);
   const auto client = manager.changes_state_of("/peer");
   for (int i = 0; i < 3; ++i) {
     const auto peer = start_node(domain, "/peer");
@@ -122,7 +122,7 @@ TEST(PeerNode, IsReplacedWhenItIsKilledAndStartedAgain) {
 
 TEST(PeerNode, LeavesAtOnceWhenItsProcessIsKnownToHaveEnded) {
   const TestDomain domain;
-  Manager manager(domain);
+  PeersManager manager(domain);
   const auto client = manager.changes_state_of("/peer");
   const auto peer = start_node(domain, "/peer");
   const int pid = peer->pid();
@@ -138,7 +138,7 @@ TEST(PeerNode, LeavesAtOnceWhenItsProcessIsKnownToHaveEnded) {
 
 TEST(PeerNode, ASilentProcessTimesOutAndAnswersWhenItGoesOn) {
   const TestDomain domain;
-  Manager manager(domain);
+  PeersManager manager(domain);
   const auto peer = start_node(domain, "/peer");
   const auto client = manager.changes_state_of("/peer");
   ASSERT_TRUE(change(*client, 1));

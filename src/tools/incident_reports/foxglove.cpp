@@ -327,7 +327,7 @@ std::string foxglove_layout(const RuleSet& rules) {
             {{"searchTerms", Json::array()}, {"minLogLevel", 1}, {"topicToRender", kLogTopic}});
   const std::string incidents =
       place("RawMessages", 1, {{"topicPath", kIncidentTopic}, {"diffEnabled", false}});
-  constexpr int kLeft = 65;
+  constexpr int kLeftPercent = 65;
   return to_indented({{"configById", std::move(panels)},
                       {"globalVariables", Json::object()},
                       {"userNodes", Json::object()},
@@ -336,7 +336,7 @@ std::string foxglove_layout(const RuleSet& rules) {
                        {{"first", stacked(left)},
                         {"second", stacked({log, incidents})},
                         {"direction", "row"},
-                        {"splitPercentage", kLeft}}}}) +
+                        {"splitPercentage", kLeftPercent}}}}) +
          "\n";
 }
 
