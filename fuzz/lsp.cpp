@@ -13,7 +13,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace culprit::lsp;
   std::istringstream in(std::string(reinterpret_cast<const char*>(data), size));
   std::ostringstream out;
-  Server server("fuzz", [&out](const culprit::Json& message) { write_message(out, message); });
+  LanguageServer server("fuzz",
+                        [&out](const culprit::Json& message) { write_message(out, message); });
   server.see(culprit::example_robot());
   while (true) {
     const auto message = read_message(in);

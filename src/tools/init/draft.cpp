@@ -372,7 +372,8 @@ class Draft {
   }
 
   void topics_without_rule() {
-    for (const auto& [topic, what] : seen_.robot.topics) {
+    for (const auto& [name, what] : seen_.robot.topics) {
+      const std::string& topic = name;  // for the lambda: clang 14 captures no bindings
       if (is_topic_of_ros(topic) || !what.is_published()) continue;
       if (are_of_several(what.publishers)) {
         const bool has_rule = std::ranges::any_of(what.publishers, [&](const std::string& node) {
