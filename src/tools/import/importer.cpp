@@ -99,6 +99,8 @@ void retract_mistakes(std::vector<Block>& blocks, std::vector<foreign::Note>& no
 Expected<Imported> import_rules(const Source& source) {
   if (source.text().size() > kMaxImport)
     return Error{source.name() + ": larger than 1 MiB; is it a rule file?"};
+  if (source.text().find('\0') != std::string_view::npos)
+    return Error{source.name() + ": this file is binary, and no rule file"};
   const auto file = read(source);
   if (!file) return Error{file.error()};
   foreign::Written written = foreign::write(*file, source.name());

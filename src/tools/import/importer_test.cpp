@@ -68,6 +68,14 @@ TEST(Importer, GivesWhatTheGoldenFilesSay) {
   EXPECT_GT(files, 0);
 }
 
+// In a comment of the import it would be a mistake that nothing takes away.
+TEST(Importer, RefusesBinaryFiles) {
+  using namespace std::string_literals;
+  const auto imported = import_rules(Source("old.rules", "BEGIN RULES # \0\nEND RULES\n"s));
+  ASSERT_FALSE(imported);
+  EXPECT_EQ(imported.error(), "old.rules: this file is binary, and no rule file");
+}
+
 TEST(Importer, KeepsTheReferencesGrouping) {
   const auto trigger = [](const std::string& text) {
     return trigger_of(rule_with(text, "c restart"));

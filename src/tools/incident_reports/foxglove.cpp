@@ -131,7 +131,7 @@ class FoxgloveFile {
       put(kIncidentTopic, incident_, clock,
           {{"id", closed->id},
            {"state", std::string(to_string(closed->how))},
-           {"rules", {rules_[closed->root].name}}});
+           {"rules", Json::array({rules_[closed->root].name})}});
   }
 
   void add(const ObservationWhat& what, std::int64_t clock) {
@@ -179,7 +179,7 @@ class FoxgloveFile {
   void put_incident(const culprit::Incident& incident, const char* state, std::int64_t clock) {
     Json components = Json::array();
     for (const ComponentId each : incident.components) components.push_back(rules_[each].name);
-    Json failures{rules_[incident.root].name};
+    Json failures = Json::array({rules_[incident.root].name});
     for (const RuleId each : incident.consequences) failures.push_back(rules_[each].name);
     put(kIncidentTopic, incident_, clock,
         {{"id", incident.id},
@@ -309,7 +309,7 @@ std::string foxglove_layout(const RuleSet& rules) {
   std::size_t number = 0;
   for (const LayoutPlot& plot : plots_of(rules)) {
     if (number >= kMostPlots) break;
-    Json paths{path(plot.topic + ".value", plot.title)};
+    Json paths = Json::array({path(plot.topic + ".value", plot.title)});
     // A number by itself is a line across the plot.
     for (const double limit : plot.limits) paths.push_back(path(to_string(Value(limit)), "limit"));
     left.push_back(place("Plot", ++number,
