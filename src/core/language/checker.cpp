@@ -746,20 +746,23 @@ Checked check_tree(const syntax::File& file, std::vector<Diagnostic> said, Stric
   return result;
 }
 
+Checked check_parsed(const Source& source, syntax::File file, std::vector<Diagnostic> said,
+                     Strictness strictness) {
+  Checked checked = check_tree(file, std::move(said), strictness);
+  condense(source, checked.diagnostics);
+  checked.file = std::move(file);
+  return checked;
+}
+
 }  // namespace
 
 Checked check(const Source& source, Strictness strictness) {
   std::vector<Diagnostic> said;
   syntax::File file = parse(source, said);
-  if (file.has_reuse()) {
-    const Expansion rules = expand(source);
-    Checked checked = check(rules, strictness);
-    checked.diagnostics = as_written(std::move(checked.diagnostics), rules.source);
-    return checked;
-  }
-  Checked checked = check_tree(file, std::move(said), strictness);
-  condense(source, checked.diagnostics);
-  checked.file = std::move(file);
+  if (!file.has_reuse()) return check_parsed(source, std::move(file), std::move(said), strictness);
+  const Expansion rules = expand(source);
+  Checked checked = check(rules, strictness);
+  checked.diagnostics = as_written(std::move(checked.diagnostics), rules.source);
   return checked;
 }
 
@@ -771,7 +774,9 @@ Checked check(const Parsed& whole, Strictness strictness) {
 
 Checked check(const Expansion& rules, Strictness strictness) {
   if (!rules.mistakes.empty()) return {{}, rules.mistakes};
-  Checked checked = check(rules.source, strictness);
+  std::vector<Diagnostic> said;
+  syntax::File file = parse(rules.source, said);
+  Checked checked = check_parsed(rules.source, std::move(file), std::move(said), strictness);
   say_once(checked.diagnostics, rules.source);
   return checked;
 }

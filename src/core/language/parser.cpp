@@ -112,6 +112,8 @@ class Parser {
     }
     if (has_placeholder(s)) is_good_head = false;
     if (has_colon(s)) is_good_head = false;  // it is taken, so that the line can be read
+    // The expansion takes only the words as they are.
+    if (!is_good_head && is_of_reuse(meant->keyword)) return broken();
     const Scanner behind_keyword = s;
     const bool is_good = (this->*meant->parse)(s) && read_.line_ends(s);
     // One mistake, one message: the statement is read as it was meant, so that the lines that
@@ -120,6 +122,10 @@ class Parser {
     if (is_good && is_good_head) return;
     broken();
     broken_declaration(meant->keyword, behind_keyword);
+  }
+
+  static bool is_of_reuse(std::string_view keyword) {
+    return keyword == "INCLUDE" || keyword == "TEMPLATE" || keyword == "END" || keyword == "USE";
   }
 
   static std::string meant_keyword(const Token& head,

@@ -112,7 +112,7 @@ class Completion {
                                      "PACKAGE", "PARAMETERS", "REMAP"}) {
         if (words_.back() == takes_text) return {};
       }
-      if (words_[words_.size() - 2] == "UNIT")
+      if (words_.size() > 1 && words_[words_.size() - 2] == "UNIT")
         return keywords({"USER", "HOST", "NODE", "RESPAWNED", "REQUIRED", "READY", "LIFECYCLE"});
       return keywords({"NODE", "LAUNCH", "ENV", "SETUP", "CWD", "UNIT", "CONTAINER", "HOST", "IN",
                        "PLUGIN", "PACKAGE", "PARAMETERS", "REMAP", "RESPAWNED", "REQUIRED", "READY",
