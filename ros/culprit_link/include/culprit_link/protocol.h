@@ -359,8 +359,8 @@ inline constexpr std::size_t kLengthSize = sizeof(std::uint32_t);
 
 // With its length before it. @pre its fields fit into kLargestFrame.
 inline Bytes encode(const Frame& frame) {
-  Bytes bytes(kLengthSize);
-  bytes.push_back(static_cast<std::uint8_t>(frame.index()));
+  Bytes bytes(kLengthSize + 1);
+  bytes.back() = static_cast<std::uint8_t>(frame.index());
   coding::Writer writer(bytes);
   std::visit([&](const auto& each) { each.visit(each, writer); }, frame);
   const std::size_t length = bytes.size() - kLengthSize;
