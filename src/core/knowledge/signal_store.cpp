@@ -90,10 +90,24 @@ Time SignalStore::heard_again_by(RuleId id) const {
 
 Time SignalStore::confirmed_by(InputId id) const {
   constexpr Duration kUsuallyThen = std::chrono::seconds(2);  // if values come irregularly
+  const Input& input = rules_.inputs[id.index];
+  const bool is_age = input.kind == Input::Kind::kAge || input.kind == Input::Kind::kPhi;
+  if (is_age) return age_confirmed_by(input);
   const Arrivals& values = arrivals_[id.index];
   const bool is_missed =
       hears_since_ != kLongAgo && values.last != kLongAgo && values.last < hears_since_;
   return is_missed ? later(hears_since_, values.gap + kUsuallyThen) : kLongAgo;
+}
+
+// A silence that is counted anew is shorter than it is, so it proves nothing before it is longer than all that it is
+// compared with.
+Time SignalStore::age_confirmed_by(const Input& input) const {
+  const Rhythm& samples = rhythms_[input.topic.index];
+  const bool is_missed = hears_since_ != kLongAgo && samples.last && *samples.last < hears_since_;
+  if (!is_missed) return kLongAgo;
+  if (input.kind == Input::Kind::kPhi || input.thresholds.empty()) return kNever;
+  const Time since = std::max(samples.silent_since(), samples.heard_again_by);
+  return later(since, from_seconds(input.thresholds.back()));
 }
 
 bool SignalStore::is_read_since(RuleId id, Time since) const {

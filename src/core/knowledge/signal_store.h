@@ -70,7 +70,7 @@ class SignalStore {
   // culprit receives again since then, and may have missed values before.
   void hear_again(Time since) { hears_since_ = since; }
   // When a value that came before that would have been followed by another one: until then it may not
-  // be what the robot says now. kLongAgo: it came since, or none was missed.
+  // be what the robot says now. kLongAgo: it came since, or none was missed. kNever: once one comes.
   Time confirmed_by(InputId id) const;
 
   // Has every signal that the trigger of the rule reads been read after `since`? Not if it reads
@@ -108,6 +108,8 @@ class SignalStore {
   std::span<const RuleId> take_touched();
 
  private:
+  Time age_confirmed_by(const Input& input) const;
+
   const RuleSet& rules_;
   std::vector<Slot> slots_;
   std::vector<std::string> texts_;       // what slots of texts refer to

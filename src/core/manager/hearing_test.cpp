@@ -12,6 +12,7 @@ namespace {
 constexpr const char* kHearingRules = R"(
 COMPONENT camera NODE /camera LAUNCH "camera"
 COMPONENT lidar  NODE /lidar  LAUNCH "lidar"
+COMPONENT estop  NODE /estop
 RULE CameraSilent
   POLICIES ERROR
   TRIGGER age(/rgb) > 500ms
@@ -280,6 +281,24 @@ TEST(Hearing, AnInterlockCountsOnlyByAValueThatCameAfterwards) {
     robot.run_for(20s);
     EXPECT_EQ(robot.was_asked("lidar: start process"), !is_read_again) << transcript(robot);
   }
+}
+
+// The age of a topic begins anew after a gap, which is no sign that it still comes.
+TEST(Hearing, AnInterlockOnATopicCountsOnlyByASampleThatCameAfterwards) {
+  TestRobot robot("INTERLOCK age(/estop) < 1s\n" + std::string(kHearingRules));
+  robot.add("camera", {}, "/rgb");
+  robot.add("lidar", {}, "/scan");
+  robot.add("estop", {}, "/estop");
+  robot.discover();
+  robot.run_for(3s);
+  robot.tell(HearingLost{"nothing came back"});
+  robot.kill("lidar");
+  robot["estop"].fault = "deaf";  // as culprit sees it
+  robot.run_for(1s);
+  robot.tell(HearingRegained{});
+  robot.run_for(20s);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+  EXPECT_EQ(robot.count("INTERLOCK age(/estop) < 1s was true before"), 1u) << transcript(robot);
 }
 
 TEST(Hearing, NothingIsRunByHandWhileDeaf) {

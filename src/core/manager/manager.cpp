@@ -532,10 +532,16 @@ void Manager::begin(StrategyId strategy, Time now) {
 }
 
 void Manager::hold_back(const Decision& decision, Time now) {
-  Said& said = held_back_[decision.rule.index];
+  // Two reasons may hold by turns.
+  constexpr Duration kSaidAgain = std::chrono::seconds(5);
+  auto& [failing_since, said] = held_back_[decision.rule.index];
   const Time since = knowledge_.states[decision.rule].failing_since;
-  if (said.failing_since == since && same_reasons(said.candidates, decision.candidates)) return;
-  said = {since, decision.candidates};
+  if (std::exchange(failing_since, since) != since) said.clear();
+  while (said.size() > 1 && later(said.front().at, kSaidAgain) <= now) said.erase(said.begin());
+  const bool was_said = std::ranges::any_of(
+      said, [&](const Said& each) { return same_reasons(each.candidates, decision.candidates); });
+  if (was_said) return;
+  said.push_back({now, decision.candidates});
   knowledge_.events.tell(now,
                          FailureHeldBack{decision.rule, decision.candidates, decision.suspects});
 }

@@ -133,11 +133,16 @@ class Manager : public ManagingSystem {
   bool is_incident_due_ = false;  // something that incidents are made of may have changed
   bool news_ = false;             // something a plan depends on changed since the last plan
   Time next_plan_ = kNever;       // while failures are held back
+  // Why a failure was held back, as it was reported.
   struct Said {
-    Time failing_since = kNever;
+    Time at{};
     std::vector<Candidate> candidates;
   };
-  std::vector<Said> held_back_;  // by rule: the reason that was reported last
+  struct HeldBack {
+    Time failing_since = kNever;
+    std::vector<Said> said;  // within the last kSaidAgain, and the last one
+  };
+  std::vector<HeldBack> held_back_;  // by rule
 };
 
 }  // namespace culprit
