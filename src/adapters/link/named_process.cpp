@@ -4,6 +4,7 @@
 #include <charconv>
 #include <fstream>
 #include <span>
+#include <sys/stat.h>
 #include <system_error>
 
 #include "base/component_mark.h"
@@ -20,6 +21,11 @@ std::vector<std::string> command_line_of(const fs::path& process) {
   std::ifstream file(process / "cmdline", std::ios::binary);
   for (std::string word; std::getline(file, word, '\0');) words.push_back(word);
   return words;
+}
+
+bool is_of(unsigned user, const fs::path& process) {
+  struct stat owner {};
+  return stat(process.c_str(), &owner) == 0 && owner.st_uid == user;
 }
 
 // In the environment that the process was started with.
@@ -121,7 +127,7 @@ bool is_of_launch_file(const std::vector<std::string>& words,
   return has(starter, file) && has(words, node);
 }
 
-NamedProcess::NamedProcess(fs::path proc) : proc_(std::move(proc)) {}
+NamedProcess::NamedProcess(fs::path proc, unsigned user) : proc_(std::move(proc)), user_(user) {}
 
 FoundProcess NamedProcess::find(const ParticipantInfo& participant,
                                 const std::vector<Sought>& nodes) const {
@@ -135,6 +141,7 @@ FoundProcess NamedProcess::find(const ParticipantInfo& participant,
     if (trouble != std::errc() || rest != name.data() + name.size()) continue;
     constexpr int kAnnounced = 0xffff;  // the bits of a process id that Fast DDS announces
     if (participant.pid != 0 && (pid & kAnnounced) != participant.pid) continue;
+    if (!is_of(user_, i->path())) continue;
     const std::vector<std::string> words = command_line_of(i->path());
     const bool fits = std::ranges::any_of(nodes, [&](const Sought& each) {
       return names_node(words, each.node) || is_started_as(i->path(), words, each.launch) ||
@@ -148,12 +155,10 @@ FoundProcess NamedProcess::find(const ParticipantInfo& participant,
   const bool is_worth_a_word =
       std::ranges::any_of(nodes, [](const Sought& each) { return !each.mark.empty(); });
   if (!is_worth_a_word) return {};
-  return {
-      0,
-      found.empty()
-          ? "no process of this machine that culprit may inspect has its LAUNCH or its node name "
-            "(__node:=) as its command line"
-          : "the command lines of several processes fit it"};
+  return {0, found.empty()
+                 ? "no process of culprit's user on this machine has its LAUNCH or its node name "
+                   "(__node:=) as its command line"
+                 : "the command lines of several processes fit it"};
 }
 
 }  // namespace culprit::ros2

@@ -6,11 +6,13 @@
 // - its command line is the LAUNCH of the node's component, or names the node (`__node:=`);
 // - culprit started it for the component (owners/mark.h);
 // - LAUNCH names a launch file, what started it runs that file, and its command line has the node's own name.
+// And it is of culprit's user: another user can give a process any command line and environment.
 // Fast DDS also announces the process id; then that must agree. Two processes that fit are no proof.
 #pragma once
 
 #include <filesystem>
 #include <string>
+#include <unistd.h>
 #include <vector>
 
 #include "ros2/graph.h"
@@ -25,14 +27,15 @@ class NamedProcess {
     std::string mark{};                 // the component's: "0/sunset/camera"; empty: it is none
   };
 
-  // `proc` is where the proc file system is mounted.
-  explicit NamedProcess(std::filesystem::path proc = "/proc");
+  // `proc` is where the proc file system is mounted. `user`: whose processes count.
+  explicit NamedProcess(std::filesystem::path proc = "/proc", unsigned user = geteuid());
 
   // The process of a participant with these nodes. Milliseconds: it looks through all processes.
   FoundProcess find(const ParticipantInfo& participant, const std::vector<Sought>& nodes) const;
 
  private:
   std::filesystem::path proc_;
+  unsigned user_;
 };
 
 // Whether a command line names the node: "--ros-args -r __node:=camera -r __ns:=/front".

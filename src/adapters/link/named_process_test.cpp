@@ -107,6 +107,17 @@ TEST(NamedProcess, TwoThatFitAreNoProofUnlessOneIsAnnounced) {
   EXPECT_EQ(all.find(301).pid, 301);
 }
 
+// Another user can give a process the camera's command line and environment.
+TEST(NamedProcess, BelievesNoProcessOfAnotherUser) {
+  Processes all;
+  all.add(300, {"/opt/lidar", "-v"});
+  const NamedProcess::Sought sought{"/lidar", {"lidar", "-v"}, "0/r/lidar"};
+  EXPECT_EQ(NamedProcess(all.proc.path(), geteuid()).find({}, {sought}).pid, 300);
+  const FoundProcess found = NamedProcess(all.proc.path(), geteuid() + 1).find({}, {sought});
+  EXPECT_EQ(found.pid, 0);
+  EXPECT_NE(found.missing, "");
+}
+
 TEST(NamedProcess, KnowsProcessesByTheSixteenBitsThatAreAnnounced) {
   Processes all;
   all.add(70'000, {"/opt/lidar", "-v"});
