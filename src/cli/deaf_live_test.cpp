@@ -121,6 +121,7 @@ TEST_F(Deaf, CulpritCanBeEnded) {
   const TestProgram camera(world, {"sunset-node", "camera"});
   TestProgram run = start_culprit();
   ASSERT_TRUE(run.prints("camera is there")) << run.output();
+  ASSERT_TRUE(has_looked(run)) << run.output();
   const Deafness deafness(run.pid());
   if (deafness.is_refused()) GTEST_SKIP() << "threads of another process cannot be held here";
   ASSERT_GT(deafness.held(), 0u);
@@ -134,8 +135,7 @@ TEST_F(Deaf, CulpritCanBeEnded) {
 TEST_F(Deaf, CulpritReportsTheBeginningAndTheEnd) {
   const TestProgram camera(world, {"sunset-node", "camera"});
   const TestProgram run = start_culprit();
-  // The look before has a participant of its own, and is over then.
-  ASSERT_TRUE(run.prints("/managed_subsystem/rgb_camera from")) << run.output();
+  ASSERT_TRUE(has_looked(run)) << run.output();
   ASSERT_TRUE(eventually([&] { return Deafness::receivers_of(run.pid()).size() == 1; }));
   {
     const Deafness deafness(run.pid());
@@ -151,6 +151,7 @@ TEST_F(Deaf, CulpritStarvesItsWatchdogBeginsAnewAndHeals) {
   const TestProgram camera(world, {"sunset-node", "camera"});
   const TestProgram run = start_culprit();
   ASSERT_TRUE(run.prints("camera is there")) << run.output();
+  ASSERT_TRUE(has_looked(run)) << run.output();
   EXPECT_TRUE(eventually([&] { return systemd.feedings() > 0; }));
   const Deafness deafness(run.pid());
   if (deafness.is_refused()) GTEST_SKIP() << "threads of another process cannot be held here";

@@ -95,6 +95,8 @@ TEST_P(Hostile, NeitherHarmsTheRobotNorKeepsItFromHealing) {
   const TestProgram camera(world, {"sunset-node", "camera"});
   const TestProgram culprit = start_hostile_culprit();
   ASSERT_TRUE(culprit.prints("camera is there")) << culprit.output();
+  // Attacks on the ports of its look would reach nobody.
+  ASSERT_TRUE(has_looked(culprit)) << culprit.output();
   Target target{world, culprit.pid(), 0, page_of(culprit), nullptr};
   if (is_elsewhere) {
     at.reset();

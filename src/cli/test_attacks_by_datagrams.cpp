@@ -233,7 +233,7 @@ std::vector<Attack> attacks_by_datagrams() {
       {"diagnostics_in_its_name_from_elsewhere", diagnostics_in_its_name, there},
       {"transitions_in_its_name", transitions_in_its_name},
       {"transitions_in_its_name_from_elsewhere", transitions_in_its_name, there},
-      {"absurd_heartbeats", absurd_heartbeats, Place::kHere, true, "datagrams were kept out"},
+      {"absurd_heartbeats", absurd_heartbeats, Place::kHere, true, "which does not send from there"},
       {"absurd_heartbeats_from_elsewhere", absurd_heartbeats, there},
       {"huge_fragments", huge_fragments, Place::kHere, true},
       {"huge_fragments_from_elsewhere", huge_fragments, there},
