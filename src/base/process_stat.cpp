@@ -22,7 +22,11 @@ std::optional<ProcessStat> process_stat(const std::string& process) {
   std::int64_t system_ticks = 0;
   std::uint64_t resident_pages = 0;
   rest >> stat.state >> stat.parent >> stat.group >> stat.session;
-  skip(7);  // fields 7 to 13
+  skip(2);                               // to field 9
+  constexpr std::uint64_t kExiting = 4;  // PF_EXITING
+  std::uint64_t flags = 0;
+  rest >> flags;
+  skip(4);  // to field 14
   rest >> user_ticks >> system_ticks;
   skip(4);  // to field 19
   rest >> stat.threads;
@@ -31,8 +35,7 @@ std::optional<ProcessStat> process_stat(const std::string& process) {
   if (rest.fail()) return std::nullopt;
   const std::int64_t ticks = sysconf(_SC_CLK_TCK);
   stat.processor = std::chrono::nanoseconds((user_ticks + system_ticks) * (1'000'000'000 / ticks));
-  stat.processor_seconds =
-      static_cast<double>(user_ticks + system_ticks) / static_cast<double>(ticks);
+  stat.is_exiting = (flags & kExiting) != 0;
   stat.started_after_boot = static_cast<double>(stat.start_ticks) / static_cast<double>(ticks);
   stat.resident_bytes = resident_pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
   if (stat.state == 'Z') {

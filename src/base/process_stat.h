@@ -14,8 +14,8 @@ struct ProcessStat {
   int parent = 0;
   int group = 0;
   int session = 0;
-  Duration processor{};          // that it has used, of all its threads
-  double processor_seconds = 0;  // the same
+  bool is_exiting = false;  // the kernel takes it apart; its children may be another's already
+  Duration processor{};     // that it has used, of all its threads
   std::uint64_t threads = 0;
   std::int64_t start_ticks = 0;   // when it began, in ticks of the kernel after boot
   double started_after_boot = 0;  // the same in seconds

@@ -44,7 +44,7 @@ std::string process_metrics() {
   if (!stat) return out;
   const auto number = [](std::uint64_t value) { return static_cast<double>(value); };
   add(out, "process_cpu_seconds_total", "counter", "User and system CPU time.",
-      stat->processor_seconds);
+      seconds(stat->processor));
   add(out, "process_resident_memory_bytes", "gauge", "Memory that is resident.",
       number(stat->resident_bytes));
   add(out, "process_virtual_memory_bytes", "gauge", "Virtual memory.", number(stat->virtual_bytes));

@@ -64,11 +64,11 @@ void UsageHistory::add(Process& process, const std::optional<ProcessStat>& stat,
     return;
   }
   // The clock on the wall may be set back, and the number of a process be another's by now.
-  const double used = stat->processor_seconds - process.processor_seconds;
+  const double used = seconds(stat->processor) - process.processor_seconds;
   if (process.clock > 0 && clock > process.clock && used >= 0)
     process.usage.push_back({clock, used / (clock - process.clock), stat->resident_bytes});
   if (process.usage.size() > kMost) process.usage.pop_front();
-  process.processor_seconds = stat->processor_seconds;
+  process.processor_seconds = seconds(stat->processor);
   process.clock = clock;
 }
 

@@ -11,6 +11,8 @@
 namespace culprit::web {
 namespace {
 
+using namespace std::chrono_literals;
+
 constexpr const char* kUsedRules = R"(
 COMPONENT camera NODE /camera
 COMPONENT rover NODE /rover HOST user@rover2 UNIT rover.service
@@ -47,9 +49,9 @@ TEST_F(UsedProcesses, AreMeasuredFromLookToLook) {
   usage.look(100);
   EXPECT_TRUE(usage.of("camera").empty()) << "its process is not known";
   see(0, ProcessState::kRunning, 12);
-  stats[12] = {.processor_seconds = 1.0, .threads = 1, .resident_bytes = 1000};
+  stats[12] = {.processor = 1000ms, .threads = 1, .resident_bytes = 1000};
   usage.look(105);
-  stats[12] = {.processor_seconds = 2.5, .threads = 1, .resident_bytes = 3000};
+  stats[12] = {.processor = 2500ms, .threads = 1, .resident_bytes = 3000};
   usage.look(110);
   ASSERT_EQ(usage.of("camera").size(), 1);
   EXPECT_EQ(usage.of("camera")[0].clock, 110);
@@ -60,13 +62,13 @@ TEST_F(UsedProcesses, AreMeasuredFromLookToLook) {
 
 TEST_F(UsedProcesses, AreNotMixedUp) {
   see(0, ProcessState::kRunning, 12);
-  stats[12] = {.processor_seconds = 50, .threads = 1, .resident_bytes = 1000};
-  stats[13] = {.processor_seconds = 60, .threads = 1, .resident_bytes = 1000};
+  stats[12] = {.processor = 50000ms, .threads = 1, .resident_bytes = 1000};
+  stats[13] = {.processor = 60000ms, .threads = 1, .resident_bytes = 1000};
   usage.look(100);
   see(0, ProcessState::kRunning, 13);  // it was started anew
   usage.look(105);
   EXPECT_TRUE(usage.of("camera").empty()) << "nobody knows what 13 had used 5 s ago";
-  stats[13].processor_seconds = 61;
+  stats[13].processor = 61000ms;
   usage.look(110);
   stats.erase(13);
   usage.look(115);
@@ -76,7 +78,7 @@ TEST_F(UsedProcesses, AreNotMixedUp) {
 
 TEST_F(UsedProcesses, OfAnotherComputerAreNotThoseOfThisOne) {
   see(1, ProcessState::kRunning, 12);
-  stats[12] = {.processor_seconds = 1, .threads = 1, .resident_bytes = 1000};
+  stats[12] = {.processor = 1000ms, .threads = 1, .resident_bytes = 1000};
   usage.look(100);
   usage.look(105);
   EXPECT_TRUE(usage.of("rover").empty());
@@ -84,7 +86,7 @@ TEST_F(UsedProcesses, OfAnotherComputerAreNotThoseOfThisOne) {
 
 TEST_F(UsedProcesses, AreKeptForAQuarterOfAnHourAndOverAReload) {
   see(0, ProcessState::kRunning, 12);
-  stats[12] = {.processor_seconds = 1, .threads = 1, .resident_bytes = 1000};
+  stats[12] = {.processor = 1000ms, .threads = 1, .resident_bytes = 1000};
   for (int i = 0; i < 300; ++i) usage.look(100 + 5 * i);
   EXPECT_EQ(usage.of("camera").size(), UsageHistory::kMost);
   EXPECT_EQ(usage.of("camera").back().clock, 100 + 5 * 299);
@@ -94,7 +96,7 @@ TEST_F(UsedProcesses, AreKeptForAQuarterOfAnHourAndOverAReload) {
 
 TEST_F(UsedProcesses, MayStandWhereTheClockIsSetBack) {
   see(0, ProcessState::kRunning, 12);
-  stats[12] = {.processor_seconds = 1, .threads = 1, .resident_bytes = 1000};
+  stats[12] = {.processor = 1000ms, .threads = 1, .resident_bytes = 1000};
   usage.look(100);
   usage.look(50);
   usage.look(50);

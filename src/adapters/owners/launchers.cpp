@@ -5,6 +5,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include "base/process_stat.h"
 #include "owners/launch_note.h"
 #include "owners/mark.h"
 #include "owners/proc.h"
@@ -57,7 +58,9 @@ void Launchers::look_at_children_of(Launcher& launcher) {
 }
 
 bool Launchers::goes_on(const Launcher& launcher) {
-  if (launcher.pid == 0 || state_letter(launcher.pid).value_or('Z') == 'Z') return false;
+  if (launcher.pid == 0) return false;
+  const auto stat = process_stat(std::to_string(launcher.pid));
+  if (!stat || stat->state == 'Z' || stat->is_exiting) return false;
   // Two readings of one start differ by the clocks' rounding.
   constexpr Duration kSame = std::chrono::milliseconds(100);
   const auto begins = started_at(launcher.pid);
