@@ -7,16 +7,12 @@
 #include <cstring>
 #include <fcntl.h>
 #include <poll.h>
-#include <spawn.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
-#include <system_error>
-#include <thread>
 #include <unistd.h>
 
+#include "base/begin_program.h"
 #include "base/invariant.h"
 #include "base/live_clock.h"
-#include "owners/spawn.h"
 
 namespace culprit::owners {
 
@@ -24,48 +20,6 @@ Expected<Pipe> make_pipe() {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) return Error{std::strerror(errno)};
   return Pipe{FileDescriptor(ends[0]), FileDescriptor(ends[1])};
-}
-
-// On a thread of its own: a thread that gave up its ambient capabilities does not get them back.
-Expected<int> begin_piped(std::vector<std::string> words, std::vector<std::string> environment,
-                          const Streams& streams) {
-  const std::vector<char*> arguments = pointers_to(words);
-  const std::vector<char*> variables = pointers_to(environment);
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  if (streams.in < 0) {
-    posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  } else {
-    posix_spawn_file_actions_adddup2(&files, streams.in, STDIN_FILENO);
-  }
-  posix_spawn_file_actions_adddup2(&files, streams.out, STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&files, streams.err, STDERR_FILENO);
-  posix_spawn_file_actions_addclosefrom_np(&files, STDERR_FILENO + 1);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t none;
-  sigset_t all;
-  sigemptyset(&none);
-  sigfillset(&all);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setsigdefault(&attributes, &all);
-  posix_spawnattr_setflags(&attributes,
-                           POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSID);
-  pid_t pid = 0;
-  int why = 0;
-  try {
-    std::thread([&] {
-      prctl(PR_CAP_AMBIENT, PR_CAP_AMBIENT_CLEAR_ALL, 0, 0, 0);
-      why =
-          posix_spawnp(&pid, arguments[0], &files, &attributes, arguments.data(), variables.data());
-    }).join();
-  } catch (const std::system_error& no_thread) {
-    why = no_thread.code().value();
-  }
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&files);
-  if (why != 0) return Error{words.front() + " cannot be run: " + std::strerror(why)};
-  return pid;
 }
 
 namespace {
@@ -124,8 +78,8 @@ Expected<PipedRun> run_piped(std::vector<std::string> words, std::vector<std::st
   if (!out) return Error{out.error()};
   auto err = make_pipe();
   if (!err) return Error{err.error()};
-  const auto pid = begin_piped(std::move(words), std::move(environment),
-                               {.out = out->write_end.get(), .err = err->write_end.get()});
+  const auto pid = begin_program(std::move(words), std::move(environment),
+                                 {.out = out->write_end.get(), .err = err->write_end.get()});
   out->write_end = FileDescriptor();
   err->write_end = FileDescriptor();
   if (!pid) return Error{pid.error()};

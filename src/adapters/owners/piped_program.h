@@ -1,5 +1,4 @@
-// Starts a program that is talked to over its standard input and output: an argument vector, never a
-// shell of ours.
+// Runs a program and reads what it prints (base/begin_program.h).
 #pragma once
 
 #include <string>
@@ -17,20 +16,6 @@ struct Pipe {
 };
 // Not inherited by programs.
 Expected<Pipe> make_pipe();
-
-// The program's standard streams: descriptors that are ours to close.
-struct Streams {
-  int in = -1;  // -1: nothing is there to read
-  int out = -1;
-  int err = -1;
-};
-
-// The program leads a session and a process group of its own, without a terminal to ask at, gets
-// `environment` and nothing else of ours: no open file, no capability, default signal handling.
-// `words[0]` is looked for in our PATH if it has no slash. Gives its pid; the caller ends and reaps
-// it. Errors: there is no such program, or the system gives no process.
-Expected<int> begin_piped(std::vector<std::string> words, std::vector<std::string> environment,
-                          const Streams& streams);
 
 // How a program ended, and its output.
 struct PipedRun {

@@ -10,6 +10,7 @@
 #include <thread>
 #include <unistd.h>
 
+#include "base/begin_program.h"
 #include "base/invariant.h"
 #include "base/live_clock.h"
 #include "owners/piped_program.h"
@@ -71,8 +72,8 @@ Expected<RemoteProgram> RemoteProgram::begin(const std::string& host,
   command.insert(command.end(), std::make_move_iterator(words.begin()),
                  std::make_move_iterator(words.end()));
   const auto pid =
-      begin_piped(std::move(command), environment_with({}),
-                  {.in = theirs.get(), .out = theirs.get(), .err = errors->write_end.get()});
+      begin_program(std::move(command), environment_with({}),
+                    {.in = theirs.get(), .out = theirs.get(), .err = errors->write_end.get()});
   if (!pid) return Error{host + ": " + pid.error() + "; install an ssh client"};
   return RemoteProgram(host, std::move(program), *pid, std::move(ours),
                        std::move(errors->read_end));

@@ -18,6 +18,7 @@
 #include <unistd.h>
 #include <utility>
 
+#include "base/begin_program.h"
 #include "base/invariant.h"
 
 extern char** environ;
@@ -229,13 +230,6 @@ std::string value_in_environment(const std::string& variable,
 }
 
 void keep_files_private() { umask_of_programs = umask(S_IRWXG | S_IRWXO); }
-
-std::vector<char*> pointers_to(std::vector<std::string>& texts) {
-  std::vector<char*> pointers;
-  for (std::string& text : texts) pointers.push_back(text.data());
-  pointers.push_back(nullptr);
-  return pointers;
-}
 
 std::vector<std::string> environment_with(const std::vector<std::string>& added) {
   std::vector<std::string> all;

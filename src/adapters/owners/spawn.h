@@ -100,9 +100,6 @@ class Launch {
 // either. Programs that spawn() starts have the umask from before. Call it before there are threads.
 void keep_files_private();
 
-// As execve(2) takes them, with a null behind. They point into `texts`.
-std::vector<char*> pointers_to(std::vector<std::string>& texts);
-
 // The value that a program gets of `variable`: from `added`, or else from our own environment. Empty: none.
 std::string value_in_environment(const std::string& variable,
                                  const std::vector<std::string>& added);

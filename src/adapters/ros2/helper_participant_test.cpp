@@ -156,7 +156,7 @@ TEST(HelperParticipant, SaysWhyThereIsNone) {
   };
   ParticipantOptions options = robots.domain.options();
   options.helper = std::make_shared<const HelperOptions>(HelperOptions{{"/no/such/program"}, {}});
-  EXPECT_THAT(why(options), HasSubstr("/no/such/program: No such file"));
+  EXPECT_THAT(why(options), HasSubstr("/no/such/program cannot be run: No such file"));
   EXPECT_THAT(why(robots.helped({"--version", "9"})), HasSubstr("speaks version 9"));
   options.helper = std::make_shared<const HelperOptions>(HelperOptions{{"/bin/false"}, {}});
   EXPECT_THAT(why(options), HasSubstr("status 1"));

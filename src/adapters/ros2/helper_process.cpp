@@ -5,24 +5,17 @@
 #include <csignal>
 #include <cstring>
 #include <fcntl.h>
-#include <spawn.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
+#include <utility>
 #include <vector>
+
+#include "base/begin_program.h"
 
 namespace culprit::ros2 {
 namespace {
-
-constexpr int kItsSocket = 3;
-
-std::vector<char*> pointers_to(std::vector<std::string>& texts) {
-  std::vector<char*> pointers;
-  for (std::string& text : texts) pointers.push_back(text.data());
-  pointers.push_back(nullptr);
-  return pointers;
-}
 
 std::string ending_of(int status) {
   return WIFSIGNALED(status) ? "signal " + std::to_string(WTERMSIG(status))
@@ -31,43 +24,23 @@ std::string ending_of(int status) {
 
 }  // namespace
 
-// In a process group of its own: the terminal's Ctrl-C is culprit's.
 Expected<std::unique_ptr<HelperProcess>> HelperProcess::start(const HelperOptions& options) {
   if (options.command.empty()) return Error{"no helper program is named"};
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
     return Error{std::string("no socket for the helper program: ") + std::strerror(errno)};
   std::vector<std::string> words = options.command;
-  words.push_back(std::to_string(kItsSocket));
-  std::vector<std::string> variables = options.environment;
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_adddup2(&files, ends[1], kItsSocket);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t none;
-  sigset_t all;
-  sigemptyset(&none);
-  sigfillset(&all);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setsigdefault(&attributes, &all);
-  posix_spawnattr_setpgroup(&attributes, 0);
-  posix_spawnattr_setflags(&attributes,
-                           POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
-  int pid = 0;
-  const int failed = posix_spawn(&pid, words.front().c_str(), &files, &attributes,
-                                 pointers_to(words).data(), pointers_to(variables).data());
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&files);
+  words.push_back(std::to_string(kSocketOfProgram));
+  const auto pid =
+      begin_program(std::move(words), options.environment,
+                    {.in = -1, .out = STDOUT_FILENO, .err = STDERR_FILENO, .socket = ends[1]});
   close(ends[1]);
-  if (failed != 0) {
+  if (!pid) {
     close(ends[0]);
-    return Error{"cannot run the helper program " + options.command.front() + ": " +
-                 std::strerror(failed)};
+    return Error{pid.error()};
   }
   fcntl(ends[0], F_SETFL, O_NONBLOCK);
-  return std::unique_ptr<HelperProcess>(new HelperProcess(pid, ends[0]));
+  return std::unique_ptr<HelperProcess>(new HelperProcess(*pid, ends[0]));
 }
 
 HelperProcess::~HelperProcess() {
