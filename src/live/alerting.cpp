@@ -86,7 +86,8 @@ std::vector<Alerting::Problem> Alerting::problems() const {
     alert.consequences = names_of_rules(each.consequences, rules);
     alert.doing = std::move(course.doing);
     // Any other next step has passed before a person reads the alert.
-    if (each.needs_person()) alert.next = std::move(course.next);
+    if (each.needs_person() || each.has_no_remedy) alert.next = std::move(course.next);
+    problem.needs_person_if_it_lasts = each.has_no_remedy;
     problem.keys = {alert.consequences.begin(), alert.consequences.end()};
     problem.keys.insert(alert.rule);
     for (const std::string& name : alert.components) problem.keys.insert(key_of_component(name));

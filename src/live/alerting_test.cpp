@@ -37,10 +37,10 @@ RULE Dark
 )";
 
 struct Alerted {
-  explicit Alerted(Approval approval = Approval::kNone) {
+  explicit Alerted(Approval approval = Approval::kNone, const char* rules = kAlertingRules) {
     Manager::Options options;
     options.governor.approval = approval;
-    robot.emplace(kAlertingRules, std::make_unique<BayesPlanner>(), options);
+    robot.emplace(rules, std::make_unique<BayesPlanner>(), options);
     robot->add("camera", {}, "/rgb");
     robot->add("fusion", {"camera"}, "/fused");
     robot->add("lamp").parameters["on"] = Value(std::int64_t{0});
@@ -160,6 +160,28 @@ TEST(Alerting, CallsAPersonAtOnceWhenNothingHelps) {
   EXPECT_EQ(last.health, "EXHAUSTED");
   EXPECT_THAT(alerts::text_of(last), HasSubstr("A PERSON IS NEEDED"));
   for (const Alert& each : alerted.posted) EXPECT_EQ(each.id, last.id) << "it is one fault";
+}
+
+TEST(Alerting, CallsAPersonIfNoRuleActsOnTheCause) {
+  Alerted alerted(Approval::kNone, R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+COMPONENT fusion NODE /fusion LAUNCH "fusion"
+COMPONENT lamp   NODE /lamp
+RULE FusionSilent
+  POLICIES ERROR
+  TRIGGER age(/fused) > 300ms && brightness > 0.5
+    STRATEGY restart_fusion 90 10
+      ADAPTATION fusion restart 10
+)");
+  alerted.robot->kill("camera");
+  alerted.run_for(5min);
+  EXPECT_TRUE(alerted.robot->asked.empty()) << "fusion is well";
+  ASSERT_GE(alerted.posted.size(), 1u);
+  const Alert& last = alerted.posted.back();
+  EXPECT_EQ(last.headline, "camera is dead");
+  EXPECT_TRUE(last.needs_person);
+  EXPECT_EQ(last.next, "a person must look: no rule of these failures acts on camera")
+      << testing::PrintToString(alerted.texts());
 }
 
 TEST(Alerting, AsksForApprovalAtOnce) {

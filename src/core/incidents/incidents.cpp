@@ -65,6 +65,18 @@ std::string headline_of(const Incident& incident, const Knowledge& knowledge) {
   return knowledge.rules[incident.root].name + " fails";
 }
 
+// False if the components are not known.
+bool acts_on_none(const std::vector<RuleId>& failures, const std::vector<ComponentId>& components,
+                  const RuleSet& rules) {
+  const auto acts_on_one = [&](StrategyId strategy) {
+    return std::ranges::any_of(rules[strategy].components,
+                               [&](ComponentId c) { return contains(components, c); });
+  };
+  return !components.empty() && std::ranges::none_of(failures, [&](RuleId failure) {
+    return std::ranges::any_of(rules[failure].strategies, acts_on_one);
+  });
+}
+
 // "3.2 s"
 std::string time_until(Time at, Time now) {
   using Tenths = std::chrono::duration<std::int64_t, std::deci>;
@@ -283,6 +295,9 @@ Incidents::Course Incidents::course_of(const Incident& incident, const Knowledge
   } else if (!root.held_back.empty()) {
     doing = "not repaired: " + root.held_back;
   }
+  if (incident.has_no_remedy && phase == RulePhase::kFailing && root.is_held_back)
+    return {std::move(doing), "a person must look: no rule of these failures acts on " +
+                                  names_of_components(incident.components, rules)};
   return {std::move(doing), next_of(incident.root, knowledge)};
 }
 
@@ -333,6 +348,7 @@ void Incidents::describe_all(std::vector<Incident>& all, const Knowledge& knowle
       incident.awaits_approval |= std::ranges::any_of(
           orders.asked, [&](StrategyId strategy) { return rules[strategy].rule == rule; });
     }
+    incident.has_no_remedy = acts_on_none(own, incident.components, rules);
     incident.is_suspected = !incident.is_certain && !of(incident.root).suspects.empty();
     incident.condition = incident.host.empty() ? condition_of(incident.components, knowledge)
                                                : std::string_view("not heard");

@@ -25,6 +25,7 @@ struct Incident {
   Time since = kNever;        // of the first of its failures
   Criticality criticality = Criticality::kNonCritical;  // of the worst of its failures
   bool is_exhausted = false;                            // one of them has no strategy left
+  bool has_no_remedy = false;    // no strategy for its failures acts on its components
   bool awaits_approval = false;  // a strategy against one of them waits for a person
   // Of these components: "dead", "stopped", "hung", "not heard"; empty: they work, or differ.
   std::string condition{};
