@@ -62,6 +62,31 @@ TEST(Hearing, AFrozenRobotIsNotJudgedByItsSleep) {
   EXPECT_EQ(robot.count("stood still for 20.0 s"), 1u) << transcript(robot);
 }
 
+// For a moment, as the runtime tells it.
+void stall(TestRobot& robot, Duration time) {
+  robot.tell(Overslept{time});
+  robot.freeze(time);
+}
+
+// As beside a neighbour of real-time priority.
+TEST(Hearing, MomentsOfStandingStillDoNotAddUpToASilence) {
+  TestRobot robot = test::robot();
+  const auto stalls = [&](int times) {
+    for (int i = 0; i < times; ++i) {
+      stall(robot, 240ms);
+      robot.run_for(20ms);
+      stall(robot, 240ms);
+      robot.run_for(200ms);
+    }
+  };
+  stalls(20);
+  EXPECT_EQ(robot.count("CameraSilent detected"), 0u) << transcript(robot);
+  robot["camera"].fault = "redeploy";
+  stalls(20);
+  EXPECT_EQ(robot.count("CameraSilent detected"), 1u) << transcript(robot);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+}
+
 TEST(Hearing, WhatIsSilentAfterASleepIsFoundSilent) {
   TestRobot robot = test::robot();
   robot["camera"].fault = "redeploy";

@@ -145,8 +145,7 @@ void Manager::take_in(Time now, std::span<const Observation> observations) {
     // Late observations of an earlier time count for now: time does not go back.
     now_ = std::max(now_, std::min(observation.at, now));
     if (const auto* slept = std::get_if<Overslept>(&observation.what); slept && hears_) {
-      knowledge_.events.tell(now_, SleepNoticed{slept->by});
-      restart(now_ - slept->by, now_);
+      oversleep(slept->by);
     } else if (const auto* lost = std::get_if<HearingLost>(&observation.what); lost && hears_) {
       hears_ = false;
       deaf_since_ = now_;
@@ -182,6 +181,12 @@ void Manager::answered(const Reply& reply, Time now) {
   if (const auto component = executor_.proven_by(reply))
     monitor_.observe({now, Probed{*component, true}}, now);
   executor_.answered(reply, now);
+}
+
+void Manager::oversleep(Duration by) {
+  if (by <= Overslept::kBriefly) return monitor_.stand_still(now_, later(now_, by));
+  knowledge_.events.tell(now_, SleepNoticed{by});
+  restart(now_ - by, now_);
 }
 
 // culprit did not listen from `since` until `now`, so that no gap, no delay and no late answer proves

@@ -95,6 +95,7 @@ class Manager : public ManagingSystem {
   void check(std::span<const Command> commands) const;
   void take_in(Time now, std::span<const Observation> observations);
   void answered(const Reply& reply, Time now);
+  void oversleep(Duration by);
   void restart(Time since, Time now);
   void react(std::vector<Command>& commands);
   void obey(const Order& order, Time now);

@@ -1,8 +1,16 @@
 #include "manager/runtime.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace culprit {
+
+// What came during a brief one came when it did.
+std::optional<Observation> Runtime::lateness(Time due, Time now) {
+  const Duration by = now - due;
+  if (by <= kLate) return std::nullopt;
+  return Observation{by > Overslept::kBriefly ? now : due, Overslept{by}};
+}
 
 void Runtime::run(const std::atomic<bool>& stop, Time end) {
   std::vector<Observation> observations;
@@ -12,8 +20,8 @@ void Runtime::run(const std::atomic<bool>& stop, Time end) {
     const Time due = std::max(stepped_, next);
     robot_.observe(std::min(end, next), observations);
     const Time now = robot_.now();
-    if (now > later(due, kLate) && stepped_ != kLongAgo)
-      observations.insert(observations.begin(), {now, Overslept{now - due}});
+    if (auto late = lateness(due, now); late && stepped_ != kLongAgo)
+      observations.insert(observations.begin(), std::move(*late));
     take_orders(observations);
     step(observations);
   }

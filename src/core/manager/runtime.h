@@ -28,6 +28,7 @@
 
 #include <atomic>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "base/mutex.h"
@@ -41,7 +42,9 @@ class Runtime {
   // If the host loop comes this much later than it was asked to, the process was suspended or did
   // not get the processor, and the manager is told so (Overslept). Less is within the times that
   // rules can be written for.
-  static constexpr Duration kLate = std::chrono::milliseconds(250);
+  static constexpr Duration kLate = std::chrono::milliseconds(50);
+  // As the manager is told of it; nothing: it was in time.
+  static std::optional<Observation> lateness(Time due, Time now);
 
   // Both must outlive the runtime.
   Runtime(ManagingSystem& manager, Robot& robot) : manager_(manager), robot_(robot) {}

@@ -96,6 +96,9 @@ class Monitor {
   // says so: it may only have to be discovered anew. For kUnsure, no component is found to hang.
   void restart(Time since, Time now);
 
+  // culprit stands still from `since` until `until`, a moment: the silences of that time do not count.
+  void stand_still(Time since, Time until);
+
   // Lets time pass: updates every value whose deadline has come.
   void advance(Time now);
   Time next_deadline() const {
@@ -200,6 +203,7 @@ class Monitor {
 
   Duration silence_of(TopicId topic, Time now) const;
   void resume(TopicId topic, Time since, Time now);
+  void hold_silence(TopicId topic, Time since, Time until);
 
   void read_signal(SignalId signal, const Value& value, Time at);
   void note_arrival(InputId id, Time at);

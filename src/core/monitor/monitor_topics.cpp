@@ -127,12 +127,32 @@ void Monitor::resume(TopicId id, Time since, Time now) {
   Topic& topic = topics_[id.index];
   if (!topic.last && !topic.silent_since && !knowledge_.sightings.first(id)) return;
   SignalStore::Rhythm rhythm = knowledge_.signals.rhythm(id);
-  const Duration silence = std::max(silence_of(id, since), Duration::zero());
   rhythm.heard_again_by = later(now, rhythm.gap + kSpeaksAgain);
-  topic.resumes = Topic::Resumes{rhythm.heard_again_by, silence};
-  topic.phi.restart(topic.resumes->at, silence);
-  rhythm.resumed = topic.resumes->at - silence;
   write_.signals.set_rhythm(id, rhythm);
+  hold_silence(id, since, rhythm.heard_again_by);
+}
+
+// Its silence is as long as it was at `since` until then, and goes on.
+void Monitor::hold_silence(TopicId id, Time since, Time until) {
+  Topic& topic = topics_[id.index];
+  const Duration silence = std::max(silence_of(id, since), Duration::zero());
+  topic.resumes = Topic::Resumes{until, silence};
+  topic.phi.restart(until, silence);
+  SignalStore::Rhythm rhythm = knowledge_.signals.rhythm(id);
+  rhythm.resumed = until - silence;
+  write_.signals.set_rhythm(id, rhythm);
+}
+
+void Monitor::stand_still(Time since, Time until) {
+  for (std::size_t t = 0; t < topics_.size(); ++t) {
+    const Topic& topic = topics_[t];
+    if (!topic.last) continue;
+    hold_silence(TopicId(t), since, topic.resumes ? std::max(topic.resumes->at, until) : until);
+    for (const InputId id : topic.inputs) {
+      const Kind kind = knowledge_.rules[id].kind;
+      if (kind == Kind::kAge || kind == Kind::kPhi) update(id, since);
+    }
+  }
 }
 
 Slot Monitor::age(InputId id, Time now) const {

@@ -5,6 +5,7 @@
 // the rule set; the rest of the robot's graph comes with its names.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <variant>
@@ -261,8 +262,10 @@ struct HearingLost {
 struct HearingRegained {};
 
 // The manager's host loop called it this much later than it had asked for: culprit, or the whole
-// computer, stood still.
+// computer, stood still. Up to kBriefly it came `by` after the observation, and silences count from where they were;
+// more is reported, and nothing that is silent is judged for a while.
 struct Overslept {
+  static constexpr Duration kBriefly = std::chrono::milliseconds(250);
   Duration by{};
 };
 

@@ -214,8 +214,8 @@ class Run {
     robot_.observe(until, observations);
     while (robot_.now() < stalled_until_) robot_.observe(stalled_until_, observations);
     const Time now = robot_.now();
-    if (stepped_ != kLongAgo && now > later(due, Runtime::kLate))
-      observations.insert(observations.begin(), {now, Overslept{now - due}});
+    if (auto late = Runtime::lateness(due, now); late && stepped_ != kLongAgo)
+      observations.insert(observations.begin(), std::move(*late));
     stepped_ = now;
   }
 
