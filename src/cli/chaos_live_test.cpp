@@ -3,14 +3,19 @@
 // and at the end, the robot gets well. At no time is any of its nodes there twice. At the end the
 // journal is whole, no outcome is lost or counted twice, and nothing has leaked.
 //
+// The same with a disk that is full most of the time.
+//
 // CULPRIT_CHAOS_KILLS says how often (4 unless set; scripts/chaos), CULPRIT_CHAOS_SEED what is
 // random.
 #include <csignal>
 #include <cstdlib>
+#include <fstream>
 #include <iostream>
 #include <map>
 #include <random>
+#include <sched.h>
 #include <set>
+#include <sys/mount.h>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -162,11 +167,40 @@ class Census {
   std::jthread counting_;  // last: it uses the others
 };
 
+// A disk of 2 MiB that this process and its children see.
+class SmallDisk {
+ public:
+  explicit SmallDisk(fs::path folder) : folder_(std::move(folder)) {
+    fs::create_directory(folder_);
+    is_there_ = unshare(CLONE_NEWNS) == 0 &&
+                mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
+                mount("none", folder_.c_str(), "tmpfs", 0, "size=2m") == 0;
+  }
+  ~SmallDisk() {
+    if (is_there_) umount2(folder_.c_str(), MNT_DETACH);
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  bool is_there() const { return is_there_; }
+  // Until nothing more fits.
+  void fill() {
+    std::ofstream file(ballast(), std::ios::app);
+    for (const std::string block(4096, 'x'); file << block << std::flush;) {
+    }
+  }
+  void free() { fs::remove(ballast()); }
+
+ private:
+  fs::path ballast() const { return folder_ / "ballast"; }
+
+  const fs::path folder_;
+  bool is_there_ = false;
+};
+
 struct Chaos : testing::Test {
   TestProgram run() {
-    return TestProgram(world, {"culprit", "run", rules, "--journal", journal_path, "--state-dir",
-                               (world.folder() / "state").string(), "--settle", "2", "--healthy",
-                               "1", "--restarts", "none"});
+    return TestProgram(world, {"culprit", "run", rules, "--journal", journal_path(), "--state-dir",
+                               (disk / "state").string(), "--settle", "2", "--healthy", "1",
+                               "--restarts", "none"});
   }
   // A run that ends in order. Gives what it held.
   Holdings see_the_whole_robot() {
@@ -188,6 +222,37 @@ struct Chaos : testing::Test {
     std::this_thread::sleep_for(std::chrono::milliseconds(
         culprit.output().find("decided") != std::string::npos ? repairing(random) : any(random)));
   }
+  // Breaks the robot and kills culprit so often. Every few kills the robot gets well first. Gives how many ended well.
+  template <class Fault>
+  int kill_over_and_over(lab::LiveSunset& robot, int kills, Fault begin_fault) {
+    constexpr int kKillsUntilWell = 5;
+    int ended_well = 0;
+    for (int i = 0; i < kills; ++i) {
+      TestProgram culprit = run();
+      begin_fault(robot);
+      let_live(culprit);
+      if (i - ended_well == kKillsUntilWell) {
+        if (!robot.is_well_within(180s)) {
+          ADD_FAILURE() << robot.complaint() << "\n" << state_of_the_robot() << culprit.output();
+          return ended_well;
+        }
+        ended_well = i;
+      }
+      culprit.signal(SIGKILL);
+      EXPECT_EQ(culprit.wait(), -SIGKILL) << culprit.output();
+      std::cout << "." << std::flush;
+    }
+    return ended_well;
+  }
+  void expect_whole_journal() const {
+    TestProgram audit(world, {"culprit", "audit", "verify", "--journal", journal_path()});
+    EXPECT_EQ(audit.wait(), 0) << audit.output();
+    EXPECT_THAT(audit.output(), HasSubstr("all as they were written"));
+  }
+  static void expect_each_node_once(const lab::LiveSunset& robot) {
+    for (const sunset::Member member : sunset::kMembers)
+      EXPECT_EQ(robot.processes(member).size(), 1u) << name_of(member);
+  }
   // Evidence for an investigation: the running processes, the journal and the nodes' logs.
   void keep_evidence(const lab::LiveSunset& robot) const {
     for (const sunset::Member member : sunset::kMembers) {
@@ -202,7 +267,7 @@ struct Chaos : testing::Test {
     std::cout << "kept: " << kept << "\n";
   }
   journal::Reader journal() const {
-    auto reader = journal::Reader::open(journal_path);
+    auto reader = journal::Reader::open(journal_path());
     if (!reader) throw std::runtime_error(reader.error());
     return std::move(*reader);
   }
@@ -210,7 +275,8 @@ struct Chaos : testing::Test {
   std::mt19937 random{static_cast<std::mt19937::result_type>(setting("CULPRIT_CHAOS_SEED", 1))};
   TestWorld world;
   const std::string rules = fs::absolute("rules/sunset.rules").string();
-  const std::string journal_path = (world.folder() / "sunset.journal").string();
+  fs::path disk = world.folder();  // where the journal and the state are kept
+  std::string journal_path() const { return (disk / "sunset.journal").string(); }
 };
 
 // Gives how many runs there were.
@@ -248,24 +314,9 @@ TEST_F(Chaos, CulpritMayBeKilledAtAnyInstant) {
   const Holdings witness_before = holdings_of(witness);
   // A process that is stopped before any culprit has seen it cannot be known to be there.
   const Holdings first = see_the_whole_robot();
-  constexpr int kKillsUntilWell = 5;
   Census census(robot);
-  int ended_well = 0;
-  for (int i = 0; i < kills; ++i) {
-    TestProgram culprit = run();
-    robot.break_something(random);
-    let_live(culprit);
-    if (i - ended_well == kKillsUntilWell) {
-      if (!robot.is_well_within(180s)) {
-        ADD_FAILURE() << robot.complaint() << "\n" << state_of_the_robot() << culprit.output();
-        break;
-      }
-      ended_well = i;
-    }
-    culprit.signal(SIGKILL);
-    ASSERT_EQ(culprit.wait(), -SIGKILL) << culprit.output();
-    std::cout << "." << std::flush;
-  }
+  int ended_well = kill_over_and_over(robot, kills,
+                                      [&](lab::LiveSunset& each) { each.break_something(random); });
 
   TestProgram last = run();
   if (robot.is_well_within(180s)) {
@@ -278,9 +329,7 @@ TEST_F(Chaos, CulpritMayBeKilledAtAnyInstant) {
   last.signal(SIGINT);
   EXPECT_EQ(last.wait(), 0) << last.output();
 
-  TestProgram audit(world, {"culprit", "audit", "verify", "--journal", journal_path});
-  EXPECT_EQ(audit.wait(), 0) << audit.output();
-  EXPECT_THAT(audit.output(), HasSubstr("all as they were written"));
+  expect_whole_journal();
   const journal::Reader reader = journal();
   OutcomesCount count;
   auto rows = reader.entries(journal::Which::kReadable);
@@ -290,8 +339,7 @@ TEST_F(Chaos, CulpritMayBeKilledAtAnyInstant) {
   count.compare(*reader.learned());
   const int runs = expect_runs_to_replay(reader);
 
-  for (const sunset::Member member : sunset::kMembers)
-    EXPECT_EQ(robot.processes(member).size(), 1u) << name_of(member);
+  expect_each_node_once(robot);
   EXPECT_EQ(names_in("/dev/shm", ""), memory_before);
   std::set<std::string> temporary = names_in(fs::temp_directory_path(), "culprit");
   temporary.erase(world.folder().filename().string());
@@ -310,6 +358,35 @@ TEST_F(Chaos, CulpritMayBeKilledAtAnyInstant) {
             << " KiB; a node that lived through it: " << witness_before.descriptors << ", "
             << witness_before.kilobytes << " KiB before, " << witness_after.descriptors << ", "
             << witness_after.kilobytes << " KiB after\n";
+}
+
+// Where nothing can be kept, culprit heals all the same, and knows its processes from themselves. The settings that it has
+// changed it cannot know.
+TEST_F(Chaos, CulpritMayBeKilledWhileTheDiskIsFull) {
+  SmallDisk small(world.folder() / "disk");
+  if (!small.is_there()) GTEST_SKIP() << "no disk can be mounted here";
+  disk = world.folder() / "disk";
+  const int kills = setting("CULPRIT_CHAOS_KILLS", 4);
+  lab::LiveSunset robot(world);
+  ASSERT_TRUE(robot.is_well_within(30s)) << robot.complaint();
+  see_the_whole_robot();
+  Census census(robot);
+  kill_over_and_over(robot, kills, [&](lab::LiveSunset& each) {
+    each.break_something(random, lab::LiveSunset::faults_of_processes());
+    if (random() % 3 == 0) small.free();
+    std::this_thread::sleep_for(std::chrono::milliseconds(random() % 1000));
+    if (random() % 4 != 0) small.fill();
+  });
+  small.fill();
+  TestProgram last = run();
+  EXPECT_TRUE(robot.is_well_within(180s)) << robot.complaint() << "\n" << last.output();
+  EXPECT_THAT(census.end(), testing::IsEmpty());
+  small.free();
+  last.signal(SIGINT);
+  EXPECT_EQ(last.wait(), 0) << last.output();
+  expect_whole_journal();
+  expect_each_node_once(robot);
+  if (HasFailure()) keep_evidence(robot);
 }
 
 // A node that is inactive when it starts, was activated by a culprit that is gone, and died before

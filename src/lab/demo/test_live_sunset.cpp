@@ -88,15 +88,24 @@ void LiveSunset::slow_down(sunset::Member member) {
   });
 }
 
-void LiveSunset::break_something(std::mt19937& random) {
+std::vector<std::string> LiveSunset::faults_of_processes() {
   std::vector<std::string> faults;
-  for (const sunset::Fault& fault : sunset::faults()) {
-    if (!fault.resolved_by.empty()) faults.emplace_back(fault.name);
-  }
   for (const sunset::Member member : sunset::kManagedMembers) {
     for (const char* what : {"kill:", "stop:", "crash:"})
       faults.push_back(what + std::string(name_of(member)));
   }
+  return faults;
+}
+
+void LiveSunset::break_something(std::mt19937& random) {
+  std::vector<std::string> faults = faults_of_processes();
+  for (const sunset::Fault& fault : sunset::faults()) {
+    if (!fault.resolved_by.empty()) faults.emplace_back(fault.name);
+  }
+  break_something(random, faults);
+}
+
+void LiveSunset::break_something(std::mt19937& random, const std::vector<std::string>& faults) {
   const std::size_t members = std::size(sunset::kManagedMembers);
   const std::size_t choice = random() % (faults.size() + members);
   if (choice < faults.size()) {

@@ -32,6 +32,9 @@ class LiveSunset {
   // Any fault that can be healed, or a node is slow for a while. A node that is just being replaced
   // cannot be broken: then nothing is.
   void break_something(std::mt19937& random);
+  // One of these, or a node is slow for a while.
+  void break_something(std::mt19937& random, const std::vector<std::string>& faults);
+  static std::vector<std::string> faults_of_processes();
 
  private:
   std::uint32_t domain_;
