@@ -22,6 +22,7 @@ struct NumberOf {
   Number operator()(const GoalsSeen& o) const { return o.topic.index; }
   Number operator()(const UsageSeen& o) const { return o.component.index; }
   Number operator()(const HostReached& o) const { return o.component.index; }
+  Number operator()(const TimeHeld& o) const { return o.component.index; }
   Number operator()(const StartBarred& o) const { return o.component.index; }
   Number operator()(const LivesOn& o) const { return o.component.index; }
   Number operator()(const EndsWith& o) const { return o.component.index; }

@@ -100,7 +100,7 @@ ComponentLook look_of(ComponentId id, std::size_t health, const Manager& manager
   const Knowledge& knowledge = manager.knowledge();
   const ComponentState& state = knowledge.components[id];
   ComponentLook look{kHealthWords[health], ""};
-  if (knowledge.is_unheard(id)) {
+  if (knowledge.is_unheard(id) && !state.time_held) {
     look = {"UNREACHABLE", "not heard"};
   } else if (state.process == ProcessState::kStopped && state.alive) {
     look = {"STOPPED", "stopped"};

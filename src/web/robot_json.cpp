@@ -132,7 +132,7 @@ Json components_to_json(const Knowledge& knowledge) {
     if (state.lifecycle != Lifecycle::kUnknown) json["lifecycle"] = to_string(state.lifecycle);
     if (!state.process_remark.empty()) json["remark"] = state.process_remark;
     if (const std::string host = knowledge.host_of(id); !host.empty()) json["host"] = host;
-    if (knowledge.is_unheard(id)) json["unheard"] = true;
+    if (knowledge.is_unheard(id) && !state.time_held) json["unheard"] = true;
     if (const Attempt* attempt = knowledge.states.reservation(id))
       json["adapting"] = knowledge.rules[attempt->strategy].name;
     list.push_back(std::move(json));

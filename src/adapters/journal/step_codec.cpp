@@ -48,7 +48,7 @@ using ObservationKinds =
           Kind<23, EndsWith>, Kind<kProcessSeenWithCause, ProcessSeen>, Kind<25, LauncherSeen>,
           Kind<26, PriorsTold>, Kind<27, LivesOn>, Kind<28, HostHeard>, Kind<29, ListenerKnown>,
           Kind<30, StartedHere>, Kind<31, UsageSeen>, Kind<32, StartBarred>,
-          Kind<33, PublisherKnown>, Kind<34, GoalsSeen>, Kind<35, LogSeen>>;
+          Kind<33, PublisherKnown>, Kind<34, GoalsSeen>, Kind<35, LogSeen>, Kind<36, TimeHeld>>;
 using OrderKinds =
     Kinds<Kind<1, Pause>, Kind<2, Resume>, Kind<3, SetDryRun>, Kind<4, Approve>, Kind<5, Refuse>,
           Kind<6, Silence>, Kind<7, LiftSilence>, Kind<8, RunStrategy>, Kind<9, Forget>,
@@ -129,6 +129,7 @@ class Fields {
     });
   }
   void of(Of<HostReached> o) { codec_.id(o.component), codec_.truth(o.is_reached); }
+  void of(Of<TimeHeld> o) { codec_.id(o.component), codec_.truth(o.is_held); }
   void of(Of<LivesOn> o) { codec_.id(o.component), codec_.text(o.host); }
   void of(Of<HostHeard> o) { codec_.text(o.host), codec_.truth(o.is_heard); }
   void of(Of<EndsWith> o) {

@@ -72,7 +72,7 @@ decltype(Order::what) any_order() {
 ObservationWhat anything() {
   const std::string text = *rc::gen::arbitrary<std::string>();
   const ComponentId component(*rc::gen::inRange<std::size_t>(0, 2));
-  switch (*rc::gen::inRange(0, 33)) {
+  switch (*rc::gen::inRange(0, 34)) {
     case 0:
       return NodeAppeared{text, *rc::gen::positive<int>()};
     case 1:
@@ -146,6 +146,8 @@ ObservationWhat anything() {
       return GoalsSeen{TopicId(0), {{*rc::gen::arbitrary<std::uint64_t>(), GoalStatus::kAborted}}};
     case 31:
       return LogSeen{component, *rc::gen::element(LogLevel::kDebug, LogLevel::kFatal)};
+    case 32:
+      return TimeHeld{component, *rc::gen::arbitrary<bool>()};
     default:
       return LinkTrouble{text};
   }

@@ -326,15 +326,14 @@ void ComponentLink::read_parameters() {
   }
 }
 
-void ComponentLink::ask_time_source(std::function<void()> then) {
+void ComponentLink::ask_time_source(std::function<void(bool)> then) {
   ServiceClient* client = parameter_reader();
   if (client == nullptr) return;
   client->call(encode(srv::GetParameters::Request{{"use_sim_time"}}), Repeat::kUntilAnswered,
                kJoining, [then = std::move(then)](const CallResult& result) {
                  if (result.outcome != CallOutcome::kAnswered) return;
                  const auto response = decode<srv::GetParameters::Response>(result.reply);
-                 if (response && response->values.size() == 1 && response->values[0].bool_value)
-                   then();
+                 if (response && response->values.size() == 1) then(response->values[0].bool_value);
                });
 }
 

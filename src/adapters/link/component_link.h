@@ -80,9 +80,9 @@ class ComponentLink {
   // Asks a node that lacks a parameter of the rules which ones it has: one of those may be meant.
   void check_parameters();
 
-  // Asks the node once whether its time is the simulated one (use_sim_time), for kJoining at most; `then`
-  // is called if it is, on any thread.
-  void ask_time_source(std::function<void()> then);
+  // Asks the node once whether its time is the simulated one (use_sim_time), for kJoining at most. `then`
+  // is called with the answer, on any thread.
+  void ask_time_source(std::function<void(bool is_simulated)> then);
 
   void execute(const Command& command);
 

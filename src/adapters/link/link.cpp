@@ -131,6 +131,7 @@ Link::~Link() {
   other_nodes_.clear();
   probing_.reset();
   publishing_.reset();
+  looking_at_clock_.reset();
   lease_.reset();
   hearing_.reset();
   parameter_events_.reset();
@@ -270,7 +271,7 @@ Time Link::sure_to_hear(Time now) const {
 Time Link::doubtful() const {
   const Time now = live_now();
   const Time sure = sure_to_hear(now);
-  const SimulatedClock* followed = clock();
+  const SimulatedClock* followed = clock_of_all();
   return followed != nullptr ? std::min(sure, followed->doubtful(now)) : sure;
 }
 
@@ -281,7 +282,55 @@ const SimulatedClock* Link::clock() const {
   return is_followed ? made : nullptr;
 }
 
-// On the executor's thread.
+// Null: it is followed for none, or for those nodes only that use it.
+const SimulatedClock* Link::clock_of_all() const { return is_time_mixed_ ? nullptr : clock(); }
+
+// On the executor's thread, as the next four.
+void Link::note_time_source(ComponentId component, const std::string& node, bool is_simulated) {
+  if (is_simulated) {
+    simulated_.try_emplace(node, Simulated{component});
+    return follow_clock(node);
+  }
+  is_time_mixed_ = true;
+  hold_time(node, false);
+  simulated_.erase(node);
+}
+
+void Link::hold_time(const std::string& node, bool is_held) {
+  const auto known = simulated_.find(node);
+  if (known == simulated_.end() || known->second.is_held == is_held) return;
+  known->second.is_held = is_held;
+  inbox_.put(TimeHeld{known->second.component, is_held});
+}
+
+// Its publisher does not wait for it.
+void Link::look_at_simulated_nodes() {
+  for (const auto& [writer, node] : context_->graph().publishers_of(SimulatedClock::kTopic)) {
+    if (simulated_.contains(node)) clock_sources_.insert(node);
+  }
+  if (!clock_sources_.empty()) is_time_mixed_ = true;
+  const SimulatedClock* followed = clock();
+  if (followed == nullptr || !is_time_mixed_) return;
+  const Time now = live_now();
+  if (followed->doubtful(now) <= now) clock_stood_ = now;
+  const bool is_held = now < later(clock_stood_, SimulatedClock::kAfterJump);
+  for (const auto& [node, simulated] : simulated_)
+    hold_time(node, is_held && !clock_sources_.contains(node));
+  tell_of_pause(is_held, now);
+}
+
+// A short pause, as at a jump, is none to speak of.
+void Link::tell_of_pause(bool is_held, Time now) {
+  constexpr Duration kLong = std::chrono::seconds(2);
+  if (!is_held) clock_runs_ = now;
+  const bool is_long = is_held && (told_of_pause_ || now > later(clock_runs_, kLong));
+  if (std::exchange(told_of_pause_, is_long) == is_long) return;
+  inbox_.put(LinkTrouble{is_long
+                             ? "the simulated time stands still: culprit judges nothing about its "
+                               "nodes until it goes on"
+                             : "the simulated time goes on"});
+}
+
 void Link::follow_clock(const std::string& node) {
   if (clock_) return;
   auto clock = SimulatedClock::open(node_->entry());
@@ -290,6 +339,9 @@ void Link::follow_clock(const std::string& node) {
   simulated_since_ = live_now();
   clock_ = std::move(*clock);
   made_clock_ = clock_.get();
+  constexpr Duration kLooks = std::chrono::milliseconds(50);
+  looking_at_clock_ =
+      std::make_unique<Timer>(executor_, kLooks, [this] { look_at_simulated_nodes(); });
 }
 
 void Link::look_at_clocks() {
@@ -313,7 +365,7 @@ void Link::look_at_clocks() {
     inbox_.put(
         LinkTrouble{simulated_node_ +
                     " uses simulated time (use_sim_time): culprit follows /clock, and judges "
-                    "nothing while that stands still or jumps"});
+                    "nothing about such nodes while that stands still or jumps"});
   } else if (!told_of_no_clock_ && live_now() > later(simulated_since_, kClockComes)) {
     told_of_no_clock_ = true;
     inbox_.put(
@@ -325,7 +377,7 @@ void Link::look_at_clocks() {
 
 bool Link::is_paused() const {
   const Time now = live_now();
-  const SimulatedClock* followed = clock();
+  const SimulatedClock* followed = clock_of_all();
   return followed != nullptr && sure_to_hear(now) > now && followed->doubtful(now) <= now;
 }
 
@@ -745,8 +797,10 @@ void Link::on_endpoint(const std::string& node, const GraphEndpoint& endpoint) {
                                 !options_.participant.security &&
                                 endpoint.name == node + "/get_parameters";
     if (is_to_be_asked) {
-      make_link(*component, node)->ask_time_source([this, node] {
-        tasks_.post([this, node] { follow_clock(node); });
+      make_link(*component, node)->ask_time_source([this, node, component](bool is_simulated) {
+        tasks_.post([this, node, component, is_simulated] {
+          note_time_source(*component, node, is_simulated);
+        });
       });
     }
     if (endpoint.type == srv::ChangeMode::kType) on_system(node, endpoint);

@@ -65,7 +65,8 @@ class Link {
     // one never will.
     std::optional<LeaseLink::Options> lease{};
     // The robot is simulated: its time is /clock (simulated_clock.h), also before anybody publishes that.
-    // Without it /clock is followed once it runs, if a component's node has use_sim_time.
+    // Without it /clock is followed once it runs, if a component's node has use_sim_time, and for such
+    // nodes only: nothing is judged about them while it stands still (TimeHeld).
     bool use_sim_time = false;
   };
 
@@ -165,9 +166,14 @@ class Link {
   void tell_of_foreign_sources();
   void on_namesakes(const NodeNamesakes& seen);
   void remind();
+  void note_time_source(ComponentId component, const std::string& node, bool is_simulated);
   void follow_clock(const std::string& node);
+  void look_at_simulated_nodes();
+  void hold_time(const std::string& node, bool is_held);
+  void tell_of_pause(bool is_held, Time now);
   void look_at_clocks();
   const SimulatedClock* clock() const;
+  const SimulatedClock* clock_of_all() const;
   void on_discovery(const DiscoveryEvent& event);
   void listen_to_hosts();
   void look_at_hosts();
@@ -192,7 +198,19 @@ class Link {
   std::unique_ptr<SimulatedClock> clock_;
   std::atomic<const SimulatedClock*> made_clock_ = nullptr;  // for the other threads
   std::string simulated_node_;                               // the first that has use_sim_time
-  Time simulated_since_ = kLongAgo;                          // when that was known
+  struct Simulated {
+    ComponentId component;
+    bool is_held = false;  // as was reported
+  };
+  std::map<std::string, Simulated> simulated_;  // those whose time is /clock, by node
+  std::set<std::string> clock_sources_;         // those of them that publish it, or did
+  // Components' nodes have real time, too: a clock that stands still is no reason to judge nothing at all.
+  std::atomic<bool> is_time_mixed_ = false;
+  Time clock_stood_ = kLongAgo;  // the last time
+  Time clock_runs_ = kLongAgo;   // the last time that no node was held
+  bool told_of_pause_ = false;
+  std::unique_ptr<Timer> looking_at_clock_;
+  Time simulated_since_ = kLongAgo;  // when that was known
   bool told_of_clock_ = false;
   bool told_of_no_clock_ = false;
   ClockStep system_clock_;

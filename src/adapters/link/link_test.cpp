@@ -1134,44 +1134,91 @@ TEST(Link, LosesSightOfANodeThatLeaves) {
 
 // ---- simulated time, without an option
 
-TEST(Link, FollowsTheClockOfNodesThatUseSimulatedTimeAndSaysSo) {
-  const TestDomain domain;
-  Robot robot(domain);
+void use_simulated_time(Robot& robot) {
   robot.context.run([&] {
     const msg::Parameter use{"use_sim_time", to_parameter_value(Value(true))};
     EXPECT_TRUE(robot.managed->node().parameters().set(std::array{use}).successful);
   });
-  auto clock = RawPublisher::create(robot.managed->node().entry(), SimulatedClock::kTopic,
-                                    "rosgraph_msgs/msg/Clock", {});
-  ASSERT_TRUE(clock);
+}
+
+// A node of the robot's process that publishes /clock, fifty times a second.
+struct ClockNode {
+  explicit ClockNode(Robot& robot) : context(robot.context) {
+    context.run([&] {
+      node = std::move(*LifecycleNode::create(*context, {"/", "simulator"}, {}));
+      publisher = std::move(*RawPublisher::create(node->node().entry(), SimulatedClock::kTopic,
+                                                  "rosgraph_msgs/msg/Clock", {}));
+      ticks = std::make_unique<Timer>(context->executor(), 20ms, [this] {
+        if (runs) publisher->publish(encode(msg::Time{1, static_cast<std::uint32_t>(++shown)}));
+      });
+    });
+  }
+  ~ClockNode() {
+    context.run([&] {
+      ticks.reset();
+      publisher.reset();
+      node.reset();
+    });
+  }
+  LiveContext& context;
+  std::unique_ptr<LifecycleNode> node;
+  std::unique_ptr<RawPublisher> publisher;
+  std::unique_ptr<Timer> ticks;
   std::atomic<bool> runs = true;
   std::int32_t shown = 0;
-  std::unique_ptr<Timer> ticks;
-  robot.context.run([&] {
-    ticks = std::make_unique<Timer>(robot.context->executor(), 20ms, [&] {
-      if (runs) (*clock)->publish(encode(msg::Time{1, static_cast<std::uint32_t>(++shown)}));
-    });
-  });
+};
+
+bool is_followed(Linked& linked) {
+  return linked
+      .wait<LinkTrouble>([](const LinkTrouble& told) {
+        return told.text.find("/robot uses simulated time (use_sim_time): culprit follows") == 0;
+      })
+      .has_value();
+}
+
+TEST(Link, FollowsTheClockOfNodesThatUseSimulatedTimeAndSaysSo) {
+  const TestDomain domain;
+  Robot robot(domain);
+  use_simulated_time(robot);
+  ClockNode clock(robot);
   Linked linked(domain);
-  EXPECT_TRUE(linked.wait<LinkTrouble>([](const LinkTrouble& told) {
-    return told.text.find("/robot uses simulated time (use_sim_time): culprit follows /clock") == 0;
-  }));
-  runs = false;
+  EXPECT_TRUE(is_followed(linked));
+  clock.runs = false;
   for (const Time end = live_now() + kPatience; !linked.link->is_paused();) {
     ASSERT_LT(live_now(), end);
     std::this_thread::sleep_for(10ms);
   }
   EXPECT_EQ(linked.link->doubt(), "the simulated time stands still");
-  robot.context.run([&] { ticks.reset(); });
+}
+
+TEST(Link, HoldsOnlyTheNodesThatUseSimulatedTimeBesideOthers) {
+  const TestDomain domain;
+  Robot robot(domain);
+  use_simulated_time(robot);
+  ClockNode clock(robot);
+  Linked linked(domain, {}, "COMPONENT robot NODE /robot\nCOMPONENT simulator NODE /simulator\n");
+  EXPECT_TRUE(is_followed(linked));
+  const auto is_told = [&](bool is_held) {
+    return linked
+        .wait<TimeHeld>([&](const TimeHeld& t) {
+          return t.component == ComponentId(0) && t.is_held == is_held;
+        })
+        .has_value();
+  };
+  clock.runs = false;
+  EXPECT_TRUE(is_told(true));
+  EXPECT_FALSE(linked.link->is_paused()) << "the simulator itself is judged";
+  EXPECT_TRUE(linked.wait<LinkTrouble>([](const LinkTrouble& told) {
+    return told.text.find("the simulated time stands still") == 0;
+  }));
+  clock.runs = true;
+  EXPECT_TRUE(is_told(false));
 }
 
 TEST(Link, SaysThatNodesWaitForAClockThatNobodyPublishes) {
   const TestDomain domain;
   Robot robot(domain);
-  robot.context.run([&] {
-    const msg::Parameter use{"use_sim_time", to_parameter_value(Value(true))};
-    EXPECT_TRUE(robot.managed->node().parameters().set(std::array{use}).successful);
-  });
+  use_simulated_time(robot);
   Linked linked(domain);
   EXPECT_TRUE(linked.wait<LinkTrouble>([](const LinkTrouble& told) {
     return told.text.find("no node publishes /clock") != std::string::npos;

@@ -146,6 +146,10 @@ void BlindWatch::look_at_unseeing(RuleId id, Time now) {
   Sight& sight = sights_[id.index];
   sight.regained = kNever;
   if (sight.lost == kNever) sight.lost = now;
+  if (knowledge_.components.is_any_time_held() && !knowledge_.blindness[id]) {
+    sight.lost = now;
+    return deadlines_.set(id.index, later(now, kDebounce));
+  }
   // A new value that equals an old one touches no rule.
   if (knowledge_.blindness[id])
     return deadlines_.set(id.index, may_be_old_[id.index].empty() ? kNever : later(now, kDebounce));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "execute/goal.h"
 #include "execute/limits.h"
 
 namespace culprit {
@@ -32,20 +33,6 @@ std::optional<std::vector<TopicId>> silent_topics(const Rule& rule, const RuleSe
 bool is_at_work(const ComponentState& state) {
   return state.known_pid() != 0 && state.process == ProcessState::kRunning && state.in_graph &&
          state.alive == true;
-}
-
-// A topic that only this component publishes, and that came when it was due.
-std::optional<TopicId> heard_topic(ComponentId component, const Knowledge& knowledge, Time now) {
-  constexpr Duration kSlack = std::chrono::milliseconds(100);
-  for (std::size_t t = 0; t < knowledge.rules.topics.size(); ++t) {
-    const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(TopicId(t));
-    if (!rhythm.last || rhythm.interval <= Duration::zero()) continue;
-    if (later(*rhythm.last, 2 * rhythm.interval + kSlack) < now) continue;
-    const Topic& topic = knowledge.rules.topics[t];
-    if (knowledge.graph.publishes(component, topic) && knowledge.graph.publisher_count(topic) == 1)
-      return TopicId(t);
-  }
-  return std::nullopt;
 }
 
 // Since when a topic that the rule reads, and that only the component publishes, does not come any more.
@@ -86,7 +73,7 @@ std::optional<std::string> contradiction(const Strategy& strategy, const Knowled
       return knowledge.graph.publishes(component, rules[topic]) ||
              knowledge.graph.publisher_count(rules[topic]) == 0;
     });
-    const auto heard = is_suspect ? std::nullopt : heard_topic(component, knowledge, now);
+    const auto heard = is_suspect ? std::nullopt : knowledge.heard_topic(component, now);
     if (heard)
       return rules[component].name + " runs and publishes " + rules.label(*heard) +
              "; it does not publish the silent topic";
@@ -121,6 +108,30 @@ std::optional<AnswerToCome> answer_to_come(const Strategy& strategy, const Knowl
     if (now < until)
       return AnswerToCome{
           "culprit checks whether " + knowledge.rules[adaptation.component].name + " still answers",
+          until};
+  }
+  return std::nullopt;
+}
+
+std::optional<AnswerToCome> driver_to_come(const Strategy& strategy, const Knowledge& knowledge,
+                                           Time now) {
+  constexpr Duration kSpeaks =
+      std::chrono::seconds(1);  // from its activation to its first messages
+  if (knowledge.finding <= Duration::zero()) return std::nullopt;
+  for (const Adaptation& adaptation : strategy.adaptations) {
+    const ComponentState& state = knowledge.components[adaptation.component];
+    const Component& component = knowledge.rules[adaptation.component];
+    const bool disturbs = (adaptation.type == AdaptationType::kActivate && !adaptation.group) ||
+                          adaptation.type == AdaptationType::kRestart ||
+                          adaptation.type == AdaptationType::kRedeploy;
+    if (!disturbs || state.alive != true || component.lifecycle == LifecycleDriver::kManaged)
+      continue;
+    Time until = later(state.node_seen, execute::grace_of_driver(adaptation, knowledge));
+    const bool is_up = state.lifecycle == Lifecycle::kActive;
+    if (is_up) until = std::min(until, later(state.lifecycle_since, kSpeaks));
+    if ((state.is_rising || is_up) && now < until)
+      return AnswerToCome{
+          component.name + " has just started and was activated without culprit the last time",
           until};
   }
   return std::nullopt;

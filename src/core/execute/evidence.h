@@ -36,6 +36,12 @@ struct AnswerToCome {
 std::optional<AnswerToCome> answer_to_come(const Strategy& strategy, const Knowledge& knowledge,
                                            Time now);
 
+// The strategy would activate or replace a node that has just come up and is activated by itself or by its
+// launcher, as before. Two drivers of one lifecycle make each other fail. Empty: there is no such node. A simulated
+// robot knows no such wait.
+std::optional<AnswerToCome> driver_to_come(const Strategy& strategy, const Knowledge& knowledge,
+                                           Time now);
+
 // The reason if it would start a component that was never seen (knowledge/sightings.h); else empty.
 // Absent is not dead, and only people and `run --launch` start components that were not there.
 std::optional<std::string> launch_of_the_unseen(const Strategy& strategy,

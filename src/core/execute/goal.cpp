@@ -94,6 +94,15 @@ Duration loading_of(const ComingUp& before, const Knowledge& knowledge) {
   return std::clamp<Duration>(2 * (before.joining + before.rising), kLeastLoading, kMostLoading);
 }
 
+constexpr Duration kLongestGrace = 60s;
+
+Duration grace_of_driver(const Adaptation& adaptation, const Knowledge& knowledge) {
+  const ComingUp& before = knowledge.components[adaptation.component].coming_up;
+  if (before.driver != ComingUp::Driver::kOther) return {};
+  return std::min<Duration>(2 * before.rising + duration_of(adaptation.impact, knowledge.rules),
+                            kLongestGrace);
+}
+
 // Decides who brings it up. In this order: the rule file says so; somebody was seen to do it; culprit did it
 // before. Where nothing is known, culprit watches first: two drivers of one node's lifecycle make each other
 // fail. Another driver gets as long as the start took to show itself; at least until the impact is over, and
@@ -101,7 +110,6 @@ Duration loading_of(const ComingUp& before, const Knowledge& knowledge) {
 // the state is reason enough to act at once.
 LifecycleGoal bringing_up(const Adaptation& adaptation, Lifecycle target,
                           const Knowledge& knowledge) {
-  constexpr Duration kLongestGrace = 60s;
   using Driver = ComingUp::Driver;
   const ComingUp& before = knowledge.components[adaptation.component].coming_up;
   const Duration impact = duration_of(adaptation.impact, knowledge.rules);
@@ -121,7 +129,7 @@ LifecycleGoal bringing_up(const Adaptation& adaptation, Lifecycle target,
       break;
   }
   if (before.driver == Driver::kOther) {
-    goal.grace = std::min<Duration>(2 * before.rising + impact, kLongestGrace);
+    goal.grace = grace_of_driver(adaptation, knowledge);
   } else if (before.driver == Driver::kUnknown &&
              (knowledge.finding > Duration::zero() || !demanded(adaptation.component, knowledge))) {
     goal.grace = std::min<Duration>(

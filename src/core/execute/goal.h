@@ -77,6 +77,10 @@ using Goal =
 // How long after the request a goal may take.
 Duration patience(const Goal& goal);
 
+// How long a node that was just started is left to the driver that took it through its lifecycle before:
+// twice as long as that took, and the impact; 0: culprit was the driver, or it is not known.
+Duration grace_of_driver(const Adaptation& adaptation, const Knowledge& knowledge);
+
 // How a node that was just started is brought to `target`: by whom, and how long that may take. To be
 // asked for once it is there, too: how long its start took is known only then.
 LifecycleGoal bringing_up(const Adaptation& adaptation, Lifecycle target,

@@ -322,6 +322,8 @@ std::optional<Governor::Held> Governor::restraint_on(StrategyId id, Time now) co
     return Held{Restraint::kNeverSeen, std::move(*reason), kNever};
   if (auto held = departure(knowledge_.rules[id], now)) return held;
   if (auto held = container_to_come(knowledge_.rules[id])) return held;
+  if (auto driver = driver_to_come(knowledge_.rules[id], knowledge_, now))
+    return Held{Restraint::kEvidence, std::move(driver->reason), driver->until};
   if (auto held = lack_of_evidence(knowledge_.rules[id], now)) return held;
   return limits_.on(id, now);
 }

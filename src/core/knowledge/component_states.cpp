@@ -41,6 +41,14 @@ void ComponentStates::set_out_of_reach(ComponentId component, bool is_out_of_rea
   known = is_out_of_reach;
 }
 
+void ComponentStates::set_time_held(ComponentId component, std::optional<Time> since) {
+  std::optional<Time>& known = components_[component.index].time_held;
+  const int change = static_cast<int>(since.has_value()) - static_cast<int>(known.has_value());
+  unreached_ += change;
+  times_held_ += change;
+  known = since;
+}
+
 void ComponentStates::intend_lifecycle(ComponentId component, Lifecycle state, Time at,
                                        EventLog& events) {
   Lifecycle& intended = components_[component.index].intended_lifecycle;

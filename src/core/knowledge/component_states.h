@@ -85,6 +85,8 @@ struct ComponentState {
   std::optional<Time> host_silent{};
   // The computer that runs it cannot be asked (HostReached). Set by ComponentStates::set_out_of_reach().
   bool is_out_of_reach = false;
+  // Since when its simulated time stands still (TimeHeld). Set by ComponentStates::set_time_held().
+  std::optional<Time> time_held{};
 
   // Its process runs, or is somewhere else, and it does nothing more.
   bool hangs() const { return in_graph && process == ProcessState::kRunning && alive == false; }
@@ -113,9 +115,11 @@ class ComponentStates {
 
   void set_host_silent(ComponentId component, std::optional<Time> since);
   void set_out_of_reach(ComponentId component, bool is_out_of_reach);
-  // Does any component count as not alive because of its computer, not because of itself
+  void set_time_held(ComponentId component, std::optional<Time> since);
+  // Is the state of any component unknown because of its computer or its clock
   // (Knowledge::is_unheard)?
   bool is_any_unreached() const { return unreached_ > 0; }
+  bool is_any_time_held() const { return times_held_ > 0; }
 
   // The last value that was read of a parameter; nothing while none was, or since its process began
   // anew.
@@ -126,7 +130,9 @@ class ComponentStates {
   std::vector<ComponentState> components_;
   std::vector<std::optional<Value>> parameters_;
   int known_dead_ = 0;  // how many are
-  int unreached_ = 0;   // silent computers and those out of reach, by component
+  int unreached_ =
+      0;  // silent computers, those out of reach and clocks that stand still, by component
+  int times_held_ = 0;  // the last of these
 };
 
 }  // namespace culprit

@@ -170,6 +170,18 @@ bool Knowledge::only_starts_the_gone(const Strategy& strategy) const {
   return starts_any;
 }
 
+std::optional<TopicId> Knowledge::heard_topic(ComponentId component, Time at) const {
+  constexpr Duration kSlack = std::chrono::milliseconds(100);
+  for (std::size_t t = 0; t < rules.topics.size(); ++t) {
+    const SignalStore::Rhythm& rhythm = signals.rhythm(TopicId(t));
+    if (!rhythm.last || rhythm.interval <= Duration::zero()) continue;
+    if (later(*rhythm.last, 2 * rhythm.interval + kSlack) < at) continue;
+    const Topic& topic = rules.topics[t];
+    if (graph.publishes(component, topic) && graph.publisher_count(topic) == 1) return TopicId(t);
+  }
+  return std::nullopt;
+}
+
 Time Knowledge::began(ComponentId component) const {
   Time last = components[component].node_seen;
   for (const ComponentId upstream : graph.upstream(component))
@@ -183,7 +195,8 @@ bool Knowledge::is_unheard(ComponentId component) const {
   // Where there is somebody to ask about it, his word counts.
   const bool is_silent = rules[component].has_owner() ? state.is_out_of_reach && state.alive != true
                                                       : state.host_silent.has_value();
-  return is_silent && state.process == ProcessState::kRunning && sightings.has(component);
+  return (is_silent || state.time_held) && state.process == ProcessState::kRunning &&
+         sightings.has(component);
 }
 
 std::string Knowledge::host_of(ComponentId component) const {
@@ -192,6 +205,7 @@ std::string Knowledge::host_of(ComponentId component) const {
 }
 
 std::string Knowledge::why_unheard(ComponentId component) const {
+  if (components[component].time_held) return "uses simulated time, which stands still";
   return "is on " + host_of(component) +
          (rules[component].has_owner() ? ", which cannot be asked" : ", which is unreachable");
 }
@@ -199,8 +213,13 @@ std::string Knowledge::why_unheard(ComponentId component) const {
 bool Knowledge::is_older_than_silence(RuleId rule, ComponentId unheard) const {
   // A computer is called silent some seconds after it fell silent.
   constexpr Duration kRecognised = std::chrono::seconds(10);
-  const auto& since = components[unheard].host_silent;
+  // A clock counts as stopped after some of its usual intervals.
+  constexpr Duration kClockRecognised = std::chrono::seconds(2);
+  const ComponentState& state = components[unheard];
   const Time failing = states[rule].failing_since;
+  if (state.time_held && states[rule].phase != RulePhase::kQuiet)
+    return later(failing, kClockRecognised) < *state.time_held;
+  const auto& since = state.host_silent;
   return since && states[rule].phase != RulePhase::kQuiet && later(failing, kRecognised) < *since;
 }
 

@@ -75,16 +75,20 @@ struct Knowledge {
     return blind ? std::optional(blind->since) : std::nullopt;
   }
 
+  // A topic that only this component publishes, and whose last message came when it was due.
+  std::optional<TopicId> heard_topic(ComponentId component, Time at) const;
+
   // When the component, or something that it depends on, last joined the graph.
   Time began(ComponentId component) const;
 
   // It was seen, and its computer is unreachable, or was until a moment ago; or its owner there cannot
-  // be asked, and it is not known to work. Its state is unknown: culprit does nothing about it, and
+  // be asked, and it is not known to work; or its simulated time stands still. Its state is unknown: culprit does nothing about it, and
   // learns nothing from it.
   bool is_unheard(ComponentId component) const;
   // The name of that computer, for people: "rover2".
   std::string host_of(ComponentId component) const;
-  // Why the state of such a component is unknown: "is on rover2, which is unreachable".
+  // Why the state of such a component is unknown: "is on rover2, which is unreachable", "uses simulated
+  // time, which stands still".
   std::string why_unheard(ComponentId component) const;
   // The component on an unreachable computer that the rule touches, or that a component of the rule
   // depends on. Empty: there is none, or the failure was there long before, or the operating system

@@ -329,6 +329,38 @@ RULE Silent
   EXPECT_EQ(robot.count_asked("camera: start process"), 1u) << transcript(robot);
 }
 
+// It is silent for 3 s when it is well, so its rule fires before that it hangs is proven. A transition
+// would need its answer.
+TEST(Evidence, ANodeThatOwesItsAnswersIsAskedForNoTransition) {
+  TestRobot robot = one_camera(with_evidence(), R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+RULE Silent
+  POLICIES ERROR
+  TRIGGER age(/rgb) > 3500ms
+    STRATEGY gently 90 10
+      ADAPTATION camera restart 2
+    STRATEGY again 50 10
+      ADAPTATION camera redeploy 5
+)");
+  TestRobot::Component& camera = robot["camera"];
+  const auto ask = [&](bool answers) {
+    robot.tell(Probed{ComponentId(0), answers});
+    robot.run_for(400ms);
+  };
+  robot.tell(EndpointAppeared{"/camera", EndpointKind::kPublisher, "/rgb"});
+  camera.fault = "it pauses";
+  for (int i = 0; i < 8; ++i) ask(true);
+  camera.fault.clear();
+  for (int i = 0; i < 3; ++i) ask(true);
+  camera.fault = "redeploy";
+  camera.answers = false;
+  const Time began = robot.now;
+  while (robot.now < began + 4500ms) ask(false);
+  EXPECT_EQ(robot.count("camera is lost: its process runs"), 0u) << transcript(robot);
+  EXPECT_EQ(robot.count("(gently"), 0u) << transcript(robot);
+  EXPECT_TRUE(robot.was_asked("camera: start process")) << transcript(robot);
+}
+
 // A hung component gets no SIGTERM first, which would take seconds.
 TEST(Evidence, IsAwaitedWhereAnAnswerIsOverdue) {
   for (const bool hangs : {true, false}) {

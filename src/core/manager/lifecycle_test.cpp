@@ -301,6 +301,19 @@ TEST(LiveLifecycles, ANodeThatNobodyDrivesIsActivatedAfterTheWatchAndAtOnceTheNe
   EXPECT_TRUE(robot.works("camera")) << transcript(robot);
 }
 
+// Meanwhile one rule sees it unconfigured, and another one misses its topic.
+TEST(LiveLifecycles, ANodeThatActivatedItselfBeforeIsLeftToThatAlsoWhenAPersonStartsIt) {
+  TestRobot robot = live_robot_of(active_camera_with(""), 4s);
+  robot.kill("camera");
+  robot.run_for(60s);
+  robot.kill("camera");
+  robot.start_by_hand("camera");
+  robot.run_for(20s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("camera: configure")) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("camera: start"), 1u) << transcript(robot);
+}
+
 TEST(LiveLifecycles, ANodeThatAnswersLateWhileItLoadsIsAskedAgain) {
   TestRobot robot = live_robot_of(camera_with("LIFECYCLE managed"));
   robot["camera"].answers_after_start = 6s;

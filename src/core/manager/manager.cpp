@@ -56,7 +56,9 @@ bool is_news(const Observation& observation) {
 bool tells_of_silence(const Observation& observation) {
   const auto* host = std::get_if<HostHeard>(&observation.what);
   const auto* reached = std::get_if<HostReached>(&observation.what);
-  return (host != nullptr && !host->is_heard) || (reached != nullptr && !reached->is_reached);
+  const auto* held = std::get_if<TimeHeld>(&observation.what);
+  return (host != nullptr && !host->is_heard) || (reached != nullptr && !reached->is_reached) ||
+         (held != nullptr && held->is_held);
 }
 
 }  // namespace

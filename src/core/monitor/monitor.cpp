@@ -42,6 +42,11 @@ bool counts_samples(const Input& input) {
   return input.kind == Kind::kRate || input.kind == Kind::kLoss || input.kind == Kind::kGoals;
 }
 
+bool reads_topic(const Input& input) {
+  return counts_samples(input) || input.kind == Kind::kAge || input.kind == Kind::kPhi ||
+         input.kind == Kind::kGoalAge;
+}
+
 }  // namespace
 
 Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time discovered)
@@ -252,8 +257,14 @@ void Monitor::refresh(const Program& program, Time now) {
   }
 }
 
+void Monitor::put_held(InputId id) {
+  write_.signals.forget(id, WhyUnknown::kNotCovered);
+  deadlines_.set(id.index, kNever);
+}
+
 void Monitor::update(InputId id, Time now) {
   const Input& input = knowledge_.rules[id];
+  if (reads_topic(input) && topics_[input.topic.index].held) return put_held(id);
   Slot value;
   switch (input.kind) {
     case Kind::kRate:

@@ -134,6 +134,8 @@ class Monitor {
       Duration silence{};
     };
     std::optional<Resumes> resumes;
+    // Since when the simulated time of its publisher, or of a component upstream of that, stands still.
+    std::optional<Time> held;
     bool is_known_silent = false;  // no sample came since its publisher was known dead
     std::optional<Time> listened;  // since when its publisher knows its subscriber
     // It is certain that no sample came since then, though `discovered` is still ahead; and the
@@ -152,7 +154,8 @@ class Monitor {
   struct Derived {
     monitor::SlidingCount count{Duration(1)};
     std::optional<monitor::ValueWindow> values;  // kMean, kMin, kMax, kStddev
-    std::optional<Time> overflowed;              // when the window held too much the last time
+    // When the window held too much, or the publisher's simulated time stood still, the last time.
+    std::optional<Time> overflowed;
     bool is_overflow_told = false;
     std::vector<double> deviations;  // kPhi: for each threshold
     // kChanged, kFrozen: the first reading since the last gap, the last one that was another, and its
@@ -182,6 +185,7 @@ class Monitor {
   void on(Time at, const StatusHeard& seen);
   void on(Time at, const ParametersListed& seen);
   void on(Time at, const HostReached& seen);
+  void on(Time at, const TimeHeld& seen);
   void on(Time at, const StartBarred& seen);
   void on(Time at, const LivesOn& seen);
   void on(Time at, const HostHeard& seen);
@@ -208,6 +212,7 @@ class Monitor {
   void read_signal(SignalId signal, const Value& value, Time at);
   void note_arrival(InputId id, Time at);
   void update(InputId id, Time now);
+  void put_held(InputId id);
   Duration latency_of(SignalId signal) const;
   void note_reading(InputId id, const Slot& slot);
   void note_number(SignalId signal, const Value& value, const Slot& slot, Time at);
@@ -248,6 +253,8 @@ class Monitor {
   void see(ComponentId component, Time at);
   // From when on a topic that has not spoken is silent; kNever while it was not seen.
   Time silent_from(TopicId topic) const;
+  bool is_time_held(TopicId topic) const;
+  void hold_topic(TopicId topic, bool is_held, Time at);
   Time listened_since(TopicId topic) const;
   Time zero_from(const Input& input) const;
   Time rate_known_from(InputId id) const;

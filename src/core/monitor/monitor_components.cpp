@@ -422,6 +422,43 @@ void Monitor::on(Time at, const HostReached& seen) {
   update_alive(seen.component, at, "its node left the graph");
 }
 
+bool Monitor::is_time_held(TopicId topic) const {
+  const auto is_held = [&](ComponentId c) {
+    return knowledge_.components[c].time_held.has_value();
+  };
+  for (std::size_t c = 0; c < knowledge_.rules.components.size(); ++c) {
+    const ComponentId component(c);
+    if (knowledge_.graph.publishes(component, knowledge_.rules[topic]) &&
+        (is_held(component) || std::ranges::any_of(knowledge_.graph.upstream(component), is_held)))
+      return true;
+  }
+  return false;
+}
+
+// While it is held, triggers read no silence, and afterwards none of that time.
+void Monitor::hold_topic(TopicId id, bool is_held, Time at) {
+  Topic& topic = topics_[id.index];
+  if (topic.held.has_value() == is_held) return;
+  if (is_held) {
+    topic.held = at;
+  } else {
+    resume(id, *topic.held, at);
+    topic.held.reset();
+    topic.loss.restart(at);
+    for (const InputId input : topic.inputs) derived_[input.index].overflowed = at;
+  }
+  for (const InputId input : topic.inputs) update(input, at);
+}
+
+void Monitor::on(Time at, const TimeHeld& seen) {
+  if (knowledge_.components[seen.component].time_held.has_value() == seen.is_held) return;
+  write_.components.set_time_held(seen.component, seen.is_held ? std::optional(at) : std::nullopt);
+  for (std::size_t t = 0; t < topics_.size(); ++t) {
+    if (topics_[t].held.has_value() != seen.is_held)
+      hold_topic(TopicId(t), is_time_held(TopicId(t)), at);
+  }
+}
+
 void Monitor::on(Time at, const StartBarred& seen) {
   ComponentState& state = write_.components[seen.component];
   if (state.start_missing == seen.missing) return;

@@ -44,6 +44,17 @@ std::string missing_for(const Adaptation& adaptation, const Knowledge& knowledge
   return starts && !missing.empty() ? "cannot be started: " + missing : "";
 }
 
+// It was asked several times since its last answer and is silent, so it would not answer a request of the
+// strategy either. The monitor calls it hung only after a longer pause than it ever had.
+bool owes_answers(ComponentId component, const Knowledge& knowledge) {
+  constexpr int kUnanswered = 2;
+  constexpr Duration kVerdict = std::chrono::milliseconds(1900);  // as answer_to_come() waits
+  const ComponentState& state = knowledge.components[component];
+  return state.answers_probes && state.missed_probes >= kUnanswered &&
+         state.changes_until == kNever && later(state.answered, kVerdict) <= knowledge.now &&
+         !knowledge.heard_topic(component, knowledge.now);
+}
+
 // Why `adaptation` is invalid; empty if it is not.
 std::string obstacle(const Adaptation& adaptation, const Knowledge& knowledge) {
   const ComponentState& state = knowledge.components[adaptation.component];
@@ -63,6 +74,8 @@ std::string obstacle(const Adaptation& adaptation, const Knowledge& knowledge) {
       break;
   }
   if (!is_alive) return "is not alive";
+  const bool is_of_node = adaptation.type != AdaptationType::kChangeMode;  // a mode manager's
+  if (is_of_node && owes_answers(adaptation.component, knowledge)) return "does not answer";
   if (is_left_alone(adaptation, knowledge)) return "is set back by something else";
   switch (adaptation.type) {
     case AdaptationType::kActivate:

@@ -173,6 +173,13 @@ struct LogSeen {
   LogLevel level = LogLevel::kInfo;
 };
 
+// The simulated time of the component's node (use_sim_time) stands still or has just jumped, so that its
+// silence shows no fault; or that time passes again.
+struct TimeHeld {
+  ComponentId component;
+  bool is_held = false;
+};
+
 // The computer that runs a component (HOST) cannot be asked, or can be again. While nothing is
 // received from a component there, it is unknown whether it works.
 struct HostReached {
@@ -308,7 +315,7 @@ class ObservationWhat
                           HearingLost, HearingRegained, Overslept, StatusHeard, ParametersListed,
                           ProcessWorked, HostReached, EndsWith, LauncherSeen, PriorsTold, LivesOn,
                           HostHeard, ListenerKnown, StartedHere, UsageSeen, StartBarred,
-                          PublisherKnown, GoalsSeen, LogSeen> {
+                          PublisherKnown, GoalsSeen, LogSeen, TimeHeld> {
  public:
   using Variant = variant;
   using variant::variant;

@@ -95,6 +95,8 @@ std::optional<Observation> Translation::operator()(const Observation& observatio
     is_known = renumber(usage->component, components_);
   } else if (auto* reached = std::get_if<HostReached>(&out.what)) {
     is_known = renumber(reached->component, components_);
+  } else if (auto* held = std::get_if<TimeHeld>(&out.what)) {
+    is_known = renumber(held->component, components_);
   } else if (auto* barred = std::get_if<StartBarred>(&out.what)) {
     is_known = renumber(barred->component, components_);
   } else if (auto* lives = std::get_if<LivesOn>(&out.what)) {

@@ -1,0 +1,116 @@
+// Nodes of simulated time, whose clock stands still, beside nodes of real time: nothing is judged about
+// the first, and everything about the others.
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "manager/test_robot.h"
+
+namespace culprit::test {
+namespace {
+
+constexpr const char* kSimulatedRules = R"(
+COMPONENT camera   NODE /camera   LAUNCH "camera"
+COMPONENT detector NODE /detector LAUNCH "detector"
+COMPONENT driver   NODE /driver   LAUNCH "driver"
+RULE CameraSilent
+  POLICIES ERROR ATTEMPTS 2
+  TRIGGER !alive(camera) || age(/rgb) > 500ms
+    STRATEGY camera_redeploy 90 10
+      ADAPTATION camera redeploy 10
+RULE CameraSlow
+  POLICIES ERROR ATTEMPTS 2
+  TRIGGER rate(/rgb) < 5
+    STRATEGY camera_again 90 10
+      ADAPTATION camera redeploy 10
+RULE DetectorSilent
+  POLICIES ERROR ATTEMPTS 2
+  TRIGGER !alive(detector) || age(/boxes) > 500ms
+    STRATEGY detector_redeploy 90 10
+      ADAPTATION detector redeploy 10
+RULE DriverSilent
+  POLICIES ERROR ATTEMPTS 2
+  TRIGGER !alive(driver) || age(/odometry) > 500ms
+    STRATEGY driver_redeploy 90 10
+      ADAPTATION driver redeploy 10
+)";
+
+// The camera uses simulated time, its consumer and the driver do not.
+struct HalfSimulated {
+  HalfSimulated() : robot(kSimulatedRules) {
+    robot.add("camera", {}, "/rgb");
+    robot.add("detector", {"camera"}, "/boxes");
+    robot.add("driver", {}, "/odometry");
+    robot.discover();
+    for (const auto& [node, topic] :
+         {std::pair("/camera", "/rgb"), std::pair("/detector", "/boxes"),
+          std::pair("/driver", "/odometry")})
+      robot.tell(EndpointAppeared{node, EndpointKind::kPublisher, topic});
+    robot.run_for(8s);
+    EXPECT_EQ(robot.count("detected"), 0u) << transcript(robot);
+    robot.said.clear();
+  }
+  // Stops the camera's clock, or lets it go on.
+  void hold(bool is_held) {
+    robot["camera"].fault = is_held ? "its clock" : "";
+    robot.run_for(150ms);
+    robot.tell(TimeHeld{robot.id("camera"), is_held});
+  }
+  TestRobot robot;
+};
+
+TEST(TimeHeld, NothingIsJudgedAboutItsNodesAndThoseThatReadFromThem) {
+  HalfSimulated simulated;
+  TestRobot& robot = simulated.robot;
+  for (const Duration length : {Duration(700ms), Duration(20s), Duration(300s)}) {
+    simulated.hold(true);
+    robot.run_for(length);
+    simulated.hold(false);
+    robot.run_for(20s);
+  }
+  EXPECT_EQ(robot.count("detected"), 0u) << transcript(robot);
+  EXPECT_EQ(robot.count("blind"), 0u) << transcript(robot);
+  EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
+}
+
+TEST(TimeHeld, NodesOfRealTimeAreRepairedMeanwhile) {
+  HalfSimulated simulated;
+  TestRobot& robot = simulated.robot;
+  simulated.hold(true);
+  robot.run_for(5s);
+  robot["driver"].fault = "redeploy";
+  robot.run_for(10s);
+  EXPECT_TRUE(robot.works("driver")) << transcript(robot);
+  robot.kill("detector");
+  robot.run_for(10s);
+  EXPECT_TRUE(robot.was_asked("detector: start process")) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("camera:")) << transcript(robot);
+}
+
+// The operating system says that it is gone.
+TEST(TimeHeld, AKilledNodeIsStartedAgain) {
+  HalfSimulated simulated;
+  TestRobot& robot = simulated.robot;
+  simulated.hold(true);
+  robot.run_for(5s);
+  robot.kill("camera");
+  robot.run_for(60s);
+  simulated.hold(false);
+  robot.run_for(20s);
+  EXPECT_EQ(robot.count_asked("camera: start process"), 1u) << transcript(robot);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+}
+
+TEST(TimeHeld, NodesThatStaySilentAfterwardsAreJudged) {
+  HalfSimulated simulated;
+  TestRobot& robot = simulated.robot;
+  simulated.hold(true);
+  robot.run_for(20s);
+  robot["camera"].fault = "redeploy";
+  robot.tell(TimeHeld{robot.id("camera"), false});
+  robot.run_for(10s);
+  EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+}
+
+}  // namespace
+}  // namespace culprit::test
