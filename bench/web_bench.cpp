@@ -18,8 +18,8 @@
 #include "language/checker.h"
 #include "live.h"
 #include "plan/paper_planner.h"
+#include "web/calls.h"
 #include "web/hub_observer.h"
-#include "web/incident_routes.h"
 
 namespace culprit::bench {
 namespace {

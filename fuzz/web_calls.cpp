@@ -7,8 +7,8 @@
 
 #include "http/hub.h"
 #include "language/checker.h"
+#include "web/calls.h"
 #include "web/order_routes.h"
-#include "web/rule_routes.h"
 
 namespace {
 

@@ -2,7 +2,6 @@
 #include <ctime>
 #include <iostream>
 #include <memory>
-#include <optional>
 #include <unistd.h>
 
 #include <fmt/core.h>

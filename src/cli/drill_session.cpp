@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <thread>
 
-#include <fmt/format.h>
-
 #include "base/duration_words.h"
 #include "base/live_clock.h"
 #include "base/text_file.h"

@@ -1,7 +1,6 @@
 #include "cli/journal_file.h"
 
 #include <algorithm>
-#include <chrono>
 #include <ctime>
 
 #include <fmt/core.h>

@@ -1,7 +1,5 @@
 #include <csignal>
 
-#include <fmt/core.h>
-
 #include "base/text_file.h"
 #include "cli/commands.h"
 #include "mode_manager/mode_manager.h"

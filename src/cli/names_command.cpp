@@ -2,8 +2,6 @@
 #include <algorithm>
 #include <memory>
 
-#include <fmt/core.h>
-
 #include "base/name_grammar.h"
 #include "cli/commands.h"
 #include "cli/running_culprit.h"

@@ -15,8 +15,8 @@
 #include "manager/test_robot.h"
 #include "ros_api/teller.h"
 #include "terminal/console.h"
+#include "web/calls.h"
 #include "web/hub_observer.h"
-#include "web/incident_routes.h"
 #if __has_include("fleet/tally.h")
 #include "fleet/incident_number.h"
 #include "fleet/tally.h"

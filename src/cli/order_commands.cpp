@@ -5,8 +5,6 @@
 #include <memory>
 #include <tuple>
 
-#include <fmt/core.h>
-
 #include "base/closest.h"
 #include "base/duration_words.h"
 #include "base/live_clock.h"

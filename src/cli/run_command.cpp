@@ -18,20 +18,9 @@
 #include "terminal/command.h"
 #include "terminal/console.h"
 #include "terminal/local_service.h"
-#include "web/component_route.h"
-#include "web/doctor_routes.h"
-#include "web/hindsight_route.h"
+#include "web/calls.h"
 #include "web/hub_observer.h"
-#include "web/incident_routes.h"
-#include "web/live_routes.h"
-#include "web/name_routes.h"
 #include "web/order_routes.h"
-#include "web/recording_routes.h"
-#include "web/reload_routes.h"
-#include "web/rule_routes.h"
-#include "web/series_route.h"
-#include "web/status_routes.h"
-#include "web/what_if_route.h"
 
 namespace culprit::cli {
 namespace {

@@ -1,11 +1,7 @@
 #include "cli/run_configuration.h"
 
 #include <algorithm>
-#include <cctype>
-#include <cstdlib>
-#include <optional>
 #include <sstream>
-#include <string_view>
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>

@@ -1,9 +1,7 @@
 // For tests: a camera whose failures culprit heals, and the culprit that is attacked meanwhile.
 #pragma once
 
-#include <algorithm>
 #include <csignal>
-#include <cstdlib>
 #include <string>
 #include <thread>
 #include <vector>

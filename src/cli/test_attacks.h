@@ -6,7 +6,6 @@
 #include <functional>
 #include <memory>
 #include <ostream>
-#include <string>
 #include <vector>
 
 #include "ros2/test_eavesdropper.h"

@@ -1,5 +1,4 @@
 // Attackers who reach the page's port, and have no token.
-#include <algorithm>
 #include <string>
 
 #include "cli/test_attacks.h"

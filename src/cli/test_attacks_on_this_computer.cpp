@@ -1,5 +1,4 @@
 // Attackers of the same computer, most of them another user, and a computer that lacks what culprit needs.
-#include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <fcntl.h>

@@ -5,11 +5,7 @@
 #include "live/robot_names.h"
 #include "terminal/console.h"
 #include "terminal/web_service.h"
-#include "web/doctor_routes.h"
-#include "web/hindsight_route.h"
-#include "web/name_routes.h"
-#include "web/rule_routes.h"
-#include "web/single_run_route.h"
+#include "web/calls.h"
 #include "web/study_runner.h"
 
 namespace culprit::cli {

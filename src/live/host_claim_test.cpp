@@ -1,8 +1,6 @@
 #include "live/host_claim.h"
 
 #include <csignal>
-#include <functional>
-#include <optional>
 #include <sys/wait.h>
 #include <unistd.h>
 

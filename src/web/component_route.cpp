@@ -1,6 +1,5 @@
-#include "web/component_route.h"
-
 #include "base/process_stat.h"
+#include "web/calls.h"
 
 namespace culprit::web {
 namespace {

@@ -1,5 +1,3 @@
-#include "web/doctor_routes.h"
-
 #include <memory>
 
 #include "base/mutex.h"
@@ -7,6 +5,7 @@
 #include "doctor/look.h"
 #include "doctor/report.h"
 #include "ros2/options.h"
+#include "web/calls.h"
 
 namespace culprit::web {
 namespace {

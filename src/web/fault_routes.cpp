@@ -1,7 +1,7 @@
-#include "web/fault_routes.h"
-
 #include <algorithm>
 #include <memory>
+
+#include "web/calls.h"
 
 namespace culprit::web {
 namespace {

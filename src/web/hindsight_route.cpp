@@ -1,5 +1,3 @@
-#include "web/hindsight_route.h"
-
 #include <memory>
 
 #include "base/environment.h"
@@ -8,6 +6,7 @@
 #include "language/checker.h"
 #include "live/run_journal.h"
 #include "web/aside.h"
+#include "web/calls.h"
 
 namespace culprit::web {
 namespace {

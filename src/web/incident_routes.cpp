@@ -1,5 +1,3 @@
-#include "web/incident_routes.h"
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -15,6 +13,7 @@
 #include "incident_reports/incident_report.h"
 #include "recorder/recording_folder.h"
 #include "web/aside.h"
+#include "web/calls.h"
 
 namespace culprit::web {
 namespace {

@@ -1,4 +1,4 @@
-#include "web/live_routes.h"
+#include "web/calls.h"
 
 namespace culprit::web {
 namespace {

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "manager/test_robot.h"
-#include "web/status_routes.h"
+#include "web/calls.h"
 
 namespace culprit::web {
 namespace {

@@ -1,6 +1,5 @@
-#include "web/name_routes.h"
-
 #include "language/checker.h"
+#include "web/calls.h"
 #include "web/rule_desk.h"
 
 namespace culprit::web {

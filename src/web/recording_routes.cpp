@@ -1,4 +1,4 @@
-#include "web/recording_routes.h"
+#include "web/calls.h"
 
 namespace culprit::web {
 

@@ -1,6 +1,5 @@
-#include "web/reload_routes.h"
-
 #include "base/name_grammar.h"
+#include "web/calls.h"
 
 namespace culprit::web {
 

@@ -2,7 +2,6 @@
 #include <filesystem>
 #include <fstream>
 #include <set>
-#include <sstream>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -16,20 +15,8 @@
 #include "journal/writer.h"
 #include "language/checker.h"
 #include "recorder/recording_folder.h"
-#include "web/component_route.h"
-#include "web/doctor_routes.h"
-#include "web/fault_routes.h"
-#include "web/hindsight_route.h"
-#include "web/incident_routes.h"
-#include "web/live_routes.h"
-#include "web/name_routes.h"
+#include "web/calls.h"
 #include "web/order_routes.h"
-#include "web/recording_routes.h"
-#include "web/reload_routes.h"
-#include "web/rule_routes.h"
-#include "web/series_route.h"
-#include "web/status_routes.h"
-#include "web/study_routes.h"
 
 namespace culprit::web {
 namespace {

@@ -1,5 +1,3 @@
-#include "web/rule_routes.h"
-
 #include <array>
 
 #include "language/checker.h"
@@ -7,6 +5,7 @@
 #include "rule_files/rule_files.h"
 #include "rule_json/from_json.h"
 #include "rule_json/to_json.h"
+#include "web/calls.h"
 
 namespace culprit::web {
 namespace {

@@ -1,7 +1,7 @@
-#include "web/series_route.h"
-
 #include <cmath>
 #include <cstdlib>
+
+#include "web/calls.h"
 
 namespace culprit::web {
 namespace {

@@ -1,13 +1,11 @@
 #include "web/signal_history.h"
 
-#include <cmath>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "language/checker.h"
 #include "plan/bayes/bayes_planner.h"
-#include "web/series_route.h"
+#include "web/calls.h"
 
 namespace culprit::web {
 namespace {

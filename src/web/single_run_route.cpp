@@ -1,5 +1,3 @@
-#include "web/single_run_route.h"
-
 #include <limits>
 #include <memory>
 #include <optional>
@@ -8,6 +6,7 @@
 #include "base/mutex.h"
 #include "base/text_file.h"
 #include "web/aside.h"
+#include "web/calls.h"
 
 namespace culprit::web {
 namespace {

@@ -1,6 +1,6 @@
-#include "web/status_routes.h"
-
 #include <thread>
+
+#include "web/calls.h"
 
 namespace culprit::web {
 namespace {

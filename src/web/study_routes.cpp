@@ -1,8 +1,8 @@
-#include "web/study_routes.h"
-
 #include <algorithm>
 #include <array>
 #include <memory>
+
+#include "web/calls.h"
 
 namespace culprit::web {
 namespace {

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "base/mutex.h"
-#include "web/study_routes.h"
+#include "web/calls.h"
 
 namespace culprit::web {
 

@@ -1,8 +1,7 @@
-#include "web/what_if_route.h"
-
 #include "language/checker.h"
 #include "rule_test/plan_report.h"
 #include "rule_test/state.h"
+#include "web/calls.h"
 #include "web/rule_desk.h"
 
 namespace culprit::web {

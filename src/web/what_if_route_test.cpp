@@ -1,10 +1,9 @@
-#include "web/what_if_route.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/text_file.h"
 #include "plan/paper_planner.h"
+#include "web/calls.h"
 
 namespace culprit::web {
 namespace {

@@ -1,7 +1,5 @@
 #include "fleet/exchange.h"
 
-#include <algorithm>
-
 #include "fleet/clean.h"
 #include "fleet/definition.h"
 #include "json/json.h"

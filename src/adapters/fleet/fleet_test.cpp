@@ -1,7 +1,6 @@
 // Robots, a journal each, and a real PostgreSQL.
 #include <csignal>
 #include <cstdlib>
-#include <fstream>
 #include <mutex>
 #include <random>
 #include <set>

@@ -9,7 +9,6 @@
 // as before; that is reported once, and nothing is lost.
 #pragma once
 
-#include <condition_variable>
 #include <filesystem>
 #include <functional>
 #include <memory>

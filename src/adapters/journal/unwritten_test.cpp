@@ -1,8 +1,6 @@
 // Which rows of the intent file the journal lacks.
 #include "journal/unwritten.h"
 
-#include <fstream>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

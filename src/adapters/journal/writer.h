@@ -10,7 +10,6 @@
 // The oldest rows go, but never those from the newest `session` row on: the next run needs them.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "journal/database.h"

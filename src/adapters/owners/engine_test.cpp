@@ -3,8 +3,6 @@
 // engine was asked.
 #include "owners/engine.h"
 
-#include <csignal>
-#include <optional>
 #include <thread>
 
 #include <gmock/gmock.h>

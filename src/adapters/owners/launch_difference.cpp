@@ -1,8 +1,6 @@
 #include "owners/launch_difference.h"
 
 #include <algorithm>
-#include <chrono>
-#include <ctime>
 #include <filesystem>
 #include <map>
 #include <sys/stat.h>

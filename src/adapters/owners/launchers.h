@@ -6,7 +6,6 @@
 #include <map>
 #include <optional>
 #include <poll.h>
-#include <string>
 #include <vector>
 
 #include "base/time.h"

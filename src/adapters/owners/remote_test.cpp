@@ -1,7 +1,6 @@
 // Requests to owners on another computer go over ssh. ssh and that computer are a stand-in
 // (test_ssh.h). Behind it a real systemd-stdio-bridge speaks to the stand-in for systemd on a real
 // dbus-daemon, or the stand-in for docker's dial-stdio to the one for its engine.
-#include <csignal>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>

@@ -1,9 +1,6 @@
 #include "owners/setup.h"
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <csignal>
 #include <poll.h>
 #include <string_view>
 #include <sys/wait.h>

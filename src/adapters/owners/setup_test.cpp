@@ -1,7 +1,6 @@
 // The one shell that culprit runs: its input, its output, and its errors.
 #include "owners/setup.h"
 
-#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>

@@ -4,7 +4,6 @@
 #include "owners/units.h"
 
 #include <csignal>
-#include <optional>
 #include <sys/ptrace.h>
 #include <sys/wait.h>
 #include <thread>

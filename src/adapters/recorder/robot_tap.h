@@ -20,7 +20,6 @@
 #include <set>
 #include <string>
 #include <thread>
-#include <vector>
 
 #include "link/topic_listener.h"
 #include "link/type_finder.h"

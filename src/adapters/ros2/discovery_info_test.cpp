@@ -1,6 +1,5 @@
 #include "ros2/discovery_info.h"
 
-#include <algorithm>
 #include <numeric>
 
 #include <gtest/gtest.h>

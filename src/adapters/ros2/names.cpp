@@ -1,8 +1,5 @@
 #include "ros2/names.h"
 
-#include <algorithm>
-#include <array>
-
 #include "base/invariant.h"
 
 namespace culprit::ros2 {

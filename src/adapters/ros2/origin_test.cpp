@@ -1,7 +1,6 @@
 // A stranger that speaks in the name of a robot's node, on the same machine and for real: the
 // effect on the node.
 #include <algorithm>
-#include <memory>
 #include <string>
 #include <vector>
 

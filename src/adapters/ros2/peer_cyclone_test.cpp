@@ -4,7 +4,6 @@
 #include <memory>
 #include <optional>
 #include <signal.h>
-#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

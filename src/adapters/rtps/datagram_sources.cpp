@@ -1,7 +1,6 @@
 #include "rtps/datagram_sources.h"
 
 #include <algorithm>
-#include <cstring>
 #include <optional>
 
 #include "rtps/speakers.h"

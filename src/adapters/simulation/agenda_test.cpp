@@ -1,7 +1,6 @@
 #include "simulation/agenda.h"
 
 #include <algorithm>
-#include <string>
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -1,7 +1,5 @@
 #include "simulation/node.h"
 
-#include <string>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -15,7 +15,6 @@
 #include "language/parser.h"
 #include "language/place_index.h"
 #include "language/rule_checks.h"
-#include "language/rule_memory.h"
 #include "language/typing.h"
 
 namespace culprit {
@@ -31,14 +30,6 @@ class Checker {
  public:
   Checker(const syntax::File& file, Strictness strictness, std::vector<Diagnostic>& diagnostics)
       : file_(file), diagnostics_(diagnostics), symbols_(rules_, strictness, diagnostics) {}
-
-  // With what an earlier check has left in `memory`, which is then what this one leaves. `text` is
-  // what the file is the tree of.
-  void use(RuleMemory& memory, std::string_view text) {
-    memory_ = &memory;
-    text_ = text;
-    ++memory.check;
-  }
 
   RuleSet check() {
     rules_.components.reserve(file_.components.size());
@@ -60,12 +51,10 @@ class Checker {
     for (std::size_t s = 0; s < rules_.signals.size(); ++s) declare_signal_type(SignalId(s));
     interlocks();
     drills();
-    forget_other_cycle();
     for (const syntax::Rule& rule : file_.rules) {
       if (rule.name.text.empty()) continue;  // its line was broken
       check_name(rule);
-      const bool has_memory = memory_ != nullptr && !has_broken_declaration_;
-      has_memory ? add_or_recall_rule(rule) : add_rule(rule);
+      add_rule(rule);
     }
     symbols_.drop_forgotten_reports();
     for (Input& input : rules_.inputs) sort_unique(input.thresholds);
@@ -73,15 +62,9 @@ class Checker {
     for (std::size_t r = 0; r < rules_.rules.size(); ++r) link_readers(RuleId(r));
     check_circles(file_, rules_, diagnostics_);
     check_meaning();
-    if (memory_ != nullptr) {
-      std::erase_if(memory_->known,
-                    [&](const auto& k) { return k.second.check != memory_->check; });
-      memory_->conditions = std::move(conditions_);
-    }
     return std::move(rules_);
   }
 
-  // Where no memory has them.
   std::vector<RuleConditions> take_conditions() { return std::move(conditions_); }
 
  private:
@@ -253,88 +236,6 @@ class Checker {
     }
   }
 
-  // ---- What is remembered
-
-  // The cycle is part of a rule's meaning, because it sets how long an impact lasts.
-  void forget_other_cycle() {
-    if (memory_ == nullptr || std::exchange(memory_->cycle, rules_.cycle) == rules_.cycle) return;
-    for (auto& [text, rule] : memory_->known) rule.meaning.reset();
-  }
-
-  std::string_view text_of(const syntax::Rule& rule) const {
-    const syntax::Rule* next = &rule + 1;
-    const bool is_last = next == file_.rules.data() + file_.rules.size();
-    return text_.substr(rule.begin, (is_last ? text_.size() : next->begin) - rule.begin);
-  }
-
-  void add_or_recall_rule(const syntax::Rule& written) {
-    const std::string_view text = text_of(written);
-    const auto known = memory_->known.find(text);
-    if (known == memory_->known.end()) return add_and_remember(written, text);
-    // If two rules have the same text, one is remembered.
-    if (known->second.check == memory_->check) return add_rule(written);
-    if (recall(written, known->second)) return;
-    memory_->known.erase(known);
-    add_and_remember(written, text);
-  }
-
-  // Adds the rule as it was checked before. False if its names do not mean the same as before.
-  bool recall(const syntax::Rule& written, RememberedRule& remembered) {
-    if (remembered.has_broken_part != written.has_broken_part ||
-        !symbols_.answers_the_same(remembered.uses))
-      return false;
-    const RuleId id(rules_.rules.size());
-    symbols_.ask_again(remembered.uses, written.begin - remembered.begin);
-    auto rule = renewed(remembered, written, id, StrategyId(rules_.strategies.size()), *memory_);
-    if (!rule) return false;
-    diagnostics_.insert(diagnostics_.end(), remembered.said.begin(), remembered.said.end());
-    remembered.rule = id.index;
-    rules_.rules.push_back(std::move(rule->rule));
-    for (Strategy& strategy : rule->strategies) {
-      rules_.heaviest = std::max(rules_.heaviest, strategy.impact);
-      rules_.strategies.push_back(std::move(strategy));
-    }
-    if (rule->conditions) {
-      collect_thresholds(rule->conditions->trigger, rules_.inputs);
-      remembered.conditions = conditions_.size();
-      conditions_.push_back(std::move(*rule->conditions));
-    }
-    remember(id, remembered);
-    return true;
-  }
-
-  void add_and_remember(const syntax::Rule& written, std::string_view text) {
-    // One that asks for more is a hostile one: finding what stands for what would take long.
-    constexpr std::size_t kMostUses = 500;
-    RememberedRule rule;
-    const RuleId id(rules_.rules.size());
-    const auto said = static_cast<std::ptrdiff_t>(diagnostics_.size());
-    symbols_.record(&rule.uses);
-    add_rule(written);
-    symbols_.record(nullptr);
-    if (rule.uses.has_report || rule.uses.size() > kMostUses) return;
-    rule.has_broken_part = written.has_broken_part;
-    rule.begin = written.begin;
-    rule.said.assign(diagnostics_.begin() + said, diagnostics_.end());
-    rule.rule = id.index;
-    if (!conditions_.empty() && conditions_.back().rule == id)
-      rule.conditions = conditions_.size() - 1;
-    remember(id, memory_->known.emplace(std::string(text), std::move(rule)).first->second);
-  }
-
-  void remember(RuleId id, RememberedRule& rule) {
-    rule.check = memory_->check;
-    remembered_.resize(id.index + 1);
-    remembered_[id.index] = &rule;
-  }
-
-  // Null: it is not remembered.
-  RememberedRule* remembered(RuleId id) const {
-    return id.index < remembered_.size() ? remembered_[id.index] : nullptr;
-  }
-
-  // ---- Rules
-
   void add_rule(const syntax::Rule& written) {
     const RuleId id(rules_.rules.size());
     Rule rule;
@@ -386,14 +287,12 @@ class Checker {
                                     [](const auto& d) { return d.severity == Severity::kError; });
     if (failed) return;
     for (RuleConditions& rule : conditions_) {
-      RememberedRule* known = remembered(rule.rule);
-      if (known != nullptr && known->meaning) {
-        diagnostics_.insert(diagnostics_.end(), known->meaning->begin(), known->meaning->end());
-        continue;
-      }
-      const auto said = static_cast<std::ptrdiff_t>(diagnostics_.size());
-      check_meaning(rule);
-      if (known != nullptr) known->meaning.emplace(diagnostics_.begin() + said, diagnostics_.end());
+      rule.never_fires = is_never(true, rule.trigger, rules_);
+      check_conditions(rule, rules_, diagnostics_);
+      check_last_resort(rule, rules_, diagnostics_);
+      check_true_when_well(rule, rules_, diagnostics_);
+      check_windows(rule, rules_, diagnostics_);
+      check_short_impacts(*rule.written, rules_, diagnostics_);
     }
     // Declared components come first, in the order of the file.
     for (std::size_t i = 0; i < file_.components.size(); ++i)
@@ -402,15 +301,6 @@ class Checker {
     check_covered_rules(conditions_, rules_, diagnostics_);
     check_oscillation(conditions_, rules_, diagnostics_);
     check_interlocks(conditions_, rules_, diagnostics_);
-  }
-
-  void check_meaning(RuleConditions& rule) {
-    rule.never_fires = is_never(true, rule.trigger, rules_);
-    check_conditions(rule, rules_, diagnostics_);
-    check_last_resort(rule, rules_, diagnostics_);
-    check_true_when_well(rule, rules_, diagnostics_);
-    check_windows(rule, rules_, diagnostics_);
-    check_short_impacts(*rule.written, rules_, diagnostics_);
   }
 
   void check_complete(const syntax::Rule& rule) {
@@ -707,9 +597,6 @@ class Checker {
   bool has_broken_declaration_ = false;
   PlaceIndex rule_names_;
   std::vector<RuleConditions> conditions_;  // of each rule that has a trigger
-  RuleMemory* memory_ = nullptr;  // of the last check and for the next one; null: nobody wants it
-  std::string_view text_;         // of the file, where there is a memory
-  std::vector<RememberedRule*> remembered_;  // by RuleId; null: it is not
 };
 
 // A mistake in a template repeats in each USE of it; one report is enough.
@@ -724,12 +611,10 @@ void say_once(std::vector<Diagnostic>& diagnostics, const Source& source) {
   });
 }
 
-Checked check_tree(const syntax::File& file, std::vector<Diagnostic> said, Strictness strictness,
-                   RuleMemory* memory = nullptr, std::string_view text = "") {
+Checked check_tree(const syntax::File& file, std::vector<Diagnostic> said, Strictness strictness) {
   Checked result;
   result.diagnostics = std::move(said);
   Checker checker(file, strictness, result.diagnostics);
-  if (memory != nullptr) checker.use(*memory, text);
   RuleSet rules = checker.check();
   result.conditions = checker.take_conditions();
   std::stable_sort(
@@ -738,31 +623,29 @@ Checked check_tree(const syntax::File& file, std::vector<Diagnostic> said, Stric
   const bool failed =
       std::any_of(result.diagnostics.begin(), result.diagnostics.end(),
                   [](const Diagnostic& d) { return d.severity == Severity::kError; });
-  if (!failed) {
-    result.rules = std::move(rules);
-  } else if (memory != nullptr) {
-    memory->take(rules);
-  }
+  if (!failed) result.rules = std::move(rules);
   return result;
-}
-
-Checked check_parsed(const Source& source, syntax::File file, std::vector<Diagnostic> said,
-                     Strictness strictness) {
-  Checked checked = check_tree(file, std::move(said), strictness);
-  condense(source, checked.diagnostics);
-  checked.file = std::move(file);
-  return checked;
 }
 
 }  // namespace
 
 Checked check(const Source& source, Strictness strictness) {
-  std::vector<Diagnostic> said;
-  syntax::File file = parse(source, said);
-  if (!file.has_reuse()) return check_parsed(source, std::move(file), std::move(said), strictness);
+  Parsed whole = parse_whole(source);
+  if (!whole.file.has_reuse()) {
+    Checked checked = check(whole, strictness);
+    checked.file = std::move(whole.file);
+    return checked;
+  }
   const Expansion rules = expand(source);
   Checked checked = check(rules, strictness);
   checked.diagnostics = as_written(std::move(checked.diagnostics), rules.source);
+  return checked;
+}
+
+Checked check(const Expansion& rules, Strictness strictness) {
+  Parsed whole = parse_whole(rules.source);
+  Checked checked = check(rules, whole, strictness);
+  checked.file = std::move(whole.file);
   return checked;
 }
 
@@ -772,25 +655,9 @@ Checked check(const Parsed& whole, Strictness strictness) {
   return checked;
 }
 
-Checked check(const Expansion& rules, Strictness strictness) {
+Checked check(const Expansion& rules, const Parsed& whole, Strictness strictness) {
   if (!rules.mistakes.empty()) return {{}, rules.mistakes};
-  std::vector<Diagnostic> said;
-  syntax::File file = parse(rules.source, said);
-  Checked checked = check_parsed(rules.source, std::move(file), std::move(said), strictness);
-  say_once(checked.diagnostics, rules.source);
-  return checked;
-}
-
-Checked check_again(const Parsed& whole, RuleMemory& memory) {
-  Checked checked =
-      check_tree(whole.file, whole.said, Strictness::kLenient, &memory, whole.source.text());
-  condense(whole.source, checked.diagnostics);
-  return checked;
-}
-
-Checked check_again(const Expansion& rules, const Parsed& whole, RuleMemory& memory) {
-  if (!rules.mistakes.empty()) return {{}, rules.mistakes};
-  Checked checked = check_again(whole, memory);
+  Checked checked = check(whole, strictness);
   say_once(checked.diagnostics, rules.source);
   return checked;
 }

@@ -11,15 +11,15 @@
 
 #include "language/condition_checks.h"
 #include "language/diagnostic.h"
-#include "language/reparse.h"
 #include "language/reuse/expansion.h"
-#include "language/rule_memory.h"
 #include "language/rule_set.h"
 #include "language/source.h"
 #include "language/symbols.h"
 #include "language/syntax.h"
 
 namespace culprit {
+
+struct Parsed;  // language/parser.h
 
 struct Checked {
   std::optional<RuleSet> rules;         // nothing if there is any error
@@ -35,12 +35,8 @@ Checked check(const Source& source, Strictness strictness = Strictness::kLenient
 Checked check(const Expansion& rules, Strictness strictness = Strictness::kLenient);
 // The same of a text that is parsed already, and has no INCLUDE, TEMPLATE or USE.
 Checked check(const Parsed& whole, Strictness strictness = Strictness::kLenient);
-
-// The same as a lenient check of `whole`, but faster: it takes results of an earlier check from
-// `memory`, whatever text that had, and leaves its own there for the next. If the earlier check
-// gave a rule set, the caller must first give that back with RuleMemory::take().
-Checked check_again(const Parsed& whole, RuleMemory& memory);
 // `whole` is of `rules.source`.
-Checked check_again(const Expansion& rules, const Parsed& whole, RuleMemory& memory);
+Checked check(const Expansion& rules, const Parsed& whole,
+              Strictness strictness = Strictness::kLenient);
 
 }  // namespace culprit

@@ -7,6 +7,7 @@
 
 #include "base/ros_names.h"
 #include "language/occurrences.h"
+#include "language/parser.h"
 
 namespace culprit {
 namespace {

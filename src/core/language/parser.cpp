@@ -28,11 +28,9 @@ class Parser {
          std::vector<Lexeme>* lexemes)
       : source_(source), read_(source, diagnostics), lexemes_(lexemes), file_(file) {}
 
-  template <class IsKnown>
-  std::uint32_t parse(std::uint32_t begin, IsKnown is_known) {
-    for (std::uint32_t line = source_.position(begin).line; line <= source_.line_count(); ++line) {
+  void parse() {
+    for (std::uint32_t line = 1; line <= source_.line_count(); ++line) {
       line_ = source_.line(line);
-      if (!template_ && !stray_part_ && is_known(line_.begin, is_in_rule_)) return line_.begin;
       if (template_) {
         template_line();
         continue;
@@ -45,7 +43,6 @@ class Parser {
                  "write END on a line of its own behind its last statement");
       close_template(text_end(), text_end());
     }
-    return text_end();
   }
 
  private:
@@ -690,7 +687,6 @@ class Parser {
 
   bool rule(Scanner& s) {
     into_->rules.emplace_back();
-    into_->rules.back().begin = line_.begin;
     is_in_rule_ = true;
     has_duplicate_line_ = false;
     // A part that stands before the rule may be the one that the rule then lacks.
@@ -1098,14 +1094,14 @@ syntax::File parse(const Source& source, std::vector<Diagnostic>& diagnostics,
     return file;
   }
   reserve(file, source);
-  Parser(source, file, diagnostics, lexemes).parse(0, [](std::uint32_t, bool) { return false; });
+  Parser(source, file, diagnostics, lexemes).parse();
   return file;
 }
 
-std::uint32_t parse_lines(const Source& source, std::uint32_t begin,
-                          const std::function<bool(std::uint32_t line, bool is_in_rule)>& is_known,
-                          syntax::File& file, std::vector<Diagnostic>& diagnostics) {
-  return Parser(source, file, diagnostics, nullptr).parse(begin, is_known);
+Parsed parse_whole(Source source) {
+  Parsed out{std::move(source), {}, {}};
+  out.file = parse(out.source, out.said);
+  return out;
 }
 
 }  // namespace culprit

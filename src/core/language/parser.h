@@ -5,7 +5,6 @@
 // do not report errors that follow from them.
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "language/diagnostic.h"
@@ -20,14 +19,12 @@ namespace culprit {
 syntax::File parse(const Source& source, std::vector<Diagnostic>& diagnostics,
                    std::vector<Lexeme>* lexemes = nullptr);
 
-// Parses only some of the lines, and appends them to `file`, which has the lines before them.
-// Begins at `begin`: a line that the parser meets in the same state as the first line of a text, or
-// a whole RULE line. Stops at the first line that `is_known`. Asks that only at the begin of a line
-// outside of every TEMPLATE, and not after a part of a rule that stands before any rule.
-// `is_in_rule`: a part of a rule would belong to the last one. Gives where the first line begins
-// that is left; the size of the text if none is.
-std::uint32_t parse_lines(const Source& source, std::uint32_t begin,
-                          const std::function<bool(std::uint32_t line, bool is_in_rule)>& is_known,
-                          syntax::File& file, std::vector<Diagnostic>& diagnostics);
+// A text and all that the parser made of it.
+struct Parsed {
+  Source source;
+  syntax::File file;
+  std::vector<Diagnostic> said;  // by the parser
+};
+Parsed parse_whole(Source source);
 
 }  // namespace culprit

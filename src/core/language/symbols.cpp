@@ -1,10 +1,7 @@
 #include "language/symbols.h"
 
 #include <algorithm>
-#include <bit>
 #include <utility>
-
-#include "base/invariant.h"
 
 namespace culprit {
 namespace {
@@ -56,18 +53,6 @@ bool is_service_unit(std::string_view name) {
   };
   return name.size() > kSuffix.size() && name.ends_with(kSuffix) && !name.ends_with("@.service") &&
          name[0] != '@' && std::all_of(name.begin(), name.end(), may_be_there);
-}
-
-const std::string& asked_name(const std::string& name) { return name; }
-const std::string& asked_name(const syntax::Name& name) { return name.text; }
-
-// Most rules name few things several times.
-template <class Use>
-void enter(std::vector<Use>& uses, Use use) {
-  constexpr std::size_t kFew = 16;
-  const auto is_same = [&](const Use& u) { return asked_name(u.name) == asked_name(use.name); };
-  if (uses.size() > kFew || std::none_of(uses.begin(), uses.end(), is_same))
-    uses.push_back(std::move(use));
 }
 
 // For PlaceIndex, which folds what comes of it.
@@ -509,7 +494,6 @@ void Symbols::declare_group(const syntax::Group& written) {
 }
 
 std::optional<GroupId> Symbols::group(const syntax::Name& name) {
-  if (uses_ != nullptr) uses_->has_report = true;  // what a group is made of is not remembered
   std::vector<std::string_view> groups;
   for (std::size_t g = 0; g < rules_.groups.size(); ++g) {
     if (rules_.groups[g].name == name.text) return GroupId(g);
@@ -548,12 +532,9 @@ void Symbols::declare_broken(const syntax::BrokenDeclaration& broken) {
   }
 }
 
-const Symbols::Constant* Symbols::constant(const std::string& name) {
+const Symbols::Constant* Symbols::constant(const std::string& name) const {
   const auto found = constants_.find(name);
-  const Constant* known = found == constants_.end() ? nullptr : &found->second;
-  if (uses_ != nullptr)
-    enter(uses_->constants, {name, known != nullptr ? std::optional(*known) : std::nullopt});
-  return known;
+  return found == constants_.end() ? nullptr : &found->second;
 }
 
 void Symbols::define_constant(const syntax::Name& name, Constant value) {
@@ -570,8 +551,6 @@ std::string Symbols::near_name(const std::string& name,
 void Symbols::report_undeclared(const syntax::Name& name, const char* what,
                                 const std::vector<std::string_view>& declared) {
   const std::string near = near_name(name.text, declared);
-  if (uses_ != nullptr && (!near.empty() || strictness_ == Strictness::kStrict))
-    uses_->has_report = true;
   const auto fix = replacement(name.span, near);
   if (strictness_ == Strictness::kStrict) {
     diagnostics_.push_back(
@@ -586,12 +565,6 @@ void Symbols::report_undeclared(const syntax::Name& name, const char* what,
                                 "' is not declared and will be looked up on the robot",
                             "did you mean '" + near + "'?", fix});
   }
-}
-
-ComponentId Symbols::component(const syntax::Name& name) {
-  const ComponentId id = known_or_new_component(name);
-  if (uses_ != nullptr) enter(uses_->components, {name, id, id, traits_of(id)});
-  return id;
 }
 
 std::optional<ComponentId> Symbols::known_component(std::string_view name) const {
@@ -618,7 +591,7 @@ std::optional<ParameterId> Symbols::known_parameter(ComponentId component,
   return found ? std::optional(ParameterId(*found)) : std::nullopt;
 }
 
-ComponentId Symbols::known_or_new_component(const syntax::Name& name) {
+ComponentId Symbols::component(const syntax::Name& name) {
   if (const auto known = known_component(name.text)) return *known;
   report_undeclared(name, "component", declared_components_);
   const bool is_node = name.text.starts_with('/');
@@ -626,29 +599,18 @@ ComponentId Symbols::known_or_new_component(const syntax::Name& name) {
 }
 
 SignalId Symbols::signal(const syntax::Name& name) {
-  if (const auto id = known_signal(name.text)) {
-    if (uses_ != nullptr) enter(uses_->signals, {name.text, *id, *id, traits_of(*id)});
-    return *id;
-  }
-  if (uses_ != nullptr) uses_->has_report = true;  // infer_types() has asked for all of them
+  if (const auto known = known_signal(name.text)) return *known;
   report_undeclared(name, "signal", sorted_values());
   return add_signal({name.text, LookedUp{}, Type::kDouble, {}, {}});
 }
 
-bool Symbols::is_looked_up(const std::string& signal) {
-  const bool is_so = looks_up(signal);
-  if (uses_ != nullptr) uses_->looked_up.emplace_back(signal, is_so);
-  return is_so;
-}
-
-bool Symbols::looks_up(const std::string& signal) const {
+bool Symbols::is_looked_up(const std::string& signal) const {
   const auto found = known_signal(signal);
   return strictness_ == Strictness::kLenient && found &&
          std::holds_alternative<LookedUp>(rules_[*found].source);
 }
 
 std::string Symbols::forget_near_miss(const std::string& signal) {
-  if (uses_ != nullptr) uses_->has_report = true;
   const auto found = near_misses_.find(signal);
   if (found == near_misses_.end()) return "";
   const NearMiss miss = found->second;
@@ -691,14 +653,11 @@ TopicId Symbols::topic(const std::string& name, std::optional<ComponentId> publi
     topics_.add(name_hash(name), id.index);
     rules_.topics.push_back({name, publisher});
   }
-  if (uses_ != nullptr) uses_->topics.push_back({name, publisher, id, id});
   return id;
 }
 
 DiagnosticId Symbols::diagnostic(const std::string& name) {
-  const DiagnosticId id(known_or_new(name, rules_.diagnostics, level_names_));
-  if (uses_ != nullptr) uses_->diagnostics.push_back({name, id, id});
-  return id;
+  return DiagnosticId(known_or_new(name, rules_.diagnostics, level_names_));
 }
 
 ParameterId Symbols::parameter(ComponentId component, const std::string& name) {
@@ -709,7 +668,6 @@ ParameterId Symbols::parameter(ComponentId component, const std::string& name) {
     rules_.parameters.push_back({component, name});
     parameter_types_.push_back(types_.add(std::nullopt));
   }
-  if (uses_ != nullptr) uses_->parameters.push_back({component, name, id, id, type_of(id)});
   return id;
 }
 
@@ -722,157 +680,7 @@ InputId Symbols::input(const Input& wanted) {
     inputs_.add(hash, id.index);
     rules_.inputs.push_back(wanted);
   }
-  if (uses_ != nullptr) uses_->inputs.push_back({wanted, id, id});
   return id;
-}
-
-// ---- What was asked before
-
-namespace {
-
-// Two numbers that compare equal may not be the same to who writes them: 0.0 and -0.0.
-bool same_literal(const syntax::Literal& a, const syntax::Literal& b) {
-  const double* x = std::get_if<double>(&a);
-  const double* y = std::get_if<double>(&b);
-  if (x != nullptr && y != nullptr)
-    return std::bit_cast<std::uint64_t>(*x) == std::bit_cast<std::uint64_t>(*y);
-  return a == b;
-}
-
-}  // namespace
-
-std::size_t Symbols::Uses::size() const {
-  return constants.size() + looked_up.size() + components.size() + signals.size() + topics.size() +
-         diagnostics.size() + parameters.size() + inputs.size();
-}
-
-Symbols::Uses::OfComponent::Traits Symbols::traits_of(ComponentId id) const {
-  const Component& c = rules_[id];
-  return {c.name, c.can_start(), c.can_start_again(), c.is_required};
-}
-
-Symbols::Uses::OfSignal::Traits Symbols::traits_of(SignalId id) const {
-  return {rules_[id].range, type_of(id)};
-}
-
-namespace {
-
-template <class Use, class Id>
-Id now_of(const std::vector<Use>& uses, Id was) {
-  const auto use =
-      std::find_if(uses.begin(), uses.end(), [was](const Use& u) { return u.was == was; });
-  CULPRIT_ASSERT(use != uses.end());
-  return use->id;
-}
-
-}  // namespace
-
-ComponentId Symbols::Uses::now(ComponentId id) const { return now_of(components, id); }
-TopicId Symbols::Uses::now(TopicId id) const { return now_of(topics, id); }
-SignalId Symbols::Uses::now(SignalId id) const { return now_of(signals, id); }
-ParameterId Symbols::Uses::now(ParameterId id) const { return now_of(parameters, id); }
-DiagnosticId Symbols::Uses::now(DiagnosticId id) const { return now_of(diagnostics, id); }
-InputId Symbols::Uses::now(InputId id) const { return now_of(inputs, id); }
-
-bool Symbols::answers_the_same(const Uses& uses) const {
-  const auto type_of_parameter = [&](const Uses::OfParameter& p) -> std::optional<Type> {
-    const auto owner =
-        std::find_if(uses.components.begin(), uses.components.end(),
-                     [&](const Uses::OfComponent& c) { return c.id == p.component; });
-    CULPRIT_ASSERT(owner != uses.components.end());
-    const auto component = known_component(owner->name.text);
-    if (!component) return std::nullopt;
-    const auto found = known_parameter(*component, p.name);
-    return found ? type_of(*found) : std::nullopt;
-  };
-  return std::all_of(uses.constants.begin(), uses.constants.end(),
-                     [&](const Uses::OfConstant& c) {
-                       const auto found = constants_.find(c.name);
-                       if (found == constants_.end()) return !c.answer.has_value();
-                       return c.answer && c.answer->broken == found->second.broken &&
-                              same_literal(c.answer->value, found->second.value);
-                     }) &&
-         std::all_of(uses.looked_up.begin(), uses.looked_up.end(),
-                     [&](const auto& asked) { return asked.second == looks_up(asked.first); }) &&
-         std::all_of(uses.components.begin(), uses.components.end(),
-                     [&](const Uses::OfComponent& c) {
-                       const auto known = known_component(c.name.text);
-                       using Traits = Uses::OfComponent::Traits;
-                       return c.traits == (known ? traits_of(*known) : Traits{c.name.text});
-                     }) &&
-         std::all_of(uses.signals.begin(), uses.signals.end(),
-                     [&](const Uses::OfSignal& s) {
-                       const auto found = known_signal(s.name);
-                       return found && s.traits == traits_of(*found);
-                     }) &&
-         std::all_of(uses.parameters.begin(), uses.parameters.end(),
-                     [&](const Uses::OfParameter& p) { return p.type == type_of_parameter(p); });
-}
-
-namespace {
-
-// Each kind of input has other ids; those that it has not are 0.
-void renumber(Input& input, const Symbols::Uses& uses) {
-  using enum Input::Kind;
-  switch (input.kind) {
-    case kRate:
-    case kAge:
-    case kPhi:
-    case kLoss:
-    case kGoals:
-    case kGoalAge:
-      input.topic = uses.now(input.topic);
-      return;
-    case kAlive:
-    case kLifecycle:
-    case kCpu:
-    case kMemory:
-    case kLogs:
-      input.component = uses.now(input.component);
-      return;
-    case kParameter:
-      input.component = uses.now(input.component);
-      input.parameter = uses.now(input.parameter);
-      return;
-    case kLevel:
-      input.diagnostic = uses.now(input.diagnostic);
-      return;
-    case kSignal:
-    case kMean:
-    case kMin:
-    case kMax:
-    case kStddev:
-    case kChanged:
-    case kIsNan:
-    case kFrozen:
-      input.signal = uses.now(input.signal);
-      return;
-  }
-}
-
-}  // namespace
-
-void Symbols::ask_again(Uses& uses, std::uint32_t moved_by) {
-  const auto renew = [](auto& use, auto id) { use.was = std::exchange(use.id, id); };
-  for (auto& c : uses.components) {
-    c.name.span.begin += moved_by;
-    c.name.span.end += moved_by;
-    renew(c, component(c.name));
-  }
-  for (auto& s : uses.signals) renew(s, *known_signal(s.name));
-  for (auto& t : uses.topics) {
-    if (t.publisher) t.publisher = uses.now(*t.publisher);
-    renew(t, topic(t.name, t.publisher));
-  }
-  for (auto& d : uses.diagnostics) renew(d, diagnostic(d.name));
-  for (auto& p : uses.parameters) {
-    p.component = uses.now(p.component);
-    renew(p, parameter(p.component, p.name));
-  }
-  for (auto& i : uses.inputs) {
-    renumber(i.input, uses);
-    renew(i, input(i.input));
-  }
 }
 
 }  // namespace culprit

@@ -40,84 +40,7 @@ class Symbols {
     bool broken = false;  // it was reported; what uses it stays silent
   };
 
-  // The look-ups of a rule, with their answers. As long as the answers are the same, so are the
-  // diagnostics of the rule. The ids may be others by then: `was` is the one before.
-  struct Uses {
-    struct OfConstant {
-      std::string name;
-      std::optional<Constant> answer;  // empty: it is none
-    };
-    struct OfComponent {
-      syntax::Name name;
-      ComponentId id, was;
-      struct Traits {
-        std::string name;
-        bool can_start = false;
-        bool can_start_again = false;
-        bool is_required = false;
-        bool operator==(const Traits&) const = default;
-      };
-      Traits traits;
-    };
-    struct OfSignal {
-      std::string name;
-      SignalId id, was;
-      struct Traits {
-        std::optional<Signal::Range> range;
-        std::optional<Type> type;
-        bool operator==(const Traits&) const = default;
-      };
-      Traits traits;
-    };
-    struct OfTopic {
-      std::string name;
-      std::optional<ComponentId> publisher;
-      TopicId id, was;
-    };
-    struct OfDiagnostic {
-      std::string name;
-      DiagnosticId id, was;
-    };
-    struct OfParameter {
-      ComponentId component;
-      std::string name;
-      ParameterId id, was;
-      std::optional<Type> type;
-    };
-    struct OfInput {
-      Input input;
-      InputId id, was;
-    };
-    std::vector<OfConstant> constants;
-    std::vector<std::pair<std::string, bool>> looked_up;  // signals, and whether they are
-    std::vector<OfComponent> components;
-    std::vector<OfSignal> signals;
-    std::vector<OfTopic> topics;
-    std::vector<OfDiagnostic> diagnostics;
-    std::vector<OfParameter> parameters;
-    std::vector<OfInput> inputs;
-    // A diagnostic was reported or withdrawn during a look-up: the next look-up may give another
-    // answer.
-    bool has_report = false;
-
-    std::size_t size() const;
-    // The id that stands for the same thing now. @pre it is one of those.
-    ComponentId now(ComponentId id) const;
-    TopicId now(TopicId id) const;
-    SignalId now(SignalId id) const;
-    ParameterId now(ParameterId id) const;
-    DiagnosticId now(DiagnosticId id) const;
-    InputId now(InputId id) const;
-  };
-  // From now on enters into `uses` what is asked; null: no more.
-  void record(Uses* uses) { uses_ = uses; }
-  // Whether all that was asked would be answered as it was.
-  bool answers_the_same(const Uses& uses) const;
-  // Asks for all that once more, `moved_by` bytes further on, and enters the ids of now.
-  // @pre answers_the_same(uses)
-  void ask_again(Uses& uses, std::uint32_t moved_by);
-
-  const Constant* constant(const std::string& name);
+  const Constant* constant(const std::string& name) const;
   void define_constant(const syntax::Name& name, Constant value);
 
   ComponentId component(const syntax::Name& name);
@@ -125,7 +48,7 @@ class Symbols {
   std::optional<GroupId> group(const syntax::Name& name);
   SignalId signal(const syntax::Name& name);
   // A signal that the file uses and does not declare, in a lenient check; a strict one has said so.
-  bool is_looked_up(const std::string& signal);
+  bool is_looked_up(const std::string& signal) const;
   TopicId topic(const std::string& name, std::optional<ComponentId> publisher = std::nullopt);
   DiagnosticId diagnostic(const std::string& name);
   ParameterId parameter(ComponentId component, const std::string& name);
@@ -164,15 +87,11 @@ class Symbols {
                          const std::vector<std::string_view>& declared);
   const std::vector<std::string_view>& sorted_values();
   std::string near_name(const std::string& name, const std::vector<std::string_view>& declared);
-  bool looks_up(const std::string& signal) const;
   std::optional<ComponentId> known_component(std::string_view name) const;
   std::optional<SignalId> known_signal(std::string_view name) const;
   std::optional<ParameterId> known_parameter(ComponentId component, std::string_view name) const;
   ComponentId add_component(Component component);
   SignalId add_signal(Signal signal, std::optional<Type> type = std::nullopt);
-  ComponentId known_or_new_component(const syntax::Name& name);
-  Uses::OfComponent::Traits traits_of(ComponentId id) const;
-  Uses::OfSignal::Traits traits_of(SignalId id) const;
 
   RuleSet& rules_;
   Strictness strictness_;
@@ -200,7 +119,6 @@ class Symbols {
   TypeClasses types_;
   std::vector<TypeClasses::Variable> signal_types_;
   std::vector<TypeClasses::Variable> parameter_types_;
-  Uses* uses_ = nullptr;  // what is asked goes in here
 };
 
 }  // namespace culprit

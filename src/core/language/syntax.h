@@ -216,7 +216,6 @@ struct Rule {
   std::optional<Expression> trigger;
   std::vector<Strategy> strategies;
   bool has_broken_part = false;  // a POLICIES, TRIGGER or STRATEGY line is there and does not parse
-  std::uint32_t begin = 0;       // of its RULE line
 };
 
 // A condition without which nothing is done, and how it is written.

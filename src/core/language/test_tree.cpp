@@ -10,8 +10,6 @@ using namespace syntax;
 // Every part in brackets, texts with their length in front: no two trees read alike.
 class Writer {
  public:
-  explicit Writer(Places places) : places_(places) {}
-
   std::string text() const { return out_.str(); }
 
   void put(bool b) { out_ << (b ? "true " : "false "); }
@@ -19,13 +17,7 @@ class Writer {
   void put(double d) { out_ << std::hexfloat << d << ' '; }
   void put(Duration d) { out_ << d.count() << "ns "; }
   void put(const std::string& s) { out_ << s.size() << ':' << s << ' '; }
-  void put(Span span) {
-    if (places_ == Places::kShown) out_ << '@' << span.begin << '-' << span.end << ' ';
-  }
-  void put(const Name& name) {
-    put(name.text);
-    put(name.span);
-  }
+  void put(const Name& name) { put(name.text); }
   void put(const Literal& literal) {
     out_ << literal.index() << '=';
     std::visit([this](const auto& value) { put(value); }, literal);
@@ -36,13 +28,11 @@ class Writer {
     put(e.literal);
     put(e.name);
     put(e.children);
-    put(e.span);
     out_ << ')';
   }
   void put(const Number& n) {
     put(n.value);
     put(n.whole);
-    put(n.span);
   }
 
   void put(const syntax::Constant& c) { all(c.name, c.value); }
@@ -57,7 +47,7 @@ class Writer {
   void put(const DiagnosticSource& s) { all(s.status, s.key); }
   void put(const TopicSource& s) { all(s.topic, s.field); }
   void put(const ParameterSource& s) { all(s.component, s.parameter); }
-  void put(const syntax::Signal::Range& r) { all(r.low, r.high, r.span); }
+  void put(const syntax::Signal::Range& r) { all(r.low, r.high); }
   void put(const syntax::Signal& s) {
     all(s.name, static_cast<std::int64_t>(s.source.index()), s.stale, s.range, s.from);
     std::visit([this](const auto& source) { put(source); }, s.source);
@@ -65,7 +55,7 @@ class Writer {
 
   void put(const syntax::Adaptation& a) {
     all(a.component, std::string(keyword(a.type)), a.subject, a.topic, a.request, a.value, a.impact,
-        a.span, a.begins_step);
+        a.begins_step);
   }
   void put(const syntax::Strategy& s) {
     all(s.name, s.probability, s.confidence, s.when, s.adaptations, s.is_last_resort, s.within,
@@ -75,25 +65,23 @@ class Writer {
   void put(const syntax::Drill& d) {
     all(d.component, static_cast<std::int64_t>(d.what), d.subject, d.value, d.times);
   }
-  void put(const syntax::Policies::Hold& h) { all(h.needed, h.window, h.span); }
-  void put(const syntax::Policies::Attempts& a) { all(a.count, a.span); }
+  void put(const syntax::Policies::Hold& h) { all(h.needed, h.window); }
+  void put(const syntax::Policies::Attempts& a) { all(a.count); }
   void put(const syntax::Policies& p) {
     all(static_cast<std::int64_t>(p.criticality), p.hold_for, p.hold, p.cooldown, p.attempts,
-        p.on_change, p.is_report, p.span);
+        p.on_change, p.is_report);
   }
   void put(const syntax::Rule& r) {
-    all(r.name, r.policies, r.trigger, r.strategies, r.has_broken_part, Span{r.begin, r.begin});
+    all(r.name, r.policies, r.trigger, r.strategies, r.has_broken_part);
   }
-  void put(const File::Cycle& c) { all(c.length, c.span); }
-  void put(const BrokenDeclaration& b) { all(static_cast<std::int64_t>(b.kind), b.name); }
-  void put(const Include& i) { all(i.file, i.span); }
+  void put(const File::Cycle& c) { all(c.length); }
+  void put(const Include& i) { all(i.file); }
   void put(const TemplateParameter& p) { all(p.name, p.usual); }
-  void put(const Use& u) { all(u.pattern, u.arguments, u.in, u.span); }
-  void put(const Template& t) { all(t.name, t.parameters, t.body, t.span, t.lines); }
+  void put(const Use& u) { all(u.pattern, u.arguments, u.in); }
+  void put(const Template& t) { all(t.name, t.parameters, t.body); }
   void put(const File& f) {
     all(f.robot, f.cycle, f.constants, f.components, f.dependencies, f.groups, f.ignored_topics,
         f.interlocks, f.aborts, f.drills, f.signals, f.rules, f.includes, f.templates, f.uses);
-    if (places_ == Places::kShown) put(f.broken_declarations);
   }
 
  private:
@@ -120,14 +108,13 @@ class Writer {
     out_ << '>';
   }
 
-  const Places places_;
   std::ostringstream out_;
 };
 
 }  // namespace
 
-std::string tree_text(const syntax::File& file, Places places) {
-  Writer writer(places);
+std::string tree_text(const syntax::File& file) {
+  Writer writer;
   writer.put(file);
   return writer.text();
 }

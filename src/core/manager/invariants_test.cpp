@@ -1,7 +1,6 @@
 // Invariants on every robot, whatever breaks: on random ones, in virtual time, with the bayes
 // planner.
 #include <algorithm>
-#include <set>
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

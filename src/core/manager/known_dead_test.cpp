@@ -1,6 +1,5 @@
 // A failure of a process that is known to have exited is planned at once; a person's shutdown is
 // respected.
-#include <set>
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -163,7 +163,7 @@ class Monitor {
     std::optional<Time> known_since;
     std::optional<Time> changed;
     Value last_value;
-    monitor::Ring<double> usual{kReadings};  // kSignal: the last readings
+    monitor::LongQueue<double> usual{kReadings};  // kSignal: the last readings
   };
 
   void on(Time at, const NodeAppeared& seen);

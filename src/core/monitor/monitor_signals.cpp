@@ -146,7 +146,7 @@ void Monitor::note_reading(InputId id, const Slot& slot) {
   if (!is_number || input.thresholds.empty() || !slot.known) return;
   const double value = input.type == Type::kInt ? static_cast<double>(slot.i) : slot.d;
   if (!std::isfinite(value)) return;
-  monitor::Ring<double>& usual = derived_[id.index].usual;
+  monitor::LongQueue<double>& usual = derived_[id.index].usual;
   bool is_unusual = false;
   if (usual.size() >= kLeastReadings) {
     double least = usual[0];

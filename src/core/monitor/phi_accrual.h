@@ -12,7 +12,7 @@
 #include <optional>
 
 #include "base/time.h"
-#include "monitor/ring.h"
+#include "monitor/long_queue.h"
 
 namespace culprit::monitor {
 
@@ -48,7 +48,7 @@ class PhiAccrual {
  private:
   double deviation() const;
 
-  Ring<double> intervals_{kHistory};  // seconds
+  LongQueue<double> intervals_{kHistory};  // seconds
   double mean_ = 0;
   double variance_ = 0;
   std::optional<Time> last_;

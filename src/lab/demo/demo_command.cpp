@@ -22,20 +22,10 @@
 #include "terminal/local_service.h"
 #include "terminal/planner_options.h"
 #include "terminal/web_service.h"
-#include "web/component_route.h"
-#include "web/doctor_routes.h"
-#include "web/fault_routes.h"
+#include "web/calls.h"
 #include "web/hub_observer.h"
-#include "web/incident_routes.h"
-#include "web/live_routes.h"
-#include "web/name_routes.h"
 #include "web/order_routes.h"
-#include "web/rule_routes.h"
-#include "web/series_route.h"
-#include "web/single_run_route.h"
-#include "web/status_routes.h"
 #include "web/study_runner.h"
-#include "web/what_if_route.h"
 
 namespace culprit::lab {
 namespace {

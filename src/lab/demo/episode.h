@@ -1,7 +1,6 @@
 // The events between breaking a robot and its recovery, counted from the manager's events.
 #pragma once
 
-#include <optional>
 #include <set>
 #include <string>
 #include <vector>

@@ -16,4 +16,11 @@ void add_study(CLI::App& app, const std::string& version, int& exit_code);
 void add_torture(CLI::App& app, int& exit_code);
 void add_play_again(CLI::App& app, int& exit_code);
 
+// Those of `study`.
+void add_study_all(CLI::App& study, const std::string& version, int& exit_code);
+void add_study_fleet(CLI::App& study, int& exit_code);
+void add_study_rca(CLI::App& study, const std::string& version, int& exit_code);
+void add_study_rover(CLI::App& study, int& exit_code);
+void add_study_suave(CLI::App& study, const std::string& version, int& exit_code);
+
 }  // namespace culprit::lab

@@ -1,6 +1,5 @@
 #include "laboratory/live_campaign.h"
 
-#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <optional>

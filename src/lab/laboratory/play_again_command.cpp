@@ -1,4 +1,4 @@
-// culprit-lab play-again: one run of a campaign, for the page's timeline (web/single_run_route.h).
+// culprit-lab play-again: one run of a campaign, for the page's timeline (web/calls.h).
 #include <algorithm>
 #include <cmath>
 #include <memory>

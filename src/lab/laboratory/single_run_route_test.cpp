@@ -1,5 +1,3 @@
-#include "web/single_run_route.h"
-
 #include <set>
 
 #include <gmock/gmock.h>
@@ -10,6 +8,7 @@
 #include "suave_study/suave_record.h"
 #include "sunset_study/json.h"
 #include "sunset_study/study.h"
+#include "web/calls.h"
 
 namespace culprit::lab {
 namespace {

@@ -1,5 +1,4 @@
-#include "laboratory/study_all_command.h"
-
+// culprit study all: every study that needs no live robot, one after the other, into a folder.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -7,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include "base/text_file.h"

@@ -1,8 +1,9 @@
-#include "laboratory/study_fleet_command.h"
-
+// culprit study fleet: what a fleet's prior is worth to a new robot.
 #include <algorithm>
 #include <memory>
 #include <thread>
+
+#include <CLI/CLI.hpp>
 
 #include "base/text_file.h"
 #include "fleet_study/worlds.h"

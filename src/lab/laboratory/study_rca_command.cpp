@@ -1,11 +1,10 @@
 // culprit study rca: a benchmark of root-cause analysis on random robots.
-#include "laboratory/study_rca_command.h"
-
 #include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <thread>
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 

@@ -1,9 +1,8 @@
-#include "laboratory/study_rca_command.h"
-
 #include <algorithm>
 #include <filesystem>
 #include <vector>
 
+#include <CLI/CLI.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

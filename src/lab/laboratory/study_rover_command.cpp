@@ -1,8 +1,7 @@
-#include "laboratory/study_rover_command.h"
-
 #include <algorithm>
 #include <memory>
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include "base/text_file.h"

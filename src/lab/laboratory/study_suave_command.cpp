@@ -1,15 +1,15 @@
 // culprit study suave: the paper's second evaluation, with the managers that it compares with; and
 // how far its model can be believed.
-#include "laboratory/study_suave_command.h"
-
 #include <algorithm>
 #include <memory>
 #include <thread>
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include "base/text_file.h"
+#include "laboratory/commands.h"
 #include "laboratory/study_output.h"
 #include "laboratory/study_runs.h"
 #include "suave_study/claims.h"

@@ -1,7 +1,5 @@
 #include "managers/bandit.h"
 
-#include <algorithm>
-
 #include <gtest/gtest.h>
 
 namespace culprit::study {

@@ -5,9 +5,7 @@
 
 #include <coroutine>
 #include <deque>
-#include <functional>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 

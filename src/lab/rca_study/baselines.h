@@ -11,8 +11,6 @@
 // repaired alone, and "paper".
 #pragma once
 
-#include <memory>
-#include <string>
 #include <vector>
 
 #include "plan/planner.h"

@@ -1,7 +1,6 @@
 #include "rca_study/cases.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <numeric>
 

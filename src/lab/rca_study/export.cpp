@@ -1,6 +1,5 @@
 #include "rca_study/export.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include <fmt/core.h>

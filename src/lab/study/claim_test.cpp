@@ -1,7 +1,5 @@
 #include "study/claim.h"
 
-#include <cmath>
-
 #include <gtest/gtest.h>
 
 #include "study/statistics/holm.h"

@@ -1,7 +1,5 @@
 #include "study/comparison.h"
 
-#include <cmath>
-
 #include <gtest/gtest.h>
 
 #include "study/test_findings.h"

@@ -1,9 +1,6 @@
 // The SUAVE study as a whole: its managers, its missions, the comparison with the paper.
 #include "suave_study/campaign.h"
 
-#include <cmath>
-#include <thread>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,7 +1,6 @@
 // One run of the SUAVE study: a mission, and what it yields.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 

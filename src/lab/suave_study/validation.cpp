@@ -1,6 +1,5 @@
 #include "suave_study/validation.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include <fmt/core.h>

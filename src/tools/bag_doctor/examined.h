@@ -1,7 +1,6 @@
 // A recording as the parts of the doctor look at it: each topic with its habit, and where the recording itself has holes.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "bag_doctor/course.h"

@@ -6,7 +6,6 @@
 // symptom is an incident of its own.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 

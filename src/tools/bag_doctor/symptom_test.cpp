@@ -1,6 +1,5 @@
 // What the doctor finds in recordings with one fault each, and when.
 #include <cmath>
-#include <limits>
 
 #include <fmt/core.h>
 #include <gmock/gmock.h>

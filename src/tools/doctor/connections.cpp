@@ -4,7 +4,6 @@
 #include <fnmatch.h>
 #include <map>
 #include <set>
-#include <tuple>
 
 #include <fmt/core.h>
 

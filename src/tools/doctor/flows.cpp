@@ -1,6 +1,5 @@
 // Messages that do not come, come late, or carry a wrong time.
 #include <algorithm>
-#include <array>
 #include <set>
 
 #include <fmt/core.h>

@@ -1,6 +1,5 @@
 // Processes that are left over, eat memory or a core, or do not run as they were started.
 #include <algorithm>
-#include <set>
 
 #include <fmt/core.h>
 

@@ -1,7 +1,6 @@
 // Hears /tf and /tf_static: who publishes which edge of the tree, how often, and how late.
 #pragma once
 
-#include <array>
 #include <map>
 #include <memory>
 #include <string>

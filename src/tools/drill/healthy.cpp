@@ -6,8 +6,6 @@
 #include <limits>
 #include <map>
 
-#include <fmt/format.h>
-
 namespace culprit::drill {
 namespace {
 

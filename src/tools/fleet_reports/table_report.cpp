@@ -1,7 +1,6 @@
 #include "fleet_reports/table_report.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/chrono.h>
 #include <fmt/core.h>

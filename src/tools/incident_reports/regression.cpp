@@ -1,9 +1,7 @@
 #include "incident_reports/regression.h"
 
-#include <algorithm>
 #include <fstream>
 #include <map>
-#include <set>
 
 #include <fmt/core.h>
 

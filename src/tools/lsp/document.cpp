@@ -27,23 +27,21 @@ Document::Document(std::string text, const std::string& name, const RuleLoader& 
 }
 
 void Document::change(std::string text, const RuleLoader& load) {
-  Source changed(source().name(), std::move(text));
-  written_ = reparse(std::move(written_), std::move(changed));
+  written_ = parse_whole(Source(source().name(), std::move(text)));
   names_.reset();
   names_elsewhere_.reset();
   read_rules(load);
 }
 
 void Document::read_rules(const RuleLoader& load) {
-  if (checked.rules) memory_.take(*checked.rules);
   if (!file().has_reuse()) {
     rules = {source(), {}, {}};
     whole_.reset();
-    checked = check_again(written_, memory_);
+    checked = check(written_);
   } else {
     rules = expand(source(), load);
-    whole_ = whole_ ? reparse(std::move(*whole_), rules.source) : parse_whole(rules.source);
-    checked = check_again(rules, *whole_, memory_);
+    whole_ = parse_whole(rules.source);
+    checked = check(rules, *whole_);
   }
   tell(checked.diagnostics);
 }

@@ -9,7 +9,7 @@
 #include "language/checker.h"
 #include "language/live_inventory.h"
 #include "language/occurrences.h"
-#include "language/reparse.h"
+#include "language/parser.h"
 #include "language/reuse/expansion.h"
 #include "language/source.h"
 #include "language/syntax.h"
@@ -21,8 +21,7 @@ struct Document {
   explicit Document(std::string text, const std::string& name = "",
                     const RuleLoader& load = nullptr);
 
-  // Its text is another one now. All is as of a Document that is made of it; what did not change is
-  // not read again.
+  // Its text is another one now. All is as of a Document that is made of it.
   void change(std::string text, const RuleLoader& load);
 
   // The component of this name: as the rules declare it, or the node of this name.
@@ -50,7 +49,6 @@ struct Document {
 
   Parsed written_;
   std::optional<Parsed> whole_;  // of rules.source; nothing: the file is whole
-  RuleMemory memory_;            // of `checked`
   mutable std::optional<std::vector<Occurrence>> names_;
   mutable std::optional<std::vector<Occurrence>> names_elsewhere_;
 };

@@ -22,9 +22,9 @@ struct Asked {
 
 constexpr const char* kQuickFix = "quickfix";  // CodeActionKind
 // The types by which editors colour names; the order is that of Occurrence::Kind.
-constexpr std::array kTokenTypes = {"enumMember", "class",     "variable", "string", "property",
-                                    "namespace",  "method",    "function", "string", "string",
-                                    "macro",      "parameter", "string"};
+inline constexpr std::array kTokenTypes = {
+    "enumMember", "class",  "variable", "string", "property",  "namespace", "method",
+    "function",   "string", "string",   "macro",  "parameter", "string"};
 
 // `includable`: gives the files that the document may include.
 Json completion(const Asked& asked, const std::function<std::vector<std::string>()>& includable);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstring>
 #include <fstream>
-#include <new>
 #include <stdexcept>
 
 #include <sqlite3.h>

@@ -1,7 +1,5 @@
 #include "rule_json/spelling.h"
 
-#include <algorithm>
-
 #include "language/scanner.h"
 
 namespace culprit::rule_json {

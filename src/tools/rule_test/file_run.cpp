@@ -1,6 +1,5 @@
 #include "rule_test/file_run.h"
 
-#include <algorithm>
 #include <filesystem>
 
 #include "language/checker.h"

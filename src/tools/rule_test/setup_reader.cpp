@@ -1,7 +1,6 @@
 #include "rule_test/setup_reader.h"
 
 #include <algorithm>
-#include <array>
 
 #include "base/invariant.h"
 #include "knowledge/component_states.h"

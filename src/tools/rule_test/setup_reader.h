@@ -2,7 +2,6 @@
 // over time, and what happens to its components.
 #pragma once
 
-#include <optional>
 #include <string_view>
 #include <vector>
 

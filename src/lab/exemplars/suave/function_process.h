@@ -4,7 +4,6 @@
 
 #include <memory>
 #include <optional>
-#include <string_view>
 
 #include "exemplars/suave/bridge.h"
 #include "exemplars/suave/live_helm.h"

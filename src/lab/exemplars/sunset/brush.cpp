@@ -1,6 +1,5 @@
 #include "exemplars/sunset/brush.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <numeric>
 #include <stdexcept>
-#include <utility>
 
 #include "exemplars/sunset/camera.h"
 #include "exemplars/sunset/scene.h"

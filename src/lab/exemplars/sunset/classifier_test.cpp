@@ -1,7 +1,6 @@
 #include "exemplars/sunset/classifier.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <numeric>
 #include <stdexcept>

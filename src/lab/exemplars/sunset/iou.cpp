@@ -1,6 +1,5 @@
 #include "exemplars/sunset/iou.h"
 
-#include <cmath>
 #include <limits>
 #include <stdexcept>
 

@@ -1,6 +1,5 @@
 #include "study/statistics/anova.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -1,7 +1,6 @@
 #include "study/statistics/bootstrap.h"
 
 #include <cmath>
-#include <numeric>
 #include <random>
 
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <numeric>
 
 #include "study/tables/marks.h"
 #include "study/tables/render.h"

@@ -1,7 +1,6 @@
 // The nodes, systems, topics and diagnostics of SUAVE, by their names in the exemplar.
 #pragma once
 
-#include <string>
 #include <string_view>
 
 #include "simulation/topic.h"

@@ -3,7 +3,6 @@
 // configuring, and parameters that may outlive the process.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 
 #include "exemplars/sunset/model/blackboard.h"
 #include "exemplars/sunset/model/camera.h"
