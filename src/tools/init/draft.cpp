@@ -19,6 +19,7 @@
 #include "init/names.h"
 #include "init/packs.h"
 #include "init/silence.h"
+#include "init/values.h"
 #include "language/line_reader.h"
 
 namespace culprit::init {
@@ -147,6 +148,7 @@ class Draft {
     }
     topics_without_rule();
     for (Part& each : limits(seen_, declared_, left_out_)) parts_.push_back(std::move(each));
+    for (Part& each : values(seen_, declared_)) parts_.push_back(std::move(each));
     add(Part::Kind::kInterlock, kAll, interlocks_text(seen_, declared_));
     if (!left_out_.empty()) {
       std::string text = "# Left out, since it could not be found out:\n";
