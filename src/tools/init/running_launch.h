@@ -14,8 +14,8 @@ struct RunningLaunch {
   std::vector<std::string> notes;  // for people: what could not be found out
 };
 
-// Of the containers whose processes on this machine a `ros2 launch` of this user started. Evaluates its launch file once more, which
-// may take some seconds.
+// Looks for containers whose processes on this machine were started by a `ros2 launch` of this user. Evaluates its launch file once
+// more, which may take some seconds.
 RunningLaunch running_launch(const LiveInventory& robot);
 
 }  // namespace culprit::init

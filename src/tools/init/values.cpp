@@ -69,7 +69,7 @@ bool is_always_finite(const ValueCourse& course) {
   return course.numbers >= kFewestNumbers && course.others == 0;
 }
 
-// Of pure noise, two of three changes turn back; of a value that follows the robot, few do.
+// Two of three changes of pure noise turn back, and few of a value that follows the robot.
 bool jitters(const ValueCourse& course) {
   return 10 * course.changes >= 7 * course.numbers && 10 * course.turns >= 3 * course.changes;
 }
