@@ -655,8 +655,8 @@ void Supervisor::escalate(Shutdown& shutdown, Time now) {
   const bool is_stopped = std::any_of(members_.begin(), members_.end(), [&](const Member& m) {
     return is_meant(shutdown, m) && m.state == ProcessState::kStopped;
   });
-  if (is_stopped || shutdown.hangs == Hangs::kYes || shutdown.signal == SIGTERM ||
-      shutdown.signal == SIGKILL) {
+  const bool hangs = shutdown.hangs == Hangs::kYes && shutdown.signal == SIGINT;
+  if (is_stopped || hangs || shutdown.signal == SIGTERM || shutdown.signal == SIGKILL) {
     shutdown.signal = SIGKILL;
     shutdown.escalate = later(now, kFirm);
   } else if (shutdown.signal == SIGINT) {
@@ -664,7 +664,9 @@ void Supervisor::escalate(Shutdown& shutdown, Time now) {
     shutdown.escalate = later(now, shutdown.is_of_launch ? kOfLaunch : kFirm);
   } else {
     shutdown.signal = SIGINT;
-    shutdown.escalate = later(now, shutdown.is_of_launch ? kOfLaunch : kPolite);
+    shutdown.escalate = later(now, shutdown.is_of_launch           ? kOfLaunch
+                                   : shutdown.hangs == Hangs::kYes ? kHung
+                                                                   : kPolite);
   }
   for (Member& member : members_) {
     if (!is_meant(shutdown, member)) continue;

@@ -1,8 +1,8 @@
 // Starts, stops and watches the processes of components.
 //
 // In the words of Erlang/OTP: the supervisor starts a child from its launch command. It shuts it
-// down by escalation: SIGINT, after kPolite SIGTERM, after kFirm SIGKILL; if it hangs, SIGKILL at
-// once. It reports when the process runs, stops and ends, and until its node is
+// down by escalation: SIGINT, after kPolite SIGTERM, after kFirm SIGKILL; or, if it hangs, SIGINT,
+// after kHung SIGKILL. It reports when the process runs, stops and ends, and until its node is
 // there whether it works. It decides nothing: restarting is up to the manager. A process that is
 // stopped (SIGSTOP) cannot act on a polite signal and must not wake up to do so late: it is killed
 // at once.
@@ -68,9 +68,8 @@
 namespace culprit::owners {
 
 enum class Ending : std::uint8_t { kForGood, kToStartAgain };
-// A process that hangs cannot end itself. Asked politely, a node of rclcpp still begins to: a thread of its
-// own takes down publishers and services, and killed in the middle of that it can leave peers that do not
-// connect to its successor.
+// A process that hangs is not expected to act on a polite signal. It gets only the time that a
+// process needs to end without a thread of its own.
 enum class Hangs : bool { kNo, kYes };
 
 // All members may be called from any thread. Observations (ProcessSeen, Reply) go to the inbox.
@@ -78,7 +77,6 @@ class Supervisor {
  public:
   static constexpr Duration kPolite = std::chrono::seconds(2);
   static constexpr Duration kFirm = std::chrono::seconds(1);
-  // After a polite signal, for one that is found to hang then.
   static constexpr Duration kHung = std::chrono::milliseconds(300);
   // As ros2 launch: sigterm_timeout, sigkill_timeout.
   static constexpr Duration kOfLaunch = std::chrono::seconds(5);
