@@ -18,6 +18,7 @@
 #include "init/lasting.h"
 #include "init/look.h"
 #include "init/marks.h"
+#include "init/running_launch.h"
 #include "init/update.h"
 #include "language/checker.h"
 #include "language/formatter.h"
@@ -62,6 +63,10 @@ void take(init::LaunchDump dump, const InitOptions& options, init::Sighting& see
   seen.has_dump = !options.launch_dump.empty();
   if (!options.output.empty() || !options.update.empty())
     seen.parameter_file = parameter_file(options);
+  if (seen.has_dump || seen.parameter_file.empty()) return;
+  init::RunningLaunch running = init::running_launch(seen.robot);
+  for (const std::string& note : running.notes) say(stderr, "culprit: {}\n", note);
+  seen.dump = std::move(running.dump);
 }
 
 Expected<init::Sighting> look(const InitOptions& options) {

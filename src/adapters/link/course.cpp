@@ -21,6 +21,14 @@ void ValueCourse::note(const Value& value) {
     return;
   }
   if (numbers++ == 0) least = most = last = number;
+  if (number == last) {
+    longest_row = std::max(longest_row, ++row);
+  } else {
+    const bool rises = number > last;
+    if (changes++ > 0 && rises != is_rising) ++turns;
+    is_rising = rises;
+    row = 1;
+  }
   rose |= number > last;
   fell |= number < last;
   least = std::min(least, number);

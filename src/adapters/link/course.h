@@ -19,6 +19,11 @@ struct ValueCourse {
   double last = 0;
   bool rose = false;  // ever, from one to the next
   bool fell = false;
+  std::size_t changes = 0;  // from one to the next
+  std::size_t turns = 0;    // those in the other direction than the change before
+  std::size_t row = 0;      // of equal numbers, now
+  std::size_t longest_row = 0;
+  bool is_rising = false;  // at the last change
   bool operator==(const ValueCourse&) const = default;
 
   void note(const Value& value);

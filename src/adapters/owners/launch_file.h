@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "base/expected.h"
+#include "base/time.h"
 #include "owners/spawn.h"
 
 namespace culprit::owners {
@@ -29,5 +31,10 @@ std::optional<StartNeed> need_of(const LaunchFileNode& what, const std::string& 
 // The arguments of the program that `launch` means: itself, unless it names a launch file.
 std::vector<std::string> program_of_launch(const std::vector<std::string>& launch,
                                            const std::string& prefixes);
+
+// The nodes that a running `ros2 launch` has loaded into component containers. Its file is evaluated once more, with its arguments,
+// in its environment and folder; no node is started or loaded. JSON, as record.json of play_launch; a parameter that is a
+// text, whatever it looks like, has a third element. Errors: `pid` is no `ros2 launch` of this user, or its file cannot be evaluated within `limit`.
+Expected<std::string> composed_nodes_of_launch(int pid, Duration limit);
 
 }  // namespace culprit::owners

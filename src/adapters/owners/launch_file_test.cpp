@@ -1,19 +1,24 @@
 #include "owners/launch_file.h"
 
+#include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <sys/wait.h>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "owners/proc.h"
 #include "owners/start_needs.h"
 
 namespace culprit::owners {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace std::chrono_literals;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -129,6 +134,75 @@ TEST(LaunchFile, IsEvaluatedAtEachStartAndItsProcessBecomesTheNode) {
   EXPECT_EQ(first.said, std::to_string(first.pid) + " driver front 1 30\n");
   folder.rate("2");
   EXPECT_THAT(folder.run("/driver").said, HasSubstr("driver front 2"));
+}
+
+// The parts of `launch_ros` and `ros2launch` that are used to find out what is loaded into containers. A node of a launch
+// would be made by get_ros_node.
+void write_launch_of_composed_nodes(const Folder& folder) {
+  fs::create_directories(folder.path / "python/launch_ros/actions");
+  fs::create_directories(folder.path / "python/ros2launch");
+  folder.write("python/launch_ros/actions/lifecycle_node.py", "get_ros_node = None\n");
+  folder.write("python/launch_ros/actions/load_composable_nodes.py", R"(
+def get_ros_node(context): raise AssertionError('nothing is loaded')
+class LoadComposableNodes:
+    def __init__(self, container, *requests): self.container, self.requests = container, requests
+    def execute(self, context):
+        self.__final_target_container_name = self.container
+        get_ros_node(context).create_client()
+        self._load_in_sequence(self.requests, context)
+)");
+  folder.write(
+      "python/ros2launch/api.py",
+      "import os\ndef get_share_file_path_from_package(package_name, file_name):\n"
+      "    return os.path.join(os.environ['WS'], 'share', package_name, 'launch', file_name)\n");
+  folder.write("ws/share/cam/launch/robot.launch.py", R"(
+from types import SimpleNamespace as Is
+from launch import ExecuteLocal
+from launch_ros.actions.load_composable_nodes import LoadComposableNodes
+def actions(arguments):
+    yield ExecuteLocal('/box', ['component_container'])
+    yield LoadComposableNodes('/box', Is(
+        package_name='cam', plugin_name='cam::Camera', node_name='camera', node_namespace='/front',
+        remap_rules=['image:=rgb'], parameters=[
+            Is(name='fps', value=Is(type=2, integer_value=int(arguments['fps']))),
+            Is(name='frame', value=Is(type=4, string_value='7'))]))
+)");
+  folder.write("ros2", "import time\ntime.sleep(60)\n");
+}
+
+TEST(LaunchFile, OfARunningLaunchShowsHowComponentsWereLoaded) {
+  const Folder folder;
+  write_launch_of_composed_nodes(folder);
+  Program program{{"python3", (folder.path / "ros2").native(), "launch", "-d", "cam",
+                   "robot.launch.py", "fps:=30"},
+                  {},
+                  folder.path / "log"};
+  program.environment = {"PYTHONPATH=" + (folder.path / "python").native(),
+                         "WS=" + (folder.path / "ws").native()};
+  const auto pid = spawn(program);
+  ASSERT_TRUE(pid) << pid.error();
+  // `python3` may be a script that finds the right one first.
+  const auto is_launch = [&] {
+    const auto what = identity_of(*pid);
+    return what && what->script == folder.path / "ros2" &&
+           what->program.find("python") != std::string::npos;
+  };
+  for (int i = 0; i < 1000 && !is_launch(); ++i) std::this_thread::sleep_for(20ms);
+  const auto text = composed_nodes_of_launch(*pid, 20s);
+  kill(*pid, SIGKILL);
+  waitpid(*pid, nullptr, 0);
+  ASSERT_TRUE(text) << text.error();
+  EXPECT_EQ(*text,
+            R"({"load_node": [{"target_container_name": "/box", "package": "cam", )"
+            R"("plugin": "cam::Camera", "node_name": "camera", "namespace": "/front", )"
+            R"("remaps": [["image", "rgb"]], "params": [["fps", 30], ["frame", "7", "text"]]}]})"
+            "\n");
+}
+
+TEST(LaunchFile, IsNotSoughtInAnotherProcess) {
+  const auto text = composed_nodes_of_launch(getpid(), 20s);
+  ASSERT_FALSE(text);
+  EXPECT_THAT(text.error(), HasSubstr("is no ros2 launch"));
 }
 
 TEST(LaunchFile, ThatHasNoSuchNodeSaysWhichItHas) {

@@ -168,19 +168,30 @@ std::vector<Goal> replacing(const Adaptation& adaptation, const Knowledge& knowl
   return {gone, back};
 }
 
+// Without an answer for so long it is hung, also if other threads of its process work: after bond_timeout, 4 s,
+// Nav2's manager takes it for dead. A simulated robot answers at once or never.
+constexpr Duration kMemberHangs = 4s;
+
+LifecycleGoal bringing_up_past_manager(const ComponentState& state, const Knowledge& knowledge) {
+  LifecycleGoal up{Lifecycle::kActive, {}};
+  up.patience = std::max(longest_transition({}), longest_transition(state.coming_up));
+  up.loading = loading_of(state.coming_up, knowledge);
+  return up;
+}
+
 // A member of a group is brought up past the manager, whoever does that when it starts.
 Expected<std::vector<Goal>> bringing_up_member(const Adaptation& adaptation,
                                                const Knowledge& knowledge) {
   const ComponentState& state = knowledge.components[adaptation.component];
+  const bool can_start_again = knowledge.rules[adaptation.component].can_start_again();
   std::vector<Goal> goals;
+  LifecycleGoal up = bringing_up_past_manager(state, knowledge);
   if (state.alive == false) {
-    if (!knowledge.rules[adaptation.component].can_start_again())
-      return Error{"it is not alive, and has no LAUNCH command"};
+    if (!can_start_again) return Error{"it is not alive, and has no LAUNCH command"};
     goals = replacing(adaptation, knowledge);
+  } else if (can_start_again) {
+    up.hangs_after = knowledge.finding > Duration::zero() ? kMemberHangs : Duration::zero();
   }
-  LifecycleGoal up{Lifecycle::kActive, {}};
-  up.patience = std::max(longest_transition({}), longest_transition(state.coming_up));
-  up.loading = loading_of(state.coming_up, knowledge);
   goals.emplace_back(up);
   return goals;
 }
@@ -224,6 +235,14 @@ std::vector<Goal> starting(const Adaptation& adaptation, const Knowledge& knowle
 }
 
 }  // namespace
+
+std::vector<Goal> replacing_hung_member(const Adaptation& adaptation, const Knowledge& knowledge) {
+  std::vector<Goal> goals = replacing(adaptation, knowledge);
+  std::get<GoneGoal>(goals.front()).hangs = true;
+  goals.emplace_back(
+      bringing_up_past_manager(knowledge.components[adaptation.component], knowledge));
+  return goals;
+}
 
 Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowledge& knowledge) {
   const ComponentState& state = knowledge.components[adaptation.component];

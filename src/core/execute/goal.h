@@ -36,6 +36,9 @@ struct LifecycleGoal {
   // culprit was not yet seen to bring it up. Such a node comes up unconfigured; if it is found further
   // on, another program drives it.
   bool may_have_driver = false;
+  // It hangs if it answered before, is in no transition, and answers nothing for so long. Nothing: it may be
+  // busy for any time.
+  std::optional<Duration> hangs_after{};
 };
 struct ModeGoal {
   std::string mode;
@@ -49,6 +52,7 @@ struct ServiceGoal {
 // meant.
 struct GoneGoal {
   int pid = 0;
+  bool hangs = false;  // it is ended as a process that cannot end politely
 };
 // `instead_of`: set if the process may have been started already. Then one with another pid will
 // do; otherwise one that appears from now on is wanted.
@@ -85,6 +89,9 @@ Duration grace_of_driver(const Adaptation& adaptation, const Knowledge& knowledg
 // asked for once it is there, too: how long its start took is known only then.
 LifecycleGoal bringing_up(const Adaptation& adaptation, Lifecycle target,
                           const Knowledge& knowledge);
+
+// How a member of a GROUP that was found to hang while it was to be brought up is replaced, and brought up.
+std::vector<Goal> replacing_hung_member(const Adaptation& adaptation, const Knowledge& knowledge);
 
 // Whether a member of a GROUP that is started is not waited for beyond its process.
 bool is_left_to_group(ComponentId component, const Knowledge& knowledge);

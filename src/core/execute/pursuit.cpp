@@ -111,7 +111,8 @@ Pursuit::Pursuit(Goal goal, ComponentId component, Time now)
       begun_(now),
       deadline_(later(now, patience(goal_))),
       held_until_(later(now, grace(goal_))),
-      loads_until_(later(now, loading(goal_))) {}
+      loads_until_(later(now, loading(goal_))),
+      answered_(now) {}
 
 Duration Pursuit::timeout(const Request& request) const {
   if (std::holds_alternative<StopProcess>(request)) return 12s;
@@ -147,6 +148,7 @@ void Pursuit::answered(const Reply& reply, Time) {
 
 void Pursuit::restart(Time now) {
   deadline_ = later(now, patience(goal_));
+  answered_ = now;
   const bool heard_nothing = step_ == Step::kDecide && seen_ && did_not_come(*seen_);
   if (step_ == Step::kLooking || heard_nothing) step_ = Step::kLook;
   if (step_ == Step::kChanging) wake_ = std::max(wake_, later(now, timeout(sent_.back()) + 1s));
@@ -226,6 +228,10 @@ std::optional<Pursuit::Request> Pursuit::decide(const Knowledge& knowledge, Time
     answer_.reset();
     return look_again(now);
   }
+  if (is_hung(knowledge, now)) {
+    found_hung_ = true;
+    return give_up("its process runs, but it does not answer");
+  }
   if (did_not_come(*seen_)) {
     // Before the change: no node is there to change, unless it is still coming up. After it: the
     // answer may just be late.
@@ -235,6 +241,7 @@ std::optional<Pursuit::Request> Pursuit::decide(const Knowledge& knowledge, Time
     return look_again(now);
   }
   unanswered_ = 0;
+  answered_ = now;
   if (seen_->outcome == Outcome::kRefused) {
     // A process that does not know the parameter has nothing that would have to be undone.
     const auto* parameter = std::get_if<ParameterGoal>(&goal_);
@@ -249,6 +256,18 @@ std::optional<Pursuit::Request> Pursuit::decide(const Knowledge& knowledge, Time
   if (const auto* parameter = std::get_if<ParameterGoal>(&goal_)) return pursue(*parameter, now);
   if (const auto* lifecycle = std::get_if<LifecycleGoal>(&goal_)) return pursue(*lifecycle, now);
   return pursue(std::get<ModeGoal>(goal_), now);
+}
+
+// Before the change: a node with one thread answers nothing while it changes its lifecycle.
+bool Pursuit::is_hung(const Knowledge& knowledge, Time now) const {
+  const auto* lifecycle = std::get_if<LifecycleGoal>(&goal_);
+  const ComponentState& state = knowledge.components[component_];
+  if (lifecycle == nullptr || !lifecycle->hangs_after || has_changed_anything() ||
+      seen_->outcome != Outcome::kTimedOut || !state.answers_probes)
+    return false;
+  const bool is_in_transition = state.changes_until != kNever && state.changes_until > now;
+  return !is_in_transition &&
+         later(std::max(answered_, state.answered), *lifecycle->hangs_after) <= now;
 }
 
 bool Pursuit::would_fight(const Knowledge& knowledge) const {
@@ -341,7 +360,9 @@ std::optional<Pursuit::Request> Pursuit::pursue(const GoneGoal& goal, const Know
     return give_up("its process is not known; is it on another machine?");
   if (!has_changed_anything()) {
     owed_answer_ = owes_answer(state, now);
-    return change(StopProcess{goal.pid != 0 ? goal.pid : state.known_pid(), state.hangs()}, now);
+    return change(
+        StopProcess{goal.pid != 0 ? goal.pid : state.known_pid(), goal.hangs || state.hangs()},
+        now);
   }
   const bool is_gone = !state.in_graph && state.process == ProcessState::kGone;
   // Where the operating system is asked, its word is needed too: a new process must not begin

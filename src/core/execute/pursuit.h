@@ -52,6 +52,9 @@ class Pursuit {
   // It was given up although nothing had gone wrong but that it took too long.
   bool took_too_long() const { return took_too_long_; }
 
+  // It was given up because its process hangs (LifecycleGoal::hangs_after).
+  bool found_hung() const { return found_hung_; }
+
   // It was given up because something else sets back what it sets.
   bool met_rival() const { return met_rival_; }
 
@@ -84,6 +87,7 @@ class Pursuit {
   std::optional<Request> start_again(const PresentGoal& goal, std::string why, Time now);
   std::optional<Request> wait_until(Time at);
 
+  bool is_hung(const Knowledge& knowledge, Time now) const;
   bool would_fight(const Knowledge& knowledge) const;
   std::optional<Request> change(Request request, Time now);
   std::optional<Request> look_again(Time now);
@@ -118,6 +122,8 @@ class Pursuit {
   Time held_until_ = kLongAgo;   // nothing is asked for
   Time loads_until_ = kLongAgo;  // it may be too busy to answer
   int unanswered_ = 0;           // questions in a row
+  Time answered_;                // when the last look was answered; at first when it begins
+  bool found_hung_ = false;
 };
 
 }  // namespace culprit::execute

@@ -323,13 +323,23 @@ void StrategyExecutor::finish_goal(Run& run, Time now) {
     if (!pursuit.remark().empty()) run.remark = pursuit.remark();
     note_mode(pursuit, now);
     ++run.goal;
-  } else if (!start_again(run, now)) {
+  } else if (!replace_hung_member(run) && !start_again(run, now)) {
     if (pursuit.met_rival()) note_rival(run, now);
     if (launches(adaptation) && pursuit.took_too_long()) note_too_long(pursuit, now);
     obstruct(run, knowledge_.rules[pursuit.component()].name + ": " + pursuit.remark(),
              pursuit.remark(), now);
   }
   run.pursuit.reset();
+}
+
+// A member of a group may hang unnoticed, because other threads of its process work. The repair of the group finds
+// it, and replaces it once.
+bool StrategyExecutor::replace_hung_member(Run& run) const {
+  if (!run.pursuit->found_hung()) return false;
+  const Adaptation& adaptation = knowledge_.rules[run.strategy].adaptations[run.adaptation];
+  run.goals = execute::replacing_hung_member(adaptation, knowledge_);
+  run.goal = 0;
+  return true;
 }
 
 // How the goal that was pursued last is taken back. A state that two steps change is brought

@@ -113,6 +113,7 @@ class StrategyExecutor {
   std::optional<Missing> missing_for(const Run& run, const execute::Undo& undo) const;
   bool is_held_by_last_resort(const execute::Undo& undo) const;
   void finish_goal(Run& run, Time now);
+  bool replace_hung_member(Run& run) const;
   void finish_undo(Run& run, Time now);
   void undo_at_next_start(StrategyId strategy, const execute::Undo& undo, Time now);
   void take_owed(const Adaptation& adaptation, std::vector<execute::Goal>& goals);

@@ -148,6 +148,46 @@ TEST(Groups, AMemberThatHangsIsReplaced) {
   EXPECT_EQ(robot.count_asked("controller: start"), 1u) << transcript(robot);
 }
 
+// Another of its threads still works, so that its topics come and it is not found to hang.
+void hang_unnoticed(TestRobot& robot, const std::string& name) {
+  robot.tell(Probed{robot.id(name), true});
+  robot[name].answers = false;
+}
+
+TEST(Groups, AMemberThatHangsUnnoticedIsReplacedAsAPartOfTheRepair) {
+  TestRobot robot = robot_with_group(rules_of_group());
+  hang_unnoticed(robot, "controller");
+  put(robot, "navigator", Lifecycle::kInactive);
+  robot.run_for(20s);
+  EXPECT_TRUE(are_active(robot)) << transcript(robot);
+  EXPECT_EQ(robot.count_asked("controller: start"), 1u) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("planner: start")) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("navigator: start")) << transcript(robot);
+  EXPECT_EQ(robot.count("HalfUp resolved by start_navigation"), 1u) << transcript(robot);
+}
+
+TEST(Groups, AMemberThatIsBusyInATransitionIsNotReplaced) {
+  TestRobot robot = robot_with_group(rules_of_group());
+  hang_unnoticed(robot, "controller");
+  put(robot, "navigator", Lifecycle::kInactive);
+  robot.tell(LifecycleRead{robot.id("controller"), Lifecycle::kTransition});
+  robot.run_for(8s);
+  robot["controller"].answers = true;
+  put(robot, "controller", Lifecycle::kActive);
+  robot.run_for(20s);
+  EXPECT_TRUE(are_active(robot)) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("controller: start")) << transcript(robot);
+}
+
+TEST(Groups, AMemberThatNeverAnsweredIsNotTakenForHung) {
+  TestRobot robot = robot_with_group(rules_of_group());
+  robot["controller"].answers = false;
+  put(robot, "navigator", Lifecycle::kInactive);
+  robot.run_for(20s);
+  EXPECT_FALSE(robot.was_asked("controller: stop")) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("controller: start")) << transcript(robot);
+}
+
 TEST(Groups, WithoutACommandADeadMemberIsLeftToAPerson) {
   TestRobot robot = robot_with_group(rules_of_group("", ""));
   robot.kill("planner");

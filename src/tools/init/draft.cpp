@@ -19,6 +19,7 @@
 #include "init/names.h"
 #include "init/packs.h"
 #include "init/silence.h"
+#include "init/values.h"
 #include "language/line_reader.h"
 
 namespace culprit::init {
@@ -57,7 +58,7 @@ std::map<std::string, Recipe> usable_recipes(const Sighting& seen) {
     const bool knows_all = std::ranges::all_of(nodes, [&](const auto& each) {
       const auto known = seen.dump.recipes.find(each.first);
       return each.second.pid != container->second.pid || each.first == recipe.container ||
-             is_tool_node(each.first) ||
+             is_tool_node(each.first) || seen.dump.is_of_running ||
              (known != seen.dump.recipes.end() && known->second.container == recipe.container);
     });
     const auto node = nodes.find(name);
@@ -147,6 +148,7 @@ class Draft {
     }
     topics_without_rule();
     for (Part& each : limits(seen_, declared_, left_out_)) parts_.push_back(std::move(each));
+    for (Part& each : values(seen_, declared_)) parts_.push_back(std::move(each));
     add(Part::Kind::kInterlock, kAll, interlocks_text(seen_, declared_));
     if (!left_out_.empty()) {
       std::string text = "# Left out, since it could not be found out:\n";
@@ -207,6 +209,10 @@ class Draft {
       if (container.empty() || other == name || its.pid != node.pid || is_tool_node(other) ||
           recipes_.contains(other))
         continue;
+      if (knows_all_in(container)) {
+        if (name == container) continue;
+        return "a component in " + container + " made it";
+      }
       if (name == container)
         return fmt::format(
             "it loads {}, and how is not known: give a dump of its launch file: "
@@ -220,6 +226,13 @@ class Draft {
     if (start->second.declare.starts_with("CONTAINER"))
       return start->second.owner + " runs it. Write CONTAINER with the engine and its name there";
     return std::nullopt;
+  }
+
+  // Whether the components of the container are known, of the launch that runs.
+  bool knows_all_in(const std::string& container) const {
+    return seen_.dump.is_of_running && std::ranges::any_of(recipes_, [&](const auto& each) {
+             return each.second.container == container;
+           });
   }
 
   void add(Part::Kind kind, std::string subject, std::string text) {

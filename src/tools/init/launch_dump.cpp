@@ -30,30 +30,37 @@ bool is_number_or_truth(const std::string& text) {
   return YAML::convert<bool>::decode(node, truth) || YAML::convert<double>::decode(node, number);
 }
 
-// Dumps write texts and what looks like numbers alike; a launch file takes what looks like a number for one.
-std::string scalar_as_yaml(const YAML::Node& value) {
-  const auto text = value.as<std::string>();
-  if (is_number_or_truth(text)) return text;
+std::string text_as_yaml(const std::string& text) {
   YAML::Emitter out;
   out << YAML::DoubleQuoted << text;
   return out.c_str();
 }
 
-std::string value_as_yaml(const YAML::Node& value) {
-  if (!value.IsSequence()) return scalar_as_yaml(value);
+// Dumps write texts and what looks like numbers alike; a launch file takes what looks like a number for one.
+std::string scalar_as_yaml(const YAML::Node& value) {
+  const auto text = value.as<std::string>();
+  return is_number_or_truth(text) ? text : text_as_yaml(text);
+}
+
+// `is_text`: it is known to be one.
+std::string value_as_yaml(const YAML::Node& value, bool is_text = false) {
+  const auto scalar = [&](const YAML::Node& each) {
+    return is_text ? text_as_yaml(each.as<std::string>()) : scalar_as_yaml(each);
+  };
+  if (!value.IsSequence()) return scalar(value);
   std::string all;
-  for (const auto& each : value) all += (all.empty() ? "" : ", ") + scalar_as_yaml(each);
+  for (const auto& each : value) all += (all.empty() ? "" : ", ") + scalar(each);
   return "[" + all + "]";
 }
 
-// {name: value}, or [[name, value], ...].
+// {name: value}, or [[name, value], ...]; [name, value, "text"] of composed_nodes_of_launch (owners/launch_file.h).
 std::vector<std::pair<std::string, std::string>> parameters_in(const YAML::Node& all) {
   std::vector<std::pair<std::string, std::string>> found;
   for (const auto& each : all) {
     if (all.IsMap()) {
       found.emplace_back(each.first.as<std::string>(), value_as_yaml(each.second));
     } else {
-      found.emplace_back(each[0].as<std::string>(), value_as_yaml(each[1]));
+      found.emplace_back(each[0].as<std::string>(), value_as_yaml(each[1], each.size() > 2));
     }
   }
   return found;

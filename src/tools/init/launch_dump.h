@@ -26,6 +26,8 @@ struct Recipe {
 struct LaunchDump {
   std::map<std::string, Recipe> recipes;  // by the node's full name
   std::set<std::string> respawned;        // nodes, by full name
+  // It is of the launch that runs: its containers have no other components. Other nodes there were made by a component.
+  bool is_of_running = false;
   bool operator==(const LaunchDump&) const = default;
 };
 

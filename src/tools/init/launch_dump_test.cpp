@@ -61,6 +61,17 @@ TEST(LaunchDump, SaysHowNodesAreLoaded) {
       testing::IsSupersetOf({Pair("use_sim_time", "False"), Pair("names", R"(["a", "b"])")}));
 }
 
+TEST(LaunchDump, MayMarkTextsThatLookLikeNumbers) {
+  const auto dump = read_launch_dump(
+      R"({"load_node": [{"plugin": "a::B", "node_name": "c", "target_container_name": "/box", "namespace": "/",
+          "params": [["id", "7", "text"], ["ids", ["1", "on"], "text"], ["rate", 7], ["is_on", true]]}]})",
+      "");
+  ASSERT_TRUE(dump) << dump.error();
+  EXPECT_THAT(dump->recipes.at("/c").parameters,
+              ElementsAre(Pair("id", "\"7\""), Pair("ids", R"(["1", "on"])"), Pair("rate", "7"),
+                          Pair("is_on", "true")));
+}
+
 TEST(LaunchDump, OfSomethingElseIsAnError) {
   EXPECT_THAT(read_launch_dump("a: [", "x.yaml").error(), HasSubstr("x.yaml:1: "));
   for (const char* text : {"", "7", "[]", "a: b", "structure: 7", "structure: {nodes: 7}",
@@ -107,6 +118,23 @@ TEST(DraftFromALaunchDump, LeavesAContainerOutWhereItDoesNotKnowAllThatItLoads) 
   EXPECT_THAT(text, Not(HasSubstr("\nCOMPONENT")));
   EXPECT_THAT(text, HasSubstr("or give a dump of its launch file: --launch"));
   EXPECT_EQ(parameters_text(seen), "");
+}
+
+// As Nav2's servers do, which make the nodes of their costmaps.
+TEST(DraftFromARunningLaunch, TakesOtherNodesOfTheContainerForPartsOfItsComponents) {
+  Sighting seen = composed_robot();
+  seen.robot.services["/box/_container/load_node"] = "composition_interfaces/srv/LoadNode";
+  seen.robot.nodes["/left/costmap"] = {.parameters = {}, .lifecycle = "", .pid = 11};
+  seen.starts["/left/costmap"] = seen.starts["/box"];
+  seen.parameter_file = "/rules/my.params.yaml";
+  seen.dump = *read_launch_dump(kRecord, "");
+  EXPECT_THAT(draft(seen), Not(HasSubstr("\nCOMPONENT")));
+  seen.dump.is_of_running = true;
+  const std::string text = draft(seen);
+  EXPECT_THAT(check({"draft", text}).diagnostics, testing::IsEmpty()) << text;
+  EXPECT_THAT(text, HasSubstr("COMPONENT box NODE /box LAUNCH "));
+  EXPECT_THAT(text, HasSubstr("NODE /left/camera IN /box PLUGIN cameras::Driver"));
+  EXPECT_THAT(text, HasSubstr("# /left/costmap: a component in /box made it\n"));
 }
 
 }  // namespace

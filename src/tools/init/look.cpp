@@ -9,6 +9,7 @@
 #include "base/environment.h"
 #include "base/tool_names.h"
 #include "init/movement.h"
+#include "init/values.h"
 #include "owners/found_owner.h"
 #include "owners/start_of.h"
 #include "robot/inbox.h"
@@ -70,8 +71,9 @@ LiveInterest all_of(const LiveInventory& robot) {
     if (!is_tool_node(name)) interest.nodes.insert(name);
   }
   for (const auto& [name, topic] : robot.topics) {
-    if (!is_topic_of_ros(name) && topic.is_published())
-      interest.fields_of_topics[name] = fields_of_movement(topic.type);
+    if (is_topic_of_ros(name) || !topic.is_published()) continue;
+    interest.fields_of_topics[name] = fields_of_movement(topic.type);
+    interest.fields_of_topics[name].merge(fields_of_measurement(topic.type));
   }
   return interest;
 }

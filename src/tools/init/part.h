@@ -17,9 +17,10 @@ struct Part {
     kLimit,      // proposals likewise: limits of a key of a diagnostic,
     kInterlock,  // and all interlocks together
     kLeftOut,    // what was left out, with the reasons
+    kValues,     // rules that report values of a topic; last, since marks hold the number
   };
   Kind kind = Kind::kComment;
-  // The subject: the node of a component or a rule; the rules' name of the status for a level; that and the key for a limit. For a use it is the template and
+  // The subject: the node of a component or a rule; the topic of values; the rules' name of the status for a level; that and the key for a limit. For a use it is the template and
   // the node, or the whole text after USE. Empty: none.
   std::string subject{};
   std::string text{};  // whole lines

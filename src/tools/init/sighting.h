@@ -32,7 +32,7 @@ struct Sighting {
   // The same for each node that publishes the topic; by topic and node.
   std::map<std::string, std::map<std::string, ros2::Rhythm>> rhythms_of_publishers;
   std::map<std::string, Start> starts;  // by node, of those whose process is proven
-  // For topics that command movements, by topic and field.
+  // For topics that command movements or measure something, by topic and field.
   std::map<std::string, std::map<std::string, ros2::ValueCourse>> fields;
   std::map<ros2::Survey::StatusKey, ros2::StatusCourse> statuses;
   std::set<std::string> came_late;  // nodes that were not there yet after half of the look

@@ -257,6 +257,8 @@ class Updating {
         return is_key_read(part.subject);
       case Part::Kind::kInterlock:
         return !rules_.interlocks.empty();
+      case Part::Kind::kValues:
+        return is_measured(part.subject);
       case Part::Kind::kLeftOut:
         return false;
       case Part::Kind::kHead:
@@ -270,6 +272,14 @@ class Updating {
     return std::ranges::any_of(rules_.signals, [&](const Signal& each) {
       const auto* key = std::get_if<DiagnosticKey>(&each.source);
       return key != nullptr && as_written(key->status) + " " + as_written(key->key) == subject;
+    });
+  }
+
+  // Whether a signal reads a field of the topic.
+  bool is_measured(const std::string& topic) const {
+    return std::ranges::any_of(rules_.signals, [&](const Signal& each) {
+      const auto* field = std::get_if<TopicField>(&each.source);
+      return field != nullptr && rules_[field->topic].name == topic;
     });
   }
 
