@@ -22,6 +22,7 @@ void ParameterFights::detected(RuleId rule, Time now) {
     if (attempt && attempt->first_change != kNever) took_effect(attempt->strategy);
   }
   for (const StrategyId own : rules[rule].strategies) {
+    if (rules[own].is_last_resort) continue;
     for (const Adaptation& adaptation : rules[own].adaptations) {
       if (!syntax::names_parameter(adaptation.type)) continue;
       const Setters& setters = setters_[adaptation.parameter.index];

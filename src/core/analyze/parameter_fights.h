@@ -3,7 +3,7 @@
 // A strategy sets a parameter and resolves its failure; a strategy of a less critical rule then sets
 // the same parameter; the failure is back. Two such turns are evidence enough: from then on the
 // less critical strategy is barred, and the more critical rule's value stays, until the parameter's process
-// begins anew (plan/validity.h).
+// begins anew (plan/validity.h). A last resort proves nothing: it is meant to be taken back, and its failure may come again for its own reasons.
 #pragma once
 
 #include <optional>
