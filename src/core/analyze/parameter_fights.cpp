@@ -10,7 +10,7 @@ void ParameterFights::took_effect(StrategyId strategy) {
     if (!syntax::names_parameter(adaptation.type)) continue;
     Setters& setters = setters_[adaptation.parameter.index];
     if (setters.last == strategy) continue;
-    setters = {strategy, setters.last};
+    setters = {strategy, setters.last, knowledge_.now};
   }
 }
 
@@ -22,10 +22,11 @@ void ParameterFights::detected(RuleId rule, Time now) {
     if (attempt && attempt->first_change != kNever) took_effect(attempt->strategy);
   }
   for (const StrategyId own : rules[rule].strategies) {
+    if (rules[own].is_last_resort) continue;
     for (const Adaptation& adaptation : rules[own].adaptations) {
       if (!syntax::names_parameter(adaptation.type)) continue;
       const Setters& setters = setters_[adaptation.parameter.index];
-      if (!setters.last || setters.before != own) continue;
+      if (!setters.last || setters.before != own || now >= later(setters.since, kSoon)) continue;
       const RuleId other = rules[*setters.last].rule;
       if (rules[other].policies.criticality < rules[rule].policies.criticality)
         states_.bar(*setters.last, {own, now});

@@ -1,9 +1,9 @@
 // Two rules that pull one parameter to and fro.
 //
 // A strategy sets a parameter and resolves its failure; a strategy of a less critical rule then sets
-// the same parameter; the failure is back. Two such turns are evidence enough: from then on the
+// the same parameter; the failure is back within kSoon. Two such turns are evidence enough: from then on the
 // less critical strategy is barred, and the more critical rule's value stays, until the parameter's process
-// begins anew (plan/validity.h).
+// begins anew (plan/validity.h). A last resort proves nothing: it is meant to be taken back, and its failure may come again for its own reasons.
 #pragma once
 
 #include <optional>
@@ -15,6 +15,9 @@ namespace culprit {
 
 class ParameterFights {
  public:
+  // A battery that is low once more after an hour was not emptied by the rule that noticed its charge.
+  static constexpr Duration kSoon = std::chrono::minutes(10);
+
   // Both must outlive it.
   ParameterFights(const Knowledge& knowledge, RuleStates& states);
 
@@ -27,6 +30,7 @@ class ParameterFights {
   struct Setters {
     std::optional<StrategyId> last;
     std::optional<StrategyId> before;  // another one
+    Time since = kLongAgo;             // `last` took effect
   };
 
   const Knowledge& knowledge_;

@@ -345,6 +345,44 @@ TEST_P(LastResort, ComesAgainWithTheFailure) {
   }
 }
 
+std::string goes_on(const std::string& is_safe) {
+  return "RULE StopIsOver\nPOLICIES NON_CRITICAL FOR 1s\nTRIGGER speed < 0.1 && " + is_safe +
+         "\nSTRATEGY go_on 95 10\nADAPTATION base set_parameter max_speed 1.0 2\n";
+}
+
+// The base reports its speed.
+void drive_for(TestRobot& robot, Duration time) {
+  for (const Time end = robot.now + time; robot.now < end; robot.run_for(100ms)) {
+    robot.signal("speed", robot["base"].parameters["max_speed"]);
+    robot.signal("heat", Value(stands_still(robot) ? 1.0 : 3.0));
+  }
+}
+
+// The rule that ends the safe stop is not why the failure comes again.
+TEST_P(LastResort, IsTakenBackAfterEachFailure) {
+  TestRobot robot = driving(goes_on("age(/pose) < 300ms") + loc_lost(" WITHIN 1s", "redeploy 60"));
+  for (std::size_t time = 1; time <= 4; ++time) {
+    robot["loc"].fault = "redeploy";
+    drive_for(robot, 1s);
+    EXPECT_TRUE(stands_still(robot)) << transcript(robot);
+    drive_for(robot, 9s);
+    EXPECT_FALSE(stands_still(robot)) << transcript(robot);
+    EXPECT_EQ(robot.count("StopIsOver resolved by go_on"), time) << transcript(robot);
+  }
+}
+
+// Here it is: driving on brings the failure back.
+TEST_P(LastResort, IsNotTakenBackForEver) {
+  TestRobot robot = driving(goes_on("heat < 2") +
+                            "RULE Hot\nPOLICIES ERROR\nTRIGGER heat > 2\n"
+                            "STRATEGY begin_anew 50 10\nADAPTATION loc restart 40\n"
+                            "STRATEGY cool 100 10 LASTRESORT WITHIN 1s\n"
+                            "ADAPTATION base set_parameter max_speed 0.0 1\n");
+  drive_for(robot, 10min);
+  EXPECT_TRUE(stands_still(robot)) << transcript(robot);
+  EXPECT_LE(robot.count_asked("base: set max_speed"), 20u) << transcript(robot);
+}
+
 TEST_P(LastResort, ThatHelpedIsNamed) {
   TestRobot robot = driving(
       "RULE TooFast\nPOLICIES ERROR\nTRIGGER speed > 3\nSTRATEGY gear 60 10\n"

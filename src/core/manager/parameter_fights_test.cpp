@@ -40,6 +40,29 @@ struct Fight {
   Value last;
 };
 
+// A battery that is emptied by work, and charged by people.
+struct Charged {
+  explicit Charged(std::unique_ptr<const Planner> planner)
+      : robot(
+            "COMPONENT base NODE /base LAUNCH \"base\"\n"
+            "RULE Low\nPOLICIES ERROR ON_CHANGE\nTRIGGER charge < 0.1\nSTRATEGY rest 90 10\n"
+            "ADAPTATION base set_parameter power false 2\n"
+            "RULE Full\nPOLICIES NON_CRITICAL\nTRIGGER rests && charge > 0.9\n"
+            "STRATEGY go 90 10\nADAPTATION base set_parameter power true 2\n",
+            std::move(planner)) {
+    robot.add("base").parameters["power"] = Value(true);
+    robot.discover();
+  }
+  bool has_power() { return robot["base"].parameters["power"] == Value(true); }
+  void run_for(Duration time, double charge) {
+    for (const Time end = robot.now + time; robot.now < end; robot.run_for(1s)) {
+      robot.signal("charge", Value(charge));
+      robot.signal("rests", Value(!has_power()));
+    }
+  }
+  TestRobot robot;
+};
+
 TEST_P(ParameterFight, EndsWithTheValueOfTheMoreCriticalRule) {
   Fight fight(GetParam()(), "WARNING");
   fight.run_for(300s);
@@ -76,6 +99,16 @@ TEST_P(ParameterFight, BeginsAnewWithTheProcess) {
   fight.robot["cam"].parameters["gain"] = Value(2.7);
   fight.run_for(20s);
   EXPECT_GT(fight.changes(), before) << transcript(fight.robot);
+}
+
+TEST_P(ParameterFight, IsNotWhatComesAgainMuchLater) {
+  Charged day(GetParam()());
+  for (int shift = 0; shift < 4; ++shift) {
+    day.run_for(1h, 1.0);
+    EXPECT_TRUE(day.has_power()) << shift << transcript(day.robot);
+    day.run_for(10min, 0.05);
+    EXPECT_FALSE(day.has_power()) << shift << transcript(day.robot);
+  }
 }
 
 }  // namespace

@@ -82,12 +82,13 @@ class ImuDriver final : public RoverNode {
 };
 
 // base_driver: drives as /cmd_vel says, and stops if nothing came for 0.5 s. Integrates the wheels' encoders: /odom and
-// odom -> base_link on /tf, 20 Hz. Passes on /battery_state.
+// odom -> base_link on /tf, 20 Hz. Passes on /battery_state. Without the parameter motor_power it stands, and senses.
 //
 // Faults: "odom_frozen" (encoders read zero), "tf_stopped", "tf_late" (stamps 3 s old), "stall" (obeys no command).
 class BaseDriver final : public RoverNode {
  public:
-  explicit BaseDriver(Settings settings) : RoverNode({.name = "/base_driver"}, settings) {}
+  explicit BaseDriver(Settings settings)
+      : RoverNode({.name = "/base_driver", .parameters = {{"motor_power", true}}}, settings) {}
 
  private:
   void set_up() override {
@@ -105,7 +106,8 @@ class BaseDriver final : public RoverNode {
                             [this](const msg::BatteryState& state) { battery_->publish(state); });
     every(50ms, [this] {
       const bool is_fresh = ros2::Executor::Clock::now() - commanded_ < 500ms;
-      motors_->publish(is_fresh && !has("stall") ? command_ : msg::Twist{});
+      const bool drives = is_fresh && parameter<bool>("motor_power") && !has("stall");
+      motors_->publish(drives ? command_ : msg::Twist{});
     });
   }
 

@@ -194,6 +194,7 @@ void Experiment::clear() {
   const std::vector<std::pair<std::string, std::pair<std::string, Value>>> healthy = {
       {"world", {"lidar_plugged", Value(true)}},
       {"world", {"battery", Value(1.0)}},
+      {"base_driver", {"motor_power", Value(true)}},
       {"e_stop", {"stopped", Value(false)}},
       {"controller_server", {"max_speed", Value(0.5)}}};
   for (const auto& each : healthy)
