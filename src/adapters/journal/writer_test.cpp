@@ -421,7 +421,7 @@ TEST(Learned, LatenciesOfAFleetAreTheShortestAndTheLongest) {
 }
 
 TEST(Learned, FailuresThatClearByThemselvesAreKeptBesideLatencies) {
-  const Transients::Seen seen{3, 1, 2500ms};
+  const Transients::Seen seen{3, 1, std::chrono::milliseconds(2500)};
   Transients::Seen read;
   for (const LearnedLatency& each : named("R", seen)) {
     const auto part = transients_from(each);
