@@ -32,6 +32,25 @@ Json document_of(const journal::Learned& learned) {
 
 double learned_of(double now, double prior) { return now - prior; }
 
+void show_latencies(const std::vector<journal::LearnedLatency>& all) {
+  std::string late;
+  std::string transient;
+  for (const journal::LearnedLatency& each : all) {
+    const auto part = journal::transients_from(each);
+    if (!part)
+      late += fmt::format("{:<28} {:>8} {:>6.3g} s {:>6.3g} s\n", each.rule, each.count,
+                          each.least_s, each.most_s);
+    if (part && part->second.cleared > 0)
+      transient += fmt::format("{:<28} {:>8} {:>6.3g} s\n", part->first, each.count, each.most_s);
+  }
+  if (!late.empty())
+    fmt::print("\nHow late rules are\n{:<28} {:>8} {:>8} {:>8}\n{}", "rule", "count", "from", "to",
+               late);
+  if (!transient.empty())
+    fmt::print("\nFailures that cleared by themselves\n{:<28} {:>8} {:>8}\n{}", "rule", "count",
+               "within", transient);
+}
+
 int show(const BeliefsOptions& options) {
   const auto journal = options.journal.open();
   if (!journal) return fail(journal.error());
@@ -59,11 +78,7 @@ int show(const BeliefsOptions& options) {
   for (const journal::LearnedCoupling& each : learned->couplings)
     fmt::print("{:<28} {:<28} {:>8.6g} {:>8.6g}\n", each.cause, each.effect, each.coupling.cleared,
                each.coupling.stayed);
-  if (!learned->latencies.empty())
-    fmt::print("\nHow late rules are\n{:<28} {:>8} {:>8} {:>8}\n", "rule", "count", "from", "to");
-  for (const journal::LearnedLatency& each : learned->latencies)
-    fmt::print("{:<28} {:>8} {:>6.3g} s {:>6.3g} s\n", each.rule, each.count, each.least_s,
-               each.most_s);
+  show_latencies(learned->latencies);
   return kOk;
 }
 

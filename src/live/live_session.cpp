@@ -118,6 +118,10 @@ journal::Learned learned_by(const Knowledge& knowledge) {
     const Latencies::Learned& latency = knowledge.latencies.learned(RuleId(r));
     if (latency.count > 0)
       learned.latencies.push_back(journal::named(rules.rules[r].name, latency));
+    const Transients::Seen& seen = knowledge.transients.seen(RuleId(r));
+    if (seen == Transients::Seen()) continue;
+    for (journal::LearnedLatency& each : journal::named(rules.rules[r].name, seen))
+      learned.latencies.push_back(std::move(each));
   }
   return learned;
 }

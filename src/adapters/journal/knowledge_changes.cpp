@@ -12,6 +12,7 @@ KnowledgeChanges::KnowledgeChanges(const Knowledge& knowledge) : knowledge_(know
     const auto all = knowledge.couplings.of(RuleId(r));
     couplings_.emplace_back(all.begin(), all.end());
     latencies_.push_back(knowledge.latencies.learned(RuleId(r)));
+    transients_.push_back(knowledge.transients.seen(RuleId(r)));
   }
 }
 
@@ -42,6 +43,13 @@ Learned KnowledgeChanges::learned() {
     if (latency == latencies_[r]) continue;
     latencies_[r] = latency;
     learned.latencies.push_back(named(rules.rules[r].name, latency));
+  }
+  for (std::size_t r = 0; r < transients_.size(); ++r) {
+    const Transients::Seen& seen = knowledge_.transients.seen(RuleId(r));
+    if (seen == transients_[r]) continue;
+    transients_[r] = seen;
+    for (LearnedLatency& each : named(rules.rules[r].name, seen))
+      learned.latencies.push_back(std::move(each));
   }
   return learned;
 }

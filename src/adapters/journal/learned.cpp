@@ -1,8 +1,15 @@
 #include "journal/learned.h"
 
 #include <algorithm>
+#include <string_view>
 
 namespace culprit::journal {
+namespace {
+
+constexpr std::string_view kClears = " clears by itself";
+constexpr std::string_view kStays = " stays";
+
+}  // namespace
 
 Belief grown_from(const Belief& prior, const LearnedBelief& learned) {
   return regrown(learned.belief, learned.prior, prior);
@@ -15,6 +22,23 @@ LearnedLatency named(const std::string& rule, const Latencies::Learned& learned)
 Latencies::Learned latency_from(const LearnedLatency& learned) {
   const Duration least = from_seconds(learned.least_s);
   return {learned.count, {least, from_seconds(learned.most_s), least}};
+}
+
+std::array<LearnedLatency, 2> named(const std::string& rule, const Transients::Seen& seen) {
+  const double longest_s = seconds(seen.longest);
+  return {{{rule + std::string(kClears), seen.cleared, longest_s, longest_s},
+           {rule + std::string(kStays), seen.stayed, 0, 0}}};
+}
+
+std::optional<std::pair<std::string, Transients::Seen>> transients_from(
+    const LearnedLatency& learned) {
+  const auto rule = [&](std::string_view end) {
+    return learned.rule.substr(0, learned.rule.size() - end.size());
+  };
+  if (learned.rule.ends_with(kStays))
+    return std::pair(rule(kStays), Transients::Seen{0, learned.count, {}});
+  if (!learned.rule.ends_with(kClears)) return std::nullopt;
+  return std::pair(rule(kClears), Transients::Seen{learned.count, 0, from_seconds(learned.most_s)});
 }
 
 void merge(Learned& learned, const Learned& other) {

@@ -1,12 +1,16 @@
 // The beliefs about strategies and failures, by name, so that they outlive the rule file's numbers.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "knowledge/beliefs.h"
 #include "knowledge/couplings.h"
 #include "knowledge/latencies.h"
+#include "knowledge/transients.h"
 
 namespace culprit::journal {
 
@@ -25,7 +29,8 @@ struct LearnedCoupling {
   bool operator==(const LearnedCoupling&) const = default;
 };
 
-// Seconds, because people read it.
+// Times that were learned of a rule: how late it is; or, under a name that no rule has, the failures
+// that cleared by themselves, or did not. Seconds, because people read it.
 struct LearnedLatency {
   std::string rule;
   int count = 0;  // 0: nothing is known any more
@@ -35,6 +40,10 @@ struct LearnedLatency {
 };
 LearnedLatency named(const std::string& rule, const Latencies::Learned& learned);
 Latencies::Learned latency_from(const LearnedLatency& learned);
+std::array<LearnedLatency, 2> named(const std::string& rule, const Transients::Seen& seen);
+// The rule, and one part of what is known of it; nothing: it is the lateness of a rule.
+std::optional<std::pair<std::string, Transients::Seen>> transients_from(
+    const LearnedLatency& learned);
 
 struct Learned {
   std::vector<LearnedBelief> beliefs;

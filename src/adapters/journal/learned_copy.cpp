@@ -48,8 +48,9 @@ void forget(Learned& learned, const std::string& rule) {
   std::erase_if(learned.couplings, [&](const LearnedCoupling& each) {
     return rule.empty() || each.cause == rule || each.effect == rule;
   });
-  std::erase_if(learned.latencies,
-                [&](const LearnedLatency& each) { return rule.empty() || each.rule == rule; });
+  std::erase_if(learned.latencies, [&](const LearnedLatency& each) {
+    return rule.empty() || each.rule == rule || each.rule.starts_with(rule + " ");
+  });
 }
 
 void follow(Learned& learned, std::string_view kind, const Json& body) {

@@ -212,6 +212,16 @@ TEST_F(Recording, HowLateARuleIsIsOnRecordWhenItChanges) {
   EXPECT_EQ(learned(), (std::vector<LearnedLatency>{{"Blurred", 0, 0, 0}}));
 }
 
+TEST_F(Recording, FailuresThatClearByThemselvesAreOnRecord) {
+  constexpr RuleId kBlurred{std::size_t{1}};
+  const auto recorder = begin();
+  knowledge.transients.add(kBlurred, {2, 1, 3s});
+  sees_a_failure(*recorder);
+  EXPECT_EQ(value_of(value_of(Reader::open(path)).learned()).latencies,
+            (std::vector<LearnedLatency>{{"Blurred clears by itself", 2, 3, 3},
+                                         {"Blurred stays", 1, 0, 0}}));
+}
+
 // A thread that writes to such a disk may not come back.
 TEST_F(RecordingHere, WhileTheDiskDoesNotAnswerARequestWaitsForTheJournalAndNotForEver) {
   const auto recorder = begin();

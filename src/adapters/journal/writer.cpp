@@ -314,9 +314,10 @@ Expected<int> Writer::forget(const std::string& rule, std::int64_t now) {
   if (!begun) return failure(path_, begun.error());
   const Link before = newest_;
   auto done = write(batch, now);
-  for (const char* sql : {"DELETE FROM belief WHERE ?1 = '' OR rule = ?1",
-                          "DELETE FROM coupling WHERE ?1 = '' OR cause = ?1 OR effect = ?1",
-                          "DELETE FROM latency WHERE ?1 = '' OR rule = ?1"}) {
+  for (const char* sql :
+       {"DELETE FROM belief WHERE ?1 = '' OR rule = ?1",
+        "DELETE FROM coupling WHERE ?1 = '' OR cause = ?1 OR effect = ?1",
+        "DELETE FROM latency WHERE ?1 = '' OR rule = ?1 OR instr(rule, ?1 || ' ') = 1"}) {
     auto statement = database_.prepare(sql);
     if (!statement) return failure(path_, statement.error());
     const auto deleted = statement->bind(1, std::string_view(rule)).step();

@@ -420,6 +420,21 @@ TEST(Learned, LatenciesOfAFleetAreTheShortestAndTheLongest) {
   EXPECT_EQ(ours.latencies[0].count, Latencies::Learned::kMost);
 }
 
+TEST(Learned, FailuresThatClearByThemselvesAreKeptBesideLatencies) {
+  const Transients::Seen seen{3, 1, std::chrono::milliseconds(2500)};
+  Transients::Seen read;
+  for (const LearnedLatency& each : named("R", seen)) {
+    const auto part = transients_from(each);
+    ASSERT_TRUE(part);
+    EXPECT_EQ(part->first, "R");
+    read.cleared += part->second.cleared;
+    read.stayed += part->second.stayed;
+    read.longest = std::max(read.longest, part->second.longest);
+  }
+  EXPECT_EQ(read, seen);
+  EXPECT_FALSE(transients_from({"R", 1, 2, 2}));
+}
+
 TEST(Learned, LatenciesAreKeptToTheNanosecond) {
   const Latencies::Learned learned{
       7, {Duration(1'234'567'891), Duration(86'400'000'000'001), Duration(1'234'567'891)}};

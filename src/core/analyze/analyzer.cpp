@@ -72,6 +72,7 @@ Analyzer::Analyzer(const Knowledge& knowledge, Writes writes, Time start, Time d
       fights_(knowledge, writes.states) {}
 
 void Analyzer::advance(Time now) {
+  write_.transients.advance(now);
   for (const RuleId id : write_.signals.take_touched()) look_at(id, now);
   while (const auto due = deadlines_.pop_due(now)) look_at(RuleId(*due), now);
   couplings_.advance(now);
@@ -83,6 +84,7 @@ void Analyzer::restart(Time now) {
   couplings_.restart();
   outcomes_.restart();
   blind_.restart(now);
+  write_.transients.restart();
   for (std::size_t r = 0; r < knowledge_.rules.rules.size(); ++r) {
     const RuleId id(r);
     RuleState& state = write_.states.state(id);
@@ -344,6 +346,7 @@ void Analyzer::detect(RuleId id, Time now) {
   }
   const bool is_said_to_be_exhausted = is_same && state.search.is_exhausted;
   state.recurring_since = recurs ? state.first_detected() : kNever;
+  write_.transients.came_back(id);
   state.detection.armed = false;
   state.is_advised = state.is_last_resort_advised = false;
   state.tried_alone.reset();
@@ -393,6 +396,7 @@ void Analyzer::watch_failing(RuleId id, Time now) {
     } else if (const auto helped = last_resort_that_helped(id)) {
       resolve(id, {id, FailureResolved::How::kByStrategy, *helped, {}}, now);
     } else {
+      note_transient(id);
       resolve(id, {id, FailureResolved::How::kWithoutStrategy, {}, {}}, now);
     }
   } else if (!state.detection.trigger.known &&
@@ -435,6 +439,7 @@ void Analyzer::judge(RuleId id, Time now) {
   // Before anybody knows how it ends: what keeps an outcome from counting must not depend on it.
   if (attempt.deadline == kNever) {
     fights_.took_effect(attempt.strategy);
+    note_that_it_stayed(id);
     attempt.is_ambiguous |=
         couplings_.is_echo(attempt) ||
         (!state.standing.empty() && attempt.effective <= state.search.last_resort_at);
@@ -561,6 +566,7 @@ void Analyzer::succeed(RuleId id, Time now) {
   if (caused) {
     resolve(id, {id, FailureResolved::How::kByStrategy, attempt.strategy, {}}, now);
   } else {
+    if (!is_suspended) note_transient(id);
     resolve(id, {id, FailureResolved::How::kWithoutStrategy, {}, {}}, now);
   }
   // If the failure comes back, this one was tried.
@@ -573,6 +579,26 @@ void Analyzer::note_latency(RuleId id, Time effective) {
   const Time cleared = knowledge_.states[id].detection.trigger_since;
   if (effective != kNever && cleared >= effective)
     write_.latencies.cleared(id, cleared - effective);
+}
+
+// The failure clears, and no strategy was begun for it.
+void Analyzer::note_transient(RuleId id) {
+  const RuleState& state = knowledge_.states[id];
+  const Search& search = state.search;
+  if (search.attempts == search.attempts_before && couplings_.is_unaided(id))
+    write_.transients.cleared(id, state.failing_since, state.detection.trigger_since);
+}
+
+// The first strategy for it takes effect. Was it left alone until then for as long as such failures take to
+// clear by themselves?
+void Analyzer::note_that_it_stayed(RuleId id) {
+  const RuleState& state = knowledge_.states[id];
+  const Search& search = state.search;
+  const Duration patience = write_.transients.patience(id);
+  if (patience > Duration::zero() && search.attempts == search.attempts_before &&
+      state.attempt->first_change >= later(state.first_detected(), patience) &&
+      is_true(state.detection.trigger))
+    write_.transients.stayed(id);
 }
 
 // Began another failure with it that the graph does not connect with it?

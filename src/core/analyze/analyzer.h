@@ -84,6 +84,7 @@ class Analyzer {
     Couplings& couplings;
     Latencies& latencies;
     Coincidences& coincidences;
+    Transients& transients;
     PendingOutcomes& outcomes;
     Blindness& blindness;
     EventLog& events;
@@ -191,6 +192,8 @@ class Analyzer {
   void stay_exhausted(RuleId id, Time now);
   bool went_away_before(const Attempt& attempt) const;
   void note_latency(RuleId id, Time effective);
+  void note_transient(RuleId id);
+  void note_that_it_stayed(RuleId id);
   void note_coincidence(RuleId id);
   // Is there a more critical failure for which the same component would be adapted?
   bool holds_up_more_critical(StrategyId strategy) const;

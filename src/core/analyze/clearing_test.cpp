@@ -35,8 +35,8 @@ struct Watched {
   Knowledge knowledge{rules};
   Analyzer analyzer{knowledge,
                     {knowledge.states, knowledge.signals, knowledge.beliefs, knowledge.couplings,
-                     knowledge.latencies, knowledge.coincidences, knowledge.outcomes,
-                     knowledge.blindness, knowledge.events},
+                     knowledge.latencies, knowledge.coincidences, knowledge.transients,
+                     knowledge.outcomes, knowledge.blindness, knowledge.events},
                     Time{},
                     Time{}};
   Time now{100s};
@@ -76,6 +76,27 @@ TEST(Clearing, TakesSoManyCyclesThatTheRestOfTheWindowCannotHoldIt) {
   EXPECT_EQ(w.told<FailureResolved>(), 0);
   w.be(0, 100ms);
   EXPECT_EQ(w.told<FailureResolved>(), 1);
+}
+
+TEST(Clearing, ByItselfIsLearnedOnceTheFailureStayedAwayForAsLongAsItWasThere) {
+  Watched w("");
+  w.be(2, 1s);
+  w.be(0, 900ms);
+  ASSERT_EQ(w.told<FailureResolved>(), 1);
+  EXPECT_EQ(w.knowledge.transients.patience(RuleId(0u)), 0s);
+  w.be(0, 200ms);
+  EXPECT_EQ(w.knowledge.transients.longest(RuleId(0u)), 1s);
+}
+
+TEST(Clearing, OfAFailureThatComesAndGoesIsNoneByItself) {
+  Watched w("");
+  for (int i = 0; i < 5; ++i) {
+    w.be(2, 1s);
+    w.be(0, 500ms);
+  }
+  ASSERT_EQ(w.told<FailureResolved>(), 5);
+  w.be(2, 50ms);
+  EXPECT_EQ(w.knowledge.transients.seen(RuleId(0u)), (Transients::Seen{0, 5, {}}));
 }
 
 // However often what it reads changes: a window of five is five cycles.

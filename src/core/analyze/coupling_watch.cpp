@@ -218,6 +218,24 @@ bool CouplingWatch::is_echo(const Attempt& attempt) const {
   });
 }
 
+bool CouplingWatch::is_unaided(RuleId rule) const {
+  const RuleState& state = knowledge_.states[rule];
+  if (!state.onset) return false;
+  const Time gone = state.detection.trigger_since;
+  const Sources sources(knowledge_, rule);
+  const auto may_have_helped = [&](StrategyId strategy, Time begin) {
+    return begin <= gone && sources.have(knowledge_.rules[strategy].components);
+  };
+  const bool is_helped = std::ranges::any_of(changes_, [&](const Change& change) {
+    return shown(change, rule) >= state.onset->earliest &&
+           may_have_helped(change.strategy, change.begin);
+  });
+  return !is_helped && std::ranges::none_of(knowledge_.states.active(), [&](RuleId id) {
+    const auto& attempt = knowledge_.states[id].attempt;
+    return attempt && may_have_helped(attempt->strategy, attempt->first_change);
+  });
+}
+
 // No query is about a time before all of these: the last `kPatience`, the first open question, and
 // the first attempt under way.
 void CouplingWatch::forget_what_is_settled(Time now) {

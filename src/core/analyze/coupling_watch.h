@@ -51,6 +51,8 @@ class CouplingWatch {
   void ended(const Attempt& attempt, Time now);
   // Can a change that was made for another failure just before `attempt` have resolved its own?
   bool is_echo(const Attempt& attempt) const;
+  // The failure of `rule` clears. Did no change that can have cleared it take effect since it began?
+  bool is_unaided(RuleId rule) const;
 
   // culprit did not watch for a while: failures that cleared meanwhile count as coupled to none.
   void restart() { questions_.clear(); }

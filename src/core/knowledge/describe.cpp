@@ -636,6 +636,7 @@ std::string describe_exclusion(const Candidate& candidate, const RuleSet& rules)
         return "it depends on " + component + ", which was " + candidate.remark;
       return "it depends on " + component + ", which may still prove to be the cause" + because;
     case Condition::kSettling:
+      if (candidate.failure == rules[candidate.strategy].rule) return candidate.remark;
       if (!candidate.remark.empty())
         return "it may only show that " + component + " " + candidate.remark;
       return "it is expected to clear now that " + rules[*candidate.failure].name + " is resolved";

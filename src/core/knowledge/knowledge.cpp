@@ -69,6 +69,7 @@ Knowledge::Knowledge(const RuleSet& rule_set)
       couplings(rules),
       latencies(rules),
       coincidences(rules),
+      transients(rules),
       withheld(rules.strategies.size()) {}
 
 Knowledge::Knowledge(const RuleSet& rule_set, const Knowledge& other)
@@ -84,6 +85,7 @@ Knowledge::Knowledge(const RuleSet& rule_set, const Knowledge& other)
       couplings(other.couplings),
       latencies(other.latencies),
       coincidences(other.coincidences),
+      transients(other.transients),
       withheld(other.withheld),
       outcomes(other.outcomes),
       rivals(other.rivals),

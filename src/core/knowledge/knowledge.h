@@ -20,6 +20,7 @@
 #include "knowledge/rule_states.h"
 #include "knowledge/sightings.h"
 #include "knowledge/signal_store.h"
+#include "knowledge/transients.h"
 #include "language/rule_set.h"
 
 namespace culprit {
@@ -46,6 +47,7 @@ struct Knowledge {
   Couplings couplings;
   Latencies latencies;
   Coincidences coincidences;
+  Transients transients;
   // The governor's reason against an action now.
   struct Withheld {
     std::string reason;        // empty: it is allowed

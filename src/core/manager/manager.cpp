@@ -71,8 +71,8 @@ Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, O
                options.start, later(options.start, options.discovery)),
       analyzer_(knowledge_,
                 {knowledge_.states, knowledge_.signals, knowledge_.beliefs, knowledge_.couplings,
-                 knowledge_.latencies, knowledge_.coincidences, knowledge_.outcomes,
-                 knowledge_.blindness, knowledge_.events},
+                 knowledge_.latencies, knowledge_.coincidences, knowledge_.transients,
+                 knowledge_.outcomes, knowledge_.blindness, knowledge_.events},
                 options.start, later(options.start, options.discovery)),
       planner_(std::move(planner)),
       executor_(knowledge_, {Attempts(knowledge_.states), knowledge_.components, knowledge_.signals,
@@ -258,7 +258,9 @@ void Manager::forget(std::optional<RuleId> rule) {
       if (!rule || each.cause == *rule || effect == *rule)
         knowledge_.couplings.set(each.cause, effect, {});
     }
-    if (!rule || effect == *rule) knowledge_.latencies.forget(effect);
+    if (rule && effect != *rule) continue;
+    knowledge_.latencies.forget(effect);
+    knowledge_.transients.forget(effect);
   }
 }
 

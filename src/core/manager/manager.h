@@ -81,6 +81,9 @@ class Manager : public ManagingSystem {
   void set_latency(RuleId rule, const Latencies::Learned& learned) {
     knowledge_.latencies.set(rule, learned);
   }
+  void add_transients(RuleId rule, const Transients::Seen& seen) {
+    knowledge_.transients.add(rule, seen);
+  }
   // Restores the state that earlier processes left: budgets, back-offs, silences, and the last
   // attempts.
   // Before the first step, and before resume().

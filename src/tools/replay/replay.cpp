@@ -93,6 +93,9 @@ void restore(Manager& manager, const journal::Learned& learned, const RuleSet& r
   for (const journal::LearnedLatency& each : learned.latencies) {
     if (const auto rule = journal::find_rule(rules, each.rule))
       manager.set_latency(*rule, journal::latency_from(each));
+    const auto transients = journal::transients_from(each);
+    const auto rule = transients ? journal::find_rule(rules, transients->first) : std::nullopt;
+    if (rule) manager.add_transients(*rule, transients->second);
   }
 }
 

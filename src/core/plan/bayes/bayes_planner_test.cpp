@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "knowledge/describe.h"
 #include "plan/bayes/test_scene.h"
 #include "plan/paper_planner.h"
 
@@ -416,6 +417,36 @@ TEST(BayesPlanner, SaysWhoIsSuspectedAndWhatItIsWorth) {
   EXPECT_GT(suspects[0].probability, 0.9);
   EXPECT_GT(scene.candidate("A.restart").value, 4) << "an ERROR, and a share of another";
   EXPECT_DOUBLE_EQ(scene.candidate("A.restart").resolves, 0.5);
+}
+
+TEST(BayesPlanner, LeavesAFailureAloneForAsLongAsSuchFailuresTookToClear) {
+  Scene scene = robot();
+  scene->transients.add(scene.rule("A"), {8, 0, 4s});
+  scene.fail("A", 6s);  // 4 s ago
+  EXPECT_EQ(scene.plan(kBalanced), "");
+  EXPECT_EQ(scene.candidate("A.restart").excluded, Condition::kSettling);
+  EXPECT_EQ(describe_exclusion(scene.candidate("A.restart"), scene.rules()),
+            "such failures often clear by themselves");
+  scene.fail("A", 4s);  // 6 s ago
+  EXPECT_EQ(scene.plan(kBalanced), "A.restart");
+}
+
+TEST(BayesPlanner, LeavesNoFailureAloneThatIsProvenOrRarelyClearsOrComesBack) {
+  Scene scene = robot();
+  const auto plan_anew = [&] {
+    scene.fail("A", 10s);
+    return scene.plan(kBalanced);
+  };
+  scene->transients.add(scene.rule("A"), {8, 0, 4s});
+  scene->components[scene.component("a")].alive = false;
+  EXPECT_NE(plan_anew(), "") << "it hangs";
+  scene->components[scene.component("a")].alive = true;
+  EXPECT_EQ(plan_anew(), "");
+  scene->states.state(scene.rule("A")).search.times = 3;
+  EXPECT_EQ(plan_anew(), "A.restart");
+  scene->states.state(scene.rule("A")).search.times = 1;
+  scene->transients.add(scene.rule("A"), {0, 100, {}});
+  EXPECT_EQ(plan_anew(), "A.restart");
 }
 
 TEST(BayesPlanner, DecidesAboutEveryFailure) {

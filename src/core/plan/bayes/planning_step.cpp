@@ -318,7 +318,8 @@ void PlanningStep::exclude(WeighedCandidate& weighed, double chance) const {
       exclude(weighed, *held);
     return;
   }
-  if (exclude_effect(weighed) || exclude_unproven(weighed, chance) || exclude_coincidence(weighed))
+  if (exclude_effect(weighed) || exclude_unproven(weighed, chance) ||
+      exclude_coincidence(weighed) || exclude_transient(weighed))
     return;
   if (const auto held = exclusions_.reserved(weighed.level, weighed.affected))
     return exclude(weighed, *held);
@@ -378,6 +379,34 @@ bool PlanningStep::exclude_unproven(WeighedCandidate& weighed, double chance) co
                     awaiting->begun_anew.value_or(likeliest_component(awaiting->because)),
                     awaiting->because});
   if (awaiting->begun_anew) weighed.candidate.remark = "was down for a strategy";
+  return true;
+}
+
+// Is there a proof of the failure, or does it keep coming back and was not repaired yet?
+bool PlanningStep::is_sure(RuleId rule) const {
+  constexpr int kOften = 3;
+  const Search& search = knowledge_.states[rule].search;
+  return is_known_down(rule, knowledge_) || (search.times >= kOften && search.attempts == 0) ||
+         std::ranges::any_of(knowledge_.rules[rule].components, [&](ComponentId c) {
+           const auto& trouble = found_.troubles()[c.index];
+           return trouble && trouble->trouble != diagnose::Trouble::kSilent;
+         });
+}
+
+// Is it left alone at first, since it will likely clear by itself? (knowledge/transients.h) Only if that
+// is worth the time that it costs otherwise.
+bool PlanningStep::exclude_transient(WeighedCandidate& weighed) const {
+  const RuleId rule = causes_[weighed.failure].rule;
+  const Transients& transients = knowledge_.transients;
+  const Duration patience = transients.patience(rule);
+  if (knowledge_.now >= later(knowledge_.states[rule].first_detected(), patience) || is_sure(rule))
+    return false;
+  const double share = transients.share(rule);
+  const Effort waiting{Cycles{0}, transients.longest(rule)};
+  const double lost = time_cost(waiting, weights_, knowledge_.rules);
+  if (share * weighed.candidate.cost < (1 - share) * lost) return false;
+  exclude(weighed, {Condition::kSettling, likeliest_component(rule), rule});
+  weighed.candidate.remark = "such failures often clear by themselves";
   return true;
 }
 

@@ -55,6 +55,8 @@ class PlanningStep {
   bool exclude_effect(WeighedCandidate& weighed) const;
   bool exclude_coincidence(WeighedCandidate& weighed) const;
   bool exclude_unproven(WeighedCandidate& weighed, double chance) const;
+  bool exclude_transient(WeighedCandidate& weighed) const;
+  bool is_sure(RuleId rule) const;
   void exclude_for(WeighedCandidate& weighed, std::size_t cause) const;
   bool ends_wait_of(StrategyId strategy, std::size_t cause) const;
   bool is_quicker_than_repair(StrategyId strategy, std::size_t cause) const;
