@@ -114,7 +114,7 @@ class Trail {
     if (std::holds_alternative<Pause>(order.what)) is_paused_ = true;
     if (std::holds_alternative<Resume>(order.what)) is_paused_ = false;
     if (const auto* dry_run = std::get_if<SetDryRun>(&order.what)) is_dry_run_ = dry_run->is_on;
-    // What it begins is not chosen, and goes before what had failed.
+    // No plan chooses what it begins, which goes before a strategy that had failed.
     if (const auto* run = std::get_if<RunStrategy>(&order.what)) close_for(run->strategy);
     if (const auto* approved = std::get_if<Approve>(&order.what)) close_for(approved->strategy);
   }

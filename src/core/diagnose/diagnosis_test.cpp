@@ -206,7 +206,7 @@ TEST(Diagnosis, ALifecycleExplainsNoRuleAboutStates) {
   EXPECT_DOUBLE_EQ(own_of(about_states("x > 1 || lifecycle(b) != \"active\"", sets)), 1);
 }
 
-// What is only ever reconfigured is not broken, and no cause of worse.
+// A failure that strategies only reconfigure is no cause of worse ones.
 TEST(Diagnosis, ALesserFailureIsACauseIfAnyOfItsStrategiesBeginsAnew) {
   const std::string tuned =
       "COMPONENT a NODE /a\nCOMPONENT aside NODE /aside\nRULE A\nPOLICIES WARNING\nTRIGGER y > "

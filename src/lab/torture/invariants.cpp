@@ -279,8 +279,8 @@ void Invariants::check_replacement(const Manager& manager, const Strategy& strat
   }
 }
 
-// Its silence began before `failed`, and nothing helped against it. What has a fault of its own may
-// have outlasted a pause of that silence.
+// Its silence began before `failed`, and nothing helped against it. An effect with a fault of its own
+// may have outlasted a pause of that silence.
 bool Invariants::is_given_up(const Manager& manager, ComponentId component, Time failed,
                              bool is_effect_faulty) const {
   const RuleStates& states = manager.knowledge().states;

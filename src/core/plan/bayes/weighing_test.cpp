@@ -1,4 +1,4 @@
-// What a strategy is worth, and what it does to its component.
+// The worth of a strategy, and its effect on its component.
 #include <gtest/gtest.h>
 
 #include "plan/bayes/bayes_planner.h"
