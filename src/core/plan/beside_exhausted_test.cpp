@@ -34,5 +34,16 @@ TEST(BesideExhausted, ThePaperNamesTheComponentThatThePersonHasToLookAt) {
   EXPECT_EQ(scene.candidate("B.redeploy").component, scene.component("a"));
 }
 
+// Nothing can be done about a, whose computer is silent; b is well, and waits for it.
+TEST(BesideExhausted, AFailureWaitsForAComputerThatIsSilent) {
+  Scene scene("COMPONENT a NODE /a\n" + failure_of("b", "B"));
+  scene.link("a", "b").fail("B");
+  EXPECT_NE(scene.plan(BayesPlanner()), "");
+  scene->components.set_host_silent(scene.component("a"), scene->now);
+  EXPECT_EQ(scene.plan(BayesPlanner()), "");
+  EXPECT_EQ(scene.candidate("B.redeploy").excluded, Condition::kUnheard);
+  EXPECT_TRUE(waits_for_person(scene.decision("B"), *scene));
+}
+
 }  // namespace
 }  // namespace culprit::plan
