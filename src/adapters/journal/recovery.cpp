@@ -29,7 +29,7 @@ class Trail {
     for (const Json& each : interrupted) {
       auto known = interrupted_from_json(each, rules_);
       if (known) {
-        open_.push_back(std::move(*known));
+        open_anew(known->strategy) = std::move(*known);
       } else {
         give_up(each, known.error());
       }
@@ -114,14 +114,23 @@ class Trail {
     if (std::holds_alternative<Pause>(order.what)) is_paused_ = true;
     if (std::holds_alternative<Resume>(order.what)) is_paused_ = false;
     if (const auto* dry_run = std::get_if<SetDryRun>(&order.what)) is_dry_run_ = dry_run->is_on;
+    // No plan chooses what it begins, which goes before a strategy that had failed.
+    if (const auto* run = std::get_if<RunStrategy>(&order.what)) close_for(run->strategy);
+    if (const auto* approved = std::get_if<Approve>(&order.what)) close_for(approved->strategy);
   }
 
   void begin(const StrategyChosen& chosen) {
     // A last resort is never continued: it is due again, and begun at once.
     if (chosen.dry_run || rules_[chosen.strategy].is_last_resort) return;
-    close(rules_[chosen.strategy].rule);
-    open_.emplace_back();
-    open_.back().strategy = chosen.strategy;
+    open_anew(chosen.strategy);
+  }
+
+  // A rule has one strategy under way: whatever it had before is over.
+  Interrupted& open_anew(StrategyId strategy) {
+    close(rules_[strategy].rule);
+    Interrupted& opened = open_.emplace_back();
+    opened.strategy = strategy;
+    return opened;
   }
 
   Interrupted* find(StrategyId strategy) {
@@ -136,11 +145,8 @@ class Trail {
     if (!command) return give_up(body, command.error());
     if (rules_[command->purpose.strategy].is_last_resort) return;
     Interrupted* found = find(command->purpose.strategy);
-    // A person may have ordered it without a failure: then it was not chosen.
-    if (found == nullptr) {
-      found = &open_.emplace_back();
-      found->strategy = command->purpose.strategy;
-    }
+    // A person may have ordered it: then it was not chosen.
+    if (found == nullptr) found = &open_anew(command->purpose.strategy);
     found->requests.emplace_back();
     found->requests.back().command = *command;
   }
@@ -155,6 +161,10 @@ class Trail {
           [&](const Interrupted::Request& r) { return r.command.id.number == number; });
       if (request != each.requests.rend() && !request->outcome) request->outcome = outcome;
     }
+  }
+
+  void close_for(StrategyId strategy) {
+    if (!rules_[strategy].is_last_resort) close(rules_[strategy].rule);
   }
 
   void close(RuleId rule) {

@@ -7,6 +7,7 @@
 #include "base/test_expected.h"
 #include "base/test_folder.h"
 #include "journal/event_json.h"
+#include "journal/requests.h"
 #include "journal/writer.h"
 #include "language/checker.h"
 
@@ -205,6 +206,62 @@ TEST_F(ExpectedRobot, IsNoneIfARowIsMissing) {
   auto database = value_of(Database::open(path, Database::Mode::kWrite));
   ASSERT_TRUE(database.run("DELETE FROM entry WHERE id = 2"));
   EXPECT_FALSE(is_expected());
+}
+
+// A restart failed, and a person has the process replaced before anything else is chosen.
+struct OrderedRun : testing::Test {
+  Entry event(decltype(Event::what) what) const {
+    return {0, kRecoveredAt, std::string(kind::kEvent),
+            to_line(to_json(Event{Time(100s), std::move(what)}, rules))};
+  }
+  Entry intent(std::uint64_t number, decltype(Command::what) what, StrategyId strategy) const {
+    const Command command{{number}, ComponentId(0), std::move(what), 1s, {strategy}};
+    return {0, kRecoveredAt, std::string(kind::kIntent), line_of(command, rules)};
+  }
+  std::vector<Interrupted> left_by(std::vector<Entry> rows) const {
+    Session session;
+    session.boot = boot_id();
+    session.start = Time(50s);
+    rows.insert(rows.begin(),
+                {0, kRecoveredAt, std::string(kind::kSession), to_line(to_json(session))});
+    Writer writer = value_of(Writer::open(path, {}));
+    Batch all;
+    all.entries = std::move(rows);
+    EXPECT_TRUE(writer.append(all, kRecoveredAt, Durability::kProcessEnd));
+    const Reader reader = value_of(Reader::open(path));
+    return value_of(recover(reader, {}, rules, {Time(101s), kRecoveredAt, 0})).interrupted;
+  }
+
+  const RuleSet rules =
+      *check(Source("my.rules",
+                    "COMPONENT camera NODE /camera LAUNCH \"camera\"\nRULE Silent\nPOLICIES "
+                    "ERROR\nTRIGGER age(/rgb) > 1s\nSTRATEGY restart 50 10\nADAPTATION camera "
+                    "restart 5\nSTRATEGY redeploy 50 10\nADAPTATION camera redeploy 5\n"))
+           .rules;
+  const StrategyId restart{0};
+  const StrategyId redeploy{1};
+  culprit::test::TestFolder folder;
+  const std::filesystem::path path = folder / "a.journal";
+};
+
+TEST_F(OrderedRun, OnlyTheLastStrategyOfARuleIsUnderWay) {
+  const auto left =
+      left_by({event(StrategyChosen{restart, {}, {}, false, {}, {}}),
+               intent(1, ChangeLifecycle{Transition::kDeactivate}, restart),
+               event(StrategyFailed{restart, "no"}), intent(2, StopProcess{}, redeploy)});
+  ASSERT_EQ(left.size(), 1u);
+  EXPECT_EQ(left[0].strategy, redeploy);
+}
+
+TEST_F(OrderedRun, OneThatFailedAndIsOrderedAnewHasNotFailed) {
+  const auto left =
+      left_by({event(StrategyChosen{redeploy, {}, {}, false, {}, {}}),
+               intent(1, StopProcess{}, redeploy), event(StrategyFailed{redeploy, "no"}),
+               event(OrderAccepted{{1, "Ann", "", RunStrategy{redeploy}}, {}}),
+               intent(2, StopProcess{}, redeploy)});
+  ASSERT_EQ(left.size(), 1u);
+  EXPECT_FALSE(left[0].has_failed);
+  EXPECT_EQ(left[0].requests.size(), 1u);
 }
 
 }  // namespace

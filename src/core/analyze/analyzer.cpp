@@ -510,7 +510,10 @@ bool Analyzer::holds_up_more_critical(StrategyId strategy) const {
 void Analyzer::end_attempt(RuleId id, Time now) {
   const Attempt attempt = *std::exchange(write_.states.state(id).attempt, std::nullopt);
   couplings_.ended(attempt, now);
-  write_.states.enter(id, attempt.has_no_failure ? RulePhase::kQuiet : RulePhase::kFailing);
+  // A start of what is gone, or a person's order: the failure was left to that person before.
+  const bool is_left = knowledge_.states[id].search.is_exhausted;
+  const RulePhase there = is_left ? RulePhase::kExhausted : RulePhase::kFailing;
+  write_.states.enter(id, attempt.has_no_failure ? RulePhase::kQuiet : there);
 }
 
 void Analyzer::abandon(RuleId id, Time now) {
@@ -747,10 +750,10 @@ void Analyzer::round_is_spent(RuleId id, Time now) {
 }
 
 void Analyzer::exhaust_if_spent(RuleId id, Time now) {
-  RuleState& state = write_.states.state(id);
+  const Search& search = knowledge_.states[id].search;
   const int limit = knowledge_.rules[id].policies.attempts;
-  if (state.search.attempts < limit && state.search.round < limit) return;
-  give_up(id, now);
+  const bool is_spent = search.is_exhausted || search.attempts >= limit || search.round >= limit;
+  if (is_spent) give_up(id, now);
 }
 
 void Analyzer::give_up(RuleId id, Time now) {

@@ -134,6 +134,13 @@ TEST(Diagnosis, InALoopFallsToTheFirstOnset) {
   EXPECT_NEAR(own(scene, "B"), omega + (1 - omega) * kPi, 1e-12);
 }
 
+TEST(Diagnosis, InALoopAFlappingFailureBeganWhenItWasFirstThere) {
+  Scene scene = chain();
+  scene.link("c", "a").fail("A", 400ms).fail("B").fail("C", 200ms);
+  scene->states.state(scene.rule("A")).first_onset = Time(50s);
+  EXPECT_GT(own(scene, "A"), own(scene, "B"));
+}
+
 TEST(Diagnosis, OfALoopIsExplainedByACauseUpstreamOfIt) {
   Scene scene = chain();
   scene.link("c", "b").fail("A").fail("B").fail("C");
@@ -177,6 +184,55 @@ TEST(Diagnosis, ASupplierCountsWithoutARule) {
   EXPECT_DOUBLE_EQ(own(scene, "B"), 1);
 }
 
+std::string about_states(const std::string& trigger, const std::string& adaptations) {
+  return "COMPONENT b NODE /b\nRULE B\nPOLICIES ERROR\nTRIGGER " + trigger +
+         "\nSTRATEGY cure 50 10\n" + adaptations;
+}
+
+// Its supplier is not active, which is just what the rule is about.
+TEST(Diagnosis, ALifecycleExplainsNoRuleAboutStates) {
+  const std::string sets = "ADAPTATION b set_parameter gain 1 2\n";
+  const std::string changes = "ADAPTATION b change_mode slow 2\n";
+  const auto own_of = [](const std::string& rule) {
+    Scene scene("COMPONENT a NODE /a\n" + rule);
+    ComponentState& a = scene->components[scene.component("a")];
+    a.lifecycle = Lifecycle::kInactive;
+    a.was_active = true;
+    scene.link("a", "b").fail("B");
+    return own(scene, "B");
+  };
+  EXPECT_LT(own_of(about_states("x > 1", sets)), 0.5);
+  EXPECT_DOUBLE_EQ(own_of(about_states("x > 1", sets + changes)), 1);
+  EXPECT_DOUBLE_EQ(own_of(about_states("x > 1 || lifecycle(b) != \"active\"", sets)), 1);
+}
+
+// A failure that strategies only reconfigure is no cause of worse ones.
+TEST(Diagnosis, ALesserFailureIsACauseIfAnyOfItsStrategiesBeginsAnew) {
+  const std::string tuned =
+      "COMPONENT a NODE /a\nCOMPONENT aside NODE /aside\nRULE A\nPOLICIES WARNING\nTRIGGER y > "
+      "1\nSTRATEGY tune 50 10\nADAPTATION a set_parameter gain 1 2\n";
+  const std::string anew =
+      "STRATEGY anew 50 10\nADAPTATION aside set_parameter gain 1 2\nADAPTATION a restart 2\n";
+  const auto own_of = [](const std::string& rules) {
+    Scene scene(rules + failure_of("b", "B"));
+    scene.link("a", "b").fail("A").fail("B");
+    return own(scene, "B");
+  };
+  EXPECT_DOUBLE_EQ(own_of(tuned), 1);
+  EXPECT_LT(own_of(tuned + anew), 0.5);
+}
+
+// Its strategy does more than to start it again.
+TEST(Diagnosis, RisesAlsoWhereAStrategyDoesMoreThanToReplaceTheProcess) {
+  Scene scene(failure_of("a", "A") +
+              "COMPONENT b NODE /b LAUNCH \"b\"\nRULE B\nPOLICIES ERROR\nTRIGGER y > 1\nSTRATEGY "
+              "anew 50 10\nADAPTATION b redeploy 2\nADAPTATION a set_parameter gain 1 2\n");
+  scene.link("a", "b").fail("A").fail("B");
+  EXPECT_LT(own(scene, "B"), 0.5);
+  scene.process("b", ProcessState::kGone);
+  EXPECT_GT(own(scene, "B"), 0.5);
+}
+
 // It worked for ten minutes in spite of the trouble, so the trouble is not why.
 TEST(Diagnosis, AnOldTroubleExplainsNothingNew) {
   Scene scene("COMPONENT a NODE /a\n" + failure_of("b", "B"));
@@ -207,6 +263,8 @@ TEST(Diagnosis, ACouplingThatWasLearnedNeedsNoEdge) {
   Scene scene(failure_of("a", "A") + failure_of("b", "B"));
   scene.fail("A").fail("B");
   EXPECT_DOUBLE_EQ(own(scene, "B"), 1);
+  scene->couplings.set(scene.rule("A"), scene.rule("B"), {1, 9});
+  EXPECT_DOUBLE_EQ(own(scene, "B"), 1) << "it seldom passes anything on";
   scene->couplings.set(scene.rule("A"), scene.rule("B"), {2, 0});
   EXPECT_LT(own(scene, "B"), 0.5);
   EXPECT_DOUBLE_EQ(own(scene, "A"), 1);

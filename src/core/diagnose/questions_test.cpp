@@ -67,6 +67,37 @@ TEST_F(AMap, IsNotAskedWhatIsKnown) {
   EXPECT_FALSE(is_asked()) << "it has no time to answer";
 }
 
+TEST_F(AMap, IsNotAskedAboutABadValue) {
+  Scene scene(failure_of("map", "Map") + failure_of("nav", "Nav"));
+  scene.link("map", "nav").fail("Nav");
+  for (const char* each : {"map", "nav"}) scene->components[scene.component(each)].in_graph = true;
+  const Questions questions = questions_about(scene.rule("Nav"), all_troubles(*scene), *scene);
+  EXPECT_TRUE(questions.asks.empty()) << "it serves a value";
+}
+
+// All that are silent are asked at once, but never too many.
+TEST(Suppliers, AreAskedTogether) {
+  constexpr std::size_t kSuppliers = kMostQuestions + 4;
+  std::string rules = failure_of("nav", "Nav");
+  rules.replace(rules.find("x > 1"), 5, "age(/cmd) > 1s");
+  for (std::size_t s = 0; s < kSuppliers; ++s)
+    rules += "COMPONENT s" + std::to_string(s) + " NODE /s" + std::to_string(s) + "\n";
+  Scene scene(rules);
+  for (std::size_t s = 0; s < kSuppliers; ++s) scene.link("s" + std::to_string(s), "nav");
+  scene.fail("Nav");
+  scene->states.state(scene.rule("Nav")).onset = Onset{Time(89s), Time(90s)};
+  const auto asks = [&](std::size_t silent) {
+    for (std::size_t s = 0; s < kSuppliers; ++s) {
+      ComponentState& state = scene->components[scene.component("s" + std::to_string(s))];
+      state.in_graph = true;
+      state.answered = Time(s < silent ? 89s : 91s);
+    }
+    return questions_about(scene.rule("Nav"), all_troubles(*scene), *scene).asks.size();
+  };
+  EXPECT_EQ(asks(3), 3u);
+  EXPECT_EQ(asks(kSuppliers), kMostQuestions);
+}
+
 TEST_F(AMap, IsAwaitedForAWhile) {
   state("map").questioned.at = scene_->now - 550ms;
   state("map").questioned.is_open = true;

@@ -72,6 +72,26 @@ TEST(Restarts, AreBoundedHoweverFailuresComeAndGoAndThenAPersonIsTold) {
                                      << transcript(robot);
 }
 
+TEST(Restarts, BeyondTheirBoundAnOrderThatFailsLeavesTheFailureToThePerson) {
+  Governor::Options options;
+  options.limits.restarts = {1, 1h};
+  TestRobot robot = one_camera(options);
+  robot["camera"].dies_at_start = true;
+  robot.kill("camera");
+  robot.run_for(60s);
+  ASSERT_EQ(robot.count("CameraDead is exhausted"), 1u) << transcript(robot);
+  const std::size_t promised = robot.count("tried anew after a while");
+  robot.order({1, "Ann", "", RunStrategy{StrategyId(0)}});
+  robot.run_for(30s);
+  ASSERT_EQ(robot.count("redeploy did not resolve CameraDead"), 2u) << transcript(robot);
+  EXPECT_EQ(robot.count("tried anew after a while"), promised) << transcript(robot);
+  EXPECT_EQ(robot.manager().knowledge().states[RuleId(0)].phase, RulePhase::kExhausted)
+      << transcript(robot);
+  robot["camera"].dies_at_start = false;
+  robot.run_for(10min);
+  EXPECT_TRUE(robot.works("camera")) << "it is started again after a while" << transcript(robot);
+}
+
 TEST(Restarts, WhatRestartsNothingIsTriedBeyondTheirBound) {
   Governor::Options options;
   options.limits.restarts = {1, 1h};

@@ -45,5 +45,25 @@ TEST(Validity, RulesOutToEndOrStartWhatIsOnAComputerThatCannotBeAsked) {
   EXPECT_FALSE(invalid("Dark.tune")) << "its node is heard";
 }
 
+// It holds what it has set as long as its failure is there, and no more than that.
+TEST(Validity, RulesOutToSetWhatALastResortHasSet) {
+  Scene scene(
+      "COMPONENT drive NODE /drive\nCOMPONENT lamp NODE /lamp\n"
+      "RULE Lost\nPOLICIES ERROR\nTRIGGER x > 1\nSTRATEGY look 50 10\nADAPTATION lamp "
+      "set_parameter gain 1 2\nSTRATEGY halt 50 10 LASTRESORT\n"
+      "ADAPTATION lamp set_parameter on 1 2\nADAPTATION drive set_parameter speed 0 2\n"
+      "RULE Slow\nPOLICIES ERROR\nTRIGGER y > 1\n"
+      "STRATEGY faster 50 10\nADAPTATION drive set_parameter speed 2 2\n"
+      "STRATEGY tune 50 10\nADAPTATION drive set_parameter gain 2 2\n");
+  const auto is_invalid = [&](const char* strategy) {
+    return invalidity(scene.rules()[scene.strategy(strategy)], *scene).has_value();
+  };
+  scene.fail("Lost");
+  EXPECT_FALSE(is_invalid("Slow.faster"));
+  scene->states.state(scene.rule("Lost")).standing = {{scene.strategy("Lost.halt"), scene->now}};
+  EXPECT_TRUE(is_invalid("Slow.faster"));
+  EXPECT_FALSE(is_invalid("Slow.tune"));
+}
+
 }  // namespace
 }  // namespace culprit::plan

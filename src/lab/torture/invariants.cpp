@@ -269,21 +269,26 @@ void Invariants::check_replacement(const Manager& manager, const Strategy& strat
         return std::find(upstream.begin(), upstream.end(), producer) != upstream.end();
       };
       if (!needs(component, cause) || needs(cause, component)) continue;
-      const char* why = dead_since_[needed] <= failed         ? " is dead"
-                        : is_given_up(manager, cause, failed) ? " is silent and exhausted"
-                                                              : nullptr;
+      const char* why = dead_since_[needed] <= failed ? " is dead"
+                        : is_given_up(manager, cause, failed, truth.is_faulty[part])
+                            ? " is silent and exhausted"
+                            : nullptr;
       if (why != nullptr)
         fail(at, name + " is begun though " + rules_[cause].name + why + ", which explains it");
     }
   }
 }
 
-// Its silence began before `failed`, and nothing helped against it.
-bool Invariants::is_given_up(const Manager& manager, ComponentId component, Time failed) const {
+// Its silence began before `failed`, and nothing helped against it. An effect with a fault of its own
+// may have outlasted a pause of that silence.
+bool Invariants::is_given_up(const Manager& manager, ComponentId component, Time failed,
+                             bool is_effect_faulty) const {
   const RuleStates& states = manager.knowledge().states;
   return std::any_of(states.exhausted().begin(), states.exhausted().end(), [&](RuleId rule) {
+    const RuleState& silent = states[rule];
+    const Time began = is_effect_faulty ? silent.failing_since : silent.first_detected();
     return states.awaits_person(rule) && rules_[rule].components.front() == component &&
-           rules_[rule].name.starts_with("Silent") && states[rule].first_detected() <= failed;
+           rules_[rule].name.starts_with("Silent") && began <= failed;
   });
 }
 

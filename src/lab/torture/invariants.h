@@ -15,7 +15,8 @@
 // - With bayes, the repair of a component that the operating system knows to be dead begins within
 //   one decision of its detection where the governor allows, whatever the levels.
 // - With bayes, no process is replaced for a silence that a dead or exhausted component which it
-//   needs, and that does not seem to need it in turn, explains.
+//   needs, and that does not seem to need it in turn, explains. One with a fault of its own may be if
+//   that component worked in between.
 // - No failure is treated more often than its ATTEMPTS allow, until it was proven gone; starts of components known to be gone do not count.
 // - A component that was never there is not started.
 // - No healthy process is replaced, as long as samples and clocks are not tampered with.
@@ -51,6 +52,7 @@ class Invariants {
   // The real state of the robot; the manager only knows its observations.
   struct Truth {
     std::vector<ProcessState> processes;  // by component
+    std::vector<bool> is_faulty;          // by component: it fails by itself, whatever it hears
     // By component: its launcher has just started it, and the manager may not know.
     std::vector<bool> is_launched;
     std::vector<bool> was_there;   // by component: its process ran once
@@ -86,7 +88,8 @@ class Invariants {
   void check_last_resorts(const Manager& manager, Time now);
   void check_the_dead(const Manager& manager, Time now);
   void check_sight(const Manager& manager, Time now);
-  bool is_given_up(const Manager& manager, ComponentId component, Time failed) const;
+  bool is_given_up(const Manager& manager, ComponentId component, Time failed,
+                   bool is_effect_faulty) const;
   bool is_excused(const Manager& manager, StrategyId strategy) const;
   void spend(Budget& budget, const std::string& what, Time at);
   void check_beliefs(const Manager& manager, Time now);

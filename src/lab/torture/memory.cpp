@@ -43,6 +43,10 @@ void Memory::note(const Reply& reply) {
 void Memory::note(const Event& event) {
   past_.push_back(event);
   if (const auto rule = ended_by(event, rules_)) return close(*rule);
+  if (const auto* accepted = std::get_if<OrderAccepted>(&event.what)) {
+    if (const auto* run = std::get_if<RunStrategy>(&accepted->order.what))
+      close(rules_[run->strategy].rule);
+  }
   if (const auto* chosen = std::get_if<StrategyChosen>(&event.what)) {
     if (chosen->dry_run || rules_[chosen->strategy].is_last_resort) return;
     close(rules_[chosen->strategy].rule);
@@ -57,8 +61,9 @@ void Memory::note(const Event& event) {
 void Memory::note(const Command& command) {
   if (rules_[command.purpose.strategy].is_last_resort) return;
   Interrupted* each = open(command.purpose.strategy);
-  // A person may have ordered it without a failure: then no plan chose it.
+  // A person may have ordered it: then no plan chose it.
   if (each == nullptr) {
+    close(rules_[command.purpose.strategy].rule);
     each = &open_.emplace_back();
     each->strategy = command.purpose.strategy;
   }

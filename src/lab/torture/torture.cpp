@@ -268,6 +268,7 @@ class Run {
     const Duration known = 2 * kPeriod + scenario_.noise.lateness;
     for (std::size_t i = 0; i < scenario_.parts.size(); ++i) {
       truth.processes.push_back(robot_.process(i));
+      truth.is_faulty.push_back(robot_.is_faulty(i));
       truth.is_launched.push_back(robot_.was_launched_within(i, known));
     }
     for (std::size_t i = 0; i < scenario_.parts.size(); ++i)

@@ -51,6 +51,12 @@ class Machine : public simulation::Node {
   void break_down() { is_broken_ = true; }
   void burn() { is_burnt_ = true; }
   void ruin() { is_ruined_ = true; }
+  void freeze() {
+    is_frozen_ = process() != ProcessState::kGone;
+    hang();
+  }
+  // It would not work even if it heard all that it needs.
+  bool is_faulty() const { return is_frozen_ || !is_sound(); }
   // It works, and it does so in time: it does not hang.
   bool speaks() const {
     return works() && spoke_ != kLongAgo && Node::world().now() - spoke_ <= 2 * kPeriod;
@@ -73,7 +79,7 @@ class Machine : public simulation::Node {
   }
   void on_activate() override { is_broken_ = false; }
   void on_start() override {
-    is_broken_ = is_burnt_ = false;
+    is_broken_ = is_burnt_ = is_frozen_ = false;
     every(kPeriod, [this] {
       Node::world().diagnose(name_, "drift", *parameter("drift"));
       if (works()) {
@@ -90,6 +96,7 @@ class Machine : public simulation::Node {
   std::vector<Time> heard_;
   bool is_broken_ = false;
   bool is_burnt_ = false;
+  bool is_frozen_ = false;
   bool is_ruined_ = false;  // no new process helps
   Time flaps_until_ = kLongAgo;
   Time spoke_ = kLongAgo;
@@ -219,7 +226,7 @@ void TorturedRobot::befall(const Mishap& mishap) {
     case Kind::kStop:
       return machine.stop();
     case Kind::kHang:
-      return machine.hang();
+      return machine.freeze();
     case Kind::kDrift:
       if (machine.is_in_graph()) machine.drift();
       return;
@@ -375,6 +382,8 @@ bool TorturedRobot::works(std::size_t part) const {
   const Value* drift = machines_[part]->parameter("drift");
   return machines_[part]->speaks() && drift != nullptr && *drift == Value(0.0);
 }
+
+bool TorturedRobot::is_faulty(std::size_t part) const { return machines_[part]->is_faulty(); }
 
 ProcessState TorturedRobot::process(std::size_t part) const { return machines_[part]->process(); }
 

@@ -44,6 +44,8 @@ class TorturedRobot : public Robot {
 
   bool works(std::size_t part) const;
   ProcessState process(std::size_t part) const;
+  // Its fault is its own: it would not work even if it heard all that it needs.
+  bool is_faulty(std::size_t part) const;
   // Its process began in the last `time`, and the manager had nothing to do with that.
   bool was_launched_within(std::size_t part, Duration time) const {
     const auto at = launched_.find(part);

@@ -371,6 +371,8 @@ TEST(BayesPlanner, GoesRoundACauseWhoseRepairTakesMuchLonger) {
   EXPECT_EQ(slow.candidate("B.restart").excluded, Condition::kDependency);
   EXPECT_EQ(scene_with("10", "change_communication in /other").plan(kBalanced), "A.redeploy");
   EXPECT_EQ(scene_with("60", "set_parameter p 1").plan(kBalanced), "A.redeploy");
+  const char* both = "set_parameter p 1 2\nADAPTATION b change_communication in /other";
+  EXPECT_EQ(scene_with("60", both).plan(kBalanced), "A.redeploy") << "it does more than that";
 }
 
 TEST(BayesPlanner, StaggersTheRepairsOfFailuresThatRepeatedlyBeginTogether) {

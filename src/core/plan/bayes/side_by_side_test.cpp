@@ -1,10 +1,13 @@
 #include "plan/bayes/side_by_side.h"
 
+#include <cstdint>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "plan/bayes/bayes_planner.h"
 #include "plan/bayes/test_scene.h"
+#include "plan/ties.h"
 
 namespace culprit::plan {
 namespace {
@@ -67,6 +70,38 @@ TEST(SideBySide, OfVeryManyFindsWhatIsBetterOneByOne) {
   std::vector<Side> sides(30, {{kQuick, kThorough}, {0, 1}});
   sides.push_back({{kThorough}, {0}});
   for (const std::size_t begin : side_by_side(std::span(sides).first(30))) EXPECT_EQ(begin, 1u);
+}
+
+// Sides with tries of any kind, too many for all combinations.
+std::vector<Side> many_sides(std::uint32_t& state) {
+  const auto draw = [&] {
+    state = state * 1664525 + 1013904223;
+    return static_cast<double>(state >> 16) / 65536;
+  };
+  std::vector<Side> sides(10);
+  for (Side& side : sides) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double time = 0.05 + 0.5 * draw();
+      side.tries.push_back({0.1 + 0.8 * draw(), time + 0.1 * draw(), time});
+      side.firsts.push_back(i);
+    }
+  }
+  return sides;
+}
+
+TEST(SideBySide, OfManyNoChangeAtOneSideAloneIsBetter) {
+  std::uint32_t state = 1;
+  for (int draw = 0; draw < 50; ++draw) {
+    const std::vector<Side> sides = many_sides(state);
+    const std::vector<std::size_t> found = side_by_side(sides);
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      for (const std::size_t first : sides[i].firsts) {
+        std::vector<std::size_t> changed = found;
+        changed[i] = first;
+        EXPECT_GE(parts(joint_cost(sides, changed)), parts(joint_cost(sides, found))) << draw;
+      }
+    }
+  }
 }
 
 // a is restarted first if it is alone; while d has to be redeployed, a is, too.
