@@ -10,7 +10,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr RuleId kNoisy{std::size_t{0}};
-constexpr RuleId kOther{std::size_t{1}};
+constexpr RuleId kOtherRule{std::size_t{1}};
 
 struct TransientFailures : testing::Test {
   // It is there for `lasted`, and was not back for long.
@@ -39,7 +39,7 @@ TEST_F(TransientFailures, AreNotWaitedForWhileNoneWasSeen) {
 TEST_F(TransientFailures, AreWaitedForAsLongAsTheyTookAndTheFewerTheLonger) {
   clears(kNoisy, 2s);
   EXPECT_EQ(transients.patience(kNoisy), 6s);
-  EXPECT_EQ(transients.patience(kOther), 6s) << "monitors of one robot resemble each other";
+  EXPECT_EQ(transients.patience(kOtherRule), 6s) << "monitors of one robot resemble each other";
   clears(kNoisy, 3s);
   EXPECT_EQ(transients.patience(kNoisy), 6s);
   for (int i = 0; i < 18; ++i) clears(kNoisy, 1s);
@@ -50,8 +50,8 @@ TEST_F(TransientFailures, AreWaitedForAsLongAsTheyTookAndTheFewerTheLonger) {
 TEST_F(TransientFailures, AreNeverWaitedForLongerThanTenSeconds) {
   clears(kNoisy, 8s);
   EXPECT_EQ(transients.patience(kNoisy), 10s);
-  clears(kOther, 11s);
-  EXPECT_EQ(transients.seen(kOther).cleared, 0);
+  clears(kOtherRule, 11s);
+  EXPECT_EQ(transients.seen(kOtherRule).cleared, 0);
 }
 
 TEST_F(TransientFailures, AreNoneIfTheyAreBackSoonerThanTheyLasted) {
@@ -65,9 +65,9 @@ TEST_F(TransientFailures, AreNoneIfTheyAreBackSoonerThanTheyLasted) {
 TEST_F(TransientFailures, BecomeRareWithEachThatStays) {
   clears(kNoisy, 2s);
   const double before = transients.share(kNoisy);
-  for (int i = 0; i < 10; ++i) transients.stayed(kOther);
+  for (int i = 0; i < 10; ++i) transients.stayed(kOtherRule);
   EXPECT_LT(transients.share(kNoisy), before);
-  EXPECT_LT(transients.share(kOther), 0.1);
+  EXPECT_LT(transients.share(kOtherRule), 0.1);
 }
 
 TEST_F(TransientFailures, AreForgottenWithTheirRule) {
@@ -76,7 +76,7 @@ TEST_F(TransientFailures, AreForgottenWithTheirRule) {
   transients.forget(kNoisy);
   transients.advance(now + 1h);
   EXPECT_EQ(transients.seen(kNoisy), Transients::Seen());
-  EXPECT_EQ(transients.patience(kOther), 0s);
+  EXPECT_EQ(transients.patience(kOtherRule), 0s);
 }
 
 }  // namespace
