@@ -1,6 +1,8 @@
 #include "demo/test_live_sunset.h"
 
+#include <algorithm>
 #include <csignal>
+#include <iterator>
 #include <stdexcept>
 #include <thread>
 
@@ -98,10 +100,11 @@ std::vector<std::string> LiveSunset::faults_of_processes() {
 }
 
 void LiveSunset::break_something(std::mt19937& random) {
-  std::vector<std::string> faults = faults_of_processes();
+  std::vector<std::string> faults;
   for (const sunset::Fault& fault : sunset::faults()) {
     if (!fault.resolved_by.empty()) faults.emplace_back(fault.name);
   }
+  std::ranges::copy(faults_of_processes(), std::back_inserter(faults));
   break_something(random, faults);
 }
 
