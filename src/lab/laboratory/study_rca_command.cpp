@@ -293,9 +293,10 @@ void add_factors(CLI::App& command, RcaFactors& factors) {
       ->check(CLI::Range(0.0, RcaFactors::kMostFalseAlarms))
       ->capture_default_str();
   command
-      .add_option("--faults-before", factors.faults_before,
-                  "Other faults of the same robot before each episode; managers keep the latencies "
-                  "that they learn from these")
+      .add_option(
+          "--faults-before", factors.faults_before,
+          "Other faults of the same robot before each episode; managers keep the times that "
+          "they learn from these")
       ->check(CLI::Range(std::size_t{0}, RcaFactors::kMostFaultsBefore))
       ->capture_default_str();
 }

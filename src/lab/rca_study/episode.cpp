@@ -154,7 +154,10 @@ EpisodeResult play(const RcaScenario& scenario, const RuleSet& rules,
   Manager::Options options;
   options.discovery = Duration::zero();
   Manager manager(rules, std::make_unique<TimedPlanner>(std::move(planner), result), options);
-  for (std::size_t r = 0; r < experience.size(); ++r) manager.set_latency(RuleId(r), experience[r]);
+  for (std::size_t r = 0; r < experience.size(); ++r) {
+    manager.set_latency(RuleId(r), experience[r].latencies);
+    manager.add_transients(RuleId(r), experience[r].transients);
+  }
   Runtime runtime(manager, robot);
   runtime.on_events = [&](std::span<const Event> events) {
     judge.see(events);
@@ -164,8 +167,10 @@ EpisodeResult play(const RcaScenario& scenario, const RuleSet& rules,
   runtime.run(robot.is_over(), Time(from_seconds(scenario.horizon_s)));
 
   experience.clear();
+  const Knowledge& knowledge = manager.knowledge();
   for (std::size_t r = 0; r < rules.rules.size(); ++r)
-    experience.push_back(manager.knowledge().latencies.learned(RuleId(r)));
+    experience.push_back(
+        {knowledge.latencies.learned(RuleId(r)), knowledge.transients.seen(RuleId(r))});
   judge.conclude();
   result.is_recovered = robot.plant().is_well();
   for (std::size_t c = 0; c < scenario.components.size(); ++c)

@@ -4,8 +4,10 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "knowledge/latencies.h"
+#include "knowledge/transients.h"
 #include "plan/planner.h"
 #include "rca_study/scenario.h"
 #include "study/single_run.h"
@@ -35,8 +37,13 @@ struct EpisodeResult {
   double planning_us = 0;  // wall time in all plans
 };
 
-// The latencies of each rule, learned in earlier episodes on the same robot. Empty: nothing.
-using Experience = std::vector<Latencies::Learned>;
+// Learned about a rule in earlier episodes on the same robot.
+struct Learned {
+  Latencies::Learned latencies;
+  Transients::Seen transients;
+};
+// By rule. Empty: nothing.
+using Experience = std::vector<Learned>;
 
 // `planner` decides. The same scenario and planner, the same result but for `planning_us`.
 EpisodeResult play(const RcaScenario& scenario, std::unique_ptr<const Planner> planner);
