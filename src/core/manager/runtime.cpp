@@ -5,7 +5,7 @@
 
 namespace culprit {
 
-// What came during a brief one came when it did.
+// Messages that came during a brief one keep their own times.
 std::optional<Observation> Runtime::lateness(Time due, Time now) {
   const Duration by = now - due;
   if (by <= kLate) return std::nullopt;
