@@ -16,6 +16,7 @@
 #include "claims.h"
 #include "fleet/exchange.h"
 #include "fleet/journal_tail.h"
+#include "fleet/postgres.h"
 #include "fleet/schema.h"
 #include "fleet/test_journal.h"
 #include "fleet/test_pooler.h"
@@ -109,11 +110,11 @@ struct Place {
 };
 
 // Errors are thrown.
-Server tell(const Place& place, Member& member) {
+Postgres tell(const Place& place, Member& member) {
   static const std::atomic<bool> stop = false;
   JournalTail tail(member.journal.path());
   (void)tail.follow(*member.outbox, stop);
-  auto server = Server::connect(place.address, stop);
+  auto server = Postgres::connect(place.address, stop);
   if (!server) throw std::runtime_error(server.error());
   if (const auto fits = check_schema(*server); !fits) throw std::runtime_error(fits.error());
   const auto sent = send(*server, *member.outbox, {"member", *tail.run()}, {});
@@ -146,7 +147,7 @@ Costs costs_of(const Place& place, std::vector<std::unique_ptr<Member>>& members
     (void)tell(place, member);
   });
   costs.beat = cost_of(place, members, [&](Member& member) {
-    Server server = tell(place, member);
+    Postgres server = tell(place, member);
     (void)ask(server, member.outbox->identity(), rules, "");
   });
   return costs;
@@ -172,7 +173,7 @@ double busy(const Costs& costs, double pool) {
 
 double milliseconds_of_status(const TestPostgres& postgres) {
   constexpr int kTimes = 10;
-  Server reader = postgres.connect();
+  Postgres reader = postgres.connect();
   (void)make_report(reader, "", status_queries({}));
   const auto begin = std::chrono::steady_clock::now();
   for (int i = 0; i < kTimes; ++i) (void)make_report(reader, "", status_queries({}));
