@@ -4,18 +4,19 @@
 // repair of such a failure is useless, and takes down what works. So the planner waits for it first
 // (plan/bayes/planning_step.cpp), as soon as that was seen to happen on this robot. Symbols:
 //
-//     n_r   how often the failure of rule r cleared by itself: no repair that can have cleared it was
-//           made while it was there, and it stayed away for as long as it had been there
-//     m_r   how often it did not, although it was left alone for long enough; or was back sooner
-//     s_r   the share of them that clear by themselves: (n_r + 2 s) / (n_r + m_r + 2),
-//           where s = n / (n + m + 1), with the sums over all rules
-//     T_r   the longest time until it cleared by itself; of all rules, while n_r < 3
+//     n_r   how often the failure of rule r cleared by itself: without a repair that can have helped. It
+//           then stayed away for as long as it had lasted.
+//     m_r   how often it did not clear, although it was left alone for long enough, or came back sooner.
+//     s_r   the share that clears by itself: (n_r + 2 s) / (n_r + m_r + 2). s = n / (n + m + 1) is that of
+//           all rules.
+//     T_r   the longest time until it cleared by itself. While n_r < 3, all rules count.
 //
-// The longest of few is short of what may come. So the failure is left alone for at most
+// The longest of few is short of what may come. So the planner leaves the failure alone for at most this
+// time, with n in place of n_r while n_r < 3:
 //
-//     min(T_r (1 + 2 / n_r), kLongest)                       n in place of n_r, while n_r < 3
+//     min(T_r (1 + 2 / n_r), kLongest)
 //
-// While n = 0, nothing is left alone.
+// While n = 0, the planner waits for no failure to clear.
 #pragma once
 
 #include <vector>
@@ -73,7 +74,7 @@ class Transients {
     Time due{};
   };
 
-  // Of the rule, or of all rules while it has too few.
+  // The rule's own counts, or those of all rules while the rule has too few.
   const Seen& basis(RuleId rule) const;
   void set(RuleId rule, const Seen& seen);
 

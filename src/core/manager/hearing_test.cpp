@@ -87,6 +87,16 @@ TEST(Hearing, MomentsOfStandingStillDoNotAddUpToASilence) {
   EXPECT_TRUE(robot.works("camera")) << transcript(robot);
 }
 
+TEST(Hearing, ASilenceIsNoticedThoughCulpritStandsStillNearlyAllTheTime) {
+  TestRobot robot = test::robot();
+  robot["camera"].fault = "redeploy";
+  for (int i = 0; i < 20; ++i) {
+    stall(robot, 240ms);
+    robot.run_for(10ms);
+  }
+  EXPECT_EQ(robot.count("CameraSilent detected"), 1u) << transcript(robot);
+}
+
 TEST(Hearing, WhatIsSilentAfterASleepIsFoundSilent) {
   TestRobot robot = test::robot();
   robot["camera"].fault = "redeploy";

@@ -96,7 +96,8 @@ class Monitor {
   // says so: it may only have to be discovered anew. For kUnsure, no component is found to hang.
   void restart(Time since, Time now);
 
-  // culprit stands still from `since` until `until`, a moment: the silences of that time do not count.
+  // culprit stands still from `since` until `until`, a moment: it does not count for silences. Of each silence at most
+  // kSpeaksAgain is left out, so that a starved culprit notices it all the same.
   void stand_still(Time since, Time until);
 
   // Lets time pass: updates every value whose deadline has come.

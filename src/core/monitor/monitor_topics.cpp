@@ -147,6 +147,9 @@ void Monitor::stand_still(Time since, Time until) {
   for (std::size_t t = 0; t < topics_.size(); ++t) {
     const Topic& topic = topics_[t];
     if (!topic.last) continue;
+    const Duration held =
+        topic.resumes ? topic.resumes->at - topic.resumes->silence - *topic.last : Duration::zero();
+    if (held + (until - since) > kSpeaksAgain) continue;
     hold_silence(TopicId(t), since, topic.resumes ? std::max(topic.resumes->at, until) : until);
     for (const InputId id : topic.inputs) {
       const Kind kind = knowledge_.rules[id].kind;

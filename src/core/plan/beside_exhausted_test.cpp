@@ -34,7 +34,7 @@ TEST(BesideExhausted, ThePaperNamesTheComponentThatThePersonHasToLookAt) {
   EXPECT_EQ(scene.candidate("B.redeploy").component, scene.component("a"));
 }
 
-// Nothing can be done about a, whose computer is silent; b is well, and waits for it.
+// The computer of a is silent, so no strategy reaches a; b is well, and waits for it.
 TEST(BesideExhausted, AFailureWaitsForAComputerThatIsSilent) {
   Scene scene("COMPONENT a NODE /a\n" + failure_of("b", "B"));
   scene.link("a", "b").fail("B");
