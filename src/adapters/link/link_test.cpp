@@ -187,6 +187,35 @@ TEST(Link, SeesNodesWithTheirProcessAndTheirState) {
       linked.wait<ParameterRead>([](const ParameterRead& r) { return r.value == Value(1.5); }));
 }
 
+// As a simulation that begins paused.
+TEST(Link, HoldsASimulatedNodeUntilItsClockTicks) {
+  const TestDomain domain;
+  Robot robot(domain);
+  const msg::Parameter simulated{"use_sim_time", to_parameter_value(true)};
+  std::unique_ptr<LifecycleNode> simulator;
+  robot.context.run([&] {
+    ASSERT_TRUE(robot.managed->node().parameters().set({&simulated, 1}).successful);
+    simulator = std::move(*LifecycleNode::create(*robot.context, {"/", "simulator"}, {}));
+  });
+  auto clock = std::move(
+      *RawPublisher::create(simulator->node().entry(), "/clock", "rosgraph_msgs/msg/Clock", {}));
+  Linked linked(domain);
+  const auto is_held = [&](bool held) {
+    return linked.wait<TimeHeld>([&](const TimeHeld& t) { return t.is_held == held; }).has_value();
+  };
+  EXPECT_TRUE(is_held(true)) << "no tick came yet";
+  EXPECT_FALSE(linked.has_seen<TimeHeld>([](const TimeHeld& t) { return !t.is_held; }));
+
+  std::int32_t shown = 0;
+  auto ticking = std::make_unique<Timer>(robot.context->executor(), 20ms, [&] {
+    clock->publish(encode(msg::Time{++shown, 0}));
+  });
+  EXPECT_TRUE(is_held(false));
+  robot.context.run([&] { ticking.reset(); });
+  clock.reset();
+  robot.context.run([&] { simulator.reset(); });
+}
+
 TEST(Link, AsksLocalNodesTooWhetherTheyAnswer) {
   const TestDomain domain;
   Robot robot(domain);

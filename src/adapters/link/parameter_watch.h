@@ -1,0 +1,62 @@
+// Reads /parameter_events for the parameters that the rules name.
+//
+// An event counts only from a writer of the node itself. One from another writer, or from one that is
+// not known as the node's yet, is a reason to ask the node.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "base/expected.h"
+#include "language/rule_set.h"
+#include "link/other_nodes.h"
+#include "robot/component_binding.h"
+#include "robot/inbox.h"
+#include "ros2/context.h"
+#include "ros2/messages.h"
+#include "ros2/subscription.h"
+
+namespace culprit::ros2 {
+
+class ParameterWatch {
+ public:
+  // Reads the component's parameters from its node. On the executor's thread.
+  using Ask = std::function<void(ComponentId)>;
+
+  // All outlive it.
+  ParameterWatch(const Context& context, Executor& executor, const RuleSet& rules, Inbox& inbox,
+                 ComponentBinding& binding, const OtherNodes& others, Ask ask)
+      : context_(context),
+        rules_(rules),
+        inbox_(inbox),
+        binding_(binding),
+        others_(others),
+        ask_(std::move(ask)),
+        tasks_(executor) {}
+
+  // Before the executor runs. An error when the middleware, or the domain's permissions, refuse.
+  Expected<void> start(NodeEntry& self);
+
+ private:
+  void on_event(const msg::ParameterEvent& event, const Guid& writer);
+  void ask(ComponentId component, const std::string& node, const std::string& by);
+
+  const Context& context_;
+  const RuleSet& rules_;
+  Inbox& inbox_;
+  ComponentBinding& binding_;
+  const OtherNodes& others_;
+  const Ask ask_;
+  std::atomic<int> waiting_ = 0;                           // events
+  std::map<ComponentId, Time> asked_;                      // because of somebody else's event
+  std::set<std::pair<std::string, std::string>> told_of_;  // nodes, and the sources in their names
+  TaskGroup tasks_;
+  std::unique_ptr<RawSubscription> subscription_;
+};
+
+}  // namespace culprit::ros2
