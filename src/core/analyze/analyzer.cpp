@@ -4,17 +4,14 @@
 #include <iterator>
 #include <utility>
 
+#include "analyze/backoff.h"
 #include "diagnose/timing.h"
 #include "knowledge/ambiguity.h"
 #include "knowledge/group_health.h"
 #include "knowledge/undoes.h"
-#include "language/evaluate.h"
 
 namespace culprit {
 namespace {
-
-bool is_true(const Slot& slot) { return slot.known && slot.b; }
-bool is_false(const Slot& slot) { return slot.known && !slot.b; }
 
 // May the input's value come from the component? The sources of signals and diagnostics are
 // unknown.
@@ -41,35 +38,20 @@ bool may_be_of(ComponentId component, const Input& input, const Knowledge& knowl
   }
 }
 
-bool is_kept_in_process(const Adaptation& adaptation) {
-  return syntax::names_parameter(adaptation.type) || adaptation.type == AdaptationType::kChangeMode;
-}
-
 }  // namespace
-
-Duration longest_detection(const RuleSet& rules) {
-  Duration longest{};
-  for (const Rule& rule : rules.rules)
-    longest = std::max(
-        {longest, rule.policies.hold_for, rules.cycle * std::int64_t{rule.policies.hold_window}});
-  return longest;
-}
-
-Duration Analyzer::pause_after(int rounds) {
-  const int doublings = std::min(rounds - 1, 10);
-  return std::min<Duration>(kFirstBackoff * (1 << doublings), kLongestBackoff);
-}
 
 Analyzer::Analyzer(const Knowledge& knowledge, Writes writes, Time start, Time discovered)
     : knowledge_(knowledge),
       write_(writes),
       deadlines_(knowledge.rules.rules.size()),
       blind_(knowledge, {writes.blindness, writes.events}, start, discovered),
-      known_silence_(knowledge),
+      detector_(knowledge, writes.states),
+      left_off_(knowledge, writes.states),
       couplings_(knowledge, {writes.states, writes.couplings}),
       lateness_(knowledge, writes.latencies),
       outcomes_(knowledge, {writes.beliefs, writes.outcomes, writes.events}),
-      fights_(knowledge, writes.states) {}
+      fights_(knowledge, writes.states),
+      last_resorts_(knowledge, {writes.states, writes.events, couplings_, fights_}) {}
 
 void Analyzer::advance(Time now) {
   write_.transients.advance(now);
@@ -88,9 +70,7 @@ void Analyzer::restart(Time now) {
   for (std::size_t r = 0; r < knowledge_.rules.rules.size(); ++r) {
     const RuleId id(r);
     RuleState& state = write_.states.state(id);
-    if (state.detection.trigger_since != kLongAgo) state.detection.trigger_since = now;
-    state.detection.history.assign(state.detection.history.size(), false);
-    state.detection.true_in_history = 0;
+    detector_.restart(id, now);
     if (state.attempt) {
       state.attempt->is_ambiguous = true;
       if (state.attempt->stage == Attempt::Stage::kWaiting) state.attempt->effective = now;
@@ -124,7 +104,7 @@ bool Analyzer::goes_on(RuleId id) const {
 
 bool Analyzer::anything_to_do(Time now) const {
   const auto is_open = [&](RuleId id) {
-    return knowledge_.states[id].last_resort || next_last_resort(id) ||
+    return knowledge_.states[id].last_resort || last_resorts_.next(id) ||
            (goes_on(id) && knowledge_.states[id].search.retry_at <= now);
   };
   return !knowledge_.states.active().empty() ||
@@ -140,67 +120,10 @@ Time Analyzer::next_start() const {
 }
 
 void Analyzer::remember(const History& past) {
-  for (const Event& event : past) remember(event);
-}
-
-void Analyzer::remember(const Event& event) {
-  outcomes_.remember(event);
-  const auto left_off = [&](RuleId id) -> std::optional<LeftOff>& {
-    return write_.states.state(id).left_off;
-  };
-  if (const auto* detected = std::get_if<FailureDetected>(&event.what)) {
-    remember_detected(detected->rule, event.at);
-  } else if (const auto* resolved = std::get_if<FailureResolved>(&event.what)) {
-    const bool is_by_search =
-        resolved->strategy && !knowledge_.rules[*resolved->strategy].is_last_resort;
-    if (auto& left = left_off(resolved->rule); left && is_by_search) {
-      ++left->search.attempts;
-      left->search.tried[knowledge_.states.place_of(*resolved->strategy)] = true;
-    }
-    remember_gone(resolved->rule, event.at, knowledge_.rules[resolved->rule].policies.cooldown);
-  } else if (const auto* lost = std::get_if<FailureLost>(&event.what)) {
-    remember_gone(lost->rule, event.at, Duration::zero());
-  } else if (const auto* failed = std::get_if<StrategyFailed>(&event.what)) {
-    const RuleId rule = knowledge_.rules[failed->strategy].rule;
-    if (auto& left = left_off(rule); left && !knowledge_.rules[failed->strategy].is_last_resort) {
-      ++left->search.attempts;
-      left->search.tried[knowledge_.states.place_of(failed->strategy)] = true;
-    }
-  } else if (const auto* spent = std::get_if<RoundSpent>(&event.what)) {
-    if (auto& left = left_off(spent->rule)) {
-      forget_tried(spent->rule, left->search);
-      left->search.retry_at = later(event.at, pause_after(++left->search.round));
-    }
-  } else if (const auto* last = std::get_if<LastResortReached>(&event.what)) {
-    if (auto& left = left_off(last->rule)) left->search.is_at_last_resort = true;
-  } else if (const auto* taken = std::get_if<LastResortDone>(&event.what)) {
-    // One that ends or starts nothing is begun anew by each process: that harms nothing.
-    const Strategy& last_resort = knowledge_.rules[taken->strategy];
-    if (auto& left = left_off(last_resort.rule); left && begins_anew(last_resort))
-      left->search.tried[knowledge_.states.place_of(taken->strategy)] = true;
-  } else if (const auto* exhausted = std::get_if<RuleExhausted>(&event.what)) {
-    if (auto& left = left_off(exhausted->rule)) left->search.is_exhausted = true;
+  for (const Event& event : past) {
+    outcomes_.remember(event);
+    left_off_.remember(event);
   }
-}
-
-void Analyzer::remember_detected(RuleId id, Time at) {
-  auto& left = write_.states.state(id).left_off;
-  if (left && left->gone && is_proven(*left->gone, at)) left.reset();
-  if (left) {
-    // Without having gone it is what a process that took the search over detected anew.
-    if (left->gone) ++left->search.times;
-    left->gone.reset();
-    return;
-  }
-  left.emplace().since = at;
-  left->search.times = 1;
-  left->search.tried.assign(knowledge_.rules[id].strategies.size(), false);
-}
-
-void Analyzer::remember_gone(RuleId id, Time at, Duration quiet) {
-  RuleState& state = write_.states.state(id);
-  if (state.left_off) state.left_off->gone = at;
-  state.quiet_until = later(at, quiet);
 }
 
 bool Analyzer::is_proven(Time gone, Time now) const {
@@ -209,10 +132,10 @@ bool Analyzer::is_proven(Time gone, Time now) const {
 
 void Analyzer::look_at(RuleId id, Time now) {
   evaluate_trigger(id, now);
-  judge_last_resort(id, now);
+  last_resorts_.judge(id, now);
   switch (knowledge_.states[id].phase) {
     case RulePhase::kQuiet:
-      if (detects(id, now)) detect(id, now);
+      if (detector_.detects(id, now)) detect(id, now);
       break;
     case RulePhase::kFailing:
     case RulePhase::kExhausted:
@@ -222,38 +145,18 @@ void Analyzer::look_at(RuleId id, Time now) {
       judge(id, now);
       break;
   }
-  watch_last_resorts(id, now);
+  last_resorts_.watch(id, now);
   schedule(id, now);
 }
 
 void Analyzer::evaluate_trigger(RuleId id, Time now) {
   RuleState& state = write_.states.state(id);
-  const Slot value = value_of_trigger(id, now);
-  if (is_false(value) || is_false(state.detection.trigger)) state.detection.last_false = now;
-  if (!same(value, state.detection.trigger, Type::kBool) ||
-      state.detection.trigger_since == kLongAgo) {
-    state.detection.trigger = value;
-    state.detection.trigger_since = now;
-  }
-  if (!is_true(value)) state.detection.armed = true;
-  if (is_true(value)) state.cleared_by.reset();
-  if (is_false(value) && state.left_off && !state.left_off->gone && !missing_group(id, now))
+  detector_.evaluate(id, now);
+  if (is_true(state.detection.trigger)) state.cleared_by.reset();
+  if (is_false(state.detection.trigger) && state.left_off && !state.left_off->gone &&
+      !missing_group(id, now))
     forget_left_off(id, now);
-  if (!state.detection.history.empty()) sample_history(id, now);
   blind_.evaluated(id, now);
-}
-
-Slot Analyzer::value_of_trigger(RuleId id, Time now) {
-  Detection& detection = write_.states.state(id).detection;
-  const Slot value = evaluate(knowledge_.rules[id].trigger, knowledge_.signals.slots());
-  const auto dead = known_silence_.behind(id);
-  if (!dead) {
-    detection.known_death.reset();
-    return value;
-  }
-  if (!detection.known_death || detection.known_death->component != *dead)
-    detection.known_death = {*dead, now};
-  return Slot::of(true);
 }
 
 // An earlier process left this failure unresolved, and it cleared before this process looked.
@@ -264,44 +167,9 @@ void Analyzer::forget_left_off(RuleId id, Time now) {
       now, FailureResolved{id, FailureResolved::How::kWithoutStrategy, {}, now - left_off.since});
 }
 
-void Analyzer::sample_history(RuleId id, Time now) {
-  RuleState& state = write_.states.state(id);
-  if (state.detection.sampled != kLongAgo &&
-      now < later(state.detection.sampled, knowledge_.rules.cycle))
-    return;
-  state.detection.sampled = now;
-  state.detection.newest = (state.detection.newest + 1) % state.detection.history.size();
-  state.detection.true_in_history -= state.detection.history[state.detection.newest] ? 1 : 0;
-  state.detection.history[state.detection.newest] = is_true(state.detection.trigger);
-  state.detection.true_in_history += state.detection.history[state.detection.newest] ? 1 : 0;
-}
-
-bool Analyzer::detects(RuleId id, Time now) const {
-  const RuleState& state = knowledge_.states[id];
-  const Policies& policies = knowledge_.rules[id].policies;
-  if (now < state.quiet_until || (policies.on_change && !state.detection.armed)) return false;
-  if (!state.detection.history.empty())
-    return state.detection.true_in_history >= policies.hold_needed;
-  return is_true(state.detection.trigger) &&
-         now >= later(state.detection.trigger_since, policies.hold_for);
-}
-
-Duration Analyzer::clearing_time(RuleId id) const {
-  const Policies& policies = knowledge_.rules[id].policies;
-  const int held = policies.hold_window > 1 ? policies.hold_window - policies.hold_needed + 1 : 1;
-  return std::max(policies.hold_for, knowledge_.rules.cycle * held);
-}
-
-// The trigger has stayed false.
-bool Analyzer::is_cleared(RuleId id, Time now) const {
-  const RuleState& state = knowledge_.states[id];
-  return is_false(state.detection.trigger) &&
-         now >= later(state.detection.trigger_since, clearing_time(id));
-}
-
 // And its function is there again: a component of a group is of no use while the group is not active.
 bool Analyzer::is_gone(RuleId id, Time now) const {
-  return is_cleared(id, now) && !missing_group(id, now);
+  return detector_.is_cleared(id, now) && !missing_group(id, now);
 }
 
 std::optional<GroupId> Analyzer::missing_group(RuleId id, Time now) const {
@@ -337,13 +205,7 @@ void Analyzer::detect(RuleId id, Time now) {
   // A rule with ON_CHANGE acts on each edge.
   const bool is_same = state.search.times > 0 && !is_proven(state.gone_since, now) &&
                        !knowledge_.rules[id].policies.on_change;
-  if (state.left_off && state.left_off->gone) {
-    if (is_proven(*state.left_off->gone, now)) {
-      state.left_off.reset();
-    } else {
-      ++state.left_off->search.times;
-    }
-  }
+  left_off_.detected(id, now);
   const bool is_said_to_be_exhausted = is_same && state.search.is_exhausted;
   state.recurring_since = recurs ? state.first_detected() : kNever;
   write_.transients.came_back(id);
@@ -372,7 +234,7 @@ void Analyzer::detect(RuleId id, Time now) {
     if (last.is_last_resort && !begins_anew(last)) write_.states.set_tried(strategy, false);
   }
   write_.states.enter(id, RulePhase::kFailing);
-  write_.events.tell(now, known_silence_.detected(id));
+  write_.events.tell(now, detector_.detected(id));
   outcomes_.detected(id, now);
   fights_.detected(id, now);
   if (state.search.times == kFlaps) write_.events.tell(now, FailureFlaps{id, state.search.times});
@@ -393,7 +255,7 @@ void Analyzer::watch_failing(RuleId id, Time now) {
     if (const auto cleared_by = std::exchange(write_.states.state(id).cleared_by, std::nullopt)) {
       resolve(id, {id, FailureResolved::How::kByStrategy, cleared_by->strategy, {}}, now);
       outcomes_.judged(*cleared_by, true, now);
-    } else if (const auto helped = last_resort_that_helped(id)) {
+    } else if (const auto helped = last_resorts_.that_helped(id)) {
       resolve(id, {id, FailureResolved::How::kByStrategy, *helped, {}}, now);
     } else {
       note_transient(id);
@@ -453,7 +315,7 @@ void Analyzer::judge(RuleId id, Time now) {
   attempt.deadline = later(given, knowledge_.signals.latency(id));
   const auto awaited =
       is_about_whole_group(attempt.strategy) ? missing_group(id, now) : std::nullopt;
-  if (knowledge_.rules[id].policies.on_change || (is_cleared(id, now) && !awaited))
+  if (knowledge_.rules[id].policies.on_change || (detector_.is_cleared(id, now) && !awaited))
     return succeed(id, now);
   const bool is_suspended = attempt.stage == Attempt::Stage::kSuspended;
   const bool is_clearing =
@@ -673,7 +535,7 @@ void Analyzer::forgive_unheard(Time now) {
     search.attempts = search.attempts_before;
     search.round = 0;
     search.retry_at = now;
-    forget_tried(id, search);
+    forget_tried(knowledge_.rules[id], knowledge_.rules, search);
     if (state.phase != RulePhase::kExhausted) return;
     search.is_exhausted = false;
     write_.states.enter(id, RulePhase::kFailing);
@@ -741,7 +603,7 @@ void Analyzer::unmask_effects_of(RuleId gone, Time now) {
 void Analyzer::round_is_spent(RuleId id, Time now) {
   RuleState& state = write_.states.state(id);
   ++state.search.round;
-  forget_tried(id, state.search);
+  forget_tried(knowledge_.rules[id], knowledge_.rules, state.search);
   state.search.retry_at = later(now, pause_after(state.search.round));
   exhaust_if_spent(id, now);
   if (state.phase == RulePhase::kFailing)
@@ -757,116 +619,12 @@ void Analyzer::exhaust_if_spent(RuleId id, Time now) {
 }
 
 void Analyzer::give_up(RuleId id, Time now) {
-  turn_to_last_resort(id, now);
+  last_resorts_.turn_to(id, now);
   if (knowledge_.states[id].search.is_exhausted) {
     stay_exhausted(id, now);
   } else {
     exhaust(id, now);
   }
-}
-
-// ---- last resorts
-
-// The rounds are those of the other strategies.
-void Analyzer::forget_tried(RuleId id, Search& search) const {
-  const auto& strategies = knowledge_.rules[id].strategies;
-  for (std::size_t place = 0; place < strategies.size(); ++place) {
-    if (!knowledge_.rules[strategies[place]].is_last_resort) search.tried[place] = false;
-  }
-}
-
-std::optional<StrategyId> Analyzer::next_last_resort(RuleId id) const {
-  std::optional<StrategyId> next;
-  for (const StrategyId strategy : knowledge_.rules[id].strategies) {
-    const Strategy& last = knowledge_.rules[strategy];
-    if (!last.is_last_resort || knowledge_.states.is_tried(strategy)) continue;
-    if (!next || last.within < knowledge_.rules[*next].within) next = strategy;
-  }
-  return next;
-}
-
-std::optional<StrategyId> Analyzer::last_resort_due(RuleId id, Time now) const {
-  const RuleState& state = knowledge_.states[id];
-  const bool is_there = state.phase != RulePhase::kQuiet && !is_false(state.detection.trigger);
-  if (!is_there || !state.search.is_at_last_resort || state.last_resort ||
-      state.search.last_resort_at > now)
-    return std::nullopt;
-  return next_last_resort(id);
-}
-
-void Analyzer::turn_to_last_resort(RuleId id, Time now) {
-  RuleState& state = write_.states.state(id);
-  if (state.search.is_at_last_resort || !next_last_resort(id)) return;
-  state.search.is_at_last_resort = true;
-  write_.events.tell(now, LastResortReached{id});
-}
-
-void Analyzer::abandon_last_resort(RuleId id, Time now) {
-  const Attempt attempt = *std::exchange(write_.states.state(id).last_resort, std::nullopt);
-  couplings_.ended(attempt, now);
-}
-
-// It has no verdict: it took effect, or could not be carried out.
-void Analyzer::judge_last_resort(RuleId id, Time now) {
-  RuleState& state = write_.states.state(id);
-  if (!state.last_resort) return;
-  const bool has_effect = state.last_resort->stage == Attempt::Stage::kWaiting;
-  if (!has_effect && state.last_resort->obstacle.empty()) return;
-  const Attempt attempt = *state.last_resort;
-  abandon_last_resort(id, now);
-  Search& search = state.search;
-  if (!has_effect) {
-    write_.events.tell(now, StrategyFailed{attempt.strategy, attempt.obstacle});
-    if (attempt.has_no_failure) return;
-    search.last_resort_at = later(now, pause_after(++search.last_resort_obstacles));
-    if (search.last_resort_obstacles < knowledge_.rules[id].policies.attempts) return;
-  } else if (attempt.has_no_failure) {
-    return write_.events.tell(now, OrderCarriedOut{attempt.strategy});
-  } else {
-    fights_.took_effect(attempt.strategy);
-    write_.events.tell(now, LastResortDone{attempt.strategy});
-    if (state.phase != RulePhase::kQuiet)
-      state.standing.push_back({attempt.strategy, attempt.effective});
-    const Duration impact =
-        duration_of(knowledge_.rules[attempt.strategy].impact, knowledge_.rules);
-    search.last_resort_at = later(attempt.effective, impact + knowledge_.signals.latency(id));
-  }
-  search.last_resort_obstacles = 0;
-  write_.states.set_tried(attempt.strategy, true);
-  if (const auto next = next_last_resort(id))
-    search.last_resort_at =
-        std::max(search.last_resort_at, later(state.failing_since, knowledge_.rules[*next].within));
-}
-
-void Analyzer::watch_last_resorts(RuleId id, Time now) {
-  RuleState& state = write_.states.state(id);
-  if (state.phase == RulePhase::kQuiet) return;
-  // A new process has lost the settings of the old one.
-  std::erase_if(state.standing, [&](const RuleState::Standing& each) {
-    const bool is_lost =
-        std::ranges::any_of(knowledge_.rules[each.strategy].adaptations, [&](const Adaptation& a) {
-          return is_kept_in_process(a) && knowledge_.components[a.component].node_seen > each.since;
-        });
-    if (is_lost) write_.states.set_tried(each.strategy, false);
-    return is_lost;
-  });
-  const auto next = next_last_resort(id);
-  if (next && !is_false(state.detection.trigger) &&
-      now >= later(state.failing_since, knowledge_.rules[*next].within))
-    turn_to_last_resort(id, now);
-}
-
-// The failure went away in the time that the latest one had for that, and while no other strategy of
-// the rule was under way.
-std::optional<StrategyId> Analyzer::last_resort_that_helped(RuleId id) const {
-  const RuleState& state = knowledge_.states[id];
-  if (state.standing.empty()) return std::nullopt;
-  const auto& [strategy, since] = state.standing.back();
-  const Time gone = state.detection.trigger_since;
-  const Duration impact = duration_of(knowledge_.rules[strategy].impact, knowledge_.rules);
-  const bool is_in_time =
-      gone >= since && gone <= later(since, impact + knowledge_.signals.latency(id));
-  return is_in_time ? std::optional(strategy) : std::nullopt;
 }
 
 void Analyzer::exhaust(RuleId id, Time now) {
@@ -881,31 +639,21 @@ void Analyzer::stay_exhausted(RuleId id, Time now) {
   const int beyond = search.attempts - knowledge_.rules[id].policies.attempts;
   const Duration pause = kFirstPauseOfStarts * (1 << std::clamp(beyond, 0, 10));
   search.retry_at = later(now, std::min<Duration>(pause, kLongestPauseOfStarts));
-  forget_tried(id, search);
+  forget_tried(knowledge_.rules[id], knowledge_.rules, search);
   write_.states.enter(id, RulePhase::kExhausted);
 }
 
 // When the rule must be looked at next if nothing that it reads changes.
 void Analyzer::schedule(RuleId id, Time now) {
   const RuleState& state = knowledge_.states[id];
-  const Policies& policies = knowledge_.rules[id].policies;
-  Time next = kNever;
+  Time next = detector_.next(id, now);
   const auto want = [&](Time at) {
     if (at > now) next = std::min(next, at);
   };
-  if (is_false(state.detection.trigger) && state.phase != RulePhase::kQuiet)
-    want(later(state.detection.trigger_since, clearing_time(id)));
   if (!state.detection.trigger.known && state.phase != RulePhase::kQuiet)
     want(later(state.detection.trigger_since, kLostAfter));
-  if (is_true(state.detection.trigger) && state.phase == RulePhase::kQuiet) {
-    want(later(state.detection.trigger_since, policies.hold_for));
-    want(state.quiet_until);
-  }
   if (state.phase == RulePhase::kFailing) want(state.search.retry_at);
-  if (const auto last = next_last_resort(id); last && state.phase != RulePhase::kQuiet)
-    want(state.search.is_at_last_resort
-             ? state.search.last_resort_at
-             : later(state.failing_since, knowledge_.rules[*last].within));
+  want(last_resorts_.next_time(id));
   if (state.attempt && state.attempt->stage == Attempt::Stage::kWaiting) {
     want(state.attempt->deadline);
     want(later(state.attempt->deadline, kLostAfter));
@@ -915,11 +663,6 @@ void Analyzer::schedule(RuleId id, Time now) {
   }
   if (state.attempt && state.attempt->stage == Attempt::Stage::kSuspended)
     want(later(now, knowledge_.rules.cycle));
-  const auto window = static_cast<int>(state.detection.history.size());
-  if (window > 0 &&
-      state.detection.true_in_history != (is_true(state.detection.trigger) ? window : 0)) {
-    want(later(state.detection.sampled, knowledge_.rules.cycle));
-  }
   deadlines_.set(id.index, next);
 }
 

@@ -4,8 +4,7 @@
 // of a rule:
 //
 //   detected   its trigger held for its policy's time (FOR, HOLD n/k) and its COOLDOWN is over.
-//              Silence of a topic whose publisher is known dead is certain to come, so it counts
-//              at once (known_silence.h)
+//              (detector.h)
 //   resolved   its trigger was false for its policy's time; unknown is neither true nor false
 //   blind      its trigger has been unknown for a while: neither quiet nor failing (blind_watch.h)
 //   proven     it stayed resolved for `healthy`. A failure that is back before that is the same
@@ -22,11 +21,7 @@
 // (or as many rounds without any valid strategy) the rule is exhausted. A process that is known to be gone
 // is started again all the same, for ever, with a back-off of up to five minutes, and teaches nothing.
 //
-// LASTRESORT strategies are no part of the rounds. They are due WITHIN their time of the detection,
-// or earlier if no other strategy can begin or help by then, and go beside whatever is under way. They
-// have no verdict: their changes stay while the failure is there, and the other strategies go on.
-// One that could not be carried out is tried again with back-off, up to ATTEMPTS times. Several follow
-// each other by WITHIN, each after the impact of the one before.
+// LASTRESORT strategies are no part of the rounds (last_resorts.h).
 //
 // A rule with ON_CHANGE acts once on the rising edge of its trigger; its strategy succeeds when its
 // adaptations took effect, because the condition is expected to last.
@@ -42,8 +37,10 @@
 
 #include "analyze/blind_watch.h"
 #include "analyze/coupling_watch.h"
-#include "analyze/known_silence.h"
+#include "analyze/detector.h"
+#include "analyze/last_resorts.h"
 #include "analyze/lateness_watch.h"
+#include "analyze/left_off.h"
 #include "analyze/outcome_watch.h"
 #include "analyze/parameter_fights.h"
 #include "knowledge/deadlines.h"
@@ -52,13 +49,8 @@
 
 namespace culprit {
 
-// How long a trigger has to hold at most until its failure is detected (FOR, HOLD).
-Duration longest_detection(const RuleSet& rules);
-
 class Analyzer {
  public:
-  static constexpr Duration kFirstBackoff = std::chrono::seconds(1);
-  static constexpr Duration kLongestBackoff = std::chrono::seconds(60);
   // Between two starts of a process that is known to have exited, once the rule is exhausted:
   // doubled each time.
   static constexpr Duration kFirstPauseOfStarts = std::chrono::seconds(10);
@@ -72,9 +64,6 @@ class Analyzer {
   static constexpr Duration kRecurs = std::chrono::seconds(5);
   // A failure that came so often, each time before it was proven gone, flaps.
   static constexpr int kFlaps = 3;
-
-  // The back-off after so many rounds, at least one.
-  static Duration pause_after(int rounds);
 
   // What it writes; all else it only reads.
   struct Writes {
@@ -128,14 +117,7 @@ class Analyzer {
   // changes stay, it is judged when it has the components back; else it ends without a verdict.
   void make_way(RuleId id, StrategyId other, Time now);
 
-  // No other strategy of the rule can begin or help in time: its last resorts are due, if it has any.
-  void turn_to_last_resort(RuleId id, Time now);
-  // The last resort of the rule that has to be begun now.
-  std::optional<StrategyId> last_resort_due(RuleId id, Time now) const;
-  // The one that comes next, due or not; empty: each took effect, or there is none.
-  std::optional<StrategyId> next_last_resort(RuleId id) const;
-  // The last resort under way is abandoned. @pre there is one
-  void abandon_last_resort(RuleId id, Time now);
+  LastResorts& last_resorts() { return last_resorts_; }
 
   // culprit may not do more about the failure by itself: a person must look.
   void give_up(RuleId id, Time now);
@@ -150,22 +132,14 @@ class Analyzer {
  private:
   void look_at(RuleId id, Time now);
   void evaluate_trigger(RuleId id, Time now);
-  Slot value_of_trigger(RuleId id, Time now);
   void forget_left_off(RuleId id, Time now);
-  void sample_history(RuleId id, Time now);
-  bool detects(RuleId id, Time now) const;
-  bool is_cleared(RuleId id, Time now) const;
   bool is_gone(RuleId id, Time now) const;
   // A group that the rule is about and that is not active; nothing: there is none.
   std::optional<GroupId> missing_group(RuleId id, Time now) const;
   bool is_about_whole_group(StrategyId strategy) const;
   // The group stays as it is, and that is not active: no member is changing.
   bool is_left_down(GroupId group, const Attempt& attempt, Time now) const;
-  Duration clearing_time(RuleId id) const;
 
-  void remember(const Event& event);
-  void remember_detected(RuleId id, Time at);
-  void remember_gone(RuleId id, Time at, Duration quiet);
   bool is_proven(Time gone, Time now) const;
   void detect(RuleId id, Time now);
   void watch_failing(RuleId id, Time now);
@@ -182,10 +156,6 @@ class Analyzer {
   void excuse_barred(RuleId id, ComponentId barred, Time now);
   void excuse(RuleId id, ComponentId unheard, Time now);
   void resolve(RuleId id, FailureResolved how, Time now);
-  void forget_tried(RuleId id, Search& search) const;
-  void judge_last_resort(RuleId id, Time now);
-  void watch_last_resorts(RuleId id, Time now);
-  std::optional<StrategyId> last_resort_that_helped(RuleId id) const;
   void exhaust_if_spent(RuleId id, Time now);
   bool has_components_back(const Attempt& attempt) const;
   void exhaust(RuleId id, Time now);
@@ -206,11 +176,13 @@ class Analyzer {
   Writes write_;
   Deadlines deadlines_;  // by RuleId
   BlindWatch blind_;
-  KnownSilence known_silence_;
+  Detector detector_;
+  LeftOffSearches left_off_;
   CouplingWatch couplings_;
   LatenessWatch lateness_;
   OutcomeWatch outcomes_;
   ParameterFights fights_;
+  LastResorts last_resorts_;
 };
 
 }  // namespace culprit

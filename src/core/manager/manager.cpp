@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "analyze/backoff.h"
 #include "base/invariant.h"
 #include "diagnose/questions.h"
 #include "knowledge/undoes.h"
@@ -290,7 +291,7 @@ void Manager::abandon_all(const std::string& reason, Time now) {
     const auto& last_resort = knowledge_.states[RuleId(r)].last_resort;
     if (!last_resort) continue;
     knowledge_.events.tell(now, StrategyAbandoned{last_resort->strategy, reason});
-    analyzer_.abandon_last_resort(RuleId(r), now);
+    analyzer_.last_resorts().abandon(RuleId(r), now);
   }
 }
 
@@ -349,7 +350,7 @@ void Manager::plan(Time now, std::vector<Command>& commands) {
       // While an unreachable computer explains the failure, attempts in vain are repeated once it is
       // reachable again.
       if (knowledge_.unheard_behind(decision.rule))
-        analyzer_.turn_to_last_resort(decision.rule, now);
+        analyzer_.last_resorts().turn_to(decision.rule, now);
       else if (!stays_any_down(knowledge_.rules[decision.rule].components, knowledge_))
         analyzer_.round_is_spent(decision.rule, now);
     } else {
@@ -357,7 +358,7 @@ void Manager::plan(Time now, std::vector<Command>& commands) {
       if (is_given_up(decision, knowledge_))
         analyzer_.give_up(decision.rule, now);
       else if (plan::waits_for_person(decision, knowledge_))
-        analyzer_.turn_to_last_resort(decision.rule, now);
+        analyzer_.last_resorts().turn_to(decision.rule, now);
     }
   }
   news_ = false;
@@ -393,16 +394,16 @@ void Manager::begin_last_resorts(Time now) {
   std::vector<RuleId> rules;
   for (const auto* list : {&knowledge_.states.active(), &knowledge_.states.exhausted()}) {
     std::ranges::copy_if(*list, std::back_inserter(rules),
-                         [&](RuleId id) { return analyzer_.next_last_resort(id).has_value(); });
+                         [&](RuleId id) { return analyzer_.last_resorts().next(id).has_value(); });
   }
   for (const RuleId id : rules) {
-    const StrategyId next = *analyzer_.next_last_resort(id);
+    const StrategyId next = *analyzer_.last_resorts().next(id);
     const RuleState& state = knowledge_.states[id];
     const Time limit = later(state.failing_since, knowledge_.rules[next].within);
     const bool goes_away = state.detection.trigger.known && !state.detection.trigger.b;
     if (!goes_away && (now >= limit || !is_help_possible(id, limit, now)))
-      analyzer_.turn_to_last_resort(id, now);
-    if (const auto due = analyzer_.last_resort_due(id, now)) begin_last_resort(*due, now);
+      analyzer_.last_resorts().turn_to(id, now);
+    if (const auto due = analyzer_.last_resorts().due(id, now)) begin_last_resort(*due, now);
   }
 }
 
@@ -478,7 +479,7 @@ bool Manager::is_help_possible(RuleId rule, Time limit, Time now) const {
     const Knowledge::Withheld& withheld = knowledge_.withheld[strategy.index];
     Time begun = withheld.reason.empty() ? from : std::max(from, withheld.until);
     if (knowledge_.states.is_tried(strategy))
-      begun = later(begun, Analyzer::pause_after(state.search.round + 1));
+      begun = later(begun, pause_after(state.search.round + 1));
     return is_in_time(strategy, begun) && !plan::invalidity(knowledge_.rules[strategy], knowledge_);
   });
 }

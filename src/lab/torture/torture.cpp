@@ -26,7 +26,7 @@ constexpr Time kQuiet{21s};     // the noise is over by then
 constexpr Time kLatest{3600s};  // back-offs, attempts and silences are over by then
 constexpr Duration kCalm = 4s;
 // A manager that reports nothing for this long waits for a person, not for a back-off or a budget.
-constexpr Duration kGivenUp = 2 * Analyzer::kLongestBackoff;
+constexpr Duration kGivenUp = 2 * kLongestBackoff;
 
 // A step of a manager as it was recorded.
 struct Step {

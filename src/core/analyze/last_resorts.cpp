@@ -1,0 +1,117 @@
+#include "analyze/last_resorts.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "analyze/backoff.h"
+#include "analyze/detector.h"
+
+namespace culprit {
+namespace {
+
+bool is_kept_in_process(const Adaptation& adaptation) {
+  return syntax::names_parameter(adaptation.type) || adaptation.type == AdaptationType::kChangeMode;
+}
+
+}  // namespace
+
+std::optional<StrategyId> LastResorts::next(RuleId id) const {
+  std::optional<StrategyId> next;
+  for (const StrategyId strategy : knowledge_.rules[id].strategies) {
+    const Strategy& last = knowledge_.rules[strategy];
+    if (!last.is_last_resort || knowledge_.states.is_tried(strategy)) continue;
+    if (!next || last.within < knowledge_.rules[*next].within) next = strategy;
+  }
+  return next;
+}
+
+std::optional<StrategyId> LastResorts::due(RuleId id, Time now) const {
+  const RuleState& state = knowledge_.states[id];
+  const bool is_there = state.phase != RulePhase::kQuiet && !is_false(state.detection.trigger);
+  if (!is_there || !state.search.is_at_last_resort || state.last_resort ||
+      state.search.last_resort_at > now)
+    return std::nullopt;
+  return next(id);
+}
+
+void LastResorts::turn_to(RuleId id, Time now) {
+  RuleState& state = write_.states.state(id);
+  if (state.search.is_at_last_resort || !next(id)) return;
+  state.search.is_at_last_resort = true;
+  write_.events.tell(now, LastResortReached{id});
+}
+
+void LastResorts::abandon(RuleId id, Time now) {
+  const Attempt attempt = *std::exchange(write_.states.state(id).last_resort, std::nullopt);
+  write_.couplings.ended(attempt, now);
+}
+
+void LastResorts::judge(RuleId id, Time now) {
+  RuleState& state = write_.states.state(id);
+  if (!state.last_resort) return;
+  const bool has_effect = state.last_resort->stage == Attempt::Stage::kWaiting;
+  if (!has_effect && state.last_resort->obstacle.empty()) return;
+  const Attempt attempt = *state.last_resort;
+  abandon(id, now);
+  Search& search = state.search;
+  if (!has_effect) {
+    write_.events.tell(now, StrategyFailed{attempt.strategy, attempt.obstacle});
+    if (attempt.has_no_failure) return;
+    search.last_resort_at = later(now, pause_after(++search.last_resort_obstacles));
+    if (search.last_resort_obstacles < knowledge_.rules[id].policies.attempts) return;
+  } else if (attempt.has_no_failure) {
+    return write_.events.tell(now, OrderCarriedOut{attempt.strategy});
+  } else {
+    write_.fights.took_effect(attempt.strategy);
+    write_.events.tell(now, LastResortDone{attempt.strategy});
+    if (state.phase != RulePhase::kQuiet)
+      state.standing.push_back({attempt.strategy, attempt.effective});
+    const Duration impact =
+        duration_of(knowledge_.rules[attempt.strategy].impact, knowledge_.rules);
+    search.last_resort_at = later(attempt.effective, impact + knowledge_.signals.latency(id));
+  }
+  search.last_resort_obstacles = 0;
+  write_.states.set_tried(attempt.strategy, true);
+  if (const auto following = next(id))
+    search.last_resort_at = std::max(
+        search.last_resort_at, later(state.failing_since, knowledge_.rules[*following].within));
+}
+
+void LastResorts::watch(RuleId id, Time now) {
+  RuleState& state = write_.states.state(id);
+  if (state.phase == RulePhase::kQuiet) return;
+  std::erase_if(state.standing, [&](const RuleState::Standing& each) {
+    const bool is_lost =
+        std::ranges::any_of(knowledge_.rules[each.strategy].adaptations, [&](const Adaptation& a) {
+          return is_kept_in_process(a) && knowledge_.components[a.component].node_seen > each.since;
+        });
+    if (is_lost) write_.states.set_tried(each.strategy, false);
+    return is_lost;
+  });
+  const auto following = next(id);
+  if (following && !is_false(state.detection.trigger) &&
+      now >= later(state.failing_since, knowledge_.rules[*following].within))
+    turn_to(id, now);
+}
+
+std::optional<StrategyId> LastResorts::that_helped(RuleId id) const {
+  const RuleState& state = knowledge_.states[id];
+  if (state.standing.empty()) return std::nullopt;
+  const auto& [strategy, since] = state.standing.back();
+  const Time gone = state.detection.trigger_since;
+  const Duration impact = duration_of(knowledge_.rules[strategy].impact, knowledge_.rules);
+  const bool is_in_time =
+      gone >= since && gone <= later(since, impact + knowledge_.signals.latency(id));
+  return is_in_time ? std::optional(strategy) : std::nullopt;
+}
+
+Time LastResorts::next_time(RuleId id) const {
+  const RuleState& state = knowledge_.states[id];
+  const auto following = next(id);
+  if (!following || state.phase == RulePhase::kQuiet) return kNever;
+  return state.search.is_at_last_resort
+             ? state.search.last_resort_at
+             : later(state.failing_since, knowledge_.rules[*following].within);
+}
+
+}  // namespace culprit
