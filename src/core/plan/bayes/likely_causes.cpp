@@ -1,0 +1,174 @@
+#include "plan/bayes/likely_causes.h"
+
+#include <algorithm>
+#include <iterator>
+#include <tuple>
+
+#include "diagnose/evidence.h"
+#include "diagnose/known_down.h"
+#include "plan/also_ended.h"
+#include "plan/bayes/bayes_planner.h"
+#include "plan/beside_exhausted.h"
+#include "plan/ties.h"
+
+namespace culprit::plan {
+
+using namespace diagnose;
+
+bool only_revives(const Strategy& strategy, const Knowledge& knowledge) {
+  const std::vector<ComponentId> others = also_ended(strategy, knowledge);
+  return std::all_of(
+             strategy.components.begin(), strategy.components.end(),
+             [&](ComponentId c) { return is_known_down(c, knowledge) && replaces(strategy, c); }) &&
+         std::all_of(others.begin(), others.end(),
+                     [&](ComponentId c) { return is_known_down(c, knowledge); });
+}
+
+LikelyCauses::LikelyCauses(const Knowledge& knowledge, const Examination& found,
+                           std::span<const RuleId> failures)
+    : knowledge_(knowledge),
+      found_(found),
+      causes_(found.causes()),
+      diagnosis_(found.diagnosis()),
+      unheard_(all_unheard()),
+      chances_(causes_.size()) {
+  for (const RuleId rule : failures)
+    chances_[causes_.index_of(rule)] = strategy_chances(rule, knowledge_);
+}
+
+bool LikelyCauses::waits_for_person(std::size_t failure) const {
+  const auto cause = of(failure);
+  const auto is_in_vain = [&](StrategyId id) {
+    return (cause || unheard_[failure]) && !only_revives(knowledge_.rules[id], knowledge_) &&
+           !may_be_tried_beside_exhausted(id, knowledge_) &&
+           (unheard_[failure] || is_left_to_person(*cause));
+  };
+  bool is_anything_left = false;
+  for (const StrategyChance& each : chances_[failure]) {
+    is_anything_left |= each.is_unheard();
+    if (each.is_out()) continue;
+    is_anything_left = true;
+    const StrategyId id = each.strategy;
+    const bool is_held = each.is_withheld && knowledge_.withheld[id.index].until == kNever;
+    if (!is_held && !is_in_vain(id)) return false;
+  }
+  return is_anything_left;
+}
+
+std::vector<std::optional<ComponentId>> LikelyCauses::all_unheard() const {
+  std::vector<std::optional<ComponentId>> all(causes_.size());
+  for (std::size_t i = 0; knowledge_.components.is_any_unreached() && i < all.size(); ++i)
+    all[i] = unheard_behind(i);
+  return all;
+}
+
+// As Knowledge::unheard_behind(), but without what is seen to be well.
+std::optional<ComponentId> LikelyCauses::unheard_behind(std::size_t failure) const {
+  if (causes_[failure].kind != CauseNode::Kind::kFailure) return std::nullopt;
+  const RuleId rule = causes_[failure].rule;
+  if (!knowledge_.unheard_behind(rule)) return std::nullopt;
+  std::optional<ComponentId> found;
+  const auto look = [&](ComponentId c) {
+    if (!found && knowledge_.is_unheard(c) && !knowledge_.is_older_than_silence(rule, c)) found = c;
+  };
+  for (const ComponentId c : knowledge_.rules[rule].components) {
+    look(c);
+    for_each(found_.paths().upstream(found_.reach().place_of(c), rule),
+             [&](std::size_t place) { look(found_.reach()[place]); });
+  }
+  return found;
+}
+
+bool LikelyCauses::is_left_to_person(std::size_t node) const {
+  switch (causes_[node].kind) {
+    case CauseNode::Kind::kFailure:
+      return knowledge_.states.awaits_person(causes_[node].rule) || waits_for_person(node);
+    case CauseNode::Kind::kImminent:
+      return false;
+    case CauseNode::Kind::kTrouble: {
+      const auto rules = knowledge_.states.touching(causes_[node].component);
+      return std::none_of(rules.begin(), rules.end(), [&](RuleId rule) {
+        return knowledge_.states[rule].detection.trigger.known;
+      });
+    }
+    case CauseNode::Kind::kUnsupplied:
+      return true;
+  }
+  return true;
+}
+
+std::optional<std::size_t> LikelyCauses::of(std::size_t failure) const {
+  if (diagnosis_.against_others(failure) >= 0.5) return diagnosis_.dead_in_loop(failure);
+  std::int64_t most = 0;
+  std::size_t cause = failure;
+  diagnosis_.for_each_share(failure, [&](std::size_t j, double share) {
+    if (parts(share) > most) std::tie(most, cause) = std::pair(parts(share), j);
+  });
+  return most > 0 ? std::optional(cause) : std::nullopt;
+}
+
+std::optional<ComponentId> LikelyCauses::missing_member(RuleId rule) const {
+  for (const StrategyId strategy : knowledge_.rules[rule].strategies) {
+    for (const Adaptation& adaptation : knowledge_.rules[strategy].adaptations) {
+      if (!adaptation.group) continue;
+      const Group& group = knowledge_.rules[*adaptation.group];
+      const auto missing = std::ranges::find_if(group.members, [&](ComponentId id) {
+        const ComponentState& state = knowledge_.components[id];
+        return state.alive == false || state.lifecycle != Lifecycle::kActive;
+      });
+      return missing == group.members.end() ? group.manager : *missing;
+    }
+  }
+  return std::nullopt;
+}
+
+ComponentId LikelyCauses::likeliest_component(RuleId rule) const {
+  if (knowledge_.rules[rule].components.size() == 1) return knowledge_.rules[rule].components[0];
+  if (const auto missing = missing_member(rule)) return *missing;
+  std::pair<std::int64_t, ComponentId> best{-1, {}};
+  for (const ComponentId c : knowledge_.rules[rule].components) {
+    double chance = 0;
+    for (const StrategyId s : knowledge_.rules[rule].strategies) {
+      const auto& adapted = knowledge_.rules[s].components;
+      if (std::binary_search(adapted.begin(), adapted.end(), c))
+        chance += knowledge_.beliefs[s].mean().value;
+    }
+    const bool is_better = parts(chance) > best.first ||
+                           (parts(chance) == best.first &&
+                            knowledge_.rules[c].name < knowledge_.rules[best.second].name);
+    if (is_better) best = {parts(chance), c};
+  }
+  return best.second;
+}
+
+ComponentId LikelyCauses::component_of(std::size_t node) const {
+  return causes_[node].is_rule() ? likeliest_component(causes_[node].rule)
+                                 : causes_[node].component;
+}
+
+std::vector<Suspect> LikelyCauses::suspects(std::size_t failure) const {
+  std::vector<std::pair<Suspect, std::size_t>> all;  // with their nodes
+  const RuleId rule = causes_[failure].rule;
+  all.push_back({{likeliest_component(rule), rule, diagnosis_.of(failure)}, failure});
+  diagnosis_.for_each_share(failure, [&](std::size_t j, double share) {
+    all.push_back({{component_of(j), causes_[j].is_rule() ? causes_[j].rule : rule, share}, j});
+  });
+  const std::size_t shown = std::min(all.size(), BayesPlanner::kSuspects);
+  std::partial_sort(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(shown), all.end(),
+                    [&](const auto& a, const auto& b) {
+                      const auto key = [&](const Suspect& s) {
+                        return std::pair<std::int64_t, const std::string&>(
+                            -parts(s.probability), knowledge_.rules[s.failure].name);
+                      };
+                      return key(a.first) < key(b.first);
+                    });
+  all.resize(shown);
+  std::vector<Suspect> suspects;
+  for (auto& [suspect, node] : all) {
+    suspect.evidence = evidence_for(node, failure, found_, knowledge_);
+    suspects.push_back(std::move(suspect));
+  }
+  return suspects;
+}
+
+}  // namespace culprit::plan
