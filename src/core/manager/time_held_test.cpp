@@ -87,6 +87,25 @@ TEST(TimeHeld, NodesOfRealTimeAreRepairedMeanwhile) {
   EXPECT_FALSE(robot.was_asked("camera:")) << transcript(robot);
 }
 
+TEST(TimeHeld, AGoalDoesNotAgeMeanwhile) {
+  TestRobot robot(
+      "COMPONENT driver NODE /driver\n"
+      "RULE Slow\n  POLICIES WARNING REPORT\n  TRIGGER goal_age(/go) > 10s\n");
+  robot.add("driver", {}, "/go/_action/status");
+  robot.discover();
+  robot.tell(EndpointAppeared{"/driver", EndpointKind::kPublisher, "/go/_action/status"});
+  robot.run_for(8s);
+  robot.tell(GoalsSeen{TopicId(0), {{1, GoalStatus::kExecuting}}});
+  robot.run_for(6s);
+  robot.tell(TimeHeld{robot.id("driver"), true});
+  robot.run_for(60s);
+  robot.tell(TimeHeld{robot.id("driver"), false});
+  robot.run_for(3s);
+  EXPECT_EQ(robot.count("Slow detected"), 0u) << transcript(robot);
+  robot.run_for(2s);
+  EXPECT_EQ(robot.count("Slow detected"), 1u) << transcript(robot);
+}
+
 // The operating system says that it is gone.
 TEST(TimeHeld, AKilledNodeIsStartedAgain) {
   HalfSimulated simulated;

@@ -443,6 +443,9 @@ void Monitor::hold_topic(TopicId id, bool is_held, Time at) {
     topic.held = at;
   } else {
     resume(id, *topic.held, at);
+    // No goal has run meanwhile.
+    for (auto& [goal, state] : topic.goals.all)
+      state.began += at - std::max(*topic.held, state.began);
     topic.held.reset();
     topic.loss.restart(at);
     for (const InputId input : topic.inputs) derived_[input.index].overflowed = at;
