@@ -1,6 +1,6 @@
 // Which computer each component runs on, and which of the other computers are unreachable.
 //
-// What becomes known is reported: LivesOn for a component, HostHeard for a computer.
+// It reports both: LivesOn for a component, HostHeard for a computer.
 #pragma once
 
 #include <map>
@@ -39,7 +39,7 @@ class ComponentHosts {
 
   // The other computer where it ran last; empty: there is none.
   std::string host_of(ComponentId component) const;
-  // That computer, if it was unreachable at the last look.
+  // The same computer, if it was unreachable at the last look.
   std::optional<std::string> cut_off(ComponentId component) const;
   // The other computers that nodes of the graph run on, by the nodes' full names.
   std::map<std::string, std::string> nodes_elsewhere() const;

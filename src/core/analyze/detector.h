@@ -18,7 +18,7 @@ Duration longest_detection(const RuleSet& rules);
 
 class Detector {
  public:
-  // Both must outlive it. Of the states, it writes RuleState::detection.
+  // Both must outlive it. It writes RuleState::detection alone.
   Detector(const Knowledge& knowledge, RuleStates& states)
       : knowledge_(knowledge), states_(states), known_silence_(knowledge) {}
 

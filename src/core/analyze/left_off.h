@@ -16,7 +16,7 @@ class LeftOffSearches {
   LeftOffSearches(const Knowledge& knowledge, RuleStates& states)
       : knowledge_(knowledge), states_(states) {}
 
-  // What the earlier process did. In the order of time, before anything is analyzed.
+  // An event of an earlier process. In the order of time, before anything is analyzed.
   void remember(const Event& event);
   // The failure is detected now: what was left off counts, unless the failure had been proven gone.
   void detected(RuleId id, Time now);

@@ -1,4 +1,4 @@
-// What most likely causes each failure, and for which failures nothing can begin without a person.
+// The likeliest cause of each failure, and the failures for which nothing can begin without a person.
 #pragma once
 
 #include <optional>
