@@ -50,6 +50,10 @@ TEST(ServiceCall, SendsWhatTheTypesThatAreTheSameEverywhereSay) {
   EXPECT_EQ(call("std_srvs/srv/SetBool", "data: true")->request(),
             encode(srv::SetBool::Request{true}));
   EXPECT_EQ(call("std_srvs/srv/SetBool", "")->request(), encode(srv::SetBool::Request{false}));
+  const auto call_of_nav2 = call("nav2_msgs/srv/ManageLifecycleNodes", "command: 2");
+  CdrReader resume(call_of_nav2->request());
+  EXPECT_EQ(resume.read<std::uint8_t>(), 2);
+  EXPECT_EQ(resume.left(), 0u);
   srv::SetParametersAtomically::Request gain;
   gain.parameters.resize(1);
   gain.parameters[0].name = "gain";

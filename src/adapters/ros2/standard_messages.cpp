@@ -134,6 +134,8 @@ constexpr auto kMessages = std::to_array<StandardMessage>({
     {"nav2_msgs/msg/VoxelGrid",
      "std_msgs/Header header\nuint32[] data\ngeometry_msgs/Point32 origin\n"
      "geometry_msgs/Vector3 resolutions\nuint32 size_x\nuint32 size_y\nuint32 size_z"},
+    {"nav2_msgs/srv/ManageLifecycleNodes_Request", "uint8 command"},
+    {"nav2_msgs/srv/ManageLifecycleNodes_Response", "bool success"},
 
     {"nav_msgs/msg/GridCells",
      "std_msgs/Header header\nfloat32 cell_width\nfloat32 cell_height\n"
