@@ -34,7 +34,7 @@ int parent_of(int pid) {
   return end + 4 < stat.size() ? std::atoi(stat.c_str() + end + 4) : 0;
 }
 
-std::string in_words(const std::vector<GraphNode>& nodes) {
+std::string holders_in_words(const std::vector<GraphNode>& nodes) {
   if (nodes.size() < 2) return "";
   std::string text;
   std::string others;
@@ -63,7 +63,8 @@ std::string in_words(const std::vector<GraphNode>& nodes) {
 void NameContests::seen(const NodeNamesakes& seen, bool is_ours, Time now) {
   std::vector<int> processes;
   for (const GraphNode& node : seen.all) processes.push_back(node.pid);
-  const std::string text = "several nodes have the name " + seen.node + ": " + in_words(seen.all);
+  const std::string text =
+      "several nodes have the name " + seen.node + ": " + holders_in_words(seen.all);
   const MutexLock lock(mutex_);
   contests_.erase(seen.node);
   processes_.erase(seen.node);

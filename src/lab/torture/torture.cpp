@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "analyze/backoff.h"
 #include "journal/history.h"
 #include "knowledge/describe.h"
 #include "language/checker.h"
