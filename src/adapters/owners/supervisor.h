@@ -60,6 +60,7 @@
 #include "owners/component_programs.h"
 #include "owners/launchers.h"
 #include "owners/proc.h"
+#include "owners/shared_memory_ports.h"
 #include "owners/spawn.h"
 #include "owners/watched_process.h"
 #include "robot/command.h"
@@ -261,6 +262,7 @@ class Supervisor {
   std::uint64_t numbers_ CULPRIT_GUARDED_BY(mutex_) = 0;  // of members
   std::map<ComponentId, std::pair<int, std::uint64_t>> ended_
       CULPRIT_GUARDED_BY(mutex_);  // the last process that ended, and which member it was
+  SharedMemoryPorts ports_ CULPRIT_GUARDED_BY(mutex_);  // of what was killed
   bool is_ending_ CULPRIT_GUARDED_BY(mutex_) = false;
   FileDescriptor wake_;
   std::thread thread_;

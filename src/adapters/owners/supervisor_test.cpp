@@ -429,6 +429,34 @@ TEST(StartedProcesses, AreEndedAsALaunchEndsThem) {
 }
 
 // Its launcher started another one meanwhile.
+// The successor of a stopped process must not get the ports on which its writers have given up.
+TEST(Supervisor, KeepsTheLocksOfSharedMemoryPortsOfWhatItKills) {
+  const std::string file = "/dev/shm/fastrtps_port" + std::to_string(getpid()) + "999_el";
+  const FileDescriptor lock(open(file.c_str(), O_RDONLY | O_CREAT | O_CLOEXEC, 0644));
+  ASSERT_TRUE(lock);
+  const auto is_free = [&] {
+    const bool is_taken = flock(lock.get(), LOCK_EX | LOCK_NB) == 0;
+    if (is_taken) flock(lock.get(), LOCK_UN);
+    return is_taken;
+  };
+  const std::string holds = "exec 9<" + file + "; flock -n 9; exec sleep 1000";
+  {
+    Supervised supervised("sh -c '" + holds + "'");
+    const int pid = supervised.start();
+    for (const Time end = live_now() + 5s; is_free() && live_now() < end;)
+      std::this_thread::sleep_for(1ms);
+    EXPECT_FALSE(is_free()) << "the process has it";
+    kill(pid, SIGSTOP);
+    supervised.state(ProcessState::kStopped);
+    supervised.stop();
+    EXPECT_FALSE(is_free()) << "culprit has it";
+    EXPECT_NE(supervised.start(), 0);
+    EXPECT_FALSE(is_free());
+  }
+  EXPECT_TRUE(is_free());
+  std::filesystem::remove(file);
+}
+
 TEST(Supervisor, AStopThatIsMeantForAProcessNeverReachesItsSuccessor) {
   Supervised c("sleep 1000");
   const int first = c.start();
