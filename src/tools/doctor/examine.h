@@ -28,7 +28,7 @@ void examine_nodes(const Picture& picture, Findings& all);        // D010 to D01
 void examine_processes(const Picture& picture, Findings& all);    // D014, D017 to D019
 void examine_statuses(const Picture& picture, Findings& all);     // D020, D021: diagnostics
 void examine_reach(const Picture& picture,
-                   Findings& all);  // D030 to D035: who can hear whom at all
+                   Findings& all);  // D030 to D036: who can hear whom at all
 void examine_flows(const Picture& picture, Findings& all);       // D040 to D048: messages and time
 void examine_transforms(const Picture& picture, Findings& all);  // D050 to D054: tf
 void examine_disks(const Picture& picture, Findings& all);       // D060

@@ -497,6 +497,18 @@ TEST(Examine, D035SharedMemoryThatIsNotShared) {
   EXPECT_THAT(examine(picture), IsEmpty()) << "they send over the network";
 }
 
+TEST(Examine, D036SharedMemoryThatTheOtherDoesNotRead) {
+  Picture picture = robot_on("rover1", "rover1");
+  for (int i = 0; i < 2; ++i) picture.participants[i].pid = 11 + i;
+  picture.processes[11].ports_read = {"fastrtps_port7410"};
+  picture.processes[12].ports_read = {"fastrtps_port7412"};
+  EXPECT_THAT(examine(picture), IsEmpty());
+  picture.processes[11].ports_lost = {"fastrtps_port7414"};
+  EXPECT_THAT(examine(picture), IsEmpty()) << "nobody has that number now";
+  picture.processes[11].ports_lost = {"fastrtps_port7412"};
+  EXPECT_EQ(only_finding(picture).code, "D036");
+}
+
 // ---- messages and time
 
 // /scan, received for this long with these pauses.

@@ -131,6 +131,9 @@ struct Process {
   std::map<std::string, std::map<std::string, std::string>> parameters{};
   unsigned user = 0;
   std::uint64_t shared_memory = 0;  // which one it sees; 0: not known
+  // Ports of Fast DDS in shared memory, by the names of their files: those whose lock it holds, which it reads; and those
+  // that it keeps open although there is another file of that name now.
+  std::set<std::string> ports_read{}, ports_lost{};
 };
 
 struct Disk {

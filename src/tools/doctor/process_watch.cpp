@@ -8,6 +8,7 @@
 #include <optional>
 #include <poll.h>
 #include <sstream>
+#include <string_view>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -51,6 +52,40 @@ std::uint64_t shared_memory_of(int pid) {
   return stat(folder.c_str(), &status) == 0 ? status.st_dev : 0;
 }
 
+// "/dev/shm/fastrtps_port7415" -> "fastrtps_port7415"; empty: it is no port of Fast DDS.
+std::string port_in(const std::string& path) {
+  const std::string name = path.substr(path.rfind('/') + 1);
+  const bool is_port = path.starts_with("/dev/shm/") &&
+                       (name.starts_with("fastrtps_port") || name.starts_with("fastdds_port"));
+  return is_port ? name : "";
+}
+
+void look_at_ports(int pid, Process& process) {
+  constexpr std::string_view kLock = "_el";
+  constexpr std::string_view kDeleted = " (deleted)";
+  std::error_code error;
+  for (fs::directory_iterator file(folder_of(pid) / "fd", error), end; !error && file != end;
+       file.increment(error)) {
+    std::error_code is_gone;
+    const std::string port = port_in(fs::read_symlink(file->path(), is_gone));
+    if (port.ends_with(kLock))
+      process.ports_read.insert(port.substr(0, port.size() - kLock.size()));
+  }
+  std::set<std::string> open;
+  std::ifstream maps(folder_of(pid) / "maps");
+  for (std::string line; std::getline(maps, line);) {
+    const std::size_t path = line.find('/');
+    if (path == std::string::npos) continue;
+    const std::string port = port_in(line.substr(path));
+    if (port.ends_with(kDeleted)) {
+      process.ports_lost.insert(port.substr(0, port.size() - kDeleted.size()));
+    } else if (!port.empty()) {
+      open.insert(port);
+    }
+  }
+  std::erase_if(process.ports_lost, [&](const std::string& port) { return open.contains(port); });
+}
+
 Process started(int pid, const std::vector<std::string>& nodes) {
   Process process;
   process.program = command_of(pid);
@@ -67,6 +102,7 @@ Process started(int pid, const std::vector<std::string>& nodes) {
   process.is_left_over = adopts(parent) && prints_to_nobody(pid);
   if (const auto identity = owners::identity_of(pid)) process.user = identity->user;
   process.shared_memory = shared_memory_of(pid);
+  look_at_ports(pid, process);
   if (const auto start = owners::start_of(pid))
     process.parameters = start_parameters(start->command, start->folder, nodes);
   return process;

@@ -160,6 +160,33 @@ void examine_shared_memory(const Picture& picture, const std::vector<const Parti
   }
 }
 
+// A writer of Fast DDS that took a reader for broken, and its reader's successor, which has the number of the port but
+// another file.
+void examine_lost_ports(const Picture& picture, const std::vector<const Participant*>& robot,
+                        Findings& all) {
+  for (const Participant* writer : robot) {
+    const Process* sends = process_of(picture, *writer);
+    if (sends == nullptr || sends->ports_lost.empty()) continue;
+    for (const Participant* reader : robot) {
+      const Process* reads = process_of(picture, *reader);
+      const bool is_lost = reads != nullptr && reads != sends &&
+                           std::ranges::any_of(reads->ports_read, [&](const std::string& port) {
+                             return sends->ports_lost.contains(port);
+                           });
+      if (!is_lost) continue;
+      all.push_back(
+          {"D036", Gravity::kError, listed(writer->nodes) + " → " + listed(reader->nodes),
+           "the one sends through a file of shared memory that was replaced, and the other reads "
+           "from the new one",
+           "what it publishes does not arrive there",
+           "restart both; to rule it out, switch shared memory off "
+           "(FASTDDS_BUILTIN_TRANSPORTS=UDPv4)",
+           nodes_of({writer, reader})});
+      return;  // one pair tells it
+    }
+  }
+}
+
 }  // namespace
 
 void examine_reach(const Picture& picture, Findings& all) {
@@ -170,6 +197,7 @@ void examine_reach(const Picture& picture, Findings& all) {
   examine_security(picture, all);
   examine_distributions(robot, all);
   examine_shared_memory(picture, robot, all);
+  examine_lost_ports(picture, robot, all);
 }
 
 }  // namespace culprit::doctor
