@@ -1,4 +1,4 @@
-// The shared memory ports of Fast DDS that killed processes leave behind.
+// The shared memory ports of Fast DDS that processes leave behind which did not end in order.
 //
 // Nodes on one computer send to each other through ports: files in /dev/shm, each with one reader,
 // which holds a lock file. A port whose reader does not react for a second counts as broken, and so
@@ -6,12 +6,15 @@
 // successor of a stopped process takes the same numbers, and its writers go on with files that no
 // process reads. It would receive nothing, for good (seen with Fast DDS 2.9).
 //
-// So culprit keeps the lock files of the processes that it kills: their successors get numbers that no
-// writer knows.
+// So culprit locks the lock files that such processes left: their successors get numbers that no
+// writer knows. A process that ends in order removes its files.
 #pragma once
 
 #include <cstddef>
 #include <deque>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "owners/file_descriptor.h"
 
@@ -22,14 +25,14 @@ class SharedMemoryPorts {
   // A process has two. Fast DDS tries a hundred numbers, so most stay free.
   static constexpr std::size_t kMost = 32;
 
-  // The process is about to be killed.
+  // The process has its ports by now, or is about to be killed.
   void note(int pid);
-  // Keeps the lock files that no process holds any more. After an exit, and before a start.
-  void keep();
+  // The process has exited.
+  void keep(int pid);
 
  private:
-  std::deque<FileDescriptor> noted_;
-  std::deque<FileDescriptor> kept_;  // the oldest first
+  std::map<int, std::vector<std::string>> noted_;  // the lock files of each process
+  std::deque<FileDescriptor> kept_;                // the oldest first
 };
 
 }  // namespace culprit::owners

@@ -106,7 +106,6 @@ Expected<void> Supervisor::begin_start(CommandId command, ComponentId component)
     return {};
   }
   end_what_is_left(component, "");
-  ports_.keep();
   const int launcher = launchers_.running(component);
   note_launch(programs_.log_folder, rules_[component].name, launcher);
   Program program = programs_.program(component, launcher);
@@ -182,6 +181,7 @@ void Supervisor::adopt(ComponentId component, int pid, Time known) {
   for (Member& member : members_) {
     if (member.component == component) member.awaited.reset();
   }
+  ports_.note(pid);
   if (is_known(component, pid)) return;
   if (!was_there(pid, known)) {
     inbox_.put(ProcessSeen{component, ProcessState::kGone, pid, "ended"});
@@ -504,7 +504,7 @@ void Supervisor::end_member(Member& member) {
   inbox_.put(ProcessSeen{member.component, ProcessState::kGone, member.process.pid(), end.remark,
                          is_ours ? Cause::kWish : end.cause});
   ended_[member.component] = {member.process.pid(), member.number};
-  ports_.keep();
+  ports_.keep(member.process.pid());
   tell_what_stays(member);
   if (member.process.relation() == Relation::kAdopted)
     launchers_.note_end(member.component, member.process.pid());
@@ -673,10 +673,7 @@ void Supervisor::escalate(Shutdown& shutdown, Time now) {
   for (Member& member : members_) {
     if (!is_meant(shutdown, member)) continue;
     member.tree.clear();
-    if (shutdown.signal == SIGKILL) {
-      ports_.note(member.process.pid());
-      for (const Relative& each : descendants_of(member.process.pid())) ports_.note(each.pid);
-    }
+    if (shutdown.signal == SIGKILL) ports_.note(member.process.pid());
     if (!member.variable.empty())
       member.tree = signal_descendants(member.process.pid(), member.variable, shutdown.signal);
     member.process.signal(shutdown.signal);

@@ -262,7 +262,7 @@ class Supervisor {
   std::uint64_t numbers_ CULPRIT_GUARDED_BY(mutex_) = 0;  // of members
   std::map<ComponentId, std::pair<int, std::uint64_t>> ended_
       CULPRIT_GUARDED_BY(mutex_);  // the last process that ended, and which member it was
-  SharedMemoryPorts ports_ CULPRIT_GUARDED_BY(mutex_);  // of what was killed
+  SharedMemoryPorts ports_ CULPRIT_GUARDED_BY(mutex_);
   bool is_ending_ CULPRIT_GUARDED_BY(mutex_) = false;
   FileDescriptor wake_;
   std::thread thread_;

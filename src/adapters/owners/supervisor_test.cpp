@@ -429,32 +429,64 @@ TEST(StartedProcesses, AreEndedAsALaunchEndsThem) {
 }
 
 // Its launcher started another one meanwhile.
-// The successor of a stopped process must not get the ports on which its writers have given up.
-TEST(Supervisor, KeepsTheLocksOfSharedMemoryPortsOfWhatItKills) {
-  const std::string file = "/dev/shm/fastrtps_port" + std::to_string(getpid()) + "999_el";
-  const FileDescriptor lock(open(file.c_str(), O_RDONLY | O_CREAT | O_CLOEXEC, 0644));
-  ASSERT_TRUE(lock);
-  const auto is_free = [&] {
+// A component whose process holds the lock file of a port, as a node of Fast DDS.
+struct WithPort {
+  bool is_free() const {
     const bool is_taken = flock(lock.get(), LOCK_EX | LOCK_NB) == 0;
     if (is_taken) flock(lock.get(), LOCK_UN);
     return is_taken;
-  };
-  const std::string holds = "exec 9<" + file + "; flock -n 9; exec sleep 1000";
-  {
-    Supervised supervised("sh -c '" + holds + "'");
-    const int pid = supervised.start();
-    for (const Time end = live_now() + 5s; is_free() && live_now() < end;)
+  }
+  bool becomes(bool free) const {
+    for (const Time end = live_now() + 5s; is_free() != free && live_now() < end;)
       std::this_thread::sleep_for(1ms);
-    EXPECT_FALSE(is_free()) << "the process has it";
+    return is_free() == free;
+  }
+  ~WithPort() { std::filesystem::remove(file); }
+
+  const std::string file = "/dev/shm/fastrtps_port" + std::to_string(getpid()) + "999_el";
+  const FileDescriptor lock{open(file.c_str(), O_RDONLY | O_CREAT | O_CLOEXEC, 0644)};
+  const std::string launch = "sh -c 'exec 9<" + file + "; flock -n 9; exec sleep 1000'";
+};
+
+// The successor of a stopped process must not get the ports on which its writers have given up.
+TEST(Supervisor, KeepsTheSharedMemoryPortsOfWhatItKills) {
+  const WithPort port;
+  {
+    Supervised supervised(port.launch);
+    const int pid = supervised.start();
+    EXPECT_TRUE(port.becomes(false)) << "the process has it";
     kill(pid, SIGSTOP);
     supervised.state(ProcessState::kStopped);
     supervised.stop();
-    EXPECT_FALSE(is_free()) << "culprit has it";
+    EXPECT_FALSE(port.is_free()) << "culprit has it";
     EXPECT_NE(supervised.start(), 0);
-    EXPECT_FALSE(is_free());
+    EXPECT_FALSE(port.is_free());
   }
-  EXPECT_TRUE(is_free());
-  std::filesystem::remove(file);
+  EXPECT_TRUE(port.is_free());
+}
+
+TEST(Supervisor, KeepsTheSharedMemoryPortsOfNodesThatOthersKill) {
+  const WithPort port;
+  Supervised supervised(port.launch);
+  const int pid = supervised.start();
+  EXPECT_TRUE(port.becomes(false));
+  supervised.supervisor->adopt(ComponentId(0), pid, live_now());
+  kill(pid, SIGKILL);
+  supervised.state(ProcessState::kGone);
+  EXPECT_FALSE(port.is_free());
+}
+
+// As Fast DDS does at an end in order.
+TEST(Supervisor, LeavesSharedMemoryPortsThatWereRemoved) {
+  const WithPort port;
+  Supervised supervised(port.launch);
+  const int pid = supervised.start();
+  EXPECT_TRUE(port.becomes(false));
+  supervised.supervisor->adopt(ComponentId(0), pid, live_now());
+  std::filesystem::remove(port.file);
+  kill(pid, SIGKILL);
+  supervised.state(ProcessState::kGone);
+  EXPECT_TRUE(port.is_free());
 }
 
 TEST(Supervisor, AStopThatIsMeantForAProcessNeverReachesItsSuccessor) {
