@@ -501,10 +501,10 @@ void Supervisor::end_member(Member& member) {
     for (const FileDescriptor& each : member.tree) send_signal(each, SIGKILL);
     if (!member.variable.empty()) end_what_is_left(member.component, member.variable);
   }
+  ports_.keep(member.process.pid());  // before anybody can order a successor
   inbox_.put(ProcessSeen{member.component, ProcessState::kGone, member.process.pid(), end.remark,
                          is_ours ? Cause::kWish : end.cause});
   ended_[member.component] = {member.process.pid(), member.number};
-  ports_.keep(member.process.pid());
   tell_what_stays(member);
   if (member.process.relation() == Relation::kAdopted)
     launchers_.note_end(member.component, member.process.pid());
