@@ -48,8 +48,8 @@ set(CPACK_DEBIAN_CULPRIT_PACKAGE_CONTROL_EXTRA
 set(CPACK_DEBIAN_CULPRIT_DESCRIPTION "keeps ROS 2 robots working
 culprit watches a live ROS 2 robot from outside, finds the component that is
 responsible when many things fail at once, and applies the fewest, cheapest
-adaptations that bring the robot back. What may fail, how that is noticed and
-what may help is written in a file of rules. It learns from every attempt.
+adaptations that bring the robot back. A rule file describes the failures,
+their detection and possible repairs. culprit learns from every attempt.
 .
 It needs no ROS installation on its computer, and no change to the robot's
 code.")

@@ -73,7 +73,7 @@ int show(const BeliefsOptions& options) {
                learned_of(each.belief.alpha, each.prior.alpha),
                learned_of(each.belief.beta, each.prior.beta));
   if (!learned->couplings.empty())
-    fmt::print("\n{:<28} {:<28} {:>8} {:>8}\n", "when this was resolved", "this went away", "yes",
+    fmt::print("\n{:<28} {:<28} {:>8} {:>8}\n", "when this was resolved", "this cleared", "yes",
                "no");
   for (const journal::LearnedCoupling& each : learned->couplings)
     fmt::print("{:<28} {:<28} {:>8.6g} {:>8.6g}\n", each.cause, each.effect, each.coupling.cleared,

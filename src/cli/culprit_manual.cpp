@@ -55,12 +55,12 @@ void group_commands(CLI::App& app) {
   };
   const Group groups[] = {
       {"On a robot", {"run", "doctor", "init", "drill", "graph", "plan", "modes"}},
-      {"A culprit that runs",
+      {"A running culprit",
        {"status", "top", "pause", "resume", "silence", "approve", "refuse", "propose",
         "run-strategy", "revive", "end-started", "record", "alerts"}},
       {"Rules",
        {"check", "explain", "fmt", "test", "import", "export", "policy", "web", "lsp", "mcp"}},
-      {"What was", {"log", "incident", "audit", "beliefs", "replay", "info"}},
+      {"History", {"log", "incident", "audit", "beliefs", "replay", "info"}},
 #ifdef CULPRIT_FLEET
       {"A fleet", {"fleet"}},
 #endif

@@ -53,7 +53,7 @@ class RunLine {
 int parse_line(const std::string& version, int argc, char** argv) {
   CLI::App app{
       "culprit keeps ROS 2 robots working: it finds the component that is responsible when many "
-      "things fail at once,\n"
+      "things fail at once, "
       "and applies the fewest, cheapest adaptations that bring the robot back."};
   app.name("culprit");
   app.set_version_flag("--version", "culprit " + version);

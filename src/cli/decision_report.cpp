@@ -68,7 +68,7 @@ std::string suspects_of(const Json& body) {
 std::string candidates_of(const Json& body) {
   const Json candidates = body.value("candidates", Json::array());
   if (!candidates.is_array() || candidates.empty()) return "";
-  std::string out = "\nWhat was weighed\n";
+  std::string out = "\nStrategies compared\n";
   for (const Json& each : candidates) {
     std::string numbers = fmt::format("cost {:.2f}", journal::number_of(each, "cost"));
     if (each.is_object() && each.contains("resolves"))

@@ -85,7 +85,7 @@ void print_changes(const Report& before, const Report& now) {
   };
   for (const Finding& finding : before.findings) {
     if (!is_in(finding, now) && !is_doubtful(finding))
-      say(stdout, "{:%H:%M:%S} gone[{}]: {}\n", time, finding.code, finding.who);
+      say(stdout, "{:%H:%M:%S} cleared[{}]: {}\n", time, finding.code, finding.who);
   }
 }
 

@@ -85,9 +85,13 @@ std::string log_line(const journal::Entry& entry) {
                        journal::text_of(body, "strategy"), journal::text_of(body, "rule"),
                        journal::number_of(body, "alpha"), journal::number_of(body, "beta"));
   if (text.empty() && body.contains("cause"))
-    text = fmt::format("{} with {}: went away {:g} times, stayed {:g} times",
+    text = fmt::format("{} with {}: cleared {:g} times, stayed {:g} times",
                        journal::text_of(body, "effect"), journal::text_of(body, "cause"),
                        journal::number_of(body, "cleared"), journal::number_of(body, "stayed"));
+  if (text.empty() && body.contains("least_s"))
+    text = fmt::format("{}: seen {:g} times, {:.2f} to {:.2f} s", journal::text_of(body, "rule"),
+                       journal::number_of(body, "count"), journal::number_of(body, "least_s"),
+                       journal::number_of(body, "most_s"));
   if (text.empty() && body.contains("incident")) {
     const std::string how = journal::text_of(body, "how");
     text = fmt::format("{}: {}", journal::text_of(body, "incident"),

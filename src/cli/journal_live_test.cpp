@@ -74,7 +74,7 @@ TEST_F(Journal, SurvivesAKillAndTellsAndReplaysWhatHappened) {
               AllOf(HasSubstr("CameraGone detected"), HasSubstr("camera is to be active")));
   const std::string why = said_by({"explain", "--last", "--journal", journal});
   EXPECT_THAT(why, HasSubstr("camera_redeploy"));
-  EXPECT_THAT(why, HasSubstr("What was weighed"));
+  EXPECT_THAT(why, HasSubstr("Strategies compared"));
   EXPECT_THAT(said_by({"audit", "verify", "--journal", journal}),
               HasSubstr("all as they were written"));
   EXPECT_THAT(said_by({"replay", journal}), HasSubstr("all decided as recorded"));

@@ -109,7 +109,7 @@ Expected<std::vector<Advice>> advice(replay::Recording& recording, const RuleSet
         } else if (const auto* detected = std::get_if<FailureDetected>(&event.what)) {
           what = of[detected->rule].name + " detected";
         } else {
-          what = of[std::get<FailureResolved>(event.what).rule].name + " is gone";
+          what = of[std::get<FailureResolved>(event.what).rule].name + " cleared";
         }
         all.push_back({seconds(event.at - recording.session().start), std::move(what)});
       });
@@ -213,7 +213,7 @@ Json to_json(const std::vector<replay::Said>& all) {
 std::vector<Advice> advice(const replay::Hindsight& hindsight) {
   std::vector<Advice> all;
   for (const replay::Said& said : hindsight.said) {
-    const char* end = said.what == replay::Said::What::kDetected ? " detected" : " is gone";
+    const char* end = said.what == replay::Said::What::kDetected ? " detected" : " cleared";
     const bool is_chosen = said.what == replay::Said::What::kChosen;
     all.push_back({said.wall - hindsight.since,
                    said.rule + (is_chosen ? ": " + said.strategy : std::string(end))});

@@ -163,7 +163,8 @@ Expected<RunConfiguration> with_configuration(std::vector<std::string> words) {
   RunConfiguration out{std::move(words), ""};
   if (!options.config.empty()) {
     auto text = read_text(options.config);
-    if (!text) return Error{text.error()};
+    if (!text)
+      return Error{text.error() + "\nculprit run --print-config > culprit.toml writes one"};
     const auto more = words_of_file({options.config, std::move(*text)}, *run);
     if (!more) return Error{more.error()};
     // Behind a "--" everything is the name of a rule file.

@@ -149,7 +149,7 @@ Expected<CulpritsHere> culprits_here(const WhichCulprit& which) {
     const LocalSocket& socket = asked[i];
     if (!answers[i] || answers[i]->status != 200) {
       here.others.push_back(
-          why_silent(socket, answers[i] ? "it refuses to say who it is" : answers[i].error()));
+          why_silent(socket, answers[i] ? "it refuses to name itself" : answers[i].error()));
     } else if (Json& about = answers[i]->body;
                which.node_name.empty() || text_in(about, "node") == which.node_name) {
       here.answering.push_back({socket.process, std::move(about), std::move(clients[i])});
@@ -164,7 +164,7 @@ std::string none_to_ask(const CulpritsHere& here) {
     for (const std::string& each : *list) text += "\n  " + each;
   }
   if (here.others.empty() && here.not_meant.empty())
-    text += ": none runs, or none that was asked for; culprit run my.rules starts one";
+    text += "; start one with: culprit run my.rules";
   return text;
 }
 

@@ -211,8 +211,11 @@ std::string as_man_page_of(const CLI::App& command, const Manual& manual) {
 }
 
 std::string as_markdown(const CLI::App& app, const Manual& manual) {
-  std::string out = "# " + manual.name + ": commands and options\n\n<!-- Made by `" + manual.name +
-                    " manual --format markdown`; do not edit. -->\n";
+  std::string out =
+      "# " + manual.name + ": commands and options\n\n<!-- Made by `" + manual.name +
+      " manual --format markdown`; do not edit. -->\n\nFor everybody who types a command of " +
+      manual.name +
+      ". Afterwards you know its options, its exit status and the files that it reads.\n";
   for (const std::string& paragraph : manual.description) out += "\n" + paragraph + "\n";
   out += "\n## How a command ends\n";
   markdown_table(out, "exit status", exit_statuses());

@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -25,6 +26,10 @@
 namespace culprit {
 namespace {
 
+bool is_one_of(std::string_view word, std::initializer_list<std::string_view> words) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
 std::vector<std::string_view> names_of(const std::vector<const CLI::App*>& commands) {
   std::vector<std::string_view> names;
   for (const CLI::App* command : commands) names.push_back(command->get_name());
@@ -38,6 +43,41 @@ std::vector<std::string> options_of(const CLI::App& command) {
     for (const std::string& name : option->get_snames()) names.push_back("-" + name);
   }
   return names;
+}
+
+using Words = std::vector<std::pair<std::string_view, std::string_view>>;
+
+// The first word behind `word` that is known; empty: there is none.
+std::string_view translated(std::string_view word, const Words& words,
+                            const std::vector<std::string_view>& known) {
+  for (const auto& [theirs, ours] : words) {
+    if (theirs == word && std::ranges::find(known, ours) != known.end()) return ours;
+  }
+  return "";
+}
+
+// As other tools call it.
+std::string_view command_of_other_tools(std::string_view word,
+                                        const std::vector<std::string_view>& known) {
+  static const Words kWords = {
+      {"start", "run"},       {"launch", "run"},     {"up", "run"},         {"stop", "pause"},
+      {"continue", "resume"}, {"unpause", "resume"}, {"ps", "status"},      {"list", "status"},
+      {"show", "status"},     {"watch", "top"},      {"history", "log"},    {"events", "log"},
+      {"why", "explain"},     {"lint", "check"},     {"validate", "check"}, {"verify", "check"},
+      {"diagnose", "doctor"}, {"mute", "silence"},   {"unmute", "silence"}, {"format", "fmt"},
+      {"draft", "init"},      {"generate", "init"},  {"new", "init"},       {"simulate", "test"}};
+  return translated(word, kWords, known);
+}
+
+std::string_view option_of_other_tools(std::string_view option,
+                                       const std::vector<std::string_view>& known) {
+  static const Words kWords = {
+      {"--seconds", "--for"},   {"--seconds", "--wait"},     {"--duration", "--for"},
+      {"--duration", "--wait"}, {"--time", "--for"},         {"--time", "--wait"},
+      {"--timeout", "--wait"},  {"--follow", "--watch"},     {"--lines", "--last"},
+      {"--out", "--output"},    {"--simulate", "--dry-run"}, {"--fault", "--kinds"},
+      {"--faults", "--kinds"},  {"--component", "--only"}};
+  return translated(option, kWords, known);
 }
 
 // "; did you mean 'check'?", or nothing.
@@ -100,13 +140,19 @@ std::vector<std::string_view> commands_with(const CLI::App& app, const std::stri
   return names;
 }
 
-// The argument that has the option's name: BAG for "--bag"; empty: there is none.
+// The argument that has the option's name, or stands for it: BAG for "--bag", NAME for
+// "--component"; empty: there is none.
 std::string positional_called(const CLI::App& command, const std::string& option) {
   std::string upper(option);
   std::transform(upper.begin(), upper.end(), upper.begin(),
                  [](unsigned char c) { return std::toupper(c); });
+  const bool is_name = is_one_of(option, {"--component", "--rule"});
+  const bool is_file = is_one_of(option, {"--file", "--input", "--rules"});
   for (const CLI::Option* each : command.get_options()) {
-    if (each->get_positional() && "--" + each->get_name(true) == upper) return each->get_name(true);
+    if (!each->get_positional()) continue;
+    const std::string name = each->get_name(true);
+    if ("--" + name == upper || (is_name && name == "NAME") || (is_file && name == "RULES"))
+      return name;
   }
   return "";
 }
@@ -118,11 +164,13 @@ std::string remedy_of(const CLI::App& app, const CLI::App& command, const std::s
   if (is_program && (option == "-v" || option == "-V")) return "; did you mean '--version'?";
   if (std::string near = meant(option, {known.begin(), known.end()}); !near.empty()) return near;
   if (option == "--domain") return "; set ROS_DOMAIN_ID, which every command heeds";
+  if (const auto ours = option_of_other_tools(option, {known.begin(), known.end()}); !ours.empty())
+    return "; did you mean '" + std::string(ours) + "'?";
   if (const auto parts = commands_with(command, option); !is_program && !parts.empty())
     return "; it stands behind " + comma_separated(parts);
   if (const std::string word = positional_called(command, option); !word.empty())
     return "; write " + word + " without it";
-  constexpr std::size_t kFew = 3;
+  constexpr std::size_t kFew = 4;
   std::vector<std::string_view> own;
   for (const std::string& each : known) {
     if (each.starts_with("--") && each != "--help") own.push_back(each);
@@ -141,18 +189,21 @@ std::optional<std::string> unknown_word(const CLI::App& app, const Chosen& line,
   const auto parts = commands_in(*line.command);
   if (!parts.empty() && line.depth + 1 < argc && !is_option(argv[line.depth + 1])) {
     const char* word = argv[line.depth + 1];
-    const std::string near = meant(word, names_of(parts));
+    const std::vector<std::string_view> known = names_of(parts);
+    const auto ours = command_of_other_tools(word, known);
+    const std::string near =
+        ours.empty() ? meant(word, known) : "; did you mean '" + std::string(ours) + "'?";
     if (line.command == &app) return "there is no command '" + printable(word) + "'" + near;
     return line.command->get_name() + " has no command '" + printable(word) + "'" +
-           (near.empty() ? "; it has " + comma_separated(names_of(parts)) : near);
+           (near.empty() ? "; it has " + comma_separated(known) : near);
   }
-  const std::vector<std::string> known = options_of(*line.command);
-  const std::string option = unknown_option(known, argc, argv);
+  const std::vector<std::string> options = options_of(*line.command);
+  const std::string option = unknown_option(options, argc, argv);
   if (option.empty()) return std::nullopt;
   const std::string cause =
       (line.command == &app ? "there is" : line.command->get_name() + " has") + " no option '" +
       printable(option) + "'";
-  return cause + remedy_of(app, *line.command, option, known);
+  return cause + remedy_of(app, *line.command, option, options);
 }
 
 std::string without(std::string text, std::string_view prefix) {
@@ -178,6 +229,7 @@ std::string invalid_value(const std::string& text) {
   if (colon == std::string::npos) return text;
   const std::string option = text.substr(0, colon + 2);
   const std::string rest = without(text.substr(colon + 2), "Value ");
+  if (rest.starts_with("takes no value")) return text.substr(0, colon) + " " + printable(rest);
   constexpr std::string_view kRange = " not in range ";
   if (const auto at = rest.find(kRange); at != std::string::npos)
     return option + "'" + rest.substr(0, at) + "' is no number from " +
@@ -213,32 +265,71 @@ std::string missing(const CLI::RequiredError& error, const CLI::App& command) {
                                    : text;
 }
 
-// " too many", and which word stands in its place already.
-std::string too_many(const std::string& extra, const CLI::App& command) {
-  std::string text = "'" + printable(extra) + "' is one argument too many";
-  for (const CLI::Option* option : command.get_options()) {
-    const bool is_one = option->get_positional() && option->get_items_expected_max() == 1;
-    if (!is_one || option->results().empty()) continue;
-    return text + "; " + option->get_name(true) + " is '" + printable(option->results().front()) +
-           "' already";
+// The probable remedy for the argument that is too many, behind the word `before`.
+std::string remedy_of_extra(std::string_view extra, std::string_view before,
+                            const CLI::App& command) {
+  const CLI::Option* option =
+      is_option(before) ? command.get_option_no_throw(std::string(before)) : nullptr;
+  if (option != nullptr && option->get_items_expected_max() == 0)
+    return "; " + std::string(before) + " takes no value";
+  const bool is_number = !before.empty() && before.find_first_not_of("0123456789.") == before.npos;
+  if (is_number && extra.find_first_not_of("abcdefghijklmnopqrstuvwxyz") == extra.npos)
+    return "; a duration is one word, as in 10min";
+  bool takes_arguments = false;
+  for (const CLI::Option* each : command.get_options()) {
+    if (!each->get_positional()) continue;
+    takes_arguments = true;
+    if (each->get_items_expected_max() == 1 && !each->results().empty())
+      return "; " + each->get_name(true) + " is '" + printable(each->results().front()) +
+             "' already";
   }
-  return text;
+  for (const char* known : {"--output", "--reason"}) {
+    if (!takes_arguments && command.get_option_no_throw(known) != nullptr)
+      return fmt::format("; did you mean {} '{}'?", known, printable(extra));
+  }
+  return "";
+}
+
+std::string too_many(const CLI::App& command, int argc, char** argv) {
+  const std::vector<std::string> extras = command.remaining();
+  if (extras.empty()) return "there is one argument too many";
+  const std::string& extra = extras.front();
+  std::string_view before;
+  for (int i = 2; i < argc; ++i) {
+    if (extra == argv[i]) before = argv[i - 1];
+  }
+  return "'" + printable(extra) + "' is one argument too many" +
+         remedy_of_extra(extra, before, command);
+}
+
+// ": FILE", or nothing.
+std::string kind_of_value(const CLI::App& command, const std::string& name) {
+  const CLI::Option* option = command.get_option_no_throw(name);
+  const std::string value = option != nullptr ? value_of(*option) : "";
+  return value.empty() || value == "TEXT" ? "" : ": " + value;
+}
+
+// A flag would take any number for the count of its uses: --web=80.
+void refuse_values_of_flags(CLI::App& app) {
+  for (CLI::Option* option : app.get_options()) {
+    const bool is_flag = option->get_items_expected_max() == 0 && option->nonpositional();
+    if (!is_flag || option == app.get_help_ptr() || option == app.get_version_ptr()) continue;
+    option->check([](const std::string& value) {
+      return value == "true" || value == "false" ? "" : "takes no value, as '" + value + "'";
+    });
+  }
+  for (CLI::App* part : app.get_subcommands([](CLI::App*) { return true; }))
+    refuse_values_of_flags(*part);
 }
 
 // The mistake in the words of people. CLI11 has its own for each.
-std::string cause_of(const CLI::ParseError& error, const CLI::App& command) {
+std::string cause_of(const CLI::ParseError& error, const CLI::App& command, int argc, char** argv) {
   const std::string text = error.what();
   if (const auto* required = dynamic_cast<const CLI::RequiredError*>(&error))
     return missing(*required, command);
   if (dynamic_cast<const CLI::ValidationError*>(&error) != nullptr) return invalid_value(text);
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
-    std::string extra = without(text, "The following argument was not expected: ");
-    extra = without(extra, "The following arguments were not expected: ");
-    // Several come in the order from the last to the first.
-    if (const auto blank = extra.rfind(' '); blank != std::string::npos)
-      extra = extra.substr(blank + 1);
-    return too_many(extra, command);
-  }
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr)
+    return too_many(command, argc, argv);
   constexpr std::string_view kNoConversion = "Could not convert: ";
   if (text.starts_with(kNoConversion)) {
     const std::string rest = text.substr(kNoConversion.size());
@@ -253,7 +344,7 @@ std::string cause_of(const CLI::ParseError& error, const CLI::App& command) {
   }
   constexpr std::string_view kOneMissing = ": 1 required ";
   if (const auto at = text.find(kOneMissing); at != std::string::npos)
-    return text.substr(0, at) + " needs a value";
+    return text.substr(0, at) + " needs a value" + kind_of_value(command, text.substr(0, at));
   constexpr std::string_view kTwice = ": At Most 1 required but received";
   if (const auto at = text.find(kTwice); at != std::string::npos)
     return text.substr(0, at) + " is given more than once; give it once";
@@ -266,18 +357,19 @@ std::string cause_of(const CLI::ParseError& error, const CLI::App& command) {
   return text;
 }
 
-// The mistake, how the command is called, and where its options are listed.
-int usage_error(const std::string& cause, const CLI::App& app, const Chosen& line) {
+// How the command is called, and where its options are listed.
+void say_usage(const CLI::App& app, const Chosen& line) {
   const std::string of_command = without(line.path, app.get_name());
   const bool has_help = command_named(app, "help") != nullptr;
   const std::string more = has_help ? app.get_name() + " help" + of_command : line.path + " --help";
-  return fail(fmt::format("{}\nUsage: {}\nRun '{}' for more information.", cause,
-                          usage_of(*line.command, line.path), more),
-              kUsage);
+  say(stderr, "Usage: {}\nRun '{}' for more information.\n", usage_of(*line.command, line.path),
+      more);
 }
 
-bool is_one_of(std::string_view word, std::initializer_list<std::string_view> words) {
-  return std::find(words.begin(), words.end(), word) != words.end();
+int usage_error(const std::string& cause, const CLI::App& app, const Chosen& line) {
+  const int code = fail(cause, kUsage);
+  say_usage(app, line);
+  return code;
 }
 
 int parse_and_run(CLI::App& app, const std::function<void(int& exit_code)>& add_commands, int argc,
@@ -286,6 +378,7 @@ int parse_and_run(CLI::App& app, const std::function<void(int& exit_code)>& add_
   app.formatter(help_formatter());
   int exit_code = kOk;
   add_commands(exit_code);
+  refuse_values_of_flags(app);
   if (argc < 2) {
     say(stderr, "{}", app.help());
     return kUsage;
@@ -299,8 +392,10 @@ int parse_and_run(CLI::App& app, const std::function<void(int& exit_code)>& add_
     if (error.get_exit_code() == 0) return app.exit(error) == 0 ? kOk : kUsage;
     const Chosen line = chosen(app);
     const auto word = unknown_word(app, line, argc, argv);
-    return usage_error(word ? *word : cause_of(error, *line.command), app, line);
+    return usage_error(word ? *word : cause_of(error, *line.command, argc, argv), app, line);
   }
+  // The command itself found the mistake.
+  if (exit_code == kUsage) say_usage(app, chosen(app));
   return exit_code;
 }
 

@@ -54,6 +54,9 @@ Ended ended(std::vector<std::string> words) {
         CLI::App* show = beliefs->add_subcommand("show", "Show");
         show->add_flag("--verbose", robot, "All");
         show->callback([] {});
+        CLI::App* note = app.add_subcommand("note", "Note");
+        note->add_option("--reason", format, "Why");
+        note->callback([&code] { code = fail("the note is empty", kUsage); });
         add_help(app, code);
       },
       static_cast<int>(words.size()), argv.data());
@@ -90,7 +93,15 @@ TEST(Program, ExplainsEachKindOfMistakeInOneLine) {
       {{"check", "--format", "jsn"}, "'jsn' is none of text, json; did you mean 'json'?\n"},
       {{"check", "--port", "12"}, "--port: '12' is no number from 1 to 9\n"},
       {{"check", "--port", "abc"}, "--port: 'abc' is no number from 1 to 9\n"},
-      {{"check", "--format"}, "--format needs a value\n"},
+      {{"check", "--format"}, "--format needs a value: {text,json}\n"},
+      {{"check", "--robot", "a", "5"}, "'5' is one argument too many; FILE is 'a' already\n"},
+      {{"check", "a", "--robot", "5"}, "'5' is one argument too many; --robot takes no value\n"},
+      {{"check", "a", "--wait", "5", "minutes"}, "; a duration is one word, as in 10min\n"},
+      {{"check", "a", "two words"}, "'two words' is one argument too many"},
+      {{"check", "--robot=5"}, "--robot takes no value, as '5'\n"},
+      {{"check", "--seconds", "3"}, "check has no option '--seconds'; did you mean '--wait'?\n"},
+      {{"lint"}, "there is no command 'lint'; did you mean 'check'?\n"},
+      {{"note", "hello"}, "'hello' is one argument too many; did you mean --reason 'hello'?\n"},
       {{"check", "--pair", "a"}, "--pair needs at least 2 values\n"},
       {{"beliefs"}, "beliefs needs a command: show\n"},
       {{"beliefs", "shwo"}, "beliefs has no command 'shwo'; did you mean 'show'?\n"},
@@ -106,6 +117,13 @@ TEST(Program, ExplainsEachKindOfMistakeInOneLine) {
     EXPECT_EQ(end.code, kUsage) << cause;
     EXPECT_THAT(end.said, HasSubstr(cause));
   }
+}
+
+TEST(Program, SaysHowACommandIsCalledThatFindsTheMistakeItself) {
+  const Ended end = ended({"note"});
+  EXPECT_EQ(end.code, kUsage);
+  EXPECT_THAT(end.said, HasSubstr("the note is empty\nUsage: culprit note [OPTIONS]\nRun 'culprit "
+                                  "help note' for more information."));
 }
 
 TEST(Program, ShowsTheHelpOfACommand) {

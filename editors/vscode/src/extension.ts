@@ -1,5 +1,5 @@
-// Starts `culprit lsp` for rule files, and again when its settings change. Of files that end in .rules only those are taken
-// for ours that begin as ours do: udev has such files, too.
+// Starts `culprit lsp` for rule files, and again when its settings change. A file that ends in .rules counts as
+// ours only if it begins as ours do: udev has such files, too.
 import { execFile } from "child_process";
 import { dirname } from "path";
 import { commands, Diagnostic, ExtensionContext, languages, TextDocument, Uri, window, workspace } from "vscode";

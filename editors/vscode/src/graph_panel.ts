@@ -1,8 +1,8 @@
 // The graph of a rule file, in a panel beside it: what `culprit graph FILE --json` says of the file as it is saved, drawn by
 // view/graph_view.ts. Where the file has mistakes, culprit's own message stands there.
 //
-// What is shown comes from rule files, and those from anywhere: it runs no script but ours, loads nothing, and can ask
-// for nothing but to go to what it was given.
+// The content comes from rule files, and those from anywhere: the panel runs no script but ours, loads nothing, and can only
+// ask to go to a place that it was given.
 import { execFile } from "child_process";
 import { randomBytes } from "crypto";
 import { basename, dirname } from "path";
@@ -12,7 +12,7 @@ import type { Asked, Place, RuleGraph, Shown } from "./rule_graph";
 const kMostBytes = 64 * 1024 * 1024; // a rule file has 4 MB at most
 const kPatience = 30_000; // ms
 
-// What a page may do: show our style, run our script.
+// A page may show our style and run our script.
 export function page(title: string, script: string, style: string, source: string): string {
   const nonce = randomBytes(16).toString("hex");
   const policy = `default-src 'none'; style-src ${source}; script-src 'nonce-${nonce}'`;
@@ -71,7 +71,7 @@ class GraphPanel {
     panel.webview.onDidReceiveMessage((asked: Asked) => void this.answer(asked));
   }
 
-  // Of several at once only the last is shown.
+  // Shows only the last of several at once.
   async refresh(): Promise<void> {
     const mine = ++this.asked;
     const { graph, trouble } = await graphOf(this.program(), this.file);

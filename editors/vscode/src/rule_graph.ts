@@ -27,5 +27,5 @@ export interface Shown {
   graph: RuleGraph | null;
   trouble: string;
 }
-// What is shown is ready, or somebody wants to see where something is written: by its place in the graph's list.
+// The view is ready, or a person asks where something is written: by its place in the graph's list.
 export type Asked = { what: "ready" } | { what: "component" | "rule"; index: number };

@@ -100,7 +100,7 @@ async function showsTheGraphAndLeadsToTheFile(page, panels) {
   await isUsableByKeyboard(page)
   await page.evaluate(() => document.activeElement.blur())
 
-  // Nothing stands on something else, however wide the panel is.
+  // No parts overlap, however wide the panel is.
   for (const [width, height] of [[1440, 900], [700, 900], [360, 700]]) {
     await page.setViewportSize({ width, height })
     await page.waitForFunction((w) => document.querySelector('.graph > svg').getBoundingClientRect().width <= Math.max(w, 480), width)

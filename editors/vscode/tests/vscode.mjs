@@ -1,4 +1,4 @@
-// What the panel needs of Visual Studio Code, for its test: what it shows stands in a browser, and what it asks for is noted.
+// A stand-in of Visual Studio Code for the test of the panel: a browser shows its content, and its requests are noted.
 export const ViewColumn = { One: 1, Beside: -2 }
 export class Uri {
   constructor(path) {

@@ -59,7 +59,7 @@ const Fault* incident_of(const Status& status, const std::string& component,
   return found == status.incidents.end() ? nullptr : &*found;
 }
 
-// What is wrong with it; empty: nothing.
+// The trouble of a component; empty: none.
 std::string ill(const Component& component, std::uint8_t tolerated) {
   const std::string& name = component.name;
   if (!component.adapting.empty()) return name + " is changed by strategy " + component.adapting;

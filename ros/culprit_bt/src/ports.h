@@ -14,7 +14,7 @@ inline BT::PortsList with_common_ports(BT::PortsList ports) {
   return ports;
 }
 
-// What a port says, or is connected with. Throws BT::RuntimeError if that is nothing, or no T.
+// The value of a port, or of its connection. Throws BT::RuntimeError if there is none, or it is no T.
 template <typename T>
 T input(const BT::TreeNode& leaf, const std::string& port) {
   const auto value = leaf.getInput<T>(port);

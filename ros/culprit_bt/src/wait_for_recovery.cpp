@@ -105,7 +105,7 @@ BT::NodeStatus WaitForRecovery::onRunning() {
 
   const auto now = Clock::now();
   const Knowledge known = culprit_->knowledge();
-  // Of another culprit nothing will come of what this one was asked.
+  // Another culprit does not answer the goal of this one.
   if (goal_ && (!known.status || known.life != life_)) give_up();
   const bool is_reached = known.status && client_->action_server_is_ready();
   if (is_reached) {

@@ -1,4 +1,4 @@
-// What counts as well, by what culprit tells: no middleware.
+// The reports of culprit that count as healthy, without middleware.
 #include "culprit_bt/health.h"
 
 #include <memory>

@@ -65,7 +65,7 @@ def _components(program, rules, seen):
         elif kind == 'END':
             in_template = False
         elif kind == 'USE':
-            is_all = False  # What a template says of its parameters is culprit's to put in.
+            is_all = False  # culprit puts in the parameters of a template.
         elif kind == 'INCLUDE':
             file = os.path.normpath(os.path.join(os.path.dirname(rules), statement['file']))
             if not os.path.isfile(file):
@@ -83,7 +83,7 @@ def why_not_healed(program, rules, node):
     """
     Give why culprit, by this rule file, would not heal a node that launch starts again, or None.
 
-    `node` is its full name. What templates put in is not looked at, and not complained of.
+    `node` is its full name. Components that templates put in are ignored, without a complaint.
     """
     components, is_all = _components(program, rules, set())
     own_name = node.rsplit('/', 1)[-1]

@@ -37,6 +37,9 @@ Parts parts_of(const std::vector<std::string>& command) {
     else
       parts.arguments.push_back(command[at]);
   }
+  // Without arguments behind it, as `ros2 launch` adds it, it changes nothing.
+  if (!parts.arguments.empty() && parts.arguments.back() == "--ros-args")
+    parts.arguments.pop_back();
   return parts;
 }
 

@@ -57,6 +57,12 @@ TEST_F(LaunchDifference, Ros2RunIsTheProgramThatItRuns) {
               IsEmpty());
 }
 
+TEST_F(LaunchDifference, IsNoneIfLaunchAddsRosArgsWithoutAny) {
+  EXPECT_THAT(differences({"ros2", "run", "cam", "driver"},
+                          running(Words{"/ws/lib/cam/driver", "--ros-args"})),
+              IsEmpty());
+}
+
 TEST_F(LaunchDifference, NamesTheArgumentsThatAreOthers) {
   EXPECT_THAT(differences({"driver", "--fps", "15", "--wide"},
                           running(Words{"driver", "--fps", "30", "--wide"})),

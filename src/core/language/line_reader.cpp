@@ -126,7 +126,9 @@ std::optional<Name> LineReader::ros_name(Scanner& s, std::string_view what) {
   if (!name || is_ros_name(name->text)) return name;
   if (s.allows_holes() && is_ros_name(filled(name->text))) return name;
   fail(Code::kBadRosName, name->span, "'" + name->text + "' is no full ROS name",
-       "full names look like /namespace/name: letters, digits and '_' between slashes");
+       is_ros_name("/" + name->text)
+           ? "write /" + name->text + ", or with its namespace: /namespace/" + name->text
+           : "full names look like /namespace/name: letters, digits and '_' between slashes");
   return std::nullopt;
 }
 
@@ -284,6 +286,7 @@ bool LineReader::fail_token(const Token& token, std::string_view expected, std::
 
 bool LineReader::unexpected_clause(const Token& token, std::vector<std::string_view> known,
                                    std::string remedy, Code code) {
+  if (token.is(",")) return fail_comma(token);
   if (token.kind == Token::Kind::kBad) return fail_token(token, "", "");
   if (std::find(known.begin(), known.end(), token.text) != known.end()) {
     return fail(code, token.span, std::string(token.text) + " is given twice", "keep one of them");
@@ -303,6 +306,18 @@ bool LineReader::unexpected_clause(const Token& token, std::vector<std::string_v
     fix = Edit{token.span, ""};
   }
   return fail(code, token.span, "expected one of " + list + got, std::move(remedy), fix);
+}
+
+bool LineReader::fail_comma(const Token& comma) {
+  const Span line = source_.line(source_.position(comma.span.begin).line);
+  const bool is_adaptation =
+      trimmed(source_.text({line.begin, comma.span.begin})).find("ADAPTATION ") !=
+      std::string::npos;
+  if (is_adaptation)
+    return fail(Code::kExtraText, comma.span, "one line has one adaptation",
+                "write the next one on a line of its own that begins with ADAPTATION");
+  return fail(Code::kExtraText, comma.span, "no ',' stands between the parts of a line",
+              "remove the ','", Edit{comma.span, ""});
 }
 
 bool LineReader::line_ends(Scanner& s) {
@@ -332,6 +347,7 @@ bool LineReader::line_ends(Scanner& s) {
       is_digit(token.span.end))
     return fail(Code::kExtraText, token.span, "a number has a point, and no comma", "write a '.'",
                 Edit{token.span, "."});
+  if (token.is(",")) return fail_comma(token);
   // The scanner takes the two characters for signs.
   const Span line = source_.line(source_.position(token.span.begin).line);
   const auto dashes = text.substr(0, token.span.begin).rfind(" --");

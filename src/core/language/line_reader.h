@@ -59,6 +59,7 @@ class LineReader {
   bool expect_symbol(Scanner& s, std::string_view symbol, std::string remedy = "");
   // Does the line end here, except for a comment?
   bool line_ends(Scanner& s);
+  bool fail_comma(const Token& comma);
 
   // Complaints. All give false, for `return fail(...)`.
   bool fail(Code code, Span span, std::string cause, std::string remedy,

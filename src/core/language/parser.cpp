@@ -129,12 +129,44 @@ class Parser {
                                    const std::vector<std::string_view>& keywords) {
     const std::string upper = upper_case(head.text);
     if (std::find(keywords.begin(), keywords.end(), upper) != keywords.end()) return upper;
+    if (!statement_of(upper).empty()) return "";
     const std::string near = closest(upper, keywords);
     return near.empty() ? word_of_other_tools(upper) : near;
   }
 
+  // The statement that `word` is a part of; empty: none.
+  static std::string_view statement_of(std::string_view word) {
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 28> kParts = {
+        {{"NODE", "COMPONENT"},      {"LAUNCH", "COMPONENT"},     {"ENV", "COMPONENT"},
+         {"SETUP", "COMPONENT"},     {"CWD", "COMPONENT"},        {"UNIT", "COMPONENT"},
+         {"CONTAINER", "COMPONENT"}, {"HOST", "COMPONENT"},       {"PLUGIN", "COMPONENT"},
+         {"PACKAGE", "COMPONENT"},   {"PARAMETERS", "COMPONENT"}, {"REMAP", "COMPONENT"},
+         {"RESPAWNED", "COMPONENT"}, {"REQUIRED", "COMPONENT"},   {"READY", "COMPONENT"},
+         {"LIFECYCLE", "COMPONENT"}, {"FOR", "POLICIES"},         {"HOLD", "POLICIES"},
+         {"COOLDOWN", "POLICIES"},   {"ATTEMPTS", "POLICIES"},    {"ON_CHANGE", "POLICIES"},
+         {"WHEN", "STRATEGY"},       {"LASTRESORT", "STRATEGY"},  {"FIELD", "SIGNAL"},
+         {"KEY", "SIGNAL"},          {"STALE", "SIGNAL"},         {"RANGE", "SIGNAL"},
+         {"MANAGER", "GROUP"}}};
+    for (const auto& [part, statement] : kParts) {
+      if (part == word) return statement;
+    }
+    return "";
+  }
+
   void unknown_statement(const Token& head, const std::string& near) {
     const std::string word(source_.text(head.span));
+    if (const auto statement = statement_of(upper_case(word)); !statement.empty()) {
+      read_.fail(
+          Code::kUnknownStatement, head.span, "no statement begins with '" + word + "'",
+          "write it on the line of its " + std::string(statement) + ": a statement is one line");
+      return;
+    }
+    if (near == "TRIGGER" && !is_in_rule_) {
+      read_.fail(Code::kUnknownStatement, head.span, "no statement begins with '" + word + "'",
+                 "write RULE and its name, then lines with POLICIES, TRIGGER, STRATEGY and "
+                 "ADAPTATION");
+      return;
+    }
     read_.fail(Code::kUnknownStatement, head.span, "no statement begins with '" + word + "'",
                !near.empty()
                    ? "did you mean " + near + "?"

@@ -292,9 +292,9 @@ class Draft {
     }
     std::string text;
     for (const auto& [owner, components] : launchers)
-      text +=
-          fmt::format("# guess: {} started {}. If it starts again what ends, write RESPAWNED.\n",
-                      owner, fmt::join(components, ", "));
+      text += fmt::format(
+          "# guess: {} started {}. If it restarts nodes that exit, add RESPAWNED to them.\n", owner,
+          fmt::join(components, ", "));
     if (!withheld.empty())
       text +=
           fmt::format("# Variables of theirs that are not copied, for they may be secrets: {}\n",

@@ -105,13 +105,13 @@ TEST(Draft, SaysWhatWasGuessedAndWhy) {
 
 CYCLE 200ms
 
-# guess: process 9 (bash) started camera. If it starts again what ends, write RESPAWNED.
+# guess: process 9 (bash) started camera. If it restarts nodes that exit, add RESPAWNED to them.
 # Variables of theirs that are not copied, for they may be secrets: API_KEY
 COMPONENT lidar NODE /lidar UNIT lidar.service
 COMPONENT camera NODE /robot/camera LAUNCH "/opt/cam/driver --name 'front left'" ENV "ROS_DOMAIN_ID=7" CWD "/home/robot/my data"
 
-# guess: /scan came 10 times a second, 301 messages, at most 130ms apart.
-# Less than 1 % of its pauses are longer (95 % certain); silence is 3 times that, 300ms at least.
+# guess: /scan had 10 Hz: 301 messages, at most 130ms apart.
+# With 95 % certainty, less than 1 % of its gaps are longer. The timeout is 3 times the longest gap, rounded up, and at least 300ms.
 RULE lidar_failed
   POLICIES ERROR
   TRIGGER !alive(lidar) || age(/scan) > 500ms
@@ -119,8 +119,8 @@ RULE lidar_failed
     STRATEGY lidar_redeploy 90 10
       ADAPTATION lidar redeploy 25
 
-# guess: /robot/image came 20 times a second, 601 messages, at most 70ms apart.
-# Less than 0.5 % of its pauses are longer (95 % certain); silence is 3 times that, 300ms at least.
+# guess: /robot/image had 20 Hz: 601 messages, at most 70ms apart.
+# With 95 % certainty, less than 0.5 % of its gaps are longer. The timeout is 3 times the longest gap, rounded up, and at least 300ms.
 RULE camera_failed
   POLICIES ERROR
   TRIGGER !alive(camera) || age(/robot/image) > 300ms

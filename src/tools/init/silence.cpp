@@ -60,9 +60,10 @@ std::string evidence_of_silence(const Sighting& seen, const std::string& topic,
                                 const std::string& node) {
   const ros2::Rhythm rhythm = rhythm_of(seen, topic, node);
   return fmt::format(
-      "# guess: {} came {:.3g} times a second, {} messages, at most {} apart.\n"
-      "# Less than {:.2g} % of its pauses are longer (95 % certain); silence is {:.0f} times that, "
-      "{} at least.\n",
+      "# guess: {} had {:.3g} Hz: {} messages, at most {} apart.\n"
+      "# With 95 % certainty, less than {:.2g} % of its gaps are longer. The timeout is {:.0f} "
+      "times "
+      "the longest gap, rounded up, and at least {}.\n",
       node.empty() ? topic : topic + " from " + node, rate_of(seen, topic, node), rhythm.messages,
       in_milliseconds(rhythm.longest_pause), 100 * share_above(rhythm.messages - 1), kMargin,
       to_string(kShortest));

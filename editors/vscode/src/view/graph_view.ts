@@ -48,7 +48,7 @@ function boxesOf({ components, rules }: RuleGraph): Box[] {
   ];
 }
 
-// What a rule both looks at and adapts has one line: that it is adapted.
+// A component that a rule both reads and adapts has one line: that it is adapted.
 function edgesOf({ components, dependencies, rules }: RuleGraph): Edge[] {
   const ids = new Map(components.map((c, index) => [c.name, idOf("component", index)]));
   const edges: Edge[] = [];
@@ -78,7 +78,7 @@ function html(name: string, className: string, ...children: (Node | string)[]): 
 
 function words(text: string, attributes: Record<string, string | number>): SVGElement {
   const letters = Array.from(text);
-  // Of a node's name the end says most.
+  // The end of a node's name says most.
   const isNode = text.startsWith("/");
   const short = letters.length <= kMostLetters ? text : isNode ? `…${letters.slice(1 - kMostLetters).join("")}` : `${letters.slice(0, kMostLetters - 1).join("")}…`;
   return svg("text", attributes, document.createTextNode(short));

@@ -1,4 +1,4 @@
-// What a running culprit tells of the robot, and whether it still runs.
+// Reports of a running culprit about the robot, and whether it still runs.
 //
 //     auto culprit = Culprit::of(config, "/culprit");
 //     const Knowledge known = culprit->knowledge();
@@ -7,7 +7,7 @@
 // A status is told only when something changed, so an old one is as good as a new one, as long as the
 // culprit that told it is there. A culprit that was killed looks as if it were, until its lease in DDS is
 // over (20 s). So it is asked once a second, by a service that it has as every node has it, and what does
-// not answer for kPatience is not there. Nothing that an earlier culprit told is kept then.
+// not answer for kPatience is not there. Reports of an earlier culprit are dropped then.
 //
 // Its functions may be called on any thread.
 #pragma once

@@ -29,7 +29,7 @@ struct Health {
 // nothing at all; then "NON_CRITICAL" and "WARNING". Throws BT::RuntimeError for any other word.
 std::uint8_t tolerated(const std::string& word);
 
-// Of this component; empty: of the robot.
+// `component`: empty for the whole robot.
 Health health_of(const Knowledge& known, const std::string& component, std::uint8_t tolerated);
 
 // The same, but it is ill, too, while an open incident names it: culprit holds it responsible, or suspects

@@ -23,7 +23,7 @@ namespace culprit_bt {
 // - SUCCESS: the mode was read back, and is the one that was asked for.
 // - FAILURE: it was refused, or `timeout` seconds are over: nobody serves the mode, nobody answers, or it was
 //   accepted and another mode is read. `reason` says which.
-// - Halted: it waits no longer. What was accepted is not taken back: nobody knows what the mode was to be.
+// - Halted: it waits no longer. An accepted request stays: the mode that was wanted before is unknown.
 class RequestMode : public BT::StatefulActionNode {
  public:
   // Throws BT::RuntimeError without a node on the blackboard.

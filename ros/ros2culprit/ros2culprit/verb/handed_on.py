@@ -12,7 +12,7 @@ import sys
 
 from ros2culprit.verb import VerbExtension
 
-# What a shell says of a command that is not there.
+# The exit status of a shell for a command that is not there.
 NOT_FOUND = 127
 NOT_INSTALLED = (
     "ros2 culprit: there is no program 'culprit' on the PATH, which answers this. Install the"
