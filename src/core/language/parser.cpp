@@ -5,6 +5,8 @@
 #include <span>
 #include <utility>
 
+#include "language/component_reader.h"
+#include "language/foreign_words.h"
 #include "language/line_reader.h"
 #include "language/reuse/statements.h"
 #include "language/scanner.h"
@@ -14,10 +16,6 @@ namespace {
 
 using syntax::Name;
 
-constexpr std::array<std::string_view, 17> kComponentClauses = {
-    "NODE",      "LAUNCH",    "ENV",      "SETUP",  "CWD",      "UNIT",
-    "CONTAINER", "HOST",      "IN",       "PLUGIN", "PACKAGE",  "PARAMETERS",
-    "REMAP",     "RESPAWNED", "REQUIRED", "READY",  "LIFECYCLE"};
 constexpr std::array<std::string_view, 1> kEqualsSign = {"="};
 constexpr std::array<std::string_view, 3> kSignalSources = {"DIAGNOSTIC", "TOPIC", "PARAMETER"};
 
@@ -103,7 +101,8 @@ class Parser {
       const std::string near = meant_keyword(head, keywords);
       if (!foreign_comment(head, s)) unknown_statement(head, near);
       // A word of another tool may stand for a line that the rule has as well.
-      const bool is_foreign = near != "RULE" && near == word_of_other_tools(upper_case(head.text));
+      const bool is_foreign =
+          near != "RULE" && near == statement_of_other_tools(upper_case(head.text));
       meant = is_foreign ? nullptr : known(near);
       if (meant == nullptr) return broken();
     }
@@ -131,21 +130,26 @@ class Parser {
     if (std::find(keywords.begin(), keywords.end(), upper) != keywords.end()) return upper;
     if (!statement_of(upper).empty()) return "";
     const std::string near = closest(upper, keywords);
-    return near.empty() ? word_of_other_tools(upper) : near;
+    return near.empty() ? std::string(statement_of_other_tools(upper)) : near;
   }
 
   // The statement that `word` is a part of; empty: none.
   static std::string_view statement_of(std::string_view word) {
-    constexpr std::array<std::pair<std::string_view, std::string_view>, 28> kParts = {
-        {{"NODE", "COMPONENT"},      {"LAUNCH", "COMPONENT"},     {"ENV", "COMPONENT"},
-         {"SETUP", "COMPONENT"},     {"CWD", "COMPONENT"},        {"UNIT", "COMPONENT"},
-         {"CONTAINER", "COMPONENT"}, {"HOST", "COMPONENT"},       {"PLUGIN", "COMPONENT"},
-         {"PACKAGE", "COMPONENT"},   {"PARAMETERS", "COMPONENT"}, {"REMAP", "COMPONENT"},
-         {"RESPAWNED", "COMPONENT"}, {"REQUIRED", "COMPONENT"},   {"READY", "COMPONENT"},
-         {"LIFECYCLE", "COMPONENT"}, {"FOR", "POLICIES"},         {"HOLD", "POLICIES"},
-         {"COOLDOWN", "POLICIES"},   {"ATTEMPTS", "POLICIES"},    {"ON_CHANGE", "POLICIES"},
-         {"WHEN", "STRATEGY"},       {"LASTRESORT", "STRATEGY"},  {"FIELD", "SIGNAL"},
-         {"KEY", "SIGNAL"},          {"STALE", "SIGNAL"},         {"RANGE", "SIGNAL"},
+    const bool is_clause =
+        std::ranges::find(component_clauses(), word) != component_clauses().end();
+    if (is_clause && word != "IN") return "COMPONENT";
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kParts = {
+        {{"FOR", "POLICIES"},
+         {"HOLD", "POLICIES"},
+         {"COOLDOWN", "POLICIES"},
+         {"ATTEMPTS", "POLICIES"},
+         {"ON_CHANGE", "POLICIES"},
+         {"WHEN", "STRATEGY"},
+         {"LASTRESORT", "STRATEGY"},
+         {"FIELD", "SIGNAL"},
+         {"KEY", "SIGNAL"},
+         {"STALE", "SIGNAL"},
+         {"RANGE", "SIGNAL"},
          {"MANAGER", "GROUP"}}};
     for (const auto& [part, statement] : kParts) {
       if (part == word) return statement;
@@ -198,22 +202,6 @@ class Parser {
     read_.fail(Code::kUnknownStatement, head.span,
                "no '" + std::string(source_.text(head.span)) + "' stands in front of " + keyword,
                "remove it", Edit{{head.span.begin, keyword_.begin}, ""});
-  }
-
-  // Where people who know alerting or behaviour tools look first.
-  static std::string word_of_other_tools(std::string_view word) {
-    constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kWords = {
-        {{"ALERT", "RULE"},
-         {"SEVERITY", "POLICIES"},
-         {"IF", "TRIGGER"},
-         {"EXPR", "TRIGGER"},
-         {"CONDITION", "TRIGGER"},
-         {"ACTION", "ADAPTATION"},
-         {"DO", "ADAPTATION"}}};
-    for (const auto& [theirs, ours] : kWords) {
-      if (theirs == word) return std::string(ours);
-    }
-    return "";
   }
 
   bool has_colon(Scanner& s) {
@@ -320,113 +308,12 @@ class Parser {
   bool component(Scanner& s) {
     auto name = read_.declared_name(s, "the component's name");
     if (!name) return false;
-    if (is_clause_far(s, kComponentClauses) && !read_.is_one_word(s, *name, kComponentClauses))
-      return false;
+    const auto clauses = component_clauses();
+    if (is_clause_far(s, clauses) && !read_.is_one_word(s, *name, clauses)) return false;
     syntax::Component component{std::move(*name), {}, {}};
-    while (!s.at_end()) {
-      const Token& clause = s.peek();
-      if (clause.text == "NODE" && !component.node) {
-        s.next();
-        component.node = read_.ros_name(s, "the node's full name");
-        if (!component.node || !other_nodes(s, component)) return false;
-      } else if (clause.text == "LAUNCH" && !component.launch) {
-        s.next();
-        component.launch = read_.text(s, "the launch command",
-                                      "write it in quotes: LAUNCH \"ros2 run package program\"");
-        if (!component.launch) return false;
-      } else if (clause.text == "ENV" && !component.environment) {
-        s.next();
-        component.environment =
-            read_.text(s, "the variables", "write them in quotes: ENV \"ROS_DOMAIN_ID=7 LANG=C\"");
-        if (!component.environment) return false;
-      } else if (clause.text == "SETUP" && !component.setup) {
-        s.next();
-        component.setup = read_.name_or_text(s, "the file to source");
-        if (!component.setup) return false;
-      } else if (clause.text == "CWD" && !component.folder) {
-        s.next();
-        component.folder = read_.name_or_text(s, "the folder to run in");
-        if (!component.folder) return false;
-      } else if (clause.text == "UNIT" && !component.unit) {
-        s.next();
-        component.unit = read_.name_or_text(s, "the unit's name");
-        if (!component.unit) return false;
-        component.is_users_unit = s.peek().text == "USER";
-        if (component.is_users_unit) s.next();
-      } else if (clause.text == "CONTAINER" && !component.engine) {
-        s.next();
-        component.engine = read_.name_or_text(s, "the engine: docker or podman");
-        if (!component.engine) return false;
-        component.engine_container = read_.name_or_text(s, "the container's name");
-        if (!component.engine_container) return false;
-      } else if (clause.text == "HOST" && !component.host) {
-        s.next();
-        component.host = read_.name_or_text(s, "the computer that runs it, as for ssh");
-        if (!component.host) return false;
-      } else if (clause.text == "IN" && !component.container) {
-        s.next();
-        component.container = read_.ros_name(s, "the full name of the node that loads it");
-        if (!component.container) return false;
-      } else if (clause.text == "PLUGIN" && !component.plugin) {
-        s.next();
-        component.plugin = read_.name_or_text(s, "the class to load");
-        if (!component.plugin) return false;
-      } else if (clause.text == "PACKAGE" && !component.package) {
-        s.next();
-        component.package = read_.name_or_text(s, "the package that has the class");
-        if (!component.package) return false;
-      } else if (clause.text == "PARAMETERS" && !component.parameters) {
-        s.next();
-        component.parameters = read_.name_or_text(s, "the file of its parameters");
-        if (!component.parameters) return false;
-      } else if (clause.text == "REMAP" && !component.remaps) {
-        s.next();
-        component.remaps = read_.name_or_text(s, "which name stands for which");
-        if (!component.remaps) return false;
-      } else if (clause.text == "REQUIRED" && !component.is_required) {
-        s.next();
-        component.is_required = true;
-      } else if (clause.text == "READY" && !component.ready) {
-        s.next();
-        component.ready =
-            read_.positive_duration(s, "how long a start may take, with several tries");
-        if (!component.ready) return false;
-      } else if (clause.text == "RESPAWNED" && !component.is_respawned) {
-        s.next();
-        component.is_respawned = true;
-      } else if (clause.text == "LIFECYCLE" &&
-                 component.lifecycle == syntax::LifecycleDriver::kUndeclared) {
-        s.next();
-        if (!lifecycle(s, component)) return false;
-      } else if (const auto near = clause_of_other_tools(clause.text); !near.empty()) {
-        return read_.fail(Code::kSyntax, clause.span,
-                          "a component has no " + std::string(clause.text),
-                          "did you mean " + std::string(near) + "?");
-      } else {
-        return read_.unexpected_clause(clause,
-                                       {kComponentClauses.begin(), kComponentClauses.end()});
-      }
-    }
+    if (!read_component_clauses(read_, source_, s, component)) return false;
     into_->components.push_back(std::move(component));
     return true;
-  }
-
-  static std::string_view clause_of_other_tools(std::string_view word) {
-    constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kWords = {
-        {{"COMMAND", "LAUNCH"},
-         {"CMD", "LAUNCH"},
-         {"EXEC", "LAUNCH"},
-         {"EXECUTABLE", "LAUNCH"},
-         {"START", "LAUNCH"},
-         {"SERVICE", "UNIT"},
-         {"SYSTEMD", "UNIT"},
-         {"DOCKER", "CONTAINER docker"},
-         {"PODMAN", "CONTAINER podman"}}};
-    const std::string upper = upper_case(word);
-    for (const auto& [theirs, ours] : kWords) {
-      if (theirs == upper) return ours;
-    }
-    return "";
   }
 
   // Whether the next word is none of these `clauses` nor one of them written wrong.
@@ -436,33 +323,6 @@ class Parser {
     const std::string upper = upper_case(token.text);
     return std::find(clauses.begin(), clauses.end(), upper) == clauses.end() &&
            closest(upper, {clauses.begin(), clauses.end()}).empty();
-  }
-
-  // The other nodes of the same process.
-  bool other_nodes(Scanner& s, syntax::Component& component) {
-    while (!s.at_end() && source_.text()[s.position()] == '/') {
-      auto node = read_.ros_name(s, "the full name of another node of the process");
-      if (!node) return false;
-      component.other_nodes.push_back(std::move(*node));
-    }
-    return true;
-  }
-
-  bool lifecycle(Scanner& s, syntax::Component& component) {
-    using enum syntax::LifecycleDriver;
-    const Token driver = s.next();
-    if (driver.text == "self") {
-      component.lifecycle = kSelf;
-    } else if (driver.text == "managed") {
-      component.lifecycle = kManaged;
-    } else if (driver.text == "launcher") {
-      component.lifecycle = kLauncher;
-    } else {
-      return read_.fail_token(driver, "the driver of its lifecycle",
-                              "write self (the node does), managed (culprit does) or launcher "
-                              "(the program that starts it does)");
-    }
-    return true;
   }
 
   bool dependency(Scanner& s) {
@@ -979,29 +839,6 @@ class Parser {
                       is_swapped ? std::optional(Edit{span, right}) : std::nullopt);
   }
 
-  // As other tools call it.
-  static std::string adaptation_of_other_tools(std::string_view word) {
-    constexpr std::array<std::pair<std::string_view, std::string_view>, 14> kWords = {
-        {{"reboot", "redeploy"},
-         {"respawn", "redeploy"},
-         {"relaunch", "redeploy"},
-         {"reload", "redeploy"},
-         {"kill", "redeploy"},
-         {"reset", "redeploy"},
-         {"launch", "start"},
-         {"run", "start"},
-         {"terminate", "stop"},
-         {"shutdown", "stop"},
-         {"set", "set_parameter"},
-         {"set_param", "set_parameter"},
-         {"remap", "change_communication"},
-         {"call_service", "call"}}};
-    for (const auto& [theirs, ours] : kWords) {
-      if (theirs == word) return std::string(ours);
-    }
-    return "";
-  }
-
   bool unknown_adaptation(const Token& word, Scanner& s) {
     if (hyphenated_adaptation(word, s)) return false;
     if (word.kind != Token::Kind::kIdentifier)
@@ -1010,7 +847,8 @@ class Parser {
     std::transform(plain.begin(), plain.end(), plain.begin(),
                    [](unsigned char c) { return std::tolower(c); });
     if (plain.starts_with("action_")) plain.erase(0, 7);  // as in the reference's dialect
-    std::string near = syntax::adaptation_type(plain) ? plain : adaptation_of_other_tools(plain);
+    std::string near =
+        syntax::adaptation_type(plain) ? plain : std::string(adaptation_of_other_tools(plain));
     if (near.empty()) near = closest(plain, syntax::adaptation_keywords());
     return read_.fail(
         Code::kUnknownAdaptation, word.span,

@@ -1,0 +1,161 @@
+#include "language/component_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "language/foreign_words.h"
+
+namespace culprit {
+namespace {
+
+using syntax::Component;
+using syntax::Name;
+
+struct Reader {
+  LineReader& read;
+  const Source& source;
+  Scanner& s;
+  Component& component;
+};
+
+enum class Form { kRosName, kText, kNameOrText };
+
+// A clause may stand once.
+struct Clause {
+  std::string_view word;
+  bool (*is_there)(const Component&);
+  bool (*parse)(Reader&, std::string_view what, std::string_view remedy);
+  std::string_view what{};  // it names
+  std::string_view remedy{};
+};
+
+template <auto Slot>
+bool has(const Component& component) {
+  return static_cast<bool>(component.*Slot);
+}
+
+template <auto Slot, Form form>
+bool name(Reader& r, std::string_view what, std::string_view remedy) {
+  std::optional<Name> found = form == Form::kRosName ? r.read.ros_name(r.s, what)
+                              : form == Form::kText  ? r.read.text(r.s, what, remedy)
+                                                     : r.read.name_or_text(r.s, what);
+  if (!found) return false;
+  r.component.*Slot = std::move(*found);
+  return true;
+}
+
+template <auto Slot>
+bool flag(Reader& r, std::string_view, std::string_view) {
+  return r.component.*Slot = true;
+}
+
+// The node, and the other nodes of the same process.
+bool nodes(Reader& r, std::string_view what, std::string_view remedy) {
+  if (!name<&Component::node, Form::kRosName>(r, what, remedy)) return false;
+  while (!r.s.at_end() && r.source.text()[r.s.position()] == '/') {
+    auto node = r.read.ros_name(r.s, "the full name of another node of the process");
+    if (!node) return false;
+    r.component.other_nodes.push_back(std::move(*node));
+  }
+  return true;
+}
+
+bool unit(Reader& r, std::string_view what, std::string_view remedy) {
+  if (!name<&Component::unit, Form::kNameOrText>(r, what, remedy)) return false;
+  r.component.is_users_unit = r.s.peek().text == "USER";
+  if (r.component.is_users_unit) r.s.next();
+  return true;
+}
+
+bool engine(Reader& r, std::string_view what, std::string_view remedy) {
+  return name<&Component::engine, Form::kNameOrText>(r, what, remedy) &&
+         name<&Component::engine_container, Form::kNameOrText>(r, "the container's name", "");
+}
+
+bool ready(Reader& r, std::string_view what, std::string_view) {
+  r.component.ready = r.read.positive_duration(r.s, what);
+  return r.component.ready.has_value();
+}
+
+bool has_lifecycle(const Component& component) {
+  return component.lifecycle != syntax::LifecycleDriver::kUndeclared;
+}
+
+bool lifecycle(Reader& r, std::string_view what, std::string_view remedy) {
+  using enum syntax::LifecycleDriver;
+  const Token driver = r.s.next();
+  if (driver.text == "self") {
+    r.component.lifecycle = kSelf;
+  } else if (driver.text == "managed") {
+    r.component.lifecycle = kManaged;
+  } else if (driver.text == "launcher") {
+    r.component.lifecycle = kLauncher;
+  } else {
+    return r.read.fail_token(driver, what, std::string(remedy));
+  }
+  return true;
+}
+
+constexpr std::array kClauses = {
+    Clause{"NODE", has<&Component::node>, nodes, "the node's full name"},
+    Clause{"LAUNCH", has<&Component::launch>, name<&Component::launch, Form::kText>,
+           "the launch command", "write it in quotes: LAUNCH \"ros2 run package program\""},
+    Clause{"ENV", has<&Component::environment>, name<&Component::environment, Form::kText>,
+           "the variables", "write them in quotes: ENV \"ROS_DOMAIN_ID=7 LANG=C\""},
+    Clause{"SETUP", has<&Component::setup>, name<&Component::setup, Form::kNameOrText>,
+           "the file to source"},
+    Clause{"CWD", has<&Component::folder>, name<&Component::folder, Form::kNameOrText>,
+           "the folder to run in"},
+    Clause{"UNIT", has<&Component::unit>, unit, "the unit's name"},
+    Clause{"CONTAINER", has<&Component::engine>, engine, "the engine: docker or podman"},
+    Clause{"HOST", has<&Component::host>, name<&Component::host, Form::kNameOrText>,
+           "the computer that runs it, as for ssh"},
+    Clause{"IN", has<&Component::container>, name<&Component::container, Form::kRosName>,
+           "the full name of the node that loads it"},
+    Clause{"PLUGIN", has<&Component::plugin>, name<&Component::plugin, Form::kNameOrText>,
+           "the class to load"},
+    Clause{"PACKAGE", has<&Component::package>, name<&Component::package, Form::kNameOrText>,
+           "the package that has the class"},
+    Clause{"PARAMETERS", has<&Component::parameters>,
+           name<&Component::parameters, Form::kNameOrText>, "the file of its parameters"},
+    Clause{"REMAP", has<&Component::remaps>, name<&Component::remaps, Form::kNameOrText>,
+           "which name stands for which"},
+    Clause{"RESPAWNED", has<&Component::is_respawned>, flag<&Component::is_respawned>},
+    Clause{"REQUIRED", has<&Component::is_required>, flag<&Component::is_required>},
+    Clause{"READY", has<&Component::ready>, ready, "how long a start may take, with several tries"},
+    Clause{"LIFECYCLE", has_lifecycle, lifecycle, "the driver of its lifecycle",
+           "write self (the node does), managed (culprit does) or launcher (the program that "
+           "starts it does)"},
+};
+
+constexpr auto kWords = [] {
+  std::array<std::string_view, kClauses.size()> words{};
+  std::ranges::transform(kClauses, words.begin(), &Clause::word);
+  return words;
+}();
+
+}  // namespace
+
+std::span<const std::string_view> component_clauses() { return kWords; }
+
+bool read_component_clauses(LineReader& read, const Source& source, Scanner& s,
+                            syntax::Component& component) {
+  Reader reader{read, source, s, component};
+  while (!s.at_end()) {
+    const Token& word = s.peek();
+    const auto clause = std::ranges::find(kClauses, word.text, &Clause::word);
+    if (clause == kClauses.end() || clause->is_there(component)) {
+      const std::string_view near = clause_of_other_tools(word.text);
+      if (near.empty()) return read.unexpected_clause(word, {kWords.begin(), kWords.end()});
+      return read.fail(Code::kSyntax, word.span, "a component has no " + std::string(word.text),
+                       "did you mean " + std::string(near) + "?");
+    }
+    s.next();
+    if (!clause->parse(reader, clause->what, clause->remedy)) return false;
+  }
+  return true;
+}
+
+}  // namespace culprit
