@@ -37,18 +37,17 @@ struct Kinds {
 
 // Files hold these numbers: they must not change.
 constexpr std::uint8_t kProcessSeenWithCause = 24;
-using ObservationKinds =
-    Kinds<Kind<1, NodeAppeared>, Kind<2, NodeVanished>, Kind<3, EndpointAppeared>,
-          Kind<4, EndpointVanished>, Kind<5, SampleArrived>, Kind<6, SignalRead>,
-          Kind<7, DiagnosticRead>, Kind<8, ParameterRead>, Kind<9, LifecycleRead>,
-          Kind<10, ProcessSeen>, Kind<11, Probed>, Kind<12, Reply>, Kind<13, LinkTrouble>,
-          Kind<14, Order>, Kind<15, NamesakesSeen>, Kind<16, HearingLost>,
-          Kind<17, HearingRegained>, Kind<18, Overslept>, Kind<19, StatusHeard>,
-          Kind<20, ParametersListed>, Kind<21, ProcessWorked>, Kind<22, HostReached>,
-          Kind<23, EndsWith>, Kind<kProcessSeenWithCause, ProcessSeen>, Kind<25, LauncherSeen>,
-          Kind<26, PriorsTold>, Kind<27, LivesOn>, Kind<28, HostHeard>, Kind<29, ListenerKnown>,
-          Kind<30, StartedHere>, Kind<31, UsageSeen>, Kind<32, StartBarred>,
-          Kind<33, PublisherKnown>, Kind<34, GoalsSeen>, Kind<35, LogSeen>, Kind<36, TimeHeld>>;
+using ObservationKinds = Kinds<
+    Kind<1, NodeAppeared>, Kind<2, NodeVanished>, Kind<3, EndpointAppeared>,
+    Kind<4, EndpointVanished>, Kind<5, SampleArrived>, Kind<6, SignalRead>, Kind<7, DiagnosticRead>,
+    Kind<8, ParameterRead>, Kind<9, LifecycleRead>, Kind<10, ProcessSeen>, Kind<11, Probed>,
+    Kind<12, Reply>, Kind<13, LinkTrouble>, Kind<14, Order>, Kind<15, NamesakesSeen>,
+    Kind<16, HearingLost>, Kind<17, HearingRegained>, Kind<18, Overslept>, Kind<19, StatusHeard>,
+    Kind<20, ParametersListed>, Kind<21, ProcessWorked>, Kind<22, HostReached>, Kind<23, EndsWith>,
+    Kind<kProcessSeenWithCause, ProcessSeen>, Kind<25, LauncherSeen>, Kind<26, PriorsTold>,
+    Kind<27, LivesOn>, Kind<28, HostHeard>, Kind<29, ListenerKnown>, Kind<30, StartedHere>,
+    Kind<31, UsageSeen>, Kind<32, StartBarred>, Kind<33, PublisherKnown>, Kind<34, GoalsSeen>,
+    Kind<35, LogSeen>, Kind<36, TimeHeld>, Kind<37, ClockStepped>>;
 using OrderKinds =
     Kinds<Kind<1, Pause>, Kind<2, Resume>, Kind<3, SetDryRun>, Kind<4, Approve>, Kind<5, Refuse>,
           Kind<6, Silence>, Kind<7, LiftSilence>, Kind<8, RunStrategy>, Kind<9, Forget>,
@@ -130,6 +129,7 @@ class Fields {
   }
   void of(Of<HostReached> o) { codec_.id(o.component), codec_.truth(o.is_reached); }
   void of(Of<TimeHeld> o) { codec_.id(o.component), codec_.truth(o.is_held); }
+  void of(Of<ClockStepped> o) { codec_.duration(o.by); }
   void of(Of<LivesOn> o) { codec_.id(o.component), codec_.text(o.host); }
   void of(Of<HostHeard> o) { codec_.text(o.host), codec_.truth(o.is_heard); }
   void of(Of<EndsWith> o) {

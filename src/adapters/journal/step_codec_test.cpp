@@ -72,7 +72,7 @@ decltype(Order::what) any_order() {
 ObservationWhat anything() {
   const std::string text = *rc::gen::arbitrary<std::string>();
   const ComponentId component(*rc::gen::inRange<std::size_t>(0, 2));
-  switch (*rc::gen::inRange(0, 34)) {
+  switch (*rc::gen::inRange(0, 35)) {
     case 0:
       return NodeAppeared{text, *rc::gen::positive<int>()};
     case 1:
@@ -148,6 +148,8 @@ ObservationWhat anything() {
       return LogSeen{component, *rc::gen::element(LogLevel::kDebug, LogLevel::kFatal)};
     case 32:
       return TimeHeld{component, *rc::gen::arbitrary<bool>()};
+    case 33:
+      return ClockStepped{*rc::gen::element(Duration(-3600s), Duration(2s))};
     default:
       return LinkTrouble{text};
   }

@@ -3,7 +3,6 @@
 #include <ctime>
 #include <utility>
 
-#include "base/duration_words.h"
 #include "base/live_clock.h"
 
 namespace culprit::ros2 {
@@ -95,14 +94,7 @@ void RobotTime::report_step() {
   const Duration running =
       std::chrono::seconds(steady.tv_sec) + std::chrono::nanoseconds(steady.tv_nsec);
   const auto step = system_clock_.look(running, Duration(wall_now()));
-  if (!step) return;
-  const bool is_back = *step < Duration::zero();
-  inbox_.put(LinkTrouble{"the system clock of this computer was set " +
-                         std::string(is_back ? "back" : "ahead") + " by " +
-                         in_words(std::chrono::abs(*step)) +
-                         (is_back ? ": timers of rclpy, and waits for a time of day, stand "
-                                    "still until it has caught up; a restart of their nodes helps"
-                                  : ": timers that wait until a time of day fire at once")});
+  if (step) inbox_.put(ClockStepped{*step});
 }
 
 void RobotTime::report_clock() {

@@ -59,6 +59,7 @@ class Collector {
           "it is one of a feedback loop of " + std::to_string(members) + " failures", kLongAgo,
           logit(diagnosis_.of(i)) - logit(own));
     }
+    add_clock_step(i);
     return heaviest_first();
   }
 
@@ -96,6 +97,15 @@ class Collector {
   }
 
  private:
+  // It decides nothing about who is responsible, and tells why a node may have fallen silent.
+  void add_clock_step(std::size_t i) {
+    constexpr Duration kNearby = std::chrono::seconds(10);
+    const auto& step = knowledge_.clock_step;
+    const Onset& began = causes_[i].onset;
+    if (step && later(began.latest, kNearby) >= step->at &&
+        began.earliest <= later(step->at, std::max(kNearby, -step->by)))
+      add(EvidenceSource::kMeasured, step->in_words(), step->at, 0);
+  }
   void add(EvidenceSource source, std::string text, Time since, double log_odds) {
     std::optional<Duration> age;
     if (since != kLongAgo && since <= knowledge_.now) age = knowledge_.now - since;

@@ -9,6 +9,7 @@
 //                               others may explain the failure       logit kCoincidence, -ln X_i
 //                               nothing upstream is wrong            kSurely
 //                               it is in a feedback loop             logit R_i - logit P(own i)
+//                               the system clock was stepped then    0: no node is the likelier for it
 //   another cause j             what is wrong there (causes.h)       kSurely + ln kUsual: of j alone
 //                               i worked for long beside it          ln g(j -> i)
 //                               they cleared together, or did not    ln kappa(j -> i) - ln kUsual

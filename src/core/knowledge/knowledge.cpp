@@ -4,6 +4,8 @@
 #include <iterator>
 #include <set>
 
+#include "base/duration_words.h"
+
 namespace culprit {
 namespace {
 
@@ -89,10 +91,21 @@ Knowledge::Knowledge(const RuleSet& rule_set, const Knowledge& other)
       withheld(other.withheld),
       outcomes(other.outcomes),
       rivals(other.rivals),
+      clock_step(other.clock_step),
       finding(other.finding),
       now(other.now) {}
 
 Knowledge::~Knowledge() = default;
+
+std::string Knowledge::ClockStep::in_words() const {
+  const bool is_back = by < Duration::zero();
+  return "the system clock of this computer was set " + std::string(is_back ? "back" : "ahead") +
+         " by " + culprit::in_words(std::chrono::abs(by)) +
+         (is_back
+              ? ": timers of rclpy, and waits for a time of day, stand still until it has caught "
+                "up; a restart of their nodes helps"
+              : ": timers that wait until a time of day fire at once");
+}
 
 std::string value_name(const Input& input, const RuleSet& rules) {
   switch (input.kind) {

@@ -58,6 +58,14 @@ struct Knowledge {
   WithheldList withheld;
   PendingOutcomes outcomes;
   Rivals rivals;
+  // The last step of the system clock of culprit's own computer.
+  struct ClockStep {
+    Time at{};
+    Duration by{};  // below 0: it was set back
+    // "the system clock of this computer was set back by 1 h: …"
+    std::string in_words() const;
+  };
+  std::optional<ClockStep> clock_step;
   Duration finding{};  // how long a node that began anew may take to find what it reads
   Time now{};          // of the step under way
   EventLog events;

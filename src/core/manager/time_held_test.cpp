@@ -106,6 +106,33 @@ TEST(TimeHeld, AGoalDoesNotAgeMeanwhile) {
   EXPECT_EQ(robot.count("Slow detected"), 1u) << transcript(robot);
 }
 
+// A failure that follows a step of the system clock names it.
+std::string evidence_of(const TestRobot& robot) {
+  std::string text;
+  for (const Event& event : robot.events) {
+    const auto* chosen = std::get_if<StrategyChosen>(&event.what);
+    if (chosen == nullptr || chosen->suspects.empty()) continue;
+    for (const Evidence& each : chosen->suspects.front().evidence) text += describe(each) + "\n";
+  }
+  return text;
+}
+
+TEST(ClockStep, IsNamedInTheFailureThatFollows) {
+  constexpr const char* kSet = "the system clock of this computer was set back by 1 h";
+  for (const Duration before : {Duration(2s), Duration(3h)}) {
+    HalfSimulated robots;
+    TestRobot& robot = robots.robot;
+    robot.tell(ClockStepped{-1h});
+    EXPECT_EQ(robot.count(kSet), 1u) << transcript(robot);
+    robot.run_for(before);
+    robot["camera"].fault = "redeploy";
+    robot.run_for(10s);
+    EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+    const bool is_named = evidence_of(robot).find(kSet) != std::string::npos;
+    EXPECT_EQ(is_named, before < 1h) << evidence_of(robot);
+  }
+}
+
 // The operating system says that it is gone.
 TEST(TimeHeld, AKilledNodeIsStartedAgain) {
   HalfSimulated simulated;

@@ -71,6 +71,7 @@ class Monitor {
     Departures& departures;
     Sightings& sightings;
     HeardNames& heard_names;
+    std::optional<Knowledge::ClockStep>& clock_step;
     EventLog& events;
   };
 
@@ -187,6 +188,7 @@ class Monitor {
   void on(Time at, const ParametersListed& seen);
   void on(Time at, const HostReached& seen);
   void on(Time at, const TimeHeld& seen);
+  void on(Time at, const ClockStepped& seen);
   void on(Time at, const StartBarred& seen);
   void on(Time at, const LivesOn& seen);
   void on(Time at, const HostHeard& seen);

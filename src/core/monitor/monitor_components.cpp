@@ -525,6 +525,11 @@ void Monitor::on(Time, const EndsWith& seen) {
   write_.components[seen.component].ends_with = seen.others;
 }
 
+void Monitor::on(Time at, const ClockStepped& seen) {
+  write_.clock_step = {at, std::max(seen.by, -Duration::max())};
+  write_.events.tell(at, Trouble{write_.clock_step->in_words()});
+}
+
 void Monitor::on(Time at, const LinkTrouble& seen) { write_.events.tell(at, Trouble{seen.text}); }
 
 // The node or its process exited or is another now: the knowledge about it is void.

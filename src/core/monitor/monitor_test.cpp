@@ -92,7 +92,7 @@ struct Oracle {
 
 Monitor::Writes writes(Knowledge& knowledge) {
   return {knowledge.signals,   knowledge.graph,       knowledge.components, knowledge.departures,
-          knowledge.sightings, knowledge.heard_names, knowledge.events};
+          knowledge.sightings, knowledge.heard_names, knowledge.clock_step, knowledge.events};
 }
 
 // Every comparison in the rules must give the same result as with the true value, at every moment,

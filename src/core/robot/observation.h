@@ -180,6 +180,11 @@ struct TimeHeld {
   bool is_held = false;
 };
 
+// The system clock of culprit's own computer was stepped: set back (below 0) or ahead.
+struct ClockStepped {
+  Duration by{};
+};
+
 // The computer that runs a component (HOST) cannot be asked, or can be again. While nothing is
 // received from a component there, it is unknown whether it works.
 struct HostReached {
@@ -315,7 +320,7 @@ class ObservationWhat
                           HearingLost, HearingRegained, Overslept, StatusHeard, ParametersListed,
                           ProcessWorked, HostReached, EndsWith, LauncherSeen, PriorsTold, LivesOn,
                           HostHeard, ListenerKnown, StartedHere, UsageSeen, StartBarred,
-                          PublisherKnown, GoalsSeen, LogSeen, TimeHeld> {
+                          PublisherKnown, GoalsSeen, LogSeen, TimeHeld, ClockStepped> {
  public:
   using Variant = variant;
   using variant::variant;
