@@ -149,7 +149,7 @@ ObservationWhat anything() {
     case 32:
       return TimeHeld{component, *rc::gen::arbitrary<bool>()};
     case 33:
-      return ClockStepped{*rc::gen::element(Duration(-3600s), Duration(2s))};
+      return ClockStepped{*rc::gen::element(Duration(-3600), Duration(2))};
     default:
       return LinkTrouble{text};
   }
