@@ -82,7 +82,7 @@ int parent_of(int pid) {
 }
 
 // The processes that hold nodes of one name, their launchers, and how to end the extra one.
-std::string who_are(const std::vector<GraphNode>& nodes) {
+std::string processes_of(const std::vector<GraphNode>& nodes) {
   if (nodes.size() < 2) return "";
   std::string text;
   std::string others;
@@ -496,8 +496,9 @@ void Link::on_namesakes(const NodeNamesakes& seen) {
       contested_.erase(seen.node);
       return;
     }
-    contested_[seen.node] = {"several nodes have the name " + seen.node + ": " + who_are(seen.all),
-                             later(live_now(), kSettles)};
+    contested_[seen.node] = {
+        "several nodes have the name " + seen.node + ": " + processes_of(seen.all),
+        later(live_now(), kSettles)};
   }
 }
 

@@ -67,7 +67,7 @@ Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, O
     : knowledge_(rules),
       monitor_(knowledge_,
                {knowledge_.signals, knowledge_.graph, knowledge_.components, knowledge_.departures,
-                knowledge_.sightings, knowledge_.heard_names, knowledge_.events},
+                knowledge_.discovered, knowledge_.reported_names, knowledge_.events},
                options.start, later(options.start, options.discovery)),
       analyzer_(knowledge_,
                 {knowledge_.states, knowledge_.signals, knowledge_.beliefs, knowledge_.couplings,
