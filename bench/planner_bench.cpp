@@ -51,7 +51,7 @@ void connect(Knowledge& knowledge, std::size_t components, std::size_t inputs) {
     ComponentState& state = knowledge.components[ComponentId(i)];
     state.alive = true;
     state.lifecycle = Lifecycle::kActive;
-    knowledge.sightings.note(ComponentId(i), Time());
+    knowledge.discovered.note(ComponentId(i), Time());
     const auto earlier = std::min(i, width);
     for (std::size_t k = 0; k < inputs && earlier > 0; ++k)
       link(i - 1 - random.next() % earlier, i);

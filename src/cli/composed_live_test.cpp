@@ -193,7 +193,7 @@ TEST_F(Composed, WhatAKilledCulpritLeftUnfinishedIsFinishedOnce) {
 }
 
 // Any program on the network can offer services of these names.
-TEST_F(Composed, WhoOnlyOffersTheServicesOfAContainerIsNotBelieved) {
+TEST_F(Composed, ANodeThatOnlyOffersTheServicesOfAContainerIsNotBelieved) {
   const std::string stalls = (world.folder() / "stalls").string();
   TestProgram container(world, {"ros2_peer_node", domain(), "--active", "--stalls-if", stalls,
                                 "/box", "/detector", "/tracker"});

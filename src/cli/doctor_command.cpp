@@ -64,7 +64,9 @@ void print(const Report& report, const DoctorOptions& options) {
     print_text(report);
 }
 
-bool is_same(const Finding& a, const Finding& b) { return a.code == b.code && a.who == b.who; }
+bool is_same(const Finding& a, const Finding& b) {
+  return a.code == b.code && a.subject == b.subject;
+}
 
 // Prints the findings that are new and those that are gone since the last look.
 void print_changes(const Report& before, const Report& now) {
@@ -85,7 +87,7 @@ void print_changes(const Report& before, const Report& now) {
   };
   for (const Finding& finding : before.findings) {
     if (!is_in(finding, now) && !is_doubtful(finding))
-      say(stdout, "{:%H:%M:%S} cleared[{}]: {}\n", time, finding.code, finding.who);
+      say(stdout, "{:%H:%M:%S} cleared[{}]: {}\n", time, finding.code, finding.subject);
   }
 }
 
@@ -200,7 +202,7 @@ CLI::Option* add_bag_options(CLI::App& command, BagExamination& options) {
       ->needs(bags);
   command
       .add_option("--rules", options.rules,
-                  "A rule file whose DEPENDENCY and FROM say who depends on whom")
+                  "A rule file whose DEPENDENCY and FROM declare the dependencies")
       ->type_name("FILE")
       ->needs(bags);
   command

@@ -90,7 +90,7 @@ Expected<std::unique_ptr<DrillNode>> DrillNode::join() {
   if (!context) return Error{context.error()};
   self->context_ = std::move(*context);
   auto node =
-      ros2::Node::create(*self->context_, {"/", "_culprit_drill"}, ros2::Node::Extent::kOnlooker);
+      ros2::Node::create(*self->context_, {"/", "_culprit_drill"}, ros2::Node::Extent::kMinimal);
   if (!node) return Error{node.error()};
   self->node_ = std::move(*node);
   self->thread_ = std::thread([raw = self.get()] { raw->executor_.run(); });

@@ -12,7 +12,7 @@ std::string coloured(doctor::Gravity gravity, Colour colour) {
 }  // namespace
 
 void print_finding(const doctor::Finding& finding, Colour colour) {
-  say(stdout, "{}[{}]: {}\n", coloured(finding.gravity, colour), finding.code, finding.who);
+  say(stdout, "{}[{}]: {}\n", coloured(finding.gravity, colour), finding.code, finding.subject);
   if (finding.when) say(stdout, "  when:    {}\n", to_string(*finding.when));
   say(stdout, "  seen:    {}\n  matters: {}\n  do:      {}\n", finding.seen, finding.matters,
       finding.remedy);

@@ -10,7 +10,7 @@ namespace culprit::cli {
 namespace {
 
 // The user at the terminal, for the record.
-std::string who_orders() {
+std::string author_of_order() {
   const std::string behind_sudo = geteuid() == 0 ? environment("SUDO_USER") : "";
   if (!behind_sudo.empty()) return behind_sudo;
   const passwd* user = getpwuid(geteuid());
@@ -47,7 +47,7 @@ std::vector<OutcomeOfOrder> give_all(const std::vector<RunningCulprit>& culprits
   // It waits less than we do, and is not followed once we have given up.
   constexpr Duration kMargin = std::chrono::milliseconds(500);
   for (Json& order : orders) {
-    order["author"] = who_orders();
+    order["author"] = author_of_order();
     order["reason"] = reason;
     order["wait_s"] = seconds(kPatienceWithCulprit - kMargin);
     order["valid_until"] = seconds(live_now().time_since_epoch() + kPatienceWithCulprit);

@@ -58,7 +58,7 @@ std::string parameter_file(const InitOptions& options) {
   return beside.replace_extension("params.yaml").string();
 }
 
-void take(init::LaunchDump dump, const InitOptions& options, init::Sighting& seen) {
+void take(init::LaunchDump dump, const InitOptions& options, init::RobotProfile& seen) {
   seen.dump = std::move(dump);
   seen.has_dump = !options.launch_dump.empty();
   if (!options.output.empty() || !options.update.empty())
@@ -69,7 +69,7 @@ void take(init::LaunchDump dump, const InitOptions& options, init::Sighting& see
   seen.dump = std::move(running.dump);
 }
 
-Expected<init::Sighting> look(const InitOptions& options) {
+Expected<init::RobotProfile> look(const InitOptions& options) {
   const auto participant = ros2::options_from_environment();
   if (!participant) return Error{participant.error()};
   if (participant->security)
@@ -80,7 +80,8 @@ Expected<init::Sighting> look(const InitOptions& options) {
   if (!survey) return Error{survey.error()};
   say(stderr, "culprit: watching domain {} for {}; the robot should be well meanwhile\n",
       participant->domain, to_string(from_seconds(options.seconds)));
-  init::Sighting seen = init::look(**survey, participant->domain, from_seconds(options.seconds));
+  init::RobotProfile seen =
+      init::look(**survey, participant->domain, from_seconds(options.seconds));
   if (!seen.robot.has_robot()) return Error{live::nobody_on(participant->domain)};
   return seen;
 }

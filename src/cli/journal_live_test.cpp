@@ -51,10 +51,10 @@ TEST_F(Journal, SurvivesAKillAndTellsAndReplaysWhatHappened) {
     TestProgram first = culprit({"run", rules, "--settle", "1", "--state-dir", state});
     ASSERT_TRUE(first.prints("camera is there")) << first.output();
 
-    TestProgram onlooker = culprit({"run", rules, "--state-dir", state});
-    EXPECT_TRUE(onlooker.prints("another culprit manages this robot")) << onlooker.output();
-    onlooker.signal(SIGINT);
-    EXPECT_EQ(onlooker.wait(), 0);
+    TestProgram second = culprit({"run", rules, "--state-dir", state});
+    EXPECT_TRUE(second.prints("another culprit manages this robot")) << second.output();
+    second.signal(SIGINT);
+    EXPECT_EQ(second.wait(), 0);
 
     camera.signal(SIGKILL);
     camera.wait();

@@ -138,7 +138,7 @@ TEST_F(Neighbours, OfTwoRobotNamesDoNotManageTheSameNode) {
 }
 
 // As `respawn` in a launch file brings it about.
-TEST_F(Neighbours, WhoHoldNodesOfOneNameAreNamedAsLongAsTheyAreThere) {
+TEST_F(Neighbours, ProcessesWithNodesOfOneNameAreNamedAsLongAsTheyAreThere) {
   const TestProgram one(world, {"sunset-node", "camera"});
   const TestProgram two(world, {"sunset-node", "camera"});
   TestProgram culprit = run("robot", "state");

@@ -13,7 +13,7 @@
 #include "live/rule_file.h"
 #include "manager/manager.h"
 #include "manager/runtime.h"
-#include "plan/onlooker.h"
+#include "plan/passive_planner.h"
 #include "rule_test/plan_report.h"
 #include "rule_test/state.h"
 #include "terminal/console.h"
@@ -104,18 +104,18 @@ int plan_for_robot(const live::LoadedRules& loaded, const PlanOptions& options) 
   }
   signals.on_stop([&] { (*robot)->interrupt(); });
 
-  // An onlooker decides nothing, so nothing is asked of the robot.
+  // It decides nothing, so nothing is asked of the robot.
   Manager::Options manager_options;
   manager_options.start = (*robot)->now();
   manager_options.discovery = from_seconds(options.settle_seconds);
   manager_options.governor = Governor::Options::recommended();
   manager_options.governor.quiet_at_start = Duration::zero();  // the question is about the robot
-  Manager manager(rules, std::make_unique<Onlooker>(), manager_options);
+  Manager manager(rules, std::make_unique<PassivePlanner>(), manager_options);
   fmt::print(stderr, "culprit: watching {} for {:g} s or more; nothing is changed on it\n",
              rules.robot.empty() ? "the robot" : rules.robot,
              seconds(manager_options.discovery + longest_detection(rules)));
-  auto preflight = std::async(std::launch::async,
-                              [&] { return live::sight(loaded.source, options.message_path); });
+  auto preflight = std::async(
+      std::launch::async, [&] { return live::take_snapshot(loaded.source, options.message_path); });
   watch(manager, **robot, rules, manager_options.discovery, signals.stopped());
   const bool is_stopped = signals.stopped();
   signals.on_stop({});

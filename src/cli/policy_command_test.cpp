@@ -68,7 +68,7 @@ TEST_F(PolicyCommand, RefusesWhatIsNoEnclave) {
   EXPECT_EQ(written, "");
 }
 
-TEST_F(PolicyCommand, WhoeverWantsSnapshotsMayAskForThem) {
+TEST_F(PolicyCommand, ANodeThatWantsSnapshotsMayAskForThem) {
   ASSERT_EQ(run({"rules/sunset.rules"}), kOk);
   EXPECT_THAT(written, Not(HasSubstr("snapshot")));
   ASSERT_EQ(run({"rules/sunset.rules", "--snapshot", "/rosbag2_recorder"}), kOk);

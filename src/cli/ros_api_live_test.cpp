@@ -162,7 +162,7 @@ TEST_F(SecuredRosApi, WatchesWithThePermissionsOfAnOlderCulpritAndSaysWhatTheyLa
   EXPECT_EQ(culprit->wait(), 0);
 }
 
-TEST_F(SecuredRosApi, ObeysWhoHasKeys) {
+TEST_F(SecuredRosApi, ObeysANodeThatHasKeys) {
   keys.add("/culprit", permissions_for(world, ""));
   auto culprit = run();
   ASSERT_TRUE(culprit->prints("culprit status")) << culprit->output();

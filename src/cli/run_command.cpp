@@ -133,7 +133,7 @@ class Run {
 
   const RunOptions& options_;
   std::FILE* const remarks_;
-  WhoServes who_;
+  CulpritIdentity identity_;
   const std::filesystem::path journal_;  // empty: none is written
   const std::unique_ptr<live::Fleet> fleet_;
   const std::unique_ptr<RunAlerts> alerts_;
@@ -160,12 +160,12 @@ Run::Run(const RunOptions& options, const RuleSet& rules, Opened opened, live::R
          std::FILE* remarks)
     : options_(options),
       remarks_(remarks),
-      who_{options.version,
-           rules.robot,
-           options.rules,
-           opened.session.robot.link.participant.domain,
-           opened.session.robot.link.name.name,
-           ""},
+      identity_{options.version,
+                rules.robot,
+                options.rules,
+                opened.session.robot.link.participant.domain,
+                opened.session.robot.link.name.name,
+                ""},
       journal_(options.no_journal ? std::filesystem::path() : options.journal_path(rules)),
       fleet_(std::move(opened.fleet)),
       alerts_(std::move(opened.alerts)),
@@ -215,8 +215,8 @@ Expected<void> Run::serve_page() {
   if (!server) return Error{server.error()};
   page_ = std::move(*server);
   histories_.start();
-  who_.page = page_->address();
-  if (alerts_) alerts_->set_page(who_.page);
+  identity_.page = page_->address();
+  if (alerts_) alerts_->set_page(identity_.page);
   return {};
 }
 
@@ -239,8 +239,8 @@ Expected<void> Run::manage(live::LoadedRules rules, StopSignals& signals) {
   signals.on_user_signal([this] {
     if (recording_) (void)recording_->recorder().record_now("SIGUSR1", Duration::zero());
   });
-  local_ = serve_this_machine(who_, local_routes(hub_, metrics_, orders_, live_, recording_.get()),
-                              hub_, remarks_);
+  local_ = serve_this_machine(
+      identity_, local_routes(hub_, metrics_, orders_, live_, recording_.get()), hub_, remarks_);
   signals.on_reload([this] {
     if (const auto reloaded = live_.reload("SIGHUP"); !reloaded)
       say(stderr, "culprit: the rules are not reloaded: {}\n", reloaded.error());

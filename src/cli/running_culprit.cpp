@@ -26,15 +26,15 @@ std::string name_of_user(std::uint32_t user) {
 }
 
 std::string why_silent(const LocalSocket& socket, const std::string& error) {
-  const std::string who =
+  const std::string name =
       fmt::format("the culprit of process {} (domain {})", socket.process, socket.domain);
   if (socket.state == LocalSocket::State::kLeft)
-    return who +
+    return name +
            " has ended without a word: it was killed, or crashed; culprit log shows what it did";
   if (const auto stat = process_stat(std::to_string(socket.process)); stat && stat->state == 'T')
-    return fmt::format("{} is stopped and does nothing: kill -CONT {} lets it go on", who,
+    return fmt::format("{} is stopped and does nothing: kill -CONT {} lets it go on", name,
                        socket.process);
-  return fmt::format("{} does not answer: {}", who, error);
+  return fmt::format("{} does not answer: {}", name, error);
 }
 
 // How to ask those of another user.
@@ -60,16 +60,16 @@ Expected<std::uint32_t> user_called(const std::string& name) {
 }
 
 // The user behind sudo is asked, too: sudo says who that is, and only root could make it up.
-Expected<live::WhoIsAsked> who_is_asked(const WhichCulprit& which) {
-  live::WhoIsAsked who;
-  who.is_everybody = which.all;
+Expected<live::CulpritQuery> query_of(const WhichCulprit& which) {
+  live::CulpritQuery query;
+  query.is_everybody = which.all;
   for (const std::string& name : {which.user, environment("SUDO_UID")}) {
     if (name.empty()) continue;
     const auto user = user_called(name);
     if (!user) return Error{user.error()};
-    who.users.push_back(*user);
+    query.users.push_back(*user);
   }
-  return who;
+  return query;
 }
 
 // Nothing: every domain is meant.
@@ -122,14 +122,14 @@ void WhichCulprit::add_all_to(CLI::App& command) {
 
 Expected<CulpritsHere> culprits_here(const WhichCulprit& which) {
   ::signal(SIGPIPE, SIG_IGN);  // the other side may hang up
-  const auto who = who_is_asked(which);
-  if (!who) return Error{who.error()};
+  const auto query = query_of(which);
+  if (!query) return Error{query.error()};
   const auto domain = domain_meant(which);
   if (!domain) return Error{domain.error()};
   CulpritsHere here;
   std::vector<LocalSocket> asked;
   std::vector<web::LocalClient> clients;
-  for (LocalSocket& socket : live::local_sockets(*who)) {
+  for (LocalSocket& socket : live::local_sockets(*query)) {
     const bool is_meant = !*domain || socket.domain == **domain;
     if (socket.state == LocalSocket::State::kForbidden) {
       add_once(here.not_meant, of_other_user(socket.user));

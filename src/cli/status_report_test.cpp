@@ -59,7 +59,7 @@ TEST(StatusReport, SaysThatAllIsWell) {
               HasSubstr("culprit 1.2, process 4711, domain 3, node /culprit, rules my.rules"));
 }
 
-TEST(StatusReport, SaysWhoIsIllWhoIsBlamedAndWhatHappensNext) {
+TEST(StatusReport, SaysTheFailureTheBlameAndTheNextStep) {
   EXPECT_EQ(verdict_of(ill()), Verdict::kNotWell);
   const std::string text = all_of(ill());
   EXPECT_THAT(text, HasSubstr("rover: camera is dead\n"));

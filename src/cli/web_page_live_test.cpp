@@ -39,7 +39,7 @@ TEST_F(WebPage, IsUsableOnEveryPage) { passes("pages.mjs"); }
 
 TEST_F(WebPage, RunsStudiesAndDrawsRulesThatAreInOneAnothersWay) { passes("studies.mjs"); }
 
-TEST_F(WebPage, ObeysWhoIsInChargeOfARobot) {
+TEST_F(WebPage, ObeysTheOperatorOfARobot) {
   const TestProgram camera(world, {"sunset-node", "camera"});
   passes("operator.mjs");
 }

@@ -127,16 +127,16 @@ std::vector<Alerting::Problem> Alerting::problems_of_sight() const {
     };
     const RuleId worst = *std::max_element(blind.begin(), blind.end(), less_critical);
     const std::size_t others = blind.size() - 1;
-    const std::string who = cause.empty() ? "watching nothing, no rule can see"
-                            : others == 0
-                                ? rules[worst].name + " is blind"
-                                : fmt::format("{} and {} more {} blind", rules[worst].name, others,
-                                              others == 1 ? "rule are" : "rules are");
+    const std::string names = cause.empty() ? "watching nothing, no rule can see"
+                              : others == 0
+                                  ? rules[worst].name + " is blind"
+                                  : fmt::format("{} and {} more {} blind", rules[worst].name,
+                                                others, others == 1 ? "rule are" : "rules are");
     Problem& problem = all.emplace_back();
     problem.keys = cause.empty() ? causes : std::set{cause};
     problem.alert.rule = rules[worst].name;
     problem.alert.health = std::string(to_string(rules[worst].policies.criticality));
-    problem.alert.headline = who + ": " + describe(*knowledge.blindness[worst]);
+    problem.alert.headline = names + ": " + describe(*knowledge.blindness[worst]);
     problem.alert.doing = "failures that they would see stay unnoticed";
     problem.needs_person_if_it_lasts = true;
   }

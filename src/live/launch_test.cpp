@@ -183,7 +183,7 @@ TEST_F(Launching, LeavesANodeAloneThatActivatesItself) {
   EXPECT_THAT(robot.asked, ElementsAre("configure planner", "activate planner"));
 }
 
-TEST_F(Launching, WaitsForWhoActivatedItselfBefore) {
+TEST_F(Launching, WaitsForANodeThatActivatedItselfBefore) {
   const auto came_up = [](ComponentId c, ComingUp how) { return Event{Time{}, CameUp{c, how}}; };
   keeper.past = {came_up(ComponentId(1u), {ComingUp::Driver::kOther, 2s, 4s}),
                  came_up(ComponentId(0u), {ComingUp::Driver::kCulprit, 2s, 1s})};
@@ -243,7 +243,7 @@ TEST_F(Launching, TouchesNothingThatRunsAlready) {
   EXPECT_THAT(robot.asked, ElementsAre("configure planner", "activate planner"));
 }
 
-TEST_F(Launching, TellsWhoDidNotComeUpAndGoesOn) {
+TEST_F(Launching, ReportsANodeThatDidNotComeUpAndGoesOn) {
   robot.nodes["lidar"].refuses = true;
   launch_all();
   EXPECT_THAT(robot.asked, ElementsAre("configure lidar", "configure planner", "activate planner"));

@@ -20,7 +20,7 @@ std::string with(const owners::ComponentContainers::Home& home) {
 }
 
 // "process 12 (/opt/ros/bin/camera of user 1000), started by process 9 (/usr/bin/python3 ...)"
-std::string who_runs(int pid) {
+std::string program_of(int pid) {
   constexpr int kInit = 1;  // it gets those whose parent has ended
   const auto in_words = [](int process) {
     const auto identity = owners::identity_of(process);
@@ -221,7 +221,7 @@ void LiveRobot::withdraw_doubles(const std::function<bool(ComponentId)>& may) {
     });
     if (!is_all_doubled) continue;
     report(rules_[*component].name + " runs twice: culprit started one, and there is " +
-           who_runs(*other) + ", too; culprit ends its own");
+           program_of(*other) + ", too; culprit ends its own");
     supervisor_->withdraw(*component);
   }
 }

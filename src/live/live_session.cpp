@@ -78,10 +78,10 @@ journal::Session session_of(const LiveSession::Frame& frame, const std::string& 
 
 // Also those that left the graph while culprit did not watch, for example because they were
 // stopped. Not where the rules name another node now.
-void adopt_again(LiveRobot& robot, const History& past, const Sightings& sightings) {
+void adopt_again(LiveRobot& robot, const History& past, const Discovered& discovered) {
   for (const Event& event : past) {
     const auto* found = std::get_if<ComponentFound>(&event.what);
-    if (found != nullptr && sightings.has(found->component))
+    if (found != nullptr && discovered.has(found->component))
       robot.adopt_again(found->component, found->pid, event.at);
   }
 }
@@ -405,7 +405,7 @@ void LiveSession::manage(RunBeginning beginning, std::vector<Observation> seen,
   const Autonomy autonomy = frame_.advises ? Autonomy::kAdvise : Autonomy::kAct;
   manager_ = replay::manager_for(session, rules_, frame_.options.planner(),
                                  {autonomy, frame_.options.governor});
-  adopt_again(*robot_, beginning.past, manager_->knowledge().sightings);
+  adopt_again(*robot_, beginning.past, manager_->knowledge().discovered);
   bequest_.reset();
   if (!frame_.advises && frame_.lease && !frame_.lease->key.empty()) {
     bequest_.emplace(rules_);

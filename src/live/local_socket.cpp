@@ -59,7 +59,7 @@ std::vector<fs::path> found_folders(const fs::path& place, const std::string& pr
 }
 
 // All folders where a culprit may have its socket.
-std::vector<fs::path> socket_folders(const WhoIsAsked& who) {
+std::vector<fs::path> socket_folders(const CulpritQuery& query) {
   std::vector<fs::path> folders{own_socket_folder(), kService};
   const auto add = [&](const std::vector<fs::path>& more) {
     folders.insert(folders.end(), more.begin(), more.end());
@@ -67,7 +67,7 @@ std::vector<fs::path> socket_folders(const WhoIsAsked& who) {
   std::vector<std::uint32_t> users{geteuid()};
   if (geteuid() == 0) {
     folders.emplace_back(kOfRoot);
-    users.insert(users.end(), who.users.begin(), who.users.end());
+    users.insert(users.end(), query.users.begin(), query.users.end());
     add(found_folders("/run/user", "", "culprit"));
     add(found_folders("/tmp", "culprit-", ""));
   }
@@ -87,11 +87,11 @@ std::optional<std::uint32_t> owner_of(const fs::path& folder) {
   return status.st_uid;
 }
 
-bool is_asked(const fs::path& folder, std::uint32_t owner, const WhoIsAsked& who) {
+bool is_asked(const fs::path& folder, std::uint32_t owner, const CulpritQuery& query) {
   if (owner == geteuid() || owner == 0) return true;
   if (geteuid() != 0) return false;
-  return folder == kService || who.is_everybody ||
-         std::find(who.users.begin(), who.users.end(), owner) != who.users.end();
+  return folder == kService || query.is_everybody ||
+         std::find(query.users.begin(), query.users.end(), owner) != query.users.end();
 }
 
 // The reason why culprit must not listen in this folder; empty: it is ours alone.
@@ -161,12 +161,12 @@ Expected<fs::path> own_socket(std::uint32_t domain) {
   return path;
 }
 
-std::vector<LocalSocket> local_sockets(const WhoIsAsked& who) {
+std::vector<LocalSocket> local_sockets(const CulpritQuery& query) {
   std::vector<LocalSocket> found;
-  for (const fs::path& folder : socket_folders(who)) {
+  for (const fs::path& folder : socket_folders(query)) {
     const auto owner = owner_of(folder);
     if (!owner) continue;
-    const bool asks = is_asked(folder, *owner, who);
+    const bool asks = is_asked(folder, *owner, query);
     constexpr int kMostOfOthers = 100;  // they are told of only
     int left = asks ? std::numeric_limits<int>::max() : kMostOfOthers;
     std::error_code error;

@@ -14,7 +14,7 @@
 //
 // Any user can listen in a folder of such a name, and be silent or lie there. So a folder counts only if it
 // belongs to the asking user or to root, if no other user may write to it, and if it is no link. Root may also ask other users' culprits; which, is root's
-// decision (`WhoIsAsked`), but for /run/culprit: only root can have given that to a user.
+// decision (`CulpritQuery`), but for /run/culprit: only root can have given that to a user.
 #pragma once
 
 #include <cstdint>
@@ -43,13 +43,13 @@ struct LocalSocket {
 };
 
 // Further users whose culprits root asks, beside its own and that in /run/culprit. It has no effect for other users.
-struct WhoIsAsked {
+struct CulpritQuery {
   std::vector<std::uint32_t> users{};
   bool is_everybody = false;
 };
 
 // Those that are asked, and those of others that this user can see; by domain and process.
-std::vector<LocalSocket> local_sockets(const WhoIsAsked& who = {});
+std::vector<LocalSocket> local_sockets(const CulpritQuery& query = {});
 
 // Removes those that processes of this user have left behind.
 void remove_left_sockets();

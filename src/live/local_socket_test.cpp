@@ -113,8 +113,8 @@ TEST_F(LocalSockets, OfOtherUsersAreAskedOnlyIfRootSaysSo) {
   const auto path = *own_socket(7);
   const auto listening = listener(path);
   ASSERT_EQ(chown(path.parent_path().c_str(), kNobody, kNobody), 0);
-  const auto state = [&](const WhoIsAsked& who) {
-    for (const LocalSocket& each : local_sockets(who)) {
+  const auto state = [&](const CulpritQuery& query) {
+    for (const LocalSocket& each : local_sockets(query)) {
       if (each.path == path) return std::optional(each.state);
     }
     return std::optional<LocalSocket::State>();

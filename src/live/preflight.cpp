@@ -77,7 +77,7 @@ class Look {
     return Look(source, participant->domain, std::move(*survey));
   }
 
-  Sighting sighting(const std::stop_token& stop) {
+  Snapshot snapshot(const std::stop_token& stop) {
     const LiveInventory robot = look_for({&*checked_.rules}, *survey_, kLook, stop);
     if (!robot.has_robot()) return {false, "culprit: " + nobody_on(domain_) + "\n"};
     return {true, report(source_, *checked_.rules, robot, domain_)};
@@ -117,7 +117,7 @@ void find_owners(const RuleSet& rules, LiveInventory& robot) {
         loader = other;
     }
     if (const auto owner = owners::found_owner(it.pid, loader))
-      it.owner = owner->who + ": " + owner->declare;
+      it.owner = owner->name + ": " + owner->declare;
   }
 }
 
@@ -229,11 +229,11 @@ LiveInventory look_for(const std::vector<const RuleSet*>& rules, ros2::Survey& s
   return robot;
 }
 
-Expected<Sighting> sight(const Source& source,
-                         const std::vector<std::filesystem::path>& message_path) {
+Expected<Snapshot> take_snapshot(const Source& source,
+                                 const std::vector<std::filesystem::path>& message_path) {
   auto look = Look::open(source, message_path);
   if (!look) return Error{look.error()};
-  return look->sighting({});
+  return look->snapshot({});
 }
 
 Preflight::Preflight(Source rules, std::vector<std::filesystem::path> message_path,
@@ -246,11 +246,11 @@ Preflight::Preflight(Source rules, std::vector<std::filesystem::path> message_pa
 void Preflight::look(const std::stop_token& stop) const {
   auto look = Look::open(source_, message_path_);
   if (!look) return say_("culprit: " + look.error() + "\n");
-  Sighting seen = look->sighting(stop);
+  Snapshot seen = look->snapshot(stop);
   if (!seen.has_robot && !stop.stop_requested()) {
     say_(seen.report + "culprit: waiting for the robot\n");
     if (!look->waits_for_robot(stop)) return;
-    seen = look->sighting(stop);
+    seen = look->snapshot(stop);
   }
   if (!stop.stop_requested()) say_(seen.report);
 }

@@ -24,15 +24,15 @@ std::string nobody_on(std::uint32_t domain);
 LiveInventory look_for(const std::vector<const RuleSet*>& rules, ros2::Survey& survey,
                        Duration wait, const std::stop_token& stop = {});
 
-struct Sighting {
+struct Snapshot {
   bool has_robot = false;
   std::string report;  // whole lines
 };
 
 // Looks at the robot of the environment, for 3 s at most. Errors: the domain cannot be joined, or
 // is secured.
-Expected<Sighting> sight(const Source& source,
-                         const std::vector<std::filesystem::path>& message_path);
+Expected<Snapshot> take_snapshot(const Source& source,
+                                 const std::vector<std::filesystem::path>& message_path);
 
 // Looks at the robot of the environment on a thread of its own, and says what it found: once all is
 // there, or 3 s are over. Without a robot it says so, and looks until there is one.

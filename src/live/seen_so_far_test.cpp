@@ -20,7 +20,7 @@ using namespace std::chrono_literals;
 
 constexpr Time kStart{1h};
 
-RuleSet rules_of_onlooker() {
+RuleSet watching_rules() {
   return *check(Source("t", R"(COMPONENT camera NODE /camera LAUNCH "camera"
 COMPONENT fusion NODE /fusion LAUNCH "fusion"
 SIGNAL entropy DIAGNOSTIC segmentation KEY entropy
@@ -39,7 +39,7 @@ RULE Silent
 }
 
 // A robot that is seen from kStart on, in virtual time.
-struct Onlooker : testing::Test {
+struct AfterRestart : testing::Test {
   template <class What>
   void sees(Time at, What what) {
     const std::vector<Observation> one{{at, std::move(what)}};
@@ -67,12 +67,12 @@ struct Onlooker : testing::Test {
            " ms] ";
   }
 
-  const RuleSet rules = rules_of_onlooker();
+  const RuleSet rules = watching_rules();
   SeenSoFar seen{rules, kStart};
   std::vector<Command> commands;
 };
 
-TEST_F(Onlooker, NothingIsMissedThatWasThereAllTheTime) {
+TEST_F(AfterRestart, NothingIsMissedThatWasThereAllTheTime) {
   sees_robot();
   for (Duration at = 600ms; at < 1min; at += 100ms) sees(kStart + at, SampleArrived{TopicId(0), 1});
   const auto said = said_at(kStart + 1min);
@@ -81,7 +81,7 @@ TEST_F(Onlooker, NothingIsMissedThatWasThereAllTheTime) {
   EXPECT_THAT(said, Not(Contains(HasSubstr("Silent"))));
 }
 
-TEST_F(Onlooker, WhatDiedMeanwhileIsKnownToBeDeadAndHealedAtOnce) {
+TEST_F(AfterRestart, WhatDiedMeanwhileIsKnownToBeDeadAndHealedAtOnce) {
   sees_robot();
   for (Duration at = 600ms; at < 59s; at += 100ms) sees(kStart + at, SampleArrived{TopicId(0), 1});
   sees(kStart + 59s,
@@ -92,14 +92,14 @@ TEST_F(Onlooker, WhatDiedMeanwhileIsKnownToBeDeadAndHealedAtOnce) {
   EXPECT_THAT(commands, Not(IsEmpty()));
 }
 
-TEST_F(Onlooker, ASilenceGoesOnWhereItWas) {
+TEST_F(AfterRestart, ASilenceGoesOnWhereItWas) {
   sees_robot();
   sees(kStart + 50s, SampleArrived{TopicId(0), 1});
   EXPECT_THAT(said_at(kStart + 51s), Not(Contains(HasSubstr("Silent"))));
   EXPECT_THAT(said_at(kStart + 53s), Contains(HasSubstr("Silent")));
 }
 
-TEST_F(Onlooker, NoSilenceIsOlderThanTheLastTimeThatNobodyListened) {
+TEST_F(AfterRestart, NoSilenceIsOlderThanTheLastTimeThatNobodyListened) {
   sees_robot();
   sees(kStart + 40s, SampleArrived{TopicId(0), 1});
   sees(kStart + 45s, HearingLost{"no datagrams"});
@@ -109,7 +109,7 @@ TEST_F(Onlooker, NoSilenceIsOlderThanTheLastTimeThatNobodyListened) {
   EXPECT_THAT(commands, IsEmpty());
 }
 
-TEST_F(Onlooker, WhoIsDeafNowGoesOnBeingDeaf) {
+TEST_F(AfterRestart, ADeafComponentStaysDeaf) {
   sees_robot();
   sees(kStart + 40s, NodeVanished{"/camera"});
   sees(kStart + 45s, HearingLost{"no datagrams"});
@@ -117,7 +117,7 @@ TEST_F(Onlooker, WhoIsDeafNowGoesOnBeingDeaf) {
   EXPECT_THAT(commands, IsEmpty());
 }
 
-TEST_F(Onlooker, WhatCameBackIsThere) {
+TEST_F(AfterRestart, WhatCameBackIsThere) {
   sees_robot();
   for (Duration at = 600ms; at < 57s; at += 100ms) sees(kStart + at, SampleArrived{TopicId(0), 1});
   sees(kStart + 57s, NodeVanished{"/camera"});
@@ -130,7 +130,7 @@ TEST_F(Onlooker, WhatCameBackIsThere) {
 }
 
 // Its lease may say for long that it is there.
-TEST_F(Onlooker, WhoDidNotAnswerOnAnotherComputerIsKnownToBeMissed) {
+TEST_F(AfterRestart, ANodeThatDidNotAnswerOnAnotherComputerIsKnownToBeMissing) {
   sees(kStart, NodeAppeared{"/camera", 0});
   sees(kStart + 500ms, Probed{ComponentId(0), true});
   for (int i = 1; i <= 3; ++i) sees(kStart + 50s + i * 400ms, Probed{ComponentId(0), false});
@@ -142,7 +142,7 @@ TEST_F(Onlooker, WhoDidNotAnswerOnAnotherComputerIsKnownToBeMissed) {
   EXPECT_THAT(said_at(kStart + 65s), Not(Contains(HasSubstr("CameraGone"))));
 }
 
-TEST_F(Onlooker, OfWhatIsReadAgainAndAgainTheLatestCounts) {
+TEST_F(AfterRestart, OfWhatIsReadAgainAndAgainTheLatestCounts) {
   sees_robot();
   for (int i = 0; i < 1000; ++i) {
     sees(kStart + i * 1ms, SampleArrived{TopicId(0), 3});
@@ -159,7 +159,7 @@ TEST_F(Onlooker, OfWhatIsReadAgainAndAgainTheLatestCounts) {
   EXPECT_EQ(samples, 1);
 }
 
-TEST_F(Onlooker, PassersByAreForgottenAndAFloodIsNotKept) {
+TEST_F(AfterRestart, PassersByAreForgottenAndAFloodIsNotKept) {
   for (int i = 0; i < 100; ++i) {
     const std::string node = "/_ros2cli_" + std::to_string(i);
     sees(kStart + i * 1s, NodeAppeared{node, 0});

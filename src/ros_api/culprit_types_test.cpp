@@ -69,7 +69,7 @@ TEST(CulpritTypes, HaveTheConstantsOfTheirFiles) {
   EXPECT_EQ(types.constant("culprit_msgs/msg/Decision", "KIND_EXHAUSTED"), 10);
 }
 
-TEST(CulpritTypes, AreDescribedToWhoAsksByTheirHash) {
+TEST(CulpritTypes, AreDescribedToAClientByTheirHash) {
   const CulpritTypes types;
   const MessageType& status = types.message("culprit_msgs/msg/Status");
   const auto told = types.described({status.name, status.hash, true});

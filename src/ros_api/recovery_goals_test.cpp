@@ -148,7 +148,7 @@ TEST(RecoveryGoals, AreCanceledById) {
   EXPECT_THAT(goals.cancel({}, {}), testing::ElementsAre(id_of(3))) << "all";
 }
 
-TEST(RecoveryGoals, AreBoundedWhoeverAsks) {
+TEST(RecoveryGoals, AreBoundedForAllClients) {
   RecoveryGoals goals;
   goals.look(with_ill_camera());
   const int many = 2 * static_cast<int>(RecoveryGoals::kMostOpen + RecoveryGoals::kMostEnded);

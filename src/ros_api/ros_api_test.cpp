@@ -93,7 +93,7 @@ struct OrderedCulprit {
   TestRosNode panel{domain.options()};
 };
 
-TEST(RosApi, WhoSubscribesLateGetsTheNewestStatus) {
+TEST(RosApi, ALateSubscriberGetsTheNewestStatus) {
   OrderedCulprit culprit;
   culprit.step({{culprit.now, NodeAppeared{"/lidar"}}});
   auto& statuses = culprit.panel.hear("/culprit/status", kStatus, Durability::kTransientLocal);
@@ -236,7 +236,7 @@ TEST(RosApi, TheManagersRefusalIsTheAnswer) {
   EXPECT_FALSE(culprit.manager->knowledge().states[RuleId(0)].attempt);
 }
 
-TEST(RosApi, WhoMistypesANameIsToldWhatWasMeantAndNothingHappens) {
+TEST(RosApi, AMistypedNameHasASuggestionAndNothingHappens) {
   OrderedCulprit culprit(Orders::kTaken);
   const auto message_of = [](const Json& answer) {
     EXPECT_EQ(answer["success"], false) << answer;
@@ -261,7 +261,7 @@ TEST(RosApi, WhoMistypesANameIsToldWhatWasMeantAndNothingHappens) {
   EXPECT_THAT(message_of(culprit.panel.call("/culprit/approve", kApprove, {{"author", "ann"}})),
               HasSubstr("name a 'rule' and one of its strategies"));
   EXPECT_THAT(message_of(culprit.panel.call("/culprit/pause", kPause, {})),
-              HasSubstr("say who you are"));
+              HasSubstr("name the author"));
   EXPECT_THAT(message_of(culprit.panel.call("/culprit/pause", kPause,
                                             {{"author", std::string(1000, 'a')}})),
               HasSubstr("short"));
@@ -367,7 +367,7 @@ void lose_camera(OrderedCulprit& culprit) {
                                           "killed by signal 9", Cause::kFault}}});
 }
 
-TEST(RosApi, WhoWaitsForARecoveryIsAnsweredWhenItComes) {
+TEST(RosApi, AWaitForARecoveryIsAnsweredWhenItComes) {
   OrderedCulprit culprit;
   culprit.step({{culprit.now, NodeAppeared{"/lidar"}}});
   lose_camera(culprit);
@@ -409,7 +409,7 @@ TEST(RosApi, WhoWaitsForARecoveryIsAnsweredWhenItComes) {
   })) << "and the topic shows it";
 }
 
-TEST(RosApi, WhoWaitsForARecoveryMayStopOrRunOutOfTime) {
+TEST(RosApi, AWaitForARecoveryMayBeCanceledOrTimeOut) {
   OrderedCulprit culprit;
   lose_camera(culprit);
   ASSERT_EQ(wait_for(culprit.panel, 1, "camera")["accepted"], true);

@@ -115,7 +115,7 @@ TEST(Teller, NeverSaysThatAllIsWellWhileARuleIsBlind) {
   EXPECT_EQ(told.statuses.back()["summary"], "no failure is seen, but Dark is blind");
 }
 
-TEST(Teller, TellsWhoIsThereAndThatAllIsWell) {
+TEST(Teller, ReportsTheNodesAndThatAllIsWell) {
   const ToldRobot told;
   ASSERT_THAT(told.statuses, testing::Not(IsEmpty()));
   const Json& status = told.statuses.back();
@@ -279,7 +279,7 @@ TEST(Teller, ANewManagerKnowsOfNoIncidentUntilItSeesOne) {
   EXPECT_THAT(told.statuses.back()["incidents"], IsEmpty());
 }
 
-TEST(Teller, ShowsWhoElseHasTheNameOfANode) {
+TEST(Teller, ShowsOtherNodesOfTheSameName) {
   ToldRobot told;
   told.remarks["/fusion"] = "kill 12 or 13";
   told.robot->tell(NamesakesSeen{"/fusion", 1});

@@ -8,19 +8,20 @@
 
 namespace culprit {
 
-std::unique_ptr<web::HttpServer> serve_this_machine(const WhoServes& who,
+std::unique_ptr<web::HttpServer> serve_this_machine(const CulpritIdentity& identity,
                                                     std::vector<web::Route> routes, web::Hub& hub,
                                                     std::FILE* out) {
   live::remove_left_sockets();
-  const auto socket = live::own_socket(who.domain);
+  const auto socket = live::own_socket(identity.domain);
   Expected<std::unique_ptr<web::HttpServer>> server(nullptr);
   if (socket) {
     web::HttpServer::Options options;
     options.socket = socket->string();
     options.openapi = web::openapi();
-    options.about = {{"version", who.version}, {"robot", who.robot}, {"rules", who.rules},
-                     {"domain", who.domain},   {"node", who.node},   {"process", getpid()},
-                     {"page", who.page}};
+    options.about = {{"version", identity.version}, {"robot", identity.robot},
+                     {"rules", identity.rules},     {"domain", identity.domain},
+                     {"node", identity.node},       {"process", getpid()},
+                     {"page", identity.page}};
     server = web::HttpServer::start(std::move(options), std::move(routes), &hub);
   }
   if (!socket || !server) {

@@ -9,7 +9,7 @@
 namespace culprit {
 
 // Who is asked. `page` is where its page is; empty: it has none.
-struct WhoServes {
+struct CulpritIdentity {
   std::string version;
   std::string robot;
   std::string rules;  // the file
@@ -20,7 +20,7 @@ struct WhoServes {
 
 // Serves until the server is destroyed, and says on `out` how to ask. Null, and said, if that is
 // impossible: a robot is managed all the same.
-std::unique_ptr<web::HttpServer> serve_this_machine(const WhoServes& who,
+std::unique_ptr<web::HttpServer> serve_this_machine(const CulpritIdentity& identity,
                                                     std::vector<web::Route> routes, web::Hub& hub,
                                                     std::FILE* out = stdout);
 

@@ -43,7 +43,7 @@ TEST(EventJson, HasTheWordsOfTheJournalAndWhatAPageShows) {
   EXPECT_EQ(excluded["text"], "it depends on camera, which may be the cause (CameraGone)");
 }
 
-TEST(EventJson, TellsWhatAChosenStrategyDoesAndToWhom) {
+TEST(EventJson, TellsWhatAChosenStrategyDoesAndToWhichComponents) {
   const RuleSet rules = *check(Source("test", kRules)).rules;
   const Json json = to_json(Event{Time(1s), StrategyChosen{StrategyId(0), {}, {}}}, rules, Time());
   EXPECT_EQ(json["strategy"], "restart_camera");

@@ -70,7 +70,7 @@ TEST(HubObserver, TellsAProcessThatIsStoppedFromOneThatIsGone) {
   EXPECT_EQ(state["components"][1]["process"], "gone");
 }
 
-TEST(HubObserver, ShowsWhoElseHasTheNameOfANodeWithItsComponent) {
+TEST(HubObserver, ShowsOtherNodesOfTheSameNameWithItsComponent) {
   const ToldOnce told({}, {{"/camera", "kill 12 or 13"}});
   const Json state = told.latest(Kind::kState);
   EXPECT_EQ(state["components"][0]["remark"], "kill 12 or 13");

@@ -133,7 +133,7 @@ Expected<Order> read_order(const Json& body, const RuleSet& rules, std::uint64_t
   if (!what) return Error{what.error()};
   const std::string author = text_of(body, "author").value_or("");
   const std::string reason = text_of(body, "reason").value_or("");
-  if (author.empty()) return Error{"say who you are: 'author'"};
+  if (author.empty()) return Error{"name the author: 'author'"};
   if (author.size() > kLongestText || reason.size() > kLongestText)
     return Error{"keep 'author' and 'reason' short"};
   Order order{number, escape_controls(author), escape_controls(reason), *what};

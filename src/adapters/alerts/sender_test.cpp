@@ -85,7 +85,7 @@ TEST(AlertSender, TellsWhatAnotherTryMayHelp) {
   }
 }
 
-TEST(AlertSender, DoesNotWaitForWhoIsNotThereOrDoesNotAnswer) {
+TEST(AlertSender, DoesNotWaitForAReceiverThatIsAbsentOrDoesNotAnswer) {
   EXPECT_EQ(send_to(webhook(Kind::kJson, "http://127.0.0.1:1/")).how, How::kNotNow);
   EXPECT_EQ(send_to(webhook(Kind::kJson, "http://no.such.host.invalid/")).how, How::kNotNow);
   char request[4096];

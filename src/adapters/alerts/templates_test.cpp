@@ -34,7 +34,7 @@ Alert over(Alert alert) {
   return alert;
 }
 
-TEST(AlertText, SaysWhoIsBlamedWhatSuffersAndWhatIsDone) {
+TEST(AlertText, SaysTheBlameTheEffectsAndTheRepair) {
   EXPECT_EQ(text_of(dead_camera()),
             "rover: camera is dead (ERROR), so that FusionSilent, PoseSilent fail; being repaired: "
             "redeploy camera");

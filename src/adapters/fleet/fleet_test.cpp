@@ -381,7 +381,7 @@ TEST_F(Fleet, NewsWaitsForMoreUnlessAPersonHasToLook) {
   EXPECT_EQ(sums(), (Counts{0, 1}));
 }
 
-TEST_F(Fleet, WhoeverDoesNotAnswerIsNotWaitedFor) {
+TEST_F(Fleet, ADatabaseThatDoesNotAnswerIsNotWaitedFor) {
   TestJournal journal(folder / "a.journal");
   journal.begins();
   journal.outcome("restart", true);
@@ -479,7 +479,7 @@ TEST_F(Fleet, ARobotReadsAndChangesNoRowsButItsOwn) {
 }
 
 // However many robots share a login, the owner of a row is found without going through all of them.
-TEST_F(Fleet, WhoseARowIsIsLookedUpByItsRobot) {
+TEST_F(Fleet, TheRobotOfARowIsLookedUp) {
   postgres->run(R"sql(
 SET session_replication_role = replica;
 INSERT INTO culprit.robot(robot, login, name, model, culprit, rule_set, context)

@@ -157,7 +157,7 @@ TEST_F(WebServer, ServesTheAppUnderAStrictPolicy) {
   EXPECT_FALSE(page->has_header("Access-Control-Allow-Origin"));
 }
 
-TEST_F(WebServer, ServesTheAppAlsoToWhoeverCannotUnpackIt) {
+TEST_F(WebServer, ServesTheAppAlsoToClientsThatCannotUnpackIt) {
   const auto page = client().Get("/", {{"Accept-Encoding", "identity"}});
   ASSERT_TRUE(page);
   EXPECT_EQ(page->status, 200);
@@ -261,7 +261,7 @@ struct TlsServer : testing::Test {
   std::unique_ptr<HttpServer> server;
 };
 
-TEST_F(TlsServer, AnswersWhoSpeaksTls) {
+TEST_F(TlsServer, AnswersClientsThatSpeakTls) {
   EXPECT_THAT(server->address(), HasSubstr("https://127.0.0.1:"));
   httplib::SSLClient client("127.0.0.1", server->port());
   client.set_ca_cert_path(certificate.c_str());
@@ -291,7 +291,7 @@ TEST_F(TlsServer, StreamsOverTls) {
   EXPECT_THAT(all, HasSubstr(R"({"t": 1})"));
 }
 
-TEST_F(TlsServer, TellsNothingToWhoDoesNot) {
+TEST_F(TlsServer, TellsNothingToClientsThatDoNot) {
   const Raw plain(server->port());
   plain.send("GET /api/echo HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer " +
              std::string(kToken) + "\r\n\r\n");
@@ -358,7 +358,7 @@ TEST_F(WebServer, RefusesWhatIsNoJson) {
 
 TEST_F(WebServer, SurvivesDeepJson) { EXPECT_EQ(post(with_token, std::string(100000, '[')), 400); }
 
-TEST_F(WebServer, SlowsDownWhoAsksTooOften) {
+TEST_F(WebServer, SlowsDownAClientThatAsksTooOften) {
   int refused = 0;
   // A slow machine asks hardly more often than is allowed in the long run.
   for (int i = 0; i < 100 * static_cast<int>(HttpServer::kBurst) && refused == 0; ++i)
@@ -673,7 +673,7 @@ TEST_F(LocalServer, IsFollowedUntilItEnds) {
 }
 
 // A stopped process accepts connections all the same: its kernel does.
-TEST(LocalClients, DoNotWaitForEverForWhoDoesNotAnswer) {
+TEST(LocalClients, DoNotWaitForEverForAServerThatDoesNotAnswer) {
   const test::TestFolder folder;
   const std::string path = folder / "s";
   sockaddr_un address{};

@@ -121,7 +121,7 @@ TEST(LocalExchange, DoesNotWaitForAFullQueue) {
   close(full);
 }
 
-TEST(LocalExchange, IsBelievedOnlyOfTheUserWhoIsMeant) {
+TEST(LocalExchange, IsBelievedOnlyOfTheUserThatIsMeant) {
   if (geteuid() != 0) GTEST_SKIP() << "only root can become somebody else";
   constexpr uid_t kNobody = 65534;
   const test::TestFolder folder;

@@ -33,7 +33,7 @@ Inheritance of_a_day() {
        then(12s, StrategyFailed{StrategyId(0), "it did not help"}), then(13s, RuleExhausted{r})}};
 }
 
-TEST(Inheritance, IsReadAsItWasToldOnTheClockOfWhoReads) {
+TEST(Inheritance, IsReadAsWrittenOnTheClockOfTheReader) {
   const std::string text = to_text(of_a_day(), heirs_rules(), kMuch);
   const auto told = inheritance_from_text(text, heirs_rules(), 100s, Time(1h));
   ASSERT_TRUE(told) << told.error();

@@ -212,7 +212,7 @@ TEST_F(Intents, InAFileThatWasRemovedOrReplacedAreAnError) {
   }
 }
 
-TEST_F(Intents, MayBeReadByWhoMayReadTheJournal) {
+TEST_F(Intents, MayBeReadByReadersOfTheJournal) {
   for (const mode_t mode : {0600, 0640, 0644}) {
     ASSERT_EQ(chmod(journal.c_str(), mode), 0);
     (void)open();

@@ -55,19 +55,19 @@ Learned KnowledgeChanges::learned() {
 }
 
 std::optional<KnownRobot> KnowledgeChanges::robot(Time now) {
-  const std::uint64_t sightings = knowledge_.sightings.count();
+  const std::uint64_t discovered = knowledge_.discovered.count();
   const std::uint64_t changes =
-      knowledge_.graph.changes() + sightings + knowledge_.sightings.heard_count();
+      knowledge_.graph.changes() + discovered + knowledge_.discovered.received_count();
   const bool is_old = robot_written_ != kLongAgo && later(robot_written_, kRobotAtLatest) <= now;
   const bool was_looked_at =
       robot_looked_at_ != kLongAgo && now < later(robot_looked_at_, kRobotPeriod);
-  // A first sighting is written at once: if the node died together with culprit, the journal would
-  // otherwise lack it. First sightings are rare; topics' publishers come and go all the time.
-  const bool is_first_sight = sightings != robot_sightings_;
+  // A first discovery is written at once: if the node died together with culprit, the journal would
+  // otherwise lack it. They are rare; topics' publishers come and go all the time.
+  const bool is_first_sight = discovered != robot_discovered_;
   if ((changes == robot_changes_ && !is_old) || (was_looked_at && !is_first_sight))
     return std::nullopt;
   robot_changes_ = changes;
-  robot_sightings_ = sightings;
+  robot_discovered_ = discovered;
   robot_looked_at_ = now;
   KnownRobot known = knowledge_.known_robot();
   if (known == robot_ && !is_old) return std::nullopt;

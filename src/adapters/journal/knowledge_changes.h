@@ -36,7 +36,7 @@ class KnowledgeChanges {
 
   KnownRobot robot_;
   std::uint64_t robot_changes_ = 0;
-  std::uint64_t robot_sightings_ = 0;
+  std::uint64_t robot_discovered_ = 0;
   Time robot_looked_at_ = kLongAgo;
   Time robot_written_ = kLongAgo;
 };

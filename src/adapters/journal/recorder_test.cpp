@@ -287,7 +287,7 @@ TEST_F(RecordingHere, WhatTheLastRunCouldNotWriteComesBeforeTheFirstRow) {
 }
 
 // Each time in a process of its own, which is killed so long after the request may go out.
-TEST_F(RecordingHere, WhoeverIsKilledLeavesTheIntentOnce) {
+TEST_F(RecordingHere, AKilledProcessLeavesTheIntentOnce) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   constexpr const char* kPlace = "CULPRIT_RECORDER_TEST_FOLDER";
   if (std::getenv(kPlace) == nullptr) setenv(kPlace, folder.path().c_str(), 1);

@@ -155,7 +155,7 @@ struct Robot {
 };
 
 // It announces the port of no process, so its process is unknown.
-TEST(Link, WhoIsSaidToHaveLeftByNobodyKnowsWhomIsGivenTheTimeToComeBack) {
+TEST(Link, ANodeThatAnUnknownSourceDeclaredGoneHasTimeToComeBack) {
   const TestDomain domain;
   Linked linked(domain);
   Forger robot(domain.options(), free_port());
@@ -496,7 +496,7 @@ TEST(Link, MissesNoProofOfWhatAnEngineOrSystemdEnds) {
 }
 
 // A node that answers a client that was made after the reader has also discovered the reader.
-TEST(Link, KnowsThatWhoIsSilentKnowsItsListener) {
+TEST(Link, KnowsThatASilentNodeKnowsItsListener) {
   const TestDomain domain;
   Robot robot(domain);
   auto silent = robot.publisher<msg::Float64>("/silent");
@@ -523,7 +523,7 @@ TEST(Link, KnowsThatWhoIsSilentKnowsItsListener) {
   EXPECT_TRUE(linked.wait<SampleArrived>(is_about("/silent"))) << "the first one arrives";
 }
 
-TEST(Link, TakesTheListenerForKnownToNobodyWhoDoesNotAnswer) {
+TEST(Link, TakesTheListenerForUnknownToANodeThatDoesNotAnswer) {
   const TestDomain domain;
   Robot robot(domain);
   const auto hung_topic = robot.publisher<msg::Float64>("/of_hung");

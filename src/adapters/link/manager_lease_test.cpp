@@ -104,7 +104,7 @@ TEST(ManagerLease, IsNotLostToAStranger) {
   EXPECT_EQ(lease.strangers([](const GuidPrefix& p) { return p.bytes[0] != 2; }).size(), 1u);
 }
 
-TEST(ManagerLease, IsNotTakenFromTheElderByWhoBorrowsItsName) {
+TEST(ManagerLease, IsNotTakenFromTheElderByABorrowerOfItsName) {
   ManagerLease lease = lease_of(100);
   lease.apply(claim(1, {"drone", 99, 1}), kNow);
   lease.apply(claim(1, {"drone", 300, 9, {}, "another key"}), kNow);
@@ -202,7 +202,7 @@ TEST_F(TwoMachines, TakeOverWithinTwoSecondsWhenTheManagerDies) {
   EXPECT_FALSE(is_led_by_first());
 }
 
-TEST_F(TwoMachines, DoNotTakeOverFromWhoNeverSaidABeatUntilItHadTheTimeTo) {
+TEST_F(TwoMachines, DoNotTakeOverFromAManagerWithoutABeatUntilItHadTheTimeForOne) {
   pass(1s, false);
   EXPECT_TRUE(is_led_by_first());
   pass(1s, false);
@@ -243,7 +243,7 @@ TEST_F(TwoMachines, DoNotTakeOverWhileTheyCannotHearOrWereAsleep) {
   EXPECT_TRUE(is_led_by_first()) << "just woken";
 }
 
-TEST_F(TwoMachines, StandStillWhenTheyWereAwayUntilTheyKnowWhoManages) {
+TEST_F(TwoMachines, StandStillWhenTheyWereAwayUntilTheyKnowTheManager) {
   pass(5s);
   EXPECT_TRUE(is_sure());
   pass(500ms, false);

@@ -72,7 +72,7 @@ TEST(NeighbourHosts, AreNotSilentWhereOneParticipantOrNoneIsMissed) {
   EXPECT_FALSE(domain.is_silent(""));
 }
 
-TEST(NeighbourHosts, WhoseParticipantsSaidGoodByeAreNotSilent) {
+TEST(NeighbourHosts, AreNotSilentIfTheirParticipantsSaidGoodBye) {
   Domain domain;
   domain.hosts.left(participant(1), false, domain.now);
   domain.hosts.left(participant(2), false, domain.now);

@@ -37,7 +37,7 @@ class Child {
   const pid_t pid_;
 };
 
-TEST(ProcessorTime, TellsWhoIsAtWorkOrWouldBe) {
+TEST(ProcessorTime, TellsWhichProcessesWorkOrWouldWork) {
   if (!processor_time_wanted(getpid())) GTEST_SKIP() << "the kernel does not show it";
   EXPECT_TRUE(Child(true).works_within(200ms)) << "however little of the processor it gets";
   EXPECT_FALSE(Child(false).works_within(200ms));

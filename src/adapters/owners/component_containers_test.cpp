@@ -36,7 +36,7 @@ class ComponentContainersTest : public testing::Test {
   ComponentContainers containers_{rules_};
 };
 
-TEST_F(ComponentContainersTest, KnowWhoLivesWithWhom) {
+TEST_F(ComponentContainersTest, KnowTheNodesOfEachContainer) {
   appear("/detector", 7);
   EXPECT_FALSE(home_of(0)) << "alone";
   appear("/tracker", 7);

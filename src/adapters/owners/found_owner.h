@@ -8,7 +8,7 @@
 namespace culprit::owners {
 
 struct FoundOwner {
-  std::string who;      // "systemd as lidar.service"
+  std::string name;     // "systemd as lidar.service"
   std::string declare;  // "UNIT lidar.service"; empty: nothing fits
 };
 

@@ -15,7 +15,7 @@ namespace {
 using testing::HasSubstr;
 
 // Or the program that runs this test with all its children: a container engine, or systemd.
-TEST(FoundOwner, IsWhoeverStartedIt) {
+TEST(FoundOwner, IsTheProgramThatStartedIt) {
   const test::TestFolder folder;
   const auto started =
       spawn({.arguments = {"sleep", "60"}, .search_first = {}, .log = folder.path() / "log"});
@@ -25,16 +25,16 @@ TEST(FoundOwner, IsWhoeverStartedIt) {
   waitpid(*started, nullptr, 0);
   ASSERT_TRUE(owner);
   if (owner->declare.find("RESPAWNED") != std::string::npos) {
-    EXPECT_THAT(owner->who, HasSubstr("process " + std::to_string(getpid())));
+    EXPECT_THAT(owner->name, HasSubstr("process " + std::to_string(getpid())));
   } else {
     const auto all_of_us = found_owner(getpid(), "");
     ASSERT_TRUE(all_of_us);
     EXPECT_EQ(owner->declare, all_of_us->declare);
-    EXPECT_EQ(owner->who, all_of_us->who);
+    EXPECT_EQ(owner->name, all_of_us->name);
   }
 }
 
-TEST(FoundOwner, IsTheNodeThatLoadsItBeforeWhoRunsThat) {
+TEST(FoundOwner, IsTheNodeThatLoadsItBeforeTheOneThatRunsIt) {
   const auto owner = found_owner(getpid(), "/box");
   ASSERT_TRUE(owner);
   EXPECT_EQ(owner->declare, "IN /box PLUGIN package::Class");

@@ -259,7 +259,7 @@ TEST_F(RemoteContainers, AreReplacedByOneRequest) {
   EXPECT_THAT(ssh.asked(), Each(HasSubstr("-- robot@rover2 docker system dial-stdio")));
 }
 
-TEST_F(RemoteContainers, ThatArePausedAreLeftToWhoeverDidThatAndNotOutOfReach) {
+TEST_F(RemoteContainers, ThatArePausedStayPausedAndAreNotOutOfReach) {
   engine.add("slam", {.status = "paused"});
   EXPECT_THAT(stop(0).text, HasSubstr("docker unpause slam"));
   std::vector<Observation> seen;

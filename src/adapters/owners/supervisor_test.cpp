@@ -300,7 +300,7 @@ TEST(Supervisor, TakesOverFromALauncherThatEndedBeforeItCame) {
 }
 
 // Its launcher is unknown, and so is whether that launcher will start it again.
-TEST(Supervisor, WaitsForWhomeverInitStartedItFor) {
+TEST(Supervisor, WaitsForTheProgramThatInitStartedItFor) {
   int pid = 0;
   int pipe_of[2];
   ASSERT_EQ(pipe2(pipe_of, O_CLOEXEC), 0);
@@ -516,7 +516,7 @@ TEST(Supervisor, TellsWhetherAnEndWasWanted) {
   EXPECT_EQ(by_culprit.cause, Cause::kWish);
 }
 
-TEST(Supervisor, TellsWhoStartedAProcessAndThatThisOneEnded) {
+TEST(Supervisor, ReportsTheStarterOfAProcessAndItsEnd) {
   Supervised c("sleep 1000");
   const auto launcher = spawn({{"sh", "-c", "sleep 1000 & wait"}, {}, "/dev/null"});
   ASSERT_TRUE(launcher);
@@ -656,7 +656,7 @@ TEST(Supervisor, KillsSoonWhatIsKnownToHangOnlyWhileItIsEnded) {
   EXPECT_FALSE(exists(pid));
 }
 
-TEST(Supervisor, AnswersAllWhoWaitForOneEnd) {
+TEST(Supervisor, AnswersAllThatWaitForOneEnd) {
   Supervised c("sleep 1000");
   c.start();
   c.supervisor->stop({2}, ComponentId(0), 0, Ending::kForGood);
@@ -676,7 +676,7 @@ TEST(Supervisor, TellsThatWhatItStartedWorksUntilItsNodeIsThere) {
   c.stop();
 }
 
-TEST(Proc, WhoOnlyWaitsDoesNotWork) {
+TEST(Proc, AWaitingProcessDoesNotWork) {
   using namespace std::chrono_literals;
   const Work before{1s, 10 << 20};
   EXPECT_FALSE((Work{1s + 49ms, 10 << 20}.is_more_than(before)));

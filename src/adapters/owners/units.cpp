@@ -332,7 +332,7 @@ bool Units::watch_start(Errand& errand, const UnitState& state) {
 // ---- ending
 
 // Errors of systemd are for the request itself to find.
-std::optional<std::string> Units::who_else_would_end(ComponentId component) {
+std::optional<std::string> Units::would_end_too(ComponentId component) {
   for (const auto& [other, found] : last_found_) {
     if (other == component || !is_running(found.pid, found.began)) continue;
     const auto is_its = owner_of(component).runs(name_of(component), found.pid);
@@ -390,7 +390,7 @@ bool Units::begin_end(Errand& errand, const UnitState& state) {
   }
   if (auto hold = hold_of(errand, state))
     return answer(errand, Outcome::kRefused, std::move(*hold));
-  if (const auto other = who_else_would_end(errand.component))
+  if (const auto other = would_end_too(errand.component))
     return answer(errand, Outcome::kRefused,
                   name + " runs " + *other + ", too, and would end it; give " +
                       rules_[errand.component].name + " a unit of its own");

@@ -144,7 +144,7 @@ class Units {
   bool begin_end(Errand& errand, const UnitState& state);
   bool watch_start(Errand& errand, const UnitState& state);
   bool watch_end(Errand& errand, const UnitState& state);
-  std::optional<std::string> who_else_would_end(ComponentId component);
+  std::optional<std::string> would_end_too(ComponentId component);
   bool answer(const Errand& errand, Outcome outcome, std::string text, int pid = 0);
 
   const std::string& name_of(ComponentId component) const;

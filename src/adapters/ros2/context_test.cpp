@@ -67,7 +67,7 @@ TEST(Context, TwoNodesSeeEachOther) {
 }
 
 // As nodes of Iron and newer do with ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST: they announce an address of the network.
-TEST(Context, WhoHasTheLoopbackAddressOnlySeesWhoOfThisMachineHasAll) {
+TEST(Context, ANodeOnLoopbackAloneDiscoversTheNodesOfThisMachineThatUseAllAddresses) {
   const TestDomain domain;
   ParticipantOptions all_addresses = domain.options();
   all_addresses.reach = Reach::kSubnet;

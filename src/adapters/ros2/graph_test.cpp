@@ -243,7 +243,7 @@ TEST(Graph, NobodySpeaksForAnother) {
   EXPECT_THAT(watched.told(), ElementsAre("+/a"));
 }
 
-TEST(Graph, WhoIsNotThereSaysNothing) {
+TEST(Graph, AnAbsentNodeSaysNothing) {
   Watched watched;
   watched.says(1, {node("/", "a")})
       .has(publishes(writer(1, 1), "/t"))
@@ -469,7 +469,7 @@ TEST(Graph, AClaimOfAStrangerIsNeitherTheNodeNorItsNamesake) {
   EXPECT_THAT(watched.told(), ElementsAre("-/camera"));
 }
 
-TEST(Graph, WhoIsProvenLaterThanHeClaimsANameHoldsItThen) {
+TEST(Graph, AProcessProvenLaterThanItClaimsANameHoldsItThen) {
   std::map<int, FoundProcess> found = {{10, {10, ""}}, {20, {0, "its datagrams are to come"}}};
   Graph::Options options;
   options.find_process = [&](const ParticipantInfo& info) { return found[info.pid]; };
@@ -625,7 +625,7 @@ TEST(Graph, ShowsAllParticipantsWithAllThatTheyHave) {
   EXPECT_EQ(participants[1].endpoints[0].node, "") << "nobody claims it";
 }
 
-TEST(Graph, TellsWhetherWhoLeftSaidGoodBye) {
+TEST(Graph, TellsWhetherANodeThatLeftSaidGoodBye) {
   std::vector<bool> lost;
   Graph graph({.listener =
                    [&](const GraphChange& change) {

@@ -25,7 +25,7 @@ Expected<std::unique_ptr<Node>> Node::create(Context& context, NodeName name, Ex
     return Error{"'" + printable(name.full()) + "' cannot be the name of a node"};
   }
   std::unique_ptr<Node> node(new Node(context, std::move(name)));
-  if (extent == Extent::kOnlooker) return node;
+  if (extent == Extent::kMinimal) return node;
   if (auto opened = node->open(); !opened) return Error{opened.error()};
   return node;
 }

@@ -75,10 +75,10 @@ class Client {
 
 class Node {
  public:
-  // An onlooker has a name, and the endpoints that it creates: no others that every other process
+  // A minimal node has a name, and the endpoints that it creates: no others that every other process
   // would have to discover. nothing of its own that every other process would have to discover. It
   // does not publish to /rosout, and serves no parameters.
-  enum class Extent : std::uint8_t { kWhole, kOnlooker };
+  enum class Extent : std::uint8_t { kWhole, kMinimal };
   // The context outlives the node, the node everything that it created.
   static Expected<std::unique_ptr<Node>> create(Context& context, NodeName name,
                                                 Extent extent = Extent::kWhole);

@@ -60,19 +60,19 @@ TEST(Node, AppearsWithEverythingThatToolsExpect) {
   }
 }
 
-TEST(Node, AnOnlookerHasNothingThatOthersWouldHaveToDiscover) {
+TEST(Node, AMinimalNodeHasNothingThatOthersWouldHaveToDiscover) {
   const TestDomain domain;
   LiveContext watcher(domain.options());
   LiveContext looking(domain.options());
   std::unique_ptr<Node> node;
   looking.run([&] {
-    node = std::move(*Node::create(*looking, {"/", "_onlooker"}, Node::Extent::kOnlooker));
+    node = std::move(*Node::create(*looking, {"/", "_minimal"}, Node::Extent::kMinimal));
     node->log(Severity::kInfo, "nobody hears it");
   });
-  EXPECT_TRUE(watcher.sees_node("/_onlooker"));
+  EXPECT_TRUE(watcher.sees_node("/_minimal"));
   watcher.run([&] {
     for (const auto& each : watcher->graph().participants()) {
-      for (const auto& owned : each.endpoints) EXPECT_NE(owned.node, "/_onlooker");
+      for (const auto& owned : each.endpoints) EXPECT_NE(owned.node, "/_minimal");
     }
   });
   looking.run([&] { node.reset(); });

@@ -97,7 +97,7 @@ TEST(Participant, BytesArriveAsTheyWereWritten) {
   EXPECT_LT(now - sample.sent, kPatience);
 }
 
-TEST(Participant, WhoLeavesSaysOneGoodbyeForAllThatItHad) {
+TEST(Participant, ALeavingParticipantSaysOneGoodbyeForAllThatItHad) {
   const TestDomain domain;
   EventLog<Guid> gone;
   const auto stays = join(domain, [&gone](DiscoveryEvent event) {
@@ -186,12 +186,12 @@ void hears_all_in_its_order(PayloadUse use, std::size_t given_of_large) {
   EXPECT_EQ(all.size(), 50u);
 }
 
-TEST(Participant, WhoHasTimeHearsAllThatIsWrittenInItsOrder) {
+TEST(Participant, AReaderWithTimeReceivesAllThatIsWrittenInItsOrder) {
   hears_all_in_its_order(PayloadUse::kBeginningLater, kBeginningSize);
   hears_all_in_its_order(PayloadUse::kWholeLater, 5000);
 }
 
-TEST(Participant, WhoHasTimeHearsWhatComesInFragments) {
+TEST(Participant, AReaderWithTimeReceivesFragments) {
   Pair pair({.reliability = Reliability::kBestEffort}, PayloadUse::kWholeLater);
   Bytes large(100'000, 7);
   large[0] = 0;
@@ -505,7 +505,7 @@ TEST(Participant, WhatItIsNeverToMeetCannotBeCreated) {
 }
 
 // It announces itself every second.
-TEST(Participant, WhoStaysAsItIsIsToldOfOnce) {
+TEST(Participant, AParticipantThatStaysAsItIsIsReportedOnce) {
   const TestDomain domain;
   EventLog<Guid> told;
   const auto watcher = join(domain, [&](const DiscoveryEvent& event) {

@@ -108,7 +108,7 @@ TEST(PeerCyclone, IsANodeOfTheGraph) {
 }
 
 // Announcements of another implementation, read by us and by Fast DDS.
-TEST(PeerCyclone, IsDiscoveredAsAllOthersByWhoNeverMeetsIt) {
+TEST(PeerCyclone, IsDiscoveredAsAllOthersByAParticipantThatNeverMeetsIt) {
   const TestDomain domain;
   ParticipantOptions never = domain.options();
   never.never_meets = [](std::string_view topic, EndpointRole) {

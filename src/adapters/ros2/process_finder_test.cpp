@@ -43,7 +43,7 @@ struct Sockets {
   }
 };
 
-TEST(ProcessFinder, FindsWhoHoldsBothSockets) {
+TEST(ProcessFinder, FindsTheProcessThatHoldsBothSockets) {
   const Sockets sockets;
   const FoundProcess found = ProcessFinder().find(sockets.participant());
   EXPECT_EQ(found.pid, getpid()) << found.missing;
@@ -77,7 +77,7 @@ TEST(ProcessFinder, KnowsNothingOfOtherMachines) {
 }
 
 // Its bridge for containers has the address that ours has.
-TEST(ProcessFinder, WhoIsElsewhereMayHaveAnAddressOfOurs) {
+TEST(ProcessFinder, AProcessElsewhereMayHaveAnAddressOfOurs) {
   const Sockets sockets;
   ParticipantInfo info = sockets.participant(getpid());
   info.metatraffic.push_back({kElsewhere, 7410});
@@ -144,7 +144,7 @@ TEST(ProcessFinder, KnowsNothingOfAClosedPort) {
 }
 
 // Participants whose process is not proven: another user's, or one that sent no datagram.
-TEST(ProcessFinder, WhoseSocketsAreNobodysAnyMoreHasEnded) {
+TEST(ProcessFinder, AProcessWithoutItsSocketsHasEnded) {
   auto gone = std::make_unique<Sockets>();
   const Sockets lives;
   ParticipantInfo unproven = gone->participant();
@@ -157,7 +157,7 @@ TEST(ProcessFinder, WhoseSocketsAreNobodysAnyMoreHasEnded) {
   EXPECT_TRUE(ProcessFinder().find(replaced).has_ended) << "another has its port";
 }
 
-TEST(ProcessFinder, WhoMayBeElsewhereIsNotKnownToHaveEnded) {
+TEST(ProcessFinder, AProcessThatMayBeElsewhereIsNotKnownToHaveEnded) {
   UdpAddress closed;
   closed = TestSocket().address();
   const TestSocket sends;
@@ -211,7 +211,7 @@ TEST(ProcessFinder, ASocketThatAnotherUserMadeProvesNothing) {
             0);
 }
 
-TEST(ProcessFinder, KnowsWhoSpeaksThoughOthersSpeakInThatNameToo) {
+TEST(ProcessFinder, KnowsTheSpeakerThoughOthersSpeakInThatNameToo) {
   std::optional<TestSocket> its(std::in_place);
   const UdpAddress address = its->address();
   const TestFork process(its->descriptor());

@@ -613,7 +613,7 @@ TEST_F(DiscoveringFilter, WhatIsForAnotherParticipantIsLeftAlone) {
   EXPECT_EQ(told, Told{"+never"});
 }
 
-TEST_F(DiscoveringFilter, WhoComesAgainIsToldOfAgain) {
+TEST_F(DiscoveringFilter, ASourceThatReturnsIsReportedAgain) {
   pass(announced(3, 1, "never"));
   filter.forget(kWriters.prefix());
   EXPECT_TRUE(passes(announced(3, 1, "never"))) << "it is not there";

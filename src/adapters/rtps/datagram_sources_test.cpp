@@ -64,7 +64,7 @@ TEST(DatagramSources, AreKnownByTheHeader) {
   EXPECT_FALSE(sources.of(prefix(2)).is_complete) << "no datagram came from it";
 }
 
-TEST(DatagramSources, WhoSpeaksInAnothersNameIsWrittenDownThere) {
+TEST(DatagramSources, ASpeakerInAnothersNameIsWrittenDown) {
   DatagramSources sources;
   Datagram datagram = from(prefix(1));
   add(datagram, 0x09, 8, Datagram(8));
@@ -105,7 +105,7 @@ TEST(DatagramSources, EveryCutOfADatagramIsRead) {
   }
 }
 
-TEST(DatagramSources, StrangersDoNotWashOutWhoIsThere) {
+TEST(DatagramSources, StrangersDoNotDisplaceKnownSources) {
   DatagramSources sources;
   sources.heard(from(prefix(1)), kThere, kNow);
   sources.keep(prefix(1));
@@ -120,7 +120,7 @@ TEST(DatagramSources, StrangersDoNotWashOutWhoIsThere) {
   EXPECT_THAT(sources.of(prefix(1)).addresses, IsEmpty());
 }
 
-TEST(DatagramSources, WhoIsStillThereSaysNothingElse) {
+TEST(DatagramSources, AKnownSourceReportsNothingElse) {
   using Entity = std::array<std::uint8_t, 4>;
   constexpr Entity kOfParticipants = {0, 1, 0, 0xc2};
   constexpr Entity kOfEndpoints = {0, 0, 3, 0xc2};

@@ -148,7 +148,7 @@ TEST_F(OriginsOfAMachine, BeforeAProofEverythingCounts) {
   EXPECT_EQ(origins.dropped(), 0u);
 }
 
-TEST_F(OriginsOfAMachine, WhoSpeaksInAnothersNameWithinADatagramIsNoExcuse) {
+TEST_F(OriginsOfAMachine, AnotherNameWithinADatagramIsNoExcuse) {
   prove();
   Bytes source = {0, 0, 0, 0, 2, 3, 1, 15};
   const GuidPrefix name = camera();
@@ -211,7 +211,7 @@ TEST_F(OriginsOfAMachine, APortThatItSharesSaysNothing) {
   EXPECT_TRUE(counts({kOwn, 40'000}));
 }
 
-TEST_F(OriginsOfAMachine, WhoNeverSpokeFromAPortOfItsOwnMaySpeakFromASharedOne) {
+TEST_F(OriginsOfAMachine, ASourceWithoutAPortOfItsOwnMaySendFromASharedOne) {
   machine.open(kPid, kAny, 7400);
   machine.open(kStranger, kAny, 7400);
   const std::array spoke_from = {UdpAddress{kOwn, 7400}};
@@ -268,7 +268,7 @@ TEST_F(OriginsOfAMachine, NobodySpeaksForAProcessThatIsJustEnding) {
   EXPECT_FALSE(counts({kOwn, 50'000}, later(kStart, 2s)));
 }
 
-TEST_F(OriginsOfAMachine, WhoWasSpokenForByOthersIsDiscoveredAgainOnce) {
+TEST_F(OriginsOfAMachine, ANodeThatOthersSpokeForIsDiscoveredAgainOnce) {
   const std::array spoke_from = {UdpAddress{kOwn, 40'000}, UdpAddress{kElsewhere, 5}};
   EXPECT_FALSE(origins.prove(camera(), kPid, spoke_from));
   EXPECT_EQ(origins.take_doubtful(), camera());

@@ -204,7 +204,7 @@ TEST(ReceiveThread, ItIsKnownWhenWhatHasTimeCame) {
 }
 
 // Two threads are sent the same that has time, of which one hurries.
-TEST(ReceiveThread, WhoHurriesHearsAtOnceWhatHasTime) {
+TEST(ReceiveThread, AHurriedReaderReceivesAtOnceWhatHasTime) {
   constexpr int kRounds = 40;
   EventLog<std::string> heard;  // outlives the threads
   const Voice speaker;

@@ -283,7 +283,7 @@ std::vector<Later> rival(const std::string& mode, Duration until) {
   return all;
 }
 
-TEST(SimulatedSystem, WhoseModeSomethingElseSetsBackTwiceIsLeftAlone) {
+TEST(SimulatedSystem, IsLeftAloneIfSomethingElseSetsItsModeBackTwice) {
   Plant plant;
   plant.change("slow");
   const auto lines = said(plant, kRules, 60s, rival("slow", 60s));

@@ -38,13 +38,13 @@ bool keeps_last_value(const Input& input, const RuleSet& rules) {
 
 // The part of the input that the robot never had.
 Nameable never_seen_of(const Input& input, const Knowledge& knowledge) {
-  const Sightings& sightings = knowledge.sightings;
+  const Discovered& discovered = knowledge.discovered;
   if (is_of_topic(input)) return input.topic;
   if (is_of_component(input)) return input.component;
   switch (input.kind) {
     case Kind::kParameter: {
       const ComponentId component = knowledge.rules[input.parameter].component;
-      if (!sightings.has(component)) return component;
+      if (!discovered.has(component)) return component;
       return input.parameter;
     }
     case Kind::kLevel:
@@ -54,9 +54,9 @@ Nameable never_seen_of(const Input& input, const Knowledge& knowledge) {
   }
   const auto& source = knowledge.rules[input.signal].source;
   const auto* field = std::get_if<TopicField>(&source);
-  if (field != nullptr && !sightings.has(field->topic)) return field->topic;
+  if (field != nullptr && !discovered.has(field->topic)) return field->topic;
   const auto* parameter = std::get_if<ParameterId>(&source);
-  if (parameter != nullptr && !sightings.has(knowledge.rules[*parameter].component))
+  if (parameter != nullptr && !discovered.has(knowledge.rules[*parameter].component))
     return knowledge.rules[*parameter].component;
   return input.signal;
 }
@@ -232,7 +232,7 @@ std::optional<Unseen> BlindWatch::why_unseen(InputId id, Time now) const {
 // @pre the input has no value
 std::optional<Unseen> BlindWatch::why_without_value(InputId id, Time now) const {
   const Input& input = knowledge_.rules[id];
-  const Sightings& sightings = knowledge_.sightings;
+  const Discovered& discovered = knowledge_.discovered;
   const auto unless_seen = [](bool was_seen) {
     return was_seen ? Unseen::kUnknown : Unseen::kNeverSeen;
   };
@@ -240,28 +240,28 @@ std::optional<Unseen> BlindWatch::why_without_value(InputId id, Time now) const 
     case Kind::kRate:
     case Kind::kLoss:
       if (knowledge_.signals.rhythm(input.topic).last) return Unseen::kNotCovered;
-      return unless_seen(sightings.has(input.topic));
+      return unless_seen(discovered.has(input.topic));
     case Kind::kGoals:
-      return sightings.has(input.topic) ? Unseen::kNotCovered : Unseen::kNeverSeen;
+      return discovered.has(input.topic) ? Unseen::kNotCovered : Unseen::kNeverSeen;
     case Kind::kLogs:
-      return sightings.has(input.component) ? Unseen::kNotCovered : Unseen::kNeverSeen;
+      return discovered.has(input.component) ? Unseen::kNotCovered : Unseen::kNeverSeen;
     case Kind::kAge:
     case Kind::kPhi:
     case Kind::kGoalAge:
-      return unless_seen(sightings.has(input.topic));
+      return unless_seen(discovered.has(input.topic));
     case Kind::kAlive:
     case Kind::kLifecycle:
     case Kind::kCpu:
     case Kind::kMemory:
-      return unless_seen(sightings.has(input.component));
+      return unless_seen(discovered.has(input.component));
     case Kind::kParameter:
-      return unless_seen(sightings.was_read(input.parameter));
+      return unless_seen(discovered.was_read(input.parameter));
     case Kind::kLevel:
-      return unless_seen(sightings.was_read(input.diagnostic));
+      return unless_seen(discovered.was_read(input.diagnostic));
     default:
       break;
   }
-  if (!sightings.was_read(input.signal)) return Unseen::kNeverSeen;
+  if (!discovered.was_read(input.signal)) return Unseen::kNeverSeen;
   switch (*knowledge_.signals.why_unknown(id)) {
     case WhyUnknown::kStale:
       return Unseen::kStale;

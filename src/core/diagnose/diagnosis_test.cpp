@@ -27,7 +27,7 @@ Scene chain() {
   return scene;
 }
 
-TEST(Reach, CountsWhoDependsOnAComponent) {
+TEST(Reach, CountsConsumersOfAComponent) {
   Scene scene = chain();
   const Reach reach(*scene, {scene.component("a"), scene.component("b"), scene.component("c")});
   EXPECT_EQ(reach.dependents(reach.place_of(scene.component("a"))), 2u);

@@ -35,7 +35,7 @@ std::vector<Time> last_signs(const Knowledge& knowledge) {
 // Could it answer a probe? Not if it is known to be dead, lost, or on an unreachable computer.
 bool can_be_asked(ComponentId component, const Knowledge& knowledge) {
   const ComponentState& state = knowledge.components[component];
-  return knowledge.sightings.has(component) && state.in_graph &&
+  return knowledge.discovered.has(component) && state.in_graph &&
          state.process == ProcessState::kRunning && state.alive != false &&
          state.lifecycle != Lifecycle::kTransition && !state.questioned.is_pointless &&
          !knowledge.is_unheard(component);

@@ -21,7 +21,7 @@ std::optional<TroubleSeen> own_trouble(ComponentId component, const Knowledge& k
     return TroubleSeen{Trouble::kExited, at(state.process_since)};
   if (state.process == ProcessState::kStopped)
     return TroubleSeen{Trouble::kStopped, at(state.process_since)};
-  if (!knowledge.sightings.has(component)) return TroubleSeen{Trouble::kNeverSeen, at(kLongAgo)};
+  if (!knowledge.discovered.has(component)) return TroubleSeen{Trouble::kNeverSeen, at(kLongAgo)};
   if (state.hangs() || is_overdue(component, knowledge))
     return TroubleSeen{Trouble::kHung, onset_of_hang(state)};
   if (state.alive == false) return TroubleSeen{Trouble::kLeft, at(state.alive_since)};

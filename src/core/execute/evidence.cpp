@@ -141,7 +141,7 @@ std::optional<std::string> launch_of_the_unseen(const Strategy& strategy,
                                                 const Knowledge& knowledge) {
   for (const Adaptation& adaptation : strategy.adaptations) {
     const ComponentId component = adaptation.component;
-    if (launches(adaptation) && !knowledge.sightings.has(component))
+    if (launches(adaptation) && !knowledge.discovered.has(component))
       return knowledge.rules[component].name +
              " was never seen; run --launch starts what is not there";
   }

@@ -39,7 +39,7 @@ std::optional<StormWatch::Storm> StormWatch::look() {
   for (std::size_t c = 0; c < all; ++c) {
     const ComponentState& state = knowledge_.components[ComponentId(c)];
     const bool runs = state.pid != 0 && state.process == ProcessState::kRunning;
-    if (state.alive != false || !knowledge_.sightings.has(ComponentId(c))) continue;
+    if (state.alive != false || !knowledge_.discovered.has(ComponentId(c))) continue;
     if (!state.in_graph && runs) ++unseen;
     // Its lease may say for long that it is there.
     if (state.known_pid() == 0 && !knowledge_.is_unheard(ComponentId(c))) ++out_of_reach;

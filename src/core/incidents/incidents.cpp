@@ -54,14 +54,14 @@ std::string_view condition_of(const std::vector<ComponentId>& components,
 // "camera is dead", "fusion hangs", "camera and fusion are held responsible", "rover2, where
 // camera and lidar ran, is unreachable".
 std::string headline_of(const Incident& incident, const Knowledge& knowledge) {
-  const std::string who = names_of_components(incident.components, knowledge.rules);
+  const std::string names = names_of_components(incident.components, knowledge.rules);
   const bool are_many = incident.components.size() > 1;
   const std::string are = are_many ? " are " : " is ";
-  if (!incident.host.empty()) return incident.host + ", where " + who + " ran, is unreachable";
-  if (incident.condition == "hung") return who + (are_many ? " hang" : " hangs");
-  if (!incident.condition.empty()) return who + are + incident.condition;
-  if (incident.is_certain) return who + are + "held responsible";
-  if (incident.is_suspected) return who + are + "suspected";
+  if (!incident.host.empty()) return incident.host + ", where " + names + " ran, is unreachable";
+  if (incident.condition == "hung") return names + (are_many ? " hang" : " hangs");
+  if (!incident.condition.empty()) return names + are + incident.condition;
+  if (incident.is_certain) return names + are + "held responsible";
+  if (incident.is_suspected) return names + are + "suspected";
   return knowledge.rules[incident.root].name + " fails";
 }
 

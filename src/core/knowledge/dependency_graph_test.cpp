@@ -185,7 +185,7 @@ TEST(DependencyGraph, ForgetsASubscriptionThatALivingNodeGaveUp) {
   EXPECT_EQ(graph.upstream("fusion"), Names{});
 }
 
-TEST(DependencyGraph, RemembersWhoANodeNeedsAndServesWhileItIsGone) {
+TEST(DependencyGraph, RemembersSuppliersAndConsumersOfANodeThatExited) {
   Graph graph = pipeline();
   (*graph).endpoint_vanished("/fusion", kSubscriber, "/rgb");
   (*graph).endpoint_vanished("/fusion", kPublisher, "/fused");

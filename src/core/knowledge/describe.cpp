@@ -209,29 +209,30 @@ class Describer {
     std::vector<std::string> names;
     for (const ComponentId each : e.components) names.push_back(rules_[each].name);
     const bool is_one = names.size() == 1;
-    const std::string who = listed(names) + (is_one ? " stays down: " : " stay down: ");
+    const std::string down = listed(names) + (is_one ? " stays down: " : " stay down: ");
     const std::string launcher = "process " + std::to_string(e.launcher);
     const std::string remedy = std::string("; start ") + (is_one ? "it" : "them") +
                                " again, or let culprit do it: culprit revive";
     switch (e.why) {
       case StaysDown::Why::kPerson:
-        return who + "a person ended the launch of " + launcher + remedy;
+        return down + "a person ended the launch of " + launcher + remedy;
       case StaysDown::Why::kDoubt:
-        return who + "the launch of " + launcher + " ended " + in_words(e.after) + " after " +
+        return down + "the launch of " + launcher + " ended " + in_words(e.after) + " after " +
                (e.fell ? rules_[*e.fell].name : "a component") +
                " crashed; a person may have ended it, or its on_exit=Shutdown()" + remedy +
                ". To start it again at once next time: culprit run --revive";
       case StaysDown::Why::kUnseen:
-        return who + "the launch ended while culprit did not watch, so a person may have ended it" +
+        return down +
+               "the launch ended while culprit did not watch, so a person may have ended it" +
                remedy;
       case StaysDown::Why::kOwner:
-        return who + "its owner ended it in an orderly way, as on a person's order" + remedy;
+        return down + "its owner ended it in an orderly way, as on a person's order" + remedy;
       case StaysDown::Why::kShutDown:
-        return who + "its node was shut down" + remedy;
+        return down + "its node was shut down" + remedy;
       case StaysDown::Why::kOrder:
-        return who + "a person ended the processes that culprit had started" + remedy;
+        return down + "a person ended the processes that culprit had started" + remedy;
     }
-    return who;
+    return down;
   }
   std::string operator()(const HostBack& e) const { return e.host + " is reachable again"; }
   std::string operator()(const ValueUnknown& e) const {

@@ -34,7 +34,7 @@ TEST(EventWords, WhatIsRequiredAndNotThereIsAnError) {
   EXPECT_EQ(severity_of({{}, ComponentFound{base, 1}}, rules), EventSeverity::kInfo);
 }
 
-TEST(EventWords, SayWhoIsAskedToStartAndToEnd) {
+TEST(EventWords, NameTheOwnerThatStartsAndEnds) {
   const RuleSet rules = *check(Source("test",
                                       "COMPONENT own NODE /own LAUNCH \"own\"\n"
                                       "COMPONENT lidar NODE /lidar UNIT lidar.service\n"

@@ -9,7 +9,7 @@
 namespace culprit {
 namespace {
 
-bool was_read(const Input& input, const Sightings& sightings) {
+bool was_read(const Input& input, const Discovered& discovered) {
   switch (input.kind) {
     case Input::Kind::kRate:
     case Input::Kind::kAge:
@@ -23,11 +23,11 @@ bool was_read(const Input& input, const Sightings& sightings) {
     case Input::Kind::kLogs:
       return false;
     case Input::Kind::kLifecycle:
-      return sightings.was_lifecycle_read(input.component);
+      return discovered.was_lifecycle_read(input.component);
     case Input::Kind::kParameter:
-      return sightings.was_read(input.parameter);
+      return discovered.was_read(input.parameter);
     case Input::Kind::kLevel:
-      return sightings.was_read(input.diagnostic);
+      return discovered.was_read(input.diagnostic);
     case Input::Kind::kSignal:
     case Input::Kind::kMean:
     case Input::Kind::kMin:
@@ -36,24 +36,25 @@ bool was_read(const Input& input, const Sightings& sightings) {
     case Input::Kind::kChanged:
     case Input::Kind::kIsNan:
     case Input::Kind::kFrozen:
-      return sightings.was_read(input.signal);
+      return discovered.was_read(input.signal);
   }
   return false;
 }
 
 void note_heard(const Knowledge& knowledge, KnownRobot& known) {
   const RuleSet& rules = knowledge.rules;
-  const Sightings& sightings = knowledge.sightings;
+  const Discovered& discovered = knowledge.discovered;
   for (std::size_t t = 0; t < rules.topics.size(); ++t) {
-    if (sightings.was_heard(TopicId(t)) && knowledge.graph.publisher_count(rules.topics[t]) == 1)
+    if (discovered.was_received(TopicId(t)) &&
+        knowledge.graph.publisher_count(rules.topics[t]) == 1)
       known.heard.push_back(rules.label(TopicId(t)));
   }
   std::set<std::string> values;
   for (const Input& input : rules.inputs) {
-    if (was_read(input, sightings)) values.insert(value_name(input, rules));
+    if (was_read(input, discovered)) values.insert(value_name(input, rules));
   }
   known.read.assign(values.begin(), values.end());
-  known.is_whole = sightings.is_whole();
+  known.is_whole = discovered.is_whole();
 }
 
 }  // namespace
@@ -64,7 +65,7 @@ Knowledge::Knowledge(const RuleSet& rule_set)
       graph(rules),
       components(rules),
       departures(rules),
-      sightings(rules),
+      discovered(rules),
       states(rules),
       blindness(rules),
       beliefs(rules),
@@ -80,7 +81,7 @@ Knowledge::Knowledge(const RuleSet& rule_set, const Knowledge& other)
       graph(other.graph),
       components(other.components),
       departures(other.departures),
-      sightings(other.sightings),
+      discovered(other.discovered),
       states(rules, other.states),
       blindness(other.blindness),
       beliefs(other.beliefs),
@@ -145,14 +146,14 @@ KnownRobot Knowledge::known_robot() const {
   KnownRobot known;
   for (std::size_t c = 0; c < rules.components.size(); ++c) {
     const ComponentId component(c);
-    if (!sightings.has(component)) continue;
+    if (!discovered.has(component)) continue;
     known.parts.push_back({rules[component].name, graph.node_name(component),
                            graph.ends_of(component), components[component].node_pid});
   }
   for (std::size_t t = 0; t < rules.topics.size(); ++t) {
-    if (sightings.has(TopicId(t))) known.topics.push_back(rules.label(TopicId(t)));
+    if (discovered.has(TopicId(t))) known.topics.push_back(rules.label(TopicId(t)));
   }
-  known.publishers = sightings.publishers();
+  known.publishers = discovered.publishers();
   note_heard(*this, known);
   return known;
 }
@@ -211,7 +212,7 @@ bool Knowledge::is_unheard(ComponentId component) const {
   const bool is_silent = rules[component].has_owner() ? state.is_out_of_reach && state.alive != true
                                                       : state.host_silent.has_value();
   return (is_silent || state.time_held) && state.process == ProcessState::kRunning &&
-         sightings.has(component);
+         discovered.has(component);
 }
 
 std::string Knowledge::host_of(ComponentId component) const {

@@ -12,13 +12,13 @@
 #include "knowledge/couplings.h"
 #include "knowledge/departures.h"
 #include "knowledge/dependency_graph.h"
+#include "knowledge/discovered.h"
 #include "knowledge/event_log.h"
-#include "knowledge/heard_names.h"
 #include "knowledge/latencies.h"
 #include "knowledge/outcomes.h"
+#include "knowledge/reported_names.h"
 #include "knowledge/rivals.h"
 #include "knowledge/rule_states.h"
-#include "knowledge/sightings.h"
 #include "knowledge/signal_store.h"
 #include "knowledge/transients.h"
 #include "language/rule_set.h"
@@ -39,8 +39,8 @@ struct Knowledge {
   DependencyGraph graph;
   ComponentStates components;
   Departures departures;
-  Sightings sightings;
-  HeardNames heard_names;
+  Discovered discovered;
+  ReportedNames reported_names;
   RuleStates states;
   Blindness blindness;
   Beliefs beliefs;
@@ -71,7 +71,7 @@ struct Knowledge {
   EventLog events;
 
   // The make-up of the robot, for the next run. Changes only with the graph's changes and the
-  // counts of sightings.
+  // counts of first discoveries.
   KnownRobot known_robot() const;
 
   // The operating system reports that its process exited.

@@ -27,7 +27,7 @@ struct KnownRobot {
     bool operator==(const Part&) const = default;
   };
   std::vector<Part> parts;
-  std::vector<std::string> topics;  // that were seen (sightings.h)
+  std::vector<std::string> topics;  // that were seen (discovered.h)
   std::map<std::string, std::string>
       publishers{};  // by diagnostic status: the node whose word counts
 

@@ -15,7 +15,7 @@ class Finder {
   std::vector<Named> find() {
     const RuleSet& rules = knowledge_.rules;
     for (std::size_t c = 0; c < rules.components.size(); ++c)
-      add(ComponentId(c), knowledge_.sightings.has(ComponentId(c)));
+      add(ComponentId(c), knowledge_.discovered.has(ComponentId(c)));
     for (std::size_t i = 0; i < rules.inputs.size(); ++i) look_at(InputId(i));
     return std::move(found_);
   }
@@ -30,7 +30,7 @@ class Finder {
       case Input::Kind::kLoss:
       case Input::Kind::kGoals:
       case Input::Kind::kGoalAge:
-        return add(input.topic, knowledge_.sightings.has(input.topic));
+        return add(input.topic, knowledge_.discovered.has(input.topic));
       case Input::Kind::kAlive:
       case Input::Kind::kLifecycle:
       case Input::Kind::kCpu:
@@ -56,7 +56,7 @@ class Finder {
   bool is_read(InputId id, SignalId signal) const {
     const auto* field = std::get_if<TopicField>(&knowledge_.rules[signal].source);
     return knowledge_.signals.read_at(id) != kLongAgo ||
-           (field != nullptr && knowledge_.sightings.has(field->topic));
+           (field != nullptr && knowledge_.discovered.has(field->topic));
   }
 
   template <class What>
@@ -90,7 +90,7 @@ std::string nearest_topic(const std::string& name, const DependencyGraph& graph)
   return closest_full_name(name, {published.begin(), published.end()});
 }
 
-std::string nearest_status(const std::string& name, const HeardNames& heard) {
+std::string nearest_status(const std::string& name, const ReportedNames& heard) {
   std::vector<std::string_view> known;
   for (const StatusHeard& status : heard.statuses) {
     known.push_back(status.name);
@@ -101,7 +101,7 @@ std::string nearest_status(const std::string& name, const HeardNames& heard) {
 
 // The nearest key of this status or, if the status was not received, the nearest status. "*": of any.
 std::string nearest_key(const std::string& status, const std::string& key,
-                        const HeardNames& heard) {
+                        const ReportedNames& heard) {
   std::vector<std::string_view> keys;
   bool is_heard = status == "*";
   for (const StatusHeard& each : heard.statuses) {
@@ -113,7 +113,7 @@ std::string nearest_key(const std::string& status, const std::string& key,
 }
 
 // It may be there, and have no value that a rule could read.
-std::string nearest_parameter(const Parameter& parameter, const HeardNames& heard) {
+std::string nearest_parameter(const Parameter& parameter, const ReportedNames& heard) {
   const auto listed = heard.parameters.find(parameter.component);
   if (listed == heard.parameters.end()) return "";
   const auto& names = listed->second;
@@ -126,11 +126,11 @@ std::string nearest_source(const Signal& signal, const Knowledge& knowledge) {
   if (const auto* field = std::get_if<TopicField>(&signal.source))
     return nearest_topic(rules[field->topic].name, knowledge.graph);
   if (const auto* parameter = std::get_if<ParameterId>(&signal.source))
-    return nearest_parameter(rules[*parameter], knowledge.heard_names);
+    return nearest_parameter(rules[*parameter], knowledge.reported_names);
   if (const auto* key = std::get_if<DiagnosticKey>(&signal.source))
-    return nearest_key(key->status, key->key, knowledge.heard_names);
+    return nearest_key(key->status, key->key, knowledge.reported_names);
   if (std::holds_alternative<GroupId>(signal.source)) return "";
-  return nearest_key("*", signal.name, knowledge.heard_names);
+  return nearest_key("*", signal.name, knowledge.reported_names);
 }
 
 }  // namespace
@@ -146,9 +146,9 @@ std::string nearest_name(const Nameable& name, const Knowledge& knowledge) {
   if (const auto* signal = std::get_if<SignalId>(&name))
     return nearest_source(rules[*signal], knowledge);
   if (const auto* parameter = std::get_if<ParameterId>(&name))
-    return nearest_parameter(rules[*parameter], knowledge.heard_names);
+    return nearest_parameter(rules[*parameter], knowledge.reported_names);
   return nearest_status(rules.diagnostics[std::get<DiagnosticId>(name).index].name,
-                        knowledge.heard_names);
+                        knowledge.reported_names);
 }
 
 }  // namespace culprit

@@ -11,7 +11,7 @@ namespace culprit {
 
 struct Named {
   Nameable what;
-  // Components and topics: sightings.h. A signal of a topic's field: its topic was. Other signals,
+  // Components and topics: discovered.h. A signal of a topic's field: its topic was. Other signals,
   // parameters and diagnostics: they were read.
   bool was_seen = false;
 };

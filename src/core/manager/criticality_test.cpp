@@ -41,7 +41,7 @@ TestRobot camera(const std::string& focus) {
 }
 
 // It has its components back only when it has all of them.
-TEST(Criticality, WhoMadeWayIsNotJudgedWhileAnyOfItsComponentsIsTaken) {
+TEST(Criticality, AFailureThatYieldedIsNotJudgedWhileAnyOfItsComponentsIsTaken) {
   TestRobot robot(R"(
 COMPONENT camera NODE /camera
 COMPONENT lamp NODE /lamp

@@ -64,7 +64,7 @@ TEST_P(ExhaustedCause, LetsItsEffectsBeRepairedOnceItIsGone) {
 
 // c1 can only be focused, which makes no sense while it is dead. Rounds in which nothing could be
 // tried are no attempts: once it is back, it is focused.
-TEST_P(ExhaustedCause, IsNotWhoeverWaitsUntilItsComponentIsRepaired) {
+TEST_P(ExhaustedCause, IsNoFailureThatWaitsUntilItsComponentIsRepaired) {
   for (const bool is_by_person : {false, true}) {
     TestRobot robot(
         rule(1, is_by_person ? 2 : 9) +
@@ -89,7 +89,7 @@ TEST_P(ExhaustedCause, IsNotWhoeverWaitsUntilItsComponentIsRepaired) {
 }
 
 // No strategy repairs c1, so the exhaustion of its consumers is reported to a person.
-TEST_P(ExhaustedCause, IsWhoeverNeedsWhatNobodyRepairs) {
+TEST_P(ExhaustedCause, IsAConsumerOfAnUnrepairedComponent) {
   TestRobot robot(
       "COMPONENT c1 NODE /c1\nRULE Blurred\nPOLICIES NON_CRITICAL ATTEMPTS 2\nTRIGGER blur > "
       "0.5\nSTRATEGY focus 80 10\nADAPTATION c1 set_parameter angle 1 2\n",

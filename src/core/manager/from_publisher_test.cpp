@@ -44,7 +44,7 @@ TEST(FromPublisher, TheSilenceOfOneIsSeenBesideTheOther) {
   EXPECT_EQ(scans.robot.count("RearSlow detected"), 0u) << transcript(scans.robot);
 }
 
-TEST(FromPublisher, WhoIsKnownDeadIsSilentAtOnce) {
+TEST(FromPublisher, AComponentKnownDeadIsSilentAtOnce) {
   Scans scans;
   scans.run_for(8s, true, true);
   scans.robot.kill("front");

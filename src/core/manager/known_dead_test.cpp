@@ -160,7 +160,7 @@ TEST(KnownDead, NotWhereAnotherOnePublishesItToo) {
 }
 
 // A mission is called off when the camera did not come back, not when it goes.
-TEST(KnownDead, WhoCannotBringItBackWaitsForWhoCan) {
+TEST(KnownDead, AStrategyThatCannotBringItBackWaitsForOneThatCan) {
   const std::string gone = R"(
 RULE CameraGone
   POLICIES ERROR
@@ -550,7 +550,7 @@ TEST(ALaunch, ThatEndsSoonAfterACrashStaysDownAndSaysWhy) {
 }
 
 // Several nodes with on_exit=Shutdown(): ros2 launch is told to end repeatedly, and exits with code 1.
-TEST(ALaunch, WhoseLauncherExitsWithAnErrorAfterItsNodesHasEnded) {
+TEST(ALaunch, HasEndedIfItsLauncherExitsWithAnErrorAfterItsNodes) {
   for (const bool has_crashed : {false, true}) {
     TestRobot robot = launch_of_five();
     if (has_crashed) robot.kill("a");
@@ -663,7 +663,7 @@ TEST(ALaunch, OfTwoOfWhichOneWasReplacedIsEndedByAPerson) {
 }
 
 // It has nothing left to run, and takes its time to end.
-TEST(ALaunch, WhoseLastProcessCrashedEndsAndItsComponentsRunOn) {
+TEST(ALaunch, EndsAfterItsLastProcessCrashedAndItsComponentsRunOn) {
   for (const Duration takes : {Duration(200ms), Duration(6s)}) {
     TestRobot robot = launch_of_five();
     for (const std::string name : {"c", "d", "e"})
@@ -684,7 +684,7 @@ TEST(ALaunch, WhoseLastProcessCrashedEndsAndItsComponentsRunOn) {
 }
 
 // Its nodes run on, and so does what stands in for one of them.
-TEST(ALaunch, WhoseLauncherCrashesRunsOn) {
+TEST(ALaunch, RunsOnIfItsLauncherCrashes) {
   for (const bool is_known : {true, false}) {
     TestRobot robot = launch_of_five();
     robot.kill("a");

@@ -112,7 +112,7 @@ TEST_F(KnownStart, WhatSpeaksInTimeIsNotSilent) {
 }
 
 // It may not know its subscriber yet, and publish all the time.
-TEST_F(KnownStart, WhoHasNotProvenToKnowItsListenerMaySpeakUnheard) {
+TEST_F(KnownStart, ANodeThatHasNotDiscoveredItsListenerMaySendUnreceived) {
   begin(known());
   show_both();
   read_motor();
@@ -215,7 +215,7 @@ TEST_F(KnownStart, TwoOfOneNameAreNotWhatWasExpected) {
   expect_full_wait();
 }
 
-TEST_F(KnownStart, WhoLeavesMeanwhileIsNotWhatWasExpected) {
+TEST_F(KnownStart, ANodeThatLeavesMeanwhileIsNotExpected) {
   begin(known());
   show_both();
   robot.tell(NodeVanished{"/right"});
@@ -236,7 +236,7 @@ TEST_F(KnownStart, AMomentOfDeafnessEndsAllExpectations) {
   EXPECT_EQ(detected(), 0u) << transcript(robot);
 }
 
-TEST_F(KnownStart, WhoSleepsAtTheBeginningExpectsNothing) {
+TEST_F(KnownStart, ASleepAtTheBeginningExpectsNothing) {
   begin(known());
   show_both();
   robot.tell(Overslept{2s});
@@ -247,7 +247,7 @@ TEST_F(KnownStart, WhoSleepsAtTheBeginningExpectsNothing) {
 }
 
 // A component that a person starts anew in the moment of the verdict gets its grace period.
-TEST_F(KnownStart, WhoIsStartedAnewAfterwardsHasItsTime) {
+TEST_F(KnownStart, ANodeStartedAgainAfterwardsHasItsTime) {
   begin(known());
   show_both();
   read_motor();
@@ -277,7 +277,7 @@ TEST_F(KnownStart, WhatWasNeverSeenWaitsAsEver) {
 
 // ---- knowledge for the next run
 
-TEST_F(KnownStart, TellsTheNextRunWhatWasHeardAndOfWhom) {
+TEST_F(KnownStart, TellsTheNextRunWhatWasReceivedAndFromWhichNode) {
   show_both();
   read_motor();
   run_for(3s);
@@ -303,7 +303,7 @@ TEST_F(KnownStart, WhatAnotherProcessSaidWasNotHeardOfThisOne) {
   EXPECT_EQ(robot.manager().knowledge().known_robot().heard.size(), 1u);
 }
 
-TEST_F(KnownStart, WhoWaitsForLessHasNotSeenItAll) {
+TEST_F(KnownStart, AShorterWaitHasNotSeenAll) {
   Manager::Options options;
   options.discovery = 2s;
   TestRobot hasty(kTwoCameras, std::make_unique<BayesPlanner>(), options);

@@ -66,11 +66,11 @@ bool tells_of_silence(const Observation& observation) {
 
 Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, Options options)
     : knowledge_(rules),
-      monitor_(
-          knowledge_,
-          {knowledge_.signals, knowledge_.graph, knowledge_.components, knowledge_.departures,
-           knowledge_.sightings, knowledge_.heard_names, knowledge_.clock_step, knowledge_.events},
-          options.start, later(options.start, options.discovery)),
+      monitor_(knowledge_,
+               {knowledge_.signals, knowledge_.graph, knowledge_.components, knowledge_.departures,
+                knowledge_.discovered, knowledge_.reported_names, knowledge_.clock_step,
+                knowledge_.events},
+               options.start, later(options.start, options.discovery)),
       analyzer_(knowledge_,
                 {knowledge_.states, knowledge_.signals, knowledge_.beliefs, knowledge_.couplings,
                  knowledge_.latencies, knowledge_.coincidences, knowledge_.transients,

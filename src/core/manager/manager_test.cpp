@@ -159,7 +159,7 @@ TEST_P(ManagerWith, HealsAHungNodeThatAnswersNothing) {
   EXPECT_EQ(robot.count("restart fusion: failed, it did not answer"), 1u) << transcript(robot);
 }
 
-TEST_P(ManagerWith, KnowsWhoNeedsADeadNodeEvenWhenItLeftTheGraph) {
+TEST_P(ManagerWith, KnowsConsumersOfADeadNodeEvenWhenItLeftTheGraph) {
   TestRobot robot = pipeline();
   robot["camera"].start_time = 3s;
   robot.kill("camera");

@@ -228,7 +228,7 @@ TEST(KnownRobot, WhatDiedWithCulpritIsBroughtBack) {
     EXPECT_TRUE(five.robot.works(c)) << c << transcript(five.robot);
 }
 
-TEST(KnownRobot, TellsWhoNeedsWhatDiedWithCulprit) {
+TEST(KnownRobot, ReportsConsumersOfAComponentThatDiedWithCulprit) {
   Five five(true);
   five.kill_with_culprit({"a", "b", "c"});
   five.robot.run_for(20s);
@@ -256,7 +256,7 @@ TEST(Storm, ProcessesThatAreKnownToBeDeadAreNone) {
 
 // c0 dies before its first message, so its silence can be judged only once the robot had time to
 // show itself. It is known to be dead, and c1 is not replaced for it meanwhile.
-TEST(NeverSeen, WhoDiesBeforeItsFirstWordIsNotTakenOutOnItsEffects) {
+TEST(NeverSeen, AnEarlyExitIsNotBlamedOnItsEffects) {
   TestRobot robot(
       "COMPONENT c0 NODE /c0 LAUNCH \"c0\"\nCOMPONENT c1 NODE /c1 LAUNCH \"c1\"\n"
       "RULE Silent0\nPOLICIES ERROR\nTRIGGER age(/c0) > 2500ms\nSTRATEGY redeploy 90 10\n"

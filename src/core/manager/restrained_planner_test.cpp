@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "manager/test_robot.h"
-#include "plan/onlooker.h"
+#include "plan/passive_planner.h"
 
 namespace culprit {
 namespace {
@@ -31,7 +31,7 @@ RULE LidarSilent
 
 // The strategy that is chosen for a silent camera.
 std::string choice(bool has_namesake) {
-  TestRobot robot(kRules, std::make_unique<Onlooker>());
+  TestRobot robot(kRules, std::make_unique<PassivePlanner>());
   robot.add("camera", {}, "/rgb");
   robot.add("lidar", {}, "/scan");
   robot.discover();
@@ -56,7 +56,7 @@ TEST(RestrainedPlanner, ChoosesNoRedeployThatTheEvidenceSpeaksAgainst) {
 
 // The permission for one strategy is not valid for another one.
 TEST(RestrainedPlanner, AsksOfEachThatIsChosen) {
-  TestRobot robot(kRules, std::make_unique<Onlooker>());
+  TestRobot robot(kRules, std::make_unique<PassivePlanner>());
   robot.add("camera", {}, "/rgb");
   robot.add("lidar", {}, "/scan");
   robot.discover();
@@ -76,7 +76,7 @@ TEST(RestrainedPlanner, AsksOfEachThatIsChosen) {
   EXPECT_NE(chosen.front(), "restart") << "the camera has a namesake";
 }
 
-TEST(RestrainedPlanner, ChoosesNothingWhereNobodyKnowsWhoWouldBeHit) {
+TEST(RestrainedPlanner, ChoosesNothingWhereTheAffectedComponentsAreUnknown) {
   EXPECT_EQ(choice(true), "");
 }
 

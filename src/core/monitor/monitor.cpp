@@ -200,7 +200,7 @@ void Monitor::advance(Time now) {
     }
     if (*due > knowledge_.rules.inputs.size()) continue;
     if (!is_deaf_) {
-      if (discovered_ - start_ >= kGrace) write_.sightings.complete();
+      if (discovered_ - start_ >= kGrace) write_.discovered.complete();
       tell_never_seen(now);
     } else {
       deadlines_.set(*due, later(now, kGrace));
@@ -225,7 +225,8 @@ void Monitor::remember(const KnownRobot& known) {
       if (knowledge_.rules.label(TopicId(t)) == name) see(TopicId(t), start_);
     }
   }
-  for (const auto& [status, node] : known.publishers) write_.sightings.note_publisher(status, node);
+  for (const auto& [status, node] : known.publishers)
+    write_.discovered.note_publisher(status, node);
   expect(known);
 }
 
@@ -315,7 +316,7 @@ void Monitor::update(InputId id, Time now) {
     write_.signals.set(id, value);
   } else {
     const bool has_begun = input.kind == Kind::kLogs
-                               ? knowledge_.sightings.has(input.component)
+                               ? knowledge_.discovered.has(input.component)
                                : counts_samples(input) && topics_[input.topic.index].first;
     write_.signals.forget(id, derived_[id.index].is_overflow_told ? WhyUnknown::kOverflow
                               : has_begun                         ? WhyUnknown::kNotCovered

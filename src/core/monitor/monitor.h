@@ -69,14 +69,14 @@ class Monitor {
     DependencyGraph& graph;
     ComponentStates& components;
     Departures& departures;
-    Sightings& sightings;
-    HeardNames& heard_names;
+    Discovered& discovered;
+    ReportedNames& reported_names;
     std::optional<Knowledge::ClockStep>& clock_step;
     EventLog& events;
   };
 
   // `knowledge` must outlive the monitor. Watching begins at `start`. A part that was never seen
-  // (knowledge/sightings.h) is unknown, and reported when `discovered`. A part that an earlier run
+  // (knowledge/discovered.h) is unknown, and reported when `discovered`. A part that an earlier run
   // saw may still be discovered until `discovered`. From then on it is absent: a component that is
   // not there is not alive, a topic is silent. A topic that is seen later gets as long for its first
   // message, from the discovery of its publisher. If all parts that an earlier run saw are there,
@@ -204,7 +204,7 @@ class Monitor {
   void on(Time, const PriorsTold&) {}       // likewise: adopt()
   void on(Time at, const ListenerKnown& seen);
   void on(Time, const PublisherKnown& seen) {
-    write_.sightings.note_publisher(seen.status, seen.node);
+    write_.discovered.note_publisher(seen.status, seen.node);
   }
   void on(Time, const HearingLost&) { is_deaf_ = true; }
 

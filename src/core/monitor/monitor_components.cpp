@@ -192,7 +192,7 @@ void Monitor::on(Time at, const LifecycleRead& seen) {
         std::max(longest_transition(state.coming_up), state.transition_patience);
     state.changes_until = later(at, is_measured || is_ours ? longest : kUnknownTransition);
   }
-  if (is_primary) write_.sightings.read_lifecycle(seen.component);
+  if (is_primary) write_.discovered.read_lifecycle(seen.component);
   if (is_primary && !state.took_place && knowledge_.states.reservation(seen.component) == nullptr)
     write_.components.intend_lifecycle(seen.component, seen.state, at, write_.events);
   if (seen.state != Lifecycle::kUnknown) state.took_place = false;
@@ -239,7 +239,7 @@ void Monitor::update_group(GroupId id, Time now) {
   note_pause(group, now);
   const GroupHealth health = health_of(group, knowledge_.components, now);
   const bool is_known = health != GroupHealth::kUnknown;
-  if (is_known) write_.sightings.read(group.health);
+  if (is_known) write_.discovered.read(group.health);
   for (const InputId input : signals_[group.health.index].inputs) {
     if (knowledge_.rules[input].kind != Kind::kSignal) continue;
     write_.signals.set(input, is_known ? Slot::of(to_string(health)) : Slot());
@@ -378,7 +378,7 @@ void Monitor::forget_usage(ComponentId component) {
 
 // The first sign of a component: from now on it is known how often it logged.
 void Monitor::see(ComponentId component, Time at) {
-  if (!write_.sightings.note(component, at)) return;
+  if (!write_.discovered.note(component, at)) return;
   for (const InputId id : component_inputs_[component.index]) {
     if (knowledge_.rules[id].kind == Kind::kLogs) deadlines_.set(id.index, at);
   }
@@ -404,7 +404,7 @@ Time Monitor::logs_known_from(InputId id) const {
 
 Slot Monitor::logs(InputId id, Time now) {
   Derived& derived = derived_[id.index];
-  if (!knowledge_.sightings.has(knowledge_.rules[id].component) || now < logs_known_from(id))
+  if (!knowledge_.discovered.has(knowledge_.rules[id].component) || now < logs_known_from(id))
     return {};
   derived.is_overflow_told = false;
   derived.count.advance(now);
@@ -412,7 +412,7 @@ Slot Monitor::logs(InputId id, Time now) {
 }
 
 Time Monitor::next_of_logs(InputId id, Time now) const {
-  if (!knowledge_.sightings.has(knowledge_.rules[id].component)) return kNever;
+  if (!knowledge_.discovered.has(knowledge_.rules[id].component)) return kNever;
   const monitor::SlidingCount& count = derived_[id.index].count;
   return now < logs_known_from(id) ? logs_known_from(id) : count.falls_below(count.count());
 }
@@ -502,7 +502,7 @@ void Monitor::note_silent(const std::string& host, Time at) {
   for (std::size_t c = 0; c < knowledge_.rules.components.size(); ++c) {
     const ComponentId component(c);
     const ComponentState& state = knowledge_.components[component];
-    if (state.host.empty() || !knowledge_.sightings.has(component)) continue;
+    if (state.host.empty() || !knowledge_.discovered.has(component)) continue;
     if (state.host != host) {
       are_several = true;
       silent.is_last &= state.host_silent.has_value();
@@ -598,7 +598,7 @@ void Monitor::update_alive(ComponentId component, Time at, const std::string& re
   const bool is_part_hung = has_hung_part(component) && at >= later(awake_, kUnsure);
   const bool answers = !does_not_answer(component, at) && !is_part_hung;
   const bool is_alive = state.in_graph && state.process == ProcessState::kRunning && answers;
-  if (!knowledge_.sightings.has(component)) return;           // it may be a wrong name
+  if (!knowledge_.discovered.has(component)) return;          // it may be a wrong name
   if (!is_alive && !state.alive && at < discovered_) return;  // it may still be discovered
   const bool may_be_unheard = is_deaf_ || at < graced_ || state.is_out_of_reach;
   if (!is_alive && may_be_unheard && state.process == ProcessState::kRunning) {

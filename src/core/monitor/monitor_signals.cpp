@@ -46,7 +46,7 @@ void Monitor::read_signal(SignalId signal, const Value& value, Time at) {
   if (state.last) state.interval = smoothed(state.interval, at - *state.last);
   const bool has_rhythm = state.interval > Duration::zero();
   state.last = at;
-  write_.sightings.read(signal);
+  write_.discovered.read(signal);
   std::string text;
   const Slot slot = as_type(value, declared.type, text);
   note_number(signal, value, slot, at);
@@ -271,14 +271,14 @@ void Monitor::begin_windows_anew(Time now) {
   }
 }
 
-void Monitor::on(Time, const StatusHeard& seen) { write_.heard_names.statuses.push_back(seen); }
+void Monitor::on(Time, const StatusHeard& seen) { write_.reported_names.statuses.push_back(seen); }
 
 void Monitor::on(Time, const ParametersListed& seen) {
-  write_.heard_names.parameters[seen.component] = seen.names;
+  write_.reported_names.parameters[seen.component] = seen.names;
 }
 
 void Monitor::on(Time at, const DiagnosticRead& seen) {
-  write_.sightings.read(seen.diagnostic);
+  write_.discovered.read(seen.diagnostic);
   for (const InputId id : diagnostic_inputs_[seen.diagnostic.index]) {
     note_arrival(id, at);
     write_.signals.set(id, Slot::of(std::int64_t{seen.level}));
@@ -287,7 +287,7 @@ void Monitor::on(Time at, const DiagnosticRead& seen) {
 
 void Monitor::on(Time at, const ParameterRead& seen) {
   write_.components[seen.parameter] = seen.value;
-  write_.sightings.read(seen.parameter);
+  write_.discovered.read(seen.parameter);
   for (const SignalId signal : parameter_signals_[seen.parameter.index])
     read_signal(signal, seen.value, at);
   for (const InputId id : parameter_inputs_[seen.parameter.index]) {

@@ -146,7 +146,7 @@ void Monitor::forget_what_was_heard_of(ComponentId component, Time now) {
   for (const KnownRobot::End& end : knowledge_.graph.ends_of(component)) {
     if (end.kind != EndpointKind::kPublisher) continue;
     for (const TopicId topic : topics_of(component, end.name)) {
-      write_.sightings.unhear(topic);
+      write_.discovered.forget_received(topic);
       forget_goals(topic, now);
     }
   }

@@ -91,8 +91,9 @@ struct Oracle {
 };
 
 Monitor::Writes writes(Knowledge& knowledge) {
-  return {knowledge.signals,   knowledge.graph,       knowledge.components, knowledge.departures,
-          knowledge.sightings, knowledge.heard_names, knowledge.clock_step, knowledge.events};
+  return {knowledge.signals,    knowledge.graph,      knowledge.components,
+          knowledge.departures, knowledge.discovered, knowledge.reported_names,
+          knowledge.clock_step, knowledge.events};
 }
 
 // Every comparison in the rules must give the same result as with the true value, at every moment,
@@ -631,7 +632,7 @@ TEST(Monitor, ANodeOfAnUnknownProcessIsAtWorkWhileItIsHeardToo) {
   EXPECT_EQ(watched.knowledge.components[ComponentId(0)].alive, false);
 }
 
-TEST(Monitor, WhoNeverAnsweredProvesNothingByNotAnswering) {
+TEST(Monitor, ANodeThatNeverAnsweredProvesNothingByNotAnswering) {
   Watched watched(rule(kHeard));
   watched.observe(1s, NodeAppeared{"/c", 7});
   watched.observe(1s, EndpointAppeared{"/c", EndpointKind::kPublisher, "/t"});

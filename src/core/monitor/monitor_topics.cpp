@@ -18,8 +18,8 @@ using monitor::usual_gap;
 using monitor::usual_latency;
 
 void Monitor::on(Time at, const SampleArrived& seen) {
-  write_.sightings.note(seen.topic, at);
-  write_.sightings.hear(seen.topic);
+  write_.discovered.note(seen.topic, at);
+  write_.discovered.receive(seen.topic);
   Topic& topic = topics_[seen.topic.index];
   if (!topic.first) topic.first = at;
   if (!topic.regained) topic.regained = at;
@@ -70,7 +70,7 @@ bool Monitor::has_begun_since(Time before, TopicId topic) const {
 }
 
 void Monitor::see(TopicId topic, Time at) {
-  if (!write_.sightings.note(topic, at)) return;
+  if (!write_.discovered.note(topic, at)) return;
   for (const InputId id : topics_[topic.index].inputs) {
     const Kind kind = knowledge_.rules[id].kind;
     const bool is_of_goals = kind == Kind::kGoals || kind == Kind::kGoalAge;
@@ -80,14 +80,14 @@ void Monitor::see(TopicId topic, Time at) {
 
 Time Monitor::silent_from(TopicId topic) const {
   if (const auto& since = topics_[topic.index].silent_since) return *since;
-  const auto first = knowledge_.sightings.first(topic);
+  const auto first = knowledge_.discovered.first(topic);
   return first ? later(std::max(*first, start_), discovered_ - start_) : kNever;
 }
 
 // For a topic that was seen and from which no message has come.
 Time Monitor::listened_since(TopicId topic) const {
   return topics_[topic.index].silent_since.value_or(
-      std::max(*knowledge_.sightings.first(topic), start_));
+      std::max(*knowledge_.discovered.first(topic), start_));
 }
 
 // From when on its rate is known although it has not spoken.
@@ -125,7 +125,7 @@ Duration Monitor::silence_of(TopicId id, Time now) const {
 
 void Monitor::resume(TopicId id, Time since, Time now) {
   Topic& topic = topics_[id.index];
-  if (!topic.last && !topic.silent_since && !knowledge_.sightings.first(id)) return;
+  if (!topic.last && !topic.silent_since && !knowledge_.discovered.first(id)) return;
   SignalStore::Rhythm rhythm = knowledge_.signals.rhythm(id);
   rhythm.heard_again_by = later(now, rhythm.gap + kSpeaksAgain);
   write_.signals.set_rhythm(id, rhythm);
@@ -211,7 +211,7 @@ void Monitor::forget_goals(TopicId topic, Time now) {
 
 // How long it has been listened to the status of the action; empty: its server was never seen.
 std::optional<Time> Monitor::goals_known_since(TopicId topic) const {
-  const auto first = knowledge_.sightings.first(topic);
+  const auto first = knowledge_.discovered.first(topic);
   return first ? std::optional(heard_since(std::max(*first, start_))) : std::nullopt;
 }
 

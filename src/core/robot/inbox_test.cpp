@@ -50,7 +50,7 @@ TEST(Inbox, WhatIsNotUrgentIsHandedOverAgainAndAgain) {
   }
 }
 
-TEST(Inbox, WhoeverLooksGetsWhatIsNotUrgent) {
+TEST(Inbox, ALookGetsObservationsThatAreNotUrgent) {
   Inbox inbox;
   inbox.put(SampleArrived{TopicId(0), 1}, Urgency::kSoon);
   std::vector<Observation> taken;
@@ -66,7 +66,7 @@ TEST(Inbox, ReturnsAtItsTimeWithNothing) {
   EXPECT_TRUE(taken.empty());
 }
 
-TEST(Inbox, WakesWhoeverWaits) {
+TEST(Inbox, WakesAWaitingReader) {
   Inbox inbox;
   std::thread other([&] { inbox.put(LinkTrouble{"x"}); });
   std::vector<Observation> taken;

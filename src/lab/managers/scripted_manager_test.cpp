@@ -29,12 +29,12 @@ class Script : public ScriptedManager {
   void note(const std::string& what) {
     log.push_back(std::to_string(now().time_since_epoch() / 1ms) + " " + what);
   }
-  Routine work(std::string who, Duration time) {
+  Routine work(std::string name, Duration time) {
     co_await enter(gate_);
-    note(who + " in");
+    note(name + " in");
     co_await sleep(time);
     leave(gate_);
-    note(who + " out");
+    note(name + " out");
   }
   Routine first() {
     co_await sleep(10ms);

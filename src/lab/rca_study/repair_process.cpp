@@ -410,7 +410,7 @@ void RepairProcess::show(const Situation& situation, Knowledge& knowledge) const
     knowledge.states.enter(rule, is_failing ? RulePhase::kFailing
                                  : is_ill   ? RulePhase::kExhausted
                                             : RulePhase::kQuiet);
-    knowledge.sightings.note(ComponentId(c), Time{});
+    knowledge.discovered.note(ComponentId(c), Time{});
     ComponentState& component = knowledge.components[ComponentId(c)];
     component.alive = !is_gone;
     component.process = is_gone ? ProcessState::kGone : ProcessState::kRunning;

@@ -73,7 +73,7 @@ TEST(SunsetClaims, AnOracleIsABound) {
 }
 
 // A planner that knows at once which component failed, but not the remedy.
-TEST(SunsetClaims, AgesComeNearWhoeverKnowsEachFaultAtOnce) {
+TEST(SunsetClaims, AgesComeNearAManagerThatKnowsEachFaultAtOnce) {
   for (const std::string profile : {"live", "paper"}) {
     SCOPED_TRACE(profile);
     const CampaignResult result = played({{kFull, "oracle", profile + ":known"},

@@ -369,7 +369,7 @@ class Run {
   bool is_never_seen(std::size_t part) const {
     const std::string topic = "/c" + std::to_string(part);
     for (std::size_t t = 0; t < rules_.topics.size(); ++t) {
-      if (rules_.topics[t].name == topic) return !manager_->knowledge().sightings.has(TopicId(t));
+      if (rules_.topics[t].name == topic) return !manager_->knowledge().discovered.has(TopicId(t));
     }
     return false;
   }

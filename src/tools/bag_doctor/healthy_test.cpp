@@ -40,7 +40,8 @@ class HealthyRecording : public testing::Test {
         value_of(read_course(recording_.write(folder_.path() / "bag.mcap"), library)), {});
     std::vector<std::string> codes;
     for (const auto& each : report.findings) {
-      if (each.gravity >= gravity) codes.push_back(each.code + " " + each.who + ": " + each.seen);
+      if (each.gravity >= gravity)
+        codes.push_back(each.code + " " + each.subject + ": " + each.seen);
     }
     return codes;
   }
@@ -138,7 +139,7 @@ TEST_F(HealthyRecording, OfATransformThatIsThereForAWhile) {
 }
 
 // The recorder finds publishers one after the other.
-TEST_F(HealthyRecording, WhoseTopicsAreFoundWithinSeconds) {
+TEST_F(HealthyRecording, HasItsTopicsFoundWithinSeconds) {
   for (int i = 0; i < 5; ++i) sensor("/imu" + std::to_string(i), 20, 0.1, 0.8 * i);
   expect_nothing();
 }

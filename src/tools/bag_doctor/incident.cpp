@@ -130,7 +130,7 @@ class Diagnosing {
       state.alive = true;
       state.lifecycle = Lifecycle::kActive;
       knowledge.graph.node_appeared(rules_->components[c].node);
-      knowledge.sightings.note(ComponentId(c), Time{});
+      knowledge.discovered.note(ComponentId(c), Time{});
     }
     const auto appear = [&](const std::string& node, EndpointKind kind,
                             const std::string& channel) {
@@ -303,7 +303,7 @@ std::vector<Owner> owners_of(const std::vector<Symptom>& symptoms, const RobotGr
     if (node.empty() && !symptom.status.empty()) node = node_of_status(symptom.status, graph.nodes);
     const bool is_node = !node.empty();
     owners.push_back({is_node                 ? std::move(node)
-                      : symptom.topic.empty() ? symptom.finding.who
+                      : symptom.topic.empty() ? symptom.finding.subject
                                               : symptom.topic,
                       is_node});
   }

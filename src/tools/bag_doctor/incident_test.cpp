@@ -159,7 +159,7 @@ TEST_F(IncidentTest, TheGraphMayBeThatOfRosgraphMsgs) {
   EXPECT_EQ(found.incidents[0].cause, "/camera");
 }
 
-TEST_F(IncidentTest, RulesSayWhoDependsOnWhom) {
+TEST_F(IncidentTest, RulesDeclareDependencies) {
   topic("/scan");
   topic("/image", 20);
   topic("/detections", 20.15);

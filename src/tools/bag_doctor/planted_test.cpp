@@ -160,7 +160,7 @@ BagReport report_of_robot(const std::map<std::string, Hit>& hits, const std::fil
 std::string text_of(const BagReport& report) {
   std::string text;
   for (const auto& each : report.findings)
-    text += doctor::label(each.gravity) + " " + each.code + " " + each.who + ": " + each.seen +
+    text += doctor::label(each.gravity) + " " + each.code + " " + each.subject + ": " + each.seen +
             " " + to_string(*each.when) + "\n";
   for (const auto& each : report.left_out) text += each + "\n";
   return text;

@@ -30,7 +30,7 @@ std::vector<std::string> breaches_of(const std::string& policy) {
       value_of(read_course(recording.write(folder.path() / "bag.mcap"), library));
   std::vector<std::string> said;
   for (const auto& each : breaches(value_of(parse_policy(policy)), course))
-    said.push_back(each.who + ": " + each.seen);
+    said.push_back(each.subject + ": " + each.seen);
   return said;
 }
 

@@ -57,7 +57,7 @@ class Writer {
     Finding finding = symptoms_[i].finding;
     finding.when = when_of(symptoms_[i].onset, symptoms_[i].until);
     if (!owners_[i].is_node) return finding;
-    if (finding.who != owners_[i].name) finding.who += ": " + owners_[i].name;
+    if (finding.subject != owners_[i].name) finding.subject += ": " + owners_[i].name;
     finding.nodes = {owners_[i].name};
     return finding;
   }

@@ -44,7 +44,7 @@ class SymptomTest : public testing::Test {
   }
   // "D201 error /imu at 19.9".
   static std::string short_of(const Finding& finding) {
-    return fmt::format("{} {} {} at {:.1f}", finding.code, label(finding.gravity), finding.who,
+    return fmt::format("{} {} {} at {:.1f}", finding.code, label(finding.gravity), finding.subject,
                        finding.when->from);
   }
   std::vector<std::string> shorts() {

@@ -46,9 +46,9 @@ Baseline::Node node_of(const Picture& picture, const Node& node) {
 
 // ---- comparing
 
-Finding finding(const char* code, Gravity gravity, const std::string& who, std::string seen,
+Finding finding(const char* code, Gravity gravity, const std::string& subject, std::string seen,
                 std::string matters, std::string remedy) {
-  return {code, gravity, who, std::move(seen), std::move(matters), std::move(remedy)};
+  return {code, gravity, subject, std::move(seen), std::move(matters), std::move(remedy)};
 }
 
 void compare_wires(const std::string& node, const char* what,
@@ -66,7 +66,7 @@ void compare_wires(const std::string& node, const char* what,
                                    fmt::format("it {} it as {}, and did as {}", what,
                                                is_type ? found->second.type : found->second.qos,
                                                is_type ? before.type : before.qos),
-                                   "who was connected to it may not be any more",
+                                   "nodes that were connected to it may be disconnected now",
                                    "if it is meant, save the robot as healthy anew"));
       changed.nodes = {node};
       changed.topic = name;
@@ -153,7 +153,7 @@ void compare_rates(const Baseline& healthy, const Baseline& now, Findings& all) 
                                 duration(from_seconds(rate.listened)), hertz(before))
                   : fmt::format("{:.3g} messages a second come, and {:.3g} did", hertz(rate),
                                 hertz(before)),
-        "who reads it is late, or works with less than it was made for",
+        "its subscribers are late, or get less data than they need",
         "is the machine busy (culprit doctor names what eats a core), or the device slower?"));
     all.back().topic = topic;
   }
@@ -198,15 +198,15 @@ Findings compare(const Baseline& healthy, const Baseline& now) {
     all.push_back(
         finding("D108", Gravity::kError, "tf: " + printable(parent) + " → " + printable(child),
                 "it was published, and is not", "nodes that ask for it wait or get an error",
-                "see the log of who published it"));
+                "see the log of the node that published it"));
     all.back().topic = "/tf";
   }
   for (const std::string& name : healthy.statuses) {
     if (now.statuses.contains(name)) continue;
     all.push_back(finding("D109", Gravity::kWarning, printable(name),
                           "its diagnostic status was heard, and is not",
-                          "who reports it has ended, or does not look any more",
-                          "see who publishes /diagnostics: ros2 topic info -v /diagnostics"));
+                          "the node that reports it has exited, or checks no more",
+                          "find the node that publishes it: ros2 topic info -v /diagnostics"));
   }
   put_worst_first(all);
   return all;

@@ -124,7 +124,7 @@ std::vector<Break> breaks_between(Medium medium, const End& from, const End& to)
     all.push_back({"D008", fmt::format("partitions that it sends to: {}; that are listened to: {}",
                                        partitions_of(from), partitions_of(to))});
   if (!is_topic && !have_one_mapping(from, to))
-    all.push_back({"D007", fmt::format("who calls is on {}, who serves on {}",
+    all.push_back({"D007", fmt::format("the client is on {}, the server on {}",
                                        middleware(from.vendor), middleware(to.vendor))});
   return all;
 }
@@ -349,14 +349,15 @@ void look_for_undiscovered(const Picture& picture, Findings& all) {
              comings->second.back().at + kSettled <= picture.looked;
     });
     if (!is_settled || std::ranges::all_of(each.nodes, is_tool_node)) continue;
-    all.push_back({"D009", Gravity::kWarning, listed(each.nodes),
-                   fmt::format("{} of its endpoints were announced and did not come in {}",
-                               each.undiscovered, duration(picture.looked)),
-                   "who does not discover an endpoint does not hear it: at least the doctor does "
-                   "not, and perhaps others",
-                   "start it again; if it stays, see whether large or fragmented datagrams get "
-                   "through (MTU, Wi-Fi, firewall)",
-                   each.nodes});
+    all.push_back(
+        {"D009", Gravity::kWarning, listed(each.nodes),
+         fmt::format("{} of its endpoints were announced and did not come in {}", each.undiscovered,
+                     duration(picture.looked)),
+         "a node that does not discover an endpoint gets nothing from it: at least the doctor does "
+         "not, and perhaps others",
+         "start it again; if it stays, see whether large or fragmented datagrams get "
+         "through (MTU, Wi-Fi, firewall)",
+         each.nodes});
   }
 }
 

@@ -7,7 +7,8 @@ namespace culprit::doctor {
 
 void put_worst_first(Findings& findings) {
   std::ranges::sort(findings, [](const Finding& a, const Finding& b) {
-    return std::tie(b.gravity, a.code, a.who, a.seen) < std::tie(a.gravity, b.code, b.who, b.seen);
+    return std::tie(b.gravity, a.code, a.subject, a.seen) <
+           std::tie(a.gravity, b.code, b.subject, b.seen);
   });
   findings.erase(std::unique(findings.begin(), findings.end()), findings.end());
 }

@@ -70,7 +70,7 @@ TEST(Examine, D001ReliabilityThatIsNotOffered) {
   const Finding finding = only_finding(robot_with(publishes("/scan", kBestEffort), reads("/scan")));
   EXPECT_EQ(finding.code, "D001");
   EXPECT_EQ(finding.gravity, Gravity::kError);
-  EXPECT_EQ(finding.who, "/scan: /lidar → /slam");
+  EXPECT_EQ(finding.subject, "/scan: /lidar → /slam");
   EXPECT_EQ(finding.seen, "reliability: offered is best effort, requested is reliable");
   EXPECT_EQ(finding.remedy, "let /lidar offer reliable, or /slam request best effort");
   EXPECT_THAT(finding.nodes, ElementsAre("/lidar", "/slam"));
@@ -112,11 +112,11 @@ TEST(Examine, D001EveryPolicyWithBothValues) {
   EXPECT_THAT(examine(robot_with(publishes("/scan", more), reads("/scan", less))), IsEmpty());
 }
 
-TEST(Examine, D001IsToldOnceForAllWhoDoNotHearAPublisher) {
+TEST(Examine, D001IsReportedOnceForAllThatDoNotReceiveFromAPublisher) {
   Picture picture = robot_with(publishes("/scan", kBestEffort), reads("/scan"));
   for (const char* other : {"/nav", "/map", "/log", "/safety"})
     picture.nodes.push_back(node(other, 13, {reads("/scan")}));
-  EXPECT_EQ(only_finding(picture).who, "/scan: /lidar → /log, /map, /nav and 2 more");
+  EXPECT_EQ(only_finding(picture).subject, "/scan: /lidar → /log, /map, /nav and 2 more");
   // Each endpoint counts, not only the first of a node.
   Picture both = robot_with(publishes("/scan"), reads("/scan"));
   both.nodes[0].endpoints.push_back(publishes("/scan", kBestEffort));
@@ -160,7 +160,7 @@ TEST(Examine, D004WhatAllOthersOfItsKindHave) {
   }
   EXPECT_THAT(examine(picture), IsEmpty());
   picture.nodes[1].endpoints.pop_back();
-  EXPECT_EQ(only_finding(picture).who, "/camera_3/image: /cameras → nobody");
+  EXPECT_EQ(only_finding(picture).subject, "/camera_3/image: /cameras → nobody");
   EXPECT_EQ(only_finding(picture).code, "D004");
   picture.nodes[1].endpoints.pop_back();
   EXPECT_THAT(examine(picture), IsEmpty()) << "one of three is no rule";
@@ -171,7 +171,7 @@ TEST(Examine, D004WhatAllOthersOfItsKindHave) {
     wheels.nodes[1].endpoints.push_back(reads(topic));
     if (std::string(topic) != "/rear/speed") wheels.nodes[0].endpoints.push_back(publishes(topic));
   }
-  EXPECT_EQ(only_finding(wheels).who, "/rear/speed: nobody → /wheels");
+  EXPECT_EQ(only_finding(wheels).subject, "/rear/speed: nobody → /wheels");
 }
 
 TEST(Examine, D005OneNameOfATypeAndTwoDefinitions) {
@@ -205,7 +205,7 @@ TEST(Examine, D007AServiceOverTwoMiddlewares) {
   EXPECT_THAT(examine(picture), IsEmpty());
   picture.nodes[1].node.vendor = ros2::Vendor::kCyclone;
   EXPECT_EQ(only_finding(picture).code, "D007");
-  EXPECT_EQ(only_finding(picture).seen, "who calls is on Cyclone DDS, who serves on Fast DDS");
+  EXPECT_EQ(only_finding(picture).seen, "the client is on Cyclone DDS, the server on Fast DDS");
   picture.nodes[0].endpoints[0].names_its_pair = true;
   EXPECT_THAT(examine(picture), IsEmpty()) << "it speaks both";
   picture.nodes[0].endpoints = {publishes("/scan")};
@@ -261,7 +261,7 @@ TEST(Examine, D011WhatHasEndedAndD012WhatHangs) {
   busy.asked = 9;
   for (const char* name : {"/a", "/b", "/c", "/d", "/e"}) busy.unanswered[name] = {4, false};
   EXPECT_EQ(only_finding(busy).gravity, Gravity::kWarning) << "so many do not hang at once";
-  EXPECT_EQ(only_finding(busy).who, "/a, /b, /c and 2 more");
+  EXPECT_EQ(only_finding(busy).subject, "/a, /b, /c and 2 more");
   busy.asked = 10;
   EXPECT_THAT(examine(busy), SizeIs(5));
 
@@ -275,7 +275,7 @@ TEST(Examine, D011WhatHasEndedAndD012WhatHangs) {
   EXPECT_THAT(examine(clients), SizeIs(2)) << "no node of the process answers";
   clients.unanswered.erase("/slam");
   clients.nodes.front().endpoints.push_back(reads("/tree_log"));
-  EXPECT_EQ(only_finding(clients).who, "/slam_clients");
+  EXPECT_EQ(only_finding(clients).subject, "/slam_clients");
 
   Picture lost = robot();
   lost.comings["/remote"] = {{.at = 3s, .is_there = false, .was_lost = true}};
@@ -301,7 +301,7 @@ TEST(Examine, D014WhatIsLeftOverFromAnEarlierLaunch) {
   Picture picture = robot();
   picture.processes[12] = {.program = "slam_toolbox", .is_left_over = true};
   EXPECT_EQ(only_finding(picture).code, "D014");
-  EXPECT_EQ(only_finding(picture).who, "/slam (process 12, slam_toolbox)");
+  EXPECT_EQ(only_finding(picture).subject, "/slam (process 12, slam_toolbox)");
 }
 
 TEST(Examine, D015WhatNobodyDrivesOn) {
@@ -319,7 +319,7 @@ TEST(Examine, D015WhatNobodyDrivesOn) {
   managed.nodes.back().node.name = "/__mode_manager";
   EXPECT_THAT(examine(managed), IsEmpty()) << "that of system modes is hidden";
   managed.nodes.back().node.name = "/_culprit_survey";
-  EXPECT_EQ(only_finding(managed).code, "D015") << "who looks on does not drive";
+  EXPECT_EQ(only_finding(managed).code, "D015") << "a node that only looks does not drive";
   Picture on_its_way = picture;
   on_its_way.lifecycles["/lidar"].last = "activating";
   EXPECT_THAT(examine(on_its_way), IsEmpty());
@@ -402,7 +402,7 @@ TEST(Examine, D020WhatReportsItselfIll) {
   ASSERT_THAT(findings, SizeIs(2));
   EXPECT_EQ(findings[0].seen, "its diagnostic status is ERROR: overheated");
   EXPECT_EQ(findings[0].gravity, Gravity::kError);
-  EXPECT_EQ(findings[1].who, "gps") << "the worst first";
+  EXPECT_EQ(findings[1].subject, "gps") << "the worst first";
   EXPECT_EQ(findings[1].gravity, Gravity::kWarning);
 }
 
@@ -424,7 +424,7 @@ TEST(Examine, D021WhatIsNotReportedAnyMore) {
 TEST(Examine, D030NobodyThere) {
   Picture nobody;
   nobody.domain = 7;
-  EXPECT_EQ(only_finding(nobody).who, "domain 7");
+  EXPECT_EQ(only_finding(nobody).subject, "domain 7");
   EXPECT_EQ(only_finding(nobody).seen, "no nodes were seen");
   nobody.other_domains = {{42, {"lidar_driver (process 4711)"}, {}}};
   EXPECT_EQ(only_finding(nobody).seen,
@@ -455,7 +455,7 @@ TEST(Examine, D032WhatCanBeReachedFromItsOwnComputerOnly) {
   EXPECT_THAT(examine(picture), IsEmpty());
   picture.participants[0].is_local = true;
   EXPECT_EQ(only_finding(picture).code, "D032");
-  EXPECT_EQ(only_finding(picture).who, "/lidar");
+  EXPECT_EQ(only_finding(picture).subject, "/lidar");
   picture.participants[1].host = "rover1";
   EXPECT_THAT(examine(picture), IsEmpty()) << "all on one computer";
 }
@@ -543,7 +543,7 @@ TEST(Examine, D041ASensorIsSilent) {
   Picture picture = robot();
   picture.flows["/scan"].listened = 5s;
   EXPECT_EQ(only_finding(picture).code, "D041");
-  EXPECT_EQ(only_finding(picture).who, "/scan: /lidar → /slam");
+  EXPECT_EQ(only_finding(picture).subject, "/scan: /lidar → /slam");
   picture.flows["/scan"].messages = 1;
   EXPECT_THAT(examine(picture), IsEmpty());
 
@@ -601,7 +601,7 @@ TEST(Examine, D042OldStampsD043FutureStampsD044StampsThatJumpBack) {
   }
   EXPECT_THAT(examine(bag), IsEmpty()) << "they agree";
   bag.flows["/image"].stamps->lag += 60s;
-  EXPECT_EQ(only_finding(bag).who, "/image: /lidar");
+  EXPECT_EQ(only_finding(bag).subject, "/image: /lidar");
   EXPECT_EQ(only_finding(bag).code, "D042");
 }
 
@@ -634,7 +634,7 @@ TEST(Examine, D046SimulatedTimeStandsStill) {
   picture.clock.reset();
   EXPECT_EQ(only_finding(picture).code, "D046");
   EXPECT_EQ(only_finding(picture).gravity, Gravity::kError);
-  EXPECT_EQ(only_finding(picture).who, "/lidar and /slam");
+  EXPECT_EQ(only_finding(picture).subject, "/lidar and /slam");
 }
 
 TEST(Examine, D047SomeUseSimulatedTimeAndSomeDoNot) {
@@ -644,7 +644,8 @@ TEST(Examine, D047SomeUseSimulatedTimeAndSomeDoNot) {
   picture.uses_simulated_time["/camera"] = false;
   picture.uses_simulated_time["/screen"] = false;
   EXPECT_EQ(only_finding(picture).code, "D047");
-  EXPECT_EQ(only_finding(picture).who, "/camera") << "who stamps nothing has its own time";
+  EXPECT_EQ(only_finding(picture).subject, "/camera")
+      << "a node that stamps nothing has its own time";
 }
 
 // ---- tf
@@ -670,7 +671,7 @@ TEST(Examine, D050AFrameThatIsInNoTransform) {
   Picture picture = robot_with_tree();
   picture.flows["/scan"].frames = {"laser_front"};
   EXPECT_EQ(only_finding(picture).code, "D050");
-  EXPECT_EQ(only_finding(picture).who, "tf: laser_front");
+  EXPECT_EQ(only_finding(picture).subject, "tf: laser_front");
   picture.flows["/scan"].frames = {"/laser", ""};
   EXPECT_THAT(examine(picture), IsEmpty()) << "an old way to write it, and none";
   picture.flows["/scan"].frames = {"laser_front"};
@@ -684,7 +685,7 @@ TEST(Examine, D051AStaleTransform) {
   Picture picture = robot_with_tree();
   picture.transforms[1].last = 2s;
   EXPECT_EQ(only_finding(picture).code, "D051");
-  EXPECT_EQ(only_finding(picture).who, "tf: odom → base");
+  EXPECT_EQ(only_finding(picture).subject, "tf: odom → base");
   EXPECT_THAT(only_finding(picture).seen, HasSubstr("not any more for 6 s"));
   picture.transforms[1].last = 8s;
   picture.transforms[1].lag = 5s;
@@ -715,7 +716,7 @@ TEST(Examine, D054TreesThatNothingConnects) {
   Picture picture = robot_with_tree();
   picture.transforms.erase(picture.transforms.begin() + 1);
   EXPECT_EQ(only_finding(picture).code, "D054");
-  EXPECT_EQ(only_finding(picture).who, "tf: base and map");
+  EXPECT_EQ(only_finding(picture).subject, "tf: base and map");
   picture.transforms = {edge("robot1/odom", "robot1/base"), edge("robot2/odom", "robot2/base")};
   picture.flows.clear();
   EXPECT_THAT(examine(picture), IsEmpty()) << "two robots";

@@ -28,7 +28,7 @@ struct When {
 struct Finding {
   std::string code;  // "D001": explanations.h has a page for each
   Gravity gravity = Gravity::kError;
-  std::string who;                   // "/scan: /lidar_driver → /slam"
+  std::string subject;               // "/scan: /lidar_driver → /slam"
   std::string seen;                  // what was seen
   std::string matters;               // what follows from it
   std::string remedy;                // what to do

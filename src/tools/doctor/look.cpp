@@ -51,7 +51,7 @@ class Look {
     if (!context) return Error{context.error()};
     context_ = std::move(*context);
     auto node =
-        ros2::Node::create(*context_, {"/", "_culprit_doctor"}, ros2::Node::Extent::kOnlooker);
+        ros2::Node::create(*context_, {"/", "_culprit_doctor"}, ros2::Node::Extent::kMinimal);
     if (!node) return Error{node.error()};
     node_ = std::move(*node);
     node_name_ = node_->name().full();

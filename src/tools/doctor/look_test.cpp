@@ -151,7 +151,7 @@ std::vector<std::string> found_in(const Picture& picture) {
   for (const Finding& finding : examine(picture)) {
     // Findings about the machine that runs the tests may vary.
     if (finding.code == "D018" || finding.code == "D060") continue;
-    all.push_back(finding.code + " " + finding.who);
+    all.push_back(finding.code + " " + finding.subject);
   }
   return all;
 }
@@ -170,7 +170,7 @@ std::vector<std::string> found(const ros2::TestDomain& domain, std::size_t wante
   return all;
 }
 
-TEST(Look, FindsWhoDoesNotHearWhomAndNothingElse) {
+TEST(Look, FindsNodesThatDoNotReceiveFromOthersAndNothingElse) {
   const ros2::TestDomain domain;
   auto iron = domain.options();
   iron.gid_size = ros2::GidSize::kIronAndNewer;
@@ -377,11 +377,11 @@ TEST(Look, TellsWhatIsNotAsItWas) {
   ASSERT_TRUE(now) << now.error();
   std::vector<std::string> all;
   for (const Finding& finding : compare(baseline, baseline_of(*now)))
-    all.push_back(finding.code + " " + finding.who);
+    all.push_back(finding.code + " " + finding.subject);
   EXPECT_THAT(all, ElementsAre("D100 /gone", "D101 /fresh", "D104 /fast", "D105 /robot"));
 }
 
-TEST(Look, SeesWhoIsSecuredAndWhoIsNot) {
+TEST(Look, SeesWhichNodesAreSecured) {
   const ros2::TestDomain domain;
   ros2::TestKeystore keystore;
   keystore.add("/robot", ros2::TestKeystore::everything("/robot"));

@@ -176,7 +176,7 @@ bool is_driven(const Picture& picture, const std::string& node) {
 }
 
 // A node that waits for a topic that only this one publishes; empty: there is none.
-std::string who_waits_for(const std::string& node, const Wiring& wiring) {
+std::string waiting_for(const std::string& node, const Wiring& wiring) {
   for (const auto& [name, topic] : wiring.topics) {
     const bool is_only_one =
         !topic.senders.empty() &&
@@ -208,7 +208,7 @@ void examine_states(const Picture& picture, Findings& all) {
     const bool waits =
         state.last == "inactive" || state.last == "unconfigured" || state.last == "finalized";
     if (!waits || state.first != state.last || active == 0 || is_driven(picture, node)) continue;
-    const std::string waiting = who_waits_for(node, wiring);
+    const std::string waiting = waiting_for(node, wiring);
     if (waiting.empty()) continue;
     const bool is_final = state.last == "finalized";
     all.push_back(
@@ -243,10 +243,10 @@ void examine_statuses(const Picture& picture, Findings& all) {
   constexpr Duration kBurst = std::chrono::seconds(2);
   for (const auto& [name, status] : picture.statuses) {
     const ros2::msg::DiagnosticStatus& report = status.report;
-    const std::string who = printable(name);
+    const std::string subject = printable(name);
     if (report.level >= 2) {
       const bool is_stale = report.level == 3;
-      all.push_back({"D020", is_stale ? Gravity::kWarning : Gravity::kError, who,
+      all.push_back({"D020", is_stale ? Gravity::kWarning : Gravity::kError, subject,
                      std::string("its diagnostic status is ") + (is_stale ? "STALE" : "ERROR") +
                          (report.message.empty() ? "" : ": " + printable(report.message)),
                      is_stale ? "its node has stopped reporting" : "its node reports a failure",
@@ -256,11 +256,11 @@ void examine_statuses(const Picture& picture, Findings& all) {
     const Duration pause = (status.last - status.first) / static_cast<int>(status.count - 1);
     const Duration silent = picture.looked - status.last;
     if (silent < std::max(kPatience, kPauses * pause)) continue;
-    all.push_back({"D021", Gravity::kError, who,
+    all.push_back({"D021", Gravity::kError, subject,
                    fmt::format("its diagnostic status came every {}, and not any more for {}",
                                duration(pause), duration(silent)),
-                   "who reports it hangs or has ended",
-                   "see who publishes /diagnostics: ros2 topic info -v /diagnostics"});
+                   "the node that reports it hangs or has exited",
+                   "find the node that publishes it: ros2 topic info -v /diagnostics"});
   }
 }
 

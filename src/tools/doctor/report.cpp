@@ -21,12 +21,12 @@ Json sarif_result(const Finding& finding) {
   Json logical = Json::array();
   for (const std::string& node : finding.nodes) logical.push_back(logical_location(node, "node"));
   if (!finding.topic.empty()) logical.push_back(logical_location(finding.topic, "topic"));
-  if (logical.empty()) logical.push_back(logical_location(finding.who, "robot"));
+  if (logical.empty()) logical.push_back(logical_location(finding.subject, "robot"));
   return {{"ruleId", finding.code},
           {"level", label(finding.gravity)},
           {"message",
-           {{"text",
-             finding.who + ": " + finding.seen + "\n" + finding.matters + "\n" + finding.remedy}}},
+           {{"text", finding.subject + ": " + finding.seen + "\n" + finding.matters + "\n" +
+                         finding.remedy}}},
           {"locations", Json::array({{{"logicalLocations", std::move(logical)}}})}};
 }
 
@@ -49,7 +49,7 @@ void leave_out_doubtful(const Picture& picture, Report& report) {
 
 Json to_json(const Finding& finding) {
   Json json{{"code", finding.code},       {"severity", label(finding.gravity)},
-            {"who", finding.who},         {"nodes", finding.nodes},
+            {"who", finding.subject},     {"nodes", finding.nodes},
             {"topic", finding.topic},     {"seen", finding.seen},
             {"matters", finding.matters}, {"remedy", finding.remedy}};
   if (!finding.when) return json;

@@ -44,7 +44,7 @@ Picture healthy_robot() {
 std::vector<std::string> differences(const Picture& now) {
   std::vector<std::string> all;
   for (const Finding& each : compare(baseline_of(healthy_robot()), baseline_of(now)))
-    all.push_back(each.code + " " + each.who + ": " + each.seen);
+    all.push_back(each.code + " " + each.subject + ": " + each.seen);
   return all;
 }
 

@@ -14,7 +14,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-std::string who(const Transform& edge) { return edge.node.empty() ? "somebody" : edge.node; }
+std::string publisher_of(const Transform& edge) {
+  return edge.node.empty() ? "an unknown node" : edge.node;
+}
 
 std::string edge_of(const Transform& edge) {
   return printable(edge.parent) + " → " + printable(edge.child);
@@ -48,7 +50,7 @@ void look_for_rivals(const ByChild& frames, Findings& all) {
                      Gravity::kError,
                      "tf: " + printable(child),
                      fmt::format("it has two parents: {} ({}) and {} ({})", printable(a->parent),
-                                 who(*a), printable(b->parent), who(*b)),
+                                 publisher_of(*a), printable(b->parent), publisher_of(*b)),
                      "tf keeps what came last, so the tree falls apart and together all the time",
                      "switch one of them off (publish_tf), or rename a frame",
                      {a->node, b->node},
@@ -62,7 +64,7 @@ void look_for_rivals(const ByChild& frames, Findings& all) {
     all.push_back({"D053",
                    Gravity::kError,
                    "tf: " + edge_of(*c),
-                   "two publish it: " + who(*c) + " and " + who(*d),
+                   "two publish it: " + publisher_of(*c) + " and " + publisher_of(*d),
                    "where they differ the frame jumps between the two",
                    "switch one of them off (publish_tf), or end what is there twice",
                    {c->node, d->node},
@@ -81,18 +83,18 @@ void look_at_age(const Picture& picture, const Transform& edge, Findings& all) {
   const bool is_simulated = picture.clock.has_value();
   const bool is_old = !is_simulated && edge.lag > kOldAge;
   if (!has_stopped && !is_old) return;
-  all.push_back(
-      {"D051",
-       has_stopped ? Gravity::kError : Gravity::kWarning,
-       "tf: " + edge_of(edge),
-       has_stopped ? fmt::format("it came every {} from {}, and not any more for {}",
-                                 duration(pause), who(edge), duration(silent))
-                   : fmt::format("{} publishes it with stamps that are {} old", who(edge),
-                                 duration(edge.lag)),
-       "whoever asks for it now waits or gets an error, and what needs it stops",
-       has_stopped ? "see the log of " + who(edge) : "see what delays it, or whose clock is behind",
-       {edge.node},
-       "/tf"});
+  all.push_back({"D051",
+                 has_stopped ? Gravity::kError : Gravity::kWarning,
+                 "tf: " + edge_of(edge),
+                 has_stopped ? fmt::format("it came every {} from {}, and not any more for {}",
+                                           duration(pause), publisher_of(edge), duration(silent))
+                             : fmt::format("{} publishes it with stamps that are {} old",
+                                           publisher_of(edge), duration(edge.lag)),
+                 "whoever asks for it now waits or gets an error, and what needs it stops",
+                 has_stopped ? "see the log of " + publisher_of(edge)
+                             : "see what delays it, or whose clock is behind",
+                 {edge.node},
+                 "/tf"});
 }
 
 // The frame at which the chain of parents ends.
@@ -127,7 +129,7 @@ void look_for_trees(const Picture& picture, const ByChild& frames, Findings& all
          "tf: " + listed(names),
          fmt::format("these are the roots of {} trees, and nothing connects them", some.size()),
          "nothing that is measured in one can be placed in another",
-         "who publishes the transform between them? Localization that has not started (map "
+         "which node publishes the transform between them? Localization that has not started (map "
          "→ odom) and a robot_state_publisher without a model leave such gaps",
          {},
          "/tf"});

@@ -89,7 +89,7 @@ TEST(DrillRecord, ResumesWhatIsNotDoneAndRefusesAnotherPlan) {
   EXPECT_THAT(other.error(), HasSubstr("choose another --record"));
 }
 
-TEST(DrillResults, OfAFaultSayWhoNoticedWhatHelpedAndHowLongItTook) {
+TEST(DrillResults, SayTheRuleTheRemedyAndTheTimeOfAFault) {
   const Results results = results_with({killed(1), killed(2), killed(3)});
   ASSERT_EQ(results.faults.size(), 1u);
   const FaultResult& fault = results.faults[0];

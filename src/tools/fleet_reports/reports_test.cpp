@@ -53,7 +53,7 @@ struct FleetReports : testing::Test {
 };
 
 // One test, for each starts a server.
-TEST_F(FleetReports, SayWhoIsIllWhatIsWorstAndWhoIsNotLikeTheOthers) {
+TEST_F(FleetReports, SayWhichRobotsFailWhatIsWorstAndWhichDiffer) {
   const std::string status = text_of(status_queries({}));
   EXPECT_NE(status.find("robot 9"), std::string::npos) << status;
   EXPECT_EQ(status.find("robot 3"), std::string::npos) << status;

@@ -90,7 +90,7 @@ struct IncidentPage : testing::Test {
   }
 };
 
-TEST_F(IncidentPage, TellsWhoWasBlamedWhatWasDecidedAndWhatWasRecorded) {
+TEST_F(IncidentPage, ReportsTheBlameTheDecisionAndTheRecording) {
   const std::string html = incident_page(page_of_rover());
   for (const char* text :
        {"<title>drive, 2027-01-15 10:00:00</title>", "rover", "ScanSilent", "2.0 s", "slow_down",

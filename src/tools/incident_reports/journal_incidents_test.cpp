@@ -94,7 +94,7 @@ struct JournalIncidents : testing::Test {
   const TestFolder folder;
   journal::Batch rows;
 };
-TEST_F(JournalIncidents, TellWhoseFaultItWasWhatSufferedAndWhatHelped) {
+TEST_F(JournalIncidents, TellTheCauseTheEffectsAndTheRepair) {
   session(0);
   tell(9.5, {{"type", "component_lost"}, {"component", "camera"}});
   detected(10, "FusionSilent", "WARNING");
@@ -122,7 +122,7 @@ TEST_F(JournalIncidents, TellWhoseFaultItWasWhatSufferedAndWhatHelped) {
   EXPECT_NEAR(events[5].wall, kNoon + 14, 1e-3);
 }
 
-TEST_F(JournalIncidents, NameWhoWasGoneWhereNobodyIsBlamed) {
+TEST_F(JournalIncidents, NameTheExitedComponentWhereNoneIsBlamed) {
   session(0);
   tell(9, {{"type", "component_lost"}, {"component", "camera"}});
   detected(10, "CameraDead");

@@ -47,7 +47,7 @@ std::map<std::string, std::string> component_names(const std::vector<std::string
 }
 
 // Recipes of containers for which the dump knows how all of their nodes are loaded: a replaced container must load them all again.
-std::map<std::string, Recipe> usable_recipes(const Sighting& seen) {
+std::map<std::string, Recipe> usable_recipes(const RobotProfile& seen) {
   std::map<std::string, Recipe> usable;
   const auto& nodes = seen.robot.nodes;
   for (const auto& each_known : seen.dump.recipes) {
@@ -105,7 +105,7 @@ bool is_of_command_line(const std::string& node) { return own_name(node).starts_
 
 class Draft {
  public:
-  Draft(const Sighting& seen, Packs packs, const KnownNames& known)
+  Draft(const RobotProfile& seen, Packs packs, const KnownNames& known)
       : seen_(seen), recipes_(usable_recipes(seen)) {
     for (const std::string& name : seen_.left) {
       if (!is_tool_node(name))
@@ -403,7 +403,7 @@ class Draft {
     }
   }
 
-  const Sighting& seen_;
+  const RobotProfile& seen_;
   const std::map<std::string, Recipe> recipes_;
   std::vector<std::string> nodes_;
   std::map<std::string, std::vector<std::string>> others_;  // of the same process, by its main node
@@ -416,11 +416,11 @@ class Draft {
 
 }  // namespace
 
-std::vector<Part> parts_of_draft(const Sighting& seen, Packs packs, const KnownNames& known) {
+std::vector<Part> parts_of_draft(const RobotProfile& seen, Packs packs, const KnownNames& known) {
   return Draft(seen, packs, known).parts();
 }
 
-std::string draft(const Sighting& seen, Packs packs) {
+std::string draft(const RobotProfile& seen, Packs packs) {
   const std::vector<Part> parts = parts_of_draft(seen, packs);
   std::string text;
   std::vector<Mark> marks;
@@ -437,7 +437,7 @@ std::string draft(const Sighting& seen, Packs packs) {
   return text + (marks.empty() ? "" : "\n" + text_of(marks));
 }
 
-std::string parameters_text(const Sighting& seen, const std::string& before) {
+std::string parameters_text(const RobotProfile& seen, const std::string& before) {
   std::map<std::string, std::string> sections = sections_in(before);  // by the line above
   bool names_one = false;
   for (const auto& [node, recipe] : usable_recipes(seen)) {

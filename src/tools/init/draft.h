@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "init/part.h"
-#include "init/sighting.h"
+#include "init/robot_profile.h"
 
 namespace culprit::init {
 
@@ -22,15 +22,16 @@ struct KnownNames {
 
 // For each node whose process can be started again, a component and a rule that it runs and its topics are published, or with kChosen the pack that monitors
 // these. Then other rules and proposals; at the end the omissions, with the reasons. Guesses are marked "# guess:".
-std::vector<Part> parts_of_draft(const Sighting& seen, Packs packs, const KnownNames& known = {});
+std::vector<Part> parts_of_draft(const RobotProfile& seen, Packs packs,
+                                 const KnownNames& known = {});
 
 // These together: the text of a rule file that `culprit check --robot --strict` finds nothing in. Ends in the
 // marks by which update() knows what was drafted (marks.h).
-std::string draft(const Sighting& seen, Packs packs = Packs::kNone);
+std::string draft(const RobotProfile& seen, Packs packs = Packs::kNone);
 
 // The file of parameters that the draft names, as --params-file takes it, with a mark (marks.h); empty: it
 // names none. `before`: the file that is there, as culprit wrote it: what it has of nodes of which the dump says nothing now
 // stays, for these may only be ill.
-std::string parameters_text(const Sighting& seen, const std::string& before = "");
+std::string parameters_text(const RobotProfile& seen, const std::string& before = "");
 
 }  // namespace culprit::init

@@ -16,8 +16,8 @@ using testing::HasSubstr;
 using testing::Not;
 
 // A camera of 20 Hz that a person started, and a lidar of 10 Hz that systemd did.
-Sighting robot() {
-  Sighting seen;
+RobotProfile robot() {
+  RobotProfile seen;
   seen.looked = 30s;
   seen.domain = 7;
   seen.robot.nodes["/robot/camera"] = {.parameters = {}, .lifecycle = "active", .pid = 11};
@@ -47,10 +47,10 @@ RuleSet rules_in(const std::string& text) {
   return checked.rules ? *checked.rules : RuleSet{};
 }
 
-RuleSet rules_of(const Sighting& seen) { return rules_in(draft(seen)); }
+RuleSet rules_of(const RobotProfile& seen) { return rules_in(draft(seen)); }
 
 // With all that it proposes.
-RuleSet rules_with_proposals(const Sighting& seen) {
+RuleSet rules_with_proposals(const RobotProfile& seen) {
   return rules_in(std::regex_replace(
       draft(seen), std::regex("\n#   (\\s*(SIGNAL|INTERLOCK|RULE|POLICIES|TRIGGER) )"), "\n$1"));
 }
@@ -60,7 +60,7 @@ const Component& component(const RuleSet& rules, const std::string& name) {
 }
 
 TEST(Draft, LeavesOutToolsAndSaysSo) {
-  Sighting seen = robot();
+  RobotProfile seen = robot();
   seen.robot.nodes["/rosbag2_recorder"] = {.parameters = {}, .lifecycle = "", .pid = 13};
   seen.starts["/rosbag2_recorder"].command = {"/usr/bin/python3", "/opt/ros/humble/bin/ros2", "bag",
                                               "record", "-a"};
@@ -73,7 +73,7 @@ TEST(Draft, LeavesOutToolsAndSaysSo) {
 }
 
 TEST(Draft, LeavesOutWhatComesAndGoesAndSaysSo) {
-  Sighting seen = robot();
+  RobotProfile seen = robot();
   seen.robot.nodes["/monitor"] = {.parameters = {}, .lifecycle = "", .pid = 13};
   seen.starts["/monitor"].command = {"/usr/bin/monitor"};
   seen.came_late = {"/monitor"};
@@ -135,7 +135,7 @@ RULE camera_failed
 }
 
 TEST(Draft, NothingThatAProcessWasStartedWithIsReadAsAnythingElse) {
-  Sighting seen = robot();
+  RobotProfile seen = robot();
   const std::vector<std::string> odd = {"/opt/cam/driver", "it's",  "a\"b", "c\\d",
                                         "two\nlines",      "\ttab", "",     "$HOME",
                                         "# no comment"};
@@ -144,7 +144,7 @@ TEST(Draft, NothingThatAProcessWasStartedWithIsReadAsAnythingElse) {
 }
 
 TEST(Draft, OfTwoNodesOfOneNameEachHasItsOwn) {
-  Sighting seen = robot();
+  RobotProfile seen = robot();
   seen.robot.nodes["/left/camera"] = {.parameters = {}, .lifecycle = "", .pid = 13};
   seen.starts["/left/camera"].command = {"/opt/cam/driver", "left"};
   const RuleSet rules = rules_of(seen);
@@ -153,14 +153,14 @@ TEST(Draft, OfTwoNodesOfOneNameEachHasItsOwn) {
 }
 
 TEST(Draft, AWordOfTheLanguageIsNoName) {
-  Sighting seen = robot();
+  RobotProfile seen = robot();
   seen.robot.nodes["/RULE"] = {.parameters = {}, .lifecycle = "", .pid = 13};
   seen.starts["/RULE"].command = {"/opt/rule"};
   EXPECT_EQ(component(rules_of(seen), "RULE_node").node, "/RULE");
 }
 
 TEST(Draft, WhatCannotBeStartedAgainIsListedWithTheReason) {
-  Sighting seen = robot();
+  RobotProfile seen = robot();
   seen.robot.nodes["/far"] = {};
   seen.robot.nodes["/part"] = {.parameters = {}, .lifecycle = "", .pid = 12};
   seen.starts["/part"] = seen.starts["/robot/camera"];
@@ -175,7 +175,7 @@ TEST(Draft, WhatCannotBeStartedAgainIsListedWithTheReason) {
 
 // As Nav2's servers have it: a costmap of their own, and clients that answer nothing.
 TEST(Draft, TheNodesOfOneProcessAreOneComponent) {
-  Sighting seen = robot();
+  RobotProfile seen = robot();
   using Told = std::map<std::string, std::optional<Value>>;
   seen.robot.nodes["/lidar"].parameters = Told{};
   seen.robot.nodes["/map/map"] = {.parameters = Told{}, .lifecycle = "active", .pid = 12};
@@ -191,7 +191,7 @@ TEST(Draft, TheNodesOfOneProcessAreOneComponent) {
 }
 
 TEST(Draft, WithoutARhythmThereIsNoSilence) {
-  Sighting seen = robot();
+  RobotProfile seen = robot();
   seen.rhythms["/robot/image"] = {9, 30s, 4s};
   seen.rhythms["/scan"] = {100, 30s, 20s};
   const std::string text = draft(seen);
@@ -202,7 +202,7 @@ TEST(Draft, WithoutARhythmThereIsNoSilence) {
 }
 
 TEST(Draft, TheSilenceOfATopicOfSeveralNodesIsNobodys) {
-  Sighting seen = robot();
+  RobotProfile seen = robot();
   seen.robot.topics["/scan"].publishers.insert("/robot/camera");
   const std::string text = draft(seen);
   EXPECT_THAT(text, Not(HasSubstr("age(/scan)")));
@@ -210,7 +210,7 @@ TEST(Draft, TheSilenceOfATopicOfSeveralNodesIsNobodys) {
 }
 
 TEST(Draft, OfSeveralPublishersEachInARhythmIsWatchedByItself) {
-  Sighting seen = robot();
+  RobotProfile seen = robot();
   seen.robot.topics["/tf"] = {"tf2_msgs/msg/TFMessage", {"/robot/camera", "/lidar"}, {}, {}, {}};
   seen.rhythms["/tf"] = {640, 30s, 60ms};
   seen.rhythms_of_publishers["/tf"] = {{"/lidar", {601, 30s, 120ms}},
@@ -225,7 +225,7 @@ TEST(Draft, OfSeveralPublishersEachInARhythmIsWatchedByItself) {
 }
 
 TEST(Draft, BondsAreNotWatchedForSilence) {
-  Sighting seen = robot();
+  RobotProfile seen = robot();
   seen.robot.topics["/bond"] = {"bond/msg/Status", {"/robot/camera", "/lidar"}, {}, {}, {}};
   seen.rhythms_of_publishers["/bond"] = {{"/lidar", {31, 30s, 1s}},
                                          {"/robot/camera", {31, 30s, 1s}}};
@@ -233,7 +233,7 @@ TEST(Draft, BondsAreNotWatchedForSilence) {
 }
 
 TEST(Draft, ToolsAndNamesThatRosDoesNotTakeAreNoComponents) {
-  Sighting seen = robot();
+  RobotProfile seen = robot();
   for (const char* name : {"/rviz2", "/_ros2cli_4711", "/launch_ros_12", "/bad name\nRULE x"}) {
     seen.robot.nodes[name] = {.parameters = {}, .lifecycle = "", .pid = 20};
     seen.starts[name] = seen.starts["/robot/camera"];
@@ -248,8 +248,8 @@ TEST(Draft, ToolsAndNamesThatRosDoesNotTakeAreNoComponents) {
 }
 
 // A motor that warms up and down, and counts.
-Sighting motor() {
-  Sighting seen = robot();
+RobotProfile motor() {
+  RobotProfile seen = robot();
   ros2::StatusCourse& course = seen.statuses[{"base: motor 1", "m1"}];
   course.messages = 30;
   course.worst = 1;
@@ -272,7 +272,7 @@ TEST(Draft, ADiagnosticThatWasNoErrorIsReportedWhenItIs) {
 }
 
 TEST(Draft, ADiagnosticThatIsAnErrorNowIsAskedAbout) {
-  Sighting seen = motor();
+  RobotProfile seen = motor();
   seen.statuses.begin()->second.worst = 2;
   const std::string text = draft(seen);
   EXPECT_THAT(text, Not(HasSubstr("RULE base_motor")));
@@ -280,7 +280,7 @@ TEST(Draft, ADiagnosticThatIsAnErrorNowIsAskedAbout) {
 }
 
 TEST(Draft, WhatCulpritSaysOfItselfIsNoPartOfTheRobot) {
-  Sighting seen = robot();
+  RobotProfile seen = robot();
   seen.robot.nodes["/culprit"] = {.parameters = {}, .lifecycle = "", .pid = 20};
   seen.starts["/culprit"].command = {"/usr/bin/culprit", "run", "my.rules"};
   seen.robot.topics["/culprit/status"] = {"culprit_msgs/msg/Status", {"/culprit"}, {}, {}, {}};
@@ -296,7 +296,7 @@ TEST(Draft, WhatCulpritSaysOfItselfIsNoPartOfTheRobot) {
 }
 
 TEST(Draft, OfTwoDiagnosticsOfOneNameRulesNameTheHardware) {
-  Sighting seen = motor();
+  RobotProfile seen = motor();
   seen.statuses[{"base: motor 1", "m2"}] = {20, 0, {}};
   seen.statuses[{"both", ""}] = {20, 0, {}};
   seen.statuses[{"one", "both"}] = {20, 0, {}};
@@ -325,7 +325,7 @@ TEST(Draft, OfKeysTheRangeIsProposedAndNothingOfWhatOnlyCountsOrStandsStill) {
 }
 
 TEST(Draft, WhatCommandsMovementsIsProposedAsAnInterlock) {
-  Sighting seen = robot();
+  RobotProfile seen = robot();
   seen.robot.topics["/cmd_vel"] = {"geometry_msgs/msg/Twist", {}, {}, {}, {}};
   seen.robot.topics["/arm/joint_trajectory"] = {
       "trajectory_msgs/msg/JointTrajectory", {"/lidar"}, {}, {}, {}};

@@ -32,7 +32,7 @@ bool is_temporary(const std::string& path) {
   });
 }
 
-Kept keep_parameters(Sighting& seen, const std::string& rules) {
+Kept keep_parameters(RobotProfile& seen, const std::string& rules) {
   Kept kept;
   for (auto& [node, start] : seen.starts) {
     int place = 0;

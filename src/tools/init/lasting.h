@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "init/sighting.h"
+#include "init/robot_profile.h"
 
 namespace culprit::init {
 
@@ -28,6 +28,6 @@ bool is_temporary(const std::string& path);
 
 // Each start in `seen` that reads a temporary file of parameters reads its copy instead. `rules`: the whole
 // path of the rule file; empty: the draft is not written to a file, so nothing can be kept beside it.
-Kept keep_parameters(Sighting& seen, const std::string& rules);
+Kept keep_parameters(RobotProfile& seen, const std::string& rules);
 
 }  // namespace culprit::init

@@ -23,7 +23,7 @@ struct Lasting : testing::Test {
     return path.native();
   }
   test::TestFolder folder;
-  Sighting seen;
+  RobotProfile seen;
 };
 
 TEST_F(Lasting, AFileOfALaunchIsCopiedBesideTheRules) {

@@ -83,8 +83,8 @@ TEST(LaunchDump, OfSomethingElseIsAnError) {
   EXPECT_THAT(read_launch_dump("a: b", "x.yaml").error(), HasSubstr("is no dump of a launch file"));
 }
 
-Sighting composed_robot() {
-  Sighting seen;
+RobotProfile composed_robot() {
+  RobotProfile seen;
   seen.looked = std::chrono::seconds(30);
   for (const char* node : {"/box", "/left/camera", "/detect"})
     seen.robot.nodes[node] = {.parameters = {}, .lifecycle = "", .pid = 11};
@@ -94,7 +94,7 @@ Sighting composed_robot() {
 }
 
 TEST(DraftFromALaunchDump, DeclaresWhatAContainerLoads) {
-  Sighting seen = composed_robot();
+  RobotProfile seen = composed_robot();
   seen.dump = *read_launch_dump(kModel, "");
   seen.parameter_file = "/rules/my.params.yaml";
   const std::string text = draft(seen);
@@ -111,7 +111,7 @@ TEST(DraftFromALaunchDump, DeclaresWhatAContainerLoads) {
 
 // A container that is replaced has to have all again that it had.
 TEST(DraftFromALaunchDump, LeavesAContainerOutWhereItDoesNotKnowAllThatItLoads) {
-  Sighting seen = composed_robot();
+  RobotProfile seen = composed_robot();
   seen.dump = *read_launch_dump(kModel, "");
   seen.dump.recipes.erase("/detect");
   const std::string text = draft(seen);
@@ -122,7 +122,7 @@ TEST(DraftFromALaunchDump, LeavesAContainerOutWhereItDoesNotKnowAllThatItLoads) 
 
 // As Nav2's servers do, which make the nodes of their costmaps.
 TEST(DraftFromARunningLaunch, TakesOtherNodesOfTheContainerForPartsOfItsComponents) {
-  Sighting seen = composed_robot();
+  RobotProfile seen = composed_robot();
   seen.robot.services["/box/_container/load_node"] = "composition_interfaces/srv/LoadNode";
   seen.robot.nodes["/left/costmap"] = {.parameters = {}, .lifecycle = "", .pid = 11};
   seen.starts["/left/costmap"] = seen.starts["/box"];

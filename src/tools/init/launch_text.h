@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "init/sighting.h"
+#include "init/robot_profile.h"
 
 namespace culprit::init {
 

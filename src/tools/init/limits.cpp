@@ -23,7 +23,7 @@ constexpr std::uint8_t kError = 2;
 
 // How rules call a status, as they write it: by what no other status is called. Empty if there is no
 // such thing.
-std::string called(const ros2::Survey::StatusKey& status, const Sighting& seen) {
+std::string called(const ros2::Survey::StatusKey& status, const RobotProfile& seen) {
   for (const std::string& name : {status.first, status.second}) {
     const auto is_so_called = [&](const auto& other) {
       return other.first.first == name || other.first.second == name;
@@ -46,7 +46,7 @@ std::string stale(const ros2::StatusCourse& course, Duration looked) {
 
 class Limits {
  public:
-  Limits(const Sighting& seen, Names& names, std::vector<std::string>& left_out)
+  Limits(const RobotProfile& seen, Names& names, std::vector<std::string>& left_out)
       : seen_(seen), names_(names), left_out_(left_out) {}
 
   std::vector<Part> parts() {
@@ -114,7 +114,7 @@ class Limits {
     parts_.push_back({.kind = kind, .subject = std::move(subject), .text = std::move(text)});
   }
 
-  const Sighting& seen_;
+  const RobotProfile& seen_;
   Names& names_;
   std::vector<std::string>& left_out_;
   std::vector<Part> parts_;
@@ -122,7 +122,8 @@ class Limits {
 
 }  // namespace
 
-std::vector<Part> limits(const Sighting& seen, Names& names, std::vector<std::string>& left_out) {
+std::vector<Part> limits(const RobotProfile& seen, Names& names,
+                         std::vector<std::string>& left_out) {
   return Limits(seen, names, left_out).parts();
 }
 

@@ -7,7 +7,7 @@
 
 #include "init/names.h"
 #include "init/part.h"
-#include "init/sighting.h"
+#include "init/robot_profile.h"
 
 namespace culprit::init {
 
@@ -16,6 +16,7 @@ namespace culprit::init {
 // If a status that was no error becomes one, a person is notified, and no strategy begins. Keys are
 // only proposed, as comments, with the limits that they kept to: half a minute does not show all of
 // a robot's healthy states.
-std::vector<Part> limits(const Sighting& seen, Names& names, std::vector<std::string>& left_out);
+std::vector<Part> limits(const RobotProfile& seen, Names& names,
+                         std::vector<std::string>& left_out);
 
 }  // namespace culprit::init

@@ -58,7 +58,7 @@ std::map<std::string, Start> starts_of(const LiveInventory& robot) {
     if (!started) continue;
     Start& start = starts[name] = start_as_written(*started);
     if (const auto owner = owners::found_owner(node.pid, "")) {
-      start.owner = owner->who;
+      start.owner = owner->name;
       if (starts_with_any(owner->declare, {"UNIT", "CONTAINER"})) start.declare = owner->declare;
     }
   }
@@ -86,7 +86,7 @@ std::set<std::string> names_of(const LiveInventory& robot) {
 
 }  // namespace
 
-Sighting look(ros2::Survey& survey, std::uint32_t domain, Duration time) {
+RobotProfile look(ros2::Survey& survey, std::uint32_t domain, Duration time) {
   constexpr Duration kTurn = 500ms;
   const Time end = later(live_now(), time);
   const Time half = end - time / 2;
@@ -98,16 +98,16 @@ Sighting look(ros2::Survey& survey, std::uint32_t domain, Duration time) {
     if (interest != asked) survey.ask_for(asked = std::move(interest));
     std::this_thread::sleep_for(std::min<Duration>(kTurn, end - live_now()));
   }
-  Sighting seen{.robot = survey.inventory(),
-                .rhythms = survey.rhythms(),
-                .rhythms_of_publishers = survey.rhythms_of_publishers(),
-                .starts = {},
-                .fields = survey.fields(),
-                .statuses = survey.statuses(),
-                .came_late = {},
-                .left = {},
-                .looked = time,
-                .domain = domain};
+  RobotProfile seen{.robot = survey.inventory(),
+                    .rhythms = survey.rhythms(),
+                    .rhythms_of_publishers = survey.rhythms_of_publishers(),
+                    .starts = {},
+                    .fields = survey.fields(),
+                    .statuses = survey.statuses(),
+                    .came_late = {},
+                    .left = {},
+                    .looked = time,
+                    .domain = domain};
   seen.starts = starts_of(seen.robot);
   const std::set<std::string> late = names_of(seen.robot);
   std::ranges::set_difference(late, early, std::inserter(seen.came_late, seen.came_late.end()));

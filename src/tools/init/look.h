@@ -4,13 +4,13 @@
 #include <memory>
 
 #include "base/expected.h"
-#include "init/sighting.h"
+#include "init/robot_profile.h"
 #include "link/survey.h"
 
 namespace culprit::init {
 
 // Watches all topics but those of ROS itself and asks all nodes, for `time`; that costs the robot's
 // network one subscriber more for each topic. `domain` is the survey's. The calling thread waits.
-Sighting look(ros2::Survey& survey, std::uint32_t domain, Duration time);
+RobotProfile look(ros2::Survey& survey, std::uint32_t domain, Duration time);
 
 }  // namespace culprit::init

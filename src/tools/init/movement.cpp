@@ -68,7 +68,7 @@ std::set<std::string> fields_of_movement(const std::string& type) {
   return {};
 }
 
-std::string interlocks_text(const Sighting& seen, Names& names) {
+std::string interlocks_text(const RobotProfile& seen, Names& names) {
   std::string proposals;
   for (const auto& each : seen.robot.topics) {
     const std::string& topic = each.first;

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "init/names.h"
-#include "init/sighting.h"
+#include "init/robot_profile.h"
 
 namespace culprit::init {
 
@@ -14,6 +14,6 @@ namespace culprit::init {
 std::set<std::string> fields_of_movement(const std::string& type);
 
 // INTERLOCK lines as comments, for a person to take; empty if nothing is seen that moves.
-std::string interlocks_text(const Sighting& seen, Names& names);
+std::string interlocks_text(const RobotProfile& seen, Names& names);
 
 }  // namespace culprit::init

@@ -49,7 +49,7 @@ const std::vector<SensorPack>& sensor_packs() {
 
 class PackChoice {
  public:
-  PackChoice(const Sighting& seen, const std::map<std::string, std::string>& components,
+  PackChoice(const RobotProfile& seen, const std::map<std::string, std::string>& components,
              std::vector<std::string>& left_out)
       : seen_(seen), components_(components), left_out_(left_out) {}
 
@@ -466,7 +466,7 @@ class PackChoice {
     return names;
   }
 
-  const Sighting& seen_;
+  const RobotProfile& seen_;
   const std::map<std::string, std::string>& components_;
   std::vector<std::string>& left_out_;
   std::set<std::string> servers_;
@@ -477,7 +477,7 @@ class PackChoice {
 
 std::string include_of(const std::string& pack) { return "INCLUDE \"packs/" + pack + ".rules\""; }
 
-std::vector<PackUse> packs_for(const Sighting& seen,
+std::vector<PackUse> packs_for(const RobotProfile& seen,
                                const std::map<std::string, std::string>& components,
                                std::vector<std::string>& left_out) {
   return PackChoice(seen, components, left_out).made();

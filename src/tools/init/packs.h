@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "init/sighting.h"
+#include "init/robot_profile.h"
 
 namespace culprit::init {
 
@@ -28,7 +28,7 @@ struct PackUse {
 std::string include_of(const std::string& pack);
 
 // `components` are the names of the nodes that are declared, by full name. Adds to `left_out` known nodes that lack a part that their pack needs.
-std::vector<PackUse> packs_for(const Sighting& seen,
+std::vector<PackUse> packs_for(const RobotProfile& seen,
                                const std::map<std::string, std::string>& components,
                                std::vector<std::string>& left_out);
 

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 struct Robot {
-  Sighting seen;
+  RobotProfile seen;
 
   Robot() { seen.looked = 30s; }
 

@@ -23,7 +23,8 @@ std::string in_milliseconds(Duration time) {
   return fmt::format("{:.0f}ms", std::ceil(seconds(time) * 1000));
 }
 
-ros2::Rhythm rhythm_of(const Sighting& seen, const std::string& topic, const std::string& node) {
+ros2::Rhythm rhythm_of(const RobotProfile& seen, const std::string& topic,
+                       const std::string& node) {
   if (!node.empty()) {
     const auto publishers = seen.rhythms_of_publishers.find(topic);
     if (publishers == seen.rhythms_of_publishers.end()) return {};
@@ -36,7 +37,7 @@ ros2::Rhythm rhythm_of(const Sighting& seen, const std::string& topic, const std
 
 }  // namespace
 
-Expected<Duration> silence_of(const Sighting& seen, const std::string& topic,
+Expected<Duration> silence_of(const RobotProfile& seen, const std::string& topic,
                               const std::string& node) {
   const ros2::Rhythm rhythm = rhythm_of(seen, topic, node);
   if (rhythm.messages < kFewestMessages)
@@ -51,12 +52,12 @@ Expected<Duration> silence_of(const Sighting& seen, const std::string& topic,
   return limit;
 }
 
-double rate_of(const Sighting& seen, const std::string& topic, const std::string& node) {
+double rate_of(const RobotProfile& seen, const std::string& topic, const std::string& node) {
   const ros2::Rhythm rhythm = rhythm_of(seen, topic, node);
   return static_cast<double>(rhythm.messages - 1) / seconds(rhythm.first_to_last);
 }
 
-std::string evidence_of_silence(const Sighting& seen, const std::string& topic,
+std::string evidence_of_silence(const RobotProfile& seen, const std::string& topic,
                                 const std::string& node) {
   const ros2::Rhythm rhythm = rhythm_of(seen, topic, node);
   return fmt::format(

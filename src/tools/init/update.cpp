@@ -180,7 +180,7 @@ std::string without_measures(const std::string& list, const LiveInventory& robot
 
 class Updating {
  public:
-  Updating(const std::string& text, const RuleSet& rules, const Sighting& seen, Packs packs)
+  Updating(const std::string& text, const RuleSet& rules, const RobotProfile& seen, Packs packs)
       : written_(text), rules_(rules), seen_(seen), packs_(packs) {
     for (const std::string& line : written_.lines()) {
       const auto marks = marks_in(line);
@@ -413,7 +413,7 @@ class Updating {
 
   const Written written_;
   const RuleSet& rules_;
-  Sighting seen_;
+  RobotProfile seen_;
   const Packs packs_;
   std::vector<Mark> marks_;
   std::map<std::string, const Component*> declared_;  // by node
@@ -424,7 +424,8 @@ class Updating {
 
 }  // namespace
 
-Update update(const std::string& text, const RuleSet& rules, const Sighting& seen, Packs packs) {
+Update update(const std::string& text, const RuleSet& rules, const RobotProfile& seen,
+              Packs packs) {
   return Updating(text, rules, seen, packs).made();
 }
 

@@ -29,6 +29,6 @@ struct Update {
 };
 
 // `text` is the file as it is written, `rules` what it stands for with all that it includes.
-Update update(const std::string& text, const RuleSet& rules, const Sighting& seen, Packs packs);
+Update update(const std::string& text, const RuleSet& rules, const RobotProfile& seen, Packs packs);
 
 }  // namespace culprit::init

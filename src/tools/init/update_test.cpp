@@ -18,7 +18,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-void put(Sighting& seen, const std::string& node, const std::string& topic, Duration longest) {
+void put(RobotProfile& seen, const std::string& node, const std::string& topic, Duration longest) {
   seen.robot.nodes[node] = {.parameters = {}, .lifecycle = "", .pid = 10};
   seen.robot.nodes[node].pid += static_cast<int>(seen.robot.nodes.size());
   seen.starts[node].command = {"/opt/driver", node};
@@ -27,8 +27,8 @@ void put(Sighting& seen, const std::string& node, const std::string& topic, Dura
   seen.rhythms[topic] = {301, 30s, longest};
 }
 
-Sighting two_lidars() {
-  Sighting seen;
+RobotProfile two_lidars() {
+  RobotProfile seen;
   seen.looked = 30s;
   put(seen, "/front", "/front/scan", 110ms);
   put(seen, "/back", "/back/scan", 110ms);
@@ -36,7 +36,7 @@ Sighting two_lidars() {
   return seen;
 }
 
-std::string file_of(const Sighting& seen) {
+std::string file_of(const RobotProfile& seen) {
   const auto text = format({"draft", draft(seen)});
   EXPECT_TRUE(text) << text.error();
   return *text;
@@ -47,7 +47,7 @@ struct Updated {
   std::vector<std::string> notes;
 };
 
-Updated updated(const std::string& text, const Sighting& seen, Packs packs = Packs::kNone) {
+Updated updated(const std::string& text, const RobotProfile& seen, Packs packs = Packs::kNone) {
   const Checked before = check(expand({"before", text}));
   if (!before.rules) throw std::runtime_error(text);
   const Update update = init::update(text, *before.rules, seen, packs);
@@ -88,7 +88,7 @@ TEST(Update, OfARobotThatIsTheSameIsNothing) {
 }
 
 TEST(Update, SlightlyOtherPausesAreNoChange) {
-  Sighting seen = two_lidars();
+  RobotProfile seen = two_lidars();
   seen.rhythms["/front/scan"].longest_pause = 210ms;
   seen.rhythms["/back/scan"].longest_pause = 80ms;
   const std::string text = file_of(two_lidars());
@@ -96,7 +96,7 @@ TEST(Update, SlightlyOtherPausesAreNoChange) {
 }
 
 TEST(Update, ANewNodeAndANewDiagnosticAreAddedAndTheNextTimeAreThere) {
-  Sighting seen = two_lidars();
+  RobotProfile seen = two_lidars();
   put(seen, "/left", "/left/scan", 110ms);
   seen.statuses[{"motor", ""}] = {30, 0, {}};
   const std::string before = file_of(two_lidars());
@@ -111,7 +111,7 @@ TEST(Update, ANewNodeAndANewDiagnosticAreAddedAndTheNextTimeAreThere) {
 }
 
 TEST(Update, WhatADraftWroteIsReplacedIfItNoLongerFits) {
-  Sighting seen = two_lidars();
+  RobotProfile seen = two_lidars();
   seen.starts["/front"].command = {"/opt/new_driver", "/front"};
   seen.rhythms["/back/scan"] = {31, 30s, 1100ms};
   const Updated now = updated(file_of(two_lidars()), seen);
@@ -124,7 +124,7 @@ TEST(Update, WhatADraftWroteIsReplacedIfItNoLongerFits) {
 }
 
 TEST(Update, ATopicThatANodeHasNowIsWatched) {
-  Sighting seen = two_lidars();
+  RobotProfile seen = two_lidars();
   put(seen, "/front", "/front/imu", 110ms);
   seen.robot.nodes["/front"].pid = 99;
   EXPECT_THAT(updated(file_of(two_lidars()), seen).text,
@@ -132,7 +132,7 @@ TEST(Update, ATopicThatANodeHasNowIsWatched) {
 }
 
 TEST(Update, WhatAPersonChangedOrTookAwayStaysAsItIs) {
-  Sighting seen = two_lidars();
+  RobotProfile seen = two_lidars();
   const std::string draft = file_of(seen);
   std::string mine = replaced(draft, "age(/back/scan) > 500ms", "age(/back/scan)  >  9s # slow!");
   mine = replaced(mine, "LAUNCH \"/opt/driver /front\"", "LAUNCH \"/opt/driver /front --mine\"");
@@ -173,7 +173,7 @@ RULE Mine
 }
 
 TEST(Update, ANodeThatIsGoneMayOnlyBeIllSoItsLinesStay) {
-  Sighting seen = two_lidars();
+  RobotProfile seen = two_lidars();
   const std::string text = file_of(seen);
   seen.robot.nodes.erase("/front");
   seen.starts.erase("/front");
@@ -184,7 +184,7 @@ TEST(Update, ANodeThatIsGoneMayOnlyBeIllSoItsLinesStay) {
 }
 
 TEST(Update, ANewNodeHasAFreeName) {
-  Sighting seen = two_lidars();
+  RobotProfile seen = two_lidars();
   put(seen, "/robot/front", "/other/scan", 110ms);
   EXPECT_THAT(updated(file_of(two_lidars()), seen).text,
               AllOf(HasSubstr("COMPONENT robot_front NODE /robot/front"),
@@ -193,8 +193,8 @@ TEST(Update, ANewNodeHasAFreeName) {
 
 // ---- proposals
 
-Sighting with_motor(double least, double most) {
-  Sighting seen = two_lidars();
+RobotProfile with_motor(double least, double most) {
+  RobotProfile seen = two_lidars();
   ros2::StatusCourse& motor = seen.statuses[{"motor", ""}];
   motor.messages = 30;
   for (int i = 0; i < 30; ++i) motor.keys["temperature"].note(i % 2 == 0 ? least : most);
@@ -216,7 +216,7 @@ TEST(Update, AProposalIsReplacedIfWhatWasSeenNowIsNotWithinItOrASmallPartOfIt) {
 
 TEST(Update, WhatWasNotThereIsProposed) {
   const std::string text = file_of(two_lidars());
-  Sighting seen = with_motor(60, 64);
+  RobotProfile seen = with_motor(60, 64);
   seen.robot.topics["/cmd_vel"].type = "geometry_msgs/msg/Twist";
   const Updated now = updated(text, seen);
   EXPECT_THAT(now.text, AllOf(HasSubstr("\n# proposal: temperature of motor was 60 to 64"),
@@ -254,7 +254,7 @@ RULE Mine
       ADAPTATION lidar_in_front redeploy 10
         ADAPTATION back redeploy 10
 )";
-  Sighting seen = with_motor(60, 64);
+  RobotProfile seen = with_motor(60, 64);
   seen.robot.topics["/cmd_vel"].type = "geometry_msgs/msg/Twist";
   EXPECT_THAT(updated(mine, seen).text, Not(HasSubstr("# proposal")));
 }
@@ -262,7 +262,7 @@ RULE Mine
 // ---- what was left out
 
 TEST(Update, WhatIsLeftOutNowIsListedAndNothingOfWhatTheFileDeclares) {
-  Sighting seen = two_lidars();
+  RobotProfile seen = two_lidars();
   seen.robot.nodes["/far"] = {};
   const Updated now = updated(file_of(two_lidars()), seen);
   EXPECT_THAT(now.text, HasSubstr("\n# /far: its process is not on this machine"));
@@ -279,7 +279,7 @@ TEST(Update, WhatIsLeftOutNowIsListedAndNothingOfWhatTheFileDeclares) {
 }
 
 TEST(Update, WhyATopicHasNoRhythmIsNoChange) {
-  Sighting seen = two_lidars();
+  RobotProfile seen = two_lidars();
   seen.rhythms["/back/scan"] = {4, 30s, 4s};
   const std::string text = file_of(seen);
   EXPECT_THAT(text, HasSubstr("# /back/scan: 4 messages came"));
@@ -290,7 +290,7 @@ TEST(Update, WhyATopicHasNoRhythmIsNoChange) {
 }
 
 TEST(Update, AListThatAPersonChangedStaysAndWhatItLacksIsTold) {
-  Sighting seen = two_lidars();
+  RobotProfile seen = two_lidars();
   seen.robot.nodes["/far"] = {};
   seen.robot.nodes["/near"] = {};
   const std::string mine =
@@ -305,8 +305,8 @@ TEST(Update, AListThatAPersonChangedStaysAndWhatItLacksIsTold) {
 
 // ---- launch dumps
 
-Sighting with_container(bool has_dump) {
-  Sighting seen = two_lidars();
+RobotProfile with_container(bool has_dump) {
+  RobotProfile seen = two_lidars();
   for (const char* node : {"/box", "/camera"}) {
     seen.robot.nodes[node] = {.parameters = {}, .lifecycle = "", .pid = 77};
     seen.starts[node].command = {"/opt/component_container"};
@@ -334,13 +334,13 @@ TEST(Update, ALaunchDumpSaysHowNodesAreLoadedAsInADraft) {
 TEST(Update, WithoutADumpNothingIsLostThatOneSaid) {
   const std::string text = file_of(with_container(true));
   EXPECT_EQ(updated(text, with_container(false)).text, text);
-  Sighting seen = with_container(false);
+  RobotProfile seen = with_container(false);
   seen.starts["/front"].command = {"/opt/new_driver", "/front"};
   EXPECT_THAT(updated(text, seen).text, HasSubstr("LAUNCH \"/opt/new_driver /front\" RESPAWNED\n"));
 }
 
 TEST(Update, ADumpThatSaysOtherwiseCounts) {
-  Sighting seen = with_container(true);
+  RobotProfile seen = with_container(true);
   seen.dump.respawned = {"/back"};
   seen.dump.recipes["/camera"].plugin = "cameras::NewDriver";
   const Updated now = updated(file_of(with_container(true)), seen);
@@ -351,11 +351,11 @@ TEST(Update, ADumpThatSaysOtherwiseCounts) {
 }
 
 TEST(Update, ParametersOfWhichTheDumpSaysNothingNowStay) {
-  const Sighting before = with_container(true);
+  const RobotProfile before = with_container(true);
   const std::string file = parameters_text(before);
   EXPECT_TRUE(is_as_written(file));
   EXPECT_EQ(parameters_text(before, file), file);
-  Sighting seen = with_container(true);
+  RobotProfile seen = with_container(true);
   seen.robot.nodes.erase("/camera");
   seen.robot.nodes["/depth"] = seen.robot.nodes["/box"];
   seen.dump.recipes["/depth"] = {"/box", "cameras", "cameras::Depth", {{"range", "4"}}, {}};
@@ -366,7 +366,7 @@ TEST(Update, ParametersOfWhichTheDumpSaysNothingNowStay) {
 }
 
 TEST(Update, WithPacksANewDriverHasItsPackAndAnOldOneItsRule) {
-  Sighting seen = two_lidars();
+  RobotProfile seen = two_lidars();
   for (const char* node : {"/back", "/left"}) {
     put(seen, node, std::string(node) + "/scan", 110ms);
     seen.starts[node].command = {"/opt/lib/urg_node2/urg_node2", node};

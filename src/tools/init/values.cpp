@@ -85,7 +85,7 @@ std::vector<std::string> spread(const std::vector<std::string>& all) {
 
 class Values {
  public:
-  Values(const Sighting& seen, Names& names) : seen_(seen), names_(names) {}
+  Values(const RobotProfile& seen, Names& names) : seen_(seen), names_(names) {}
 
   std::vector<Part> parts() {
     for (const auto& each : seen_.robot.topics) {
@@ -158,7 +158,7 @@ class Values {
     return all;
   }
 
-  const Sighting& seen_;
+  const RobotProfile& seen_;
   Names& names_;
   std::vector<Part> parts_;
 };
@@ -171,6 +171,8 @@ std::set<std::string> fields_of_measurement(const std::string& type) {
   return {measured->fields.begin(), measured->fields.end()};
 }
 
-std::vector<Part> values(const Sighting& seen, Names& names) { return Values(seen, names).parts(); }
+std::vector<Part> values(const RobotProfile& seen, Names& names) {
+  return Values(seen, names).parts();
+}
 
 }  // namespace culprit::init

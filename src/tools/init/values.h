@@ -7,7 +7,7 @@
 
 #include "init/names.h"
 #include "init/part.h"
-#include "init/sighting.h"
+#include "init/robot_profile.h"
 
 namespace culprit::init {
 
@@ -19,6 +19,6 @@ std::set<std::string> fields_of_measurement(const std::string& type);
 // `frozen` is written only for values that jitter, as noise does: they change while the robot stands still, too. A value that changes
 // only with the robot gets no such rule. `isnan` is written for numbers that were always finite; of elements of a list, all have to be NaN,
 // since a single one may be without an echo.
-std::vector<Part> values(const Sighting& seen, Names& names);
+std::vector<Part> values(const RobotProfile& seen, Names& names);
 
 }  // namespace culprit::init

@@ -17,8 +17,8 @@ using testing::HasSubstr;
 using testing::Not;
 
 // A topic that came 10 times a second.
-Sighting with_topic(const std::string& topic, const std::string& type) {
-  Sighting seen;
+RobotProfile with_topic(const std::string& topic, const std::string& type) {
+  RobotProfile seen;
   seen.looked = 30s;
   seen.robot.nodes["/lidar"] = {.parameters = {}, .lifecycle = "", .pid = 12};
   seen.robot.topics[topic] = {type, {"/lidar"}, {}, {}, {}};
@@ -30,21 +30,21 @@ Sighting with_topic(const std::string& topic, const std::string& type) {
 // Noise of a sensor: mostly up and down.
 double noise(int i) { return 0.01 * ((i * 7919) % 101); }
 
-Sighting with_scan(double (*beam)(int)) {
-  Sighting seen = with_topic("/scan", "sensor_msgs/msg/LaserScan");
+RobotProfile with_scan(double (*beam)(int)) {
+  RobotProfile seen = with_topic("/scan", "sensor_msgs/msg/LaserScan");
   for (const char* field : {"ranges[0]", "ranges[60]", "ranges[90]", "ranges[150]", "ranges[180]"})
     for (int i = 0; i < 300; ++i) seen.fields["/scan"][field].note(beam(i));
   return seen;
 }
 
-RuleSet strict_rules(const Sighting& seen) {
+RuleSet strict_rules(const RobotProfile& seen) {
   const Checked checked = check({"draft", draft(seen)}, Strictness::kStrict);
   EXPECT_THAT(checked.diagnostics, testing::IsEmpty()) << draft(seen);
   return checked.rules ? *checked.rules : RuleSet{};
 }
 
 TEST(Values, OfAScanThatJittersBeamsInSeveralDirectionsAreWatched) {
-  const Sighting seen = with_scan([](int i) { return 3 + noise(i); });
+  const RobotProfile seen = with_scan([](int i) { return 3 + noise(i); });
   const RuleSet rules = strict_rules(seen);
   EXPECT_THAT(draft(seen), HasSubstr(R"(
 # guess: 4 numbers of /scan were finite, and changed up and down by themselves.
@@ -76,7 +76,7 @@ TEST(Values, ThatStandStillOrMoveOnlyWithTheRobotMayStandStill) {
 }
 
 TEST(Values, OfOdometryJitterOnlyWhileTheRobotMoves) {
-  Sighting seen = with_topic("/odom", "nav_msgs/msg/Odometry");
+  RobotProfile seen = with_topic("/odom", "nav_msgs/msg/Odometry");
   for (int i = 0; i < 300; ++i) seen.fields["/odom"]["twist.twist.linear.x"].note(noise(i));
   EXPECT_THAT(draft(seen), Not(HasSubstr("frozen")));
   EXPECT_THAT(draft(seen), HasSubstr("TRIGGER isnan(odom_twist_twist_linear_x)\n"));
@@ -84,7 +84,7 @@ TEST(Values, OfOdometryJitterOnlyWhileTheRobotMoves) {
 }
 
 TEST(Values, ThatWereNotAlwaysFiniteOrCameSeldomHaveNoRule) {
-  Sighting seen = with_scan([](int i) { return i == 7 ? NAN : noise(i); });
+  RobotProfile seen = with_scan([](int i) { return i == 7 ? NAN : noise(i); });
   EXPECT_THAT(draft(seen), Not(HasSubstr("SIGNAL")));
   seen = with_topic("/imu", "sensor_msgs/msg/Imu");
   for (int i = 0; i < 9; ++i) seen.fields["/imu"]["angular_velocity.z"].note(noise(i));
@@ -92,13 +92,13 @@ TEST(Values, ThatWereNotAlwaysFiniteOrCameSeldomHaveNoRule) {
 }
 
 TEST(Values, OfTwoPublishersAreNobodys) {
-  Sighting seen = with_scan(noise);
+  RobotProfile seen = with_scan(noise);
   seen.robot.topics["/scan"].publishers.insert("/other");
   EXPECT_THAT(draft(seen), Not(HasSubstr("SIGNAL")));
 }
 
 TEST(Values, AreAddedToAFileThatDoesNotReadThem) {
-  const Sighting seen = with_scan(noise);
+  const RobotProfile seen = with_scan(noise);
   const std::string rules = "COMPONENT lidar NODE /lidar LAUNCH \"/opt/lidar\"\n";
   const auto changes = [&](const std::string& text) {
     std::string all;

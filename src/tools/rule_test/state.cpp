@@ -5,7 +5,7 @@
 
 #include "manager/manager.h"
 #include "manager/runtime.h"
-#include "plan/onlooker.h"
+#include "plan/passive_planner.h"
 #include "rule_test/reader.h"
 #include "rule_test/restraint.h"
 #include "rule_test/scripted_robot.h"
@@ -58,7 +58,7 @@ Watched watch(const State& state, const RuleSet& rules) {
   ScriptedRobot robot(rules, state.scenario);
   Manager::Options options;
   options.governor = restraint();
-  Manager manager(rules, std::make_unique<Onlooker>(), options);
+  Manager manager(rules, std::make_unique<PassivePlanner>(), options);
   manager.remember(robot.declared());
   Runtime runtime(manager, robot);
   const std::atomic<bool> never = false;

@@ -81,8 +81,8 @@ class Peer {
     Graph::Options graph;
     graph.listener = [this](const GraphChange&) { tell_graph_soon(); };
     context_ = std::move(*Context::create(executor_, options, std::move(graph)));
-    node_ = std::move(
-        *Node::create(*context_, {join->name_space, join->name}, Node::Extent::kOnlooker));
+    node_ =
+        std::move(*Node::create(*context_, {join->name_space, join->name}, Node::Extent::kMinimal));
     put(link::Welcome{link::kVersion, "rmw_fastrtps_cpp", context_->participant().guid().bytes});
     tell_graph_soon();
     if (manners_.is_oversized) send_all(link::Bytes{0xff, 0xff, 0xff, 0xff, 9});

@@ -407,7 +407,7 @@ TEST(BayesPlanner, NoFailureGivesWayToAnEffect) {
   EXPECT_EQ(scene.plan(kFewRedeployments), "A.restart D.restart");
 }
 
-TEST(BayesPlanner, SaysWhoIsSuspectedAndWhatItIsWorth) {
+TEST(BayesPlanner, SaysTheSuspectAndItsValue) {
   Scene scene = robot();
   scene.fail("A").fail("B");
   scene.plan(kBalanced);

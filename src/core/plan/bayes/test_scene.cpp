@@ -22,7 +22,7 @@ Scene::Scene(const std::string& text) {
     state.alive = true;
     state.lifecycle = Lifecycle::kActive;
     knowledge_->graph.node_appeared(rules_->components[c].node);
-    knowledge_->sightings.note(ComponentId(c), Time{});
+    knowledge_->discovered.note(ComponentId(c), Time{});
   }
   knowledge_->now = Time(std::chrono::seconds(100));
 }

@@ -240,7 +240,7 @@ TEST_F(SunsetRobot, LosesProcessesToTheExperimenter) {
   auto experiment = Experiment::start({kSpeed, state(), participant()});
   ASSERT_TRUE(experiment) << experiment.error();
   Experiment& e = **experiment;
-  EXPECT_TRUE(watcher().flows(topics::kRgbRaw)) << "meanwhile it sees who is there";
+  EXPECT_TRUE(watcher().flows(topics::kRgbRaw)) << "meanwhile it sees the nodes";
 
   auto done = e.inject(ProcessFault::kStop, Member::kSegmentation);
   ASSERT_TRUE(done) << done.error();

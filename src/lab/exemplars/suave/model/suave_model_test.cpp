@@ -72,7 +72,7 @@ TEST(Mission, EndsWhenItsTimeIsOver) {
   EXPECT_LE(*sea.model.mission().ended(), sea.model.latest_end());
 }
 
-TEST(Mission, LeavesModesToWhoLeads) {
+TEST(Mission, LeavesModesToTheLeader) {
   Sea bridged("standard", "era", Leader::kBridge);
   Sea led("standard", "era", Leader::kManager);
   bridged.run(60s);

@@ -26,7 +26,7 @@ struct Start {
   bool operator==(const Start&) const = default;
 };
 
-struct Sighting {
+struct RobotProfile {
   LiveInventory robot;
   std::map<std::string, ros2::Rhythm> rhythms;  // by topic
   // The same for each node that publishes the topic; by topic and node.

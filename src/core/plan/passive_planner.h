@@ -6,7 +6,7 @@
 
 namespace culprit {
 
-class Onlooker : public Planner {
+class PassivePlanner : public Planner {
  public:
   std::vector<Decision> plan(std::span<const RuleId>, const Knowledge&) const override {
     return {};

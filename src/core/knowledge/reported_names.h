@@ -10,7 +10,7 @@
 
 namespace culprit {
 
-struct HeardNames {
+struct ReportedNames {
   std::vector<StatusHeard> statuses;
   std::map<ComponentId, std::vector<std::string>> parameters;
 };

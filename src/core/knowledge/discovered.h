@@ -20,12 +20,12 @@
 
 namespace culprit {
 
-class Sightings {
+class Discovered {
  public:
-  explicit Sightings(const RuleSet& rules)
+  explicit Discovered(const RuleSet& rules)
       : components_(rules.components.size()),
         topics_(rules.topics.size()),
-        heard_(rules.topics.size()),
+        received_(rules.topics.size()),
         signals_(rules.signals.size()),
         diagnostics_(rules.diagnostics.size()),
         parameters_(rules.parameters.size()),
@@ -53,17 +53,17 @@ class Sightings {
   std::size_t count() const { return count_; }
 
   // A message came, or a value.
-  void hear(TopicId id) { mark(heard_, id.index); }
+  void receive(TopicId id) { mark(received_, id.index); }
   // Its publisher left, or is another process.
-  void unhear(TopicId id) {
-    if (heard_[id.index]) ++heard_count_;
-    heard_[id.index] = false;
+  void forget_received(TopicId id) {
+    if (received_[id.index]) ++received_count_;
+    received_[id.index] = false;
   }
   void read(SignalId id) { mark(signals_, id.index); }
   void read(DiagnosticId id) { mark(diagnostics_, id.index); }
   void read(ParameterId id) { mark(parameters_, id.index); }
   void read_lifecycle(ComponentId id) { mark(lifecycles_, id.index); }
-  bool was_heard(TopicId id) const { return heard_[id.index]; }
+  bool was_received(TopicId id) const { return received_[id.index]; }
   bool was_read(SignalId id) const { return signals_[id.index]; }
   bool was_read(DiagnosticId id) const { return diagnostics_[id.index]; }
   bool was_read(ParameterId id) const { return parameters_[id.index]; }
@@ -71,18 +71,18 @@ class Sightings {
 
   // There was time to see what there is.
   void complete() {
-    if (!std::exchange(is_whole_, true)) ++heard_count_;
+    if (!std::exchange(is_whole_, true)) ++received_count_;
   }
   bool is_whole() const { return is_whole_; }
 
   // Another number whenever one of these became true, or ceased to be.
-  std::size_t heard_count() const { return heard_count_; }
+  std::size_t received_count() const { return received_count_; }
 
  private:
   void mark(std::vector<bool>& marks, std::size_t place) {
     if (marks[place]) return;
     marks[place] = true;
-    ++heard_count_;
+    ++received_count_;
   }
 
   bool note(std::optional<Time>& first, Time at) {
@@ -96,13 +96,13 @@ class Sightings {
   std::vector<std::optional<Time>> topics_;
   std::map<std::string, std::string> publishers_;
   std::size_t count_ = 0;
-  std::vector<bool> heard_;
+  std::vector<bool> received_;
   std::vector<bool> signals_;
   std::vector<bool> diagnostics_;
   std::vector<bool> parameters_;
   std::vector<bool> lifecycles_;
   bool is_whole_ = false;
-  std::size_t heard_count_ = 0;
+  std::size_t received_count_ = 0;
 };
 
 }  // namespace culprit
