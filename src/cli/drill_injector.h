@@ -7,8 +7,8 @@
 #include <memory>
 #include <thread>
 
+#include "cli/drill_loss.h"
 #include "drill/injected.h"
-#include "owners/file_descriptor.h"
 #include "ros2/node.h"
 #include "ros2/services.h"
 
@@ -58,12 +58,8 @@ class DrillInjector {
  private:
   Expected<void> stop_for(int pid, Duration lasts, bool in_rhythm);
 
-  struct Guard {
-    int pid = 0;
-    owners::FileDescriptor alive;  // ends the guard when it is closed
-  };
   DrillNode& node_;
-  std::vector<Guard> guards_;
+  std::vector<FaultGuard> guards_;
 };
 
 }  // namespace culprit::cli

@@ -25,6 +25,7 @@ std::string incident(const Fault& fault) {
     case FaultKind::kSlow:
     case FaultKind::kRestart:
     case FaultKind::kSetParameter:
+    case FaultKind::kLoss:
       return "";
   }
   return "";

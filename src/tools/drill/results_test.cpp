@@ -129,6 +129,22 @@ TEST(DrillResults, WhatTheDrillUndidIsNoSuccessOfAStrategy) {
   EXPECT_NEAR(*attempts_in(trial)[0].effect, 0.5, 1e-9);
 }
 
+TEST(DrillResults, AFailureAfterTheFaultWasTakenBackIsNoneOfIt) {
+  Trial trial = killed();
+  trial.restored = 105;
+  trial.end = 110;
+  Json chosen = event(106, "strategy_chosen", "camera_restart");
+  chosen["components"] = {"fusion"};
+  trial.events.insert(trial.events.end(), {event(105.5, "failure_detected"), chosen,
+                                           event(106.2, "adaptation_done", "camera_restart"),
+                                           event(106.4, "failure_resolved", "camera_restart")});
+  EXPECT_THAT(finding_of(trial).wrongly, IsEmpty());
+  EXPECT_THAT(finding_of(trial).helped, ElementsAre("CameraDead.camera_redeploy"));
+  ASSERT_EQ(attempts_in(trial).size(), 2u) << "but it shows what helps";
+  EXPECT_EQ(attempts_in(trial)[1].strategy, "camera_restart");
+  EXPECT_EQ(to_json(*trial_from(to_json(trial))), to_json(trial));
+}
+
 TEST(DrillResults, IntervalsHoldTheirShare) {
   EXPECT_EQ(interval_of(0, 0).high, 1);
   const Interval all = interval_of(20, 20);
@@ -229,6 +245,21 @@ TEST(DrillWriteBack, ADurationSeparatesWhatNoThresholdDoes) {
                          .faulty = 0.8}};
   EXPECT_THAT(write_back("r", kOverlap, results)->text,
               HasSubstr("POLICIES WARNING FOR 400ms    # drill 2026-12-01, 50 values\n"));
+}
+
+TEST(DrillWriteBack, RaisesAReadyThatStartsExceed) {
+  constexpr const char* kSlowStarts =
+      "COMPONENT camera NODE /camera LAUNCH \"camera\" READY 5s  # slow\n"
+      "COMPONENT lidar NODE /lidar LAUNCH \"lidar\" READY 5s\n"
+      "COMPONENT fusion NODE /fusion LAUNCH \"fusion\"\n";
+  Results results = results_of({}, *check(Source("r", kSlowStarts)).rules, {}, "2026-12-01");
+  results.starts = {{"camera", {2, 3, 7.2}}, {"lidar", {1, 2, 3}}, {"fusion", {9, 9, 9}}};
+  EXPECT_EQ(write_back("r", kSlowStarts, results)->text,
+            "COMPONENT camera NODE /camera LAUNCH \"camera\" READY 8s  # slow; drill 2026-12-01, 3 "
+            "starts\n"
+            "COMPONENT lidar NODE /lidar LAUNCH \"lidar\" READY 5s\n"
+            "COMPONENT fusion NODE /fusion LAUNCH \"fusion\"\n");
+  EXPECT_THAT(report_lines(results), testing::Contains(HasSubstr("8s")));
 }
 
 TEST(DrillResults, CountOnlyWhatRulesOfTheFileNoticed) {

@@ -131,16 +131,17 @@ HealthyRobot RobotView::healthy() const {
   return out;
 }
 
-std::set<std::string> RobotView::silent() const {
-  constexpr double kShortest = 0.5;  // seconds
-  constexpr double kUsualGaps = 5;
-  const HealthyRobot now = healthy();
+std::set<std::string> RobotView::silent(const HealthyRobot& healthy) const {
+  constexpr double kShortest = 0.3;  // seconds
+  constexpr double kUsualGaps = 3;
   const Json& topics = member(robot_, "topics");
   const Json& states = member(state_, "topics");
   std::set<std::string> out;
   for (std::size_t i = 0; i < std::min(topics.size(), states.size()); ++i) {
-    if (!topics[i].is_string()) continue;
-    const HealthyRobot::Topic& topic = now.topics.at(topics[i].get<std::string>());
+    const auto usual = topics[i].is_string() ? healthy.topics.find(topics[i].get<std::string>())
+                                             : healthy.topics.end();
+    if (usual == healthy.topics.end()) continue;
+    const HealthyRobot::Topic& topic = usual->second;
     if (!topic.publisher.empty() && topic.rate > 0 &&
         number_of(states[i], "age") > std::max(kShortest, kUsualGaps / topic.rate))
       out.insert(topic.publisher);

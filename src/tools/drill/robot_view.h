@@ -49,8 +49,8 @@ class RobotView {
 
   HealthyRobot healthy() const;
 
-  // Components that publish a watched topic which is silent for longer than usual.
-  std::set<std::string> silent() const;
+  // Components that publish a watched topic which is silent for longer than is usual in `healthy`.
+  std::set<std::string> silent(const HealthyRobot& healthy) const;
 
  private:
   std::vector<std::pair<std::string, std::string>> edges() const;

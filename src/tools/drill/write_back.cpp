@@ -91,6 +91,7 @@ class WriteBack {
     for (const StrategyResult& each : results_.strategies) strategy(each);
     thresholds();
     for (const ThresholdMeasure& each : results_.thresholds) hold(each);
+    for (const auto& [component, times] : results_.starts) ready(component, times);
     return {dependencies(edits_.done()), std::move(unwritten_)};
   }
 
@@ -173,6 +174,18 @@ class WriteBack {
     if (written->policies->hold_for && *written->policies->hold_for >= milliseconds) return;
     edits_.set_clause(written->policies->span, "FOR", culprit::to_string(milliseconds),
                       fmt::format("{}{}, {} values", kMark, results_.date, measure.values));
+  }
+
+  // A start may take as long as the longest that was measured. Without READY each start is one try; that stays.
+  void ready(const std::string& component, const std::vector<double>& times) {
+    const auto written = std::ranges::find_if(
+        file_.components, [&](const syntax::Component& c) { return c.name.text == component; });
+    if (written == file_.components.end() || !written->ready || times.size() < kRepeats) return;
+    const std::chrono::seconds longest = ready_of(times);
+    if (*written->ready >= longest) return;
+    edits_.set_clause({written->name.span.begin, edits_.end_of_line(written->name.span.begin)},
+                      "READY", culprit::to_string(Duration(longest)),
+                      fmt::format("{}{}, {} starts", kMark, results_.date, times.size()));
   }
 
   // Behind the last COMPONENT or DEPENDENCY line; at the end if there is none.
