@@ -1,7 +1,7 @@
 // Loses datagrams of one process on this computer, with nftables, so as root or with CAP_NET_ADMIN.
 //
-// The kernel removes the table as soon as the nft program that made it ends. That one reads from us, so it ends with the
-// drill, however that ends, and after a time in any case: no rule of the firewall outlives a drill.
+// The kernel removes the table as soon as the nft program that made it ends. The nft program reads from us, so it ends with
+// the drill, however the drill ends, and after a time in any case. So no rule of the firewall outlives a drill.
 #pragma once
 
 #include <set>

@@ -271,7 +271,7 @@ Expected<Trial> DrillSession::run(const drill::Step& step) {
   if (trial.trouble.empty()) watch_reaction(trial, *injected);
   if (undo_all(*injected)) {
     calm_.reset();
-    // What mended the fault may be a fault by itself now, and has to be mended, too.
+    // The remedy may be a fault by itself now (an enhancement of a good picture), and has to be undone, too.
     if (trial.well) {
       trial.restored = drill_clock();
       (void)wait_until_well(Until::kWellOrTold);

@@ -1,5 +1,5 @@
-// What culprit learned of failures during a drill, as priors of the culprit that manages the robot afterwards: how surely
-// failures spread, and how late rules show them. Success rates are not among them: they are numbers of the rule file.
+// A drill's findings as priors of the culprit that manages the robot afterwards: how surely failures spread, and how late
+// rules show them. Success rates are not among them: they are numbers of the rule file.
 #pragma once
 
 #include <filesystem>

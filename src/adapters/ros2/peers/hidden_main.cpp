@@ -1,5 +1,5 @@
-// A node in a process of its own that may depend on another one in a way that the graph of the robot does not show, for
-// drills that search for such dependencies:
+// A node in a process of its own, for drills that search for hidden dependencies. It may depend on another node in a way
+// that the graph of the robot does not show:
 //
 //     ros2_peer_hidden <name> [--needs-topic NAME] [--writes-file FILE] [--needs-file FILE] [--sends-to PORT]
 //                      [--needs-port PORT] [--serves] [--needs-service NAME]
