@@ -102,7 +102,9 @@ Expected<DrillRules> rules_for(const DrillOptions& options, const RuleSet& rules
   std::error_code error;
   const auto whole = std::filesystem::absolute(options.rules, error);
   out.file = (folder / "drill.rules").string();
-  if (auto written = write_text(out.file, "INCLUDE \"" + whole.string() + "\"\n" + more); !written)
+  if (auto written =
+          write_text(out.file, "INCLUDE " + drill::in_quotes(whole.string()) + "\n" + more);
+      !written)
     return Error{written.error()};
   if (const auto read = live::read_rules(out.file); !read) return Error{read.error()};
   return out;
