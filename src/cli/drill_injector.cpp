@@ -178,6 +178,22 @@ Expected<void> DrillNode::change(const std::string& node, std::uint8_t transitio
   return {};
 }
 
+std::map<std::string, std::string> DrillNode::publishers_of(
+    const std::vector<std::string>& topics) {
+  std::promise<std::map<std::string, std::string>> promise;
+  auto future = promise.get_future();
+  ros2::TaskGroup tasks(executor_);
+  tasks.post([&] {
+    std::map<std::string, std::string> found;
+    for (const std::string& topic : topics) {
+      for (const auto& [endpoint, node] : context_->graph().publishers_of(topic))
+        if (!node.empty()) found.emplace(topic, node);
+    }
+    promise.set_value(std::move(found));
+  });
+  return future.get();
+}
+
 Expected<Injected> DrillInjector::prepare(const drill::Fault& fault, const std::string& node,
                                           int pid) {
   Injected out{fault, node, {}, {}};

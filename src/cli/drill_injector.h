@@ -27,6 +27,8 @@ class DrillNode {
   // "active", "inactive" ...
   Expected<std::string> lifecycle(const std::string& node);
   Expected<void> change(const std::string& node, std::uint8_t transition);
+  // A node that publishes each of these topics, as far as it was discovered. Returns at once.
+  std::map<std::string, std::string> publishers_of(const std::vector<std::string>& topics);
 
  private:
   DrillNode() = default;

@@ -79,6 +79,8 @@ Expected<std::unique_ptr<DrillSession>> DrillSession::begin(Options options, Say
   if (auto noted = session->note({}); !noted) return Error{"nothing is injected: " + noted.error()};
   if (auto well = session->wait_until_well(Until::kWellOrTold); !well) return Error{well.error()};
   session->healthy_ = session->manager_->view();
+  session->usual_ =
+      session->healthy_->healthy(session->node_->publishers_of(session->healthy_->topics()));
   return session;
 }
 
@@ -213,7 +215,6 @@ bool DrillSession::undo_all(std::vector<Injected>& injected) {
 
 void DrillSession::watch_reaction(Trial& trial, std::vector<Injected>& injected) {
   const RobotView before = *healthy_;
-  const drill::HealthyRobot usual = before.healthy();
   const bool has_lasting =
       std::ranges::any_of(trial.faults, [](const Fault& each) { return drill::lasts(each.kind); });
   // The clock on the wall may be set meanwhile: it dates what is written, and measures nothing.
@@ -227,7 +228,7 @@ void DrillSession::watch_reaction(Trial& trial, std::vector<Injected>& injected)
   for (double after = 0; after < seconds(options_.patience); after = seconds(live_now() - begin)) {
     next_look();
     const RobotView view = manager_->view();
-    for (const std::string& each : view.silent(usual))
+    for (const std::string& each : view.silent(usual_))
       trial.silent.try_emplace(each, drill_clock());
     trial.trouble = why_to_end();
     if (trial.trouble.empty()) trial.trouble = manager_->why_it_does_not_act();

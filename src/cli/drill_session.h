@@ -49,7 +49,7 @@ class DrillSession {
   Expected<drill::Trial> run(const drill::Step& step);
 
   // As it was before the first fault.
-  drill::HealthyRobot healthy() const { return healthy_->healthy(); }
+  const drill::HealthyRobot& healthy() const { return usual_; }
   // Watches for so long and injects nothing. False: stopped.
   bool watch(Duration time);
 
@@ -80,6 +80,7 @@ class DrillSession {
   std::unique_ptr<DrillManager> manager_;
   std::unique_ptr<DrillInjector> injector_;
   std::optional<drill::RobotView> healthy_;
+  drill::HealthyRobot usual_;
   std::optional<Time> calm_;     // since when the robot is well
   Time stood_still_ = kLongAgo;  // when the drill itself had not run for a second
 };

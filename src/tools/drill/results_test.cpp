@@ -199,14 +199,14 @@ TEST(DrillWriteBack, ChangesWhatWasMeasuredAndSaysWhereFrom) {
   results.thresholds = {{.of = comparisons_in(check(Source("r", kDrilled)).file).at(0),
                          .values = 200,
                          .least = 0.09,
-                         .most = 0.12,
+                         .most = 0.3,
                          .looked = 20}};
   const auto written = write_back("rover.rules", kDrilled, results);
   ASSERT_TRUE(written) << written.error();
   EXPECT_EQ(written->text, R"(# A robot.
 ROBOT rover
 CYCLE 200ms
-CONST silence = 360ms    # three messages; drill 2026-12-01, 200 values
+CONST silence = 900ms    # three messages; drill 2026-12-01, 200 values
 COMPONENT camera NODE /camera LAUNCH "camera"
 COMPONENT fusion NODE /fusion LAUNCH "fusion"
 DEPENDENCY fusion ON camera    # drill 2026-12-01: silent in all 7 faults of camera
@@ -245,6 +245,27 @@ TEST(DrillWriteBack, ADurationSeparatesWhatNoThresholdDoes) {
                          .faulty = 0.8}};
   EXPECT_THAT(write_back("r", kOverlap, results)->text,
               HasSubstr("POLICIES WARNING FOR 400ms    # drill 2026-12-01, 50 values\n"));
+}
+
+TEST(DrillWriteBack, KeepsAThresholdThatSeparatesHealthyFromFaulty) {
+  constexpr const char* kSeparates =
+      "COMPONENT camera NODE /camera LAUNCH \"camera\"\n"
+      "SIGNAL entropy DIAGNOSTIC camera KEY entropy\n"
+      "RULE Bad\n  POLICIES WARNING\n  TRIGGER entropy > 0.06 || age(/rgb) > 350ms\n"
+      "    STRATEGY s 50 2\n      ADAPTATION camera redeploy 5\n";
+  const Source source("r", kSeparates);
+  Results results = results_of({}, *check(source).rules, {}, "2026-12-01");
+  const auto comparisons = comparisons_in(check(source).file);
+  ASSERT_EQ(comparisons.size(), 2u);
+  results.thresholds = {
+      {.of = comparisons[0], .values = 500, .least = 0.03, .most = 0.04, .faulty = 0.2},
+      {.of = comparisons[1], .values = 500, .least = 0.09, .most = 0.12}};
+  EXPECT_EQ(write_back("r", kSeparates, results)->text, kSeparates);
+  results.thresholds[0].most = 0.08;
+  results.thresholds[1].most = 0.05;
+  EXPECT_THAT(write_back("r", kSeparates, results)->text,
+              HasSubstr("entropy > 0.11 || age(/rgb) > 150ms"))
+      << "healthy values are beyond the one, and the other takes too long";
 }
 
 TEST(DrillWriteBack, RaisesAReadyThatStartsExceed) {

@@ -106,7 +106,14 @@ std::vector<std::pair<std::string, std::string>> RobotView::edges() const {
   return out;
 }
 
-HealthyRobot RobotView::healthy() const {
+std::vector<std::string> RobotView::topics() const {
+  std::vector<std::string> out;
+  for (const Json& each : member(robot_, "topics"))
+    if (each.is_string()) out.push_back(each.get<std::string>());
+  return out;
+}
+
+HealthyRobot RobotView::healthy(const std::map<std::string, std::string>& publishers) const {
   HealthyRobot out;
   out.edges = edges();
   std::map<std::string, std::string> names;
@@ -127,6 +134,12 @@ HealthyRobot RobotView::healthy() const {
       topic->second.subscribers.insert(consumer->second);
     if (const auto producer = names.find(edge[1].get<std::string>()); producer != names.end())
       topic->second.publisher = producer->second;
+  }
+  for (const auto& [topic, node] : publishers) {
+    const auto found = out.topics.find(topic);
+    const auto name = names.find(node);
+    if (found != out.topics.end() && found->second.publisher.empty() && name != names.end())
+      found->second.publisher = name->second;
   }
   return out;
 }

@@ -25,6 +25,16 @@ TEST(RobotView, SilentIsWhatMissesThreeOfItsUsualMessages) {
       << "its rate over a second is 0 by then";
 }
 
+TEST(RobotView, ATopicWithoutASubscriberHasItsPublisherFromElsewhere) {
+  const Json robot{{"topics", {"/rgb"}}, {"components", {{{"name", "camera"}}}}};
+  const Json graph{{"nodes", {{{"node", "/cam"}, {"component", "camera"}}}}};
+  const Json state{{"topics", {{{"rate", 10}}}}, {"components", {{{"alive", true}}}}};
+  const RobotView view(robot, graph, state);
+  EXPECT_THAT(view.topics(), ElementsAre("/rgb"));
+  EXPECT_EQ(view.healthy().topics.at("/rgb").publisher, "");
+  EXPECT_EQ(view.healthy({{"/rgb", "/cam"}}).topics.at("/rgb").publisher, "camera");
+}
+
 TEST(RobotView, OfDocumentsThatSayNothingIsNotWell) {
   EXPECT_THAT(RobotView(Json(), Json(), Json()).complaints(), testing::SizeIs(1));
 }

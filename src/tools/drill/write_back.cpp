@@ -143,13 +143,15 @@ class WriteBack {
     for (const ThresholdMeasure& each : results_.thresholds)
       by_place[each.of.span.begin].push_back(&each);
     for (const auto& [place, measures] : by_place) {
+      const auto is_proven = [](const ThresholdMeasure* each) { return each->is_proven(); };
+      if (std::ranges::all_of(measures, is_proven)) continue;
       std::optional<double> value;
       std::size_t values = 0;
       bool are_all_measured = true;
       for (const ThresholdMeasure* each : measures) {
         // How far beyond its healthy values a signal is a failure, only a fault shows.
-        const bool is_proven = each->of.what != Comparison::What::kSignal || each->faulty;
-        const auto proposed = is_proven ? each->proposed() : std::nullopt;
+        const bool is_known = each->of.what != Comparison::What::kSignal || each->faulty;
+        const auto proposed = is_known ? each->proposed() : std::nullopt;
         are_all_measured &= proposed.has_value() && each->of.is_above == measures[0]->of.is_above;
         if (!proposed) continue;
         value = !value              ? *proposed
