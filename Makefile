@@ -32,7 +32,7 @@ test:
 	scripts/test
 
 # What takes longer than a test may, some six hours in all: all tests as users build, a robot that is broken and healed for an hour, three robots that nothing
-# is wrong with for ten minutes each, recordings with 100 planted faults, 500 kills of culprit, 67 attacks 20 times each, 1,000 robots of a fleet, 100 random sequences of faults for each kind of
+# is wrong with for ten minutes each, recordings with 100 planted faults, 500 kills of culprit, drills of three robots and drills that are killed, 67 attacks 20 times each, 1,000 robots of a fleet, 100 random sequences of faults for each kind of
 # owner, 40 changes of the core that its tests should notice, the laboratory and the commands under the address sanitizer, all but robots, laboratory and
 # commands under the thread sanitizer, each file compiled by itself, each fuzzer for five minutes, every figure in the documents that its command makes again, the commands of the tutorial,
 # Debian packages that are installed, upgraded and removed, and clang-tidy on every file.
@@ -46,6 +46,7 @@ soak:
 	scripts/healthy --seconds 600
 	scripts/bag-trial
 	scripts/chaos
+	scripts/drill-trial
 	scripts/hostile
 	CULPRIT_ROBOTS=1000 build/release/bin/fleet_test --gtest_filter='Fleet.CountsAreTheSum*'
 	CULPRIT_SEQUENCES=100 build/release/bin/owners_test --gtest_filter='AnySequenceOfFaults.*'

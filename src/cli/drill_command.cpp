@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <ctime>
 #include <iostream>
 #include <memory>
@@ -8,6 +10,7 @@
 
 #include "base/duration_words.h"
 #include "base/environment.h"
+#include "base/live_clock.h"
 #include "base/name_grammar.h"
 #include "cli/commands.h"
 #include "cli/drill_session.h"
@@ -15,11 +18,13 @@
 #include "drill/drill_record.h"
 #include "drill/drill_report.h"
 #include "drill/exported_tests.h"
+#include "drill/priors.h"
 #include "drill/write_back.h"
 #include "journal/json.h"
 #include "language/parser.h"
 #include "live/rule_file.h"
 #include "live/rule_trust.h"
+#include "live/run_journal.h"
 #include "ros2/options.h"
 #include "terminal/console.h"
 #include "terminal/seconds_option.h"
@@ -76,28 +81,30 @@ bool is_confirmed(const DrillOptions& options) {
 // reports.
 struct DrillRules {
   std::string file;
-  std::vector<std::string> interlocks;
-  std::vector<std::string> aborts;
+  std::vector<DrillSession::Condition> interlocks;
+  std::vector<DrillSession::Condition> aborts;
 };
 Expected<DrillRules> rules_for(const DrillOptions& options, const RuleSet& rules,
                                const std::filesystem::path& folder) {
   DrillRules out{options.rules, {}, {}};
   std::string more;
-  const auto add = [&](std::vector<std::string>& names, const char* what,
-                       const std::string& trigger) {
-    names.push_back(fmt::format("{}{}_{}", drill::kOwnRules, what, names.size() + 1));
-    more += fmt::format("\nRULE {}\n  POLICIES NON_CRITICAL REPORT\n  TRIGGER {}\n", names.back(),
-                        trigger);
+  const auto add = [&](std::vector<DrillSession::Condition>& all, const char* what,
+                       const std::string& text, const std::string& trigger) {
+    all.push_back({fmt::format("{}{}_{}", drill::kOwnRules, what, all.size() + 1), text});
+    more += fmt::format("\nRULE {}\n  POLICIES NON_CRITICAL REPORT\n  TRIGGER {}\n",
+                        all.back().rule, trigger);
   };
   for (const Interlock& each : rules.interlocks)
-    add(out.interlocks, "interlock", "!(" + each.text + ")");
-  for (const std::string& condition : rules.aborts) add(out.aborts, "abort", condition);
-  if (!options.abort.empty()) add(out.aborts, "abort", options.abort);
+    add(out.interlocks, "interlock", each.text, "!(" + each.text + ")");
+  for (const std::string& condition : rules.aborts) add(out.aborts, "abort", condition, condition);
+  if (!options.abort.empty()) add(out.aborts, "abort", options.abort, options.abort);
   if (more.empty()) return out;
   std::error_code error;
   const auto whole = std::filesystem::absolute(options.rules, error);
   out.file = (folder / "drill.rules").string();
-  if (auto written = write_text(out.file, "INCLUDE \"" + whole.string() + "\"\n" + more); !written)
+  if (auto written =
+          write_text(out.file, "INCLUDE " + drill::in_quotes(whole.string()) + "\n" + more);
+      !written)
     return Error{written.error()};
   if (const auto read = live::read_rules(out.file); !read) return Error{read.error()};
   return out;
@@ -124,7 +131,7 @@ std::vector<std::string> manager_arguments(const DrillOptions& options, const st
                                "--backoff",
                                "0",
                                "--healthy",
-                               "5"};
+                               "2"};  // shorter than the robot is well before each fault
   if (options.launches) all.emplace_back("--launch");
   if (options.monitor_seconds > 0) all.emplace_back("--dry-run");
   return all;
@@ -145,8 +152,9 @@ Expected<std::vector<drill::ThresholdMeasure>> thresholds_of(const std::filesyst
   std::vector<drill::FaultyStretch> faulty;
   for (const Trial& trial : trials) {
     const auto fired = drill::finding_of(trial).fired;
-    faulty.push_back(
-        {trial.injected, trial.well.value_or(trial.end), {fired.begin(), fired.end()}});
+    faulty.push_back({trial.injected,
+                      trial.well && !trial.restored ? *trial.well : trial.end,
+                      {fired.begin(), fired.end()}});
   }
   return drill::measure(*recording, static_cast<double>((*row)->at) / 1e9, comparisons, faulty);
 }
@@ -190,6 +198,20 @@ std::string diff_of(const std::string& name, const std::string& before, const st
   return unified_diff(name, edits);
 }
 
+// Once for each record: counts are added. Remembers it by a file there.
+int write_priors(const DrillOptions& options, const std::string& robot,
+                 const drill::DrillRecord& record) {
+  const auto mark = record.file("priors");
+  if (std::filesystem::exists(mark)) return kOk;
+  const auto journal = live::default_journal(options.state(), robot);
+  const auto added = drill::add_priors(record.file("robot.journal"), journal, wall_now());
+  if (!added) return fail(added.error());
+  say(remarks_of(options), "culprit: {} couplings and {} latencies added to '{}'\n",
+      added->couplings, added->latencies, journal.string());
+  const auto marked = write_text(mark.string(), journal.string() + "\n");
+  return marked ? kOk : fail(marked.error());
+}
+
 // The measured numbers as a diff, and into the file if that is asked for.
 int show_changes(const DrillOptions& options, const std::string& text, const Results& results) {
   const auto changed = drill::write_back(options.rules, text, results);
@@ -211,8 +233,9 @@ int show_results(const DrillOptions& options, const std::string& text, const Rul
                  const drill::DrillRecord& record) {
   const auto& trials = record.trials();
   const bool monitors = options.monitor_seconds > 0;
-  const auto at =
-      trials.empty() ? std::time(nullptr) : static_cast<std::time_t>(trials.back().injected);
+  double last = 0;  // a trial whose fault could not be injected has no time
+  for (const Trial& each : trials) last = std::max(last, each.injected);
+  const auto at = last > 0 ? static_cast<std::time_t>(last) : std::time(nullptr);
   Results results = drill::results_of(trials, rules, drill::paths_over(record.head().healthy.edges),
                                       date_of(at, "%Y-%m-%d"));
   auto thresholds = thresholds_of(record.file("robot.journal"), text, trials);
@@ -237,7 +260,9 @@ int show_results(const DrillOptions& options, const std::string& text, const Rul
                                               record.head().healthy);
     if (!exported) return fail(exported.error());
   }
-  return show_changes(options, text, results);
+  const int shown = show_changes(options, text, results);
+  if (shown != kOk || !options.writes || monitors) return shown;
+  return write_priors(options, rules.robot, record);
 }
 
 Expected<std::unique_ptr<DrillSession>> begin_session(const DrillOptions& options,
@@ -286,6 +311,15 @@ Expected<void> inject_all(const DrillOptions& options, const RuleSet& rules,
   return {};
 }
 
+// Found before the drill, not after it.
+Expected<void> may_be_written(const DrillOptions& options) {
+  const auto folder = std::filesystem::absolute(options.rules).parent_path();
+  if (!options.writes ||
+      (access(options.rules.c_str(), W_OK) == 0 && access(folder.c_str(), W_OK) == 0))
+    return {};
+  return Error{"--write: '" + options.rules + "' cannot be written: " + std::strerror(errno)};
+}
+
 int run_drill(DrillOptions options) {
   for (const std::string& word : options.kinds) {
     const auto kind = drill::fault_kind(word);
@@ -295,6 +329,7 @@ int run_drill(DrillOptions options) {
   options.plan.hang = from_seconds(options.hang_seconds);
   if (options.budget_seconds > 0) options.plan.budget = from_seconds(options.budget_seconds);
   if (auto trusted = live::trust_rules(options.rules); !trusted) return fail(trusted.error());
+  if (auto may = may_be_written(options); !may) return fail(may.error());
   const auto loaded =
       live::read_rules(options.rules, Strictness::kLenient, colour_of(STDERR_FILENO));
   if (!loaded) return fail(loaded.error());
@@ -352,7 +387,8 @@ void add_drill(CLI::App& app, int& exit_code) {
       ->type_name("COMPONENT");
   command
       ->add_option("--kinds", options->kinds,
-                   "Kinds of faults: kill, hang, slow, deactivate, restart (default: all)")
+                   "Kinds of faults: kill, hang, slow, deactivate, restart, set_parameter, loss "
+                   "(default: all but loss)")
       ->delimiter(',')
       ->type_name("KIND");
   command->add_option("--times", options->plan.times, "Rounds: each has every fault once")

@@ -178,6 +178,22 @@ Expected<void> DrillNode::change(const std::string& node, std::uint8_t transitio
   return {};
 }
 
+std::map<std::string, std::string> DrillNode::publishers_of(
+    const std::vector<std::string>& topics) {
+  std::promise<std::map<std::string, std::string>> promise;
+  auto future = promise.get_future();
+  ros2::TaskGroup tasks(executor_);
+  tasks.post([&] {
+    std::map<std::string, std::string> found;
+    for (const std::string& topic : topics) {
+      for (const auto& [endpoint, node] : context_->graph().publishers_of(topic))
+        if (!node.empty()) found.emplace(topic, node);
+    }
+    promise.set_value(std::move(found));
+  });
+  return future.get();
+}
+
 Expected<Injected> DrillInjector::prepare(const drill::Fault& fault, const std::string& node,
                                           int pid) {
   Injected out{fault, node, {}, {}};
@@ -185,6 +201,9 @@ Expected<Injected> DrillInjector::prepare(const drill::Fault& fault, const std::
     const auto ticks = pid == 0 ? std::nullopt : owners::start_ticks_of(pid);
     if (!ticks) return Error{"the process of " + fault.component + " is not known"};
     if (kill(pid, 0) != 0) return Error{"no right to signal process " + std::to_string(pid)};
+    if (fault.kind == FaultKind::kLoss) {
+      if (auto may = may_lose_datagrams(pid); !may) return Error{may.error()};
+    }
     out.process = {pid, *ticks};
     return out;
   }
@@ -214,6 +233,12 @@ Expected<void> DrillInjector::inject(const Injected& fault, Duration lasts) {
           kill(fault.process.pid, SIGKILL) != 0)
         return Error{"process " + std::to_string(fault.process.pid) + " cannot be killed"};
       return {};
+    case FaultKind::kLoss: {
+      auto loss = lose_datagrams(fault.process.pid, lasts);
+      if (!loss) return Error{loss.error()};
+      guards_.push_back(std::move(*loss));
+      return {};
+    }
     case FaultKind::kHang:
       return stop_for(fault.process.pid, lasts, false);
     case FaultKind::kSlow:
@@ -243,7 +268,7 @@ Expected<void> DrillInjector::stop_for(int pid, Duration lasts, bool in_rhythm) 
 }
 
 void DrillInjector::release() {
-  for (Guard& each : guards_) {
+  for (FaultGuard& each : guards_) {
     each.alive = owners::FileDescriptor();
     waitpid(each.pid, nullptr, 0);
   }
@@ -255,6 +280,7 @@ Expected<bool> DrillInjector::undo(const Injected& fault) {
   switch (fault.fault.kind) {
     case FaultKind::kKill:
       return false;  // its owner starts it
+    case FaultKind::kLoss:
     case FaultKind::kHang:
     case FaultKind::kSlow: {
       const bool is_it = owners::start_ticks_of(fault.process.pid) == fault.process.ticks;

@@ -7,8 +7,8 @@
 #include <memory>
 #include <thread>
 
+#include "cli/drill_loss.h"
 #include "drill/injected.h"
-#include "owners/file_descriptor.h"
 #include "ros2/node.h"
 #include "ros2/services.h"
 
@@ -27,6 +27,8 @@ class DrillNode {
   // "active", "inactive" ...
   Expected<std::string> lifecycle(const std::string& node);
   Expected<void> change(const std::string& node, std::uint8_t transition);
+  // A node that publishes each of these topics, as far as it was discovered. Returns at once.
+  std::map<std::string, std::string> publishers_of(const std::vector<std::string>& topics);
 
  private:
   DrillNode() = default;
@@ -58,12 +60,8 @@ class DrillInjector {
  private:
   Expected<void> stop_for(int pid, Duration lasts, bool in_rhythm);
 
-  struct Guard {
-    int pid = 0;
-    owners::FileDescriptor alive;  // ends the guard when it is closed
-  };
   DrillNode& node_;
-  std::vector<Guard> guards_;
+  std::vector<FaultGuard> guards_;
 };
 
 }  // namespace culprit::cli

@@ -1,6 +1,9 @@
 // `culprit drill` on real processes: what it measures, and what a drill that is killed leaves behind.
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <sys/stat.h>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -8,6 +11,7 @@
 
 #include "base/environment.h"
 #include "base/live_clock.h"
+#include "base/text_file.h"
 #include "json/json.h"
 #include "owners/proc.h"
 #include "terminal/test_program.h"
@@ -29,8 +33,21 @@ RULE CameraGone
       ADAPTATION camera redeploy 5
 )";
 
+// The culprits that drills of this domain started; a killed drill leaves one behind.
+std::vector<int> managers() {
+  std::vector<int> found;
+  for (const int pid : owners::all_processes()) {
+    const auto words = read_text("/proc/" + std::to_string(pid) + "/cmdline");
+    if (words && words->find(std::string("culprit\0run", 11)) != std::string::npos &&
+        owners::has_variable(pid, "ROS_DOMAIN_ID=" + environment("ROS_DOMAIN_ID")))
+      found.push_back(pid);
+  }
+  return found;
+}
+
 struct Drill : testing::Test {
   ~Drill() override {
+    for (const int pid : managers()) kill(pid, SIGKILL);
     TestProgram end(world, {"culprit", "end-started"});
     end.wait();
   }
@@ -99,6 +116,103 @@ TEST_F(Drill, ThatIsKilledLeavesNoProcessStoppedAndTheNextOneCanBegin) {
                            "--only", "camera", "--kinds", "kill"});
   EXPECT_EQ(next.wait(120s), 0) << next.output();
   EXPECT_FALSE(has_record_of_injected());
+}
+
+TEST_F(Drill, AnAbortConditionThatIsTrueOrUnknownKeepsItFromInjecting) {
+  std::ofstream(rules, std::ios::app) << "SIGNAL speed TOPIC /odom FIELD twist.twist.linear.x\n";
+  for (const auto& [condition, why] :
+       {std::pair("alive(depth)", "is true"), std::pair("speed > 0.5", "is unknown")}) {
+    TestProgram program(world, drill({"--kinds", "kill", "--abort", condition}));
+    EXPECT_EQ(program.wait(60s), 1) << program.output();
+    EXPECT_THAT(program.output(),
+                HasSubstr("ABORT " + std::string(condition) + " " + std::string(why)));
+    EXPECT_THAT(program.output(), testing::Not(HasSubstr("injects")));
+    EXPECT_FALSE(has_record_of_injected());
+    std::filesystem::remove_all(world.folder() / "record");
+  }
+}
+
+TEST_F(Drill, ARobotThatIsIllAlreadyIsNotBroken) {
+  std::ofstream(rules, std::ios::app)
+      << "RULE Ill\n  POLICIES WARNING REPORT\n  TRIGGER alive(camera)\n";
+  TestProgram program(world, drill({"--kinds", "kill", "--patience", "5"}));
+  EXPECT_EQ(program.wait(60s), 1) << program.output();
+  EXPECT_THAT(program.output(), HasSubstr("the robot is not well: Ill is "));
+  EXPECT_THAT(program.output(), testing::Not(HasSubstr("injects")));
+}
+
+TEST_F(Drill, AParameterThatTheNodeDoesNotHaveProvesNothing) {
+  std::ofstream(rules, std::ios::app) << "DRILL camera set_parameter expozure 0\n";
+  TestProgram program(world, drill({"--kinds", "set_parameter"}));
+  EXPECT_EQ(program.wait(60s), 0) << program.output();
+  EXPECT_THAT(program.output(), HasSubstr("set_parameter camera expozure 0: proves nothing, "
+                                          "/managed_subsystem/camera has no parameter 'expozure'"));
+}
+
+TEST_F(Drill, InterruptedTwiceStillUndoesAndHeals) {
+  TestProgram program(world, drill({"--only", "camera", "--kinds", "kill,hang", "--times", "9"}));
+  ASSERT_TRUE(program.prints("injects", 60s)) << program.output();
+  program.signal(SIGINT);
+  std::this_thread::sleep_for(200ms);
+  program.signal(SIGINT);
+  EXPECT_EQ(program.wait(60s), 1) << program.output();
+  EXPECT_THAT(program.output(), HasSubstr("the drill ends: interrupted"));
+  EXPECT_FALSE(has_record_of_injected()) << "the robot was well at the end";
+}
+
+TEST_F(Drill, EndsWhenCulpritIsPausedAndInjectsNothingMore) {
+  TestProgram program(
+      world, drill({"--only", "camera", "--kinds", "kill", "--times", "9", "--patience", "5"}));
+  ASSERT_TRUE(program.prints("[1/9]", 60s)) << program.output();
+  TestProgram pause(world, {"culprit", "pause", "--reason", "a test"});
+  EXPECT_EQ(pause.wait(), 0) << pause.output();
+  EXPECT_EQ(program.wait(60s), 1) << program.output();
+  EXPECT_THAT(program.output(), HasSubstr("culprit is paused"));
+}
+
+TEST_F(Drill, WhoseCulpritIsKilledStartsAnotherThatHeals) {
+  TestProgram program(world, drill({"--only", "camera", "--kinds", "kill", "--times", "9"}));
+  ASSERT_TRUE(program.prints("injects", 60s)) << program.output();
+  for (const int pid : managers()) kill(pid, SIGKILL);
+  EXPECT_EQ(program.wait(90s), 1) << program.output();
+  EXPECT_THAT(program.output(), HasSubstr("another one heals the robot"));
+  EXPECT_FALSE(has_record_of_injected()) << program.output();
+}
+
+TEST_F(Drill, ThatStoodStillItselfGoesOnAndBlamesNobody) {
+  TestProgram program(world, drill({"--only", "camera", "--kinds", "kill", "--times", "2"}));
+  ASSERT_TRUE(program.prints("injects", 60s)) << program.output();
+  program.signal(SIGSTOP);
+  std::this_thread::sleep_for(5s);
+  program.signal(SIGCONT);
+  EXPECT_EQ(program.wait(60s), 0) << program.output();
+  EXPECT_THAT(program.output(), HasSubstr("proves nothing, the drill itself stood still"));
+  EXPECT_THAT(program.output(), HasSubstr("[2/2] kill camera: noticed"));
+}
+
+TEST_F(Drill, OfRulesThatCannotBeWrittenSaysSoBeforeIt) {
+  chmod(rules.c_str(), 0400);
+  // A superuser may write it without this capability, too.
+  TestProgram program(world, {"setpriv", "--bounding-set=-dac_override", "--inh-caps=-dac_override",
+                              (own_folder() / "culprit").string(), "drill", rules, "--yes",
+                              "--write", "--state-dir", state()});
+  EXPECT_EQ(program.wait(), 1);
+  EXPECT_THAT(program.output(), HasSubstr("cannot be written: Permission denied"));
+}
+
+TEST_F(Drill, LosesDatagramsOfOneNodeAndLeavesNoRuleInTheFirewall) {
+  if (std::system("nft list tables > /dev/null 2>&1") != 0) GTEST_SKIP() << "needs nft, as root";
+  TestProgram program(world, drill({"--only", "camera", "--kinds", "loss", "--hang", "60"}));
+  ASSERT_TRUE(program.prints("injects loss camera", 60s)) << program.output();
+  const auto is_there = [] { return std::system("nft list tables | grep -q culprit_drill_") == 0; };
+  for (const Time end = live_now() + 10s; !is_there() && live_now() < end;)
+    std::this_thread::sleep_for(50ms);
+  EXPECT_TRUE(is_there());
+  program.signal(SIGKILL);
+  program.wait();
+  for (const Time end = live_now() + 10s; is_there() && live_now() < end;)
+    std::this_thread::sleep_for(50ms);
+  EXPECT_FALSE(is_there());
 }
 
 }  // namespace

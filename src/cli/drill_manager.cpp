@@ -83,6 +83,7 @@ void DrillManager::follow() {
       if (kind == "robot") robot_ = std::move(document);
       if (kind == "graph") graph_ = std::move(document);
       if (kind == "state") state_ = std::move(document);
+      if (kind == "control") control_ = std::move(document);
       // After a break the events that are known come again.
       if (kind == "event" && (events_.empty() || journal::number_of(document, "clock") >=
                                                      journal::number_of(events_.back(), "clock")))
@@ -91,6 +92,15 @@ void DrillManager::follow() {
     });
     if (!is_over_) std::this_thread::sleep_for(50ms);
   }
+}
+
+bool DrillManager::is_running() const { return runs(process_); }
+
+std::string DrillManager::why_it_does_not_act() const {
+  const MutexLock lock(mutex_);
+  if (journal::flag_of(control_, "paused")) return "culprit is paused; culprit resume ends that";
+  if (journal::flag_of(control_, "dry_run")) return "culprit is on a dry run";
+  return "";
 }
 
 bool DrillManager::is_answering() const {

@@ -28,8 +28,11 @@ class DrillManager {
   void leave() { is_left_ = true; }
 
   const drill::ProcessId& process() const { return process_; }
+  bool is_running() const;
   // Whether it runs and told something in the last 3 s.
   bool is_answering() const;
+  // "culprit is paused"; empty: it acts on failures.
+  std::string why_it_does_not_act() const;
 
   // As it was told last.
   drill::RobotView view() const;
@@ -49,6 +52,7 @@ class DrillManager {
   Json robot_ CULPRIT_GUARDED_BY(mutex_);
   Json graph_ CULPRIT_GUARDED_BY(mutex_);
   Json state_ CULPRIT_GUARDED_BY(mutex_);
+  Json control_ CULPRIT_GUARDED_BY(mutex_);
   std::vector<Json> events_ CULPRIT_GUARDED_BY(mutex_);
   Time told_ CULPRIT_GUARDED_BY(mutex_) = kLongAgo;
 

@@ -21,6 +21,8 @@ using drill::Trial;
 
 constexpr Duration kLook = 50ms;
 constexpr Duration kNotices = 5s;  // a rule that has not fired by then does not notice the fault
+constexpr Duration kStarved = 1s;  // a look that comes so late proves nothing
+constexpr Duration kHears = 3s;    // after that, until culprit must have been heard again
 
 std::string boot_id() {
   const auto text = read_text("/proc/sys/kernel/random/boot_id");
@@ -33,9 +35,7 @@ std::string listed(const std::vector<std::string>& complaints) {
   return text;
 }
 
-bool lasts(const Fault& fault) {
-  return fault.kind == FaultKind::kHang || fault.kind == FaultKind::kSlow;
-}
+bool ends_at_once(const Fault& fault) { return fault.kind == FaultKind::kRestart; }
 
 // A deactivated node that no rule is about is not well either.
 std::vector<std::string> complaints_of(const RobotView& view, const RobotView& before,
@@ -79,6 +79,8 @@ Expected<std::unique_ptr<DrillSession>> DrillSession::begin(Options options, Say
   if (auto noted = session->note({}); !noted) return Error{"nothing is injected: " + noted.error()};
   if (auto well = session->wait_until_well(Until::kWellOrTold); !well) return Error{well.error()};
   session->healthy_ = session->manager_->view();
+  session->usual_ =
+      session->healthy_->healthy(session->node_->publishers_of(session->healthy_->topics()));
   return session;
 }
 
@@ -108,6 +110,17 @@ Expected<void> DrillSession::note(std::vector<Injected> injected) const {
 
 DrillSession::~DrillSession() {
   if (!manager_) return;
+  if (!manager_->is_running()) {
+    static const std::atomic<bool> kNeverStopped = false;
+    say_("the culprit of this drill exited; another one heals the robot");
+    auto next = DrillManager::start(options_.manager, options_.log, kNeverStopped);
+    if (!next) {
+      say_(next.error() + "; see to it that the robot is well");
+      return;
+    }
+    manager_ = std::move(*next);
+    calm_.reset();
+  }
   if (auto well = wait_until_well(Until::kWell); !well) {
     say_(well.error() + "; culprit goes on and heals it: process " +
          std::to_string(manager_->process().pid));
@@ -121,32 +134,46 @@ DrillSession::~DrillSession() {
 
 std::string DrillSession::why_to_end() const {
   if (stop_) return "interrupted";
-  if (!manager_->is_answering()) return "the culprit of this drill does not answer";
+  // A drill that stood still heard nothing.
+  const bool may_hear = live_now() >= later(stood_still_, kHears);
+  if (!manager_->is_running() || (may_hear && !manager_->is_answering()))
+    return "the culprit of this drill does not answer";
   const RobotView view = manager_->view();
-  for (const std::string& rule : options_.aborts)
-    if (view.trigger(rule).value_or(false)) return "an ABORT condition is true";
+  for (const Condition& each : options_.aborts)
+    if (view.trigger(each.rule).value_or(false)) return "ABORT " + each.text + " is true";
   return "";
+}
+
+void DrillSession::next_look() {
+  const Time before = live_now();
+  std::this_thread::sleep_for(kLook);
+  if (live_now() - before >= kStarved) stood_still_ = live_now();
 }
 
 Expected<void> DrillSession::wait_until_well(Until until) {
   std::vector<std::string> complaints;
-  std::optional<Time> calm;
   for (const Time end = live_now() + options_.patience; live_now() < end;) {
     if (const std::string why = why_to_end(); !why.empty() && until == Until::kWellOrTold)
       return Error{why};
     complaints = manager_->view().complaints(healthy_ ? &*healthy_ : nullptr);
-    if (!complaints.empty()) calm.reset();
-    if (complaints.empty() && !calm) calm = live_now();
-    if (calm && live_now() - *calm >= drill::kCalm) return {};
-    std::this_thread::sleep_for(kLook);
+    if (!complaints.empty()) calm_.reset();
+    if (complaints.empty() && !calm_) calm_ = live_now();
+    if (calm_ && live_now() - *calm_ >= drill::kCalm) return {};
+    next_look();
   }
   return Error{"the robot is not well: " + listed(complaints)};
 }
 
 Expected<void> DrillSession::may_inject() const {
+  if (const std::string why = manager_->why_it_does_not_act(); !why.empty()) return Error{why};
   const RobotView view = manager_->view();
-  for (const std::string& rule : options_.interlocks)
-    if (view.trigger(rule).value_or(true)) return Error{"an INTERLOCK does not hold"};
+  for (const Condition& each : options_.interlocks)
+    if (view.trigger(each.rule).value_or(true))
+      return Error{"INTERLOCK " + each.text + " does not hold, or is unknown"};
+  for (const Condition& each : options_.aborts)
+    if (!view.trigger(each.rule))
+      return Error{"ABORT " + each.text +
+                   " is unknown: a topic or node that it reads was not seen"};
   return {};
 }
 
@@ -177,22 +204,35 @@ bool DrillSession::undo(std::vector<Injected>& injected) {
   return is_undone;
 }
 
+bool DrillSession::undo_all(std::vector<Injected>& injected) {
+  bool is_undone = undo(injected);
+  for (const Time end = live_now() + options_.patience; !injected.empty() && live_now() < end;) {
+    next_look();
+    is_undone |= undo(injected);
+  }
+  return is_undone;
+}
+
 void DrillSession::watch_reaction(Trial& trial, std::vector<Injected>& injected) {
   const RobotView before = *healthy_;
-  const bool has_lasting = std::ranges::any_of(trial.faults, lasts);
+  const bool has_lasting =
+      std::ranges::any_of(trial.faults, [](const Fault& each) { return drill::lasts(each.kind); });
   // The clock on the wall may be set meanwhile: it dates what is written, and measures nothing.
   const Time begin = live_now();
   std::optional<std::pair<Time, double>> calm;
-  bool is_over = false;
+  bool is_over = std::ranges::all_of(trial.faults, ends_at_once);
   const auto undo_now = [&] {
     if (undo(injected)) trial.undone = drill_clock();
     is_over = true;
   };
   for (double after = 0; after < seconds(options_.patience); after = seconds(live_now() - begin)) {
-    std::this_thread::sleep_for(kLook);
+    next_look();
     const RobotView view = manager_->view();
-    for (const std::string& each : view.silent()) trial.silent.try_emplace(each, drill_clock());
-    if (trial.trouble = why_to_end(); !trial.trouble.empty()) return undo_now();
+    for (const std::string& each : view.silent(usual_))
+      trial.silent.try_emplace(each, drill_clock());
+    trial.trouble = why_to_end();
+    if (trial.trouble.empty()) trial.trouble = manager_->why_it_does_not_act();
+    if (!trial.trouble.empty()) return undo_now();
     const bool noticed = is_noticed(manager_->events_since(trial.injected));
     // The guard lets a stopped process go on by itself. Others stay broken for half of the time that culprit has.
     const Duration until = has_lasting ? options_.hang
@@ -205,10 +245,11 @@ void DrillSession::watch_reaction(Trial& trial, std::vector<Injected>& injected)
     const bool was_awaited = noticed || is_over || after > seconds(kNotices);
     if (calm && was_awaited && live_now() - calm->first >= drill::kCalm) {
       trial.well = calm->second;
+      calm_ = calm->first;
       break;
     }
   }
-  if (!is_over) undo_now();
+  if (stood_still_ > begin) trial.trouble = "the drill itself stood still meanwhile";
 }
 
 Expected<Trial> DrillSession::run(const drill::Step& step) {
@@ -225,10 +266,18 @@ Expected<Trial> DrillSession::run(const drill::Step& step) {
   for (const Injected& each : *injected) {
     say_("injects " + to_string(each.fault));
     if (auto done = injector_->inject(each, options_.hang); !done) trial.trouble = done.error();
-    if (each.fault.kind == FaultKind::kRestart) trial.undone = drill_clock();
+    if (ends_at_once(each.fault)) trial.undone = drill_clock();
   }
+  calm_.reset();
   if (trial.trouble.empty()) watch_reaction(trial, *injected);
-  undo(*injected);
+  if (undo_all(*injected)) {
+    calm_.reset();
+    // The remedy may be a fault by itself now (an enhancement of a good picture), and has to be undone, too.
+    if (trial.well) {
+      trial.restored = drill_clock();
+      (void)wait_until_well(Until::kWellOrTold);
+    }
+  }
   trial.end = drill_clock();
   for (Json event : manager_->events_since(trial.injected)) {
     event.erase("candidates");
@@ -245,7 +294,7 @@ Expected<Trial> DrillSession::run(const drill::Step& step) {
 bool DrillSession::watch(Duration time) {
   for (const Time end = live_now() + time; live_now() < end;) {
     if (!why_to_end().empty()) return false;
-    std::this_thread::sleep_for(kLook);
+    next_look();
   }
   return true;
 }

@@ -1,8 +1,8 @@
 // One drill on a live robot: faults one after the other, while a culprit of its own heals.
 //
-// Safety, in this order for each fault: the robot is well for kCalm; interlocks hold; the fault is on the disk
-// (drill/injected.h); only then it is injected. Afterwards it is undone if culprit did not heal it, and the robot has to be
-// well again before the next one.
+// Safety, in this order for each fault: the robot is well for kCalm; interlocks hold, each ABORT condition is false, and
+// culprit acts; the fault is on the disk (drill/injected.h); only then it is injected. Afterwards it is undone if culprit
+// did not heal it, and the robot has to be well again before the next one.
 #pragma once
 
 #include <atomic>
@@ -19,12 +19,17 @@ namespace culprit::cli {
 
 class DrillSession {
  public:
+  // A condition that the drill watches, and the rule that it added for that.
+  struct Condition {
+    std::string rule;
+    std::string text;
+  };
   struct Options {
-    std::vector<std::string> manager;     // arguments of the culprit that heals
-    std::filesystem::path log;            // of it
-    std::filesystem::path injected;       // the record of faults that are not undone
-    std::vector<std::string> interlocks;  // of the rules that the drill added
-    std::vector<std::string> aborts;      // likewise
+    std::vector<std::string> manager;   // arguments of the culprit that heals
+    std::filesystem::path log;          // of it
+    std::filesystem::path injected;     // the record of faults that are not undone
+    std::vector<Condition> interlocks;  // each rule is false while its condition holds
+    std::vector<Condition> aborts;      // each rule is true with its condition
     Duration hang = std::chrono::seconds(3);
     Duration patience = std::chrono::seconds(60);  // for the robot to be well
   };
@@ -35,15 +40,16 @@ class DrillSession {
   static Expected<std::unique_ptr<DrillSession>> begin(Options options, Say say,
                                                        const std::atomic<bool>& stop);
 
-  // Waits until the robot is well and ends the culprit. If the robot does not get well, that culprit goes on.
+  // Waits until the robot is well and ends the culprit. If the robot does not get well, that culprit goes on. If it exited
+  // meanwhile, another one heals first.
   ~DrillSession();
 
   // One fault. Errors end the drill: the robot is not well before or after it, an interlock does not hold, the disk is
-  // full, an ABORT condition is true, or `stop`. The fault is undone then.
+  // full, an ABORT condition is true or unknown, culprit is paused, or `stop`. The fault is undone then.
   Expected<drill::Trial> run(const drill::Step& step);
 
   // As it was before the first fault.
-  drill::HealthyRobot healthy() const { return healthy_->healthy(); }
+  const drill::HealthyRobot& healthy() const { return usual_; }
   // Watches for so long and injects nothing. False: stopped.
   bool watch(Duration time);
 
@@ -59,9 +65,13 @@ class DrillSession {
   Expected<void> note(std::vector<drill::Injected> injected) const;
   Expected<void> may_inject() const;
   std::string why_to_end() const;  // empty: go on
+  // Sleeps until the next look. Notes if the drill itself stood still meanwhile.
+  void next_look();
   Expected<std::vector<drill::Injected>> prepare(const std::vector<drill::Fault>& faults);
   void watch_reaction(drill::Trial& trial, std::vector<drill::Injected>& injected);
   bool undo(std::vector<drill::Injected>& injected);
+  // Until each is undone, `patience` at most: a node that was just started again may not answer at once.
+  bool undo_all(std::vector<drill::Injected>& injected);
 
   const Options options_;
   const Say say_;
@@ -70,6 +80,9 @@ class DrillSession {
   std::unique_ptr<DrillManager> manager_;
   std::unique_ptr<DrillInjector> injector_;
   std::optional<drill::RobotView> healthy_;
+  drill::HealthyRobot usual_;
+  std::optional<Time> calm_;     // since when the robot is well
+  Time stood_still_ = kLongAgo;  // when the drill itself had not run for a second
 };
 
 }  // namespace culprit::cli

@@ -5,7 +5,7 @@
 namespace culprit::syntax {
 
 std::vector<std::string_view> drill_faults() {
-  return {"kill", "hang", "slow", "deactivate", "restart"};
+  return {"kill", "hang", "slow", "deactivate", "restart", "loss"};
 }
 namespace {
 

@@ -30,6 +30,7 @@ struct StudyOptions {
   std::vector<std::string> objectives = {"balanced"};
   std::string profile = "paper";
   std::vector<std::string> detectors = {"own"};
+  std::string rules{};
   std::uint32_t runs = 162;
   std::uint32_t experiments = 400;  // what the designer believed is outweighed then
   std::uint32_t repetitions = 20;
@@ -132,6 +133,7 @@ std::string command_of(const StudyOptions& options) {
   if (options.detectors != StudyOptions().detectors)
     command += fmt::format(" --detectors {}", fmt::join(options.detectors, ","));
   if (!options.live) command += fmt::format(" --profile {}", options.profile);
+  if (!options.rules.empty()) command += " --rules " + options.rules;
   return command + fmt::format(" --runs {} --seed {}", options.runs, options.seed);
 }
 
@@ -257,7 +259,13 @@ int study_sunset(const StudyOptions& options) {
     return fail("learning goes from run to run and cannot be spread over shards", kUsage);
   study::Campaign campaign{rows_of(options), options.runs, options.seed, options.version,
                            command_of(options)};
-  const auto study = study::SunsetStudy::make(campaign.rows, campaign.seed);
+  study::Variation variation;
+  if (!options.rules.empty()) {
+    auto text = read_text(options.rules);
+    if (!text) return fail(text.error());
+    variation.rules = std::move(*text);
+  }
+  const auto study = study::SunsetStudy::make(campaign.rows, campaign.seed, variation);
   if (!study) return fail(study.error(), kUsage);
   const StopSignals signals;
   const auto work_off = [&](const auto& play) {
@@ -321,6 +329,11 @@ void add_comparison(CLI::App* command, const std::shared_ptr<StudyOptions>& opti
       ->capture_default_str()
       ->excludes(live);
   command
+      ->add_option("--rules", options->rules,
+                   "Rules for all planners instead of the built-in ones, without INCLUDE")
+      ->type_name("FILE")
+      ->excludes(live);
+  command
       ->add_option("--detectors", options->detectors,
                    "Detection of outages: own (the profile's: SUNSET's monitoring as in the paper; "
                    "of live, age), age (three messages missed), phi (a silence out of its rhythm) "
@@ -355,6 +368,7 @@ void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
                    "a ROS domain of its own (default: one for two processors)")
       ->check(CLI::Range(1U, 1024U));
   options->shard.add_to(*command);
+  command->get_option("--shard-file")->excludes("--rules");
   auto* run = command->add_option(
       "--run", options->single_run,
       "With --explain: the run to explain, from 0. With --live: the run to play, metrics as JSON");

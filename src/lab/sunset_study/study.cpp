@@ -150,9 +150,12 @@ Expected<SunsetStudy> SunsetStudy::make(std::vector<Configuration> rows, std::ui
         (!(*profile)->has_blackboard || named->second != Detectors::kOwn))
       return Error{"the reference planner reads SUNSET's blackboard, and profile '" + row.profile +
                    "' has none"};
-    const Checked checked =
-        check(Source("study.rules", rules_of(row.planner, **profile, named->second)));
-    RuleSet rules = varied(*checked.rules, variation);  // a test checks what is built in
+    const Checked checked = check(Source(
+        "study.rules", variation.rules.empty() ? rules_of(row.planner, **profile, named->second)
+                                               : variation.rules));
+    // A test checks what is built in.
+    if (!checked.rules) return Error{"the rules have errors; culprit check shows them"};
+    RuleSet rules = varied(*checked.rules, variation);
     if (row.probabilities == Probabilities::kMisspecified) misspecify(rules);
     settings.push_back(
         {std::move(row),

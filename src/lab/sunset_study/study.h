@@ -28,8 +28,8 @@ namespace culprit::study {
 class SunsetStudy {
  public:
   // Errors: an unknown planner or profile; a planner that cannot watch a profile (the reference
-  // needs a blackboard), or cannot play the live robot (the oracle needs a model's truth). A
-  // profile may name its detectors (detectors.h).
+  // needs a blackboard), or cannot play the live robot (the oracle needs a model's truth); rules of
+  // the variation that have errors. A profile may name its detectors (detectors.h).
   static Expected<SunsetStudy> make(std::vector<Configuration> rows, std::uint64_t seed,
                                     const Variation& variation = {});
 

@@ -28,6 +28,19 @@ TEST(Variations, ChangeTheProfileAndTheRules) {
   }
 }
 
+TEST(Variations, TakeTheRulesOfAFile) {
+  Variation variation;
+  variation.rules =
+      "COMPONENT camera NODE /managed_subsystem/camera LAUNCH \"sunset-node camera\"\n"
+      "RULE RGBDead\n  POLICIES ERROR\n  TRIGGER age(/managed_subsystem/rgb_camera) > 350ms\n"
+      "    STRATEGY rgb_redeploy 90 10\n      ADAPTATION camera redeploy 3\n";
+  const auto study = SunsetStudy::make({kWhole}, 1, variation);
+  ASSERT_TRUE(study) << study.error();
+  EXPECT_EQ(study->rules(0).strategies.size(), 1u);
+  variation.rules = "RULE";
+  EXPECT_FALSE(SunsetStudy::make({kWhole}, 1, variation));
+}
+
 // A relaunch that takes longer is a downtime that takes longer.
 TEST(Variations, OfTheRelaunchShowInTheDowntime) {
   Variation slow;

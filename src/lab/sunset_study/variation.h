@@ -1,7 +1,9 @@
-// Constants of the evaluation that neither the paper nor the exemplar's sources settle, to be varied.
+// Parts of the evaluation that may be varied: constants that neither the paper nor the exemplar's sources settle, and the
+// rules.
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "exemplars/sunset/model/profile.h"
 #include "language/rule_set.h"
@@ -14,6 +16,7 @@ struct Variation {
   std::optional<std::size_t> window;          // arrivals that its frequencies are taken over
   // Factor of the impact of restarts and redeployments, which is also how long they are given.
   double patience = 1;
+  std::string rules{};  // the text of a rule file in place of the built-in rules; empty: those
 
   bool operator==(const Variation&) const = default;
 };

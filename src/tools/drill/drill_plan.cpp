@@ -39,8 +39,9 @@ bool is_wanted(FaultKind kind, const std::string& component, const RuleSet& rule
     return line.what == DrillLine::What::kWithout && line.subject == word_of(kind) &&
            rules[line.component].name == component;
   };
-  const bool is_chosen =
-      options.kinds.empty() || std::ranges::find(options.kinds, kind) != options.kinds.end();
+  const bool is_chosen = options.kinds.empty()
+                             ? kind != FaultKind::kLoss
+                             : std::ranges::find(options.kinds, kind) != options.kinds.end();
   return is_chosen && std::ranges::none_of(rules.drills, excludes);
 }
 
@@ -53,11 +54,25 @@ void shuffle(std::vector<Item>& items, std::mt19937_64& random) {
 
 Expected<void> known(const std::string& name, const RuleSet& rules) {
   std::vector<std::string_view> names;
-  for (const Component& each : rules.components) names.push_back(each.name);
+  for (const Component& each : rules.components)
+    if (each.declared) names.push_back(each.name);
   if (std::ranges::find(names, name) != names.end()) return {};
   const std::string near = closest(name, {names.begin(), names.end()});
   return Error{"the rules have no component '" + name + "'" +
                (near.empty() ? "" : "; did you mean '" + near + "'?")};
+}
+
+// A slip in a DRILL line must not break the component that it was to spare.
+Expected<void> all_known(const RuleSet& rules, const PlanOptions& options) {
+  for (const std::string& name : options.only) {
+    if (auto found = known(name, rules); !found) return found;
+  }
+  for (const DrillLine& line : rules.drills) {
+    const std::string& name = rules[line.component].name;
+    if (auto found = known(name, rules); !found)
+      return Error{"DRILL " + name + ": " + found.error()};
+  }
+  return {};
 }
 
 // Until the slowest rule about it has noticed and its slowest strategy took effect.
@@ -81,16 +96,14 @@ std::string Step::id() const { return to_string(faults) + " #" + std::to_string(
 Duration estimate(const Step& step, const RuleSet& rules, const PlanOptions& options) {
   Duration most{};
   for (const Fault& fault : step.faults) {
-    const bool lasts = fault.kind == FaultKind::kHang || fault.kind == FaultKind::kSlow;
-    most = std::max(most, reaction(fault.component, rules) + (lasts ? options.hang : Duration{}));
+    most = std::max(
+        most, reaction(fault.component, rules) + (lasts(fault.kind) ? options.hang : Duration{}));
   }
-  return most + 2 * kCalm;
+  return most + kCalm;
 }
 
 Expected<DrillPlan> plan(const RuleSet& rules, const PlanOptions& options) {
-  for (const std::string& name : options.only) {
-    if (auto found = known(name, rules); !found) return Error{found.error()};
-  }
+  if (auto found = all_known(rules, options); !found) return Error{found.error()};
   DrillPlan out;
   std::vector<std::vector<Fault>> singles;
   std::vector<std::string> breakable;
@@ -151,7 +164,7 @@ std::vector<std::string> plan_lines(const DrillPlan& plan, const PlanOptions& op
   std::vector<std::string> lines;
   for (const auto& [fault, count] : times) {
     lines.push_back(count == 1 ? fault : fmt::format("{}, {} times", fault, count));
-    if (fault.starts_with("hang") || fault.starts_with("slow"))
+    if (fault.starts_with("hang") || fault.starts_with("slow") || fault.starts_with("loss"))
       lines.back() += " for " + in_words(options.hang);
   }
   for (const auto& [component, why] : plan.left_out)

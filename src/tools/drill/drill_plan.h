@@ -18,7 +18,7 @@ namespace culprit::drill {
 
 struct PlanOptions {
   std::vector<std::string> only{};   // components; empty: all
-  std::vector<FaultKind> kinds{};    // empty: all
+  std::vector<FaultKind> kinds{};    // empty: all but loss, which changes the firewall
   int times = 1;                     // rounds
   bool pairs = false;                // also two components killed at once
   std::optional<Duration> budget{};  // the plan ends with the last fault that fits
@@ -40,7 +40,7 @@ struct DrillPlan {
   Duration estimate{};
 };
 
-// Errors: `only` names a component that the rules do not have.
+// Errors: `only` or a DRILL line names a component that the rules do not declare.
 Expected<DrillPlan> plan(const RuleSet& rules, const PlanOptions& options);
 
 // How long one step takes: health before, the reaction, health after.

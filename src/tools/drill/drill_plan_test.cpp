@@ -95,5 +95,22 @@ TEST(DrillPlan, NamesThatTheRulesDoNotHaveAreErrors) {
   EXPECT_EQ(made.error(), "the rules have no component 'camra'; did you mean 'camera'?");
 }
 
+TEST(DrillPlan, ADrillLineOfAComponentThatIsNotDeclaredIsAnError) {
+  const RuleSet rules = *check(Source("r", R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+DRILL camra limit 0
+RULE CameraDead
+  POLICIES ERROR
+  TRIGGER age(/rgb) > 1s
+    STRATEGY camera_redeploy 90 10
+      ADAPTATION camera redeploy 10
+)"))
+                             .rules;
+  const auto made = plan(rules, {});
+  ASSERT_FALSE(made) << "it was to spare the camera";
+  EXPECT_EQ(made.error(),
+            "DRILL camra: the rules have no component 'camra'; did you mean 'camera'?");
+}
+
 }  // namespace
 }  // namespace culprit::drill

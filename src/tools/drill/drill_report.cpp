@@ -109,10 +109,14 @@ Section thresholds_section(const std::vector<ThresholdMeasure>& thresholds) {
 }
 
 Section starts_section(const Results& results) {
-  Section out{"Starts", {"component", "starts", "until it was up", "READY at least"}, {}};
-  for (const auto& [component, times] : results.starts)
+  Section out{
+      "Starts", {"component", "starts", "until it was up", "READY at least", "file: READY"}, {}};
+  for (const auto& [component, times] : results.starts) {
+    const auto ready = results.ready.find(component);
     out.rows.push_back({component, std::to_string(times.size()), spread_text(times),
-                        fmt::format("{:.0f}s", std::ceil(spread_of(times).most))});
+                        fmt::format("{}s", ready_of(times).count()),
+                        ready == results.ready.end() ? "-" : in_words(ready->second)});
+  }
   return out;
 }
 

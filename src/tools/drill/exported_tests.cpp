@@ -25,6 +25,7 @@ std::string incident(const Fault& fault) {
     case FaultKind::kSlow:
     case FaultKind::kRestart:
     case FaultKind::kSetParameter:
+    case FaultKind::kLoss:
       return "";
   }
   return "";
@@ -66,6 +67,15 @@ std::string robot_lines(const HealthyRobot& robot, const std::vector<Trial>& tri
 }
 
 }  // namespace
+
+std::string in_quotes(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "\"";
+}
 
 std::string test_of(const std::vector<const Trial*>& trials, const std::string& rules,
                     const std::string& date, const HealthyRobot& robot,
@@ -110,8 +120,8 @@ std::string test_of(const std::vector<const Trial*>& trials, const std::string& 
   return fmt::format(
       "# {} on the robot: drill {}, {} times\n\nRULES {}\n\n{}\nTEST \"{}\"\n{}  RUN "
       "{:g}s\n{}",
-      to_string(faults), date, trials.size(), rules, robot_lines(robot, all), to_string(faults),
-      injected, std::ceil(kInjected + 2 * well + 10), expected);
+      to_string(faults), date, trials.size(), in_quotes(rules), robot_lines(robot, all),
+      to_string(faults), injected, std::ceil(kInjected + 2 * well + 10), expected);
 }
 
 Expected<std::size_t> export_tests(const std::filesystem::path& folder, const std::string& rules,

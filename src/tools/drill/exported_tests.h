@@ -11,6 +11,9 @@
 
 namespace culprit::drill {
 
+// A text of the rule language: paths may have blanks and quotes.
+std::string in_quotes(const std::string& text);
+
 // The test of one fault, all of whose trials are given; empty: a test cannot inject it (slow, restart, set_parameter).
 // `rules`: their path.
 std::string test_of(const std::vector<const Trial*>& trials, const std::string& rules,

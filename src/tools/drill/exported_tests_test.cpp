@@ -27,7 +27,7 @@ RULE FusionDead
 
 TEST(DrillExport, WritesTestsThatTheRulesPass) {
   const test::TestFolder folder;
-  const std::string rules = (folder.path() / "r.rules").string();
+  const std::string rules = (folder.path() / "my \"best\" r.rules").string();
   ASSERT_TRUE(write_text(rules, kExported));
   Trial trial{{Fault{FaultKind::kKill, "camera"}}, 1, 100, {}, 101.2, 104};
   trial.silent = {{"fusion", 100.6}};

@@ -5,8 +5,8 @@
 namespace culprit::drill {
 namespace {
 
-constexpr std::string_view kWords[] = {"kill",       "hang",    "slow",
-                                       "deactivate", "restart", "set_parameter"};
+constexpr std::string_view kWords[] = {"kill",    "hang",          "slow", "deactivate",
+                                       "restart", "set_parameter", "loss"};
 
 }  // namespace
 
@@ -20,7 +20,12 @@ std::optional<FaultKind> fault_kind(std::string_view word) {
 }
 
 bool acts_on_process(FaultKind kind) {
-  return kind == FaultKind::kKill || kind == FaultKind::kHang || kind == FaultKind::kSlow;
+  return kind == FaultKind::kKill || kind == FaultKind::kHang || kind == FaultKind::kSlow ||
+         kind == FaultKind::kLoss;
+}
+
+bool lasts(FaultKind kind) {
+  return kind == FaultKind::kHang || kind == FaultKind::kSlow || kind == FaultKind::kLoss;
 }
 
 std::string to_string(const Fault& fault) {

@@ -16,16 +16,17 @@
 namespace culprit::drill {
 
 enum class FaultKind : std::uint8_t {
-  kKill,         // SIGKILL
-  kHang,         // SIGSTOP for a time, then SIGCONT
-  kSlow,         // SIGSTOP and SIGCONT in a rhythm
-  kDeactivate,   // a lifecycle node
-  kRestart,      // deactivate, then activate
-  kSetParameter  // to `value`
+  kKill,          // SIGKILL
+  kHang,          // SIGSTOP for a time, then SIGCONT
+  kSlow,          // SIGSTOP and SIGCONT in a rhythm
+  kDeactivate,    // a lifecycle node
+  kRestart,       // deactivate, then activate
+  kSetParameter,  // to `value`
+  kLoss           // most datagrams from and to the ports of its process
 };
-inline constexpr FaultKind kFaultKinds[] = {FaultKind::kKill,    FaultKind::kHang,
-                                            FaultKind::kSlow,    FaultKind::kDeactivate,
-                                            FaultKind::kRestart, FaultKind::kSetParameter};
+inline constexpr FaultKind kFaultKinds[] = {
+    FaultKind::kKill,    FaultKind::kHang,         FaultKind::kSlow, FaultKind::kDeactivate,
+    FaultKind::kRestart, FaultKind::kSetParameter, FaultKind::kLoss};
 // "kill", "hang", ... as DRILL lines and --kinds take them. These words stand in files.
 std::string_view word_of(FaultKind kind);
 std::optional<FaultKind> fault_kind(std::string_view word);
@@ -40,6 +41,8 @@ struct Fault {
 
 // Whether it acts on the process, not on the node.
 bool acts_on_process(FaultKind kind);
+// Whether it goes on for a time that is chosen beforehand.
+bool lasts(FaultKind kind);
 
 std::string to_string(const Fault& fault);
 // "kill camera + hang depth"

@@ -210,11 +210,25 @@ std::optional<double> ThresholdMeasure::proposed() const {
   const double edge = of.is_above ? most : least;
   if (faulty) {
     const bool are_apart = of.is_above ? *faulty > edge : *faulty < edge;
-    return are_apart ? std::optional(rounded((edge + *faulty) / 2)) : std::nullopt;
+    // Thousands of values show how far healthy ones go, a few faults how far faulty ones do.
+    return are_apart ? std::optional(rounded(edge + (*faulty - edge) / 4)) : std::nullopt;
   }
   if (of.what == Comparison::What::kRate) return rounded(least / 2);
   if (least == most) return std::nullopt;
   return rounded(of.is_above ? most + (most - least) : least - (most - least));
+}
+
+bool ThresholdMeasure::is_proven() const {
+  constexpr double kClose = 1.25;
+  constexpr double kMuchLonger = 2;
+  if (values < kFewestValues) return false;
+  if (of.what == Comparison::What::kAge)
+    return of.is_above && of.threshold >= kClose * most &&
+           of.threshold <= kMuchLonger * kPauses * most;
+  const bool spares_healthy = of.is_above ? most < of.threshold : least > of.threshold;
+  const bool shows_faulty =
+      faulty && (of.is_above ? *faulty > of.threshold : *faulty < of.threshold);
+  return spares_healthy && shows_faulty;
 }
 
 double ThresholdMeasure::most_an_hour() const {

@@ -41,6 +41,9 @@ struct ThresholdMeasure {
   // Beyond all healthy values; between them and the faulty ones if those are known. Nothing: too few values, they never
   // change, or no number separates them.
   std::optional<double> proposed() const;
+  // Whether the file's threshold is beyond all healthy values, short of the faulty ones, and for a silence neither close to
+  // a healthy pause nor much longer than proposed. There is nothing to gain by another one.
+  bool is_proven() const;
   // With 95 % certainty a healthy robot is beyond the largest healthy value at most so often in an hour.
   double most_an_hour() const;
 };

@@ -158,6 +158,11 @@ Spread spread_of(std::vector<double> numbers) {
   return {median, numbers.back(), numbers.size()};
 }
 
+std::chrono::seconds ready_of(const std::vector<double>& starts) {
+  return std::chrono::seconds(
+      static_cast<std::int64_t>(std::ceil(*std::ranges::max_element(starts))));
+}
+
 std::int64_t impact_of(const std::vector<double>& effects, Duration cycle) {
   // The next one may be later than all of a few.
   const double most = *std::ranges::max_element(effects);
@@ -171,6 +176,8 @@ Results results_of(const std::vector<Trial>& trials, const RuleSet& rules, const
   out.date = date;
   out.cycle = rules.cycle;
   out.strategies = strategies_in(rules);
+  for (const Component& each : rules.components)
+    if (each.ready > Duration::zero()) out.ready.emplace(each.name, each.ready);
   std::map<std::string, FaultResult> faults;
   std::set<std::string> names;
   for (const Rule& rule : rules.rules) names.insert(rule.name);

@@ -73,7 +73,8 @@ struct Results {
   std::vector<HiddenDependency> hidden;
   std::vector<ThresholdMeasure> thresholds;
   std::map<std::string, std::vector<double>> starts;  // components; seconds until the node was up
-  std::vector<std::string> spoilt;                    // trials that prove nothing, and why
+  std::map<std::string, Duration> ready;  // of the file; components without are not here
+  std::vector<std::string> spoilt;        // trials that prove nothing, and why
 };
 
 Results results_of(const std::vector<Trial>& trials, const RuleSet& rules, const Paths& paths,
@@ -81,6 +82,9 @@ Results results_of(const std::vector<Trial>& trials, const RuleSet& rules, const
 
 // Only what repeated and never happened without: at least this often.
 inline constexpr int kRepeats = 3;
+
+// READY that the longest start needs. @pre !starts.empty()
+std::chrono::seconds ready_of(const std::vector<double>& starts);
 
 // One cycle more than the longest measured effect took. @pre !effects.empty()
 std::int64_t impact_of(const std::vector<double>& effects, Duration cycle);

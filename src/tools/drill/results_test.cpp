@@ -129,6 +129,22 @@ TEST(DrillResults, WhatTheDrillUndidIsNoSuccessOfAStrategy) {
   EXPECT_NEAR(*attempts_in(trial)[0].effect, 0.5, 1e-9);
 }
 
+TEST(DrillResults, AFailureAfterTheFaultWasTakenBackIsNoneOfIt) {
+  Trial trial = killed();
+  trial.restored = 105;
+  trial.end = 110;
+  Json chosen = event(106, "strategy_chosen", "camera_restart");
+  chosen["components"] = {"fusion"};
+  trial.events.insert(trial.events.end(), {event(105.5, "failure_detected"), chosen,
+                                           event(106.2, "adaptation_done", "camera_restart"),
+                                           event(106.4, "failure_resolved", "camera_restart")});
+  EXPECT_THAT(finding_of(trial).wrongly, IsEmpty());
+  EXPECT_THAT(finding_of(trial).helped, ElementsAre("CameraDead.camera_redeploy"));
+  ASSERT_EQ(attempts_in(trial).size(), 2u) << "but it shows what helps";
+  EXPECT_EQ(attempts_in(trial)[1].strategy, "camera_restart");
+  EXPECT_EQ(to_json(*trial_from(to_json(trial))), to_json(trial));
+}
+
 TEST(DrillResults, IntervalsHoldTheirShare) {
   EXPECT_EQ(interval_of(0, 0).high, 1);
   const Interval all = interval_of(20, 20);
@@ -183,14 +199,14 @@ TEST(DrillWriteBack, ChangesWhatWasMeasuredAndSaysWhereFrom) {
   results.thresholds = {{.of = comparisons_in(check(Source("r", kDrilled)).file).at(0),
                          .values = 200,
                          .least = 0.09,
-                         .most = 0.12,
+                         .most = 0.3,
                          .looked = 20}};
   const auto written = write_back("rover.rules", kDrilled, results);
   ASSERT_TRUE(written) << written.error();
   EXPECT_EQ(written->text, R"(# A robot.
 ROBOT rover
 CYCLE 200ms
-CONST silence = 360ms    # three messages; drill 2026-12-01, 200 values
+CONST silence = 900ms    # three messages; drill 2026-12-01, 200 values
 COMPONENT camera NODE /camera LAUNCH "camera"
 COMPONENT fusion NODE /fusion LAUNCH "fusion"
 DEPENDENCY fusion ON camera    # drill 2026-12-01: silent in all 7 faults of camera
@@ -229,6 +245,42 @@ TEST(DrillWriteBack, ADurationSeparatesWhatNoThresholdDoes) {
                          .faulty = 0.8}};
   EXPECT_THAT(write_back("r", kOverlap, results)->text,
               HasSubstr("POLICIES WARNING FOR 400ms    # drill 2026-12-01, 50 values\n"));
+}
+
+TEST(DrillWriteBack, KeepsAThresholdThatSeparatesHealthyFromFaulty) {
+  constexpr const char* kSeparates =
+      "COMPONENT camera NODE /camera LAUNCH \"camera\"\n"
+      "SIGNAL entropy DIAGNOSTIC camera KEY entropy\n"
+      "RULE Bad\n  POLICIES WARNING\n  TRIGGER entropy > 0.06 || age(/rgb) > 350ms\n"
+      "    STRATEGY s 50 2\n      ADAPTATION camera redeploy 5\n";
+  const Source source("r", kSeparates);
+  Results results = results_of({}, *check(source).rules, {}, "2026-12-01");
+  const auto comparisons = comparisons_in(check(source).file);
+  ASSERT_EQ(comparisons.size(), 2u);
+  results.thresholds = {
+      {.of = comparisons[0], .values = 500, .least = 0.03, .most = 0.04, .faulty = 0.2},
+      {.of = comparisons[1], .values = 500, .least = 0.09, .most = 0.12}};
+  EXPECT_EQ(write_back("r", kSeparates, results)->text, kSeparates);
+  results.thresholds[0].most = 0.08;
+  results.thresholds[1].most = 0.05;
+  EXPECT_THAT(write_back("r", kSeparates, results)->text,
+              HasSubstr("entropy > 0.11 || age(/rgb) > 150ms"))
+      << "healthy values are beyond the one, and the other takes too long";
+}
+
+TEST(DrillWriteBack, RaisesAReadyThatStartsExceed) {
+  constexpr const char* kSlowStarts =
+      "COMPONENT camera NODE /camera LAUNCH \"camera\" READY 5s  # slow\n"
+      "COMPONENT lidar NODE /lidar LAUNCH \"lidar\" READY 5s\n"
+      "COMPONENT fusion NODE /fusion LAUNCH \"fusion\"\n";
+  Results results = results_of({}, *check(Source("r", kSlowStarts)).rules, {}, "2026-12-01");
+  results.starts = {{"camera", {2, 3, 7.2}}, {"lidar", {1, 2, 3}}, {"fusion", {9, 9, 9}}};
+  EXPECT_EQ(write_back("r", kSlowStarts, results)->text,
+            "COMPONENT camera NODE /camera LAUNCH \"camera\" READY 8s  # slow; drill 2026-12-01, 3 "
+            "starts\n"
+            "COMPONENT lidar NODE /lidar LAUNCH \"lidar\" READY 5s\n"
+            "COMPONENT fusion NODE /fusion LAUNCH \"fusion\"\n");
+  EXPECT_THAT(report_lines(results), testing::Contains(HasSubstr("8s")));
 }
 
 TEST(DrillResults, CountOnlyWhatRulesOfTheFileNoticed) {

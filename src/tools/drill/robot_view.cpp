@@ -106,7 +106,14 @@ std::vector<std::pair<std::string, std::string>> RobotView::edges() const {
   return out;
 }
 
-HealthyRobot RobotView::healthy() const {
+std::vector<std::string> RobotView::topics() const {
+  std::vector<std::string> out;
+  for (const Json& each : member(robot_, "topics"))
+    if (each.is_string()) out.push_back(each.get<std::string>());
+  return out;
+}
+
+HealthyRobot RobotView::healthy(const std::map<std::string, std::string>& publishers) const {
   HealthyRobot out;
   out.edges = edges();
   std::map<std::string, std::string> names;
@@ -128,19 +135,26 @@ HealthyRobot RobotView::healthy() const {
     if (const auto producer = names.find(edge[1].get<std::string>()); producer != names.end())
       topic->second.publisher = producer->second;
   }
+  for (const auto& [topic, node] : publishers) {
+    const auto found = out.topics.find(topic);
+    const auto name = names.find(node);
+    if (found != out.topics.end() && found->second.publisher.empty() && name != names.end())
+      found->second.publisher = name->second;
+  }
   return out;
 }
 
-std::set<std::string> RobotView::silent() const {
-  constexpr double kShortest = 0.5;  // seconds
-  constexpr double kUsualGaps = 5;
-  const HealthyRobot now = healthy();
+std::set<std::string> RobotView::silent(const HealthyRobot& healthy) const {
+  constexpr double kShortest = 0.3;  // seconds
+  constexpr double kUsualGaps = 3;
   const Json& topics = member(robot_, "topics");
   const Json& states = member(state_, "topics");
   std::set<std::string> out;
   for (std::size_t i = 0; i < std::min(topics.size(), states.size()); ++i) {
-    if (!topics[i].is_string()) continue;
-    const HealthyRobot::Topic& topic = now.topics.at(topics[i].get<std::string>());
+    const auto usual = topics[i].is_string() ? healthy.topics.find(topics[i].get<std::string>())
+                                             : healthy.topics.end();
+    if (usual == healthy.topics.end()) continue;
+    const HealthyRobot::Topic& topic = usual->second;
     if (!topic.publisher.empty() && topic.rate > 0 &&
         number_of(states[i], "age") > std::max(kShortest, kUsualGaps / topic.rate))
       out.insert(topic.publisher);

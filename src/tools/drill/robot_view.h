@@ -47,10 +47,13 @@ class RobotView {
   // Whether its trigger has a value, and is false or true.
   std::optional<bool> trigger(const std::string& rule) const;
 
-  HealthyRobot healthy() const;
+  // The topics that rules watch.
+  std::vector<std::string> topics() const;
+  // `publishers`: nodes by topic, for topics that no node subscribes to: the graph has no edge for them.
+  HealthyRobot healthy(const std::map<std::string, std::string>& publishers = {}) const;
 
-  // Components that publish a watched topic which is silent for longer than usual.
-  std::set<std::string> silent() const;
+  // Components that publish a watched topic which is silent for longer than is usual in `healthy`.
+  std::set<std::string> silent(const HealthyRobot& healthy) const;
 
  private:
   std::vector<std::pair<std::string, std::string>> edges() const;

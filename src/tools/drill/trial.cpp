@@ -38,6 +38,7 @@ Json to_json(const Trial& trial) {
   for (const Fault& fault : trial.faults) json["faults"].push_back(to_json(fault));
   if (trial.undone) json["undone"] = *trial.undone;
   if (trial.well) json["well"] = *trial.well;
+  if (trial.restored) json["restored"] = *trial.restored;
   json["end"] = trial.end;
   json["silent"] = Json::object();
   for (const auto& [component, at] : trial.silent) json["silent"][component] = at;
@@ -60,6 +61,7 @@ std::optional<Trial> trial_from(const Json& json) {
   trial.injected = number_of(json, "injected");
   trial.undone = time_in(json, "undone");
   trial.well = time_in(json, "well");
+  trial.restored = time_in(json, "restored");
   trial.end = number_of(json, "end");
   trial.trouble = text_of(json, "trouble");
   if (json.contains("silent") && json["silent"].is_object()) {
@@ -100,6 +102,7 @@ Finding finding_of(const Trial& trial, const std::set<std::string>& rules) {
     const std::string type = text_of(event, "type");
     const double after = number_of(event, "clock") - trial.injected;
     if (is_of_own_rule(event)) continue;
+    if (trial.restored && after > *trial.restored - trial.injected) break;
     if (type == "failure_detected") {
       if (!rules.empty() && !rules.contains(text_of(event, "rule"))) continue;
       if (!out.noticed_after) {

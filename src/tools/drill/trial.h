@@ -20,7 +20,9 @@ struct Trial {
   double injected = 0;
   std::optional<double> undone{};  // by the drill, if culprit had not healed the robot before
   std::optional<double> well{};    // from when on the robot was well again
-  double end = 0;
+  // When the drill took the fault back from a robot that was well with it. Failures after that are none of the fault.
+  std::optional<double> restored{};
+  double end = 0;                          // the robot was well until then, unless it never was
   std::vector<Json> events{};              // of culprit (docs/web.md), from `injected` on
   std::map<std::string, double> silent{};  // components whose topics fell silent, and when
   std::string trouble{};                   // why it proves nothing: "aborted"; empty: it counts

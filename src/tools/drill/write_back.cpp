@@ -91,6 +91,7 @@ class WriteBack {
     for (const StrategyResult& each : results_.strategies) strategy(each);
     thresholds();
     for (const ThresholdMeasure& each : results_.thresholds) hold(each);
+    for (const auto& [component, times] : results_.starts) ready(component, times);
     return {dependencies(edits_.done()), std::move(unwritten_)};
   }
 
@@ -142,13 +143,15 @@ class WriteBack {
     for (const ThresholdMeasure& each : results_.thresholds)
       by_place[each.of.span.begin].push_back(&each);
     for (const auto& [place, measures] : by_place) {
+      const auto is_proven = [](const ThresholdMeasure* each) { return each->is_proven(); };
+      if (std::ranges::all_of(measures, is_proven)) continue;
       std::optional<double> value;
       std::size_t values = 0;
       bool are_all_measured = true;
       for (const ThresholdMeasure* each : measures) {
         // How far beyond its healthy values a signal is a failure, only a fault shows.
-        const bool is_proven = each->of.what != Comparison::What::kSignal || each->faulty;
-        const auto proposed = is_proven ? each->proposed() : std::nullopt;
+        const bool is_known = each->of.what != Comparison::What::kSignal || each->faulty;
+        const auto proposed = is_known ? each->proposed() : std::nullopt;
         are_all_measured &= proposed.has_value() && each->of.is_above == measures[0]->of.is_above;
         if (!proposed) continue;
         value = !value              ? *proposed
@@ -173,6 +176,18 @@ class WriteBack {
     if (written->policies->hold_for && *written->policies->hold_for >= milliseconds) return;
     edits_.set_clause(written->policies->span, "FOR", culprit::to_string(milliseconds),
                       fmt::format("{}{}, {} values", kMark, results_.date, measure.values));
+  }
+
+  // A start may take as long as the longest that was measured. Without READY each start is one try; that stays.
+  void ready(const std::string& component, const std::vector<double>& times) {
+    const auto written = std::ranges::find_if(
+        file_.components, [&](const syntax::Component& c) { return c.name.text == component; });
+    if (written == file_.components.end() || !written->ready || times.size() < kRepeats) return;
+    const std::chrono::seconds longest = ready_of(times);
+    if (*written->ready >= longest) return;
+    edits_.set_clause({written->name.span.begin, edits_.end_of_line(written->name.span.begin)},
+                      "READY", culprit::to_string(Duration(longest)),
+                      fmt::format("{}{}, {} starts", kMark, results_.date, times.size()));
   }
 
   // Behind the last COMPONENT or DEPENDENCY line; at the end if there is none.

@@ -144,7 +144,7 @@ class Completion {
       if (words_.size() == 1) return components();
       if (words_.size() == 2) return keywords({"set_parameter", "without", "limit"});
       return words_.back() == "without"
-                 ? keywords({"kill", "hang", "slow", "deactivate", "restart"})
+                 ? keywords({"kill", "hang", "slow", "deactivate", "restart", "loss"})
                  : std::vector<Proposal>{};
     }
     const bool has_expression = statement == "TRIGGER" || statement == "CONST" ||
