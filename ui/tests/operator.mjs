@@ -3,7 +3,7 @@
 //
 //     node operator.mjs <culprit> <node_modules> <folder>, with SUNSET's camera running in the DDS domain
 import { readFileSync, writeFileSync } from 'node:fs'
-import { culprit, expect, expectSoon, file, isAccessible, picture, session, suite } from './session.mjs'
+import { culprit, expect, expectSoon, file, isAccessible, picture, saved, session, suite } from './session.mjs'
 
 const kRules = `ROBOT one_camera
 COMPONENT camera NODE /managed_subsystem/camera LAUNCH "sunset-node camera"
@@ -82,9 +82,7 @@ async function beliefs(page) {
   const row = page.getByRole('row', { name: /CameraGone\.camera_redeploy/ })
   await row.getByText('70 %').first().waitFor()
   await row.getByText('1 outcome').waitFor()
-  const download = page.waitForEvent('download')
-  await page.getByRole('button', { name: 'Export …' }).click()
-  const learned = JSON.parse(readFileSync(await (await download).path(), 'utf8'))
+  const learned = JSON.parse((await saved(page, () => page.getByRole('button', { name: 'Export …' }).click())).content)
   expect(learned.format === 'culprit-beliefs', 'another format is exported')
   expect(learned.beliefs[0].strategy === 'camera_redeploy', JSON.stringify(learned))
   await page.getByRole('button', { name: 'Reset all …' }).click()
@@ -114,9 +112,7 @@ async function lookBack(page, program) {
 // One file for readers without the robot or culprit, made by a process of its own from journal and recording.
 async function send(page) {
   const incident = page.getByRole('region', { name: 'Incident', exact: true })
-  const saving = page.waitForEvent('download')
-  await incident.getByRole('button', { name: 'Save as a page to send …' }).click()
-  const html = readFileSync(await (await saving).path(), 'utf8')
+  const html = (await saved(page, () => incident.getByRole('button', { name: 'Save as a page to send …' }).click())).content.toString()
   expect(!/<script|src=|href=|@import|url\(/.test(html), 'the file needs something beside itself')
   const reader = await page.context().newPage()
   await reader.setContent(html)

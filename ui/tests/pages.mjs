@@ -1,10 +1,9 @@
 // Every page while something is wrong: the status bar says so on each, each can be used by the keyboard alone and with a
 // screen reader, and looks as in the pictures beside this. Each page's purpose is tested on the stub.
-import { readFileSync } from 'node:fs'
 import { largeRobot } from './large_robot.mjs'
-import { kSchemes, kSizes, pictures } from './pictures.mjs'
+import { kSizes, pictures } from './pictures.mjs'
 import { kHealed, kIncidentEvents, kIncidents, kNow, kStates, kToday, play, state } from './robots.mjs'
-import { expect, expectSoon, file, isAccessible, isUsableByKeyboard, stubbed, suite } from './session.mjs'
+import { expect, expectSoon, file, isAccessible, isUsableByKeyboard, kSchemes, saved, stubbed, suite } from './session.mjs'
 
 const kFindings = [
   { code: 'D001', severity: 'error', who: '/scan: /lidar → /slam', seen: 'reliability: offered is best effort, requested is reliable', matters: '/slam receives nothing from /lidar', remedy: 'let /lidar offer reliable, or /slam request best effort' },
@@ -193,16 +192,14 @@ async function tellsIncidents(page, server, album) {
   await page.keyboard.up('Control')
   await incident.locator('.tick text', { hasText: /^\d\d:\d\d:\d\d\.\d\d\d$/ }).first().waitFor()
   await incident.locator('.timeline select').selectOption('all')
-  await incident.locator('summary', { hasText: 'camera is held responsible for RGBDead' }).click()
+  await incident.locator('summary', { hasText: 'camera is held responsible for RGBDead' }).press('Enter')
   await incident.getByRole('row', { name: /rgb_restart.*it was tried already/ }).waitFor()
   await isAccessible(page)
   await isUsableByKeyboard(page)
-  const saving = page.waitForEvent('download')
   const send = incident.getByRole('button', { name: 'Save as a page to send …' })
-  await send.click()
-  const saved = await saving
-  expect(saved.suggestedFilename() === `incident-${kIncidents[0].id}.html`, 'the file to send has another name')
-  expect(readFileSync(await saved.path(), 'utf8').includes(`page of ${kIncidents[0].id}`), 'another file is sent')
+  const sent = await saved(page, () => send.click())
+  expect(sent.name === `incident-${kIncidents[0].id}.html`, 'the file to send has another name')
+  expect(sent.content.includes(`page of ${kIncidents[0].id}`), 'another file is sent')
   pageTrouble = 'another page is being made; ask again in a moment'
   await send.click()
   await page.getByRole('alert').getByText(pageTrouble).waitFor()
@@ -215,11 +212,9 @@ async function tellsIncidents(page, server, album) {
   // The black box's recordings of one.
   await page.evaluate((id) => (location.hash = `incidents/${id}`), kIncidents.at(-1).id)
   await incident.getByText('/var/lib/culprit/recordings/rover_').waitFor()
-  const keeping = page.waitForEvent('download')
-  await incident.getByRole('button', { name: "Save the robot's topics (MCAP, 1.2 MB)" }).click()
-  const recording = await keeping
-  expect(recording.suggestedFilename() === kIncidents.at(-1).recordings[0].name, 'the recording has another name')
-  expect(readFileSync(await recording.path(), 'utf8').includes(kIncidents.at(-1).recordings[0].name), 'it is another recording')
+  const recording = await saved(page, () => incident.getByRole('button', { name: "Save the robot's topics (MCAP, 1.2 MB)" }).click())
+  expect(recording.name === kIncidents.at(-1).recordings[0].name, 'the recording has another name')
+  expect(recording.content.includes(kIncidents.at(-1).recordings[0].name), 'it is another recording')
   await page.evaluate(() => (location.hash = 'incidents/'))
 }
 
@@ -247,14 +242,12 @@ async function plotsSignals(page, server, album) {
   await expectSoon(() => page.url().includes('from='), 'dragging does not zoom')
   await page.mouse.move(box.x + box.width * 0.1, box.y + 50)
   await page.locator('.u-legend').getByText('120 MB').waitFor()
-  const saving = page.waitForEvent('download')
-  await page.getByRole('button', { name: 'Save as CSV' }).click()
-  const [head, first] = readFileSync(await (await saving).path(), 'utf8').split('\n')
+  const table = await saved(page, () => page.getByRole('button', { name: 'Save as CSV' }).click())
+  const [head, first] = table.content.toString().split('\n')
   expect(head.startsWith('time,clock_s,') && head.includes('age of /fused [s]') && head.includes('memory of camera [MB]'), `the table has these columns: ${head}`)
   expect(first.split(',').length === head.split(',').length && first.includes('120'), `the table has this first row: ${first}`)
-  const painting = page.waitForEvent('download')
-  await page.getByRole('button', { name: 'Save as picture' }).click()
-  expect(readFileSync(await (await painting).path()).subarray(1, 4).toString() === 'PNG', 'the picture is none')
+  const painted = await saved(page, () => page.getByRole('button', { name: 'Save as picture' }).click())
+  expect(painted.content.subarray(1, 4).toString() === 'PNG', 'the picture is none')
   // A link shows the same to others: signals and time.
   const shown = await page.locator('.plots .muted').first().innerText()
   await page.reload()

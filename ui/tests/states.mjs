@@ -1,8 +1,8 @@
 // Every state of the robot that an operator may find, on every size of screen, light and dark: what must be seen without
 // scrolling is seen, whole and at its place, and all of it looks as in the pictures beside this.
 import { kBlindStates, kForgotten, kNow, kStates, kToday, play, state } from './robots.mjs'
-import { kSchemes, kSizes, pictures } from './pictures.mjs'
-import { expect, file, isAccessible, stubbed, suite } from './session.mjs'
+import { kSizes, pictures } from './pictures.mjs'
+import { expect, file, isAccessible, kSchemes, stubbed, suite } from './session.mjs'
 
 const kCalls = {
   'get /api/stream': () => [200, {}],
