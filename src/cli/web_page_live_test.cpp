@@ -41,7 +41,7 @@ TEST_F(WebPage, TellsEveryStateOnEveryScreenWithoutScrolling) { passes("states.m
 
 TEST_F(WebPage, IsUsableOnEveryPage) { passes("pages.mjs"); }
 
-// What another engine draws, focuses, types and saves: every state, every page, and the editor.
+// Firefox draws, focuses, types and saves in its own way: every state, every page, and the editor.
 TEST_F(WebPage, TellsEveryStateInFirefox) { passes("states.mjs", "firefox"); }
 
 TEST_F(WebPage, IsUsableOnEveryPageInFirefox) { passes("pages.mjs", "firefox-dark"); }
