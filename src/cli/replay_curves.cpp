@@ -52,7 +52,7 @@ void print_table(const CurveOptions& options, const replay::Curves& curves) {
   }
 }
 
-void print_document(const CurveOptions& options, const replay::Curves& curves, Json marks) {
+void print_curves_document(const CurveOptions& options, const replay::Curves& curves, Json marks) {
   Json json{{"clocks", Json::array()}, {"curves", Json::object()}, {"events", std::move(marks)}};
   for (const double clock : curves.clocks) json["clocks"].push_back(rounded(clock));
   for (std::size_t i = 0; i < options.names.size(); ++i) {
@@ -82,7 +82,7 @@ int replay_curves(const CurveOptions& options, const journal::Reader& journal) {
   }
   auto marks = marks_of(journal, wish.since, wish.until);
   if (!marks) return fail(marks.error());
-  print_document(options, *curves, std::move(*marks));
+  print_curves_document(options, *curves, std::move(*marks));
   return kOk;
 }
 

@@ -40,8 +40,8 @@ Answer answer_series(const Json& query, const Histories& histories) {
   return {200, std::move(json)};
 }
 
-constexpr double kMostBack = 30 * 86'400;  // s
-constexpr int kMostSecondsOfReplay = 60;
+constexpr double kMostPast = 30 * 86'400;  // s
+constexpr int kMostSecondsOfCurves = 60;
 constexpr std::size_t kMostNames = 24;
 
 // Since when there are curves, and why not for longer.
@@ -79,7 +79,7 @@ Answer answer_past(const Json& body, const std::filesystem::path& journal, Mutex
   const double now = 1e-9 * static_cast<double>(wall_now());
   const double from = body.value("from", 0.0);
   const double to = body.value("to", 0.0);
-  if (!(from < to) || !(now - from <= kMostBack) || !(from <= now))
+  if (!(from < to) || !(now - from <= kMostPast) || !(from <= now))
     return refuse(400, "say 'from' and 'to' in seconds since 1970, a month back at most");
   if (!replaying.try_lock())
     return refuse(409, "another replay is going on; ask again in a moment");
@@ -97,7 +97,7 @@ Answer answer_past(const Json& body, const std::filesystem::path& journal, Mutex
                                       ago(to),
                                       "--curve"};
   command.insert(command.end(), names->begin(), names->end());
-  const auto read = run_aside(std::move(command), AsideFolder(), kMostSecondsOfReplay);
+  const auto read = run_aside(std::move(command), AsideFolder(), kMostSecondsOfCurves);
   if (!read) return refuse(503, "the journal could not be replayed: " + read.error());
   if (read->status != 0) return refuse(404, read->text);
   Json curves = parse_json(read->text);

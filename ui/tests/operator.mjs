@@ -109,6 +109,20 @@ async function lookBack(page, program) {
   await incident.getByText('Outcome: camera_redeploy').waitFor()
 }
 
+// The next culprit has nothing of it in memory: the plot comes from the journal, which says how far back it reaches.
+async function plotThePast(page) {
+  const address = new URL(page.url()).hash
+  await page.evaluate(() => (location.hash = 'plots/s=input+alive(camera)&last=600'))
+  await page.getByText(/^Plots reach back to .*: the journal begins then/).waitFor()
+  const values = async () => {
+    const { content } = await saved(page, () => page.getByRole('button', { name: 'Save as CSV' }).click())
+    return new Set(content.toString().trim().split('\n').slice(1).map((row) => row.split(',').at(-1)))
+  }
+  await expectSoon(async () => (await values()).has('0'), 'the plot does not show that the camera was dead')
+  await page.getByRole('region', { name: 'Marks' }).getByText('CameraGone resolved by camera_redeploy').first().waitFor()
+  await page.evaluate((hash) => (location.hash = hash), address)
+}
+
 // One file for readers without the robot or culprit, made by a process of its own from journal and recording.
 async function send(page) {
   const incident = page.getByRole('region', { name: 'Incident', exact: true })
@@ -187,6 +201,7 @@ await suite(() =>
       await beliefs(page)
       await examine(page)
       await lookBack(page, program)
+      await plotThePast(page)
       await send(page)
       await hindsight(page)
       await isHarmless(page)

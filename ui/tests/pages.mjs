@@ -1,6 +1,7 @@
 // Every page while something is wrong: the status bar says so on each, each can be used by the keyboard alone and with a
 // screen reader, and looks as in the pictures beside this. Each page's purpose is tested on the stub.
 import { largeRobot } from './large_robot.mjs'
+import { isLaidOut } from './layout.mjs'
 import { kSizes, pictures } from './pictures.mjs'
 import { kHealed, kIncidentEvents, kIncidents, kNow, kStates, kToday, play, state } from './robots.mjs'
 import { expect, expectSoon, file, isAccessible, isUsableByKeyboard, kSchemes, saved, stubbed, suite } from './session.mjs'
@@ -20,6 +21,7 @@ const kCalls = {
   'get /api/incidents/page': ({ id }) => (pageTrouble ? [409, { error: pageTrouble }] : [200, { what: `page of ${id}` }]),
   'get /api/incidents/recording': ({ name }) => [200, { name }],
   'get /api/component': () => [200, { node: '/camera', process: { pid: 12, memory: 123_000_000, threads: 7 }, usage: [0.25, 0.5, 0.125].map((processor, look) => ({ clock: kToday / 1000 - 15 + 5 * look, processor, memory: 120_000_000 + 1_000_000 * look })), parameters: { gain: 0.5, matrix: null }, log: [{ clock: kToday / 1000 - 13, level: 'warning', text: 'no frame for 200 ms' }] }],
+  'post /api/series/past': ({ names, from, to }) => [200, pastOf(names, from, to)],
   'get /api/series': ({ name, since }) => [200, curveOf(name, Number(since ?? 0))],
   'post /api/doctor': () => [200, { domain: 7, nodes: 5, findings }],
   'get /api/rules': () => [200, { path: 'rover.rules', text: '', version: '1', can_save: true }],
@@ -39,6 +41,17 @@ function curveOf(name, since) {
   const valueAt = { rate: (ago) => (ago < 12 ? 0 : 10), age: (ago) => (ago < 12 ? 12 - ago : 0.1), memory: () => 1.2e8, input: (ago) => 0.04 + 0.01 * Math.sin(ago / 10) }
   const value = valueAt[name.slice(0, name.indexOf(' '))]
   return value && !name.includes('nothing') ? { clocks, values: clocks.map((clock) => value(now - clock)) } : { clocks: [], values: [] }
+}
+
+// What the journal has: a day, with a failure an hour ago.
+const kHour = 3600
+function pastOf(names, from, to) {
+  const reach = { oldest: kToday / 1000 - 24 * kHour, why: 'the journal begins then' }
+  if (names.length === 0) return reach
+  const clocks = Array.from({ length: 200 }, (_, i) => from + ((to - from) * i) / 200)
+  const curves = Object.fromEntries(names.map((name) => [name, clocks.map((clock) => (Math.abs(kToday / 1000 - kHour - clock) < 60 ? 0.2 : 0.05))]))
+  const mark = { type: 'failure_detected', label: 'detected', severity: 'error', tone: 'alarm', text: 'RGBDead detected an hour ago', rule: 'RGBDead', t: 0, clock: kToday / 1000 - kHour }
+  return { ...reach, clocks, curves, events: [mark] }
 }
 
 async function become(page, server, wanted, hash) {
@@ -74,10 +87,14 @@ async function everyPage(page, server, album) {
     if (name !== 'robot' && name !== 'plots') await photograph(page, album, `page-${name}`) // these have pictures of their own
     await isAccessible(page)
     await isUsableByKeyboard(page)
+    for (const size of ['desktop', 'laptop', 'tablet']) {
+      await page.setViewportSize(kSizes[size])
+      await isLaidOut(page, `${name}, ${size}`)
+    }
     await page.setViewportSize(kSizes.phone)
+    await isLaidOut(page, `${name}, phone`)
     const isOn = await page.locator('nav a').evaluateAll((links) => links.every((l) => l.getBoundingClientRect().left >= 0 && l.getBoundingClientRect().right <= innerWidth))
     expect(isOn, `on a phone not every page can be reached from ${name}`)
-    expect(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `on a phone ${name} is wider than the screen`)
     await page.setViewportSize(kSizes.desktop)
   }
   expect((await page.locator('link[rel="icon"]').getAttribute('href')).startsWith('data:image/svg'), 'the icon does not follow')
@@ -256,6 +273,14 @@ async function plotsSignals(page, server, album) {
   await chosen.getByRole('button', { name: 'Remove memory of camera' }).press('Enter')
   await expectSoon(() => !page.url().includes('memory'), 'the address keeps what was removed')
   await page.getByRole('button', { name: '● Live' }).click()
+  // Longer ago the journal has it, and says how far back.
+  await page.getByText('Plots reach back to 2026-11-20 14:03:34: the journal begins then').waitFor()
+  await page.locator('.plots select').selectOption({ label: 'the last 6 h' })
+  await page.getByRole('region', { name: 'Marks' }).getByText('RGBDead detected an hour ago').waitFor()
+  const [, { names, from }] = server.received.filter(([call]) => call === 'post /api/series/past').at(-1)
+  expect(names.includes('age /fused') && Math.abs(from - (kToday / 1000 - 6 * kHour)) < 60, `the journal was asked for ${names} since ${from}`)
+  const lines = (await saved(page, () => page.getByRole('button', { name: 'Save as CSV' }).click())).content.toString().split('\n')
+  expect(lines.length > 400 && lines[1].startsWith('2026-11-21T08:03'), `the table begins with ${lines[1]}`)
 }
 
 // Six steps on the first visit, which can be ended; terms are explained where they stand.

@@ -11,7 +11,7 @@ import { dirname, join } from 'node:path'
 import { fileURLToPath } from 'node:url'
 import { promisify } from 'node:util'
 import { bundle } from '../bundle.mjs'
-import { stub } from './stub.mjs'
+import { kDomain, stub } from './stub.mjs'
 
 const [program, modules, folder] = process.argv.slice(2)
 const require = createRequire(join(modules, 'package.json'))
@@ -25,6 +25,15 @@ export const kSchemes = isFirefox ? [kBrowser === 'firefox-dark' ? 'dark' : 'lig
 const kPatience = Number(process.env.CULPRIT_PATIENCE ?? 60_000) // ms, for what a robot takes its time for
 
 const downloads = join(folder, 'downloads')
+const sockets = join(folder, 'run', 'culprit')
+
+// What `culprit status --json` says of the stub. It exits with 1 where something is wrong. Null: there is no program to ask.
+export async function statusOfStub() {
+  if (program === 'none') return null
+  const options = { env: { ...process.env, XDG_RUNTIME_DIR: join(folder, 'run') } }
+  const { stdout } = await promisify(execFile)(program, ['status', '--json', '--domain', String(kDomain)], options).catch((error) => error)
+  return JSON.parse(stdout).culprits.find(({ about }) => about.domain === kDomain)
+}
 
 export const file = (name) => join(folder, name)
 
@@ -94,7 +103,8 @@ export const session = (args, steps) => browse(serve(args), steps)
 // Runs `steps` with a page of a stub that answers these calls (stub.mjs). `now`: what all clocks show, also as time passes. `hasTour`: as on a
 // first visit.
 export async function stubbed(calls, steps, now = null, hasTour = false) {
-  const server = await stub(modules, calls)
+  mkdirSync(sockets, { recursive: true, mode: 0o700 })
+  const server = await stub(modules, calls, join(sockets, `${kDomain}-${process.pid}.sock`))
   await browse({ ...server, address: Promise.resolve(server.address) }, steps, now, hasTour)
 }
 

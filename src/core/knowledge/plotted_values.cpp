@@ -8,11 +8,11 @@
 namespace culprit {
 namespace {
 
-constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
+constexpr float kUnplotted = std::numeric_limits<float>::quiet_NaN();
 constexpr double kSilentAfter = 3;  // usual intervals
 
 float plotted_value(const Slot& slot, const Input& input) {
-  if (!slot.known) return kNoValue;
+  if (!slot.known) return kUnplotted;
   switch (input.type) {
     case Type::kBool:
       return slot.b ? 1 : 0;
@@ -21,9 +21,9 @@ float plotted_value(const Slot& slot, const Input& input) {
     case Type::kInt:
       return static_cast<float>(slot.i);
     case Type::kString:
-      return kNoValue;
+      return kUnplotted;
     default:
-      return std::isfinite(slot.d) ? static_cast<float>(slot.d) : kNoValue;
+      return std::isfinite(slot.d) ? static_cast<float>(slot.d) : kUnplotted;
   }
 }
 
@@ -45,10 +45,10 @@ std::vector<float> plotted_values(const Knowledge& knowledge) {
   values.reserve(2 * rules.topics.size() + rules.inputs.size());
   for (std::size_t t = 0; t < rules.topics.size(); ++t) {
     const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(TopicId(t));
-    const double age = rhythm.last ? seconds(knowledge.now - *rhythm.last) : kNoValue;
+    const double age = rhythm.last ? seconds(knowledge.now - *rhythm.last) : kUnplotted;
     const double interval = seconds(rhythm.interval);
     const bool is_silent = rhythm.last && age > kSilentAfter * interval;
-    values.push_back(interval <= 0 ? kNoValue : is_silent ? 0 : static_cast<float>(1 / interval));
+    values.push_back(interval <= 0 ? kUnplotted : is_silent ? 0 : static_cast<float>(1 / interval));
     values.push_back(static_cast<float>(age));
   }
   for (std::size_t i = 0; i < rules.inputs.size(); ++i)

@@ -12,7 +12,6 @@
 namespace culprit::replay {
 namespace {
 
-constexpr double kNanosecond = 1e-9;  // s
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr Duration kLook = std::chrono::seconds(1);
 constexpr double kHole = 5;  // s without a look: nobody knows what was in between
@@ -37,7 +36,7 @@ class Looker {
     const std::int64_t wall = wall_offset_ + knowledge.now.time_since_epoch().count();
     if (wall < since_) return next_;
     const std::vector<float> values = plotted_values(knowledge);
-    const double clock = kNanosecond * static_cast<double>(wall);
+    const double clock = seconds(Duration(wall));
     if (!curves_.clocks.empty() && clock - curves_.clocks.back() > kHole)
       add(curves_.clocks.back() + 1, {});
     add(clock, values);

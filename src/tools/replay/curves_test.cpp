@@ -29,7 +29,7 @@ RULE Dark
       ADAPTATION camera redeploy 3
 )";
 
-std::int64_t at(Duration since_start) { return kWall + since_start.count(); }
+std::int64_t wall_at(Duration since_start) { return kWall + since_start.count(); }
 
 // Five minutes of a camera at 10 Hz, dark for a second in the third one.
 void record_camera(const std::filesystem::path& path) {
@@ -50,10 +50,10 @@ TEST(Curves, AreWhatTheRulesReadThen) {
   const TestFolder folder;
   record_camera(folder / "a.journal");
   const journal::Reader reader = value_of(journal::Reader::open(folder / "a.journal"));
-  const auto curves = value_of(
-      curves_of(reader, {{"rate /rgb", "input brightness", "input nothing"}, at(140s), at(160s)}));
+  const auto curves = value_of(curves_of(
+      reader, {{"rate /rgb", "input brightness", "input nothing"}, wall_at(140s), wall_at(160s)}));
   ASSERT_THAT(curves.clocks.size(), testing::AllOf(testing::Ge(19u), testing::Le(21u)));
-  EXPECT_NEAR(curves.clocks.front(), 1e-9 * static_cast<double>(at(140s)), 1.1);
+  EXPECT_NEAR(curves.clocks.front(), 1e-9 * static_cast<double>(wall_at(140s)), 1.1);
   for (const float rate : curves.columns[0]) EXPECT_NEAR(rate, 10, 1) << "known from the beginning";
   EXPECT_EQ(*std::ranges::min_element(curves.columns[1]), 20);
   EXPECT_EQ(*std::ranges::max_element(curves.columns[1]), 50);
@@ -66,7 +66,8 @@ TEST(Curves, LoseNoPeakWhenTheyAreThinned) {
   record_camera(folder / "a.journal");
   const journal::Reader reader = value_of(journal::Reader::open(folder / "a.journal"));
   const auto curves = value_of(curves_of(
-      reader, {.names = {"input brightness"}, .since = at(0s), .until = at(300s), .most = 20}));
+      reader,
+      {.names = {"input brightness"}, .since = wall_at(0s), .until = wall_at(300s), .most = 20}));
   EXPECT_EQ(curves.clocks.size(), 20u);
   EXPECT_EQ(std::ranges::count(curves.columns[0], 20.0F), 1);
 }
@@ -75,9 +76,9 @@ TEST(Curves, SayThatNothingIsRecordedOfThatTime) {
   const TestFolder folder;
   record_camera(folder / "a.journal");
   const journal::Reader reader = value_of(journal::Reader::open(folder / "a.journal"));
-  const auto curves = value_of(curves_of(reader, {{"rate /rgb"}, at(4000s), at(5000s)}));
+  const auto curves = value_of(curves_of(reader, {{"rate /rgb"}, wall_at(4000s), wall_at(5000s)}));
   EXPECT_TRUE(curves.clocks.empty());
-  EXPECT_FALSE(curves_of(reader, {{"rate /rgb"}, at(-500s), at(-400s)}));
+  EXPECT_FALSE(curves_of(reader, {{"rate /rgb"}, wall_at(-500s), wall_at(-400s)}));
 }
 
 }  // namespace
