@@ -1,6 +1,6 @@
 // Whether all words of a page can be read: none is cut off, lies over another one or under something else, and the page is no
 // wider than its window. What has to be scrolled to is no fault.
-import { expect } from './session.mjs'
+import { expectSoon } from './session.mjs'
 
 // Runs in the page.
 function faults() {
@@ -59,7 +59,11 @@ function faults() {
   return [...new Set(found)]
 }
 
+// As soon as the page is drawn.
 export async function isLaidOut(page, at) {
-  const found = await page.evaluate(faults)
-  expect(found.length === 0, `not everything can be read (${at}):\n${found.slice(0, 12).join('\n')}`)
+  let found = []
+  const holds = async () => (found = await page.evaluate(faults)).length === 0
+  await expectSoon(holds, '').catch(() => {
+    throw new Error(`not everything can be read (${at}):\n${found.slice(0, 12).join('\n')}`)
+  })
 }
