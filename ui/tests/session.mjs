@@ -32,7 +32,9 @@ export async function statusOfStub() {
   if (program === 'none') return null
   const options = { env: { ...process.env, XDG_RUNTIME_DIR: join(folder, 'run') } }
   const { stdout } = await promisify(execFile)(program, ['status', '--json', '--domain', String(kDomain)], options).catch((error) => error)
-  return JSON.parse(stdout).culprits.find(({ about }) => about.domain === kDomain)
+  const told = JSON.parse(stdout).culprits.find(({ about }) => about.domain === kDomain)
+  expect(told, `culprit status does not find the stub: ${stdout}`)
+  return told
 }
 
 export const file = (name) => join(folder, name)

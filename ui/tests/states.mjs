@@ -4,7 +4,7 @@
 import { isLaidOut } from './layout.mjs'
 import { kBlindStates, kForgotten, kHeld, kNow, kRobot, kStates, kToday, play, state } from './robots.mjs'
 import { kSizes, pictures } from './pictures.mjs'
-import { expect, file, isAccessible, isFirefox, kSchemes, statusOfStub, stubbed, suite } from './session.mjs'
+import { expect, expectSoon, file, isAccessible, kSchemes, statusOfStub, stubbed, suite } from './session.mjs'
 
 const kCalls = {
   'get /api/stream': () => [200, {}],
@@ -74,13 +74,19 @@ function shown() {
 async function saysAsTheTerminal(page, at, told) {
   if (!told) return
   const { overview, incidents, components } = told.state
-  const page_ = await page.evaluate(shown)
   const [first] = incidents
   const wanted = { headline: (first ?? overview).headline, detail: (first?.doing ?? overview.detail), looks: components.map((each, i) => `${kNames[i]} ${each.look}`).sort().join() }
-  const isSame =
-    page_.headline.toLowerCase().startsWith(wanted.headline.toLowerCase()) && page_.detail.includes(wanted.detail) && page_.looks === wanted.looks &&
-    (page_.incidents === null || page_.incidents === incidents.map((each) => each.id).join())
-  expect(isSame, `the page and culprit status do not say the same (${at}):\n${JSON.stringify(page_)}\n${JSON.stringify(wanted)}`)
+  let seen = null
+  const isSame = async () => {
+    seen = await page.evaluate(shown)
+    return (
+      seen.headline.toLowerCase().startsWith(wanted.headline.toLowerCase()) && seen.detail.includes(wanted.detail) && seen.looks === wanted.looks &&
+      (seen.incidents === null || seen.incidents === incidents.map((each) => each.id).join())
+    )
+  }
+  await expectSoon(isSame, '').catch(() => {
+    throw new Error(`the page and culprit status do not say the same (${at}):\n${JSON.stringify(seen)}\n${JSON.stringify(wanted)}`)
+  })
 }
 const kNames = kRobot.components.map((each) => each.name)
 

@@ -13,8 +13,9 @@ export async function stub(modules, calls = {}, socket = null) {
   const received = []
   let isSilent = false
   const json = (response, status, body) => {
-    response.writeHead(status, { 'Content-Type': 'application/json' })
-    response.end(JSON.stringify(body))
+    const text = JSON.stringify(body)
+    response.writeHead(status, { 'Content-Type': 'application/json', 'Content-Length': Buffer.byteLength(text) }) // culprit status reads no chunks
+    response.end(text)
   }
   const block = ({ kind, data }) => `event: ${kind}\ndata: ${JSON.stringify(data)}\n\n`
   const stream = (response) => {
