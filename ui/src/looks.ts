@@ -41,7 +41,7 @@ export const kLooks: Record<Look, Appearance> = {
   NON_CRITICAL: { sign: '○', word: 'Minor', tone: 'NON_CRITICAL' },
   BLIND: { sign: '◌', word: 'Blind', tone: 'blind' },
   NEVER_SEEN: { sign: '?', word: 'Never seen', tone: 'unknown' },
-  TIME_HELD: { sign: '◔', word: 'Not judged', tone: 'blind' },
+  TIME_HELD: { sign: '◔', word: 'On hold', tone: 'blind' },
   UNWATCHED: { sign: '–', word: 'No rule', tone: 'unknown' },
   UNTOLD: { sign: '…', word: 'Asking', tone: 'unknown' },
   OK: { sign: '✓', word: 'Well', tone: 'OK' },

@@ -13,7 +13,8 @@ function faults() {
   const styles = new Map()
   const styleOf = (element) => styles.get(element) ?? styles.set(element, getComputedStyle(element)).get(element)
   const isHidden = (kind) => kind === 'hidden' || kind === 'clip'
-  const isForEyes = (element) => element.checkVisibility({ visibilityProperty: true, contentVisibilityAuto: true }) && !element.closest('option, datalist, noscript, style, script')
+  // Marks of a timeline stand where their times are.
+  const isForEyes = (element) => element.checkVisibility({ visibilityProperty: true, contentVisibilityAuto: true }) && !element.closest('option, datalist, noscript, style, script, .mark')
   // What one sees of a box within its scrolled ancestors; nothing: it is scrolled out, or only for screen readers.
   const seenOf = (box, element) => {
     let seen = box

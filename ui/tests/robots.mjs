@@ -146,7 +146,7 @@ export const kBlindStates = {
 // The simulation is paused, and with it the time of two nodes.
 const held = { health: 'OK', look: 'TIME_HELD', condition: 'clock paused' }
 export const kHeld = { events: [], control: {}, state: { held: { camera: held, depth: held }, overview: { look: 'TIME_HELD', headline: 'the simulated time of camera and depth stands still', detail: '/clock is paused: nothing is judged about them' } },
-  cause: 'The simulated time of camera and depth stands still', level: 'Not judged', mode: 'Acting', also: ['/clock is paused'] }
+  cause: 'The simulated time of camera and depth stands still', level: 'On hold', mode: 'Acting', also: ['/clock is paused'] }
 
 // Events forgotten long ago: the failure itself is not.
 export const kForgotten = { events: [], control: {}, state: { RGBDead: failing, incidents: [{ ...kCause, headline: 'RGBDead fails', components: [], certain: false, consequences: [], doing: 'nothing is done yet', next: '' }] }, cause: 'RGBDead fails', level: 'Error', mode: 'Acting' }
