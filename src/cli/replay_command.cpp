@@ -12,6 +12,7 @@
 #include "cli/journal_file.h"
 #include "cli/load_rules.h"
 #include "cli/replay_bag.h"
+#include "cli/replay_curves.h"
 #include "journal/json.h"
 #include "knowledge/describe.h"
 #include "replay/hindsight.h"
@@ -28,6 +29,8 @@ struct ReplayOptions {
   std::string rules;
   bool events = false;
   std::string since;
+  std::string until;
+  std::vector<std::string> curves;
   bool json = false;
   std::string fail_on;
   std::string html;  // of a bag: the file of its page
@@ -281,6 +284,12 @@ int replay_any(const ReplayOptions& options, bool other_planner) {
   if (!options.fail_on.empty()) return fail("--fail-on is for a bag", kUsage);
   const auto journal = journal::Reader::open(options.journal);
   if (!journal) return fail(journal.error());
+  if (!options.curves.empty()) {
+    if (!options.rules.empty() || options.session != 0)
+      return fail("--curve is about the rules that ran, over all runs", kUsage);
+    return replay_curves({options.curves, options.since, options.until, options.json}, *journal);
+  }
+  if (!options.until.empty()) return fail("--until is for --curve", kUsage);
   if (!options.since.empty()) return look_back(options, *journal, other_planner);
   auto recording = replay::Recording::open(*journal, options.session);
   if (!recording) return complain_about(options, recording.error());
@@ -304,8 +313,13 @@ void add_replay(CLI::App& app, int& exit_code) {
   command->add_option("--rules", options->rules, "Other rules")->type_name("FILE");
   command->add_flag("--events", options->events, "Print what happens (a bag's replay always does)");
   command->add_option("--since", options->since,
-                      "With --rules: only the last 10min, 1h ... until now over all runs, or until "
-                      "the end of a bag");
+                      "With --rules or --curve: only the last 10min, 1h ... until now over all "
+                      "runs, or until the end of a bag");
+  command
+      ->add_option("--curve", options->curves,
+                   "Print what the rules read, as a table: 'rate /scan', 'age /scan', 'input x'")
+      ->type_name("NAME");
+  command->add_option("--until", options->until, "With --curve: until so long ago (default: 0s)");
   command
       ->add_option("--message-path", options->message_path,
                    "For a bag: folders with .msg files: <folder>/<package>/msg/<Type>.msg")

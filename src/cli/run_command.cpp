@@ -83,6 +83,7 @@ std::vector<web::Route> page_routes(web::Hub& hub, const web::Histories& histori
   add(all, web::doctor_routes(web::examine_robot));
   all.push_back(web::component_route(hub, histories.usage, look, log_of));
   all.push_back(web::series_route(histories));
+  all.push_back(web::past_series_route(journal));
   all.push_back(web::hindsight_route(journal_of));
   all.push_back(web::what_if_route(std::move(planner), desk.loader()));
   return all;

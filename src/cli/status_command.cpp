@@ -109,7 +109,8 @@ void add_status(CLI::App& app, int& exit_code) {
                          "Show failures, their root cause and the next step, as reported by the "
                          "culprits of this machine.\n"
                          "Exits with 0 if all is well, with 3 if rules that are not ERROR are "
-                         "blind and nothing else is wrong, else with 1.");
+                         "blind or simulated time stands still, and nothing else is wrong, "
+                         "else with 1.");
   command->add_flag("--json", options->json, "As one JSON document (docs/web.md)");
   command->add_flag("--watch", options->watch, "Report again every 2 s until Ctrl-C");
   options->which.add_to(*command);

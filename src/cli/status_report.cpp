@@ -285,7 +285,7 @@ Verdict verdict_of(const WhatCulpritSays& said) {
                        list_at(said.control, "asked").empty();
   if (!may_act) return Verdict::kNotWell;
   if (look == "OK") return Verdict::kWell;
-  return look == "BLIND" ? Verdict::kSeesLess : Verdict::kNotWell;
+  return look == "BLIND" || look == "TIME_HELD" ? Verdict::kSeesLess : Verdict::kNotWell;
 }
 
 std::vector<std::string> situation_lines(const WhatCulpritSays& said, Colour colour) {

@@ -1,5 +1,5 @@
-// The web app as people use it: Debian's Chromium (its shell without windows) at the page of the real program. Skipped where
-// there is no Chromium, or the program was built without npm.
+// The web app as people use it: Debian's Chromium (its shell without windows) or Firefox at the page of the real program. Skipped
+// where there is no such browser, or the program was built without npm.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,13 +13,17 @@ namespace {
 struct WebPage : testing::Test {
   void SetUp() override {
     if (web::app().empty()) GTEST_SKIP() << "built without npm";
-    if (!std::filesystem::exists("/usr/bin/chromium-headless-shell"))
-      GTEST_SKIP() << "there is no Chromium";
   }
-  void passes(const std::string& session) {
-    TestProgram browser(world,
-                        {"node", "ui/tests/" + session, (own_folder() / "culprit").string(),
-                         std::filesystem::absolute("build/ui").string(), world.folder().string()});
+  // `name`: chromium, firefox (light), firefox-dark.
+  void passes(const std::string& session, const std::string& name = "chromium") {
+    const bool is_chromium = name == "chromium";
+    if (!std::filesystem::exists(is_chromium ? "/usr/bin/chromium-headless-shell"
+                                             : "/usr/bin/firefox-esr"))
+      GTEST_SKIP() << "there is no " << name;
+    TestProgram browser(
+        world, {"env", "CULPRIT_BROWSER=" + name, "node", "ui/tests/" + session,
+                (own_folder() / "culprit").string(), std::filesystem::absolute("build/ui").string(),
+                world.folder().string()});
     EXPECT_EQ(browser.wait(std::chrono::seconds(280)), 0) << browser.output();
     EXPECT_THAT(browser.output(), testing::HasSubstr("the session passed"));
   }
@@ -36,6 +40,13 @@ TEST_F(WebPage, WritesRules) { passes("rules.mjs"); }
 TEST_F(WebPage, TellsEveryStateOnEveryScreenWithoutScrolling) { passes("states.mjs"); }
 
 TEST_F(WebPage, IsUsableOnEveryPage) { passes("pages.mjs"); }
+
+// Firefox draws, focuses, types and saves in its own way: every state, every page, and the editor.
+TEST_F(WebPage, TellsEveryStateInFirefox) { passes("states.mjs", "firefox"); }
+
+TEST_F(WebPage, IsUsableOnEveryPageInFirefox) { passes("pages.mjs", "firefox-dark"); }
+
+TEST_F(WebPage, WritesRulesInFirefox) { passes("rules.mjs", "firefox"); }
 
 TEST_F(WebPage, RunsStudiesAndDrawsRulesThatAreInOneAnothersWay) { passes("studies.mjs"); }
 

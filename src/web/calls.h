@@ -62,6 +62,9 @@ struct Histories {
 };
 // One curve: what a plot of the page shows before it follows the stream.
 Route series_route(const Histories& histories);
+// Curves of the past, and its failures and repairs, which a process of its own reads from `journal`; and how far back they
+// reach. Empty: no journal is written.
+Route past_series_route(std::filesystem::path journal);
 
 // Examines the robot for this time; returns what `culprit doctor --json` prints. Errors: it cannot be examined.
 using Doctor = std::function<Expected<Json>(Duration time)>;

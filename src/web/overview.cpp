@@ -65,6 +65,24 @@ Overview of_watching_nothing(const Knowledge& knowledge) {
           describe(*knowledge.blindness[worst_blind(knowledge)])};
 }
 
+// While the /clock of a simulation stands still, no rule judges the nodes that live by it.
+std::vector<std::string> held_in_time(const Knowledge& knowledge) {
+  std::vector<std::string> held;
+  for (std::size_t c = 0; c < knowledge.rules.components.size(); ++c) {
+    if (knowledge.components[ComponentId(c)].time_held)
+      held.push_back(knowledge.rules.components[c].name);
+  }
+  return held;
+}
+
+Overview of_held(const std::vector<std::string>& held) {
+  constexpr std::size_t kFew = 3;
+  const std::string whose =
+      held.size() <= kFew ? listed(held) : fmt::format("{} components", held.size());
+  return {"TIME_HELD", "the simulated time of " + whose + " stands still",
+          "/clock is paused: nothing is judged about them"};
+}
+
 }  // namespace
 
 Overview overview_of(const Manager& manager) {
@@ -78,6 +96,7 @@ Overview overview_of(const Manager& manager) {
             listed(missing) + (missing.size() == 1 ? " is REQUIRED and is not there"
                                                    : " are REQUIRED and are not there"),
             "no rule sees a failure"};
+  if (const auto held = held_in_time(knowledge); !held.empty()) return of_held(held);
   if (knowledge.blindness.is_total()) return of_watching_nothing(knowledge);
   if (knowledge.blindness.count() > 0) return of_blind(knowledge);
   std::size_t unseen = 0;
@@ -110,6 +129,8 @@ ComponentLook look_of(ComponentId id, std::size_t health, const Manager& manager
     look = {"DEAD", "dead"};
   } else if (!state.alive && !knowledge.graph.is_present(id)) {
     look = {"NEVER_SEEN", state.is_missed ? "never seen" : "not seen yet"};
+  } else if (state.time_held) {
+    look = {"TIME_HELD", "clock paused"};
   } else if (health == 0) {
     const auto about = knowledge.states.touching(id);
     const bool is_seen =

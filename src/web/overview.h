@@ -16,7 +16,8 @@ namespace culprit::web {
 struct Overview {
   // "OK"; of incidents "NON_CRITICAL", "WARNING", "ERROR", "EXHAUSTED"; "MISSING": a REQUIRED component is not there;
   // "BLIND", "BLIND_ERROR": no failure is seen, but some rules, one of them an ERROR rule, have no value;
-  // "WATCHING_NOTHING": no rule can see; "DEAF": the robot cannot be heard.
+  // "WATCHING_NOTHING": no rule can see; "DEAF": the robot cannot be heard; "TIME_HELD": no failure is seen, but the
+  // simulated time of some components stands still.
   std::string_view look;
   std::string headline;  // "camera is dead, and 1 more"
   std::string detail;    // "no failure is seen by 3 rules"; of an incident: what is done about it
@@ -26,7 +27,7 @@ Overview overview_of(const Manager& manager);
 // How one component looks, beside its health.
 struct ComponentLook {
   // As its health (web/component_health.h) where that is not OK; else "DEAD", "STOPPED", "HUNG", "UNREACHABLE": what
-  // became of its process; "NEVER_SEEN"; "BLIND": all rules about it; "UNWATCHED": no rule is about it; "OK".
+  // became of its process; "NEVER_SEEN"; "TIME_HELD": its /clock stands still; "BLIND": all rules about it; "UNWATCHED": no rule is about it; "OK".
   std::string_view look;
   std::string_view condition;  // in a word or two, for people; empty: it works
 };

@@ -121,6 +121,25 @@ TEST(Overview, SaysThatItCannotHearTheRobot) {
   EXPECT_EQ(some.look(0).look, "BLIND");
 }
 
+TEST(Overview, SaysWhoseSimulatedTimeStandsStill) {
+  Overlooked some;
+  some.robot.add("camera", {}, "/rgb");
+  some.robot.add("lamp");
+  some.robot.discover();
+  some.run(10s);
+  some.robot.tell(TimeHeld{ComponentId(0), true});
+  some.run(5s);
+  EXPECT_EQ(some.overview().look, "TIME_HELD") << transcript(some.robot);
+  EXPECT_EQ(some.overview().headline, "the simulated time of camera stands still");
+  EXPECT_EQ(some.look(0).look, "TIME_HELD");
+  EXPECT_EQ(some.look(0).condition, "clock paused");
+  EXPECT_EQ(some.look(1).look, "OK") << "it has a clock of its own";
+  some.robot.tell(TimeHeld{ComponentId(0), false});
+  some.run(5s);
+  EXPECT_EQ(some.overview().look, "OK");
+  EXPECT_EQ(some.look(0).look, "OK");
+}
+
 TEST(Overview, IsTheFirstIncidentAndCountsTheOthers) {
   Overlooked some;
   some.robot.add("camera", {}, "/rgb");

@@ -79,6 +79,7 @@ struct Routes : testing::Test {
     };
     all.push_back(component_route(hub, histories.usage, look, log_of));
     all.push_back(series_route(histories));
+    all.push_back(past_series_route(""));
     all.push_back(hindsight_route([](const std::string&) -> Expected<std::filesystem::path> {
       return Error{"nothing is recorded here"};
     }));

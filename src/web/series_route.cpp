@@ -1,6 +1,12 @@
 #include <cmath>
 #include <cstdlib>
+#include <memory>
 
+#include "base/environment.h"
+#include "base/live_clock.h"
+#include "base/mutex.h"
+#include "replay/curves.h"
+#include "web/aside.h"
 #include "web/calls.h"
 
 namespace culprit::web {
@@ -13,7 +19,7 @@ Series series_of(const std::string& name, const Histories& histories) {
   if (space == std::string::npos || (what != "processor" && what != "memory"))
     return histories.signals.of(name);
   Series series;
-  for (const UsageHistory::Usage& look : histories.usage.of(name.substr(space + 1))) {
+  for (const UsageHistory::Usage& look : histories.usage.day_of(name.substr(space + 1))) {
     series.clocks.push_back(look.clock);
     series.values.push_back(what == "memory" ? static_cast<double>(look.memory) : look.processor);
   }
@@ -34,7 +40,81 @@ Answer answer_series(const Json& query, const Histories& histories) {
   return {200, std::move(json)};
 }
 
+constexpr double kMostPast = 30 * 86'400;  // s
+constexpr int kMostSecondsOfCurves = 60;
+constexpr std::size_t kMostNames = 24;
+
+// Since when there are curves, and why not for longer.
+Json reach_of(const std::filesystem::path& journal) {
+  constexpr double kNanosecond = 1e-9;
+  std::string why = "no journal is written";
+  if (!journal.empty()) {
+    const auto reader = journal::Reader::open(journal);
+    const auto oldest = reader ? replay::oldest_curve(*reader) : Error{reader.error()};
+    if (oldest && *oldest)
+      return {{"oldest", kNanosecond * static_cast<double>(**oldest)},
+              {"why", "the journal begins then"}};
+    why = oldest ? "the journal has no run" : oldest.error();
+  }
+  return {{"oldest", nullptr}, {"why", why}};
+}
+
+std::optional<std::vector<std::string>> names_in(const Json& body) {
+  const auto list = body.is_object() ? body.find("names") : body.end();
+  if (!body.is_object() || list == body.end() || !list->is_array() || list->size() > kMostNames)
+    return std::nullopt;
+  std::vector<std::string> names;
+  for (const Json& each : *list) {
+    if (!each.is_string()) return std::nullopt;
+    names.push_back(each.get<std::string>());
+  }
+  return names;
+}
+
+Answer answer_past(const Json& body, const std::filesystem::path& journal, Mutex& replaying) {
+  const auto names = names_in(body);
+  if (!names) return refuse(400, "send at most 24 'names' of curves, and 'from' and 'to'");
+  Json reach = reach_of(journal);
+  if (names->empty() || reach["oldest"].is_null()) return {200, std::move(reach)};
+  const double now = 1e-9 * static_cast<double>(wall_now());
+  const double from = body.value("from", 0.0);
+  const double to = body.value("to", 0.0);
+  if (!(from < to) || !(now - from <= kMostPast) || !(from <= now))
+    return refuse(400, "say 'from' and 'to' in seconds since 1970, a month back at most");
+  if (!replaying.try_lock())
+    return refuse(409, "another replay is going on; ask again in a moment");
+  const MutexLock lock(replaying, std::adopt_lock);
+  const auto ago = [&](double clock) {
+    return std::to_string(static_cast<std::int64_t>(std::max(0.0, now - clock) * 1000)) + "ms";
+  };
+  std::vector<std::string> command = {(own_folder() / "culprit").string(),
+                                      "replay",
+                                      journal.string(),
+                                      "--json",
+                                      "--since",
+                                      ago(from),
+                                      "--until",
+                                      ago(to),
+                                      "--curve"};
+  command.insert(command.end(), names->begin(), names->end());
+  const auto read = run_aside(std::move(command), AsideFolder(), kMostSecondsOfCurves);
+  if (!read) return refuse(503, "the journal could not be replayed: " + read.error());
+  if (read->status != 0) return refuse(404, read->text);
+  Json curves = parse_json(read->text);
+  if (!curves.is_object()) return refuse(503, "the replay gave nothing: " + read->text);
+  curves.update(reach);
+  return {200, std::move(curves)};
+}
+
 }  // namespace
+
+Route past_series_route(std::filesystem::path journal) {
+  return {Method::kPost, "/api/series/past",
+          [journal = std::move(journal), replaying = std::make_shared<Mutex>()](const Json& body) {
+            return answer_past(body, journal, *replaying);
+          },
+          Role::kLook};
+}
 
 Route series_route(const Histories& histories) {
   return {Method::kGet, "/api/series",

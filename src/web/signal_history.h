@@ -28,8 +28,7 @@ class SignalHistory : public live::Observer {
   explicit SignalHistory(HubObserver::WallClock wall = HubObserver::wall_clock)
       : wall_(std::move(wall)) {}
 
-  // "rate /scan" (Hz, 0 while it is silent), "age /scan" (s), "input entropy": an input as the rules name it, truth as 0 or 1, durations in s.
-  // Empty: there is no such signal. From any thread.
+  // By a name of plotted_names(). Empty: there is no such signal. From any thread.
   Series of(const std::string& name) const;
 
   // Samples from now on. Without it, nothing is sampled: a robot without a page pays nothing. From any thread.

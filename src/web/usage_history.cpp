@@ -58,6 +58,21 @@ void UsageHistory::look(double clock) {
   for (auto& [component, process] : processes_) add(process, stats[process.pid], clock);
 }
 
+// The oldest look becomes part of its minute.
+void UsageHistory::age(Process& process) {
+  constexpr double kMinute = 60;  // s
+  const Usage oldest = process.usage.front();
+  process.usage.pop_front();
+  if (process.minutes.empty() || oldest.clock >= process.minutes.back().clock + kMinute) {
+    process.minutes.push_back(oldest);
+    if (process.minutes.size() > kMinutes) process.minutes.pop_front();
+    return;
+  }
+  Usage& minute = process.minutes.back();
+  minute.processor = std::max(minute.processor, oldest.processor);
+  minute.memory = std::max(minute.memory, oldest.memory);
+}
+
 void UsageHistory::add(Process& process, const std::optional<ProcessStat>& stat, double clock) {
   if (!stat) {
     process.clock = 0;
@@ -67,7 +82,7 @@ void UsageHistory::add(Process& process, const std::optional<ProcessStat>& stat,
   const double used = seconds(stat->processor) - process.processor_seconds;
   if (process.clock > 0 && clock > process.clock && used >= 0)
     process.usage.push_back({clock, used / (clock - process.clock), stat->resident_bytes});
-  if (process.usage.size() > kMost) process.usage.pop_front();
+  if (process.usage.size() > kMost) age(process);
   process.processor_seconds = seconds(stat->processor);
   process.clock = clock;
 }
@@ -77,6 +92,15 @@ std::vector<UsageHistory::Usage> UsageHistory::of(const std::string& component) 
   const auto found = processes_.find(component);
   if (found == processes_.end()) return {};
   return {found->second.usage.begin(), found->second.usage.end()};
+}
+
+std::vector<UsageHistory::Usage> UsageHistory::day_of(const std::string& component) const {
+  const MutexLock lock(mutex_);
+  const auto found = processes_.find(component);
+  if (found == processes_.end()) return {};
+  std::vector<Usage> all(found->second.minutes.begin(), found->second.minutes.end());
+  all.insert(all.end(), found->second.usage.begin(), found->second.usage.end());
+  return all;
 }
 
 void UsageHistory::begins(const Manager& manager, std::function<Remarks()>, Time) {

@@ -1,5 +1,5 @@
-// The usage of each component's process over the last quarter of an hour. A thread of its own samples it every few seconds, with or without a viewer: so the
-// page also shows the time before it was opened.
+// The usage of each component's process: each look of the last quarter of an hour, and the greatest of each minute of the last day. A thread of its own
+// looks every few seconds, with or without a viewer: so the page also shows the time before it was opened.
 #pragma once
 
 #include <chrono>
@@ -21,7 +21,8 @@ namespace culprit::web {
 class UsageHistory : public live::Observer {
  public:
   static constexpr std::chrono::seconds kPeriod{5};
-  static constexpr std::size_t kMost = 180;  // looks that are kept of a component
+  static constexpr std::size_t kMost = 180;      // looks that are kept of a component
+  static constexpr std::size_t kMinutes = 1440;  // before them
 
   struct Usage {
     double clock = 0;          // seconds since 1970
@@ -38,8 +39,10 @@ class UsageHistory : public live::Observer {
   void start();
   // One look, at `clock` (seconds since 1970). Processes of other computers are not seen.
   void look(double clock);
-  // Oldest first. From any thread.
+  // The last quarter of an hour, oldest first. From any thread.
   std::vector<Usage> of(const std::string& component) const;
+  // The last day, likewise.
+  std::vector<Usage> day_of(const std::string& component) const;
 
   void begins(const Manager& manager, std::function<Remarks()> remarks, Time start) override;
   void stepped(const Runtime::Step& step) override;
@@ -53,8 +56,10 @@ class UsageHistory : public live::Observer {
     double processor_seconds = 0;  // at the last look
     double clock = 0;              // of the last look; 0: none yet
     std::deque<Usage> usage;
+    std::deque<Usage> minutes;  // before `usage`
   };
   static std::optional<ProcessStat> stat_of_pid(int pid);
+  static void age(Process& process);
   static void add(Process& process, const std::optional<ProcessStat>& stat, double clock);
   void take_pids();
 

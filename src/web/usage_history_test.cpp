@@ -94,6 +94,25 @@ TEST_F(UsedProcesses, AreKeptForAQuarterOfAnHourAndOverAReload) {
   EXPECT_EQ(usage.of("camera").size(), UsageHistory::kMost);
 }
 
+TEST_F(UsedProcesses, AreKeptForADayWithTheGreatestValuesOfEachMinute) {
+  see(0, ProcessState::kRunning, 12);
+  constexpr std::size_t kLooks = 2 * 86'400 / 5;
+  double used = 0;
+  for (std::size_t look = 0; look < kLooks; ++look) {
+    const bool is_peak = look % 12 == 7;  // once a minute
+    used += is_peak ? 4 : 1;
+    stats[12] = {.processor = std::chrono::milliseconds(static_cast<int>(1000 * used)),
+                 .threads = 1,
+                 .resident_bytes = 1000};
+    usage.look(100.0 + 5.0 * static_cast<double>(look));
+  }
+  const auto day = usage.day_of("camera");
+  EXPECT_EQ(day.size(), UsageHistory::kMinutes + UsageHistory::kMost);
+  EXPECT_NEAR(day.back().clock - day.front().clock, 86'400 + 900, 60);
+  for (std::size_t i = 0; i < UsageHistory::kMinutes; ++i) EXPECT_NEAR(day[i].processor, 0.8, 1e-9);
+  EXPECT_EQ(usage.of("camera").size(), UsageHistory::kMost);
+}
+
 TEST_F(UsedProcesses, MayStandWhereTheClockIsSetBack) {
   see(0, ProcessState::kRunning, 12);
   stats[12] = {.processor = 1000ms, .threads = 1, .resident_bytes = 1000};

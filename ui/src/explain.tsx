@@ -119,7 +119,7 @@ export function Candidates({ list, chosen }: { list: Candidate[]; chosen?: strin
         <tr>
           <th scope="col">strategy</th>
           <th scope="col" title={kCostUnit}>
-            relative cost
+            relative <Term>cost</Term>
           </th>
           <th scope="col">why, or why not</th>
         </tr>

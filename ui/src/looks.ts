@@ -13,6 +13,7 @@ export type Look =
   | 'HUNG'
   | 'UNREACHABLE'
   | 'NEVER_SEEN'
+  | 'TIME_HELD' // its simulated time stands still
   | 'UNWATCHED' // no rule is about it
   | 'UNTOLD' // the page does not know
 
@@ -40,6 +41,7 @@ export const kLooks: Record<Look, Appearance> = {
   NON_CRITICAL: { sign: '○', word: 'Minor', tone: 'NON_CRITICAL' },
   BLIND: { sign: '◌', word: 'Blind', tone: 'blind' },
   NEVER_SEEN: { sign: '?', word: 'Never seen', tone: 'unknown' },
+  TIME_HELD: { sign: '◔', word: 'On hold', tone: 'blind' },
   UNWATCHED: { sign: '–', word: 'No rule', tone: 'unknown' },
   UNTOLD: { sign: '…', word: 'Asking', tone: 'unknown' },
   OK: { sign: '✓', word: 'Well', tone: 'OK' },

@@ -1,15 +1,14 @@
 // Plots of what the rules read and what processes use: several signals on one time axis, with the thresholds of rules, and
 // with failures and repairs as marks. The address says what is shown, so that a link shows the same to others.
-import { signal } from '@preact/signals'
 import { useEffect, useMemo, useRef } from 'preact/hooks'
 import uPlot from 'uplot'
 import { byTheClock, when } from './clock'
 import { download } from './download'
 import { tell } from './notices'
-import { atFirst, curves, extent, followCurves, kindOf, kKept, offered, plotted, range, show, thresholdsOf, toAddress, trouble, wordsOf } from './plotted'
+import { atFirst, curveOf, curves, extent, followCurves, followPast, kindOf, kMostBack, offered, past, plotted, range, reach, show, thresholdsOf, toAddress, trouble, wordsOf } from './plotted'
 import { axisLook, type Options, Plotter } from './plotter'
 import { clockAt, events, robot } from './store'
-import { colour } from './theme'
+import { colour, isDevice } from './theme'
 import type { ManagerEvent } from './types'
 
 const kColours = ['#0a72c4', '#d95f02', '#159a72', '#c2459a', '#a17a00', '#5b8dd9', '#8060c0', '#7a7a00']
@@ -18,13 +17,14 @@ const kRanges: [number, string][] = [
   [30, '30 s'],
   [120, '2 min'],
   [300, '5 min'],
-  [kKept, '15 min'],
+  [900, '15 min'],
+  [3600, 'hour'],
+  [21_600, '6 h'],
+  [86_400, 'day'],
 ]
 const kShortest = 1 // s
 const kHigh = 420
-const narrow = matchMedia('(max-width: 600px)')
-const isNarrow = signal(narrow.matches)
-narrow.addEventListener('change', () => (isNarrow.value = narrow.matches))
+const isNarrow = isDevice('(max-width: 600px)')
 const kMarked: Record<string, string> = { failure_detected: '◆', strategy_chosen: '▼', strategy_failed: '✕', failure_resolved: '✓', rule_exhausted: '✖' }
 const kMarkColours: Record<string, string> = { failure_detected: 'ERROR', strategy_chosen: 'accent', strategy_failed: 'WARNING', failure_resolved: 'OK', rule_exhausted: 'ERROR' }
 
@@ -32,13 +32,15 @@ const isMark = (event: ManagerEvent) => event.type in kMarked && !event.dry_run
 const clockOf = (event: ManagerEvent) => event.clock ?? clockAt(event.t)
 
 function marksWithin(from: number, to: number): ManagerEvent[] {
-  return events.value.filter((e) => isMark(e) && clockOf(e) >= from && clockOf(e) <= to)
+  const first = events.value.length > 0 ? clockOf(events.value[0]) : Infinity
+  const old = (past.value?.events ?? []).filter((e) => clockOf(e) < first)
+  return [...old, ...events.value].filter((e) => isMark(e) && clockOf(e) >= from && clockOf(e) <= to)
 }
 
 // One time axis for all: where one has no sample, its line goes on.
 function aligned(names: string[]): uPlot.AlignedData {
   const tables = names.flatMap((name): uPlot.AlignedData[] => {
-    const { clocks = [], values = [] } = curves.value.get(name) ?? {}
+    const { clocks, values } = curveOf(name)
     const { scale } = kindOf(name)
     return [[clocks, values.map((value) => (value === null ? null : value * scale))]]
   })
@@ -220,7 +222,7 @@ function Time() {
   const move = (begin: number, end: number) => show(plotted.value, { from: begin, to: end })
   const zoom = (factor: number) => {
     const half = Math.max(kShortest, (to - from) * factor) / 2
-    if (isLive) return show(plotted.value, { last: Math.min(kKept, 2 * half) })
+    if (isLive) return show(plotted.value, { last: Math.min(kMostBack, 2 * half) })
     move((from + to) / 2 - half, (from + to) / 2 + half)
   }
   const pan = (share: number) => move(from + share * (to - from), to + share * (to - from))
@@ -291,14 +293,23 @@ function Exports({ plot }: { plot: { current: uPlot | null } }) {
   )
 }
 
+// Since when there is something to see, and why not for longer.
+function howFarBack(): string {
+  if (!reach.value) return 'culprit keeps the last 15 min.'
+  const { oldest, why } = reach.value
+  if (oldest === null) return `culprit keeps the last 15 min: ${why}.`
+  return `Plots reach back to ${when(oldest)}: ${why}. Processor and memory that no rule reads are kept for a day.`
+}
+
 export function PlotsPage() {
   const plot = useRef<uPlot | null>(null)
   useEffect(followCurves, [])
+  useEffect(followPast, [])
   const names = plotted.value
   useEffect(() => {
     if (names.length === 0 && !location.hash.includes('/')) show(atFirst())
   }, [robot.value?.robot])
-  const data = useMemo(() => aligned(names), [names, curves.value])
+  const data = useMemo(() => aligned(names), [names, curves.value, past.value])
   const { from, to } = extent()
   const isEmpty = data.length < 2 || data.slice(1).every((column) => [...column].every((value) => value === null || value === undefined))
   const marks = marksWithin(from, to)
@@ -321,7 +332,8 @@ export function PlotsPage() {
           onPlot={(made) => (plot.current = made)}
         />
       )}
-      {names.length > 0 && isEmpty && <p class="muted">No values of this time. culprit keeps the last 15 min; recordings of incidents reach further back.</p>}
+      {names.length > 0 && isEmpty && <p class="muted">No values of this time.</p>}
+      <p class="muted">{howFarBack()}</p>
       <Exports plot={plot} />
       {marks.length > 0 && (
         <section aria-label="Marks">

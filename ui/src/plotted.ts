@@ -1,8 +1,9 @@
 // The content of the page of plots: which signals over which time, as the address says it, and their values as the server has them.
-import { computed, signal } from '@preact/signals'
+import { computed, effect, signal } from '@preact/signals'
 import { call } from './api'
 import { nowByTheClock } from './freshness'
-import { robot, state } from './store'
+import { can, robot, state } from './store'
+import type { ManagerEvent } from './types'
 
 export interface Curve {
   clocks: number[] // s since 1970, the oldest first
@@ -10,15 +11,42 @@ export interface Curve {
 }
 export type Range = { last: number } | { from: number; to: number } // s
 
-export const kKept = 900 // s, by the server
+const kKept = 900 // s, in the server's memory; the journal reaches further back
+const kUsageKept = 86_400 // s, of processor and memory
+export const kMostBack = 30 * 86_400 // s
 const kUsual = 120 // s
 const kPeriod = 1000 // ms
 const kMostAtFirst = 3
+
+const isUsage = (name: string) => /^(processor|memory) /.test(name)
 
 export const plotted = signal<string[]>([]) // "rate /scan", "input entropy", "memory camera"
 export const range = signal<Range>({ last: kUsual })
 export const curves = signal<Map<string, Curve>>(new Map())
 export const trouble = signal('')
+
+// The journal's part: of a time that is no longer in memory.
+interface Past {
+  clocks: number[]
+  curves: Record<string, (number | null)[]>
+  events: ManagerEvent[]
+}
+interface Reach {
+  oldest: number | null // since when there are curves; null: only in memory
+  why: string
+}
+export const past = signal<Past | null>(null)
+export const reach = signal<Reach | null>(null)
+
+// Memory goes on where the journal ends.
+export function curveOf(name: string): Curve {
+  const recent = curves.value.get(name) ?? { clocks: [], values: [] }
+  const old = past.value?.curves[name]
+  if (!old) return recent
+  const first = recent.clocks[0] ?? Infinity
+  const count = past.value!.clocks.filter((clock) => clock < first).length
+  return { clocks: [...past.value!.clocks.slice(0, count), ...recent.clocks], values: [...old.slice(0, count), ...recent.values] }
+}
 
 export interface Kind {
   unit: string
@@ -109,8 +137,52 @@ async function ask(name: string): Promise<[string, Curve]> {
   const more = await call<Curve>('GET', `/api/series?name=${encodeURIComponent(name)}${since === undefined ? '' : `&since=${since}`}`)
   const clocks = [...(known?.clocks ?? []), ...more.clocks]
   const values = [...(known?.values ?? []), ...more.values]
-  const first = Math.max(0, clocks.findIndex((clock) => clock > clocks[clocks.length - 1] - kKept))
+  const kept = isUsage(name) ? kUsageKept : kKept
+  const first = Math.max(0, clocks.findIndex((clock) => clock > clocks[clocks.length - 1] - kept))
   return [name, { clocks: clocks.slice(first), values: values.slice(first) }]
+}
+
+const kSettled = 400 // ms without another choice, until the journal is read
+const kAnew = 60_000 // ms, of a time that goes on
+
+// Asks for the time before the curves in memory, whenever another time or signal is chosen. Gives how to stop.
+export function followPast(): () => void {
+  if (!can('post', '/api/series/past')) return () => {}
+  let isOver = false
+  let timer = 0
+  let asked = 0
+  const look = async (): Promise<void> => {
+    const { from, to } = extent()
+    const recorded = plotted.peek().filter((name) => !isUsage(name))
+    const kept = Math.max(0, ...recorded.map((name) => curves.peek().get(name)?.clocks[0] ?? nowByTheClock()))
+    const names = from < kept - 2 ? recorded : []
+    const own = ++asked
+    try {
+      const answer = await call<Reach & Partial<Past>>('POST', '/api/series/past', { names, from, to: Math.min(to, kept) })
+      if (isOver || own !== asked) return
+      reach.value = { oldest: answer.oldest, why: answer.why }
+      past.value = answer.clocks ? { clocks: answer.clocks, curves: answer.curves!, events: answer.events!.map((event, i) => ({ ...event, number: -1 - i })) } : null
+    } catch (error) {
+      if (!isOver) trouble.value = (error as Error).message
+    }
+  }
+  const wait = (time: number) => {
+    clearTimeout(timer)
+    timer = window.setTimeout(() => {
+      void look()
+      if ('last' in range.peek()) wait(kAnew)
+    }, time)
+  }
+  const stop = effect(() => {
+    plotted.value
+    range.value
+    wait(kSettled)
+  })
+  return () => {
+    isOver = true
+    stop()
+    clearTimeout(timer)
+  }
 }
 
 // As long as the page is open. Gives how to stop.

@@ -1,9 +1,13 @@
-// Colours of app.css for what is drawn on a canvas, and the news that they have changed.
-import { signal } from '@preact/signals'
+// The device, and the news that it has changed; and the colours of app.css for drawings on a canvas.
+import { type ReadonlySignal, signal } from '@preact/signals'
 
-const query = matchMedia('(prefers-color-scheme: dark)')
-export const isDark = signal(query.matches)
-query.addEventListener('change', () => (isDark.value = query.matches))
+export function isDevice(condition: string): ReadonlySignal<boolean> {
+  const query = matchMedia(condition)
+  const is = signal(query.matches)
+  query.addEventListener('change', () => (is.value = query.matches))
+  return is
+}
+export const isDark = isDevice('(prefers-color-scheme: dark)')
 
 export function colour(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim()

@@ -8,6 +8,7 @@ import { byTheClock, lasting } from './clock'
 import { isOld } from './freshness'
 import type { View } from './history'
 import { usePaced } from './paced'
+import { isDevice } from './theme'
 import type { Criticality, ManagerEvent } from './types'
 
 const kWindows: [number, string][] = [
@@ -285,7 +286,7 @@ export function Timeline({ view: itself, label = 'Timeline', hasMoment = true }:
         </div>
         <svg class="plot" width="100%" height={height + kAxis} role="img" onWheel={onWheel}
           aria-label="Failures over time; the list of what happened says the same in words">
-          {apart(ticks(begin, end, isNarrow.matches ? 3 : 7, view.clockOf), (at) => (at - begin) / span).map(({ at, label: words, anchor }) => (
+          {apart(ticks(begin, end, isNarrow.value ? 3 : 7, view.clockOf), (at) => (at - begin) / span).map(({ at, label: words, anchor }) => (
             <g class="tick">
               <line x1={percent(at)} x2={percent(at)} y1="0" y2={height} />
               {anchor && (
@@ -323,15 +324,17 @@ export function Timeline({ view: itself, label = 'Timeline', hasMoment = true }:
   )
 }
 
-const isNarrow = matchMedia('(max-width: 700px)')
+const isNarrow = isDevice('(max-width: 700px)')
+const isMedium = isDevice('(max-width: 1100px)')
 const kWheel = 300 // of the wheel's way: so much of it zooms by e
 // Labels at the ends stay inside, and one that would stand on the one before is left out.
 const anchorOf = (share: number, wide: number) => (share < wide / 2 ? 'start' : share > 1 - wide / 2 ? 'end' : 'middle')
 function apart(all: Tick[], shareOf: (at: number) => number): (Tick & { anchor?: string })[] {
-  const wide = isNarrow.matches ? 0.22 : 0.09 // of a label, as a share of the axis
+  const ofLetter = isNarrow.value ? 0.028 : isMedium.value ? 0.02 : 0.013 // its share of the axis
   let taken = -Infinity
   return all.map((tick) => {
     const share = shareOf(tick.at)
+    const wide = ofLetter * tick.label.length
     const anchor = anchorOf(share, wide)
     const from = share - { start: 0, middle: wide / 2, end: wide }[anchor]!
     if (from < taken) return tick

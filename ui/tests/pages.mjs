@@ -1,10 +1,10 @@
 // Every page while something is wrong: the status bar says so on each, each can be used by the keyboard alone and with a
 // screen reader, and looks as in the pictures beside this. Each page's purpose is tested on the stub.
-import { readFileSync } from 'node:fs'
 import { largeRobot } from './large_robot.mjs'
-import { kSchemes, kSizes, pictures } from './pictures.mjs'
+import { isLaidOut } from './layout.mjs'
+import { kSizes, pictures } from './pictures.mjs'
 import { kHealed, kIncidentEvents, kIncidents, kNow, kStates, kToday, play, state } from './robots.mjs'
-import { expect, expectSoon, file, isAccessible, isUsableByKeyboard, stubbed, suite } from './session.mjs'
+import { expect, expectSoon, file, isAccessible, isUsableByKeyboard, kSchemes, saved, stubbed, suite } from './session.mjs'
 
 const kFindings = [
   { code: 'D001', severity: 'error', who: '/scan: /lidar → /slam', seen: 'reliability: offered is best effort, requested is reliable', matters: '/slam receives nothing from /lidar', remedy: 'let /lidar offer reliable, or /slam request best effort' },
@@ -21,6 +21,7 @@ const kCalls = {
   'get /api/incidents/page': ({ id }) => (pageTrouble ? [409, { error: pageTrouble }] : [200, { what: `page of ${id}` }]),
   'get /api/incidents/recording': ({ name }) => [200, { name }],
   'get /api/component': () => [200, { node: '/camera', process: { pid: 12, memory: 123_000_000, threads: 7 }, usage: [0.25, 0.5, 0.125].map((processor, look) => ({ clock: kToday / 1000 - 15 + 5 * look, processor, memory: 120_000_000 + 1_000_000 * look })), parameters: { gain: 0.5, matrix: null }, log: [{ clock: kToday / 1000 - 13, level: 'warning', text: 'no frame for 200 ms' }] }],
+  'post /api/series/past': ({ names, from, to }) => [200, pastOf(names, from, to)],
   'get /api/series': ({ name, since }) => [200, curveOf(name, Number(since ?? 0))],
   'post /api/doctor': () => [200, { domain: 7, nodes: 5, findings }],
   'get /api/rules': () => [200, { path: 'rover.rules', text: '', version: '1', can_save: true }],
@@ -40,6 +41,17 @@ function curveOf(name, since) {
   const valueAt = { rate: (ago) => (ago < 12 ? 0 : 10), age: (ago) => (ago < 12 ? 12 - ago : 0.1), memory: () => 1.2e8, input: (ago) => 0.04 + 0.01 * Math.sin(ago / 10) }
   const value = valueAt[name.slice(0, name.indexOf(' '))]
   return value && !name.includes('nothing') ? { clocks, values: clocks.map((clock) => value(now - clock)) } : { clocks: [], values: [] }
+}
+
+// What the journal has: a day, with a failure an hour ago.
+const kHour = 3600
+function pastOf(names, from, to) {
+  const reach = { oldest: kToday / 1000 - 24 * kHour, why: 'the journal begins then' }
+  if (names.length === 0) return reach
+  const clocks = Array.from({ length: 200 }, (_, i) => from + ((to - from) * i) / 200)
+  const curves = Object.fromEntries(names.map((name) => [name, clocks.map((clock) => (Math.abs(kToday / 1000 - kHour - clock) < 60 ? 0.2 : 0.05))]))
+  const mark = { type: 'failure_detected', label: 'detected', severity: 'error', tone: 'alarm', text: 'RGBDead detected an hour ago', rule: 'RGBDead', t: 0, clock: kToday / 1000 - kHour }
+  return { ...reach, clocks, curves, events: [mark] }
 }
 
 async function become(page, server, wanted, hash) {
@@ -75,10 +87,14 @@ async function everyPage(page, server, album) {
     if (name !== 'robot' && name !== 'plots') await photograph(page, album, `page-${name}`) // these have pictures of their own
     await isAccessible(page)
     await isUsableByKeyboard(page)
+    for (const size of ['desktop', 'laptop', 'tablet']) {
+      await page.setViewportSize(kSizes[size])
+      await isLaidOut(page, `${name}, ${size}`)
+    }
     await page.setViewportSize(kSizes.phone)
+    await isLaidOut(page, `${name}, phone`)
     const isOn = await page.locator('nav a').evaluateAll((links) => links.every((l) => l.getBoundingClientRect().left >= 0 && l.getBoundingClientRect().right <= innerWidth))
     expect(isOn, `on a phone not every page can be reached from ${name}`)
-    expect(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `on a phone ${name} is wider than the screen`)
     await page.setViewportSize(kSizes.desktop)
   }
   expect((await page.locator('link[rel="icon"]').getAttribute('href')).startsWith('data:image/svg'), 'the icon does not follow')
@@ -193,16 +209,14 @@ async function tellsIncidents(page, server, album) {
   await page.keyboard.up('Control')
   await incident.locator('.tick text', { hasText: /^\d\d:\d\d:\d\d\.\d\d\d$/ }).first().waitFor()
   await incident.locator('.timeline select').selectOption('all')
-  await incident.locator('summary', { hasText: 'camera is held responsible for RGBDead' }).click()
+  await incident.locator('summary', { hasText: 'camera is held responsible for RGBDead' }).press('Enter')
   await incident.getByRole('row', { name: /rgb_restart.*it was tried already/ }).waitFor()
   await isAccessible(page)
   await isUsableByKeyboard(page)
-  const saving = page.waitForEvent('download')
   const send = incident.getByRole('button', { name: 'Save as a page to send …' })
-  await send.click()
-  const saved = await saving
-  expect(saved.suggestedFilename() === `incident-${kIncidents[0].id}.html`, 'the file to send has another name')
-  expect(readFileSync(await saved.path(), 'utf8').includes(`page of ${kIncidents[0].id}`), 'another file is sent')
+  const sent = await saved(page, () => send.click())
+  expect(sent.name === `incident-${kIncidents[0].id}.html`, 'the file to send has another name')
+  expect(sent.content.includes(`page of ${kIncidents[0].id}`), 'another file is sent')
   pageTrouble = 'another page is being made; ask again in a moment'
   await send.click()
   await page.getByRole('alert').getByText(pageTrouble).waitFor()
@@ -215,11 +229,9 @@ async function tellsIncidents(page, server, album) {
   // The black box's recordings of one.
   await page.evaluate((id) => (location.hash = `incidents/${id}`), kIncidents.at(-1).id)
   await incident.getByText('/var/lib/culprit/recordings/rover_').waitFor()
-  const keeping = page.waitForEvent('download')
-  await incident.getByRole('button', { name: "Save the robot's topics (MCAP, 1.2 MB)" }).click()
-  const recording = await keeping
-  expect(recording.suggestedFilename() === kIncidents.at(-1).recordings[0].name, 'the recording has another name')
-  expect(readFileSync(await recording.path(), 'utf8').includes(kIncidents.at(-1).recordings[0].name), 'it is another recording')
+  const recording = await saved(page, () => incident.getByRole('button', { name: "Save the robot's topics (MCAP, 1.2 MB)" }).click())
+  expect(recording.name === kIncidents.at(-1).recordings[0].name, 'the recording has another name')
+  expect(recording.content.includes(kIncidents.at(-1).recordings[0].name), 'it is another recording')
   await page.evaluate(() => (location.hash = 'incidents/'))
 }
 
@@ -247,14 +259,12 @@ async function plotsSignals(page, server, album) {
   await expectSoon(() => page.url().includes('from='), 'dragging does not zoom')
   await page.mouse.move(box.x + box.width * 0.1, box.y + 50)
   await page.locator('.u-legend').getByText('120 MB').waitFor()
-  const saving = page.waitForEvent('download')
-  await page.getByRole('button', { name: 'Save as CSV' }).click()
-  const [head, first] = readFileSync(await (await saving).path(), 'utf8').split('\n')
+  const table = await saved(page, () => page.getByRole('button', { name: 'Save as CSV' }).click())
+  const [head, first] = table.content.toString().split('\n')
   expect(head.startsWith('time,clock_s,') && head.includes('age of /fused [s]') && head.includes('memory of camera [MB]'), `the table has these columns: ${head}`)
   expect(first.split(',').length === head.split(',').length && first.includes('120'), `the table has this first row: ${first}`)
-  const painting = page.waitForEvent('download')
-  await page.getByRole('button', { name: 'Save as picture' }).click()
-  expect(readFileSync(await (await painting).path()).subarray(1, 4).toString() === 'PNG', 'the picture is none')
+  const painted = await saved(page, () => page.getByRole('button', { name: 'Save as picture' }).click())
+  expect(painted.content.subarray(1, 4).toString() === 'PNG', 'the picture is none')
   // A link shows the same to others: signals and time.
   const shown = await page.locator('.plots .muted').first().innerText()
   await page.reload()
@@ -263,6 +273,14 @@ async function plotsSignals(page, server, album) {
   await chosen.getByRole('button', { name: 'Remove memory of camera' }).press('Enter')
   await expectSoon(() => !page.url().includes('memory'), 'the address keeps what was removed')
   await page.getByRole('button', { name: '● Live' }).click()
+  // Longer ago the journal has it, and says how far back.
+  await page.getByText('Plots reach back to 2026-11-20 14:03:34: the journal begins then').waitFor()
+  await page.locator('.plots select').selectOption({ label: 'the last 6 h' })
+  await page.getByRole('region', { name: 'Marks' }).getByText('RGBDead detected an hour ago').waitFor()
+  const [, { names, from }] = server.received.filter(([call]) => call === 'post /api/series/past').at(-1)
+  expect(names.includes('age /fused') && Math.abs(from - (kToday / 1000 - 6 * kHour)) < 60, `the journal was asked for ${names} since ${from}`)
+  const lines = (await saved(page, () => page.getByRole('button', { name: 'Save as CSV' }).click())).content.toString().split('\n')
+  expect(lines.length > 400 && lines[1].startsWith('2026-11-21T08:03'), `the table begins with ${lines[1]}`)
 }
 
 // Six steps on the first visit, which can be ended; terms are explained where they stand.

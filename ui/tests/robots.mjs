@@ -48,12 +48,12 @@ function lookOf(name, dead, rules, isDeaf) {
   if (about.length === 0) return { health, look: 'UNWATCHED', condition: 'no rule' }
   return isDeaf || about.every((r) => rules[r.name]?.blind) ? { health, look: 'BLIND', condition: 'blind' } : { health, look: 'OK', condition: '' }
 }
-export const state = (t, { dead = null, incidents = [], overview = null, ...rules } = {}) => ({
+export const state = (t, { dead = null, incidents = [], overview = null, held = {}, ...rules } = {}) => ({
   t, clock: kBegan + t, incidents,
   overview: overview ?? (incidents.length > 0 ? { look: incidents[0].health, headline: incidents[0].headline, detail: incidents[0].doing } : kWell),
   rules: kRules.map(({ name }) => ({ phase: 'quiet', trigger: false, ...rules[name] })),
   components: kComponents.map((name) => ({
-    ...lookOf(name, dead, rules, overview?.look === 'DEAF'), present: name !== dead, alive: name !== dead, process: name === dead ? 'gone' : 'running', lifecycle: 'active' })),
+    ...lookOf(name, dead, rules, overview?.look === 'DEAF'), ...held[name], present: name !== dead, alive: name !== dead, process: name === dead ? 'gone' : 'running', lifecycle: 'active' })),
   topics: kTopics.map((_, i) => ({ rate: 10 + i, age: dead && i !== 1 ? t - kBroken : 0.05 })),
   inputs: [!dead, 0.1, 0.04], beliefs: kRules.flatMap((r) => r.strategies.map((s) => s.prior)), priors: kRules.flatMap((r) => r.strategies.map((s) => s.prior)), couplings: [], latencies: [],
 })
@@ -142,6 +142,11 @@ export const kBlindStates = {
   blind: { events: [], control: {}, state: { SegmentationBad: blind(kEntropy), overview: { look: 'BLIND', headline: 'no failure is seen, but SegmentationBad is blind', detail: kEntropy } }, cause: 'SegmentationBad is blind', level: 'Blind', mode: 'Acting', also: ['signal entropy was never seen'] },
   'watching-nothing': { events: [], control: {}, state: { ...Object.fromEntries(kRules.map(({ name }) => [name, blind(kEntropy)])), overview: { look: 'WATCHING_NOTHING', headline: 'watching nothing: no rule can see', detail: kEntropy } }, cause: 'Watching nothing', level: 'Unknown', mode: 'Acting', also: ['signal entropy was never seen'] },
 }
+
+// The simulation is paused, and with it the time of two nodes.
+const held = { health: 'OK', look: 'TIME_HELD', condition: 'clock paused' }
+export const kHeld = { events: [], control: {}, state: { held: { camera: held, depth: held }, overview: { look: 'TIME_HELD', headline: 'the simulated time of camera and depth stands still', detail: '/clock is paused: nothing is judged about them' } },
+  cause: 'The simulated time of camera and depth stands still', level: 'On hold', mode: 'Acting', also: ['/clock is paused'] }
 
 // Events forgotten long ago: the failure itself is not.
 export const kForgotten = { events: [], control: {}, state: { RGBDead: failing, incidents: [{ ...kCause, headline: 'RGBDead fails', components: [], certain: false, consequences: [], doing: 'nothing is done yet', next: '' }] }, cause: 'RGBDead fails', level: 'Error', mode: 'Acting' }

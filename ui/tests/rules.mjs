@@ -3,14 +3,16 @@ import { buildsThePapersRule, losesNothingToASlowServer, showsWhatIsSaidOfTheNew
 import { losesNothingThatWasWritten } from './drafts.mjs'
 import { writesEveryRow } from './grammar.mjs'
 import { mendsABrokenFile } from './repair.mjs'
-import { suite } from './session.mjs'
+import { isFirefox, suite } from './session.mjs'
 import { writesThreeRules } from './task.mjs'
 
+// In Firefox the form and the editor as a person uses them; what the page makes of late answers and of each row is its own.
 await suite(async () => {
   await buildsThePapersRule()
+  await mendsABrokenFile()
+  if (isFirefox) return
   await losesNothingToASlowServer()
   await showsWhatIsSaidOfTheNewestText()
-  await mendsABrokenFile()
   await writesEveryRow()
   await writesThreeRules()
   await losesNothingThatWasWritten()

@@ -166,15 +166,27 @@ async function frames(page, server) {
   await page.getByLabel('Group nodes by').selectOption('none')
   await page.getByRole('button', { name: 'Show all of the graph' }).click()
   await count(page, 'all nodes without groups')
+  const { x, y, width, height } = await page.locator('.graph canvas').first().boundingBox()
+  const [middle, level] = [x + width / 2, y + height / 2]
+  await count(page, 'all nodes, while one drags and zooms', async () => {
+    await page.mouse.move(middle, level)
+    await page.mouse.down()
+    await page.mouse.move(middle + 80, level + 50, { steps: 20 })
+    await page.mouse.move(middle - 80, level - 50, { steps: 40 })
+    await page.mouse.up()
+    for (const way of [-40, 40]) for (let i = 0; i < 10; ++i) await page.mouse.wheel(0, way)
+  })
   clearInterval(telling)
 }
 // Also the processor time of the page's main thread, which does not depend on what else the machine does.
-async function count(page, what) {
+// `moves` is done again and again meanwhile.
+async function count(page, what, moves = null) {
   const meter = await page.context().newCDPSession(page)
   await meter.send('Performance.enable', { timeDomain: 'threadTicks' })
   const used = async () => (await meter.send('Performance.getMetrics')).metrics.find((m) => m.name === 'TaskDuration').value
   const before = await used()
-  const times = await page.evaluate(
+  let isOver = false
+  const counting = page.evaluate(
     () =>
       new Promise((resolve) => {
         const times = []
@@ -189,6 +201,9 @@ async function count(page, what) {
         requestAnimationFrame(frame)
       })
   )
+  void counting.then(() => (isOver = true))
+  while (moves && !isOver) await moves()
+  const times = await counting
   console.log(`${kNodes} nodes, 30 updates a second, ${what}: ${times.length / 10} frames a second in 10 s`)
   tell('  processor time of the main thread a frame', (1000 * (await used() - before)) / times.length, 1000 / 30)
   tell('  a frame, median', quantile(times, 0.5), 1000 / 30)

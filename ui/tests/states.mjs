@@ -1,8 +1,10 @@
 // Every state of the robot that an operator may find, on every size of screen, light and dark: what must be seen without
-// scrolling is seen, whole and at its place, and all of it looks as in the pictures beside this.
-import { kBlindStates, kForgotten, kNow, kStates, kToday, play, state } from './robots.mjs'
-import { kSchemes, kSizes, pictures } from './pictures.mjs'
-import { expect, file, isAccessible, stubbed, suite } from './session.mjs'
+// scrolling is seen, whole and at its place; nothing is cut off or lies over another thing; all of it says the same as `culprit status --json`
+// of the same moment, and looks as in the pictures beside this.
+import { isLaidOut } from './layout.mjs'
+import { kBlindStates, kForgotten, kHeld, kNow, kRobot, kStates, kToday, play, state } from './robots.mjs'
+import { kSizes, pictures } from './pictures.mjs'
+import { expect, expectSoon, file, isAccessible, kSchemes, statusOfStub, stubbed, suite } from './session.mjs'
 
 const kCalls = {
   'get /api/stream': () => [200, {}],
@@ -38,15 +40,17 @@ function look() {
 // Where the brake is, by size: nothing may move it.
 const brakes = new Map()
 
+const kWall = { cause: '.wall h1', level: '.wall-level', mode: '.wall footer' }
+const kBar = { cause: '.status-bar .cause', level: '.status-bar .level', mode: '.status-bar .mode' }
+
 async function looksRight(page, at, size, { cause, level, mode, also = [] }) {
   const wanted = { cause, level, mode }
+  const isWall = size === 'wall'
   await page.waitForFunction(
-    (all) => {
-      const words = { cause: '.cause', level: '.level', mode: '.mode' }
-      return Object.entries(all).every(([part, word]) => document.querySelector(`.status-bar ${words[part]}`)?.innerText.includes(word))
-    },
-    wanted
+    ([all, parts]) => Object.entries(all).every(([part, word]) => document.querySelector(parts[part])?.innerText.includes(word)),
+    [wanted, isWall ? kWall : kBar]
   )
+  if (isWall) return
   const { wrong, brake, words } = await page.evaluate(look)
   expect(wrong.length === 0, `${at}:\n${wrong.join('\n')}`)
   expect((brakes.get(size) ?? brake) === brake, `Pause has moved (${at}): ${brakes.get(size)} ${brake}`)
@@ -54,33 +58,85 @@ async function looksRight(page, at, size, { cause, level, mode, also = [] }) {
   for (const text of also) expect(words.detail.includes(text), `the bar does not say ${text} (${at}): ${JSON.stringify(words)}`)
 }
 
-const kAll = { ...kStates, forgotten: kForgotten }
+// What this page shows of the robot, in the words of the state.
+function shown() {
+  const all = (parts) => [...document.querySelectorAll(parts)]
+  const buttons = all('[aria-label="Components"] ul button, .tile').map((each) => [each.innerText.replace(/^\S+\s+/, '').split(/\s/)[0], /look-(\w+)/.exec(each.className)[1]])
+  return {
+    headline: document.querySelector('.status-bar .cause b, .wall h1').innerText,
+    detail: document.querySelector('.status-bar .detail, .wall-detail').innerText,
+    incidents: document.querySelector('.wall') ? null : all('[data-incident]').map((each) => each.dataset.incident).join(),
+    looks: buttons.map((each) => each.join(' ')).sort().join(),
+  }
+}
+
+// `culprit status --json`, asked at the same moment, says what the page shows.
+async function saysAsTheTerminal(page, at, told) {
+  if (!told) return
+  const { overview, incidents, components } = told.state
+  const [first] = incidents
+  const wanted = { headline: (first ?? overview).headline, detail: (first?.doing ?? overview.detail), looks: components.map((each, i) => `${kNames[i]} ${each.look}`).sort().join() }
+  let seen = null
+  const isSame = async () => {
+    seen = await page.evaluate(shown)
+    return (
+      seen.headline.toLowerCase().startsWith(wanted.headline.toLowerCase()) && seen.detail.includes(wanted.detail) && seen.looks === wanted.looks &&
+      (seen.incidents === null || seen.incidents === incidents.map((each) => each.id).join())
+    )
+  }
+  await expectSoon(isSame, '').catch(() => {
+    throw new Error(`the page and culprit status do not say the same (${at}):\n${JSON.stringify(seen)}\n${JSON.stringify(wanted)}`)
+  })
+}
+const kNames = kRobot.components.map((each) => each.name)
+
+const kAll = { ...kStates, forgotten: kForgotten, 'time-held': kHeld, ...kBlindStates }
 const kDisconnected = { cause: 'Disconnected since 14:03:34', level: 'Old', mode: 'was: Acting', also: ['This view is outdated', 'It was: camera is dead'] }
+const kLoading = 'Asking culprit how the robot is'
 
 async function inEverySize(page, steps) {
   for (const [size, viewport] of Object.entries(kSizes)) {
     await page.setViewportSize(viewport)
+    await page.evaluate((hash) => (location.hash = hash), size === 'wall' ? 'wall' : 'robot')
     for (const scheme of kSchemes) {
       await page.emulateMedia({ colorScheme: scheme })
       await steps(size, scheme)
     }
   }
   await page.setViewportSize(kSizes.desktop)
+  await page.evaluate(() => (location.hash = 'robot'))
   await page.emulateMedia({ colorScheme: null })
+}
+
+// Before anything is known of the robot, nothing is said of it.
+async function loads(page, server) {
+  server.anew()
+  await page.reload()
+  await inEverySize(page, async (size, scheme) => {
+    await page.waitForFunction(([part, word]) => document.querySelector(part)?.innerText.includes(word), [(size === 'wall' ? kWall : kBar).cause, kLoading])
+    await isLaidOut(page, `loading, ${size}, ${scheme}`)
+    const words = await page.evaluate(() => document.body.innerText)
+    expect(!/all is well|is dead|✓/i.test(words), `something is said of a robot that is not known yet: ${words}`)
+  })
 }
 
 async function everyState(page, server) {
   const album = await pictures(page, file(''))
+  const told = new Map()
   await page.evaluate(() => localStorage.clear())
   await inEverySize(page, async (size, scheme) => {
     for (const [name, wanted] of Object.entries(kAll)) {
       server.anew()
       play(server, wanted)
-      await looksRight(page, `${name}, ${size}, ${scheme}`, size, wanted)
+      const at = `${name}, ${size}, ${scheme}`
+      await looksRight(page, at, size, wanted)
+      told.set(name, told.get(name) ?? (await statusOfStub())) // the stub says the same in every size
+      await saysAsTheTerminal(page, at, told.get(name))
       await album.compare(name, size, scheme)
+      await isLaidOut(page, at)
     }
   })
-  for (const name of ['ill', 'paused', 'approval', 'exhausted']) {
+  for (const name of ['ill', 'paused', 'approval', 'exhausted', 'time-held']) {
     server.anew()
     play(server, kAll[name])
     await looksRight(page, name, 'desktop', kAll[name])
@@ -95,6 +151,7 @@ async function everyState(page, server) {
     expect((await explanation.getByText('All is well').count()) === 0, `it says that all is well (${name})`)
     await isAccessible(page)
   }
+  await loads(page, server)
   // The server is gone: the page says so at once, and turns grey for all readers.
   server.anew()
   play(server, kStates.ill)
@@ -103,6 +160,7 @@ async function everyState(page, server) {
   await inEverySize(page, async (size, scheme) => {
     await looksRight(page, `disconnected, ${size}, ${scheme}`, size, kDisconnected)
     await album.compare('disconnected', size, scheme)
+    await isLaidOut(page, `disconnected, ${size}, ${scheme}`)
   })
   expect((await page.title()).startsWith('⚠ Disconnected'), `the title is ${await page.title()}`)
   expect((await page.locator('main').evaluate((e) => getComputedStyle(e).filter)).includes('grayscale'), 'what is old is in colour')

@@ -3,16 +3,19 @@
 import { createServer } from 'node:http'
 import { bundle } from '../bundle.mjs'
 
-// By module folder: bundling takes a second.
-export async function stub(modules, calls = {}) {
+export const kDomain = 231 // that the stub is said to be on
+
+// By module folder: bundling takes a second. `socket`: where `culprit status` finds it, too.
+export async function stub(modules, calls = {}, socket = null) {
   const assets = new Map(bundle(modules).map((a) => [a.path, a]))
   const readers = new Set()
   const said = [] // messages for late readers
   const received = []
   let isSilent = false
   const json = (response, status, body) => {
-    response.writeHead(status, { 'Content-Type': 'application/json' })
-    response.end(JSON.stringify(body))
+    const text = JSON.stringify(body)
+    response.writeHead(status, { 'Content-Type': 'application/json', 'Content-Length': Buffer.byteLength(text) }) // culprit status reads no chunks
+    response.end(text)
   }
   const block = ({ kind, data }) => `event: ${kind}\ndata: ${JSON.stringify(data)}\n\n`
   const stream = (response) => {
@@ -31,7 +34,10 @@ export async function stub(modules, calls = {}) {
     const [path, query = ''] = request.url.split('?')
     const name = `${request.method.toLowerCase()} ${path}`
     if (name === 'get /api/stream') return stream(response)
-    if (name === 'get /api/about') return json(response, 200, { calls: Object.keys(calls) })
+    if (name === 'get /api/about') return json(response, 200, { calls: Object.keys(calls), robot: 'rover', node: 'culprit', domain: kDomain })
+    const document = /^get \/api\/(robot|state|control)$/.exec(name)
+    if (document) return json(response, 200, said.find((each) => each.kind === document[1])?.data ?? null)
+    if (name === 'get /api/events') return json(response, 200, said.filter((each) => each.kind === 'event').map((each) => each.data))
     let body = ''
     for await (const part of request) body += part
     const sent = body ? JSON.parse(body) : query ? Object.fromEntries(new URLSearchParams(query)) : null
@@ -42,6 +48,8 @@ export async function stub(modules, calls = {}) {
   }
   const server = createServer((request, response) => void answer(request, response))
   await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve))
+  const local = createServer((request, response) => void answer(request, response))
+  if (socket) await new Promise((resolve) => local.listen(socket, resolve))
   const { port } = server.address()
   const write = (text) => readers.forEach((r) => r.write(text))
   const heart = setInterval(() => isSilent || write(': nothing new\n\n'), 500)
@@ -85,6 +93,8 @@ export async function stub(modules, calls = {}) {
     },
     async end() {
       clearInterval(heart)
+      local.close()
+      local.closeAllConnections()
       readers.forEach((r) => r.end())
       server.close()
       server.closeAllConnections()

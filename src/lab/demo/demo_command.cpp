@@ -208,6 +208,7 @@ std::vector<web::Route> web_routes(web::Faults faults, web::Hub& hub, const web:
       web::component_route(hub, histories.usage, look,
                            [&names](const std::string& node) { return names.log_of(node); }));
   routes.push_back(web::series_route(histories));
+  routes.push_back(web::past_series_route(""));
   routes.push_back(web::what_if_route(std::move(planner)));
   for (web::Route& route : web::study_routes(studies.studies())) routes.push_back(std::move(route));
   routes.push_back(web::single_run_route());

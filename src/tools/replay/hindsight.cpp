@@ -10,23 +10,6 @@ namespace {
 constexpr double kNanosecond = 1e-9;  // s
 constexpr int kMostRuns = 50;         // of a culprit that is started again and again, the newest
 
-// The session rows of runs that may have something of the time since `since`, oldest first.
-Expected<std::vector<journal::Entry>> runs_since(const journal::Reader& journal,
-                                                 std::int64_t since) {
-  std::vector<journal::Entry> runs;
-  std::int64_t before = 0;
-  while (runs.size() < kMostRuns) {
-    auto row = journal.newest(journal::kind::kSession, before);
-    if (!row) return Error{row.error()};
-    if (!*row) break;
-    before = (*row)->id;
-    runs.push_back(std::move(**row));
-    if (runs.back().at <= since) break;
-  }
-  std::ranges::reverse(runs);
-  return runs;
-}
-
 std::optional<Said> said_by(const Event& event, const RuleSet& rules, double wall) {
   if (const auto* detected = std::get_if<FailureDetected>(&event.what))
     return Said{wall, Said::What::kDetected, rules[detected->rule].name};
@@ -48,6 +31,22 @@ void keep_common(std::vector<std::string>& missing, const std::vector<std::strin
 }
 
 }  // namespace
+
+Expected<std::vector<journal::Entry>> runs_since(const journal::Reader& journal,
+                                                 std::int64_t since) {
+  std::vector<journal::Entry> runs;
+  std::int64_t before = 0;
+  while (runs.size() < kMostRuns) {
+    auto row = journal.newest(journal::kind::kSession, before);
+    if (!row) return Error{row.error()};
+    if (!*row) break;
+    before = (*row)->id;
+    runs.push_back(std::move(**row));
+    if (runs.back().at <= since) break;
+  }
+  std::ranges::reverse(runs);
+  return runs;
+}
 
 Expected<Hindsight> hindsight(const journal::Reader& journal, const RuleSet* rules,
                               const PlannerOf& planner_of, std::int64_t since) {

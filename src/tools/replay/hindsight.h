@@ -28,6 +28,11 @@ struct Hindsight {
       missing;  // what the rules read and no run of that time has: "topic /scan"
 };
 
+// The session rows of runs that may have something of the time since `since` (nanoseconds since 1970), the oldest first: the
+// newest 50 at most. Errors: the journal cannot be read.
+Expected<std::vector<journal::Entry>> runs_since(const journal::Reader& journal,
+                                                 std::int64_t since);
+
 // By the settings that a run was recorded with. Errors: they cannot be read.
 using PlannerOf = std::function<Expected<std::unique_ptr<const Planner>>(const journal::Session&)>;
 

@@ -1,5 +1,6 @@
 #include "replay/replay.h"
 
+#include <algorithm>
 #include <map>
 
 #include "journal/history.h"
@@ -183,8 +184,14 @@ Expected<std::vector<std::string>> advise(Recording& recording, const RuleSet& r
     session.watched_since.reset();
   }
   const auto manager = manager_for(session, rules, std::move(planner), {Autonomy::kAdvise, {}});
-  const auto tell = [&] {
-    for (const Event& event : manager->events()) sink(event, rules);
+  Time due = manager->next_deadline();
+  const auto step_at = [&](Time now, std::span<const Observation> seen) {
+    manager->step(now, seen);
+    if (sink) {
+      for (const Event& event : manager->events()) sink(event, rules);
+    }
+    due = manager->next_deadline();
+    if (stretch.look) due = std::min(due, stretch.look(*manager));
   };
   std::vector<Observation> observations;
   const auto step_with = [&](Time now, std::span<const Observation> recorded) {
@@ -192,20 +199,16 @@ Expected<std::vector<std::string>> advise(Recording& recording, const RuleSet& r
     for (const Observation& observation : recorded) {
       if (auto translated = translate(observation)) observations.push_back(std::move(*translated));
     }
-    manager->step(now, observations);
-    tell();
+    step_at(now, observations);
   };
   if (!is_whole) step_with(stretch.from, prelude.as_of(stretch.from));
-  for (; more && *more; more = recording.next(step)) {
+  for (; more && *more && step.now <= stretch.until; more = recording.next(step)) {
     // Other rules have other deadlines. A damaged clock may leap over millions of them.
     constexpr int kMostDeadlines = 100'000;
     // No decision is made during a sleep.
     const bool has_slept = !step.observations.empty() &&
                            std::holds_alternative<Overslept>(step.observations.front().what);
-    for (int i = 0; !has_slept && i < kMostDeadlines && manager->next_deadline() < step.now; ++i) {
-      manager->step(manager->next_deadline(), {});
-      tell();
-    }
+    for (int i = 0; !has_slept && i < kMostDeadlines && due < step.now; ++i) step_at(due, {});
     step_with(step.now, step.observations);
     if (stretch.newest != nullptr) *stretch.newest = step.now;
   }

@@ -52,6 +52,9 @@ Expected<Repetition> repeat(Recording& recording, const journal::Reader& journal
 struct Stretch {
   Time from = kLongAgo;    // what was before is known, but for the messages of topics
   Time* newest = nullptr;  // is told when the last step was
+  Time until = kNever;     // later steps are left out
+  // Called after each step; returns when it wants to look again at the latest.
+  std::function<Time(const Manager&)> look{};
 };
 
 // The advice of `rules` and `planner` about the observations of the run. A recording cannot change,
