@@ -75,18 +75,9 @@ Json info_document(const std::string& path, const bag::BagFile& file, bag::BagIn
   return document;
 }
 
-void print_info(const std::string& path, const bag::BagFile& file, bag::BagInfo& info) {
-  fmt::print("{}\n", path);
-  for (const bag::BagFile::Part& each : file.parts())
-    fmt::print("  {:<10} {} ({})\n", format_name(each.format),
-               escape_controls(each.path.filename().string()), size_text(each.bytes));
-  if (info.messages() > 0)
-    fmt::print("  start      {}\n  end        {}\n  duration   {:.3f} s\n",
-               clock_text(info.first_clock()), clock_text(info.last_clock()),
-               info_seconds(info.last() - info.first()));
-  fmt::print("  messages   {}{}\n", info.messages(),
-             file.late() > 0 ? fmt::format(" ({} written after later ones)", file.late()) : "");
+void print_topics(bag::BagInfo& info) {
   const auto topics = info.topics();
+  if (topics.empty()) return;
   std::size_t widest = 5;
   std::size_t widest_type = 4;
   for (const bag::TopicInfo& each : topics) {
@@ -106,11 +97,26 @@ void print_info(const std::string& path, const bag::BagFile& file, bag::BagInfo&
                each.rate() > 0 ? fmt::format("{:.2f} Hz", each.rate()) : "-", gap);
   }
   for (const bag::TopicInfo& each : topics) {
-    if (each.why_undecoded.empty()) continue;
+    if (each.why_undecoded.empty() || each.messages == 0) continue;
     const std::string count = each.undecoded > 0 ? fmt::format("{} of ", each.undecoded) : "";
-    fmt::print("  {} cannot be decoded: {}{} messages: {}\n", escape_controls(each.name), count,
-               each.messages, escape_controls(each.why_undecoded));
+    fmt::print("  {} cannot be decoded: {}{} {}: {}\n", escape_controls(each.name), count,
+               each.messages, each.messages == 1 ? "message" : "messages",
+               escape_controls(each.why_undecoded));
   }
+}
+
+void print_info(const std::string& path, const bag::BagFile& file, bag::BagInfo& info) {
+  fmt::print("{}\n", path);
+  for (const bag::BagFile::Part& each : file.parts())
+    fmt::print("  {:<10} {} ({})\n", format_name(each.format),
+               escape_controls(each.path.filename().string()), size_text(each.bytes));
+  if (info.messages() > 0)
+    fmt::print("  start      {}\n  end        {}\n  duration   {:.3f} s\n",
+               clock_text(info.first_clock()), clock_text(info.last_clock()),
+               info_seconds(info.last() - info.first()));
+  fmt::print("  messages   {}{}\n", info.messages(),
+             file.late() > 0 ? fmt::format(" ({} written after later ones)", file.late()) : "");
+  print_topics(info);
   print_bag_troubles(file, info.first());
 }
 

@@ -7,11 +7,20 @@ namespace {
 
 constexpr std::size_t kMostLines = 20;
 
+// Recorders before Dashing, and tools that convert ROS 1 bags, write sensor_msgs/Image.
+std::string full_type(std::string type) {
+  const std::size_t slash = type.find('/');
+  if (slash != std::string::npos && type.find('/', slash + 1) == std::string::npos)
+    type.insert(slash, "/msg");
+  return type;
+}
+
 }  // namespace
 
 std::size_t BagContents::place_of(BagTopic topic) {
   // ros2 bag play publishes a relative name below the root, too.
   if (!topic.name.starts_with('/')) topic.name.insert(0, 1, '/');
+  topic.type = full_type(std::move(topic.type));
   const auto [place, is_new] = places_.try_emplace({topic.name, topic.type}, topics_.size());
   if (is_new) topics_.push_back(std::move(topic));
   return place->second;
@@ -22,7 +31,7 @@ void BagContents::define(std::string_view type, std::string_view text) {
   // Recorders that do not find the definition of a type write an empty one.
   if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) return;
   if (text.size() > kMostBytes - definition_bytes_) return;
-  const bool is_new = definitions_.try_emplace(std::string(type), text).second;
+  const bool is_new = definitions_.try_emplace(full_type(std::string(type)), text).second;
   if (is_new) definition_bytes_ += text.size();
 }
 

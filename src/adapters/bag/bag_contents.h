@@ -12,9 +12,9 @@ namespace culprit::bag {
 
 // One type of messages on one topic. A topic whose type changes within a bag has several.
 struct BagTopic {
-  std::string name;           // with its leading slash, whether the recorder wrote it or not
-  std::string type;           // "sensor_msgs/msg/Image"
-  std::string encoding;       // "cdr"; of any other, only the arrival of messages can be told
+  std::string name;      // with its leading slash, whether the recorder wrote it or not
+  std::string type;      // "sensor_msgs/msg/Image", also where the recorder wrote sensor_msgs/Image
+  std::string encoding;  // "cdr"; of any other, only the arrival of messages can be told
   std::string offered_qos{};  // YAML, as the recorder wrote it; may be empty
 };
 

@@ -330,6 +330,32 @@ TEST_F(BagTest, MetadataCountsWhatIsMissing) {
   EXPECT_THAT(all.losses, ElementsAre(HasSubstr("310 messages, of which 10 are missing")));
 }
 
+TEST_F(BagTest, PartsThatWereRenamedAreRead) {
+  test::write_db3(folder_ / "my_bag.db3", test::regular_recording());
+  test::write_metadata(folder_, {"rosbag2_2026_01_30-15_32_05_0.db3"}, 300);
+  BagFile bag = value_of(BagFile::open(folder_));
+  std::size_t count = 0;
+  for (BagMessage message; bag.next(message);) ++count;
+  EXPECT_EQ(count, 300u);
+  EXPECT_THAT(bag.contents().losses(), IsEmpty());
+  EXPECT_THAT(bag.contents().remarks(),
+              ElementsAre("my_bag.db3: metadata.yaml calls this part "
+                          "rosbag2_2026_01_30-15_32_05_0.db3; the file was renamed"));
+}
+
+TEST_F(BagTest, TypesOfTwoPartsAreThoseOfMessages) {
+  test::TestRecording recording = test::regular_recording();
+  recording.types[0].second = "std_msgs/Float64";
+  test::write_db3(folder_ / "a.db3", recording);
+  const BagFile bag = value_of(BagFile::open(folder_ / "a.db3"));
+  EXPECT_EQ(bag.contents().topics()[0].type, "std_msgs/msg/Float64");
+  const std::string data = schema(1, "my_msgs/Thing", "float64 x") + channel(1, 1, "/x");
+  write("b.mcap", mcap(data + said(1, 1, "u"), 1));
+  BagFile other = value_of(BagFile::open(folder_ / "b.mcap"));
+  for (BagMessage message; other.next(message);) continue;
+  EXPECT_NE(other.contents().definition_of("my_msgs/msg/Thing"), nullptr);
+}
+
 TEST_F(BagTest, NamesGetTheirLeadingSlash) {
   test::write_db3(folder_ / "a.db3", test::regular_recording("x"));
   const BagFile bag = value_of(BagFile::open(folder_ / "a.db3"));
@@ -387,6 +413,32 @@ TEST_F(BagTest, ADamagedPageOfADatabaseIsPassed) {
   EXPECT_EQ(holes, 1u);
 }
 
+// A page that refers to another one twice; of pages that refer to one another there would be no end.
+TEST_F(BagTest, ADatabaseWhoseRowsRepeatIsReadOnce) {
+  test::TestRecording recording = test::regular_recording();
+  for (auto& each : recording.messages) each.bytes += std::string(300, 'x');
+  test::write_db3(folder_ / "a.db3", recording);
+  std::string bytes = bytes_of("a.db3");
+  constexpr std::size_t kPage = 4096, kCells = 12;
+  constexpr char kInnerPageOfTable = 5;
+  const auto number_at = [&](std::size_t at) {
+    return std::size_t{static_cast<std::uint8_t>(bytes[at])} << 8 |
+           static_cast<std::uint8_t>(bytes[at + 1]);
+  };
+  std::size_t page = kPage;
+  while (page < bytes.size() && bytes[page] != kInnerPageOfTable) page += kPage;
+  ASSERT_LT(page, bytes.size());
+  const std::size_t count = number_at(page + 3);
+  ASSERT_GT(count, 10u);
+  const auto cell = [&](std::size_t n) { return page + number_at(page + kCells + 2 * n); };
+  bytes.replace(cell(count / 2), 4, bytes.substr(cell(0), 4));
+  write("a.db3", bytes);
+  const std::vector<double> times = times_of(folder_ / "a.db3");
+  EXPECT_GT(times.size(), 250u);
+  EXPECT_LT(times.size(), 300u);
+  EXPECT_TRUE(std::ranges::adjacent_find(times, std::greater_equal()) == times.end());
+}
+
 TEST_F(BagTest, SaysWhatElseAFileIs) {
   const auto why = [](const fs::path& path) {
     const auto opened = BagFile::open(path);
@@ -401,6 +453,11 @@ TEST_F(BagTest, SaysWhatElseAFileIs) {
   fs::create_directory(folder);
   std::ofstream(folder / "a.bag") << "#ROSBAG V2.0\n";
   EXPECT_THAT(why(folder), HasSubstr("ROS 1 bag"));
+  const fs::path days = folder_ / "days";
+  for (const char* day : {"monday", "tuesday", "notes"}) fs::create_directories(days / day);
+  test::write_db3(days / "monday" / "a_0.db3", test::regular_recording());
+  test::write_db3(days / "tuesday" / "b.db3", test::regular_recording());
+  EXPECT_THAT(why(days), HasSubstr("it holds the recordings monday, tuesday; name one"));
 }
 
 // Whatever is cut off or changed, reading ends, and what it gives was written.

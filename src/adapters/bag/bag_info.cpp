@@ -1,8 +1,21 @@
 #include "bag/bag_info.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace culprit::bag {
+
+double TopicInfo::rate() const {
+  constexpr double kPerSecond = 1e9;
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  constexpr std::uint64_t kFewest = 3;
+  constexpr std::uint64_t kFewestOfLessThanASecond = 20;  // else they are one burst
+  const std::int64_t time = last - first - time_with_hole;
+  if (time <= 0 || messages < kFewest || (time < kSecond && messages < kFewestOfLessThanASecond))
+    return 0;
+  return static_cast<double>(messages - 1 - pauses_with_hole) * kPerSecond /
+         static_cast<double>(time);
+}
 
 void BagInfo::plan(Topic& topic, const BagTopic& about) {
   topic.is_planned = true;
@@ -39,6 +52,7 @@ void BagInfo::add(const BagMessage& message) {
       if (each.info.messages > 0) note_gap(each, last_);
       each.heard_since = message.at;
       each.heard_clock = message.recorded_at;
+      each.is_after_hole = each.info.messages > 0;
     }
   }
   last_ = message.at;
@@ -49,8 +63,12 @@ void BagInfo::add(const BagMessage& message) {
   if (!topic.is_planned) plan(topic, contents_.topics()[message.topic]);
   if (info.messages == 0) {
     info.first = message.at;
-    topic.heard_since = first_;
-    topic.heard_clock = first_clock_;
+    topic.heard_since = info.gap_at = first_;
+    topic.heard_clock = info.gap_clock = first_clock_;
+  }
+  if (std::exchange(topic.is_after_hole, false)) {
+    ++info.pauses_with_hole;
+    info.time_with_hole += message.at - info.last;
   }
   note_gap(topic, message.at);
   topic.heard_since = info.last = message.at;

@@ -28,13 +28,11 @@ struct TopicInfo {
   std::string why_undecoded{};
   std::uint64_t undecoded = 0;  // messages whose bytes do not fit
 
-  // Messages a second, from the first to the last. 0: there are fewer than two.
-  double rate() const {
-    constexpr double kPerSecond = 1e9;
-    return messages < 2 || last <= first
-               ? 0
-               : static_cast<double>(messages - 1) * kPerSecond / static_cast<double>(last - first);
-  }
+  std::uint64_t pauses_with_hole = 0;  // between two messages, where the copy has a hole
+  std::int64_t time_with_hole = 0;     // ns, of these pauses
+
+  // Messages a second, from the first to the last, but for pauses with a hole. 0: too few messages to say.
+  double rate() const;
 };
 
 class BagInfo {
@@ -61,6 +59,7 @@ class BagInfo {
     std::optional<ros2::FieldReader> whole;
     std::int64_t heard_since = 0;  // the last message, or the end of a hole after it
     std::int64_t heard_clock = 0;
+    bool is_after_hole = false;  // since its last message
   };
   void plan(Topic& topic, const BagTopic& about);
   void note_gap(Topic& topic, std::int64_t until);

@@ -50,5 +50,34 @@ TEST_F(BagTest, InfoCountsMessagesThatDoNotFitTheirType) {
   EXPECT_EQ(topics[0].undecoded, 10u);
 }
 
+TEST_F(BagTest, InfoLeavesHolesOfTheCopyOutOfRates) {
+  const test::TestRecording whole = test::regular_recording();
+  test::TestRecording part = whole;
+  part.messages.resize(100);
+  test::write_db3(folder_ / "a_0.db3", part);
+  part.messages.assign(whole.messages.begin() + 200, whole.messages.end());
+  test::write_db3(folder_ / "a_2.db3", part);
+  test::write_metadata(folder_, {"a_0.db3", "a_1.db3", "a_2.db3"}, 300);
+  const std::vector<TopicInfo> topics = topics_of(folder_);
+  EXPECT_NEAR(topics[0].rate(), 10, 0.001);
+  EXPECT_EQ(topics[0].longest_gap, 100 * test::kMillisecond);
+}
+
+TEST_F(BagTest, InfoGivesNoRateOfABurstOrASingleMessage) {
+  test::TestRecording recording{{{"/x", "std_msgs/msg/Float64"}, {"/once", "std_msgs/msg/Float64"}},
+                                {}};
+  const std::string bytes(test::text_of(test::number(1)));
+  for (int i = 0; i < 4; ++i)
+    recording.messages.push_back({test::kBagStart + i * test::kMillisecond, "/x", bytes});
+  test::write_db3(folder_ / "burst.db3", recording);
+  EXPECT_EQ(topics_of(folder_ / "burst.db3")[1].rate(), 0);
+
+  recording.messages.assign({{test::kBagStart, "/once", bytes}});
+  test::write_db3(folder_ / "once.db3", recording);
+  const std::vector<TopicInfo> topics = topics_of(folder_ / "once.db3");
+  EXPECT_EQ(topics[0].gap_at, test::kBagStart);
+  EXPECT_EQ(topics[0].gap_clock, test::kBagStart);
+}
+
 }  // namespace
 }  // namespace culprit::bag

@@ -142,6 +142,35 @@ void order_by_metadata(const fs::path& folder, const Metadata& metadata,
   }
 }
 
+// "a, b and more": the folders in it that are recordings.
+std::string recordings_below(const fs::path& folder) {
+  constexpr std::size_t kMostNamed = 5;
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (!entry.is_directory(error)) continue;
+    const fs::directory_iterator inside(entry.path(), error);
+    if (!error && std::any_of(begin(inside), end(inside),
+                              [](const fs::directory_entry& file) { return is_part(file.path()); }))
+      names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  std::string all;
+  for (std::size_t i = 0; i < std::min(names.size(), kMostNamed); ++i)
+    all += (i == 0 ? "" : ", ") + names[i];
+  return names.size() > kMostNamed ? all + " and more" : all;
+}
+
+// People rename a recording, but not what metadata.yaml says of it. Its count of messages then tells
+// whether these are all.
+void take_renamed(const std::vector<std::string>& names, const std::vector<fs::path>& there,
+                  BagParts& all) {
+  all.missing.clear();
+  for (std::size_t p = 0; p < there.size(); ++p)
+    all.foreign.push_back(there[p].filename().string() + ": metadata.yaml calls this part " +
+                          fs::path(names[p]).filename().string() + "; the file was renamed");
+}
+
 }  // namespace
 
 bool has_name_of_bag(const fs::path& path) { return is_part(path) || path.extension() == ".bag"; }
@@ -189,12 +218,18 @@ Expected<BagParts> find_parts(const fs::path& path) {
     order_by_metadata(path, *metadata, there, all);
     if (!all.parts.empty()) return all;
     all.foreign.clear();
-    all.messages.reset();
+    if (there.size() == metadata->files.size()) {
+      take_renamed(metadata->files, there, all);
+    } else {
+      all.messages.reset();
+    }
   }
   all.is_ordered = are_numbered(there);
   for (const fs::path& each : there) all.parts.push_back(part_at(each));
   if (!all.parts.empty()) return all;
   if (has_ros1) return Error{"it holds a ROS 1 bag; convert that with rosbags-convert"};
+  if (const std::string folders = recordings_below(path); !folders.empty())
+    return Error{"it holds the recordings " + folders + "; name one or several of them"};
   return Error{"there is no .db3 or .mcap file in it, nor one with .zstd"};
 }
 

@@ -25,7 +25,7 @@ struct BagParts {
       false;  // they were recorded in this order, as metadata.yaml or their numbers say
   std::vector<std::string> missing;  // for people, a line each: parts that are not there
   std::vector<std::string>
-      foreign;                   // likewise: recordings in the folder that are none of its parts
+      foreign;                   // likewise: recordings that are none of its parts, or were renamed
   std::vector<BagTopic> topics;  // that metadata.yaml announces
   std::optional<std::uint64_t> messages;  // of all parts, by metadata.yaml
 };

@@ -12,6 +12,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kMostRowsOfNames = 100'000;  // topics, or types
+constexpr const char* kDisorder = "its rows are out of order";
+
 // Decompressed, for SQLite reads here and there. Gone with its owner.
 class TemporaryCopy {
  public:
@@ -93,7 +96,7 @@ Expected<std::unique_ptr<Storage>> SqliteFile::open(const fs::path& path, BagCon
 
 Expected<void> SqliteFile::begin() {
   if (const auto read = read_topics(); !read) return read;
-  if (auto rows = database_.prepare("SELECT id, timestamp, topic_id, data FROM messages"); !rows)
+  if (auto rows = database_.prepare("SELECT rowid, timestamp, topic_id, data FROM messages"); !rows)
     return Error{rows.error()};
   read_definitions();
   return {};
@@ -104,7 +107,7 @@ void SqliteFile::read_definitions() {
   auto known = database_.prepare(
       "SELECT topic_type, encoded_message_definition FROM message_definitions WHERE encoding = "
       "'ros2msg'");
-  while (known) {
+  for (std::size_t row = 0; known && row < kMostRowsOfNames; ++row) {
     const auto more = known->step();
     if (!more || !*more) return;
     contents_.define(known->bytes(0), known->bytes(1));
@@ -117,7 +120,7 @@ Expected<void> SqliteFile::read_topics() {
   if (!rows)  // recorders before Foxy kept no QoS
     rows = database_.prepare("SELECT id, name, type, serialization_format, '' FROM topics");
   if (!rows) return Error{rows.error()};
-  while (true) {
+  for (std::size_t row = 0; row < kMostRowsOfNames; ++row) {
     const auto more = rows->step();
     if (!more) return Error{more.error()};
     if (!*more) return {};
@@ -125,17 +128,25 @@ Expected<void> SqliteFile::read_topics() {
         contents_.place_of({std::string(rows->bytes(1)), std::string(rows->bytes(2)),
                             std::string(rows->bytes(3)), std::string(rows->bytes(4))});
   }
+  return Error{kDisorder};
 }
 
 void SqliteFile::survey(PieceFinder& finder) {
-  auto rows =
-      database_.prepare("SELECT id, timestamp, topic_id FROM messages NOT INDEXED ORDER BY id");
+  auto rows = database_.prepare(
+      "SELECT rowid, timestamp, topic_id FROM messages NOT INDEXED ORDER BY rowid");
+  std::optional<std::int64_t> last;
   while (rows) {
     const auto more = rows->step();
     if (!more && damage_.empty()) damage_ = more.error();
     if (!more || !*more) return;
+    const std::int64_t row = rows->integer(0);
+    if (last && row <= *last) {
+      if (damage_.empty()) damage_ = kDisorder;
+      return;
+    }
+    last = row;
     const std::int64_t at = rows->integer(1);
-    if (is_time(at)) finder.add(rows->integer(0), static_cast<std::size_t>(rows->integer(2)), at);
+    if (is_time(at)) finder.add(row, static_cast<std::size_t>(rows->integer(2)), at);
   }
 }
 
@@ -147,7 +158,7 @@ void SqliteFile::follow(TimeLine line) {
     return;
   }
   auto rows = database_.prepare(
-      "SELECT id, timestamp, topic_id, data FROM messages ORDER BY timestamp, id");
+      "SELECT rowid, timestamp, topic_id, data FROM messages ORDER BY timestamp, rowid");
   if (rows) rows_ = std::move(*rows);
 }
 
@@ -155,8 +166,8 @@ void SqliteFile::follow(TimeLine line) {
 bool SqliteFile::begin_next_stretch() {
   if (!line_.is_in_file_order || stretch_ == line_.stretches.size()) return false;
   auto rows = database_.prepare(
-      "SELECT id, timestamp, topic_id, data FROM messages WHERE id >= ? AND id < ? "
-      "ORDER BY timestamp, id");
+      "SELECT rowid, timestamp, topic_id, data FROM messages WHERE rowid >= ? AND rowid < ? "
+      "ORDER BY timestamp, rowid");
   if (!rows) return false;
   constexpr auto kLowest = std::numeric_limits<std::int64_t>::min();
   constexpr auto kHighest = std::numeric_limits<std::int64_t>::max();
@@ -164,6 +175,7 @@ bool SqliteFile::begin_next_stretch() {
   rows->bind(1, stretch_ == 0 ? kLowest : line_.stretches[stretch_].ordinal)
       .bind(2, next == line_.stretches.size() ? kHighest : line_.stretches[next].ordinal);
   stretch_ = next;
+  last_at_.reset();
   rows_ = std::move(*rows);
   return true;
 }
@@ -173,7 +185,8 @@ void SqliteFile::begin_salvage() {
   is_salvaging_ = true;
   rows_.reset();
   auto rows = database_.prepare(
-      "SELECT id, timestamp, topic_id, data FROM messages NOT INDEXED WHERE id > ? ORDER BY id");
+      "SELECT rowid, timestamp, topic_id, data FROM messages NOT INDEXED WHERE rowid > ? ORDER BY "
+      "rowid");
   if (!rows) return;
   rows->bind(1, last_row_);
   rows_ = std::move(*rows);
@@ -181,11 +194,11 @@ void SqliteFile::begin_salvage() {
 
 bool SqliteFile::is_readable_after(std::int64_t row) const {
   auto rows = database_.prepare(
-      "SELECT id, data FROM messages NOT INDEXED WHERE id > ? ORDER BY id LIMIT 1");
+      "SELECT rowid, data FROM messages NOT INDEXED WHERE rowid > ? ORDER BY rowid LIMIT 1");
   if (!rows) return false;
   rows->bind(1, row);
   const auto more = rows->step();
-  return more && *more;
+  return more && *more && rows->integer(0) > row;
 }
 
 // Goes on with the first row behind what cannot be read; false if there is none.
@@ -206,16 +219,23 @@ bool SqliteFile::pass_damage() {
   return true;
 }
 
+// Pages of a damaged database may refer to one another in a loop, which has no end.
+bool SqliteFile::is_in_order() const {
+  const std::int64_t row = rows_->integer(0);
+  if (is_salvaging_) return row > last_row_;
+  return !last_at_ || std::pair(rows_->integer(1), row) > std::pair(*last_at_, last_row_);
+}
+
 bool SqliteFile::next_row() {
   while (rows_) {
     const auto more = rows_->step();
-    if (more && *more) return true;
-    if (more) {
+    if (more && *more && is_in_order()) return true;
+    if (more && !*more) {
       if (!is_salvaging_ && begin_next_stretch()) continue;
       break;
     }
     if (!is_salvaging_) {
-      if (damage_.empty()) damage_ = more.error();
+      if (damage_.empty()) damage_ = more ? kDisorder : more.error();
       begin_salvage();
     } else if (!pass_damage()) {
       break;
@@ -229,12 +249,13 @@ bool SqliteFile::next(BagMessage& message) {
   while (next_row()) {
     ++read_;
     last_row_ = rows_->integer(0);
+    const std::int64_t at = rows_->integer(1);
+    last_at_ = at;
     const auto topic = topics_.find(rows_->integer(2));
     if (topic == topics_.end()) {
       contents_.lose_message("of a topic that the file does not describe");
       continue;
     }
-    const std::int64_t at = rows_->integer(1);
     message = {is_time(at) ? at + line_.offset_of(last_row_) : at, topic->second, rows_->bytes(3),
                at, is_after_hole_};
     is_after_hole_ = false;

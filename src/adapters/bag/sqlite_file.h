@@ -32,6 +32,7 @@ class SqliteFile : public Storage {
   Expected<void> begin();
   void read_definitions();
   bool next_row();
+  bool is_in_order() const;
   bool begin_next_stretch();
   void begin_salvage();
   bool pass_damage();
@@ -46,6 +47,7 @@ class SqliteFile : public Storage {
   std::optional<journal::Statement> rows_;
   std::string damage_;  // what SQLite said of it; empty: it is whole as far as is known
   bool is_salvaging_ = false;
+  std::optional<std::int64_t> last_at_;  // of the rows that are read now
   std::int64_t last_row_ = std::numeric_limits<std::int64_t>::min();
   bool is_after_hole_ = false;
   std::uint64_t read_ = 0;

@@ -65,6 +65,22 @@ constexpr auto kMessages = std::to_array<StandardMessage>({
      "byte level\nstring name\nstring message\nstring hardware_id\nKeyValue[] values"},
     {"diagnostic_msgs/msg/KeyValue", "string key\nstring value"},
 
+    {"example_interfaces/msg/Bool", "bool data"},
+    {"example_interfaces/msg/Byte", "byte data"},
+    {"example_interfaces/msg/Char", "char data"},
+    {"example_interfaces/msg/Empty", ""},
+    {"example_interfaces/msg/Float32", "float32 data"},
+    {"example_interfaces/msg/Float64", "float64 data"},
+    {"example_interfaces/msg/Int16", "int16 data"},
+    {"example_interfaces/msg/Int32", "int32 data"},
+    {"example_interfaces/msg/Int64", "int64 data"},
+    {"example_interfaces/msg/Int8", "int8 data"},
+    {"example_interfaces/msg/String", "string data"},
+    {"example_interfaces/msg/UInt16", "uint16 data"},
+    {"example_interfaces/msg/UInt32", "uint32 data"},
+    {"example_interfaces/msg/UInt64", "uint64 data"},
+    {"example_interfaces/msg/UInt8", "uint8 data"},
+
     {"geographic_msgs/msg/GeoPoint", "float64 latitude\nfloat64 longitude\nfloat64 altitude"},
     {"geographic_msgs/msg/GeoPointStamped", "std_msgs/Header header\nGeoPoint position"},
     {"geographic_msgs/msg/GeoPose", "GeoPoint position\ngeometry_msgs/Quaternion orientation"},
@@ -188,6 +204,9 @@ constexpr auto kMessages = std::to_array<StandardMessage>({
     {"rcl_interfaces/srv/SetParametersAtomically_Request", "Parameter[] parameters"},
     {"rcl_interfaces/srv/SetParametersAtomically_Response", "SetParametersResult result"},
 
+    {"rosbag2_interfaces/msg/ReadSplitEvent", "string closed_file\nstring opened_file"},
+    {"rosbag2_interfaces/msg/WriteSplitEvent", "string closed_file\nstring opened_file"},
+
     {"rosgraph_msgs/msg/Clock", "builtin_interfaces/Time clock"},
 
     {"sensor_msgs/msg/BatteryState",
@@ -264,6 +283,14 @@ constexpr auto kMessages = std::to_array<StandardMessage>({
     {"shape_msgs/msg/Mesh", "MeshTriangle[] triangles\ngeometry_msgs/Point[] vertices"},
     {"shape_msgs/msg/MeshTriangle", "uint32[3] vertex_indices"},
     {"shape_msgs/msg/Plane", "float64[4] coef"},
+    {"shape_msgs/msg/SolidPrimitive",
+     "uint8 type\nfloat64[<=3] dimensions\ngeometry_msgs/Polygon polygon"},
+
+    {"statistics_msgs/msg/MetricsMessage",
+     "string measurement_source_name\nstring metrics_source\nstring unit\n"
+     "builtin_interfaces/Time window_start\nbuiltin_interfaces/Time window_stop\n"
+     "StatisticDataPoint[] statistics"},
+    {"statistics_msgs/msg/StatisticDataPoint", "uint8 data_type\nfloat64 data"},
 
     {"std_msgs/msg/Bool", "bool data"},
     {"std_msgs/msg/Byte", "byte data"},
@@ -346,6 +373,29 @@ constexpr auto kMessages = std::to_array<StandardMessage>({
     {"vision_msgs/msg/Point2D", "float64 x\nfloat64 y"},
     {"vision_msgs/msg/Pose2D", "Point2D position\nfloat64 theta"},
 
+    {"visualization_msgs/msg/ImageMarker",
+     "std_msgs/Header header\nstring ns\nint32 id\nint32 type\nint32 action\n"
+     "geometry_msgs/Point position\nfloat32 scale\nstd_msgs/ColorRGBA outline_color\n"
+     "uint8 filled\nstd_msgs/ColorRGBA fill_color\nbuiltin_interfaces/Duration lifetime\n"
+     "geometry_msgs/Point[] points\nstd_msgs/ColorRGBA[] outline_colors"},
+    {"visualization_msgs/msg/InteractiveMarker",
+     "std_msgs/Header header\ngeometry_msgs/Pose pose\nstring name\nstring description\n"
+     "float32 scale\nMenuEntry[] menu_entries\nInteractiveMarkerControl[] controls"},
+    {"visualization_msgs/msg/InteractiveMarkerControl",
+     "string name\ngeometry_msgs/Quaternion orientation\nuint8 orientation_mode\n"
+     "uint8 interaction_mode\nbool always_visible\nMarker[] markers\n"
+     "bool independent_marker_orientation\nstring description"},
+    {"visualization_msgs/msg/InteractiveMarkerFeedback",
+     "std_msgs/Header header\nstring client_id\nstring marker_name\nstring control_name\n"
+     "uint8 event_type\ngeometry_msgs/Pose pose\nuint32 menu_entry_id\n"
+     "geometry_msgs/Point mouse_point\nbool mouse_point_valid"},
+    {"visualization_msgs/msg/InteractiveMarkerInit",
+     "string server_id\nuint64 seq_num\nInteractiveMarker[] markers"},
+    {"visualization_msgs/msg/InteractiveMarkerPose",
+     "std_msgs/Header header\ngeometry_msgs/Pose pose\nstring name"},
+    {"visualization_msgs/msg/InteractiveMarkerUpdate",
+     "string server_id\nuint64 seq_num\nuint8 type\nInteractiveMarker[] markers\n"
+     "InteractiveMarkerPose[] poses\nstring[] erases"},
     {"visualization_msgs/msg/Marker",
      "std_msgs/Header header\nstring ns\nint32 id\nint32 type\nint32 action\n"
      "geometry_msgs/Pose pose\ngeometry_msgs/Vector3 scale\nstd_msgs/ColorRGBA color\n"
@@ -354,6 +404,8 @@ constexpr auto kMessages = std::to_array<StandardMessage>({
      "sensor_msgs/CompressedImage texture\nUVCoordinate[] uv_coordinates\nstring text\n"
      "string mesh_resource\nMeshFile mesh_file\nbool mesh_use_embedded_materials"},
     {"visualization_msgs/msg/MarkerArray", "Marker[] markers"},
+    {"visualization_msgs/msg/MenuEntry",
+     "uint32 id\nuint32 parent_id\nstring title\nstring command\nuint8 command_type"},
     {"visualization_msgs/msg/MeshFile", "string filename\nuint8[] data"},
     {"visualization_msgs/msg/UVCoordinate", "float32 u\nfloat32 v"},
 });

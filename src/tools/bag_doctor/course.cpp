@@ -10,6 +10,7 @@
 
 #include "bag/bag_file.h"
 #include "bag/number_fields.h"
+#include "doctor/wording.h"
 #include "ros2/field_reader.h"
 #include "ros2/messages.h"
 
@@ -267,10 +268,23 @@ class Reading {
     if (course_.messages > limits_.most_times)
       course_.left_out.push_back("only the first " + std::to_string(limits_.most_times) +
                                  " messages were examined");
+    name_unread();
     return std::move(course_);
   }
 
  private:
+  void name_unread() {
+    std::vector<std::string> unread;
+    for (std::size_t t = 0; t < looks_.size(); ++t) {
+      const bag::BagTopic& topic = contents_.topics()[t];
+      if (course_.topics[places_[t]].times.empty()) continue;
+      if (topic.encoding != "cdr" || !library_.with_parts(topic.type)) unread.push_back(topic.name);
+    }
+    if (!unread.empty())
+      course_.left_out.push_back(
+          "the values of " + doctor::listed(unread, 8) +
+          ": their types are not known (--message-path FOLDER), or they are not in CDR");
+  }
   void notice_topics() {
     while (looks_.size() < contents_.topics().size()) {
       const bag::BagTopic& topic = contents_.topics()[looks_.size()];

@@ -65,16 +65,24 @@ void find_other_clock(Examined& bag) {
     const std::size_t middle = topic.stamps.size() / 2;
     if (topic.stamps[middle] != 0) lags.emplace_back(topic.times[middle] - topic.stamps[middle]);
   }
-  if (lags.size() < 2) return;
+  if (lags.empty()) return;
   std::ranges::sort(lags);
   const Duration middle = lags[lags.size() / 2];
+  const bool is_simulated = counts_from_zero(bag.course.end - middle.count(), bag.course.end);
+  if (lags.size() < 2 && !is_simulated) return;
   const auto agree = std::ranges::count_if(
       lags, [&](Duration lag) { return lag > middle - kFarOff && lag < middle + kFarOff; });
-  if (std::chrono::abs(middle) > kFarOff && 3 * agree >= 2 * std::ssize(lags))
-    bag.other_clock = middle;
+  if (std::chrono::abs(middle) <= kFarOff || 3 * agree < 2 * std::ssize(lags)) return;
+  bag.other_clock = middle;
+  bag.is_simulated = is_simulated;
 }
 
 }  // namespace
+
+bool counts_from_zero(Nanoseconds stamp, Nanoseconds recorded) {
+  constexpr Duration kLongest = 24h * 365 * 5;
+  return Duration(stamp) < kLongest && Duration(recorded - stamp) > kLongest;
+}
 
 bool Examined::is_hole(const Stretch& gap, const Habit& habit) const {
   const bool is_of_copy = std::ranges::any_of(course.holes, [&](const BagCourse::Hole& hole) {

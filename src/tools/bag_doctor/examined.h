@@ -25,6 +25,7 @@ struct Examined {
   std::vector<Stretch> holes{};
   // By how much the stamps of most topics are behind the recorder's clock: simulated time, or a bag that was played.
   Duration other_clock{};
+  bool is_simulated = false;  // that is simulated time
 
   bool is_hole(const Stretch& gap, const Habit& habit) const;
 };
@@ -37,9 +38,12 @@ bool is_continuous(const TopicCourse& topic);
 using Symptoms = std::vector<Symptom>;
 void look_at_rhythm(const Examined& bag, Symptoms& all);  // D201 to D204, D210, D215
 void look_at_values(const Examined& bag, Symptoms& all);  // D205, D206, D216
-void look_at_stamps(const Examined& bag, Symptoms& all);  // D042 to D044, D208
+void look_at_stamps(const Examined& bag, Symptoms& all);  // D042 to D045, D208
 void look_at_frames(const Examined& bag, Symptoms& all);  // D051, D052
 void look_at_states(const Examined& bag, Symptoms& all);  // D020, D021, D211 to D213
+
+// Whether a stamp counts from the start of a simulation or of a device: its clock was never set.
+bool counts_from_zero(Nanoseconds stamp, Nanoseconds recorded);
 
 inline Time time_of(Nanoseconds at) { return Time(Duration(at)); }
 

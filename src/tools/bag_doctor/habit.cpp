@@ -80,6 +80,17 @@ void find_pace(std::span<const std::int64_t> times, Habit& habit) {
   std::erase_if(habit.slow,
                 [&](const Habit::Slow& each) { return each.stretch.length() < shortest; });
   if (habit.slow.size() > kMostGaps) habit.slow.clear();  // so it is by habit
+  // Windows overlap, so that stretches may, too.
+  for (std::size_t i = 1; i < habit.slow.size();) {
+    Habit::Slow& before = habit.slow[i - 1];
+    const Habit::Slow& each = habit.slow[i];
+    if (each.stretch.from > before.stretch.to) {
+      ++i;
+      continue;
+    }
+    before = {{before.stretch.from, each.stretch.to}, std::max(before.pause, each.pause)};
+    habit.slow.erase(habit.slow.begin() + static_cast<std::ptrdiff_t>(i));
+  }
 }
 
 }  // namespace

@@ -174,6 +174,13 @@ TEST_F(HealthyRecording, OfSimulatedTime) {
   expect_nothing();
 }
 
+TEST_F(HealthyRecording, OfOneTopicInSimulatedTime) {
+  for (int i = 0; i < 600; ++i)
+    recording_.add("/imu", "sensor_msgs/msg/Imu", i * 0.05,
+                   test::imu(i * 0.05 - 1.7e9, noise(count_++)));
+  expect_nothing();
+}
+
 TEST_F(HealthyRecording, OfTwoPublishersWhoseStampsMix) {
   for (int i = 0; i < 1200; ++i) {
     const double time = i * 0.05;

@@ -56,17 +56,23 @@ Duration lag_at(std::vector<Duration> lags, double share) {
 
 class StampLook {
  public:
-  StampLook(const TopicCourse& topic, const Stamped& all, const BagCourse& course,
-            Symptoms& symptoms)
-      : topic_(topic), all_(all), course_(course), symptoms_(symptoms) {}
+  StampLook(const TopicCourse& topic, const Stamped& all, const Examined& bag, Symptoms& symptoms)
+      : topic_(topic), all_(all), bag_(bag), course_(bag.course), symptoms_(symptoms) {}
 
   void look() {
+    for (std::size_t i = 0; i < all_.stamps.size(); ++i) {
+      const bool is_from_zero = counts_from_zero(all_.stamps[i], all_.times[i]);
+      clock_changes_ += i > 0 && is_from_zero != is_from_zero_ ? 1 : 0;
+      is_from_zero_ = is_from_zero;
+    }
+    if (clock_changes_ > kMostClockChanges) return report_mixed_clocks();
     look_back();
     look_at_missing();
     const bool repeats = look_at_repeats();
     const Duration base = lag_at(all_.lags, 0.2);
-    if (base > kOld) return report_old(base);
-    if (base < -kAhead) return report_ahead(base);
+    if (base > kOld) return is_from_zero_ ? report_unset_clock() : report_old(base);
+    if (base < -kAhead)
+      return bag_.is_simulated && !is_from_zero_ ? report_real_clock() : report_ahead(base);
     if (!repeats) look_at_stretches(base, lag_at(all_.lags, 0.8));
   }
 
@@ -186,6 +192,26 @@ class StampLook {
                   : "see what delays them: a queue, a slow device, or a clock that is behind",
         always(), kNever, "stamped too early on ");
   }
+  void report_unset_clock() {
+    add("D042", Gravity::kWarning,
+        "its stamps count from zero: they are of simulated time, or of a clock that was never set",
+        "no transform and no other message fits to them",
+        "set use_sim_time for all nodes or for none, or set the clock of the device", always(),
+        kNever, "stamped with a clock that was not set on ");
+  }
+  void report_real_clock() {
+    add("D045", Gravity::kWarning,
+        "its stamps are of the real clock, those of most topics of simulated time",
+        "nodes with simulated time see them as far off, and tf refuses them", kOneClock, always(),
+        kNever, "stamped with the real clock on ");
+  }
+  void report_mixed_clocks() {
+    add("D045", Gravity::kWarning,
+        "its stamps are of simulated time and of the real clock by turns: it has several "
+        "publishers",
+        "its readers see some of its messages as far off", kOneClock, always(), kNever,
+        "stamped with two clocks on ");
+  }
   void report_ahead(Duration base) {
     add("D043", Gravity::kWarning,
         fmt::format("its stamps are {} ahead when they are recorded", duration(-base)),
@@ -238,10 +264,16 @@ class StampLook {
         run.to == all_.times.back() ? kNever : time_of(run.to), std::move(words));
   }
 
+  static constexpr std::size_t kMostClockChanges = 3;  // of one publisher, whose clock is set
+  static constexpr const char* kOneClock = "set use_sim_time for all nodes or for none";
+
   const TopicCourse& topic_;
   const Stamped& all_;
+  const Examined& bag_;
   const BagCourse& course_;
   Symptoms& symptoms_;
+  std::size_t clock_changes_ = 0;
+  bool is_from_zero_ = false;  // the last stamp
 };
 
 }  // namespace
@@ -252,7 +284,7 @@ void look_at_stamps(const Examined& bag, Symptoms& all) {
     if (topic.is_latched || topic.stamps.empty()) continue;
     const Stamped some = stamped(topic, bag.other_clock);
     if (some.stamps.size() < kFewestMessages) continue;
-    StampLook(topic, some, bag.course, all).look();
+    StampLook(topic, some, bag, all).look();
   }
 }
 

@@ -20,6 +20,7 @@ using testing::Contains;
 using testing::DoubleNear;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::UnorderedElementsAre;
 
 class SymptomTest : public testing::Test {
  protected:
@@ -36,12 +37,12 @@ class SymptomTest : public testing::Test {
     sensor(topic, rate, [](double&, double&, double&) { return true; });
   }
 
-  std::vector<Finding> found() {
+  BagReport report() {
     ros2::MessageLibrary library;
     return report_of(value_of(read_course(recording_.write(folder_.path() / "bag.mcap"), library)),
-                     {})
-        .findings;
+                     {});
   }
+  std::vector<Finding> found() { return report().findings; }
   // "D201 error /imu at 19.9".
   static std::string short_of(const Finding& finding) {
     return fmt::format("{} {} {} at {:.1f}", finding.code, label(finding.gravity), finding.subject,
@@ -92,6 +93,20 @@ TEST_F(SymptomTest, ARateThatFalls) {
   EXPECT_NEAR(all[0].when->from, 30, 1.5);
 }
 
+// The windows in which the rate is measured overlap.
+TEST_F(SymptomTest, ARateThatFallsTwiceInShortOrderIsOneFinding) {
+  int n = 0;
+  sensor("/imu", 20, [&](double time, double, double) {
+    const bool is_slow = time > 30 && time < 45 && (time < 37 || time > 37.6);
+    return !is_slow || ++n % 2 == 0;
+  });
+  sensor("/other");
+  const auto all = found();
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(all[0].code, "D204");
+  EXPECT_NEAR(all[0].when->until, 45, 1.5);
+}
+
 TEST_F(SymptomTest, NumbersThatBecomeNaN) {
   sensor("/imu", 20, [](double time, double, double& value) {
     if (time > 40 && time < 45) value = std::nan("");
@@ -128,6 +143,27 @@ TEST_F(SymptomTest, StampsThatLagRepeatOrGoBack) {
       shorts(),
       AllOf(Contains("D042 warning /lags at 30.1"), Contains("D208 warning /repeats at 50.0"),
             Contains("D044 error /back at 30.1"), Contains("D043 error /ahead at 30.1")));
+}
+
+TEST_F(SymptomTest, StampsOfAnotherClockThanTheRest) {
+  const auto simulated = [](double, double& stamp, double) { return stamp -= 1.6999e9, true; };
+  for (const char* topic : {"/imu", "/imu2", "/imu3", "/imu4"}) sensor(topic, 20, simulated);
+  sensor("/real");
+  int n = 0;
+  sensor("/mixed", 20,
+         [&](double, double& stamp, double) { return stamp -= ++n % 3 == 0 ? 1.6999e9 : 0, true; });
+  EXPECT_THAT(shorts(),
+              UnorderedElementsAre("D045 warning /real at 0.0", "D045 warning /mixed at 0.0"));
+}
+
+TEST_F(SymptomTest, AClockOfADeviceThatWasNeverSet) {
+  sensor("/imu");
+  sensor("/imu2");
+  sensor("/lidar_imu", 20, [](double, double& stamp, double) { return stamp -= 1.6999e9, true; });
+  const auto all = found();
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(short_of(all[0]), "D042 warning /lidar_imu at 0.0");
+  EXPECT_THAT(all[0].seen, HasSubstr("a clock that was never set"));
 }
 
 TEST_F(SymptomTest, StampsThatBecomeZeroOrRepeatNowAndThen) {
@@ -185,6 +221,14 @@ TEST_F(SymptomTest, WhatNodesSayOfThemselves) {
   EXPECT_THAT(all, Contains("D020 error diagnostics: camera: frames: /camera at 29.0"));
   EXPECT_THAT(all, Contains("D212 error log of /camera: /camera at 29.0"));
   EXPECT_THAT(all, Contains("D211 error /lidar at 20.0"));
+}
+
+TEST_F(SymptomTest, ValuesThatCannotBeReadAreLeftOut) {
+  sensor("/imu");
+  recording_.add("/x", "my_msgs/msg/Thing", 1, test::number(1, 1));
+  recording_.announce("/y", "my_msgs/msg/Thing");
+  EXPECT_THAT(report().left_out, Contains("the values of /x: their types are not known "
+                                          "(--message-path FOLDER), or they are not in CDR"));
 }
 
 TEST_F(SymptomTest, OffersThatDoNotFitTogether) {

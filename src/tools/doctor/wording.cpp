@@ -25,6 +25,8 @@ std::string listed(const std::vector<std::string>& names, std::size_t most) {
 std::string duration(Duration time) {
   if (time == Duration::max()) return "none";
   const double s = seconds(time);
+  constexpr double kYear = 365.25 * 86400;
+  if (std::abs(s) >= 2 * kYear) return fmt::format("{:.3g} years", s / kYear);
   if (std::abs(s) >= 2 * 86400) return fmt::format("{:.3g} days", s / 86400);
   if (std::abs(s) >= 2 * 3600) return fmt::format("{:.3g} h", s / 3600);
   if (std::abs(s) >= 120) return fmt::format("{:.3g} min", s / 60);

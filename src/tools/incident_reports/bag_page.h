@@ -1,5 +1,5 @@
-// What rules see in a recording, as one HTML file that needs nothing else: the incident's page (incident_page.h), over the
-// whole recording, with its timeline, events, and curves with limits and marks.
+// What rules see in a recording, as one HTML file that needs nothing else: its incidents, and then, as on an incident's page
+// (incident_page.h), its timeline, events, and curves with limits and marks.
 #pragma once
 
 #include <filesystem>

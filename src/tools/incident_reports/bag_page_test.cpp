@@ -48,10 +48,27 @@ TEST(BagPage, ShowsWhatFailedWhenWithCurvesAndWhatCouldNotBeJudged) {
       value_of(bag_page(*checked.rules, std::make_unique<BayesPlanner>(),
                         {recording.write(folder.path() / "drive.mcap"), {}, 0}));
   EXPECT_THAT(
-      page, AllOf(HasSubstr("<th scope=\"row\">cause</th><td><b>lidar</b>"), HasSubstr("LidarDead"),
+      page, AllOf(HasSubstr("<h1>drive.mcap, "),
+                  HasSubstr("<td><b>lidar is held responsible</b></td>"), HasSubstr("<td>10.9 s, "),
+                  HasSubstr("still there at the end"), HasSubstr("3, of which 2 fired"),
+                  HasSubstr("seconds since the recording began"), HasSubstr("LidarDead"),
                   HasSubstr("<rect class=\"ERROR\""), HasSubstr("<rect class=\"WARNING\""),
                   HasSubstr("class=\"curve\""), HasSubstr("class=\"limit\""),
                   HasSubstr("NoMap could not be judged: "), HasSubstr("drive.mcap")));
+}
+
+TEST(BagPage, WithoutAFailureItHasTheCurvesOfAllRules) {
+  const culprit::test::TestFolder folder;
+  recorded::Recording recording;
+  for (int i = 0; i < 100; ++i)
+    recording.add("/speed", "std_msgs/msg/Float64", i * 0.1, recorded::number(0, i * 0.03));
+  const auto checked = check(Source("rover.rules", kPageRules));
+  ASSERT_TRUE(checked.rules);
+  const std::string page =
+      value_of(bag_page(*checked.rules, std::make_unique<BayesPlanner>(),
+                        {recording.write(folder.path() / "drive.mcap"), {}, 0}));
+  EXPECT_THAT(page, AllOf(HasSubstr("No rule fired."), HasSubstr("speed (/speed data)"),
+                          testing::Not(HasSubstr("Failures over time"))));
 }
 
 TEST(BagPage, OfNoBagIsAnError) {

@@ -86,7 +86,10 @@ std::set<std::uint32_t> rhythms_of(const RuleSet& rules) {
 class FoxgloveFile {
  public:
   FoxgloveFile(const RuleSet& rules, McapWriter::Sink sink)
-      : rules_(rules), writer_(std::move(sink), "", "culprit"), rhythms_(rhythms_of(rules)) {
+      : rules_(rules),
+        writer_(std::move(sink), "", "culprit"),
+        rhythms_(rhythms_of(rules)),
+        states_(rules.rules.size()) {
     log_ = schema("foxglove.Log", {{"level", member("integer")},
                                    {"message", member("string")},
                                    {"name", member("string")},
@@ -105,7 +108,13 @@ class FoxgloveFile {
   }
 
   void begin(std::int64_t clock) {
-    for (const Rule& rule : rules_.rules) put_state(rule, clock, false);
+    for (std::size_t r = 0; r < rules_.rules.size(); ++r) put_state(RuleId(r), clock);
+  }
+
+  // The rule's trigger got a value, or lost it.
+  void judge(RuleId rule, bool is_known, std::int64_t clock) {
+    states_[rule.index].is_known = is_known;
+    put_state(rule, clock);
   }
 
   void add(const Event& event, std::int64_t clock) {
@@ -117,11 +126,11 @@ class FoxgloveFile {
            {"file", std::string(words_of(event).name)},
            {"line", 0}});
     if (const auto* detected = std::get_if<FailureDetected>(&event.what))
-      put_state(rules_[detected->rule], clock, true);
+      set_failing(detected->rule, clock, true);
     if (const auto* resolved = std::get_if<FailureResolved>(&event.what))
-      put_state(rules_[resolved->rule], clock, false);
+      set_failing(resolved->rule, clock, false);
     if (const auto* lost = std::get_if<FailureLost>(&event.what))
-      put_state(rules_[lost->rule], clock, false);
+      set_failing(lost->rule, clock, false);
     if (const auto* opened = std::get_if<IncidentOpened>(&event.what))
       put_incident(opened->incident, "opened", clock);
     if (const auto* changed = std::get_if<IncidentChanged>(&event.what))
@@ -146,15 +155,15 @@ class FoxgloveFile {
     } else if (const auto* sample = std::get_if<SampleArrived>(&what)) {
       if (!rhythms_.contains(sample->topic.index)) return;
       const auto [last, is_first] = last_.try_emplace(sample->topic.index, clock);
-      if (!is_first)
-        put_value(topic_of("gaps", rules_[sample->topic].name),
-                  Value(static_cast<double>(clock - last->second) * 1e-9), clock);
+      if (!is_first) put_gap(sample->topic, last->second, clock);
       last->second = clock;
     }
   }
 
-  // False: it could not be written.
-  bool end() {
+  // `clock`: of the last message. False: it could not be written.
+  bool end(std::int64_t clock) {
+    // A topic that fell silent for good has no message that ends its gap.
+    for (const auto& [topic, last] : last_) put_gap(TopicId(topic), last, clock);
     writer_.end();
     return writer_.is_good();
   }
@@ -171,9 +180,25 @@ class FoxgloveFile {
     whole.update(message);
     writer_.add({channel->second, ++sequence_, clock, clock}, to_line(whole));
   }
-  void put_state(const Rule& rule, std::int64_t clock, bool is_failing) {
-    put(topic_of("rules", rule.name), rule_, clock,
-        {{"state", is_failing ? "failing" : "ok"}, {"is_failing", is_failing ? 1 : 0}});
+  struct RuleState {
+    bool is_known = false;
+    bool is_failing = false;
+  };
+  void set_failing(RuleId rule, std::int64_t clock, bool is_failing) {
+    states_[rule.index].is_failing = is_failing;
+    put_state(rule, clock);
+  }
+  void put_state(RuleId rule, std::int64_t clock) {
+    const RuleState& state = states_[rule.index];
+    const char* word = !state.is_known ? "unknown" : state.is_failing ? "failing" : "ok";
+    put(topic_of("rules", rules_[rule].name), rule_, clock,
+        {{"state", word}, {"is_failing", state.is_failing ? 1 : 0}});
+  }
+  void put_gap(TopicId topic, std::int64_t last, std::int64_t clock) {
+    constexpr double kNanosecond = 1e-9;  // s
+    if (clock > last)
+      put_value(topic_of("gaps", rules_[topic].name),
+                Value(static_cast<double>(clock - last) * kNanosecond), clock);
   }
   void put_incident(const culprit::Incident& incident, const char* state, std::int64_t clock) {
     Json components = Json::array();
@@ -213,6 +238,7 @@ class FoxgloveFile {
   const RuleSet& rules_;
   McapWriter writer_;
   const std::set<std::uint32_t> rhythms_;
+  std::vector<RuleState> states_;               // by rule
   std::map<std::uint32_t, std::int64_t> last_;  // message of a topic whose rhythm is read
   std::uint16_t log_ = 0, incident_ = 0, rule_ = 0, value_ = 0;
   std::map<std::string, std::uint16_t> channels_;  // by topic
@@ -289,9 +315,9 @@ std::vector<LayoutPlot> plots_of(const RuleSet& rules) {
 }  // namespace
 
 std::string foxglove_layout(const RuleSet& rules) {
-  constexpr std::size_t kMostPlots = 8;
+  constexpr std::size_t kMostPlots = 6;
   Json panels = Json::object();
-  std::vector<std::string> left;
+  std::vector<std::string> plots;
   const auto place = [&](const std::string& kind, std::size_t number, Json settings) {
     const std::string id = kind + "!culprit" + std::to_string(number);
     panels[id] = std::move(settings);
@@ -304,22 +330,30 @@ std::string foxglove_layout(const RuleSet& rules) {
   Json states = Json::array();
   for (const Rule& rule : rules.rules)
     states.push_back(path(topic_of("rules", rule.name) + ".state", rule.name));
-  left.push_back(place("StateTransitions", 1, {{"paths", std::move(states)}, {"isSynced", true}}));
+  Json left = place("StateTransitions", 1, {{"paths", std::move(states)}, {"isSynced", true}});
   std::size_t number = 0;
   for (const LayoutPlot& plot : plots_of(rules)) {
     if (number >= kMostPlots) break;
     Json paths = Json::array({path(plot.topic + ".value", plot.title)});
     // A number by itself is a line across the plot.
     for (const double limit : plot.limits) paths.push_back(path(to_string(Value(limit)), "limit"));
-    left.push_back(place("Plot", ++number,
-                         {{"paths", std::move(paths)},
-                          {"showXAxisLabels", true},
-                          {"showYAxisLabels", true},
-                          {"showLegend", true},
-                          {"legendDisplay", "floating"},
-                          {"isSynced", true},
-                          {"xAxisVal", "timestamp"},
-                          {"foxglovePanelTitle", plot.title}}));
+    plots.push_back(place("Plot", ++number,
+                          {{"paths", std::move(paths)},
+                           {"showXAxisLabels", true},
+                           {"showYAxisLabels", true},
+                           {"showLegend", false},
+                           {"legendDisplay", "none"},
+                           {"isSynced", true},
+                           {"xAxisVal", "timestamp"},
+                           {"foxglovePanelTitle", plot.title},
+                           {"lichtblickPanelTitle", plot.title}}));
+  }
+  if (!plots.empty()) {
+    constexpr std::size_t kPercentOfRule = 6, kMostPercent = 50;  // of the height
+    left = {{"first", std::move(left)},
+            {"second", stacked(plots)},
+            {"direction", "column"},
+            {"splitPercentage", std::min(kMostPercent, kPercentOfRule * (rules.rules.size() + 1))}};
   }
   const std::string log =
       place("RosOut", 1,
@@ -332,7 +366,7 @@ std::string foxglove_layout(const RuleSet& rules) {
                       {"userNodes", Json::object()},
                       {"playbackConfig", {{"speed", 1}}},
                       {"layout",
-                       {{"first", stacked(left)},
+                       {{"first", std::move(left)},
                         {"second", stacked({log, incidents})},
                         {"direction", "row"},
                         {"splitPercentage", kLeftPercent}}}}) +
@@ -364,16 +398,21 @@ Expected<void> write_foxglove(const RuleSet& rules, std::unique_ptr<const Planne
   bag::BagReading reading(rules, bag->contents(), library);
   replay::BagReplay::Listener listener;
   listener.on_event = [&](const Event& event, std::int64_t clock) { file.add(event, clock); };
+  listener.on_judged = [&](RuleId rule, bool is_known, std::int64_t clock) {
+    file.judge(rule, is_known, clock);
+  };
   listener.on_observation = [&](const Observation& observation, std::int64_t clock) {
     file.add(observation.what, clock);
   };
   replay::BagReplay replay(rules, std::move(planner), reading, std::move(listener));
+  std::int64_t clock = 0;
   for (bag::BagMessage message; bag->next(message);) {
-    if (!replay.start()) file.begin(message.recorded_at);
+    clock = message.recorded_at;
+    if (!replay.start()) file.begin(clock);
     replay.step(message);
   }
   if (!replay.start()) return Error{"the bag '" + wish.bag.string() + "' has no message"};
-  const bool is_written = file.end();
+  const bool is_written = file.end(clock);
   out.flush();
   if (!is_written || !out) return refused();
   return {};

@@ -29,6 +29,9 @@ RULE LidarDead
 RULE TooFast
   POLICIES WARNING REPORT
   TRIGGER speed > 7.5
+RULE NoMap
+  POLICIES WARNING REPORT
+  TRIGGER age(/map) > 1s
 )";
 
 class FoxgloveTest : public testing::Test {
@@ -69,15 +72,20 @@ TEST_F(FoxgloveTest, ShowsEventsRulesAndSignalsAtTheTimesOfTheRecording) {
   }
   EXPECT_THAT(bag.contents().losses(), testing::IsEmpty());
   const auto& lidar = seen["/culprit/rules/LidarDead"];
-  ASSERT_THAT(lidar, SizeIs(2));
-  EXPECT_EQ(lidar[0].second["state"], "ok");
-  EXPECT_EQ(lidar[1].second["state"], "failing");
-  EXPECT_NEAR(lidar[1].first, 10.9, 0.01);
+  ASSERT_THAT(lidar, SizeIs(3));
+  EXPECT_EQ(lidar[0].second["state"], "unknown");
+  EXPECT_EQ(lidar[1].second["state"], "ok");
+  EXPECT_EQ(lidar[2].second["state"], "failing");
+  EXPECT_NEAR(lidar[2].first, 10.9, 0.01);
+  ASSERT_THAT(seen["/culprit/rules/NoMap"], SizeIs(1));
+  EXPECT_EQ(seen["/culprit/rules/NoMap"][0].second["state"], "unknown") << "no alarm is not health";
   const auto& speed = seen["/culprit/signals/speed"];
   ASSERT_THAT(speed, SizeIs(300));
   EXPECT_NEAR(speed[100].second["value"].get<double>(), 3.0, 1e-9);
   EXPECT_NEAR(speed[100].first, 10.0, 1e-6);
-  EXPECT_THAT(seen["/culprit/gaps/scan"], SizeIs(99));
+  const auto& gaps = seen["/culprit/gaps/scan"];
+  ASSERT_THAT(gaps, SizeIs(100));
+  EXPECT_NEAR(gaps.back().second["value"].get<double>(), 20, 1e-6) << "until the end";
   std::string log;
   for (const auto& [at, line] : seen["/culprit/log"])
     log +=

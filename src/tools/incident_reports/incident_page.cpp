@@ -177,10 +177,10 @@ std::string recorded(const PageContent& content) {
                         static_cast<double>(content.curves->end) * kSecondsPer,
                         content.incident.began, marks_in(content.events)};
   out += fmt::format(
-      "<p>Times are seconds since the first failure was detected, at {}. {} a failure was "
-      "detected, {} "
-      "decided, {} did not help, {} resolved, {} given up; dashed: a limit of a rule. Where a line "
-      "is interrupted nothing came.</p>\n",
+      "<p>Times are seconds since {}, at {}. {} a failure was detected, {} decided, {} did not "
+      "help, {} resolved, {} given up; dashed: a limit of a rule. Where a line is interrupted "
+      "nothing came.</p>\n",
+      content.whole ? "the recording began" : "the first failure was detected",
       on_clock(content.incident.began), sign_of(Mark::Kind::kDetected),
       sign_of(Mark::Kind::kDecided), sign_of(Mark::Kind::kNoHelp), sign_of(Mark::Kind::kResolved),
       sign_of(Mark::Kind::kGivenUp));
@@ -228,32 +228,64 @@ std::string comma_separated(const std::vector<std::string>& names) {
   return out;
 }
 
-}  // namespace
-
-std::string incident_page(const PageContent& content) {
+std::string facts_of_incident(const PageContent& content) {
   const Incident& incident = content.incident;
-  const std::string cause = cause_of(incident);
-  const std::string title = xml_escaped(cause) + ", " + on_calendar(incident.began) + " " +
-                            formatted(incident.began, "%H:%M:%S");
   std::string suffered = xml_escaped(comma_separated(incident.consequences));
   if (suffered.empty()) suffered = "nothing else";
   std::string facts =
       fact("robot", xml_escaped(content.robot)) +
-      fact("cause", "<b>" + xml_escaped(cause) + "</b>") + fact("what suffered", suffered) +
+      fact("cause", "<b>" + xml_escaped(cause_of(incident)) + "</b>") +
+      fact("what suffered", suffered) +
       fact("lasted", lasting_text(incident.seconds) + (incident.is_over ? "" : " so far")) +
       fact("what helped", xml_escaped(outcome_of(incident)));
   if (!content.recordings.empty())
     facts += fact("recorded", xml_escaped(comma_separated(content.recordings)));
+  return facts;
+}
+
+std::string facts_of_recording(const PageContent& content) {
+  std::string facts;
+  if (!content.robot.empty()) facts += fact("robot", xml_escaped(content.robot));
+  return facts + fact("length", lasting_text(content.incident.seconds)) +
+         fact("rules", xml_escaped(content.whole->rules));
+}
+
+std::string incident_table(const PageContent& content) {
+  if (content.whole->incidents.empty()) return "";
+  std::string rows;
+  for (const WholeRecording::Line& each : content.whole->incidents)
+    rows += row_of(
+        {fmt::format("{:.1f} s, {}", each.began - content.incident.began, on_clock(each.began)),
+         "<b>" + xml_escaped(each.headline) + "</b>", xml_escaped(each.effects),
+         lasting_text(each.seconds), xml_escaped(each.end)});
+  return "<h2>Incidents</h2>\n" + table_of({"from", "incident", "effects", "lasted", "end"}, rows);
+}
+
+std::string course_over_time(const PageContent& content) {
+  if (content.incident.rules.empty() && content.whole) return "<p>No rule fired.</p>\n";
+  return "<h2>When</h2>\n" + CourseOfRules(content).drawn();
+}
+
+}  // namespace
+
+std::string incident_page(const PageContent& content) {
+  const Incident& incident = content.incident;
+  const std::string about =
+      content.whole ? comma_separated(content.recordings) : cause_of(incident);
+  const std::string title = xml_escaped(about) + ", " + on_calendar(incident.began) + " " +
+                            formatted(incident.began, "%H:%M:%S");
+  const std::string facts =
+      content.whole ? facts_of_recording(content) : facts_of_incident(content);
   std::string log;
   for (const Json& event : content.events)
     log += row_of({on_clock(clock_of(event)), safe_text(event, "label"), safe_text(event, "text")});
   return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
          "content=\"width=device-width, initial-scale=1\"><title>" +
          title + "</title><style>" + std::string(kStyle) + "</style></head><body><main>\n<h1>" +
-         title + "</h1>\n<table><tbody>" + facts + "</tbody></table>\n<h2>When</h2>\n" +
-         CourseOfRules(content).drawn() + recorded(content) + "<h2>Decisions</h2>\n" +
-         decisions(content.events) + "<h2>Event log</h2>\n" +
-         table_of({"time", "what", "in words"}, log) +
+         title + "</h1>\n<table><tbody>" + facts + "</tbody></table>\n" +
+         (content.whole ? incident_table(content) : "") + course_over_time(content) +
+         recorded(content) + "<h2>Decisions</h2>\n" + decisions(content.events) +
+         "<h2>Event log</h2>\n" + table_of({"time", "what", "in words"}, log) +
          fmt::format(
              "<p class=\"note\">Written by culprit, {} {}. Times are those of the clock of the "
              "computer that wrote this ({}).</p></main></body></html>\n",

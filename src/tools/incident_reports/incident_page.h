@@ -11,8 +11,20 @@
 
 namespace culprit::incident_reports {
 
+// A whole recording, of which the page is then about: its incidents instead of the one.
+struct WholeRecording {
+  struct Line {
+    double began = 0;    // seconds since 1970
+    double seconds = 0;  // how long; to the end of the recording, if it lasts
+    std::string headline{}, effects{}, end{};
+  };
+  std::vector<Line> incidents{};
+  std::string rules{};  // "8 rules, of which 3 fired"
+};
+
 struct PageContent {
-  Incident incident;
+  Incident incident;  // of a whole recording: its time, and the rules that fired in it
+  std::optional<WholeRecording> whole{};
   std::string robot;
   std::vector<Json> events;              // as GET /api/incidents/events tells them (docs/web.md)
   std::vector<std::string> recordings;   // names of files; empty: nothing was recorded

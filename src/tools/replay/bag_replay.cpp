@@ -123,13 +123,17 @@ Duration BagReplay::counted(Time from, Time until) const {
   return until > begin ? until - begin : Duration::zero();
 }
 
+// A failure is told to be over a little after its trigger stopped being true.
+std::optional<Time> BagReplay::trigger_over(RuleId rule) const {
+  const Detection& detection = manager_->knowledge().states[rule].detection;
+  const bool is_over = !detection.trigger.known || !detection.trigger.b;
+  return is_over ? std::optional(detection.trigger_since) : std::nullopt;
+}
+
 void BagReplay::end_failure(RuleId rule, Time at) {
   State& state = states_[rule.index];
   if (!std::exchange(state.is_on, false)) return;
-  // It is told a little after the trigger stopped being true.
-  const Detection& detection = manager_->knowledge().states[rule].detection;
-  const bool is_over = !detection.trigger.known || !detection.trigger.b;
-  const Time gone = is_over ? std::min(at, detection.trigger_since) : at;
+  const Time gone = std::min(at, trigger_over(rule).value_or(at));
   if (state.on_since) state.lasted += counted(*state.on_since, gone);
   state.on_since.reset();
   state.outcome.longest = std::max(state.outcome.longest, state.lasted);
@@ -157,6 +161,8 @@ void BagReplay::note_triggers() {
     State& state = states_[r];
     const bool is_known = states[RuleId(r)].detection.trigger.known;
     if (is_known == state.known_since.has_value()) continue;
+    if (listener_.on_judged)
+      listener_.on_judged(RuleId(r), is_known, now_.time_since_epoch().count() + clock_offset_);
     if (is_known) {
       go_on(state, now_);
     } else {
@@ -172,9 +178,11 @@ std::vector<RuleOutcome> BagReplay::outcomes() const {
     outcome.was_known |= state.known_since.has_value();
     if (state.known_since) outcome.known += counted(*state.known_since, now_);
     if (state.is_on) {
-      outcome.is_on = true;
+      const auto over = trigger_over(outcome.rule);
+      outcome.is_on = !over || !state.on_since;
       const Duration lasted =
-          state.lasted + (state.on_since ? counted(*state.on_since, now_) : Duration::zero());
+          state.lasted +
+          (state.on_since ? counted(*state.on_since, over.value_or(now_)) : Duration::zero());
       outcome.longest = std::max(outcome.longest, lasted);
       outcome.total += lasted;
     }

@@ -23,7 +23,7 @@ struct RuleOutcome {
   std::optional<std::int64_t> first_clock{};  // ns since 1970, as recorded
   Duration longest{};                         // that it was there
   Duration total{};
-  bool is_on = false;      // it was there when the recording ended
+  bool is_on = false;      // when the recording ended, its trigger was true or unknown
   Duration known{};        // how long its trigger was true or false
   bool was_known = false;  // it was, once at least
   // Why its trigger had no value: what the bag does not have. Empty if it has all.
@@ -42,6 +42,8 @@ class BagReplay {
     std::function<void(const Event&, std::int64_t clock)> on_event{};
     // The copy lacks messages in between; nothing that is missing there counts.
     std::function<void(Time from, Time until, std::int64_t clock)> on_hole{};
+    // A rule can be judged from now on, or no longer: its trigger got a value, or lost it.
+    std::function<void(RuleId, bool is_known, std::int64_t clock)> on_judged{};
     // Each observation from a message, with the recorder's time of it.
     std::function<void(const Observation&, std::int64_t clock)> on_observation{};
   };
@@ -75,6 +77,7 @@ class BagReplay {
   void take_events();
   void note_triggers();
   void end_failure(RuleId rule, Time at);
+  std::optional<Time> trigger_over(RuleId rule) const;
   void pause(State& state, Time at);
   void go_on(State& state, Time at);
   Duration counted(Time from, Time until) const;

@@ -104,6 +104,16 @@ TEST_F(BagReplayTest, CountsHowOftenAndHowLongARuleFired) {
       << "nothing is exhausted";
 }
 
+TEST_F(BagReplayTest, AFailureThatClearedJustBeforeTheEndIsNotThereAtTheEnd) {
+  TestRecording recording = with_silence(10, 15);
+  std::erase_if(recording.messages, [](const bag::test::TestMessage& each) {
+    return each.at > kBagStart + 15'100 * kMillisecond;
+  });
+  const RuleOutcome silent = judge(written(recording), kSilent).outcomes[0];
+  EXPECT_FALSE(silent.is_on);
+  EXPECT_NEAR(seconds(silent.total), 4.6, 0.001);
+}
+
 TEST_F(BagReplayTest, SaysThatARuleWasNeverTrue) {
   const Judged judged = judge(written(regular_recording()), kSilent);
   EXPECT_EQ(judged.outcomes[0].times, 0u);
