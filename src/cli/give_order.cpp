@@ -29,7 +29,7 @@ OutcomeOfOrder outcome_of(const web::Answer& answer) {
   const auto kept = answer.body.find("kept");
   if (kept == answer.body.end()) return {true, text, answer.body};
   if (kept->is_boolean() && kept->get<bool>())
-    return {true, text + "; kept, so that it holds after a restart of culprit, too", answer.body};
+    return {true, text + "; it also holds after a restart of culprit", answer.body};
   return {false,
           text + "; " + web::text_of(answer.body, "text").value_or("not kept") +
               ". A restart of culprit would forget it",

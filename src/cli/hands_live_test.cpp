@@ -89,7 +89,7 @@ TEST_F(Hands, SeeAndSteerARunningCulprit) {
   // A pause is kept, and holds in the process that follows.
   const Ended paused = ended({"pause", "--reason", "people on the floor"});
   EXPECT_EQ(paused.code, 0) << paused.said;
-  EXPECT_THAT(paused.said, HasSubstr("kept, so that it holds after a restart"));
+  EXPECT_THAT(paused.said, HasSubstr("it also holds after a restart"));
   EXPECT_THAT(run_->output(), HasSubstr("people on the floor"));
   const Ended refused = ended({"run-strategy", "depth_redeploy"});
   EXPECT_EQ(refused.code, 1);

@@ -114,7 +114,7 @@ TEST_F(HostileNeighbours, DoNotDelayOrFalsifyAPause) {
     const Ended paused = ended({"pause", "--reason", "people on the floor"});
     EXPECT_EQ(paused.code, 0) << paused.said;
     EXPECT_THAT(paused.said, HasSubstr("culprit of yard (process " + std::to_string(run.pid())));
-    EXPECT_THAT(paused.said, HasSubstr("kept, so that it holds after a restart"));
+    EXPECT_THAT(paused.said, HasSubstr("it also holds after a restart"));
     EXPECT_THAT(paused.said, Not(HasSubstr("process 1,"))) << "what lies is not believed";
     longest = std::max(longest, paused.took);
     const Ended resumed = ended({"resume"});
@@ -129,7 +129,7 @@ TEST_F(HostileNeighbours, DoNotDelayOrFalsifyAPause) {
   const Ended all = ended({"pause", "--all"});
   EXPECT_EQ(all.code, 1) << "some did not answer";
   EXPECT_THAT(all.said, HasSubstr("culprit of yard (process " + std::to_string(run.pid())));
-  EXPECT_THAT(all.said, HasSubstr("kept, so that it holds after a restart"));
+  EXPECT_THAT(all.said, HasSubstr("it also holds after a restart"));
   EXPECT_LT(all.took, Duration(std::chrono::seconds(20)));
   EXPECT_THAT(ended({"status"}).said, HasSubstr("[paused]"));
 }
