@@ -1,4 +1,4 @@
-// What rules see in a recording, as one HTML file that needs nothing else: its incidents, and then, as on an incident's page
+// A recording as its rules judge it, in one HTML file that needs nothing else: its incidents, and then, as on an incident's page
 // (incident_page.h), its timeline, events, and curves with limits and marks.
 #pragma once
 
