@@ -19,7 +19,7 @@ export async function stub(modules, calls = {}, socket = null) {
   }
   const block = ({ kind, data }) => `event: ${kind}\ndata: ${JSON.stringify(data)}\n\n`
   const stream = (response) => {
-    response.writeHead(200, { 'Content-Type': 'text/event-stream' })
+    response.writeHead(200, { 'Content-Type': 'text/event-stream', 'Cache-Control': 'no-store' })
     response.write(block({ kind: 'hello', data: { resumed: false } }))
     for (const each of said) response.write(block(each))
     readers.add(response)
