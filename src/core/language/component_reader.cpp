@@ -9,6 +9,7 @@
 
 namespace culprit {
 namespace {
+namespace component_reader {
 
 using syntax::Component;
 using syntax::Name;
@@ -136,12 +137,14 @@ constexpr auto kWords = [] {
   return words;
 }();
 
+}  // namespace component_reader
 }  // namespace
 
-std::span<const std::string_view> component_clauses() { return kWords; }
+std::span<const std::string_view> component_clauses() { return component_reader::kWords; }
 
 bool read_component_clauses(LineReader& read, const Source& source, Scanner& s,
                             syntax::Component& component) {
+  using namespace component_reader;
   Reader reader{read, source, s, component};
   while (!s.at_end()) {
     const Token& word = s.peek();
