@@ -245,6 +245,8 @@ TEST(DrillWriteBack, ADurationSeparatesWhatNoThresholdDoes) {
                          .faulty = 0.8}};
   EXPECT_THAT(write_back("r", kOverlap, results)->text,
               HasSubstr("POLICIES WARNING FOR 400ms    # drill 2026-12-01, 50 values\n"));
+  results.thresholds[0].longest_beyond = 4;
+  EXPECT_EQ(write_back("r", kOverlap, results)->text, kOverlap) << "that is no failure";
 }
 
 TEST(DrillWriteBack, KeepsAThresholdThatSeparatesHealthyFromFaulty) {

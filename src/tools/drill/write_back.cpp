@@ -167,7 +167,11 @@ class WriteBack {
 
   // Where no threshold separates healthy values from faulty ones, their duration may.
   void hold(const ThresholdMeasure& measure) {
-    if (measure.longest_beyond <= 0 || !measure.faulty || measure.proposed()) return;
+    // A healthy value that is beyond it for longer shows no failure: the rule ends a safe stop, say.
+    constexpr double kLongest = 2;  // seconds
+    if (measure.longest_beyond <= 0 || measure.longest_beyond > kLongest || !measure.faulty ||
+        measure.proposed())
+      return;
     const auto written = std::ranges::find_if(
         file_.rules, [&](const syntax::Rule& r) { return r.name.text == measure.of.rule; });
     if (written == file_.rules.end() || !written->policies) return;
