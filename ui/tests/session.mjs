@@ -113,6 +113,7 @@ export async function stubbed(calls, steps, now = null, hasTour = false) {
 const env = { ...process.env, TMPDIR: folder, TZ: 'UTC', FONTCONFIG_FILE: join(dirname(fileURLToPath(import.meta.url)), 'fonts.conf') }
 const kFirefox = {
   'browser.download.alwaysOpenPanel': false, // it would take the keys
+  'messaging-system.rsexperimentloader.enabled': false, // it would ask the network
   'layout.css.prefers-color-scheme.content-override': kSchemes[0] === 'dark' ? 0 : 1,
 }
 const launch = () =>
