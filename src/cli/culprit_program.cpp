@@ -66,7 +66,11 @@ int parse_line(const std::string& version, int argc, char** argv) {
 
 int run_with_configuration(const std::string& version, int argc, char** argv) {
   auto line = RunLine::of(argc, argv);
-  if (!line) return fail(line.error(), kUsage);
+  if (!line)
+    return fail(line.error() +
+                    "\nUsage: culprit run [OPTIONS] RULES\nRun 'culprit help run' for "
+                    "more information.",
+                kUsage);
   if (!line->printed().empty()) {
     say_text(stdout, line->printed());
     return kOk;

@@ -290,10 +290,14 @@ std::string remedy_of_extra(std::string_view extra, std::string_view before,
   return "";
 }
 
-std::string too_many(const CLI::App& command, int argc, char** argv) {
-  const std::vector<std::string> extras = command.remaining();
+std::string too_many(const CLI::App& app, const CLI::App& command, int argc, char** argv) {
+  std::vector<std::string> extras = command.remaining();
+  if (extras.empty()) extras = app.remaining();
   if (extras.empty()) return "there is one argument too many";
   const std::string& extra = extras.front();
+  if (is_option(extra))
+    return "'" + printable(extra) + "' stands in front of the command; write it behind " +
+           command.get_name();
   std::string_view before;
   for (int i = 2; i < argc; ++i) {
     if (extra == argv[i]) before = argv[i - 1];
@@ -323,13 +327,14 @@ void refuse_values_of_flags(CLI::App& app) {
 }
 
 // The mistake in the words of people. CLI11 has its own for each.
-std::string cause_of(const CLI::ParseError& error, const CLI::App& command, int argc, char** argv) {
+std::string cause_of(const CLI::ParseError& error, const CLI::App& app, const CLI::App& command,
+                     int argc, char** argv) {
   const std::string text = error.what();
   if (const auto* required = dynamic_cast<const CLI::RequiredError*>(&error))
     return missing(*required, command);
   if (dynamic_cast<const CLI::ValidationError*>(&error) != nullptr) return invalid_value(text);
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr)
-    return too_many(command, argc, argv);
+    return too_many(app, command, argc, argv);
   constexpr std::string_view kNoConversion = "Could not convert: ";
   if (text.starts_with(kNoConversion)) {
     const std::string rest = text.substr(kNoConversion.size());
@@ -392,7 +397,7 @@ int parse_and_run(CLI::App& app, const std::function<void(int& exit_code)>& add_
     if (error.get_exit_code() == 0) return app.exit(error) == 0 ? kOk : kUsage;
     const Chosen line = chosen(app);
     const auto word = unknown_word(app, line, argc, argv);
-    return usage_error(word ? *word : cause_of(error, *line.command, argc, argv), app, line);
+    return usage_error(word ? *word : cause_of(error, app, *line.command, argc, argv), app, line);
   }
   // The command itself found the mistake.
   if (exit_code == kUsage) say_usage(app, chosen(app));

@@ -100,6 +100,7 @@ TEST(Program, ExplainsEachKindOfMistakeInOneLine) {
       {{"check", "a", "two words"}, "'two words' is one argument too many"},
       {{"check", "--robot=5"}, "--robot takes no value, as '5'\n"},
       {{"check", "--seconds", "3"}, "check has no option '--seconds'; did you mean '--wait'?\n"},
+      {{"--robot", "check"}, "'--robot' stands in front of the command; write it behind check\n"},
       {{"lint"}, "there is no command 'lint'; did you mean 'check'?\n"},
       {{"note", "hello"}, "'hello' is one argument too many; did you mean --reason 'hello'?\n"},
       {{"check", "--pair", "a"}, "--pair needs at least 2 values\n"},
