@@ -99,7 +99,7 @@ class Dependent {
       server_ = std::move(*served);
     }
     if (wishes_.needs_service.empty()) return {};
-    auto other = Node::create(hidden, {"/", wishes_.name + "_io"}, Node::Extent::kOnlooker);
+    auto other = Node::create(hidden, {"/", wishes_.name + "_io"}, Node::Extent::kMinimal);
     if (!other) return Error{other.error()};
     hidden_node_ = std::move(*other);
     auto client = hidden_node_->create_client<srv::Trigger>("/" + wishes_.needs_service + "/ask",
