@@ -458,6 +458,7 @@ void LiveSession::make_runtime() {
       recorder_->stepped(step.now, step.observations, {}, step.events);
     withdraw_doubles();
     end_with_launches();
+    note_what_goes_on();
   };
   runtime_->on_events = [this](std::span<const Event> events) { tell(events); };
 }
@@ -511,6 +512,15 @@ void LiveSession::end_with_launches() {
     } else if (std::exchange(ending_[component], pid) != pid) {
       robot_->supervisor().end_with_launch(component);
     }
+  }
+}
+
+// The next culprit finds the ended launch in the process's environment, and must not take its end for one that
+// nobody saw.
+void LiveSession::note_what_goes_on() {
+  for (const Departures::Started& each : manager_->knowledge().departures.started()) {
+    if (each.launcher == 0 && std::exchange(free_[each.component], each.pid) != each.pid)
+      robot_->supervisor().stands_in_for_none(each.component);
   }
 }
 

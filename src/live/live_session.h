@@ -143,6 +143,7 @@ class LiveSession {
   void leave_fleet();
   void withdraw_doubles();
   void end_with_launches();
+  void note_what_goes_on();
   void keep_down_what_ended_unseen(RunBeginning& beginning) const;
   void tell(std::span<const Event> events);
 
@@ -160,6 +161,7 @@ class LiveSession {
   bool is_bequest_new_ = false;
   Time bequeathed_ = kLongAgo;
   std::map<ComponentId, int> ending_;  // processes that were told to end with their launch
+  std::map<ComponentId, int> free_;    // processes that were started, and are of no launch
   std::atomic<bool> is_left_ = false;
   bool is_in_fleet_ = false;
   bool is_observed_ = false;

@@ -216,7 +216,10 @@ void Supervisor::watch(ComponentId component, int pid, Relation relation) {
   Member& member = members_.emplace_back(Member{++numbers_, component, std::move(*process)});
   const bool is_marked = carries_mark(pid, programs_.mark(component));
   if (relation != Relation::kAdopted && is_marked) member.awaited = live_now();
-  const PlaceHeld place = is_marked ? place_held_by(pid) : PlaceHeld{};
+  const PlaceHeld marked = is_marked ? place_held_by(pid) : PlaceHeld{};
+  // A mark stays, and the note goes once the process is to go on without the launch.
+  const PlaceHeld noted = noted_launch(programs_.log_folder, rules_[component].name);
+  const PlaceHeld place = noted.launcher == marked.launcher ? marked : PlaceHeld{};
   if (is_marked) {
     const auto began = started_at(pid);
     inbox_.put(StartedHere{component, pid, place.launcher,
@@ -442,6 +445,11 @@ void Supervisor::end_with_launch(ComponentId component) {
   shutdown.is_of_launch = true;
   shutdown.escalate = live_now();
   wake();
+}
+
+void Supervisor::stands_in_for_none(ComponentId component) {
+  const MutexLock lock(mutex_);
+  note_launch(programs_.log_folder, rules_[component].name, 0);
 }
 
 bool Supervisor::was_started(const Member& member) const {

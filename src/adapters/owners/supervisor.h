@@ -154,6 +154,10 @@ class Supervisor {
   // kOfLaunch SIGKILL. Does nothing where that is under way.
   void end_with_launch(ComponentId component);
 
+  // The launch that the component's process stood in for has ended, and the process goes on: it stands in
+  // for none from now on, for the next supervisor either.
+  void stands_in_for_none(ComponentId component);
+
   // Ends every process that was started here, and waits until all have exited.
   void stop_all();
 

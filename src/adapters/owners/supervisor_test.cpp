@@ -404,6 +404,10 @@ TEST(Supervisor, WhatItStartsWhileTheLauncherRunsStandsInForTheLaunch) {
   // A culprit that starts after the end receives it at once.
   c.supervise();
   EXPECT_TRUE(c.launcher().has_ended);
+  // Unless another one had found that the process goes on.
+  c.supervisor->stands_in_for_none(ComponentId(0));
+  c.supervise();
+  EXPECT_EQ(c.started().launcher, 0);
   c.supervisor->end_with_launch(ComponentId(0));
   EXPECT_EQ(c.state(ProcessState::kGone).cause, Cause::kWish);
   EXPECT_TRUE(started_processes("0/stand_in").empty());
