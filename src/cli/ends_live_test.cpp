@@ -63,7 +63,7 @@ TEST_F(Ends, AKilledNodeIsReplacedBeforeItsSilenceIsHeard) {
     }
     ASSERT_NE(killed, before) << whose << culprit.output();
   }
-  EXPECT_THAT(culprit.output(), HasSubstr("lidar is known dead, killed by signal 9"));
+  EXPECT_THAT(culprit.output(), HasSubstr("lidar is known to be down, killed by signal 9"));
   kill(killed, SIGKILL);
 }
 

@@ -284,7 +284,7 @@ const kPeriod = 150 // ms
 
 const kLevels: Record<string, (look: Look) => boolean> = {
   'all levels': () => true,
-  'failing or dead': isIll,
+  'failing or down': isIll,
   'not judged': (look) => !isIll(look) && look !== 'OK',
   well: (look) => look === 'OK',
 }

@@ -1,7 +1,7 @@
 // Whether a rule's trigger has held, or has stayed false, for as long as its policies ask (FOR,
 // HOLD, COOLDOWN, ON_CHANGE).
 //
-// A topic whose publisher is known dead is silent at once (known_silence.h). A trigger that is
+// A topic whose publisher is known to be down is silent at once (known_silence.h). A trigger that is
 // unknown neither holds nor is false.
 #pragma once
 

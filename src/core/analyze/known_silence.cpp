@@ -52,7 +52,7 @@ std::optional<ComponentId> KnownSilence::behind(RuleId rule) const {
 }
 
 // The topic's only publisher, if it published since its process began and cannot do so now: it is
-// known dead, or not received again yet.
+// known down, or not received again yet.
 std::optional<ComponentId> KnownSilence::silent_through(TopicId topic, RuleId rule) const {
   const auto component = knowledge_.graph.only_publisher(knowledge_.rules[topic]);
   const auto& heard = knowledge_.signals.rhythm(topic).last;

@@ -1,6 +1,6 @@
 // Silence that is known before it is heard.
 //
-// A component that is known dead (ComponentState::known_dead) publishes no more. Topics that it
+// A component that is known to be down (ComponentState::known_dead) publishes no more. Topics that it
 // alone publishes are silent from now on, so a trigger that silence makes true need not wait for the
 // timeout: it is evaluated as if those topics had been silent for long. All other inputs count as
 // they are, so the trigger becomes true only where the dead component alone explains it.

@@ -164,7 +164,7 @@ std::optional<Limits::Limit> Limits::quiet(ComponentId component, Time now) cons
                  until};
   };
   const auto producers = knowledge_.graph.upstream(component);
-  // A component that is known dead need not wait.
+  // A component that is known to be down need not wait.
   const bool is_dead = knowledge_.components[component].alive == false;
   const bool finds_others = !is_dead && knowledge_.graph.reads_others(component);
   const Duration own_quiet = finds_others

@@ -71,7 +71,7 @@ struct Detection {
   int true_in_history = 0;
   Time sampled = kLongAgo;
 
-  // The trigger is true although its inputs do not show it yet: their publisher is known dead.
+  // The trigger is true although its inputs do not show it yet: their publisher is known to be down.
   // Empty: the inputs show it, or it is not true.
   struct KnownDeath {
     ComponentId component;

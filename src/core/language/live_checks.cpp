@@ -215,7 +215,7 @@ class LiveChecks {
       const auto found = robot_.nodes.find(other.text);
       if (found == robot_.nodes.end()) {
         warn(Code::kNoSuchNode, other.span, "the robot has no node '" + other.text + "'",
-             "start it, or correct the name; the component counts as dead while it is missing",
+             "start it, or correct the name; the component counts as down while it is missing",
              closest_full_name(other.text, names_of(robot_.nodes)));
       } else if (main != robot_.nodes.end() && main->second.pid != found->second.pid) {
         warn(Code::kNoSuchNode, other.span,

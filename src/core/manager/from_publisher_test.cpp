@@ -50,7 +50,7 @@ TEST(FromPublisher, AComponentKnownDeadIsSilentAtOnce) {
   scans.robot.kill("front");
   scans.run_for(100ms, false, true);
   EXPECT_EQ(scans.robot.count("FrontSilent detected"), 1u) << transcript(scans.robot);
-  EXPECT_EQ(scans.robot.count("front is known dead"), 1u) << transcript(scans.robot);
+  EXPECT_EQ(scans.robot.count("front is known to be down"), 1u) << transcript(scans.robot);
 }
 
 TEST(FromPublisher, IsNamedInTheTextOfTheInput) {

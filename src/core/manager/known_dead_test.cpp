@@ -53,7 +53,7 @@ TEST(KnownDead, AKilledProcessIsAFailureOfTheRulesThatWouldSeeItsSilence) {
   robot.kill("camera");
   robot.run_for(20ms);
   EXPECT_EQ(detected_after(robot, "CameraSilent", killed), Monitor::kFarewell) << transcript(robot);
-  EXPECT_EQ(robot.count("CameraSilent detected (ERROR): camera is known dead, killed by signal 9"),
+  EXPECT_EQ(robot.count("CameraSilent detected (ERROR): camera is known to be down, killed by signal 9"),
             1u)
       << transcript(robot);
   EXPECT_TRUE(robot.was_asked("camera: stop process")) << transcript(robot);
@@ -67,7 +67,7 @@ TEST(KnownDead, AStoppedProcessIsToo) {
   const Time stopped = robot.now;
   robot.stop("camera");
   EXPECT_EQ(detected_after(robot, "CameraSilent", stopped), Duration()) << transcript(robot);
-  EXPECT_EQ(robot.count("camera is known dead, its process is stopped"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("camera is known to be down, its process is stopped"), 1u) << transcript(robot);
 }
 
 TEST(KnownDead, WhatGoesOnIsDeadNoLonger) {
@@ -91,7 +91,7 @@ TEST(KnownDead, SomebodysWishIsNotAndItsOwnSilenceDecides) {
     const auto after = detected_after(robot, "CameraSilent", ended);
     ASSERT_TRUE(after) << transcript(robot);
     EXPECT_GT(*after, 4900ms);
-    EXPECT_EQ(robot.count("known dead"), 0u) << transcript(robot);
+    EXPECT_EQ(robot.count("known to be down"), 0u) << transcript(robot);
   }
 }
 
@@ -178,7 +178,7 @@ RULE CameraGone
   TestRobot alone = robot_with(rules.substr(0, rules.find("RULE")) + gone);
   alone.kill("camera");
   alone.run_for(20ms);
-  EXPECT_EQ(alone.count("CameraGone detected (ERROR): camera is known dead"), 1u)
+  EXPECT_EQ(alone.count("CameraGone detected (ERROR): camera is known to be down"), 1u)
       << transcript(alone);
 }
 
@@ -210,7 +210,7 @@ TEST(KnownDead, IsResolvedWhenItIsHeardAgainAlsoIfTheRuleReadsAlive) {
   robot["camera"].fault = "warms up";
   robot.run_for(1s);
   EXPECT_EQ(robot.count("CameraSilent detected (ERROR)"), 1u) << transcript(robot);
-  EXPECT_EQ(robot.count("known dead"), 0u) << "the rule sees by itself that it exited";
+  EXPECT_EQ(robot.count("known to be down"), 0u) << "the rule sees by itself that it exited";
   EXPECT_EQ(robot.count("redeploy camera: done"), 1u) << transcript(robot);
   EXPECT_EQ(robot.count("CameraSilent resolved"), 0u) << transcript(robot);
   robot["camera"].fault = "";

@@ -138,7 +138,7 @@ class Monitor {
     std::optional<Resumes> resumes;
     // Since when the simulated time of its publisher, or of a component upstream of that, stands still.
     std::optional<Time> held;
-    bool is_known_silent = false;  // no sample came since its publisher was known dead
+    bool is_known_silent = false;  // no sample came since its publisher was known down
     std::optional<Time> listened;  // since when its publisher knows its subscriber
     // It is certain that no sample came since then, though `discovered` is still ahead; and the
     // component that would have published one.

@@ -14,7 +14,7 @@ TEST(Report, SaysWhatWasExpectedAndWhatHappenedInstead) {
     x.test:9: EXPECT CameraDead RESOLVED BY 2.3s: it happened later, at 2.520 s
     what happened:
        2.000  camera is lost: killed by signal 9
-       2.010  CameraDead detected (ERROR): camera is known dead, killed by signal 9
+       2.010  CameraDead detected (ERROR): camera is known to be down, killed by signal 9
        2.010  camera is held responsible for CameraDead: redeploy camera (camera_redeploy, cost 1.10)
        2.250  FusionDead detected (ERROR)
        2.250  FusionDead waits: it depends on camera, which may be the cause (CameraDead)
