@@ -17,8 +17,10 @@ Expected<Priors> add_priors(const std::filesystem::path& drilled,
   const auto is_own = [](const std::string& rule) { return rule.starts_with(kOwnRules); };
   std::erase_if(added->couplings,
                 [&](const auto& each) { return is_own(each.cause) || is_own(each.effect); });
-  std::erase_if(added->latencies,
-                [&](const auto& each) { return each.count == 0 || is_own(each.rule); });
+  // Failures that cleared by themselves did so because the drill took its fault back.
+  std::erase_if(added->latencies, [&](const auto& each) {
+    return each.count == 0 || is_own(each.rule) || journal::transients_from(each);
+  });
   const Priors counted{added->couplings.size(), added->latencies.size()};
   if (counted.couplings + counted.latencies == 0) return counted;
   auto writer = journal::Writer::open(robot, {});

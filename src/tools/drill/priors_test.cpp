@@ -26,9 +26,11 @@ struct DrillPriors : testing::Test {
 
 TEST_F(DrillPriors, AreAddedToWhatTheRobotLearnedButSuccessRatesAreNot) {
   write(robot, {{}, {{"CameraDead", "FusionDead", {2, 1}}}, {}});
-  write(drilled, {{{"CameraDead", "redeploy", {3, 1}, {1, 1}}},
-                  {{"CameraDead", "FusionDead", {5, 0}}, {"drill_abort_1", "FusionDead", {1, 0}}},
-                  {{"FusionDead", 4, 0.1, 0.3}}});
+  write(drilled,
+        {{{"CameraDead", "redeploy", {3, 1}, {1, 1}}},
+         {{"CameraDead", "FusionDead", {5, 0}}, {"drill_abort_1", "FusionDead", {1, 0}}},
+         {{"FusionDead", 4, 0.1, 0.3},
+          journal::named("FusionDead", Transients::Seen{3, 1, std::chrono::seconds(5)})[0]}});
   const auto added = add_priors(drilled, robot, 2);
   ASSERT_TRUE(added) << added.error();
   EXPECT_EQ(added->couplings, 1u);
