@@ -37,8 +37,11 @@ std::vector<std::string_view> names_of(const std::vector<const CLI::App*>& comma
 }
 
 std::vector<std::string> options_of(const CLI::App& command) {
+  std::vector<const CLI::Option*> options = options_in(command);
+  const auto all = command.get_options();  // with those that are not listed
+  options.insert(options.end(), all.begin(), all.end());
   std::vector<std::string> names;
-  for (const CLI::Option* option : command.get_options()) {
+  for (const CLI::Option* option : options) {
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
     for (const std::string& name : option->get_snames()) names.push_back("-" + name);
   }
@@ -162,14 +165,14 @@ std::string remedy_of(const CLI::App& app, const CLI::App& command, const std::s
                       const std::vector<std::string>& known) {
   const bool is_program = &command == &app;
   if (is_program && (option == "-v" || option == "-V")) return "; did you mean '--version'?";
+  if (const std::string word = positional_called(command, option); !word.empty())
+    return "; write " + word + " without it";
   if (std::string near = meant(option, {known.begin(), known.end()}); !near.empty()) return near;
   if (option == "--domain") return "; set ROS_DOMAIN_ID, which every command heeds";
   if (const auto ours = option_of_other_tools(option, {known.begin(), known.end()}); !ours.empty())
     return "; did you mean '" + std::string(ours) + "'?";
   if (const auto parts = commands_with(command, option); !is_program && !parts.empty())
     return "; it stands behind " + comma_separated(parts);
-  if (const std::string word = positional_called(command, option); !word.empty())
-    return "; write " + word + " without it";
   constexpr std::size_t kFew = 4;
   std::vector<std::string_view> own;
   for (const std::string& each : known) {

@@ -44,7 +44,9 @@ class Checker {
     header();
     const std::size_t said = diagnostics_.size();
     symbols_.declare(file_);
-    has_broken_declaration_ = diagnostics_.size() > said;
+    const auto is_stray = [](const Diagnostic& d) { return d.code == Code::kUnknownStatement; };
+    has_broken_declaration_ = diagnostics_.size() > said || has_broken_component() ||
+                              std::any_of(diagnostics_.begin(), diagnostics_.end(), is_stray);
     constants();
     dependencies();
     infer();
@@ -278,6 +280,12 @@ class Checker {
       check_launches(written, rules_, id, diagnostics_);
       check_required(written, rules_, id, diagnostics_);
     }
+  }
+
+  bool has_broken_component() const {
+    return std::ranges::any_of(file_.broken_declarations, [](const auto& broken) {
+      return broken.kind == syntax::BrokenDeclaration::Kind::kComponent;
+    });
   }
 
   // The meaning of rules is checked only once all of them can be read: a warning that follows from

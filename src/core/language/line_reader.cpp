@@ -320,6 +320,19 @@ bool LineReader::fail_comma(const Token& comma) {
               "remove the ','", Edit{comma.span, ""});
 }
 
+namespace {
+
+// The statement whose line has the clause; empty: it is no clause of a rule's lines.
+std::string_view line_of_clause(std::string_view word) {
+  constexpr std::array<std::string_view, 5> kOfPolicies = {"FOR", "HOLD", "COOLDOWN", "ATTEMPTS",
+                                                           "ON_CHANGE"};
+  constexpr std::array<std::string_view, 3> kOfStrategies = {"WHEN", "LASTRESORT", "WITHIN"};
+  if (std::ranges::find(kOfPolicies, word) != kOfPolicies.end()) return "POLICIES";
+  return std::ranges::find(kOfStrategies, word) != kOfStrategies.end() ? "STRATEGY" : "";
+}
+
+}  // namespace
+
 bool LineReader::line_ends(Scanner& s) {
   const Token& token = s.peek();
   if (token.kind == Token::Kind::kEnd) return true;
@@ -356,12 +369,17 @@ bool LineReader::line_ends(Scanner& s) {
     return fail(Code::kExtraText, {begin, begin + 2}, "no comment begins with '--'",
                 "begin a comment with #", Edit{{begin, begin + 2}, "#"});
   }
+  if (const std::string_view line_of_it = line_of_clause(upper_case(token.text));
+      !line_of_it.empty())
+    return fail(Code::kExtraText, token.span,
+                std::string(token.text) + " has no place in this line",
+                "write " + upper_case(token.text) + " on the " + std::string(line_of_it) + " line");
   if (is_reserved(token.text))
     return fail(Code::kExtraText, token.span,
                 std::string(token.text) + " has no place in this line",
                 "begin a new line with it if it is a statement, or remove it");
   return fail(Code::kExtraText, s.rest(), std::string(kCause),
-              "remove it, or begin a comment with #");
+              "a line holds one statement; a comment begins with #");
 }
 
 std::optional<syntax::Expression> LineReader::expression(Scanner& s) {

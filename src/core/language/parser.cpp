@@ -229,6 +229,8 @@ class Parser {
     };
     // All words of a name with blanks in it: each may be how the rules call it.
     const auto reserved = reserved_words();
+    if (keyword == "COMPONENT" && s.peek().kind != Token::Kind::kIdentifier)
+      into_->broken_declarations.push_back({Broken::kComponent, {"", s.peek().span}});
     bool is_first = true;  // which is the name, even if it may be none
     for (Token name = s.next(); name.kind == Token::Kind::kIdentifier; name = s.next()) {
       const bool is_reserved =
@@ -306,6 +308,9 @@ class Parser {
   }
 
   bool component(Scanner& s) {
+    if (const Span rest = s.rest(); source_.text(rest).starts_with('/'))
+      return read_.fail(Code::kSyntax, rest, "a component's name is no node's name",
+                        "write its own name first: COMPONENT camera NODE /robot/camera");
     auto name = read_.declared_name(s, "the component's name");
     if (!name) return false;
     const auto clauses = component_clauses();
@@ -693,9 +698,12 @@ class Parser {
     rule.strategies.back().has_broken_adaptation = true;  // until the line is understood
     auto name = read_.identifier(s, "the strategy's name");
     if (!name || !read_.is_one_word(s, *name)) return false;
-    const auto probability = read_.number(
-        s, "the success probability in percent",
-        s.at_end() ? "write how often it helps and how sure that is, as in 80 10" : "");
+    const auto probability =
+        read_.number(s, "the success probability in percent",
+                     s.at_end() ? "write how often it helps and how sure that is, as in 80 10"
+                     : s.peek().text == "LASTRESORT" || s.peek().text == "WHEN"
+                         ? "write " + std::string(s.peek().text) + " behind the two numbers"
+                         : "");
     if (!probability) return false;
     const auto confidence = read_.number(
         s, "the confidence in it (1 to 100)",
@@ -785,6 +793,14 @@ class Parser {
       case kIncreaseParameter:
       case kDecreaseParameter:
         if (!take_name(adaptation.subject, "the parameter")) return false;
+        // "gain=2.0 5": what stands behind it is the impact.
+        if (const auto sign = adaptation.subject.text.find('=');
+            sign != std::string::npos && holds_one_number(s)) {
+          const auto at = adaptation.subject.span.begin + static_cast<std::uint32_t>(sign);
+          return read_.fail(Code::kSyntax, {at, at + 1},
+                            "no '=' stands between a parameter and its value", "write a blank",
+                            Edit{{at, at + 1}, " "});
+        }
         if (const Token& sign = s.peek(); sign.is("="))
           return read_.fail(Code::kSyntax, sign.span,
                             "no '=' stands between a parameter and its value", "remove the '='",
@@ -800,6 +816,10 @@ class Parser {
         if (!take_name(adaptation.subject, "the service")) return false;
         if (s.peek().kind == Token::Kind::kString)
           adaptation.request = read_.text(s, "the request", "");
+        if (const Token& next = s.peek();
+            next.kind == Token::Kind::kIdentifier && !source_.text(next.span).starts_with('{'))
+          return read_.fail(Code::kSyntax, next.span, "a request stands in quotes",
+                            "write it as in call ~/enable \"data: true\" 5");
         return true;
       case kActivate:
       case kDeactivate:
@@ -811,6 +831,11 @@ class Parser {
         return true;
     }
     return false;
+  }
+
+  bool holds_one_number(const Scanner& s) const {
+    const std::string_view rest = source_.text(s.rest());
+    return !rest.empty() && rest.find_first_not_of("0123456789.") == std::string_view::npos;
   }
 
   // Where one number is there, it was read as the value.

@@ -146,6 +146,9 @@ Complaint meaningless(Span span, std::string_view rest) {
   if (!is_utf8(character))
     return {"this character is not UTF-8", std::nullopt, "save the file as UTF-8"};
   const std::string cause = "'" + std::string(character) + "' means nothing here";
+  if (foreign_quote_length(rest) > 0 && first >= 0x80)
+    return {"'" + std::string(character) + "' is a typographic quote",
+            in_double_quotes(span.begin, rest), "write the straight quote of the keyboard: \""};
   if (foreign_quote_length(rest) > 0)
     return {cause, in_double_quotes(span.begin, rest), "a text stands in double quotes"};
   for (const std::string_view blank : kForeignBlanks) {
@@ -176,8 +179,10 @@ Complaint meaningless(Span span, std::string_view rest) {
       return {cause, std::nullopt, "write parentheses: ( and )"};
     case '^':
       return {cause, std::nullopt, "write pow(base, exponent)"};
+    case '.':
+      return {cause, std::nullopt, "write alive(camera) for a node, and SIGNAL for a field"};
     default:
-      return {cause, std::nullopt, "remove it, or begin a comment with #"};
+      return {cause, std::nullopt, "a comment begins with #"};
   }
 }
 

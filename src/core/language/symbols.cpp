@@ -114,7 +114,9 @@ void Symbols::declare(const syntax::File& file) {
   for (const syntax::Signal& s : file.signals) {
     if (first_declaration(s.name, "signal")) declare_signal(s);
   }
-  for (const syntax::BrokenDeclaration& broken : file.broken_declarations) declare_broken(broken);
+  for (const syntax::BrokenDeclaration& broken : file.broken_declarations) {
+    if (!broken.name.text.empty()) declare_broken(broken);
+  }
   for (const syntax::Group& g : file.groups) {
     if (first_declaration(g.name, "group")) declare_group(g);
   }

@@ -222,7 +222,8 @@ class Typer {
     if (!alike(left, right))
       return mismatch(e, type_at(e, 0, a, b), type_at(e, 1, a, b), "compare");
     if (a == Type::kString) warn_of_bare_text(e);
-    if (a == Type::kInt && !check_bare_level(e)) return std::nullopt;
+    const bool has_whole = a == Type::kInt || b == Type::kInt;
+    if (has_whole && !check_bare_level(e)) return std::nullopt;
     const Op op = member(family, left.type);
     if (op == kNone) {
       return fail(Code::kTypeMismatch, e.span, "true and false have no order",
@@ -237,11 +238,12 @@ class Typer {
                                                          "finalized"};
     for (const Expression& side : e.children) {
       if (side.kind != Kind::kName || !symbols_.is_looked_up(side.name.text)) continue;
-      const std::string& name = side.name.text;
+      std::string name = side.name.text;
+      std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
       if (std::find(kStates.begin(), kStates.end(), name) == kStates.end()) continue;
       diagnostics_.push_back(
           {Code::kUnknownName, Severity::kWarning, side.span,
-           "without quotes, '" + name + "' is a signal, which is looked up on the robot",
+           "without quotes, '" + side.name.text + "' is a signal, which is looked up on the robot",
            "a state stands in quotes: write \"" + name + "\"",
            Edit{side.span, "\"" + name + "\""}});
     }
@@ -618,6 +620,8 @@ class Typer {
     if (duration_and_number) remedy = unit_remedy(e, left == Type::kDuration ? 1 : 0);
     if (verb == "compare" && (left == Type::kString || right == Type::kString))
       remedy = text_remedy(e, left == Type::kString ? 1 : 0);
+    if (verb == "compare" && remedy.empty() && (left == Type::kBool || right == Type::kBool))
+      remedy = "write the condition by itself, or ! in front of it";
     if (verb == "compare" && is_comparison(e.children[0]))
       remedy = "to test a range, write a < x && x < b";
     for (std::size_t i = 0; i < 2 && verb == "compare"; ++i) {
