@@ -4,7 +4,7 @@
 //     const film = await watch(page);
 //     film.say("$ kill -9 1234");                         // below the page, from now on
 //     ...
-//     writeFileSync("film.webp", await film.end([/camera is not running/, /All is well/]));
+//     writeFileSync("film.webp", await film.end([/camera is down/, /All is well/]));
 //
 // The file format: https://developers.google.com/speed/webp/docs/riff_container
 

@@ -165,12 +165,12 @@ Ids ids_in(const Json& list) {
 TEST(OneIncident, IsTheSameInAllPlaces) {
   TwoFaults two;
   const Ids ids = two.of_manager();
-  ASSERT_THAT(two.headlines(), testing::ElementsAre("camera is not running", "segmentation is not running"));
+  ASSERT_THAT(two.headlines(), testing::ElementsAre("camera is down", "segmentation is down"));
 
   EXPECT_THAT(ids_in(two.said().state["incidents"]), ElementsAreArray(ids)) << "the page";
   std::vector<std::string> lines;
   for (const std::string& line : situation_lines(two.said(), Colour::kOff)) {
-    if (line.starts_with("  ") && line.find(" is not running  (") != std::string::npos)
+    if (line.starts_with("  ") && line.find(" is down  (") != std::string::npos)
       lines.push_back(line);
   }
   ASSERT_THAT(lines, SizeIs(2)) << "culprit status and culprit top";

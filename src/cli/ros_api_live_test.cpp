@@ -64,7 +64,7 @@ TEST_F(RosApiLive, TellsWhatBreaksAndHowItIsHealed) {
   };
   EXPECT_TRUE(incidents.wait_for_one([&](const Json& incident) {
     return incident["state"] == constant("Incident", "STATE_OPEN") &&
-           incident["headline"] == "camera is not running";
+           incident["headline"] == "camera is down";
   }));
   EXPECT_TRUE(decisions.wait_for_one([&](const Json& decision) {
     return decision["kind"] == constant("Decision", "KIND_BEGUN") &&

@@ -254,7 +254,7 @@ std::string counts_line(const WhatCulpritSays& said) {
   };
   const std::size_t blind = blind_rules(said).size();
   return fmt::format("{}{}{}; {}, {} with a failure{}", counted(components.size(), "component"),
-                     some(gone, "not running"), some(ill, "affected"), counted(rules.size(), "rule"),
+                     some(gone, "down"), some(ill, "affected"), counted(rules.size(), "rule"),
                      failing, blind == 0 ? "" : fmt::format(", {} blind", blind));
 }
 

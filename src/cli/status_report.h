@@ -26,7 +26,7 @@ enum class Verdict : std::uint8_t {
 };
 Verdict verdict_of(const WhatCulpritSays& said);
 
-// "rover: camera is not running  [paused]"; what fails, why and what comes next; what people have ordered.
+// "rover: camera is down  [paused]"; what fails, why and what comes next; what people have ordered.
 std::vector<std::string> situation_lines(const WhatCulpritSays& said, Colour colour);
 
 // One for each component, those that are not well first.

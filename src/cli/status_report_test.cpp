@@ -41,12 +41,12 @@ WhatCulpritSays well() {
 WhatCulpritSays ill() {
   WhatCulpritSays said = well();
   said.state["incidents"].push_back(parse_json(
-      R"({"id": "mywpiwzf-0k7", "headline": "camera is not running", "health": "ERROR", "since": 11.5,
+      R"({"id": "mywpiwzf-0k7", "headline": "camera is down", "health": "ERROR", "since": 11.5,
       "rule": "CameraGone", "components": ["camera"], "certain": true, "consequences": ["FusionSilent", "PoseSilent"],
       "needs_person": false, "doing": "being repaired: redeploy camera", "next": "redeploy is being carried out"})"));
-  said.state["overview"] = {{"look", "ERROR"}, {"headline", "camera is not running"}};
+  said.state["overview"] = {{"look", "ERROR"}, {"headline", "camera is down"}};
   said.state["components"][0] = parse_json(
-      R"({"health": "ERROR", "look": "ERROR", "condition": "not running", "alive": false, "process": "gone", "adapting": "redeploy"})");
+      R"({"health": "ERROR", "look": "ERROR", "condition": "down", "alive": false, "process": "gone", "adapting": "redeploy"})");
   said.state["rules"][0]["phase"] = "attempting";
   return said;
 }
@@ -62,14 +62,14 @@ TEST(StatusReport, SaysThatAllIsWell) {
 TEST(StatusReport, SaysTheFailureTheBlameAndTheNextStep) {
   EXPECT_EQ(verdict_of(ill()), Verdict::kNotWell);
   const std::string text = all_of(ill());
-  EXPECT_THAT(text, HasSubstr("rover: camera is not running\n"));
+  EXPECT_THAT(text, HasSubstr("rover: camera is down\n"));
   EXPECT_THAT(text,
-              HasSubstr("  camera is not running  (ERROR, rule CameraGone, incident mywpiwzf-0k7)\n"));
+              HasSubstr("  camera is down  (ERROR, rule CameraGone, incident mywpiwzf-0k7)\n"));
   EXPECT_THAT(text, HasSubstr(", for 8.5 s\n"));
   EXPECT_THAT(text, HasSubstr("and so fail FusionSilent and PoseSilent\n"));
   EXPECT_THAT(text, HasSubstr("now: being repaired: redeploy camera\n"));
   EXPECT_THAT(text, HasSubstr("next: redeploy is being carried out\n"));
-  EXPECT_THAT(text, HasSubstr("1 not running (camera)"));
+  EXPECT_THAT(text, HasSubstr("1 down (camera)"));
 }
 
 TEST(StatusReport, SaysWhatKeepsCulpritFromActingAndHowToLetItGoOn) {

@@ -46,7 +46,7 @@ class Alerting : public Observer {
   struct Problem {
     std::set<std::string> keys{};           // by which it is known again: its rules, its components
     alerts::Alert alert{};                  // but for what is the same all the time
-    bool tells_condition = false;           // its headline does: that a component is not running
+    bool tells_condition = false;           // its headline does: that a component is down
     bool needs_person_if_it_lasts = false;  // for the time of Options::wait
   };
   // A fault, from its beginning to its end.

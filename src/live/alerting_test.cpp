@@ -125,7 +125,7 @@ TEST(Alerting, TellsOfAFaultThatIsHealedAtOnceInOneMessage) {
   ASSERT_EQ(alerted.posted.size(), 1u) << testing::PrintToString(alerted.texts());
   const Alert& alert = alerted.posted[0];
   EXPECT_EQ(alert.state, Alert::State::kResolved);
-  EXPECT_EQ(alert.headline, "camera is not running");
+  EXPECT_EQ(alert.headline, "camera is down");
   EXPECT_EQ(alert.robot, "rover");
   EXPECT_EQ(alert.link, "http://page");
   EXPECT_FALSE(alert.needs_person);
@@ -178,7 +178,7 @@ RULE FusionSilent
   EXPECT_TRUE(alerted.robot->asked.empty()) << "fusion is well";
   ASSERT_GE(alerted.posted.size(), 1u);
   const Alert& last = alerted.posted.back();
-  EXPECT_EQ(last.headline, "camera is not running");
+  EXPECT_EQ(last.headline, "camera is down");
   EXPECT_TRUE(last.needs_person);
   EXPECT_EQ(last.next, "a person must look: no rule of these failures acts on camera")
       << testing::PrintToString(alerted.texts());

@@ -40,7 +40,7 @@ const Json kWell = status_of({component_status("camera"), component_status("plan
 Json with_ill_camera() {
   Json status = status_of({component_status("camera", 3), component_status("planner")});
   status["incidents"].push_back({{"components", {"camera"}},
-                                 {"headline", "camera is not running"},
+                                 {"headline", "camera is down"},
                                  {"doing", "redeploy camera"},
                                  {"needs_person", false}});
   return status;
@@ -56,7 +56,7 @@ TEST(RecoveryGoals, EndWhenTheComponentIsWell) {
   EXPECT_EQ(state_of(goals, 1), State::kExecuting);
   EXPECT_THAT(goals.take_news(), testing::ElementsAre(id_of(1)));
   const Json expected{
-      {"ill", {"camera"}}, {"doing", "camera is not running: redeploy camera"}, {"needs_person", false}};
+      {"ill", {"camera"}}, {"doing", "camera is down: redeploy camera"}, {"needs_person", false}};
   EXPECT_EQ(goals.find(id_of(1))->feedback, expected);
 
   goals.look(with_ill_camera());
@@ -130,7 +130,7 @@ TEST(RecoveryGoals, EndWhenTheirTimeIsOver) {
   goals.expire(kNow + 5s);
   EXPECT_EQ(state_of(goals, 1), State::kAborted);
   EXPECT_EQ(goals.find(id_of(1))->result["message"],
-            "it took too long; camera is not running: redeploy camera");
+            "it took too long; camera is down: redeploy camera");
   EXPECT_EQ(goals.due(), kNever);
   EXPECT_EQ(state_of(goals, 2), State::kExecuting);
 }

@@ -143,7 +143,7 @@ TEST(RosApi, TellsIncidentsAndDecisions) {
                                           "killed by signal 9", Cause::kFault}}});
   ASSERT_TRUE(incidents.wait_for_count(1));
   EXPECT_EQ(incidents.all()[0]["rule"], "CameraGone");
-  EXPECT_EQ(incidents.all()[0]["headline"], "camera is not running");
+  EXPECT_EQ(incidents.all()[0]["headline"], "camera is down");
   ASSERT_TRUE(decisions.wait_for_count(1));
   EXPECT_EQ(decisions.all()[0]["strategy"], "redeploy");
 }

@@ -126,7 +126,7 @@ ComponentLook look_of(ComponentId id, std::size_t health, const Manager& manager
   } else if (state.alive && state.hangs()) {
     look = {"HUNG", "hangs"};
   } else if (state.alive == false) {
-    look = {"DEAD", "not running"};
+    look = {"DEAD", "down"};
   } else if (!state.alive && !knowledge.graph.is_present(id)) {
     look = {"NEVER_SEEN", state.is_missed ? "never seen" : "not seen yet"};
   } else if (state.time_held) {

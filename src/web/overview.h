@@ -19,7 +19,7 @@ struct Overview {
   // "WATCHING_NOTHING": no rule can see; "DEAF": the robot cannot be heard; "TIME_HELD": no failure is seen, but the
   // simulated time of some components stands still.
   std::string_view look;
-  std::string headline;  // "camera is not running, and 1 more"
+  std::string headline;  // "camera is down, and 1 more"
   std::string detail;    // "no failure is seen by 3 rules"; of an incident: what is done about it
 };
 Overview overview_of(const Manager& manager);

@@ -152,9 +152,9 @@ TEST(Overview, IsTheFirstIncidentAndCountsTheOthers) {
   some.robot.kill("camera");
   some.robot.run_for(1s);
   EXPECT_EQ(some.overview().look, "ERROR") << transcript(some.robot);
-  EXPECT_EQ(some.overview().headline, "camera is not running, and 1 more");
+  EXPECT_EQ(some.overview().headline, "camera is down, and 1 more");
   EXPECT_EQ(some.overview().detail, "nothing is done: culprit is paused");
-  EXPECT_EQ(some.look(0).condition, "not running");
+  EXPECT_EQ(some.look(0).condition, "down");
 }
 
 }  // namespace

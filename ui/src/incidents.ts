@@ -4,7 +4,7 @@ import type { Criticality, Health, ManagerEvent } from './types'
 
 export interface Incident {
   id: string
-  headline: string // "camera is not running"
+  headline: string // "camera is down"
   health: Health // of the worst of its failures
   since: number
   rule: string // the failure that explains the others

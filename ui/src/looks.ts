@@ -31,7 +31,7 @@ export const kLooks: Record<Look, Appearance> = {
   ERROR: { sign: '◆', word: 'Error', tone: 'ERROR' },
   MISSING: { sign: '◇', word: 'Missing', tone: 'ERROR' },
   UNREACHABLE: { sign: '⚠', word: 'Not heard', tone: 'WARNING' },
-  DEAD: { sign: '✕', word: 'Not running', tone: 'WARNING' },
+  DEAD: { sign: '✕', word: 'Down', tone: 'WARNING' },
   HUNG: { sign: '✕', word: 'Hangs', tone: 'WARNING' },
   STOPPED: { sign: '✕', word: 'Stopped', tone: 'WARNING' },
   WARNING: { sign: '▲', word: 'Warning', tone: 'WARNING' },

@@ -172,6 +172,6 @@ export const looks = computed((): Map<string, Look> => {
   if (isLive.value) return presentLooks.value
   return new Map((robot.value?.components ?? []).map(({ name }) => [name, failedThen.value.get(name) ?? 'UNTOLD']))
 })
-// "not running", "never seen"; empty: it works.
+// "down", "never seen"; empty: it works.
 export const conditionAt = (component: string): string =>
-  isLive.value ? (stateOfComponent(component)?.condition ?? '') : situation.value.gone.has(component) ? 'not running' : ''
+  isLive.value ? (stateOfComponent(component)?.condition ?? '') : situation.value.gone.has(component) ? 'down' : ''

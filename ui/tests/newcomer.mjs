@@ -43,9 +43,9 @@ await suite(() =>
     // While paused, the page still names the root cause, and says that nothing is done.
     await page.getByRole('button', { name: 'Inject fault' }).click()
     const bar = page.getByRole('region', { name: 'Status' })
-    await bar.getByText('camera is not running').waitFor()
+    await bar.getByText('camera is down').waitFor()
     await bar.getByText('nothing is done: culprit is paused').waitFor()
-    await explanation.getByRole('heading', { name: 'camera is not running' }).waitFor()
+    await explanation.getByRole('heading', { name: 'camera is down' }).waitFor()
     await picture(page, 'paused')
     await page.getByRole('button', { name: 'Resume' }).click()
     await well.waitFor()

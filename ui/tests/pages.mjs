@@ -81,9 +81,9 @@ async function everyPage(page, server, album) {
     await page.evaluate((hash) => (location.hash = hash), name)
     await page.locator('nav a[aria-current="page"]', { hasText: new RegExp(name, 'i') }).waitFor()
     const bar = page.getByRole('region', { name: 'Status' })
-    await bar.getByText('camera is not running').waitFor()
+    await bar.getByText('camera is down').waitFor()
     await bar.getByRole('button', { name: 'Pause' }).waitFor()
-    expect((await page.title()).startsWith('◆ camera is not running'), `the title is ${await page.title()}`)
+    expect((await page.title()).startsWith('◆ camera is down'), `the title is ${await page.title()}`)
     if (name !== 'robot' && name !== 'plots') await photograph(page, album, `page-${name}`) // these have pictures of their own
     await isAccessible(page)
     await isUsableByKeyboard(page)
@@ -158,7 +158,7 @@ async function keepsItsPlaces(page, server) {
 async function hangsOnTheWall(page, server, album) {
   await become(page, server, kStates.ill, 'wall')
   await page.emulateMedia({ colorScheme: 'light' })
-  const cause = page.getByRole('heading', { name: 'camera is not running' })
+  const cause = page.getByRole('heading', { name: 'camera is down' })
   await cause.waitFor()
   for (const viewport of [kSizes.desktop, { width: 1920, height: 1080 }]) {
     await page.setViewportSize(viewport)

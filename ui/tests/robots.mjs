@@ -44,7 +44,7 @@ const healthOf = (name, rules) => {
 function lookOf(name, dead, rules, isDeaf) {
   const about = kRules.filter((r) => r.components.includes(name))
   const health = healthOf(name, rules)
-  if (health !== 'OK') return { health, look: health, condition: name === dead ? 'not running' : '' }
+  if (health !== 'OK') return { health, look: health, condition: name === dead ? 'down' : '' }
   if (about.length === 0) return { health, look: 'UNWATCHED', condition: 'no rule' }
   return isDeaf || about.every((r) => rules[r.name]?.blind) ? { health, look: 'BLIND', condition: 'blind' } : { health, look: 'OK', condition: '' }
 }
@@ -70,7 +70,7 @@ const kAll = [candidate('rgb_restart', { condition: 'tried', text: 'it was tried
 const detected = (t, rule, criticality) => event(t, 'failure_detected', 'detected', criticality === 'ERROR' ? 'error' : 'warning', 'alarm', `${rule} detected`, { rule, criticality })
 const waits = (t, rule, name) => event(t, 'failure_held_back', 'waits', 'info', 'aside', `${rule} waits: it depends on camera, which may be the cause of RGBDead`, { rule, candidates: [candidate(name, because('RGBDead'))], suspects: kSuspects })
 
-const kCause = { id: 'mywpiwzf-0k7', headline: 'camera is not running', health: 'ERROR', since: kBroken + 0.01, rule: 'RGBDead', components: ['camera'], certain: true, host: null,
+const kCause = { id: 'mywpiwzf-0k7', headline: 'camera is down', health: 'ERROR', since: kBroken + 0.01, rule: 'RGBDead', components: ['camera'], certain: true, host: null,
   consequences: ['FusionSilent', 'SegmentationBad'], needs_person: false }
 const cause = (doing, next = '', more = {}) => [{ ...kCause, doing, next, ...more }]
 const incidentTold = (t, type, { health, doing, next, since, id, ...more } = kCause) => event(t, type, 'incident', 'info', 'aside', '', { incident: id, criticality: health, age_ns: (t - since) * 1e9, ...more })
@@ -101,20 +101,20 @@ const kMinor = { ...kCause, id: 'mywpiwzf-1aa', headline: 'SegmentationBad fails
 export const kStates = {
   well: { events: [], control: {}, state: {}, cause: 'All is well', level: 'Well', mode: 'Acting' },
   ill: { events: [...kCameraDead, chosen(false)], control: {}, state: { ...kSuffering, RGBDead: kAttempting, incidents: cause('being repaired: redeploy camera', 'rgb_redeploy is being carried out') },
-    cause: 'camera is not running', level: 'Error', mode: 'Acting', also: ['since 14:03:22', 'being repaired: redeploy camera'] },
+    cause: 'camera is down', level: 'Error', mode: 'Acting', also: ['since 14:03:22', 'being repaired: redeploy camera'] },
   paused: { events: [...kCameraDead, heldBack('paused by a person'), heldBackWithReasons], control: { paused: true }, state: { ...kSuffering, RGBDead: failing, incidents: cause('nothing is done: culprit is paused') },
-    cause: 'camera is not running', level: 'Error', mode: 'Paused', also: ['since 14:03:22', 'nothing is done'] },
+    cause: 'camera is down', level: 'Error', mode: 'Paused', also: ['since 14:03:22', 'nothing is done'] },
   silenced: { events: [...kCameraDead, heldBack('silenced by ada: the lens is cleaned')], control: { silences: [{ component: 'camera', until: kBroken + 600, author: 'ada', reason: 'the lens is cleaned' }] }, state: { ...kSuffering, RGBDead: failing, incidents: cause('not repaired: silenced by ada: the lens is cleaned') },
-    cause: 'camera is not running', level: 'Error', mode: 'Silenced', also: ['since 14:03:22', 'silenced by ada'] },
+    cause: 'camera is down', level: 'Error', mode: 'Silenced', also: ['since 14:03:22', 'silenced by ada'] },
   'dry-run': { events: [...kCameraDead, chosen(true)], control: { dry_run: true }, state: { ...kSuffering, RGBDead: failing, incidents: cause('would be repaired: redeploy camera') },
-    cause: 'camera is not running', level: 'Error', mode: 'Dry run', also: ['would be repaired: redeploy camera'] },
+    cause: 'camera is down', level: 'Error', mode: 'Dry run', also: ['would be repaired: redeploy camera'] },
   approval: { events: [...kCameraDead, event(kBroken + 0.02, 'approval_asked', 'asks', 'warning', 'person', 'shall RGBDead.rgb_redeploy redeploy camera? It waits for approval', reasons)],
     control: { asked: [{ rule: 'RGBDead', strategy: 'rgb_redeploy' }] }, state: { ...kSuffering, RGBDead: failing, incidents: cause('waits for approval: redeploy camera', '', { needs_person: true }) },
-    cause: 'camera is not running', level: 'Error', mode: 'Approval', also: ['waits for approval: redeploy camera'] },
+    cause: 'camera is down', level: 'Error', mode: 'Approval', also: ['waits for approval: redeploy camera'] },
   warning: { events: [detected(kBroken, 'SegmentationBad', 'WARNING')], control: {}, state: { SegmentationBad: { phase: 'failing', since: kBroken, attempts: 0 }, incidents: [kMinor] },
     cause: 'SegmentationBad fails', level: 'Warning', mode: 'Acting', also: ['since 14:03:22'] },
   exhausted: { events: [...kCameraDead, chosen(false), event(kBroken + 5, 'rule_exhausted', 'exhausted', 'error', 'alarm', 'RGBDead is given up', { rule: 'RGBDead' })], control: {}, state: { ...kSuffering, RGBDead: { ...failing, phase: 'exhausted' }, incidents: cause('nothing helped', 'nothing more is tried: a person must look', { health: 'EXHAUSTED', needs_person: true }) },
-    cause: 'camera is not running', level: 'Gave up', mode: 'Acting', also: ['nothing helped'] },
+    cause: 'camera is down', level: 'Gave up', mode: 'Acting', also: ['nothing helped'] },
   deaf: { events: [], control: { hears: false }, state: { overview: { look: 'DEAF', headline: "culprit does not receive the robot's messages", detail: 'nothing is judged, and nothing is done' } }, cause: "Culprit does not receive the robot's messages", level: 'Unknown', mode: 'Deaf' },
 }
 // It is over: 3 s later all of it was well. Names are only text.

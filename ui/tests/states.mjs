@@ -91,7 +91,7 @@ async function saysAsTheTerminal(page, at, told) {
 const kNames = kRobot.components.map((each) => each.name)
 
 const kAll = { ...kStates, forgotten: kForgotten, 'time-held': kHeld, ...kBlindStates }
-const kDisconnected = { cause: 'Disconnected since 14:03:34', level: 'Old', mode: 'was: Acting', also: ['This view is outdated', 'It was: camera is not running'] }
+const kDisconnected = { cause: 'Disconnected since 14:03:34', level: 'Old', mode: 'was: Acting', also: ['This view is outdated', 'It was: camera is down'] }
 const kLoading = 'Asking culprit how the robot is'
 
 async function inEverySize(page, steps) {

@@ -15,7 +15,7 @@ struct Alert {
   bool needs_person = false;  // culprit cannot help itself any more, or waits for approval
   std::string robot;          // may be empty
   std::string host;           // that culprit runs on
-  std::string headline;       // "camera is not running"
+  std::string headline;       // "camera is down"
   std::string health;         // "ERROR", as the page has it
   std::string rule;           // the failure that explains the others; empty: it is about no rule
   std::vector<std::string> components{};    // that are held responsible
@@ -28,7 +28,7 @@ struct Alert {
   std::uint64_t untold = 0;                 // alerts before this one that were given up
 };
 
-// One line: "rover: camera is not running (ERROR), so that FusionSilent fails; being repaired: redeploy camera".
+// One line: "rover: camera is down (ERROR), so that FusionSilent fails; being repaired: redeploy camera".
 std::string text_of(const Alert& alert);
 
 }  // namespace culprit::alerts

@@ -29,7 +29,7 @@ Alert an_alert() {
   Alert alert;
   alert.id = "1-CameraGone";
   alert.robot = "rover";
-  alert.headline = "camera is not running";
+  alert.headline = "camera is down";
   alert.health = "ERROR";
   return alert;
 }
@@ -66,7 +66,7 @@ TEST(AlertSender, PostsToAWebhook) {
   EXPECT_EQ(send_to(webhook(Kind::kAlertmanager, server.address())).how, How::kSent);
   ASSERT_EQ(server.requests().size(), 2u);
   EXPECT_EQ(server.requests()[0].path, "/services/T/B");
-  EXPECT_THAT(server.requests()[0].body, HasSubstr("camera is not running"));
+  EXPECT_THAT(server.requests()[0].body, HasSubstr("camera is down"));
   EXPECT_EQ(server.requests()[1].path, "/api/v2/alerts");
 }
 
@@ -154,7 +154,7 @@ TEST(AlertSender, TellsAProgramByItsLastArgumentAndNeverAShell) {
   EXPECT_EQ(sent.how, How::kSent) << sent.why;
   EXPECT_THAT(
       content_of(out),
-      HasSubstr("a; touch b $(c)|rover: camera is not running (ERROR)|{\"format\":\"culprit-alert\""));
+      HasSubstr("a; touch b $(c)|rover: camera is down (ERROR)|{\"format\":\"culprit-alert\""));
 }
 
 TEST(AlertSender, TellsWhatBecameOfAProgram) {

@@ -16,7 +16,7 @@ Alert dead_camera() {
   alert.id = "1-CameraGone";
   alert.robot = "rover";
   alert.host = "rover-pc";
-  alert.headline = "camera is not running";
+  alert.headline = "camera is down";
   alert.health = "ERROR";
   alert.rule = "CameraGone";
   alert.components = {"camera"};
@@ -36,16 +36,16 @@ Alert over(Alert alert) {
 
 TEST(AlertText, SaysTheBlameTheEffectsAndTheRepair) {
   EXPECT_EQ(text_of(dead_camera()),
-            "rover: camera is not running (ERROR), so that FusionSilent, PoseSilent fail; being repaired: "
+            "rover: camera is down (ERROR), so that FusionSilent, PoseSilent fail; being repaired: "
             "redeploy camera");
   EXPECT_EQ(text_of(over(dead_camera())),
-            "rover: RESOLVED: camera is not running (ERROR), so that FusionSilent, PoseSilent fail, after "
+            "rover: RESOLVED: camera is down (ERROR), so that FusionSilent, PoseSilent fail, after "
             "2.5 s; "
             "CameraGone resolved by redeploy");
   Alert alert = dead_camera();
   alert.needs_person = true;
   alert.untold = 3;
-  EXPECT_THAT(text_of(alert), HasSubstr("rover: A PERSON IS NEEDED: camera is not running"));
+  EXPECT_THAT(text_of(alert), HasSubstr("rover: A PERSON IS NEEDED: camera is down"));
   EXPECT_THAT(text_of(alert), HasSubstr("3 earlier alerts could not be sent"));
 }
 

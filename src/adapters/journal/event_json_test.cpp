@@ -105,7 +105,7 @@ std::vector<EventWhat> samples() {
                           .since = Time(3ns),
                           .criticality = Criticality::kError,
                           .condition = "dead",
-                          .headline = "camera is not running"}},
+                          .headline = "camera is down"}},
           IncidentChanged{{.id = "mywpiwzf-0k7",
                            .root = r,
                            .components = {c},

@@ -94,7 +94,7 @@ TEST(Limits, LeaveWhatDependsOnWhatCameBackAloneUntilItIsFound) {
   EXPECT_FALSE(limits.on(two.strategy("up_again"), kStart + 2s));
   EXPECT_FALSE(limits.on(two.strategy("down_again"), kStart + 5s));
   two.knowledge.components[ComponentId(1)].alive = false;
-  EXPECT_FALSE(limits.on(two.strategy("down_again"), kStart + 3s)) << "it is not running of itself";
+  EXPECT_FALSE(limits.on(two.strategy("down_again"), kStart + 3s)) << "it is down of itself";
 }
 
 TEST(Limits, AreQuietOnlyAfterALaunch) {

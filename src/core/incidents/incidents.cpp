@@ -51,7 +51,7 @@ std::string_view condition_of(const std::vector<ComponentId>& components,
   return all;
 }
 
-// "camera is not running", "fusion hangs", "camera and fusion are held responsible", "rover2, where
+// "camera is down", "fusion hangs", "camera and fusion are held responsible", "rover2, where
 // camera and lidar ran, is unreachable".
 std::string headline_of(const Incident& incident, const Knowledge& knowledge) {
   const std::string names = names_of_components(incident.components, knowledge.rules);
@@ -59,7 +59,7 @@ std::string headline_of(const Incident& incident, const Knowledge& knowledge) {
   const std::string are = are_many ? " are " : " is ";
   if (!incident.host.empty()) return incident.host + ", where " + names + " ran, is unreachable";
   if (incident.condition == "hung") return names + (are_many ? " hang" : " hangs");
-  if (incident.condition == "dead") return names + are + "not running";
+  if (incident.condition == "dead") return names + are + "down";
   if (!incident.condition.empty()) return names + are + incident.condition;
   if (incident.is_certain) return names + are + "held responsible";
   if (incident.is_suspected) return names + are + "suspected";

@@ -87,7 +87,7 @@ TEST(Incidents, IsOneIncidentForOneFaultWithWhatSuffersFromIt) {
   EXPECT_EQ(incident.components, std::vector{ComponentId(0)});
   EXPECT_TRUE(incident.is_certain);
   EXPECT_EQ(incident.criticality, Criticality::kError);
-  EXPECT_EQ(incident.headline, "camera is not running");
+  EXPECT_EQ(incident.headline, "camera is down");
   EXPECT_EQ(watched.course().doing, "being repaired: redeploy camera");
   EXPECT_FALSE(incident.needs_person());
   watched.robot->run_for(10s);
@@ -166,7 +166,7 @@ TEST(Incidents, TellsTwoFaultsApartWorstFirst) {
   watched.robot->run_for(1s);
   const auto incidents = watched.incidents();
   ASSERT_EQ(incidents.size(), 2u) << transcript(*watched.robot);
-  EXPECT_EQ(incidents[0].headline, "camera is not running");
+  EXPECT_EQ(incidents[0].headline, "camera is down");
   EXPECT_EQ(watched.course().doing, "nothing is done: culprit is paused");
   EXPECT_EQ(incidents[1].headline, "lamp is held responsible");
 }
@@ -262,7 +262,7 @@ TEST(Incidents, AreOpenedAndClosedOnce) {
   Watched watched;
   watched.robot->kill("camera");
   watched.robot->run_for(30s);
-  EXPECT_THAT(watched.told, testing::ElementsAre("opened camera is not running", "resolved CameraSilent"))
+  EXPECT_THAT(watched.told, testing::ElementsAre("opened camera is down", "resolved CameraSilent"))
       << transcript(*watched.robot);
 }
 
@@ -277,9 +277,9 @@ TEST(Incidents, AreTwoForTwoDeadComponentsWhileNothingIsDone) {
   watched.robot->run_for(3s);
   ASSERT_EQ(watched.incidents().size(), 2u) << transcript(*watched.robot);
   // Only a person can start the lamp.
-  EXPECT_EQ(watched.incidents()[0].headline, "lamp is not running");
+  EXPECT_EQ(watched.incidents()[0].headline, "lamp is down");
   EXPECT_TRUE(watched.incidents()[0].needs_person());
-  EXPECT_EQ(watched.incidents()[1].headline, "camera is not running");
+  EXPECT_EQ(watched.incidents()[1].headline, "camera is down");
 }
 
 // The planner's decisions say which failures belong together, from step to step.

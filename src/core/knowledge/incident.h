@@ -29,7 +29,7 @@ struct Incident {
   bool awaits_approval = false;  // a strategy against one of them waits for a person
   // Of these components: "dead", "stopped", "hung", "not heard"; empty: they work, or differ.
   std::string condition{};
-  std::string headline{};  // "camera is not running"
+  std::string headline{};  // "camera is down"
 
   bool needs_person() const { return is_exhausted || awaits_approval || !host.empty(); }
   bool has(RuleId rule) const {

@@ -62,7 +62,7 @@ TEST_P(ExhaustedCause, LetsItsEffectsBeRepairedOnceItIsGone) {
   EXPECT_TRUE(robot.works("c1")) << transcript(robot);
 }
 
-// c1 can only be focused, which makes no sense while it is not running. Rounds in which nothing could be
+// c1 can only be focused, which makes no sense while it is down. Rounds in which nothing could be
 // tried are no attempts: once it is back, it is focused.
 TEST_P(ExhaustedCause, IsNoFailureThatWaitsUntilItsComponentIsRepaired) {
   for (const bool is_by_person : {false, true}) {

@@ -106,7 +106,7 @@ TEST_P(Starts, OfARunningProcessEndWithItsAttempts) {
   robot["camera"].start_time = 1s;
   robot.kill("camera");
   robot.run_for(20s);
-  EXPECT_TRUE(robot.works("camera")) << "now it is not running, and started" << transcript(robot);
+  EXPECT_TRUE(robot.works("camera")) << "now it is down, and started" << transcript(robot);
 }
 
 // A device that can be opened again only after 20 s.

@@ -57,7 +57,7 @@ TEST(Torture, MishapsLeaveTheirMark) {
                            "everything is killed",
                            "is started again by its launcher",
                            "was never seen",
-                           "is known dead",
+                           "is known to be down",
                            "a person ends the launch",
                            "is being ended",
                            "the manager crashes",

@@ -311,7 +311,7 @@ TEST(BayesPlanner, RepairsNothingThatAnExhaustedFailureExplains) {
   EXPECT_EQ(scene.plan(kFewRedeployments), "B.restart D.restart") << "it no longer explains them";
 }
 
-// If a process in a feedback loop is not running, its component was the first to fail.
+// If a process in a feedback loop is down, its component was the first to fail.
 TEST(BayesPlanner, RepairsNothingInACircleThatADeadMemberExplains) {
   Scene scene(failure_of("a", "A") + failure_of("b", "B") +
               "STRATEGY other 5 10\nADAPTATION b change_communication in /other 2\n" +
@@ -324,7 +324,7 @@ TEST(BayesPlanner, RepairsNothingInACircleThatADeadMemberExplains) {
   scene.tried("B.other");
   EXPECT_EQ(scene.plan(kFewRedeployments), "");
   scene.process("c", ProcessState::kGone);
-  EXPECT_EQ(scene.plan(kFewRedeployments), "C.redeploy") << "it is not running itself";
+  EXPECT_EQ(scene.plan(kFewRedeployments), "C.redeploy") << "it is down itself";
   scene.process("c", ProcessState::kRunning);
   scene.process("a", ProcessState::kRunning);
   EXPECT_NE(scene.plan(kFewRedeployments), "") << "nobody knows who was first: they take turns";

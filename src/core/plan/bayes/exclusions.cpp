@@ -46,7 +46,7 @@ Exclusions::Exclusions(const Knowledge& knowledge, const Examination& found, con
     for (std::size_t below = 0; below < level_of(rule); ++below)
       mark(marks[below], components, rule);
   };
-  // While a process is not running, nothing that is done upstream disturbs who replaces it.
+  // While a process is down, nothing that is done upstream disturbs who replaces it.
   const auto mark_living_below = [&](std::vector<Marks>& marks, RuleId rule) {
     for (const ComponentId c : knowledge.rules[rule].components) {
       for (std::size_t below = 0; below < level_of(rule); ++below) {
