@@ -28,7 +28,8 @@ class Describer {
   std::string operator()(const FailureDetected& e) const {
     const Rule& rule = rules_[e.rule];
     return rule.name + " detected (" + std::string(to_string(rule.policies.criticality)) + ")" +
-           (e.known_dead ? ": " + rules_[*e.known_dead].name + " is known to be down, " + e.how : "");
+           (e.known_dead ? ": " + rules_[*e.known_dead].name + " is known to be down, " + e.how
+                         : "");
   }
   std::string operator()(const FailureResolved& e) const {
     const std::string after = " after " + two_decimals(seconds(e.reaction)) + " s";

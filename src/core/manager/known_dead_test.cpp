@@ -53,8 +53,9 @@ TEST(KnownDead, AKilledProcessIsAFailureOfTheRulesThatWouldSeeItsSilence) {
   robot.kill("camera");
   robot.run_for(20ms);
   EXPECT_EQ(detected_after(robot, "CameraSilent", killed), Monitor::kFarewell) << transcript(robot);
-  EXPECT_EQ(robot.count("CameraSilent detected (ERROR): camera is known to be down, killed by signal 9"),
-            1u)
+  EXPECT_EQ(
+      robot.count("CameraSilent detected (ERROR): camera is known to be down, killed by signal 9"),
+      1u)
       << transcript(robot);
   EXPECT_TRUE(robot.was_asked("camera: stop process")) << transcript(robot);
   robot.run_for(3s);
@@ -67,7 +68,8 @@ TEST(KnownDead, AStoppedProcessIsToo) {
   const Time stopped = robot.now;
   robot.stop("camera");
   EXPECT_EQ(detected_after(robot, "CameraSilent", stopped), Duration()) << transcript(robot);
-  EXPECT_EQ(robot.count("camera is known to be down, its process is stopped"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("camera is known to be down, its process is stopped"), 1u)
+      << transcript(robot);
 }
 
 TEST(KnownDead, WhatGoesOnIsDeadNoLonger) {
