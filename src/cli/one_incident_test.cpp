@@ -179,7 +179,7 @@ TEST(OneIncident, IsTheSameInAllPlaces) {
 
   Ids alerted;
   for (const alerts::Alert& each : two.posted) {
-    if (each.headline.find("is dead") != std::string::npos) alerted.push_back(each.id);
+    if (each.headline.find("is down") != std::string::npos) alerted.push_back(each.id);
   }
   EXPECT_THAT(alerted, ElementsAreArray(ids)) << "alerts, in the order in which they became due";
 
