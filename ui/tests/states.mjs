@@ -116,7 +116,7 @@ async function loads(page, server) {
     await page.waitForFunction(([part, word]) => document.querySelector(part)?.innerText.includes(word), [(size === 'wall' ? kWall : kBar).cause, kLoading])
     await isLaidOut(page, `loading, ${size}, ${scheme}`)
     const words = await page.evaluate(() => document.body.innerText)
-    expect(!/all is well|is dead|✓/i.test(words), `something is said of a robot that is not known yet: ${words}`)
+    expect(!/all is well|is down|✓/i.test(words), `something is said of a robot that is not known yet: ${words}`)
   })
 }
 
