@@ -13,6 +13,7 @@
 #include "journal/verify.h"
 #include "manager/test_robot.h"
 #include "replay/hindsight.h"
+#include "replay/test_life.h"
 
 namespace culprit::replay {
 namespace {
@@ -20,10 +21,9 @@ namespace {
 using culprit::test::TestFolder;
 using culprit::test::TestRobot;
 using culprit::test::value_of;
+using test::kWall;
 using namespace std::chrono_literals;
 using testing::HasSubstr;
-
-constexpr std::int64_t kWall = 1'800'000'000'000'000'000;
 
 constexpr const char* kReplayRules = R"(
 COMPONENT camera NODE /camera LAUNCH "camera"
