@@ -218,7 +218,7 @@ TEST(Draft, OfSeveralPublishersEachInARhythmIsWatchedByItself) {
   const std::string text = draft(seen);
   EXPECT_THAT(text,
               HasSubstr("!alive(lidar) || age(/scan) > 500ms || age(/tf FROM lidar) > 500ms"));
-  EXPECT_THAT(text, HasSubstr("# guess: /tf from /lidar came 20 times a second"));
+  EXPECT_THAT(text, HasSubstr("# guess: /tf from /lidar had 20 Hz"));
   EXPECT_THAT(text, Not(HasSubstr("FROM camera"))) << "it publishes from time to time";
   EXPECT_THAT(text, Not(HasSubstr("# /tf: several nodes publish it")));
   (void)rules_of(seen);
