@@ -1,4 +1,4 @@
-// What `culprit graph FILE --json` says, and what the panel and what it shows say to one another.
+// The output of `culprit graph FILE --json`, and the messages between the panel and its content.
 export interface Place {
   file: string;
   line: number; // from 1

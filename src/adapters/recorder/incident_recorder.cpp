@@ -195,6 +195,7 @@ void IncidentRecorder::write_new(Time since) {
 }
 
 void IncidentRecorder::close() {
+  write_new(since_);  // what came while the disk was busy with the last of it
   const std::uint64_t lost = ring_.stop_counting();
   if (file_->trouble().empty()) file_->end();
   if (!file_->trouble().empty()) {

@@ -43,7 +43,7 @@ std::optional<AnswerToCome> driver_to_come(const Strategy& strategy, const Knowl
                                            Time now);
 
 // The reason if it would start a component that was never seen (knowledge/discovered.h); else empty.
-// Absent is not dead, and only people and `run --launch` start components that were not there.
+// An absent node has not failed, and only people and `run --launch` start components that were not there.
 std::optional<std::string> launch_of_the_unseen(const Strategy& strategy,
                                                 const Knowledge& knowledge);
 

@@ -1,6 +1,6 @@
 // The parts of the robot that were ever seen: in this run, or in an earlier one on the same robot.
 //
-// Absent is not dead. A name that was never seen may be one that no robot has, or a node that comes
+// An absent node has not failed. A name that was never seen may be one that no robot has, or a node that comes
 // later: triggers read it as unknown, so nothing is done about it.
 //
 //   a component  was seen once its node was in the graph

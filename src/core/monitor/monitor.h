@@ -50,8 +50,8 @@ class Monitor {
   static constexpr Duration kGrace = std::chrono::seconds(5);
   // How often it is looked whether all is there that an earlier run saw.
   static constexpr Duration kLook = std::chrono::milliseconds(50);
-  // A node that shuts down cleanly leaves the graph first. That news takes another way than the
-  // operating system's report, and may come after it.
+  // A node that shuts down cleanly leaves the graph first. The middleware announces it, and
+  // the operating system's report may be faster.
   static constexpr Duration kFarewell = std::chrono::milliseconds(10);
 
   // When a computer is reachable again, the grace period for each of its nodes: it may have to be
@@ -93,12 +93,12 @@ class Monitor {
 
   // culprit received nothing from `since` until `now`, as when it was suspended. A topic has its usual gap and kSpeaksAgain
   // to be received again. Until then its silence is as long as it was at `since`, and then it goes on, so that no recovery
-  // is concluded from the pause. For kGrace, a node that leaves the graph is not taken for dead unless the operating system
+  // is concluded from the pause. For kGrace, a node that leaves the graph is not taken for down unless the operating system
   // says so: it may only have to be discovered anew. For kUnsure, no component is found to hang.
   void restart(Time since, Time now);
 
-  // culprit stands still from `since` until `until`, a moment: it does not count for silences. Of each silence at most
-  // kSpeaksAgain is left out, so that a starved culprit notices it all the same.
+  // culprit stands still from `since` until `until`, a moment: it does not count for silences. Each silence loses
+  // kSpeaksAgain at most, so that a starved culprit notices it all the same.
   void stand_still(Time since, Time until);
 
   // Lets time pass: updates every value whose deadline has come.

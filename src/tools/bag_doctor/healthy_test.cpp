@@ -155,7 +155,7 @@ TEST_F(HealthyRecording, OfARobotThatStandsStillForAWhile) {
   expect_nothing();
 }
 
-// Of which the computer was asleep for a while: that is no failure of a topic.
+// The computer was asleep for a while: that is no failure of a topic.
 TEST_F(HealthyRecording, WithAHole) {
   for (const char* topic : {"/a", "/b", "/c"}) {
     sensor(topic, 20, 0.1, 0, 30);

@@ -1,4 +1,4 @@
-// What the doctor finds in recordings with one fault each, and when.
+// The findings in recordings with one fault each, and their times.
 #include <cmath>
 
 #include <fmt/core.h>
