@@ -9,7 +9,8 @@
 namespace culprit::ros2 {
 namespace {
 
-constexpr std::chrono::milliseconds kSendAgainAfter(200);
+constexpr Duration kSoonestAgain = std::chrono::milliseconds(200);
+constexpr Duration kLatestAgain = std::chrono::seconds(2);
 constexpr std::chrono::seconds kProbeTimeout(10);  // then another one begins
 
 Executor::Clock::time_point after(Duration d) {
@@ -38,7 +39,8 @@ Expected<std::unique_ptr<ServiceClient>> ServiceClient::create(NodeEntry& node,
   return client;
 }
 
-ServiceClient::ServiceClient(NodeEntry& node) : node_(node), tasks_(node.context().executor()) {}
+ServiceClient::ServiceClient(NodeEntry& node)
+    : node_(node), again_after_(kSoonestAgain), tasks_(node.context().executor()) {}
 
 // A client with kSoon repeats a request itself if it is lost, so answers need no acknowledgements.
 // And only the last request is kept, so that Fast DDS asks for the acknowledgement of each with the
@@ -131,8 +133,7 @@ void ServiceClient::call(Bytes request, Repeat repeat, Duration timeout, Callbac
   const Duration patience = haste == Haste::kSoon ? timeout + ReceiveThread::kSoon : timeout;
   call.deadline = tasks_.post_at(after(patience), [this, number] { on_deadline(number); });
   if (repeat == Repeat::kUntilAnswered) {
-    call.next_send =
-        tasks_.post_at(after(kSendAgainAfter), [this, number] { on_send_again(number); });
+    call.next_send = tasks_.post_at(after(again_after_), [this, number] { on_send_again(number); });
   }
   if (haste == Haste::kNow)
     call.hurry = std::make_unique<Participant::Hurry>(node_.context().participant());
@@ -173,7 +174,7 @@ void ServiceClient::send(CallNumber number, Call& call) {
   }
   if (!sequence) return;
   call.is_sent = true;
-  requests_.emplace(RequestId{server.mapping, *sequence}, number);
+  requests_.emplace(RequestId{server.mapping, *sequence}, Sending{number, Executor::Clock::now()});
 }
 
 std::optional<ServiceClient::Call> ServiceClient::take(CallNumber number) {
@@ -181,7 +182,7 @@ std::optional<ServiceClient::Call> ServiceClient::take(CallNumber number) {
   if (found == calls_.end()) return std::nullopt;
   std::optional<Call> call(std::move(found->second));
   calls_.erase(found);
-  std::erase_if(requests_, [number](const auto& request) { return request.second == number; });
+  std::erase_if(requests_, [number](const auto& request) { return request.second.call == number; });
   tasks_.cancel(call->deadline);
   tasks_.cancel(call->next_send);
   return call;
@@ -207,7 +208,9 @@ void ServiceClient::on_reply(const Sample& sample) {
     const auto request = requests_.find(id);
     if (!is_ours || request == requests_.end()) return;
     if (only_ && sample.identity.writer.prefix() != *only_) return;
-    call = take(request->second);
+    const Duration took = Executor::Clock::now() - request->second.at;
+    again_after_ = std::clamp(2 * took, kSoonestAgain, kLatestAgain);
+    call = take(request->second.call);
   }
   call->callback({.outcome = CallOutcome::kAnswered,
                   .reply = split ? ByteView(split->payload) : sample.payload,
@@ -338,7 +341,7 @@ void ServiceClient::on_probe(std::uint64_t round, CallOutcome outcome,
   send_waiting();
   // If that was a server of the probe only, ask again: the others of its endpoints are still to
   // come.
-  tasks_.post_at(after(kSendAgainAfter), [this] { start_probe(); });
+  tasks_.post_at(after(kSoonestAgain), [this] { start_probe(); });
 }
 
 void ServiceClient::on_send_again(CallNumber number) {
@@ -347,7 +350,7 @@ void ServiceClient::on_send_again(CallNumber number) {
   if (found == calls_.end()) return;
   if (server_for(Repeat::kUntilAnswered) != nullptr) send(number, found->second);
   found->second.next_send =
-      tasks_.post_at(after(kSendAgainAfter), [this, number] { on_send_again(number); });
+      tasks_.post_at(after(again_after_), [this, number] { on_send_again(number); });
 }
 
 void ServiceClient::on_deadline(CallNumber number) {

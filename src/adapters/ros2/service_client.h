@@ -5,7 +5,9 @@
 // and a request or reply that is sent before the other side has matched is lost. Hence two kinds of
 // request:
 //
-// - one that may run twice (a read) is sent again every 200 ms until it is answered;
+// - one that may run twice (a read) is sent again until it is answered: every 200 ms, or at twice
+//   the time that the server's last answer took, at most 2 s. So a node that spins once a second is
+//   asked once;
 // - one that must not (a transition) is sent exactly once, and never before the server has proven
 //   that it knows this client. Discovery data is ordered for each participant, so the proof is an
 //   answer to a probe: a request that may be repeated, to another service of the same node, through
@@ -113,6 +115,10 @@ class ServiceClient {
   };
   using CallNumber = std::uint64_t;
   using RequestId = std::pair<Mapping, std::int64_t>;  // of one sending of a call
+  struct Sending {
+    CallNumber call = 0;
+    Executor::Clock::time_point at;
+  };
 
   explicit ServiceClient(NodeEntry& node);
   Expected<void> open(const ServiceName& service, const Qos& qos, Haste haste);
@@ -159,8 +165,9 @@ class ServiceClient {
   std::uint64_t proof_round_ CULPRIT_GUARDED_BY(mutex_) =
       0;  // counts the times that a proof was lost
   std::map<CallNumber, Call> calls_ CULPRIT_GUARDED_BY(mutex_);
-  std::map<RequestId, CallNumber> requests_ CULPRIT_GUARDED_BY(mutex_);
+  std::map<RequestId, Sending> requests_ CULPRIT_GUARDED_BY(mutex_);
   CallNumber last_call_ CULPRIT_GUARDED_BY(mutex_) = 0;
+  Duration again_after_ CULPRIT_GUARDED_BY(mutex_);
   std::int64_t header_sequence_ CULPRIT_GUARDED_BY(mutex_) = 0;
 
   TaskGroup tasks_;  // outlives those that post to it

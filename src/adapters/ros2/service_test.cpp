@@ -154,6 +154,29 @@ TEST(Service, ARequestThatMayRunTwiceIsRepeatedUntilItIsAnswered) {
   EXPECT_EQ(answers->all()[0].outcome, CallOutcome::kAnswered);
 }
 
+TEST(Service, ASlowServerIsNotAskedAgainBeforeItCanHaveAnswered) {
+  const TestDomain domain;
+  Side robot(domain, "robot"), manager(domain, "manager");
+  EventLog<ServiceServer::Answer> asked_first;
+  EventLog<Bytes> asked_second;
+  const auto server = std::move(
+      *ServiceServer::create_slow(robot.node, kEcho, qos::kServices,
+                                  [&](ByteView payload, const ServiceServer::Answer& answer) {
+                                    const Bytes bytes(payload.begin(), payload.end());
+                                    if (bytes == request("first")) return asked_first.add(answer);
+                                    asked_second.add(bytes);
+                                  }));
+  const auto client = client_of(manager);
+  const auto first = call(*client, "first", Repeat::kUntilAnswered);
+  ASSERT_TRUE(asked_first.wait_for_count(5));  // 200 ms apart
+  asked_first.all()[0](request("after 0.8 s"));
+  ASSERT_TRUE(first->wait_for_count(1));
+  const auto second = call(*client, "second", Repeat::kUntilAnswered);
+  ASSERT_TRUE(asked_second.wait_for_count(1));
+  std::this_thread::sleep_for(1s);  // it would be asked again after 1.6 s
+  EXPECT_EQ(asked_second.all().size(), 1u);
+}
+
 TEST(Service, EveryClientGetsItsOwnAnswers) {
   const TestDomain domain;
   Side robot(domain, "robot"), one(domain, "one"), other(domain, "other");
