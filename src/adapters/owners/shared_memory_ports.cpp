@@ -1,21 +1,49 @@
 #include "owners/shared_memory_ports.h"
 
+#include <algorithm>
 #include <fcntl.h>
 #include <filesystem>
+#include <optional>
+#include <string_view>
 #include <sys/file.h>
 #include <utility>
 
 namespace culprit::owners {
 namespace {
 
+constexpr const char* kFolder = "/dev/shm";
+
 // "/dev/shm/fastrtps_port7415_el"; Fast DDS 3 writes "fastdds".
 bool is_lock_of_port(const std::string& file) {
   return (file.starts_with("/dev/shm/fastrtps_port") ||
           file.starts_with("/dev/shm/fastdds_port")) &&
-         file.ends_with("_el") && file.rfind('/') == sizeof("/dev/shm") - 1;
+         file.ends_with("_el") && file.rfind('/') == std::string_view(kFolder).size();
+}
+
+// Nothing if a process holds it, or it is no file any more.
+std::optional<FileDescriptor> lock(const std::string& file) {
+  FileDescriptor lock(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+  if (!lock || flock(lock.get(), LOCK_EX | LOCK_NB) != 0) return std::nullopt;
+  return lock;
 }
 
 }  // namespace
+
+void SharedMemoryPorts::keep_earlier() {
+  std::vector<std::pair<std::filesystem::file_time_type, std::string>> by_age;
+  std::error_code failed;
+  std::filesystem::directory_iterator files(kFolder, failed);
+  for (; !failed && files != std::filesystem::directory_iterator(); files.increment(failed)) {
+    std::error_code is_gone;
+    const auto written = files->last_write_time(is_gone);
+    if (!is_gone && is_lock_of_port(files->path())) by_age.emplace_back(written, files->path());
+  }
+  std::sort(by_age.rbegin(), by_age.rend());
+  for (const auto& [written, file] : by_age) {
+    if (kept_.size() >= kMostOfEarlier) return;
+    if (auto free = lock(file)) kept_.push_front(std::move(*free));
+  }
+}
 
 void SharedMemoryPorts::note(int pid) {
   std::vector<std::string> locks;
@@ -34,9 +62,7 @@ void SharedMemoryPorts::keep(int pid) {
   const auto noted = noted_.extract(pid);
   if (!noted) return;
   for (const std::string& file : noted.mapped()) {
-    FileDescriptor lock(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
-    const bool is_free = lock && flock(lock.get(), LOCK_EX | LOCK_NB) == 0;
-    if (is_free) kept_.push_back(std::move(lock));
+    if (auto free = lock(file)) kept_.push_back(std::move(*free));
   }
   while (kept_.size() > kMost) kept_.pop_front();
 }

@@ -6,8 +6,8 @@
 // successor of a stopped process takes the same numbers, and its writers go on with files that no
 // process reads. It would receive nothing, for good (seen with Fast DDS 2.9).
 //
-// So culprit locks the lock files that such processes left: their successors get numbers that no
-// writer knows. A process that ends in order removes its files.
+// So culprit locks the lock files that such processes left, also before it began: their successors
+// get numbers that no writer knows. A process that ends in order removes its files.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,10 @@ class SharedMemoryPorts {
  public:
   // A process has two. Fast DDS tries a hundred numbers, so most stay free.
   static constexpr std::size_t kMost = 32;
+  static constexpr std::size_t kMostOfEarlier = 16;
 
+  // Keeps the newest of those that processes left before culprit began.
+  void keep_earlier();
   // The process has its ports by now, or is about to be killed.
   void note(int pid);
   // The process has exited.

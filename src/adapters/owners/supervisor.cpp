@@ -42,6 +42,10 @@ Supervisor::Supervisor(const RuleSet& rules, Options options, Inbox& inbox)
       launchers_(rules, programs_.log_folder, inbox),
       wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
   for (std::size_t c = 0; c < rules_.components.size(); ++c) take_over(ComponentId(c));
+  {
+    const MutexLock lock(mutex_);
+    ports_.keep_earlier();
+  }
   thread_ = std::thread([this] { run(); });
 }
 

@@ -436,9 +436,8 @@ TEST(StartedProcesses, AreEndedAsALaunchEndsThem) {
 // A component whose process holds the lock file of a port, as a node of Fast DDS.
 struct WithPort {
   bool is_free() const {
-    const bool is_taken = flock(lock.get(), LOCK_EX | LOCK_NB) == 0;
-    if (is_taken) flock(lock.get(), LOCK_UN);
-    return is_taken;
+    const FileDescriptor lock(open(file.c_str(), O_RDONLY | O_CLOEXEC));
+    return !lock || flock(lock.get(), LOCK_EX | LOCK_NB) == 0;
   }
   bool becomes(bool free) const {
     for (const Time end = live_now() + 5s; is_free() != free && live_now() < end;)
@@ -448,8 +447,7 @@ struct WithPort {
   ~WithPort() { std::filesystem::remove(file); }
 
   const std::string file = "/dev/shm/fastrtps_port" + std::to_string(getpid()) + "999_el";
-  const FileDescriptor lock{open(file.c_str(), O_RDONLY | O_CREAT | O_CLOEXEC, 0644)};
-  const std::string launch = "sh -c 'exec 9<" + file + "; flock -n 9; exec sleep 1000'";
+  const std::string launch = "sh -c 'exec 9>>" + file + "; flock -n 9; exec sleep 1000'";
 };
 
 // The successor of a stopped process must not get the ports on which its writers have given up.
@@ -478,6 +476,18 @@ TEST(Supervisor, KeepsTheSharedMemoryPortsOfNodesThatOthersKill) {
   kill(pid, SIGKILL);
   supervised.state(ProcessState::kGone);
   EXPECT_FALSE(port.is_free());
+}
+
+// As if the culprit that kept them had been killed.
+TEST(Supervisor, KeepsTheSharedMemoryPortsThatWereLeftBeforeItBegan) {
+  const WithPort port;
+  std::ofstream(port.file).flush();
+  EXPECT_TRUE(port.is_free());
+  {
+    const Supervised supervised("sleep 1000");
+    EXPECT_FALSE(port.is_free());
+  }
+  EXPECT_TRUE(port.is_free());
 }
 
 // As Fast DDS does at an end in order.
