@@ -62,7 +62,9 @@ int show(const BeliefsOptions& options) {
   }
   std::erase_if(learned->latencies, [](const auto& each) { return each.count == 0; });
   if (learned->beliefs.empty() && learned->latencies.empty()) {
-    fmt::print("nothing was learned yet\n");
+    fmt::print(
+        "nothing was learned yet: the outcome of a repair counts after it has held for a minute "
+        "(culprit run --healthy)\n");
     return kOk;
   }
   fmt::print("{:<28} {:<28} {:>7} {:>7} {:>8} {:>8}\n", "rule", "strategy", "rules", "now",
