@@ -3,7 +3,12 @@
 // and all that it had come back, once and in order.
 #include <atomic>
 #include <csignal>
+#include <cstdlib>
 #include <fstream>
+#include <future>
+#include <memory>
+#include <random>
+#include <sstream>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -190,6 +195,77 @@ TEST_F(Composed, WhatAKilledCulpritLeftUnfinishedIsFinishedOnce) {
       << culprit.output();
   EXPECT_THAT(culprit.output(), Not(HasSubstr("several nodes")));
   end_box(culprit);
+}
+
+// Sets the detector's gain from outside, as a person does with `ros2 param set`.
+class Person {
+ public:
+  Person() {
+    auto context = ros2::Context::create(executor_, *ros2::options_from_environment());
+    if (!context) throw std::runtime_error(context.error());
+    context_ = std::move(*context);
+    node_ = std::move(*ros2::Node::create(*context_, {"/", "person"}));
+    set_ = std::move(*node_->create_client<ros2::srv::SetParameters>("/detector/set_parameters"));
+    thread_ = std::thread([this] { executor_.run(); });
+  }
+  ~Person() {
+    executor_.stop();
+    thread_.join();
+  }
+  // A detector that is not there now needs none.
+  void weaken_detector() {
+    std::promise<void> done;
+    set_->call({{{"gain", ros2::to_parameter_value(1.0)}}}, ros2::Repeat::kUntilAnswered, 1s,
+               [&](const auto&) { done.set_value(); });
+    done.get_future().wait();
+  }
+
+ private:
+  ros2::Executor executor_;
+  std::unique_ptr<ros2::Context> context_;
+  std::unique_ptr<ros2::Node> node_;
+  std::unique_ptr<ros2::Client<ros2::srv::SetParameters>> set_;
+  std::thread thread_;
+};
+
+// CULPRIT_CHAOS_KILLS says how often (scripts/chaos), CULPRIT_CHAOS_SEED when.
+TEST_F(Composed, CulpritMayBeKilledAtAnyInstantOfAReload) {
+  const auto setting = [](const char* name, int otherwise) {
+    const char* value = std::getenv(name);
+    return value == nullptr ? otherwise : std::atoi(value);
+  };
+  std::mt19937 random(static_cast<unsigned>(setting("CULPRIT_CHAOS_SEED", 1)));
+  std::uniform_int_distribution<int> reloading(0, 800);
+  const std::string text = rules("") + R"(
+RULE DetectorWeak
+  POLICIES ERROR
+  TRIGGER parameter(detector, gain) < 5
+    STRATEGY detector_redeploy 90 10
+      ADAPTATION detector redeploy 5
+)";
+  const std::vector<std::string> options{"--settle", "1", "--healthy", "1", "--backoff", "0"};
+  auto container = box();
+  Person person;
+  for (int kills = setting("CULPRIT_CHAOS_KILLS", 4); kills > 0; --kills) {
+    person.weaken_detector();
+    TestProgram culprit = run(text, options);
+    culprit.prints("decided", 6s);
+    std::this_thread::sleep_for(std::chrono::milliseconds(reloading(random)));
+    culprit.signal(SIGKILL);
+    EXPECT_EQ(culprit.wait(), -SIGKILL) << culprit.output();
+  }
+  person.weaken_detector();
+  const auto last = run(text, options);
+  EXPECT_TRUE(last.prints("DetectorWeak resolved by")) << last.output() << container.output();
+  EXPECT_FALSE(container.wait(100ms)) << "the container was ended";
+  // Each time one is unloaded, and one loaded.
+  std::istringstream said(container.output().substr(container.output().find("unloaded")));
+  int loaded = 1;
+  for (std::string line; std::getline(said, line);) {
+    EXPECT_EQ(line, loaded == 1 ? "unloaded /detector" : "loaded /detector") << container.output();
+    loaded = 1 - loaded;
+  }
+  EXPECT_EQ(loaded, 1) << container.output();
 }
 
 // Any program on the network can offer services of these names.
