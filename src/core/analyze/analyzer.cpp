@@ -474,7 +474,8 @@ void Analyzer::note_coincidence(RuleId id) {
   std::vector<RuleId> others;
   for (const RuleId other : knowledge_.states.active()) {
     const auto& began = knowledge_.states[other].onset;
-    if (!began || other == id || knowledge_.states[other].search.attempts > 0) continue;
+    // A repair of the other one may have caused this one.
+    if (!began || other == id || onset.latest > knowledge_.states[other].failing_since) continue;
     const bool is_together = began->earliest <= later(onset.latest, kTogether) &&
                              onset.earliest <= later(began->latest, kTogether);
     const auto& theirs = knowledge_.rules[other].components;

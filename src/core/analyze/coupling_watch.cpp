@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "diagnose/timing.h"
 #include "knowledge/ambiguity.h"
 
 namespace culprit {
@@ -50,7 +51,7 @@ Duration CouplingWatch::delay(RuleId cause, RuleId effect) const {
 
 // Failures downstream of these components get the time to clear, now that the failure `cause` has
 // cleared. A failure is no effect of the cause, and gets no time, in three cases: it is more
-// critical and at the same component; it was detected long before; or it was detected only after
+// critical and at the same component; it was detected long before the cause began; or only after
 // things had `changed`. If an effect may have come `on_its_way`, it may be detected up to so much
 // later than the cause.
 void CouplingWatch::settle(const std::vector<ComponentId>& repaired, RuleId cause, Time changed,
@@ -61,6 +62,8 @@ void CouplingWatch::settle(const std::vector<ComponentId>& repaired, RuleId caus
   }
   const Duration slack = std::max(knowledge_.signals.latency(cause), knowledge_.rules.cycle);
   const Time begun = knowledge_.states[cause].first_detected();
+  // Its alarm may have come last.
+  const Time onset = std::min(begun, diagnose::onset_of(cause, knowledge_).earliest);
   const auto criticality = knowledge_.rules[cause].policies.criticality;
   for (const RuleId effect : knowledge_.states.active()) {
     const RuleState& state = knowledge_.states[effect];
@@ -75,7 +78,7 @@ void CouplingWatch::settle(const std::vector<ComponentId>& repaired, RuleId caus
       return is_downstream[c.index] ||
              (is_lesser && std::find(repaired.begin(), repaired.end(), c) != repaired.end());
     });
-    if (!depends || later(state.first_detected(), slack) < begun) continue;
+    if (!depends || later(state.first_detected(), slack) < onset) continue;
     const Duration latency = std::max(knowledge_.signals.latency(effect), knowledge_.rules.cycle);
     const Time since = later(now, delay(cause, effect));
     if (!state.settling || state.settling->until < later(since, latency))

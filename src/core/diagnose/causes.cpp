@@ -37,16 +37,17 @@ std::size_t level_of(const Rule& rule) {
   return static_cast<std::size_t>(rule.policies.criticality);
 }
 
-// Does a strategy of its rule begin anew what it is about?
+// Does a strategy of its rule begin anew what it is about, or call one of its routines (which may
+// cycle the power of a device)?
 bool may_be_broken(RuleId rule, const RuleSet& rules) {
-  const auto begins_anew = [](const Adaptation& adaptation) {
+  const auto mends = [](const Adaptation& adaptation) {
     return adaptation.type == AdaptationType::kRestart ||
            adaptation.type == AdaptationType::kRedeploy ||
-           adaptation.type == AdaptationType::kStart;
+           adaptation.type == AdaptationType::kStart || adaptation.type == AdaptationType::kCall;
   };
   return std::any_of(
       rules[rule].strategies.begin(), rules[rule].strategies.end(), [&](StrategyId s) {
-        return std::any_of(rules[s].adaptations.begin(), rules[s].adaptations.end(), begins_anew);
+        return std::any_of(rules[s].adaptations.begin(), rules[s].adaptations.end(), mends);
       });
 }
 
@@ -146,6 +147,7 @@ void Causes::add_rules(const Knowledge& knowledge, std::span<const RuleId> immin
          is_imminent ? onset_now(rule, knowledge.now, knowledge) : onset_of_node(rule, knowledge),
          is_imminent ? states[rule].detection.last_false : states[rule].worked_until});
     CauseNode& node = nodes_.back();
+    node.is_outage = symptom_of(rule, knowledge) == Symptom::kOutage;
     node.first_onset = is_imminent ? node.onset.latest
                                    : std::min(node.onset.latest, first_onset_of(rule, knowledge));
     if (!is_imminent) node.unclear_until = unclear_until(rule, knowledge);
@@ -273,7 +275,8 @@ double Causes::timely(std::size_t j, std::size_t i) const {
   const Time began = nodes_[j].onset.latest;
   const Time worked = nodes_[i].worked_until;
   if (began == kLongAgo || began == kNever || worked <= later(began, kUsualDelay)) return 1;
-  return seconds(kUsualDelay) / seconds(worked - began);
+  const double share = seconds(kUsualDelay) / seconds(worked - began);
+  return nodes_[i].is_outage ? share * share : share;
 }
 
 // Kosaraju: what is visited first from the last of one search, backwards, is a loop.

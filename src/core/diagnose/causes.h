@@ -9,8 +9,8 @@
 //
 // Node j may be the cause of node i if a component of j is upstream of one of i, along a path that
 // the effect can have taken (paths.h). Criticality does not matter: the effects decide how bad a
-// cause is (plan/bayes/levels.h). One exception: a bad value that is only ever reconfigured is no
-// cause of a more critical failure. Two failures that were seen to clear together count as if they
+// cause is (plan/bayes/levels.h). One exception: a bad value whose strategies begin nothing anew and call
+// nothing is no cause of a more critical failure. Two failures that were seen to clear together count as if they
 // were connected, although the graph shows no edge. A cause begins before its effect (timing.h), or,
 // if the effect outlasts an earlier cause or its own component's new beginning, before that.
 // Nodes that may be the causes of each other, directly or through others, form a feedback loop. It
@@ -29,8 +29,9 @@ namespace culprit::diagnose {
 
 inline constexpr std::size_t kLevels = 3;  // of criticality
 
-// An effect usually follows its cause within this time. If it was seen to be well for twice as long
-// while the cause was there, it is half as likely to be one.
+// An effect usually follows its cause within this time. If it was seen to be well for n times as long
+// while the cause was there, it is 1/n as likely to be one; an outage 1/n^2, since it follows its cause
+// at once or after a timeout, and a bad value may come slowly.
 inline constexpr Duration kUsualDelay = std::chrono::seconds(5);
 // Learned couplings off the graph count from this mean on.
 inline constexpr double kKnownCoupling = 0.3;
@@ -51,6 +52,7 @@ struct CauseNode {
   Time first_onset = kNever;     // of a rule: the latest onset of its first detection
   // Of a failure: when its component began anew, or a cause of it cleared, and it was there still.
   Time unclear_until = kLongAgo;
+  bool is_outage = false;  // of a rule: that reads no values
 
   bool is_rule() const { return kind == Kind::kFailure || kind == Kind::kImminent; }
 };

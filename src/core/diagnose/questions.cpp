@@ -110,7 +110,6 @@ Questions questions_about(RuleId failure, std::span<const std::optional<TroubleS
     ask_publisher(*lost, failure, knowledge, questions);
     if (questions.lost || questions.awaited) return questions;
   }
-  if (symptom_of(failure, knowledge) != Symptom::kOutage) return questions;
   const Time onset = onset_of(failure, knowledge).latest;
   std::vector<ComponentId> silent;
   for (const ComponentId c : knowledge.graph.upstream(knowledge.rules[failure].components)) {
@@ -118,7 +117,8 @@ Questions questions_about(RuleId failure, std::span<const std::optional<TroubleS
   }
   if (silent.empty()) return questions;
   const std::vector<Time> signs = last_signs(knowledge);
-  std::erase_if(silent, [&](ComponentId c) { return signs[c.index] >= onset; });
+  std::erase_if(silent,
+                [&](ComponentId c) { return signs[c.index] >= later(onset, kProvesHealth); });
   std::sort(silent.begin(), silent.end(), [&](ComponentId a, ComponentId b) {
     return knowledge.rules[a].name < knowledge.rules[b].name;
   });

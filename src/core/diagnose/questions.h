@@ -1,7 +1,7 @@
 // Which components are asked whether they answer, before something is taken down.
 //
 // A supplier that hangs is found by periodic questions only after several went unanswered; until then
-// its consumer looks like the cause. So before an outage is repaired by taking something down, those
+// its consumer looks like the cause. So before a failure is repaired by taking something down, those
 // upstream are asked that gave no sign of life since it began, the nearest first. Asked are only
 // components that can answer as far as is known: one that never did, and was asked in vain, is not
 // asked again, and is not taken to hang.
@@ -22,6 +22,9 @@ inline constexpr Duration kAnswersWithin = std::chrono::milliseconds(500);
 inline constexpr Duration kLongestQuestion = std::chrono::milliseconds(600);
 // A component is not asked again before.
 inline constexpr Duration kAskedAgain = std::chrono::seconds(2);
+// A sign of life counts from so long after the onset on: the component may have hung right after an
+// earlier one.
+inline constexpr Duration kProvesHealth = std::chrono::milliseconds(100);
 // How many questions may be open at once.
 inline constexpr std::size_t kMostQuestions = 16;
 
@@ -33,8 +36,7 @@ struct Questions {
   std::optional<Lost> lost;
 };
 
-// Before something is taken down for the failure. `troubles`: by component. For a failure that is no
-// outage nothing is asked.
+// Before something is taken down for the failure. `troubles`: by component.
 Questions questions_about(RuleId failure, std::span<const std::optional<TroubleSeen>> troubles,
                           const Knowledge& knowledge);
 

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "diagnose/imminent.h"
+#include "diagnose/trouble.h"
+
 namespace culprit {
 
 StormWatch::StormWatch(const Knowledge& knowledge, EventLog& events, Options options)
@@ -57,7 +60,8 @@ std::optional<StormWatch::Storm> StormWatch::look() {
                                                "the network?"};
   }
   if (knowledge_.states.active().size() < static_cast<std::size_t>(options_.least)) return {};
-  const std::size_t ill = ill_roots();
+  std::size_t ill = ill_roots(std::vector<bool>(all));
+  if (is_much(ill)) ill = ill_roots(all_suspects());
   if (is_much(ill))
     return Storm{Restraint::kStorm, count(ill) + " failed at once, and none explains the others"};
   return std::nullopt;
@@ -76,8 +80,21 @@ void StormWatch::look_for_dead() {
   }
 }
 
+// Components that look bad although no rule about them has fired: a rule may yet fire, or none is about
+// them.
+std::vector<bool> StormWatch::all_suspects() const {
+  std::vector<bool> suspects(knowledge_.rules.components.size());
+  for (const RuleId rule : diagnose::imminent_rules(knowledge_)) {
+    for (const ComponentId component : knowledge_.rules[rule].components)
+      suspects[component.index] = true;
+  }
+  const auto troubles = diagnose::all_troubles(knowledge_);
+  for (std::size_t c = 0; c < suspects.size(); ++c) suspects[c] = suspects[c] || troubles[c];
+  return suspects;
+}
+
 // Components that a failing rule is about, and that nothing upstream explains.
-std::size_t StormWatch::ill_roots() const {
+std::size_t StormWatch::ill_roots(const std::vector<bool>& suspects) const {
   std::vector<ComponentId> roots;
   for (const RuleId id : knowledge_.states.active()) {
     for (const ComponentId component : knowledge_.rules[id].components) {
@@ -87,7 +104,7 @@ std::size_t StormWatch::ill_roots() const {
       const bool is_explained =
           std::any_of(upstream.begin(), upstream.end(), [&](ComponentId other) {
             return other != component &&
-                   (is_dead_[other.index] ||
+                   (is_dead_[other.index] || suspects[other.index] ||
                     knowledge_.states.is_sick(other, Criticality::kNonCritical, id));
           });
       if (!is_explained) roots.push_back(component);

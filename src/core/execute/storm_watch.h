@@ -2,7 +2,7 @@
 //
 // A storm: many components have failed that nothing upstream explains. (NodeHealthCheck's
 // minHealthy, with the dependency graph taken into account: a dead camera with all its consumers is
-// no storm; nor are exited processes, whose cause is clear.) A graph in doubt: nodes vanished from
+// no storm, also before its own alarm; nor are exited processes, whose cause is clear.) A graph in doubt: nodes vanished from
 // the graph although their processes run, or those of other computers do not answer although these
 // are reachable. Then the network is more likely at fault than all of the nodes.
 #pragma once
@@ -41,7 +41,8 @@ class StormWatch {
  private:
   std::optional<Storm> look();
   void look_for_dead();
-  std::size_t ill_roots() const;
+  std::vector<bool> all_suspects() const;
+  std::size_t ill_roots(const std::vector<bool>& suspects) const;
   bool is_much(std::size_t components) const;
 
   const Knowledge& knowledge_;

@@ -69,7 +69,8 @@ Monitor::Monitor(const Knowledge& knowledge, Writes writes, Time start, Time dis
   for (std::size_t i = 0; i < rules.inputs.size(); ++i) {
     const Input& input = rules.inputs[i];
     const InputId id(i);
-    write_.signals.set_latency(id, rules.cycle);
+    const bool counts_events = input.kind == Kind::kGoals || input.kind == Kind::kLogs;
+    write_.signals.set_latency(id, counts_events ? input.window : rules.cycle);
     switch (input.kind) {
       case Kind::kRate:
       case Kind::kAge:

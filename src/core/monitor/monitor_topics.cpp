@@ -43,7 +43,8 @@ void Monitor::on(Time at, const SampleArrived& seen) {
     const Input& input = knowledge_.rules[id];
     if (input.kind == Kind::kRate && !derived_[id.index].count.add(at, seen.published))
       note_overflow(id, at);
-    write_.signals.set_latency(id, input.kind == Kind::kRate   ? input.window
+    const bool counts = input.kind == Kind::kRate || input.kind == Kind::kGoals;
+    write_.signals.set_latency(id, counts                      ? input.window
                                    : input.kind == Kind::kLoss ? 2 * monitor::LossMeter::kSpan
                                                                : usual_latency(rhythm.interval));
     update(id, at);
@@ -57,7 +58,9 @@ void Monitor::on(Time at, const SampleArrived& seen) {
 // for a while.
 bool Monitor::has_begun_since(Time before, TopicId topic) const {
   const auto is_new = [&](ComponentId component) {
-    return knowledge_.components[component].node_seen >= before;
+    const ComponentState& state = knowledge_.components[component];
+    return state.node_seen >= before ||
+           (state.lifecycle_since != kLongAgo && state.lifecycle_since >= before);
   };
   for (std::size_t c = 0; c < knowledge_.rules.components.size(); ++c) {
     const ComponentId component(c);

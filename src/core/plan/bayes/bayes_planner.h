@@ -14,7 +14,8 @@
 //   5. is for a failure that may be the echo of one that cleared a moment ago,
 //   6. is for a failure whose cause can still be detected (diagnose/awaited.h), or that already looks
 //      bad upstream (diagnose/imminent.h),
-//   7. is for a failure that repeatedly began together with another one that has its turn now,
+//   7. is for a failure that repeatedly began together with another one that has its turn now, or is
+//      about to fire,
 //   8. adapts a component on which a more critical failure depends that is being worked on and that
 //      it does not explain: the lower criticality never delays the higher. A failure that waits for
 //      a person is not being worked on (its cause is exhausted, or all that is left was refused).

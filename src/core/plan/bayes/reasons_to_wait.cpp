@@ -57,6 +57,13 @@ bool ReasonsToWait::is_settling(RuleId rule) const {
          knowledge_.couplings.of(settling->with, rule).mean(Coupling::kUsual) > 0.5;
 }
 
+// Will `other` likely fire in time for a failure that waits for it?
+bool ReasonsToWait::is_about_to_fire(RuleId other, RuleId failure) const {
+  return causes_.holds(other) &&
+         causes_[causes_.index_of(other)].kind == CauseNode::Kind::kImminent &&
+         knowledge_.now < later(knowledge_.states[failure].first_detected(), kLongestEvidence);
+}
+
 // Does it give way to a failure that repeatedly began together with it, so that one can see whose
 // repair clears the other? Not to an effect, which waits itself. The one that was tried less goes
 // first; of equals the one by name, and the other the next time.
@@ -67,6 +74,10 @@ bool ReasonsToWait::exclude_coincidence(WeighedCandidate& weighed) const {
     return search.attempts - search.attempts_before;
   };
   for (const RuleId other : knowledge_.coincidences.of(rule)) {
+    if (is_about_to_fire(other, rule)) {
+      exclude(weighed, {Condition::kSuspect, likely_.likeliest_component(other), other});
+      return true;
+    }
     if (!knowledge_.states.is_active(other) || likely_.of(causes_.index_of(other))) continue;
     const auto& attempt = knowledge_.states[other].attempt;
     const bool is_other_spent =

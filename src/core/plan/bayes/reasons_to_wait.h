@@ -32,6 +32,7 @@ class ReasonsToWait {
  private:
   bool exclude_effect(WeighedCandidate& weighed) const;
   void exclude_for(WeighedCandidate& weighed, std::size_t cause) const;
+  bool is_about_to_fire(RuleId other, RuleId failure) const;
   bool exclude_coincidence(WeighedCandidate& weighed) const;
   bool exclude_unproven(WeighedCandidate& weighed, double chance) const;
   bool exclude_transient(WeighedCandidate& weighed) const;
