@@ -8,6 +8,7 @@
 #
 # A plain `cmake --install` installs all of them, but for what only a package has (EXCLUDE_FROM_ALL).
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/rules DESTINATION share/culprit COMPONENT culprit)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/studies DESTINATION share/culprit COMPONENT lab PATTERN __pycache__ EXCLUDE)
 install(FILES ${PROJECT_SOURCE_DIR}/packaging/fleet/grafana.json DESTINATION share/culprit/fleet COMPONENT culprit)
 install(FILES ${PROJECT_SOURCE_DIR}/packaging/monitoring/culprit-alerts.yaml ${PROJECT_SOURCE_DIR}/packaging/monitoring/grafana.json
         ${PROJECT_SOURCE_DIR}/packaging/monitoring/foxglove.json

@@ -55,6 +55,7 @@ It needs no ROS installation on its computer, and no change to the robot's
 code.")
 set(CPACK_DEBIAN_LAB_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_LAB_PACKAGE_DEPENDS "culprit ${same_version}")
+set(CPACK_DEBIAN_LAB_PACKAGE_SUGGESTS "python3-matplotlib, python3-scipy") # for reports of studies
 set(CPACK_DEBIAN_LAB_DESCRIPTION "laboratory of culprit
 Demonstrations of culprit on live robots of real processes, studies on models
 of them and on random robots, and torture. The commands demo, study and

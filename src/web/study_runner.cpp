@@ -94,10 +94,12 @@ void StudyRunner::look() {
   if (waitpid(pid_, &status, WNOHANG) != pid_) return;
   pid_ = 0;
   std::error_code error;
-  const bool is_done = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  // The result is written before the report, which needs Python.
+  const bool is_done = std::filesystem::exists(file(kResult), error);
+  const bool is_whole = WIFEXITED(status) && WEXITSTATUS(status) == 0;
   last_->state = is_done ? "done" : "failed";
-  last_->has_report = is_done && std::filesystem::exists(file(kReport), error);
-  if (!is_done) last_->trouble = log ? *log : log.error();
+  last_->has_report = is_whole && std::filesystem::exists(file(kReport), error);
+  if (!is_whole) last_->trouble = log ? *log : log.error();
 }
 
 std::optional<Studies::Progress> StudyRunner::progress() {

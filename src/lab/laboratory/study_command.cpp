@@ -169,7 +169,7 @@ std::vector<study::Timeline> timelines(const study::SunsetStudy& study,
                                        const study::Campaign& campaign,
                                        const StudyOptions& options) {
   std::vector<study::Timeline> told;
-  if (options.output.html.empty()) return told;
+  if (!options.output.report.is_wanted()) return told;
   const auto scenarios = static_cast<std::uint32_t>(sunset::scenarios().size());
   for (std::uint32_t run = 0; run < std::min(campaign.runs, scenarios); ++run)
     told.push_back(study.explain({told_row(campaign), run}));
@@ -179,6 +179,7 @@ std::vector<study::Timeline> timelines(const study::SunsetStudy& study,
 template <class Play>
 int run_campaign(const study::SunsetStudy& study, const study::Campaign& campaign,
                  const StudyOptions& options, const StopSignals& signals, Play play) {
+  warn_of_missing_python(options.output.report);
   const std::uint64_t learned =
       options.has_learning() ? std::uint64_t{options.experiments} * options.repetitions : 0;
   Progress progress(0, campaign.size() + learned);

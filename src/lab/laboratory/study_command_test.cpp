@@ -1,3 +1,4 @@
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <vector>
@@ -8,11 +9,13 @@
 
 #include "json/json.h"
 #include "laboratory/commands.h"
+#include "laboratory/study_report.h"
 
 namespace culprit::lab {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 class StudyCommand : public testing::Test {
  protected:
@@ -134,7 +137,7 @@ TEST_F(StudyCommand, ShardsOfSuaveMergeToTheSameBytes) {
   EXPECT_EQ(said, whole);
   EXPECT_EQ(text(path("merged.html")), text(path("whole.html")));
   EXPECT_EQ(run({"merge", path("2"), path("1"), "--format", "csv"}), kFailed);
-  EXPECT_THAT(complaint, HasSubstr("neither plots nor CSV"));
+  EXPECT_THAT(complaint, HasSubstr("SUAVE has no CSV"));
 }
 
 TEST_F(StudyCommand, SaysWhichManagersOfSuaveThereAre) {
@@ -175,12 +178,66 @@ TEST_F(StudyCommand, MergesNothingByHalves) {
 }
 
 TEST_F(StudyCommand, WritesAReportAndPlots) {
-  ASSERT_EQ(run_small({"--html", path("report.html"), "--svg", path("plots")}), kOk) << complaint;
+  ASSERT_EQ(run({"sunset", "--runs", "4", "--experiments", "4", "--repetitions", "2", "--html",
+                 path("report.html"), "--svg", path("plots")}),
+            kOk)
+      << complaint;
   const std::string page = text(path("report.html"));
-  EXPECT_THAT(page, HasSubstr("culprit study sunset --ablation"));
+  EXPECT_THAT(page, HasSubstr("culprit study sunset --learning --experiments 4"));
   EXPECT_THAT(page, HasSubstr("is held responsible for"));
+  for (const char* section :
+       {"id=\"agreement\"", "id=\"plot-equivalence-paper-paper\"", "id=\"ablation\"",
+        "id=\"effects-paper-paper\"", "id=\"claims\"", "id=\"plot-downtime_s\"",
+        "id=\"plot-learning-F1\"", "id=\"timeline-drawing\"", "significantly better"})
+    EXPECT_THAT(page, HasSubstr(section));
   EXPECT_THAT(text(path("plots/downtime_s.svg")), HasSubstr("<svg"));
+  EXPECT_TRUE(std::filesystem::exists(path("plots/learning-F4.svg")));
+}
+
+// A page is opened anywhere: it loads nothing, and what comes from outside stays text.
+TEST_F(StudyCommand, WritesAPageThatStandsAlone) {
+  const std::string rules = path("<script>.rules");
+  std::filesystem::copy("rules/sunset-study.rules", rules);
+  ASSERT_EQ(run_small({"--rules", rules, "--html", path("report.html")}), kOk) << complaint;
+  const std::string page = text(path("report.html"));
+  EXPECT_THAT(page, HasSubstr("&lt;script&gt;.rules"));
+  EXPECT_THAT(page, Not(HasSubstr("<script>.rules")));
+  for (const char* outside : {" src=", "<link", "@import", "https://", "url(http"})
+    EXPECT_THAT(page, Not(HasSubstr(outside)));
+}
+
+TEST_F(StudyCommand, WritesAFolderForAPaper) {
+  ASSERT_EQ(run_small({"--report", path("paper")}), kOk) << complaint;
+  for (const char* file : {"report.html", "study.json", "metrics.csv", "effects.csv", "values.csv",
+                           "figures/ratio.svg", "figures/equivalence-paper-paper.svg"})
+    EXPECT_TRUE(std::filesystem::exists(path("paper") + "/" + file)) << file;
+  const std::string table = text(path("paper/tables/ablation.tex"));
+  EXPECT_THAT(table, HasSubstr("\\begin{tabular}{cccrrrr}"));
+  EXPECT_THAT(table, HasSubstr("$t_\\text{down}$[s]"));
+  ASSERT_EQ(run_small({"--format", "latex"}), kOk) << complaint;
+  EXPECT_THAT(said, testing::StartsWith(table));
+  EXPECT_THAT(text(path("paper/tables/effects-paper-paper.tex")), HasSubstr("\\cellcolor{green!"));
+}
+
+TEST_F(StudyCommand, HasTheStatisticsThatSciPyComputes) {
+  ASSERT_EQ(run({"sunset", "--ablation", "--runs", "18", "--planner", "paper", "--planner",
+                 "reference", "--report", path("data")}),
+            kOk)
+      << complaint;
+  const auto python = find_report_python();
+  ASSERT_TRUE(python) << python.error();
+  const std::string check = *python + " -B studies/check_statistics.py '" + path("data") + "'";
+  EXPECT_EQ(std::system(check.c_str()), 0);
+  std::string metrics = text(path("data/metrics.csv"));
+  metrics.replace(metrics.find(",downtime_s,18,") + 15, 1, "9");
+  write(path("data/metrics.csv"), metrics);
+  EXPECT_NE(std::system((check + " 2>/dev/null").c_str()), 0);
+}
+
+TEST_F(StudyCommand, KeepsItsTablesIfThereIsNoReport) {
   EXPECT_EQ(run_small({"--html", path("no/report.html")}), kFailed);
+  EXPECT_THAT(complaint, HasSubstr("no/report.html: No such file or directory"));
+  EXPECT_THAT(said, HasSubstr("Results by configuration"));
 }
 
 TEST_F(StudyCommand, SaysWhatCanBeChosen) {

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "base/expected.h"
+#include "laboratory/study_report.h"
 #include "study/findings.h"
 #include "study/tables/table.h"
 #include "suave_study/campaign.h"
@@ -16,13 +17,12 @@ namespace culprit::lab {
 
 struct StudyOutput {
   std::string format = "text";
-  std::string output;       // empty: the standard output
-  std::string html;         // a report; empty: none
-  std::string plot_folder;  // empty: no plots
+  std::string output;  // empty: the standard output
+  ReportOptions report;
 
-  // --format, --json, --output, --html, --svg
+  // --format, --json, --output, --report, --html, --svg
   void add_to(CLI::App& command);
-  // The same without what SUAVE has not: CSV and plots.
+  // The same without the CSV that SUAVE does not have.
   void add_suave_to(CLI::App& command);
 
  private:
@@ -30,7 +30,11 @@ struct StudyOutput {
               const std::vector<std::string>& formats);
 };
 
-// An error: a file cannot be written, or there is no such format of this study.
+// Tables as text, markdown or latex.
+Expected<std::string> tables_as(const std::vector<study::Table>& tables, const std::string& format);
+
+// An error: a file cannot be written, there is no such format of this study, or the report cannot be
+// made. The output is written before the report.
 Expected<void> write(const study::Findings& findings, const StudyOutput& output);
 Expected<void> write(const study::SuaveResult& result, const StudyOutput& output);
 Expected<void> write(const study::Validation& validation, const StudyOutput& output);

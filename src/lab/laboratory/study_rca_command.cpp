@@ -56,7 +56,7 @@ struct RcaOptions {
   bool regret = false;
   std::uint32_t systems = 1000;
   bool untold = false;
-  std::string html;  // a report on learning; empty: none
+  ReportOptions report;
   std::string version;
   std::string scenario_output;   // empty: the episodes are played
   std::string cases_output;      // a folder; empty: no cases are exported
@@ -111,16 +111,25 @@ Expected<RcaCampaign> campaign_of(const RcaOptions& options) {
   return campaign;
 }
 
-std::string in_format(const RcaOptions& options, const study::Table& table) {
-  if (options.format == "markdown") return study::markdown(table);
-  return options.format == "latex" ? study::latex(table) : study::text(table);
+// The output, and after it the report, if one is wanted.
+int write(const RcaOptions& options, const Expected<std::string>& output,
+          const std::vector<ReportFile>& report) {
+  auto written =
+      output ? write_text(options.output, *output) : Expected<void>(Error{output.error()});
+  if (written && options.report.is_wanted()) written = make_report("rca", report, options.report);
+  return written ? kOk : fail(written.error(), kFailed);
 }
 
-std::string in_format(const RcaOptions& options, const RcaCampaign& campaign,
-                      const std::vector<RcaRow>& rows) {
-  if (options.format == "json") return study::rca::rca_json(campaign, rows, options.times());
-  if (options.format == "csv") return study::rca::rca_csv(rows, options.times());
-  return in_format(options, study::rca::rca_table(campaign, rows, options.times()));
+int write(const RcaOptions& options, const RcaCampaign& campaign, const std::vector<RcaRow>& rows) {
+  const std::string json = study::rca::rca_json(campaign, rows, options.times());
+  const std::string csv = study::rca::rca_csv(rows, options.times());
+  const std::vector tables = {study::rca::rca_table(campaign, rows, options.times())};
+  return write(
+      options,
+      options.format == "json"  ? json
+      : options.format == "csv" ? csv
+                                : tables_as(tables, options.format),
+      {{"study.json", json}, {"planners.csv", csv}, {"tables.json", study::tables_json(tables)}});
 }
 
 int study_regret(const RcaOptions& options) {
@@ -139,11 +148,11 @@ int study_regret(const RcaOptions& options) {
       [&] { return signals.stopped().load(); });
   progress.reset();
   if (!regrets) return fail("interrupted; nothing is written", kFailed);
-  const auto written = write_text(
-      options.output, options.format == "json"
-                          ? study::rca::regret_json(campaign, *regrets)
-                          : in_format(options, study::rca::regret_table(campaign, *regrets)));
-  return written ? kOk : fail(written.error(), kFailed);
+  return write(options,
+               options.format == "json"
+                   ? study::rca::regret_json(campaign, *regrets)
+                   : tables_as({study::rca::regret_table(campaign, *regrets)}, options.format),
+               {});
 }
 
 int study_learning(const RcaOptions& options) {
@@ -156,23 +165,20 @@ int study_learning(const RcaOptions& options) {
   campaign.forgetting = options.forgetting;
   campaign.has_drift = options.drift;
   campaign.seed = options.seed;
+  warn_of_missing_python(options.report);
   const StopSignals signals;
   const auto result = study::rca::learn(campaign, [&] { return signals.stopped().load(); });
   if (!result) return fail("interrupted; nothing is written", kFailed);
-  const auto written = write_text(
-      options.output, options.format == "json" ? study::rca::learning_json(campaign, *result)
-                                               : study::rca::learning_text(campaign, *result));
-  if (!written) return fail(written.error(), kFailed);
-  if (options.html.empty()) return kOk;
   const std::string command = fmt::format(
       "culprit study rca --learn {} --components {} --faults {} --noise {:g}{}{} --objective {} "
       "--forgetting {:g}{} --seed {}",
       campaign.faults, campaign.setting.components, campaign.setting.faults, campaign.setting.noise,
       options.cyclic ? " --cyclic" : "", study::rca::options_of(options.factors), options.objective,
       campaign.forgetting, options.drift ? " --drift" : "", campaign.seed);
-  const auto page = write_text(
-      options.html, study::rca::learning_html(campaign, *result, command, options.version));
-  return page ? kOk : fail(page.error(), kFailed);
+  const std::string json = study::rca::learning_json(campaign, *result, command, options.version);
+  return write(options,
+               options.format == "json" ? json : study::rca::learning_text(campaign, *result),
+               {{"study.json", json}});
 }
 
 // Options that were not given: those of the small set of docs/study-rca.md.
@@ -343,6 +349,7 @@ int study_rca(const RcaOptions& options) {
     }
     return kOk;
   }
+  warn_of_missing_python(options.report);
   const StopSignals signals;
   std::optional<Progress> progress;
   const auto rows = study::rca::run_campaign(*campaign, options.jobs,
@@ -353,8 +360,7 @@ int study_rca(const RcaOptions& options) {
                                              });
   progress.reset();
   if (!rows) return fail("interrupted; nothing is written", kFailed);
-  const auto written = write_text(options.output, in_format(options, *campaign, *rows));
-  return written ? kOk : fail(written.error(), kFailed);
+  return write(options, *campaign, *rows);
 }
 
 }  // namespace
@@ -449,9 +455,6 @@ void add_learning_and_regret(CLI::App* command, const std::shared_ptr<RcaOptions
       ->add_flag("--untold", options->untold,
                  "Use robots that differ from the rules, as those of the benchmark do")
       ->needs(regret);
-  command->add_option("--html", options->html, "Also a page with calibration plots")
-      ->type_name("FILE")
-      ->needs(learn);
 }
 
 }  // namespace
@@ -483,6 +486,11 @@ void add_study_rca(CLI::App& study, const std::string& version, int& exit_code) 
       "--json", [options] { options->format = "json"; }, "The same as --format json");
   command->add_option("-o,--output", options->output, "Write there (default: the terminal)")
       ->type_name("FILE");
+  options->report.add_to(*command);
+  for (const char* report : {"--report", "--html", "--svg"}) {
+    for (const char* other : {"--regret", "--export-cases", "--write-scenario", "--explain"})
+      command->get_option(report)->excludes(other);
+  }
   command->callback([options, command, &exit_code] {
     if (!options->cases_output.empty()) use_small_set(*command, *options);
     exit_code = study_rca(*options);

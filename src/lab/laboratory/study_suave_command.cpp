@@ -236,6 +236,7 @@ int study_suave(const SuaveOptions& options) {
   const StopSignals signals;
   if (options.shard.is_sharded())
     return fill_shard(*campaign, options.shard, options.jobs, signals, play);
+  warn_of_missing_python(options.output.report);
   Progress progress(0, campaign->size());
   const auto result = run_whole(*campaign, options.jobs, signals, progress, play);
   progress.end();

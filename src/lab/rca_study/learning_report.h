@@ -1,6 +1,7 @@
-// How true what was learned is: as text, JSON and one HTML page with a calibration plot.
+// How true what was learned is: as text and JSON.
 //
-//     {"learning": {"components": 10, "faults_learned": 500, "faults_measured": 2000,
+//     {"campaign": {"command": "culprit study rca --learn ...", "version": "0.1.0"},
+//      "learning": {"components": 10, "faults": 1, "faults_learned": 500, "faults_measured": 2000,
 //                   "forgetting": 1, "drift": false,
 //                   "success": {"expected_calibration_error": 0.02, "outcomes": 2600,
 //                               "bins": [{"forecast": 0.05, "came_true": 0.06, "count": 120}]},
@@ -17,9 +18,8 @@
 namespace culprit::study::rca {
 
 std::string learning_text(const LearningCampaign& campaign, const LearningResult& result);
-std::string learning_json(const LearningCampaign& campaign, const LearningResult& result);
 // `command` makes it again.
-std::string learning_html(const LearningCampaign& campaign, const LearningResult& result,
+std::string learning_json(const LearningCampaign& campaign, const LearningResult& result,
                           const std::string& command, const std::string& version);
 
 }  // namespace culprit::study::rca

@@ -61,19 +61,25 @@ std::string_view name(published::Significance significance) {
   return "none";
 }
 
-void metric_line(std::string& out, const Row& row, Metric metric,
-                 const MeanComparison* comparison) {
-  const Configuration& configuration = row.configuration;
-  const Summary& summary = row[metric];
-  const bool exists = summary.count() > 0;
-  const std::optional<Interval> interval = summary.interval();
-  Line line(out);
-  line.truth(configuration.switches.dependencies)
+constexpr std::string_view kConfigurationFields =
+    "dependencies,criticality,impact,planner,profile,probabilities";
+
+Line& add(const Configuration& configuration, Line& line) {
+  return line.truth(configuration.switches.dependencies)
       .truth(configuration.switches.criticality)
       .truth(configuration.switches.impact)
       .text(configuration.planner)
       .text(configuration.profile)
-      .text(configuration.probabilities == Probabilities::kIdeal ? "ideal" : "misspecified")
+      .text(configuration.probabilities == Probabilities::kIdeal ? "ideal" : "misspecified");
+}
+
+void metric_line(std::string& out, const Row& row, Metric metric,
+                 const MeanComparison* comparison) {
+  const Summary& summary = row[metric];
+  const bool exists = summary.count() > 0;
+  const std::optional<Interval> interval = summary.interval();
+  Line line(out);
+  add(row.configuration, line)
       .text(std::to_string(row.runs))
       .text(traits(metric).key)
       .text(std::to_string(summary.count()))
@@ -92,9 +98,10 @@ void metric_line(std::string& out, const Row& row, Metric metric,
 }  // namespace
 
 std::string metrics_csv(const CampaignResult& result) {
-  std::string out =
-      "dependencies,criticality,impact,planner,profile,probabilities,runs,metric,count,mean,sd,"
-      "ci_low,ci_high,censored,published_mean,published_sd,is_within\n";
+  std::string out(kConfigurationFields);
+  out +=
+      ",runs,metric,count,mean,sd,ci_low,ci_high,censored,published_mean,published_sd,"
+      "is_within\n";
   for (const Row& row : result.rows) {
     const std::vector<MeanComparison> comparisons = compare_means(row);
     for (std::size_t i = 0; i < kMetricCount; ++i)
@@ -127,6 +134,24 @@ std::string effects_csv(const CampaignResult& result) {
             .number(change.theirs.percent)
             .text(name(change.theirs.significance))
             .truth(change.has_same_sign());
+      }
+    }
+  }
+  return out;
+}
+
+std::string values_csv(const CampaignResult& result) {
+  std::string out(kConfigurationFields);
+  out += ",metric,value,count\n";
+  for (const Row& row : result.rows) {
+    for (std::size_t i = 0; i < kMetricCount; ++i) {
+      const auto metric = static_cast<Metric>(i);
+      for (const auto& [value, count] : row[metric].distribution().counts()) {
+        Line line(out);
+        add(row.configuration, line)
+            .text(traits(metric).key)
+            .number(value)
+            .text(std::to_string(count));
       }
     }
   }

@@ -19,4 +19,9 @@ std::string metrics_csv(const CampaignResult& result);
 // published_verdict,same_sign       (from, to: "D-S"; verdict: better, worse, none)
 std::string effects_csv(const CampaignResult& result);
 
+// A line for each value that occurs in a metric of a row, with how often it does (to a small
+// relative error where more than Distribution::kMostValues different ones occur). Lower bounds are
+// left out: dependencies,criticality,impact,planner,profile,probabilities,metric,value,count
+std::string values_csv(const CampaignResult& result);
+
 }  // namespace culprit::study

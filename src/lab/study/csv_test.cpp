@@ -38,6 +38,19 @@ TEST(StudyCsv, HasALineForEachMetricOfEachEffect) {
   EXPECT_TRUE(table[1].starts_with("paper,paper,ratio,---,D--,")) << table[1];
 }
 
+TEST(StudyCsv, CountsTheValuesOfEachMetric) {
+  const CampaignResult result = synthetic_result(20);
+  const auto table = lines(values_csv(result));
+  EXPECT_EQ(table[0],
+            "dependencies,criticality,impact,planner,profile,probabilities,metric,value,count");
+  std::int64_t ratios = 0;
+  for (const std::string& line : table) {
+    if (line.starts_with("true,true,true,paper,paper,ideal,ratio,"))
+      ratios += std::stoi(line.substr(line.rfind(',') + 1));
+  }
+  EXPECT_EQ(ratios, 20);
+}
+
 TEST(StudyCsv, QuotesWhatWouldBreakALine) {
   Campaign campaign;
   campaign.rows.resize(1);

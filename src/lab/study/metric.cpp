@@ -6,35 +6,20 @@ namespace {
 // In the order of Metric.
 constexpr std::array<MetricTraits, kMetricCount> kTraits = {{
     {"ratio", "resolved / executed", R"($\frac{f_\text{resolved}}{s_\text{executed}}$)",
-     "Failures that went away for each strategy that was executed; above 1 where one strategy "
-     "ended "
-     "several failures.",
-     Better::kHigher, false},
-    {"reaction_s", "reaction [s]", R"($t_\text{react}$[s])",
-     "From the detection of a failure to its end; failures without an end are not in it.",
-     Better::kLower, false},
-    {"downtime_s", "downtime [s]", R"($t_\text{down}$[s])",
-     "Gaps between segmentations; what is missing at the end of a run is not in it.",
-     Better::kLower, false},
+     Better::kHigher},
+    {"reaction_s", "reaction [s]", R"($t_\text{react}$[s])", Better::kLower},
+    {"downtime_s", "downtime [s]", R"($t_\text{down}$[s])", Better::kLower},
     {"unnecessary_redeployments", "unnecessary redeployments", R"($\text{\#rdply}_\text{u}$)",
-     "Redeployments beyond those that a fault needed.", Better::kLower, true},
+     Better::kLower},
     {"honest_downtime_s", "honest downtime [s]", R"($t_\text{down}^\text{honest}$[s])",
-     "Gaps between segmentations, also those at the beginning and at the end of a run.",
-     Better::kLower, false},
+     Better::kLower},
     {"strategies_per_fault", "strategies per fault", R"($s_\text{executed}$ per fault)",
-     "Strategies that were executed for each fault that went in.", Better::kLower, false},
-    {"wrong_component", "wrong component", "wrong component",
-     "Adaptations of components that were well.", Better::kLower, true},
-    {"unresolved", "unresolved failures", "unresolved",
-     "Failures that were still there at the end of a run.", Better::kLower, true},
-    {"recovery_s", "recovery [s]", R"($t_\text{recover}$[s])",
-     "From the first fault until all was well again; a run that did not get there counts to its "
-     "end.",
-     Better::kLower, false},
-    {"root_cause_top1", "root cause top-1", "top-1",
-     "Share of diagnoses whose most blamed component is a cause.", Better::kHigher, false},
-    {"root_cause_exact", "root causes exact", "exact",
-     "Share of diagnoses that blamed all causes and nothing else.", Better::kHigher, false},
+     Better::kLower},
+    {"wrong_component", "wrong component", "wrong component", Better::kLower},
+    {"unresolved", "unresolved failures", "unresolved", Better::kLower},
+    {"recovery_s", "recovery [s]", R"($t_\text{recover}$[s])", Better::kLower},
+    {"root_cause_top1", "root cause top-1", "top-1", Better::kHigher},
+    {"root_cause_exact", "root causes exact", "exact", Better::kHigher},
 }};
 
 std::vector<double> share(std::int32_t part, std::int32_t whole) {

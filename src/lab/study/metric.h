@@ -39,12 +39,10 @@ inline constexpr std::size_t kMetricCount = kPublishedMetrics.size() + kHonestMe
 enum class Better : std::uint8_t { kHigher, kLower };
 
 struct MetricTraits {
-  std::string_view key;          // in JSON and CSV; its end tells the unit
-  std::string_view title;        // short, for the head of a column, with the unit
-  std::string_view latex;        // the same as the paper prints it
-  std::string_view explanation;  // a sentence
+  std::string_view key;    // in JSON and CSV; its end tells the unit
+  std::string_view title;  // short, for the head of a column, with the unit
+  std::string_view latex;  // the same as the paper prints it
   Better better;
-  bool is_integer;  // of each run
 };
 
 const MetricTraits& traits(Metric metric);

@@ -1,5 +1,9 @@
 #include "study/timeline.h"
 
+#include <fmt/core.h>
+
+#include "json/json.h"
+
 namespace culprit::study {
 
 std::string_view name(Happening happening) {
@@ -20,6 +24,22 @@ std::string_view name(Happening happening) {
       return "note";
   }
   return "note";
+}
+
+std::string timelines_json(const std::vector<Timeline>& timelines) {
+  Json document = Json::array();
+  for (const Timeline& timeline : timelines) {
+    std::string title = fmt::format("run {} of {}", timeline.run, label(timeline.configuration));
+    if (!timeline.scenario.empty()) title += ": " + timeline.scenario;
+    Json entries = Json::array();
+    for (const TimelineEntry& entry : timeline.entries)
+      entries.push_back({{"time", entry.time_s},
+                         {"kind", name(entry.kind)},
+                         {"text", entry.text},
+                         {"component", entry.component}});
+    document.push_back({{"label", std::move(title)}, {"entries", std::move(entries)}});
+  }
+  return to_indented(document) + "\n";
 }
 
 }  // namespace culprit::study

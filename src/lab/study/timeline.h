@@ -36,4 +36,8 @@ struct Timeline {
   std::vector<TimelineEntry> entries;  // by time
 };
 
+// An array: {"label": "run 37 of D C S: ...", "entries": [{"time": seconds, "kind": "fault",
+// "text": "...", "component": "camera"}]}
+std::string timelines_json(const std::vector<Timeline>& timelines);
+
 }  // namespace culprit::study

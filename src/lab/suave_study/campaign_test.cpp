@@ -4,11 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "exemplars/suave/model/pipeline.h"
 #include "json/json.h"
 #include "study/statistics/welch.h"
-#include "suave_study/html_report.h"
 #include "suave_study/published.h"
 #include "suave_study/report.h"
+#include "suave_study/track.h"
 
 namespace culprit::study {
 namespace {
@@ -174,15 +175,17 @@ TEST(SuaveTracks, AreWrittenDownWithoutChangingTheRun) {
     EXPECT_THAT(happened, testing::Contains(wanted));
 }
 
-TEST(SuaveReport, ShowsTheWayOfEachManagerAndLetsItMove) {
-  SuaveCampaign standard = campaign("standard", {"none", "culprit"}, 2);
-  standard.command = "the command";
-  const std::string page = suave_html(run_campaign(standard, 2), first_tracks(standard));
-  for (const char* wanted :
-       {"id=\"track-none\"", "id=\"track-culprit\"", "class=\"pipeline\"",
-        "<animate attributeName=\"cx\"", "thruster 1 fails", "the command", "<table"})
-    EXPECT_THAT(page, testing::HasSubstr(wanted));
-  EXPECT_THAT(page, testing::Not(testing::HasSubstr("<script")));
+TEST(SuaveTracks, AreJsonForTheReport) {
+  const SuaveCampaign standard = campaign("standard", {"none", "culprit"}, 2);
+  const auto json = parse_json(tracks_json("a mission", first_tracks(standard)));
+  EXPECT_EQ(json["mission"], "a mission");
+  EXPECT_EQ(json["pipeline"].size(), suave::model::kPipelinePoints);
+  ASSERT_EQ(json["tracks"].size(), 2u);
+  const auto& track = json["tracks"][1];
+  EXPECT_EQ(track["manager"], "culprit");
+  EXPECT_GE(track["points"].size(), 299u);
+  EXPECT_EQ(track["points"][0].size(), 2u);
+  EXPECT_THAT(track["marks"].dump(), testing::HasSubstr("thruster 1 fails"));
 }
 
 }  // namespace

@@ -2,9 +2,38 @@
 
 #include <fmt/core.h>
 
+#include "exemplars/suave/model/pipeline.h"
+#include "json/json.h"
+
 namespace culprit::study {
 
 using namespace suave::model;
+
+namespace {
+
+Json place(const suave::model::Position& position) { return {position.x, position.y}; }
+
+Json places(const auto& positions) {
+  Json json = Json::array();
+  for (const auto& position : positions) json.push_back(place(position));
+  return json;
+}
+
+}  // namespace
+
+std::string tracks_json(const std::string& mission, const std::vector<Track>& tracks) {
+  Json document = {
+      {"mission", mission}, {"pipeline", places(pipeline())}, {"tracks", Json::array()}};
+  for (const Track& track : tracks) {
+    Json marks = Json::array();
+    for (const TrackMark& mark : track.marks)
+      marks.push_back({{"time", mark.time_s}, {"at", place(mark.at)}, {"text", mark.what}});
+    document["tracks"].push_back({{"manager", track.manager},
+                                  {"points", places(track.points)},
+                                  {"marks", std::move(marks)}});
+  }
+  return to_line(document) + "\n";
+}
 
 TrackRecorder::TrackRecorder(SuaveModel& model, Track& track) : model_(model), track_(track) {
   model_.world().watch(*this);

@@ -23,6 +23,10 @@ struct Track {
   std::vector<TrackMark> marks;
 };
 
+// {"mission": "...", "pipeline": [[x, y], ...], "tracks": [{"manager": "bt", "points": [[x, y], ...],
+//  "marks": [{"time": seconds, "at": [x, y], "text": "it inspects"}]}]}; places in metres
+std::string tracks_json(const std::string& mission, const std::vector<Track>& tracks);
+
 // Writes down a mission that is about to be played. It watches, and changes nothing.
 class TrackRecorder : private simulation::Watcher {
  public:

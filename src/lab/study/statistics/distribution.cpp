@@ -32,15 +32,4 @@ void Distribution::coarsen() {
   counts_ = std::move(coarser);
 }
 
-double Distribution::quantile(double q) const {
-  CULPRIT_ASSERT(count_ > 0 && q > 0 && q <= 1);
-  const auto wanted = static_cast<std::int64_t>(std::ceil(q * static_cast<double>(count_)));
-  std::int64_t seen = 0;
-  for (const auto& [value, count] : counts_) {
-    seen += count;
-    if (seen >= wanted) return value;
-  }
-  return counts_.rbegin()->first;
-}
-
 }  // namespace culprit::study

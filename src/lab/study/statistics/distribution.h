@@ -21,9 +21,6 @@ class Distribution {
   const std::map<double, std::int64_t>& counts() const { return counts_; }
   std::int64_t count() const { return count_; }
 
-  // The smallest value that a share `q` of all does not exceed. @pre count() > 0, q in (0, 1]
-  double quantile(double q) const;
-
  private:
   void coarsen();
 

@@ -10,13 +10,21 @@
 namespace culprit::study {
 namespace {
 
+// The smallest value that a share `q` of all does not exceed.
+double quantile(const Distribution& distribution, double q) {
+  std::int64_t wanted = static_cast<std::int64_t>(q * static_cast<double>(distribution.count()));
+  for (const auto& [value, count] : distribution.counts()) {
+    wanted -= count;
+    if (wanted <= 0) return value;
+  }
+  return distribution.counts().rbegin()->first;
+}
+
 TEST(Distribution, IsExactForFewValues) {
   Distribution distribution;
   for (const double value : {2.0, -1.0, 0.1, 2.0, -0.0, 0.0}) distribution.add(value);
   EXPECT_EQ(distribution.counts(),
             (std::map<double, std::int64_t>{{-1, 1}, {0, 2}, {0.1, 1}, {2, 2}}));
-  EXPECT_EQ(distribution.quantile(0.5), 0);
-  EXPECT_EQ(distribution.quantile(1), 2);
 }
 
 TEST(Distribution, KeepsManyValuesInLittleMemoryWithASmallError) {
@@ -30,7 +38,7 @@ TEST(Distribution, KeepsManyValuesInLittleMemoryWithASmallError) {
   std::sort(values.begin(), values.end());
   for (const double q : {0.01, 0.25, 0.5, 0.9, 0.999}) {
     const double exact = values[static_cast<std::size_t>(q * 100'000) - 1];
-    EXPECT_NEAR(distribution.quantile(q), exact, 0.01 * exact);
+    EXPECT_NEAR(quantile(distribution, q), exact, 0.01 * exact);
   }
 }
 

@@ -4,9 +4,20 @@
 
 #include <fmt/core.h>
 
-#include "study/markup.h"
-
 namespace culprit::study {
+namespace {
+
+// With a dash for each character that is no letter, digit, dash or underscore.
+std::string safe_id(std::string text) {
+  for (char& c : text) {
+    const bool is_safe = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                         (c >= '0' && c <= '9') || c == '_' || c == '-';
+    if (!is_safe) c = '-';
+  }
+  return text;
+}
+
+}  // namespace
 
 std::string number(double value, int decimals) {
   if (!std::isfinite(value)) return "–";

@@ -1,7 +1,9 @@
-// The forms of a table. Each ends with a line end.
+// The forms of a table. Each ends with a line end. The scripts in studies/ make HTML and LaTeX of
+// the JSON.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "study/tables/table.h"
 
@@ -13,11 +15,8 @@ std::string text(const Table& table);
 // GitHub's. Significant changes are bold, with the same signs.
 std::string markdown(const Table& table);
 
-// A table environment like the paper's, with booktabs and xcolor's [table] option.
-std::string latex(const Table& table);
-
-// A <figure> with a <table>; classes "better", "worse" and "grey" name the shades, the custom
-// property --strength their size. Self-contained but for its style (study/report/report.css).
-std::string html(const Table& table);
+// An array of objects with the fields of a Table. Cells have "shade" ("not_significant", "better",
+// "worse"), "strength" and "bold" only if they are set.
+std::string tables_json(const std::vector<Table>& tables);
 
 }  // namespace culprit::study

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "json/json.h"
 #include "study/tables/columns.h"
 #include "study/tables/study_tables.h"
 #include "study/test_findings.h"
@@ -68,40 +69,15 @@ A note.
 )");
 }
 
-TEST(Tables, AreLatexLikeThePapers) {
-  EXPECT_EQ(latex(sample()),
-            R"(% needs \usepackage{amsmath,amssymb,booktabs} and \usepackage[table]{xcolor}
-\begin{table}[ht]
-\centering
-\caption{What 50 \% of $<$all$>$ find}
-\label{tab:sample}
-\begin{tabular}{lrr}
-\toprule
- & \multicolumn{2}{c}{$r$} \\
-\cmidrule(lr){2-3}
-name & ours & paper \\
-\midrule
-a\_b$|$c & \textbf{1.00 $\pm$ 0.20} & \checkmark \\
-d & \cellcolor{red!50}$-$2.00 & \cellcolor{green!100}3.00 \\
-e & \cellcolor{gray!25}0.00 & \textendash{} \\
-\bottomrule
-\end{tabular}
-
-\smallskip
-{\footnotesize A note.}
-\end{table}
-)");
-}
-
-TEST(Tables, AreHtmlThatEscapesEverything) {
-  const std::string page = html(sample());
-  EXPECT_NE(page.find("What 50 % of &lt;all&gt; find"), std::string::npos) << page;
-  EXPECT_NE(page.find("<th class=\"group\" colspan=\"2\" scope=\"colgroup\">ratio</th>"),
-            std::string::npos)
-      << page;
-  EXPECT_NE(page.find("<td class=\"right worse\" style=\"--strength:0.50\">−2.00"),
-            std::string::npos)
-      << page;
+TEST(Tables, AreJsonForTheScriptsOfReports) {
+  const Json table = parse_json(tables_json({sample()}))[0];
+  EXPECT_EQ(table["id"], "sample");
+  EXPECT_EQ(table["columns"][0]["align"], "left");
+  EXPECT_EQ(table["columns"][1]["group_latex"], "$r$");
+  EXPECT_EQ(table["rows"][0][1], (Json{{"text", "1.00 ± 0.20"}, {"bold", true}}));
+  EXPECT_EQ(table["rows"][1][1], (Json{{"text", "−2.00"}, {"strength", 0.5}, {"shade", "worse"}}));
+  EXPECT_EQ(table["rows"][2][1], (Json{{"text", "0.00"}, {"shade", "not_significant"}}));
+  EXPECT_EQ(table["notes"][0], "A note.");
 }
 
 TEST(Tables, OfAStudyAreAllThere) {
