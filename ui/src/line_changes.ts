@@ -1,4 +1,4 @@
-// What changed in a text, line by line: in a save, and by two people at once.
+// The changes of a text, line by line: those of a save, and those of two people at once.
 import { diffArrays, structuredPatch } from 'diff'
 
 export interface DiffLine {
