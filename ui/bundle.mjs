@@ -36,6 +36,7 @@ export function bundleWithNotices(modules) {
     entryPoints: [join(source, 'app.tsx')],
     nodePaths: [join(modules, 'node_modules')],
     bundle: true,
+    mainFields: ['module', 'main'],
     minify: true,
     write: false,
     metafile: true,

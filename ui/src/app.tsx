@@ -1,7 +1,7 @@
 import './app.css'
 import { effect, signal } from '@preact/signals'
 import { render } from 'preact'
-import { hasToken } from './api'
+import { hasToken, Refusal } from './api'
 import { IncidentsPage, showIncident } from './incidents_page'
 import { BeliefsPage } from './beliefs_page'
 import { DoctorPage } from './doctor_page'
@@ -42,6 +42,7 @@ function follow(): void {
 addEventListener('hashchange', follow)
 follow()
 const trouble = signal('')
+const kAgain = 1000 // ms
 
 function App() {
   const offered = kPages.filter((p) => calls.value.has(p.needs) || (!p.needs && calls.value.size > 0))
@@ -82,4 +83,15 @@ function App() {
 render(<App />, document.getElementById('app')!)
 followInTitle()
 effect(() => void document.body.classList.toggle('is-old', isOld.value))
-start().catch((error: Error) => (trouble.value = error.message))
+
+// Until culprit answers: it may start a moment later than the page is opened, or refuse a call among too many.
+async function begin(): Promise<void> {
+  try {
+    await start()
+  } catch (error) {
+    trouble.value = (error as Error).message
+    const isForbidden = error instanceof Refusal && [401, 403].includes(error.status)
+    if (!isForbidden) setTimeout(() => void begin(), kAgain)
+  }
+}
+void begin()

@@ -1,5 +1,8 @@
 // Where the nodes of a graph stand: layers from left to right along the data, as few crossings as a
 // few sweeps find, and no jumps: what stands in a layer already keeps its order.
+//
+// dagre (17 kB compressed) leaves fewer crossings, but takes 80 times as long: for 1,000 nodes the page would stand still for 2 s.
+// elkjs has 450 kB, more than all of the page.
 
 export interface Point {
   x: number

@@ -197,10 +197,10 @@ export async function browse(server, steps, now = null, hasTour = false) {
 export async function isAccessible(page) {
   for (const colorScheme of kSchemes) {
     await page.emulateMedia({ colorScheme })
-    if (!(await page.evaluate('!!window.axe'))) await page.evaluate(axe)
     // The second scheme only changes the colours.
     const options = colorScheme === kSchemes[0] ? {} : { runOnly: ['color-contrast'] }
-    const { violations } = await page.evaluate((o) => window.axe.run(document, o), options)
+    // Brought and run in one call: between two calls the page could load anew, and be without it.
+    const { violations } = await page.evaluate(`if (!window.axe) { ${axe} }\naxe.run(document, ${JSON.stringify(options)})`)
     const words = violations.map((v) => `${v.id}: ${v.nodes.map((n) => `${n.html} ${n.failureSummary}`).join('; ')}`)
     expect(violations.length === 0, `not accessible (${colorScheme}):\n${words.join('\n')}`)
   }

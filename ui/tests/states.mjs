@@ -184,7 +184,22 @@ async function isNeverOldInSecret(page, server) {
   await bar.getByText('It was: All is well').waitFor()
 }
 
+// Opened when culprit refuses a call among too many, the page asks again.
+async function asksAgain(page, server) {
+  play(server, kStates.well)
+  let isFirst = true
+  await page.route('**/api/about', (route) => {
+    if (!isFirst) return route.continue()
+    isFirst = false
+    return route.fulfill({ status: 429, json: { error: 'too many requests' } })
+  })
+  await page.reload()
+  await page.getByRole('region', { name: 'Status' }).getByText('All is well').waitFor()
+  expect(!isFirst, 'no call was refused')
+}
+
 await suite(async () => {
+  await stubbed(kCalls, asksAgain, kToday)
   await stubbed(kCalls, everyState, kToday)
   await stubbed(kCalls, isNeverOldInSecret)
 })

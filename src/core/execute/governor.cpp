@@ -71,6 +71,12 @@ Governor::Held in_words(const Departures::Departure& departure, const std::strin
   return is_back(component, departure.until);
 }
 
+// The one that ends last: a check that takes a moment, again and again, does not take turns with what holds all along.
+std::optional<Governor::Held> longer(std::optional<Governor::Held> a,
+                                     std::optional<Governor::Held> b) {
+  return !a || (b && b->until > a->until) ? b : a;
+}
+
 }  // namespace
 
 Governor::Options Governor::Options::recommended() {
@@ -293,7 +299,7 @@ bool Governor::withholds(StrategyId strategy, Time now) {
   write_.withheld[strategy.index] = {held->reason, held->until,
                                      held->restraint == Restraint::kRestarts};
   withheld_.push_back(strategy);
-  tell(strategy, *held, now);
+  tell(strategy, *longer(held, restraint_on_all(now)), now);
   return true;
 }
 
@@ -324,8 +330,7 @@ std::optional<Governor::Held> Governor::restraint_on(StrategyId id, Time now) co
   if (auto held = container_to_come(knowledge_.rules[id])) return held;
   if (auto driver = driver_to_come(knowledge_.rules[id], knowledge_, now))
     return Held{Restraint::kEvidence, std::move(driver->reason), driver->until};
-  if (auto held = lack_of_evidence(knowledge_.rules[id], now)) return held;
-  return limits_.on(id, now);
+  return longer(lack_of_evidence(knowledge_.rules[id], now), limits_.on(id, now));
 }
 
 bool Governor::holds_last_resort_back(StrategyId strategy, std::optional<std::string> obstacle,

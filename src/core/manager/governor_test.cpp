@@ -444,6 +444,26 @@ RULE Silent
   }
 }
 
+// It answers, and stays silent: each answer is followed by a moment in which it may publish next.
+TEST(Evidence, ThatIsAskedForAgainAndAgainTakesNoTurnsWithWhatHoldsAllAlong) {
+  for (const bool is_paused : {true, false}) {
+    Governor::Options options = with_evidence();
+    options.limits.per_component = {1, 60s};
+    TestRobot robot = one_camera(options);
+    robot.tell(EndpointAppeared{"/camera", EndpointKind::kPublisher, "/rgb"});
+    robot["camera"].fault = "a person";
+    if (is_paused) robot.order({1, "Ann", "", Pause{}});
+    for (int i = 0; i < 20; ++i) {
+      robot.tell(Probed{ComponentId(0), true});
+      robot.run_for(400ms);
+    }
+    const std::string held = "CameraDead.redeploy is held back: ";
+    EXPECT_EQ(robot.count(held + (is_paused ? "paused" : "1 strategy was begun at camera")), 1u)
+        << transcript(robot);
+    EXPECT_LE(robot.count(held), is_paused ? 1u : 2u) << transcript(robot);
+  }
+}
+
 TEST(Evidence, WhatRunsAndPublishesIsNotEndedBecauseSomethingElseIsSilent) {
   TestRobot robot = camera_and_fusion("age(/fused) > 300ms", with_evidence());
   robot["fusion"].fault = "a person";
