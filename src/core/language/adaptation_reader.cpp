@@ -1,0 +1,181 @@
+#include "language/adaptation_reader.h"
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+#include <utility>
+
+#include "base/closest.h"
+#include "language/foreign_words.h"
+
+namespace culprit {
+namespace {
+
+using syntax::Name;
+
+class AdaptationReader {
+ public:
+  AdaptationReader(LineReader& read, const Source& source) : read_(read), source_(source) {}
+
+  std::optional<syntax::Adaptation> read(Scanner& s) {
+    auto component = read_.component_reference(s);
+    if (!component) return std::nullopt;
+    syntax::Adaptation adaptation;
+    adaptation.span.begin = component->span.begin;
+    const Token word = s.next();
+    const auto type = syntax::adaptation_type(word.text);
+    if (!type && syntax::adaptation_type(component->text))
+      lacks_component(*component, word);
+    else if (!type)
+      unknown_adaptation(word, s);
+    if (!type) return std::nullopt;
+    adaptation.component = std::move(*component);
+    adaptation.type = *type;
+    if (!adaptation_arguments(s, adaptation)) return std::nullopt;
+    const auto impact = read_.number(s, "the impact in cycles", impact_remedy(adaptation, s));
+    if (!impact) return std::nullopt;
+    adaptation.impact = *impact;
+    adaptation.span.end = impact->span.end;
+    return adaptation;
+  }
+
+ private:
+  bool adaptation_arguments(Scanner& s, syntax::Adaptation& adaptation) {
+    using enum syntax::AdaptationType;
+    const auto take_name = [&](Name& name, std::string_view what) {
+      auto found = read_.name_or_text(s, what);
+      if (!found) return false;
+      name = std::move(*found);
+      // The impact, which a name stands in front of.
+      const bool is_number = s.at_end() && source_.text(name.span).find_first_not_of(
+                                               "0123456789") == std::string_view::npos;
+      return !is_number || read_.fail(Code::kSyntax, name.span,
+                                      "expected " + std::string(what) + ", not '" + name.text + "'",
+                                      "write it in front of the impact");
+    };
+    switch (adaptation.type) {
+      case kSetParameter:
+      case kIncreaseParameter:
+      case kDecreaseParameter:
+        if (!take_name(adaptation.subject, "the parameter")) return false;
+        // "gain=2.0 5": what stands behind it is the impact.
+        if (const auto sign = adaptation.subject.text.find('=');
+            sign != std::string::npos && holds_one_number(s)) {
+          const auto at = adaptation.subject.span.begin + static_cast<std::uint32_t>(sign);
+          return read_.fail(Code::kSyntax, {at, at + 1},
+                            "no '=' stands between a parameter and its value", "write a blank",
+                            Edit{{at, at + 1}, " "});
+        }
+        if (const Token& sign = s.peek(); sign.is("="))
+          return read_.fail(Code::kSyntax, sign.span,
+                            "no '=' stands between a parameter and its value", "remove the '='",
+                            Edit{sign.span, ""});
+        adaptation.value = read_.expression(s);
+        return adaptation.value.has_value();
+      case kChangeCommunication:
+        return take_name(adaptation.subject, "the parameter that holds the topic") &&
+               take_name(adaptation.topic, "the topic");
+      case kChangeMode:
+        return take_name(adaptation.subject, "the mode");
+      case kCall:
+        if (!take_name(adaptation.subject, "the service")) return false;
+        if (s.peek().kind == Token::Kind::kString)
+          adaptation.request = read_.text(s, "the request", "");
+        if (const Token& next = s.peek();
+            next.kind == Token::Kind::kIdentifier && !source_.text(next.span).starts_with('{'))
+          return read_.fail(Code::kSyntax, next.span, "a request stands in quotes",
+                            "write it as in call ~/enable \"data: true\" 5");
+        return true;
+      case kActivate:
+      case kDeactivate:
+      case kRestart:
+      case kRedeploy:
+      case kStart:
+      case kStop:
+      case kStartGroup:
+        return true;
+    }
+    return false;
+  }
+
+  bool holds_one_number(const Scanner& s) const {
+    const std::string_view rest = source_.text(s.rest());
+    return !rest.empty() && rest.find_first_not_of("0123456789.") == std::string_view::npos;
+  }
+
+  // Where one number is there, it was read as the value.
+  static std::string impact_remedy(const syntax::Adaptation& adaptation, Scanner& s) {
+    if (s.peek().kind == Token::Kind::kDuration)
+      return "an impact counts cycles, not time: write it without a unit";
+    if (!adaptation.value && s.at_end()) return "add it at the end: a usual impact is 10";
+    if (!adaptation.value && adaptation.subject.text.empty() &&
+        s.peek().kind != Token::Kind::kSymbol)
+      return "remove it: " + std::string(keyword(adaptation.type)) + " takes the impact only";
+    if (!adaptation.value) return "";
+    if (!s.at_end()) return "";
+    const std::string word(keyword(adaptation.type));
+    return "the value and the impact stand at the end: " + word + " " + adaptation.subject.text +
+           (adaptation.type == syntax::AdaptationType::kSetParameter ? " true 2" : " 0.5 2");
+  }
+
+  // "ADAPTATION redeploy camera 10", or no component at all
+  bool lacks_component(const Name& type, const Token& word) {
+    const bool is_swapped = word.kind == Token::Kind::kIdentifier;
+    const std::string component = is_swapped ? std::string(word.text) : "component";
+    const std::string right = component + " " + type.text;
+    const Span span{type.span.begin, is_swapped ? word.span.end : type.span.end};
+    return read_.fail(Code::kSyntax, span, "the component stands in front of what to do with it",
+                      "write ADAPTATION " + right,
+                      is_swapped ? std::optional(Edit{span, right}) : std::nullopt);
+  }
+
+  bool unknown_adaptation(const Token& word, Scanner& s) {
+    if (hyphenated_adaptation(word, s)) return false;
+    if (word.kind != Token::Kind::kIdentifier)
+      return read_.fail_token(word, "what to do with the component", "");
+    std::string plain(word.text);
+    std::transform(plain.begin(), plain.end(), plain.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
+    if (plain.starts_with("action_")) plain.erase(0, 7);  // as in the reference's dialect
+    std::string near =
+        syntax::adaptation_type(plain) ? plain : std::string(adaptation_of_other_tools(plain));
+    if (near.empty()) near = closest(plain, syntax::adaptation_keywords());
+    return read_.fail(
+        Code::kUnknownAdaptation, word.span,
+        "there is no adaptation '" + std::string(word.text) + "'",
+        near.empty()
+            ? "known: set_parameter increase_parameter decrease_parameter change_communication "
+              "activate deactivate restart redeploy start stop change_mode call start_group"
+            : "did you mean '" + near + "'?",
+        replacement(word.span, near));
+  }
+
+  // "re-deploy", "set-parameter": reported.
+  bool hyphenated_adaptation(const Token& word, Scanner& s) {
+    const Token dash = s.peek();
+    if (!dash.is("-") || dash.span.begin != word.span.end) return false;
+    s.next();
+    const Token second = s.next();
+    for (const char* between : {"", "_"}) {
+      const std::string meant = std::string(word.text) + between + std::string(second.text);
+      if (!syntax::adaptation_type(meant)) continue;
+      const Span span{word.span.begin, second.span.end};
+      return !read_.fail(Code::kUnknownAdaptation, span,
+                         "there is no adaptation '" + std::string(source_.text(span)) + "'",
+                         "did you mean '" + meant + "'?", Edit{span, meant});
+    }
+    return false;
+  }
+
+  LineReader& read_;
+  const Source& source_;
+};
+
+}  // namespace
+
+std::optional<syntax::Adaptation> read_adaptation(LineReader& read, const Source& source,
+                                                  Scanner& s) {
+  return AdaptationReader(read, source).read(s);
+}
+
+}  // namespace culprit
