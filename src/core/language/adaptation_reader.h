@@ -1,4 +1,4 @@
-// What an ADAPTATION line has behind its keyword: "fusion set_parameter recalibration true 2".
+// The words behind the keyword of an ADAPTATION line: "fusion set_parameter recalibration true 2".
 #pragma once
 
 #include <optional>

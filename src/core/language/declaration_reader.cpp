@@ -83,15 +83,36 @@ bool DeclarationReader::component(Scanner& s) {
 
 bool DeclarationReader::dependency(Scanner& s) {
   auto consumer = read_.component_reference(s);
-  if (!consumer || !read_.expect_word(s, "ON")) return false;
+  if (!consumer || !on(s)) return false;
   syntax::Dependency dependency{std::move(*consumer), {}};
   do {
+    if (s.peek().is(",")) return read_.fail_comma(s.next());
     auto producer = read_.component_reference(s);
     if (!producer) return false;
     dependency.producers.push_back(std::move(*producer));
   } while (!s.at_end());
   into_.dependencies.push_back(std::move(dependency));
   return true;
+}
+
+// Or a word or an arrow in its place, which is reported.
+bool DeclarationReader::on(Scanner& s) {
+  Scanner behind = s.ahead();
+  const Token word = behind.next();
+  if (word.text == "ON") return s.next(), true;
+  const Token& second = behind.peek();
+  const bool is_arrow = word.is("-") && second.is(">");
+  const bool is_phrase = upper_case(second.text) == "ON";
+  const bool is_name = word.kind == Token::Kind::kIdentifier && behind.at_end();
+  const Span span{word.span.begin, is_arrow || is_phrase ? second.span.end : word.span.end};
+  std::optional<Edit> fix;
+  if (is_arrow || is_phrase || upper_case(word.text) == "ON") fix = Edit{span, "ON"};
+  if (is_name && !fix) fix = Edit{{word.span.begin, word.span.begin}, "ON "};
+  const std::string got =
+      word.kind == Token::Kind::kEnd ? "" : ", not '" + std::string(source_.text(span)) + "'";
+  return read_.fail(
+      Code::kSyntax, span, "expected ON" + got,
+      "write the component that needs the other one first: DEPENDENCY fusion ON camera", fix);
 }
 
 bool DeclarationReader::group(Scanner& s) {
@@ -111,8 +132,12 @@ bool DeclarationReader::group(Scanner& s) {
     group.members.push_back(std::move(*member));
   } while (s.take(','));
   if (!s.take('}'))
-    return read_.fail_token(s.next(), "',' or '}'", "commas stand between the components");
-  if (!read_.expect_word(s, "MANAGER")) return false;
+    return read_.fail_token(s.next(), "',' or '}'",
+                            "commas stand between the components, and a brace behind the last one");
+  if (!read_.expect_word(s, "MANAGER",
+                         "write the component of its lifecycle manager, as in MANAGER "
+                         "lifecycle_manager"))
+    return false;
   auto manager = read_.identifier(s, "the component that manages the group");
   if (!manager) return false;
   group.manager = std::move(*manager);
@@ -127,6 +152,7 @@ bool DeclarationReader::ignore(Scanner& s) {
                       "write TOPIC in front of it", Edit{{rest.begin, rest.begin}, "TOPIC "});
   if (!read_.expect_word(s, "TOPIC")) return false;
   do {
+    if (s.peek().is(",")) return read_.fail_comma(s.next());
     auto topic = read_.ros_name(s, "a topic");
     if (!topic) return false;
     into_.ignored_topics.push_back(std::move(*topic));
@@ -139,7 +165,7 @@ bool DeclarationReader::abort(Scanner& s) { return condition(s, into_.aborts); }
 
 bool DeclarationReader::condition(Scanner& s, std::vector<syntax::Interlock>& all) {
   auto condition = read_.expression(s);
-  if (!condition || !read_.line_ends(s)) return false;
+  if (!condition || !read_.condition_ends(s)) return false;
   std::string text(source_.text(condition->span));
   all.push_back({std::move(*condition), std::move(text)});
   return true;
@@ -170,9 +196,13 @@ bool DeclarationReader::drill(Scanner& s) {
     if (!times) return false;
     drill.times = *times;
   } else {
+    const auto faults = syntax::drill_faults();
+    const std::string fault(word.text);
+    const bool is_fault = std::ranges::find(faults, word.text) != faults.end();
     return read_.unexpected_clause(
         word, {"set_parameter", "without", "limit"},
-        "write the component and what drills may do to it, as in DRILL camera limit 3");
+        is_fault ? "drills do that already; DRILL camera without " + fault + " forbids it"
+                 : "write the component and what drills may do to it, as in DRILL camera limit 3");
   }
   into_.drills.push_back(std::move(drill));
   return true;
@@ -195,7 +225,11 @@ bool DeclarationReader::signal(Scanner& s) {
       s.next();
       if (!range(s, signal)) return false;
     } else {
-      const bool is_publisher = clause.text == "FROM";
+      const bool is_publisher = upper_case(clause.text) == "FROM";
+      if (is_publisher && clause.text != "FROM")
+        return read_.fail(Code::kSyntax, clause.span,
+                          "'" + std::string(clause.text) + "' is no word here",
+                          "did you mean FROM?", Edit{clause.span, "FROM"});
       return read_.unexpected_clause(
           clause, {"STALE", "RANGE"},
           !is_publisher ? ""
@@ -233,9 +267,12 @@ bool DeclarationReader::signal_source(Scanner& s, syntax::Signal& signal) {
     if (!parameter) return false;
     signal.source = syntax::ParameterSource{std::move(*component), std::move(*parameter)};
   } else {
-    return read_.unexpected_clause(
-        kind, {kSignalSources.begin(), kSignalSources.end()},
-        "write where its value comes from, as in TOPIC /battery FIELD percentage");
+    constexpr std::string_view kRemedy =
+        "write where its value comes from, as in TOPIC /battery FIELD percentage";
+    return read_.unexpected_clause(kind, {kSignalSources.begin(), kSignalSources.end()},
+                                   kind.is("/")
+                                       ? "write TOPIC in front of the topic, and FIELD behind it"
+                                       : std::string(kRemedy));
   }
   return true;
 }
@@ -251,9 +288,18 @@ bool DeclarationReader::publisher(Scanner& s, syntax::Signal& signal) {
 }
 
 bool DeclarationReader::range(Scanner& s, syntax::Signal& signal) {
+  constexpr std::string_view kRemedy = "write the two ends, as in RANGE 0..100";
   const Span span = s.rest();
+  const std::string_view first = source_.text(s.peek().span);
+  if (first == "[" || first == "(")
+    return read_.fail(Code::kSyntax, s.peek().span, "a range has no brackets",
+                      std::string(kRemedy));
   const auto low = read_.signed_number(s);
-  if (!low || !read_.expect_symbol(s, "..", "write the two ends, as in RANGE 0..100")) return false;
+  if (!low || !read_.expect_symbol(s, "..", std::string(kRemedy))) return false;
+  if (const Span next = s.peek().span;
+      source_.text(next).starts_with('.') && next.begin == s.taken())
+    return read_.fail(Code::kSyntax, {next.begin, next.begin + 1}, "a range has two points",
+                      "remove the third one", Edit{{next.begin, next.begin + 1}, ""});
   const auto high = read_.signed_number(s);
   if (!high) return false;
   signal.range = {*low, *high, span};

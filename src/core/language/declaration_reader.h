@@ -31,6 +31,7 @@ class DeclarationReader {
   bool signal(Scanner& s);
 
  private:
+  bool on(Scanner& s);
   bool equals_sign(Scanner& s, const syntax::Name& constant);
   bool condition(Scanner& s, std::vector<syntax::Interlock>& all);
   bool signal_source(Scanner& s, syntax::Signal& signal);

@@ -3,15 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <span>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "language/component_reader.h"
 #include "language/declaration_reader.h"
-#include "language/foreign_words.h"
 #include "language/line_reader.h"
 #include "language/reuse/statements.h"
 #include "language/rule_reader.h"
 #include "language/scanner.h"
+#include "language/unknown_line.h"
 
 namespace culprit {
 namespace {
@@ -34,18 +36,20 @@ class Parser {
       if (!scanner.at_end()) statement(scanner);
     }
     if (template_) {
-      read_.fail(Code::kIncomplete, template_keyword_, "this TEMPLATE has no END",
-                 "write END on a line of its own behind its last statement");
+      if (!template_->name.text.empty())
+        read_.fail(Code::kIncomplete, template_keyword_, "this TEMPLATE has no END",
+                   "write END on a line of its own behind its last statement");
       close_template(text_end(), text_end());
     }
   }
 
  private:
-  void statement(Scanner& s) {
-    struct Statement {
-      std::string_view keyword;
-      bool (Parser::*parse)(Scanner&);
-    };
+  struct Statement {
+    std::string_view keyword;
+    bool (Parser::*parse)(Scanner&);
+  };
+
+  static std::span<const Statement> statements() {
     static constexpr std::array kStatements = {
         Statement{"ROBOT", &Parser::declaration<&DeclarationReader::robot>},
         Statement{"CYCLE", &Parser::declaration<&DeclarationReader::cycle>},
@@ -69,21 +73,20 @@ class Parser {
         Statement{"END", &Parser::end_template},
         Statement{"USE", &Parser::use},
     };
-    const Token head = s.next();
-    if (head.kind == Token::Kind::kBad) {
-      if (source_.text(head.span) == ";")
-        foreign_comment(head.span);
-      else
-        read_.fail_token(head, "a statement", "");
-      return rules_.broken();
+    return kStatements;
+  }
+
+  static const Statement* known(std::string_view word) {
+    const char first = word.empty() ? '\0' : word.front();  // which most differ in
+    for (const Statement& candidate : statements()) {
+      if (candidate.keyword.front() == first && candidate.keyword == word) return &candidate;
     }
-    const auto known = [](std::string_view word) -> const Statement* {
-      const char first = word.empty() ? '\0' : word.front();  // which most differ in
-      for (const Statement& candidate : kStatements) {
-        if (candidate.keyword.front() == first && candidate.keyword == word) return &candidate;
-      }
-      return nullptr;
-    };
+    return nullptr;
+  }
+
+  void statement(Scanner& s) {
+    const Token head = s.next();
+    is_below_unknown_ = std::exchange(is_unknown_, false);
     const Statement* meant = known(head.text);
     const std::size_t complaints = read_.complaints() + 1;
     keyword_ = head.span;
@@ -92,17 +95,8 @@ class Parser {
       keyword_ = s.next().span;
       superfluous_word(head);
     }
-    if (meant == nullptr) {
-      std::vector<std::string_view> keywords;
-      for (const Statement& each : kStatements) keywords.push_back(each.keyword);
-      const std::string near = meant_keyword(head, keywords);
-      if (!foreign_comment(head, s)) unknown_statement(head, near);
-      // A word of another tool may stand for a line that the rule has as well.
-      const bool is_foreign =
-          near != "RULE" && near == statement_of_other_tools(upper_case(head.text));
-      meant = is_foreign ? nullptr : known(near);
-      if (meant == nullptr) return rules_.broken();
-    }
+    if (meant == nullptr) meant = unknown_statement(head, s);
+    if (meant == nullptr) return rules_.broken();
     if (has_placeholder(s)) is_good_head = false;
     if (has_colon(s)) is_good_head = false;  // it is taken, so that the line can be read
     // The expansion takes only the words as they are.
@@ -112,85 +106,30 @@ class Parser {
     // One mistake, one message: the statement is read as it was meant, so that the lines that
     // follow stand where they belong; its own other mistakes show once its first word is right.
     if (!is_good_head) read_.forget_since(complaints);
+    is_unfinished_ = !is_good && read_.complaints() > 0 &&
+                     (read_.last_place() == line_.end ||  // something is missing there
+                      is_unfinished(source_.text({head.span.begin, s.rest().end})));
     if (is_good && is_good_head) return;
     rules_.broken();
     broken_declaration(meant->keyword, behind_keyword);
   }
 
+  // Reported. Null: nothing can be read in place of it.
+  const Statement* unknown_statement(Token head, Scanner& s) {
+    if (head.is("-") && s.peek().kind == Token::Kind::kIdentifier) head = s.next();  // a list
+    std::vector<std::string_view> keywords;
+    for (const Statement& each : statements()) keywords.push_back(each.keyword);
+    keyword_ = head.span;
+    const Statement* meant = known(report_unknown_line(
+        {source_, read_, keywords, rules_.is_in_rule(), is_unfinished_}, head, s));
+    is_unfinished_ = is_unfinished_ && meant == nullptr &&
+                     is_unfinished(source_.text({head.span.begin, s.rest().end}));
+    is_unknown_ = meant == nullptr;
+    return meant;
+  }
+
   static bool is_of_reuse(std::string_view keyword) {
     return keyword == "INCLUDE" || keyword == "TEMPLATE" || keyword == "END" || keyword == "USE";
-  }
-
-  static std::string meant_keyword(const Token& head,
-                                   const std::vector<std::string_view>& keywords) {
-    const std::string upper = upper_case(head.text);
-    if (std::find(keywords.begin(), keywords.end(), upper) != keywords.end()) return upper;
-    if (!statement_of(upper).empty()) return "";
-    const std::string near = closest(upper, keywords);
-    return near.empty() ? std::string(statement_of_other_tools(upper)) : near;
-  }
-
-  // The statement that `word` is a part of; empty: none.
-  static std::string_view statement_of(std::string_view word) {
-    const bool is_clause =
-        std::ranges::find(component_clauses(), word) != component_clauses().end();
-    if (is_clause && word != "IN") return "COMPONENT";
-    constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kParts = {
-        {{"FOR", "POLICIES"},
-         {"HOLD", "POLICIES"},
-         {"COOLDOWN", "POLICIES"},
-         {"ATTEMPTS", "POLICIES"},
-         {"ON_CHANGE", "POLICIES"},
-         {"WHEN", "STRATEGY"},
-         {"LASTRESORT", "STRATEGY"},
-         {"FIELD", "SIGNAL"},
-         {"KEY", "SIGNAL"},
-         {"STALE", "SIGNAL"},
-         {"RANGE", "SIGNAL"},
-         {"MANAGER", "GROUP"}}};
-    for (const auto& [part, statement] : kParts) {
-      if (part == word) return statement;
-    }
-    return "";
-  }
-
-  void unknown_statement(const Token& head, const std::string& near) {
-    const std::string word(source_.text(head.span));
-    if (const auto statement = statement_of(upper_case(word)); !statement.empty()) {
-      read_.fail(
-          Code::kUnknownStatement, head.span, "no statement begins with '" + word + "'",
-          "write it on the line of its " + std::string(statement) + ": a statement is one line");
-      return;
-    }
-    if (near == "TRIGGER" && !rules_.is_in_rule()) {
-      read_.fail(Code::kUnknownStatement, head.span, "no statement begins with '" + word + "'",
-                 "write RULE and its name, then lines with POLICIES, TRIGGER, STRATEGY and "
-                 "ADAPTATION");
-      return;
-    }
-    read_.fail(Code::kUnknownStatement, head.span, "no statement begins with '" + word + "'",
-               !near.empty()
-                   ? "did you mean " + near + "?"
-                   : "a line begins with one of ROBOT CYCLE CONST COMPONENT DEPENDENCY "
-                     "GROUP IGNORE INTERLOCK ABORT DRILL SIGNAL RULE POLICIES TRIGGER STRATEGY "
-                     "ADAPTATION THEN INCLUDE TEMPLATE END USE",
-               replacement(head.span, near));
-  }
-
-  // A line that is a comment elsewhere.
-  bool foreign_comment(const Token& head, Scanner& s) {
-    const Token& second = s.peek();
-    const bool adjoins = second.span.begin == head.span.end;
-    const bool is_comment =
-        adjoins && ((head.is("-") && second.is("-")) || (head.is("/") && second.is("*")));
-    if (!is_comment) return false;
-    const Span both{head.span.begin, second.span.end};
-    return foreign_comment(both);
-  }
-  bool foreign_comment(Span mark) {
-    return !read_.fail(Code::kUnknownStatement, mark,
-                       "no comment begins with '" + std::string(source_.text(mark)) + "'",
-                       "begin each line of a comment with #", Edit{mark, "#"});
   }
 
   // "ELSE STRATEGY …": all strategies of a rule are alternatives.
@@ -268,7 +207,7 @@ class Parser {
 
   template <bool (RuleReader::*read)(Scanner&)>
   bool line_of_rule(Scanner& s) {
-    rules_.begin_line(*into_, keyword_);
+    rules_.begin_line(*into_, keyword_, is_below_unknown_);
     return (rules_.*read)(s);
   }
 
@@ -319,13 +258,14 @@ class Parser {
     if (lexemes_ != nullptr) lexemes_->insert(lexemes_->end(), taken.begin(), taken.end());
   }
 
-  bool end_template(Scanner&) {
+  bool end_template(Scanner& s) {
     rules_.end_rule();
     if (!template_)
       return read_.fail(Code::kOutOfPlace, keyword_, "this END closes no TEMPLATE",
                         "remove it, or write TEMPLATE name(parameters) above");
     close_template(line_.begin, behind_line());
-    return true;
+    return s.at_end() || read_.fail(Code::kExtraText, s.rest(), "END stands alone on its line",
+                                    "remove it", Edit{s.rest(), ""});
   }
 
   void close_template(std::uint32_t lines_end, std::uint32_t end) {
@@ -347,9 +287,12 @@ class Parser {
   RuleReader rules_{source_, read_};
   std::vector<Lexeme>* lexemes_;
   syntax::File& file_;
-  syntax::File* into_ = &file_;  // what statements become part of: this, or a template's body
-  Span line_;                    // that is at hand
-  Span keyword_;                 // of it
+  syntax::File* into_ = &file_;    // what statements become part of: this, or a template's body
+  Span line_;                      // that is at hand
+  Span keyword_;                   // of it
+  bool is_unknown_ = false;        // the statement at hand begins with no word of the language
+  bool is_below_unknown_ = false;  // so did the one before
+  bool is_unfinished_ = false;     // that one, which was reported, ends with an operator
   std::optional<syntax::Template> template_;  // that is not closed yet
   Span template_keyword_;
 };

@@ -7,26 +7,44 @@
 
 namespace culprit {
 
-void RuleReader::begin_line(syntax::File& into, Span keyword) {
+void RuleReader::begin_line(syntax::File& into, Span keyword, bool is_below_unknown_line) {
   into_ = &into;
   keyword_ = keyword;
+  is_below_unknown_line_ = is_below_unknown_line;
+}
+
+void RuleReader::begin_unnamed_rule() {
+  into_->rules.emplace_back().has_broken_part = true;
+  is_in_rule_ = true;
+  is_below_unknown_line_ = false;
 }
 
 bool RuleReader::rule(Scanner& s) {
   into_->rules.emplace_back();
   is_in_rule_ = true;
   has_duplicate_line_ = false;
+  has_stray_adaptation_ = false;
   // A part that stands before the rule may be the one that the rule then lacks.
   into_->rules.back().has_broken_part = std::exchange(stray_part_, false);
   auto name = read_.declared_name(s, "the rule's name");
   if (!name) return false;
   into_->rules.back().name = *name;
-  return read_.is_one_word(s, *name);
+  return read_.is_one_word(s, *name) && !has_condition(s);
+}
+
+// "RULE name WHEN condition", as other languages write it: reported.
+bool RuleReader::has_condition(Scanner& s) {
+  const Token& word = s.peek();
+  const std::string upper = upper_case(word.text);
+  if (upper != "WHEN" && upper != "IF") return false;
+  return !read_.fail(Code::kExtraText, word.span, "the condition of a rule is a line of its own",
+                     "write it on the next line, behind TRIGGER", Edit{word.span, "\n  TRIGGER"});
 }
 
 bool RuleReader::policies(Scanner& s) {
   if (!inside_rule("POLICIES")) return false;
   syntax::Rule& rule = into_->rules.back();
+  if (rule.policies && is_below_unknown_line_) return begin_unnamed_rule(), policies(s);
   if (rule.policies) return duplicate_line("POLICIES");
   syntax::Policies policies;
   policies.span = s.rest();
@@ -45,8 +63,13 @@ bool RuleReader::criticality(Scanner& s, syntax::Policies& policies) {
   struct Other {
     std::string_view word, meant, remedy;
   };
-  constexpr std::array<Other, 8> kOthers = {
-      {{"CRITICAL", "ERROR", "did you mean ERROR, the highest one?"},
+  constexpr std::array<Other, 13> kOthers = {
+      {{"SEVERE", "ERROR", "did you mean ERROR, the highest one?"},
+       {"PAGE", "ERROR", "did you mean ERROR, the highest one?"},
+       {"MAJOR", "WARNING", "did you mean WARNING, the middle one?"},
+       {"MINOR", "NON_CRITICAL", "did you mean NON_CRITICAL, the lowest one?"},
+       {"DEBUG", "NON_CRITICAL", "did you mean NON_CRITICAL, the lowest one?"},
+       {"CRITICAL", "ERROR", "did you mean ERROR, the highest one?"},
        {"FATAL", "ERROR", "did you mean ERROR, the highest one?"},
        {"HIGH", "ERROR", "did you mean ERROR, the highest one?"},
        {"WARN", "WARNING", "did you mean WARNING?"},
@@ -106,6 +129,9 @@ bool RuleReader::policy(Scanner& s, syntax::Policies& policies) {
   }
   if (clause.text == "ON_CHANGE" && !policies.on_change) return policies.on_change = true;
   if (clause.text == "REPORT" && !policies.is_report) return policies.is_report = true;
+  if (clause.text == "ERROR" || clause.text == "WARNING" || clause.text == "NON_CRITICAL")
+    return read_.fail(Code::kUnknownPolicy, clause.span, "a rule has one criticality",
+                      "keep one of them");
   return read_.unexpected_clause(clause,
                                  {"FOR", "HOLD", "COOLDOWN", "ATTEMPTS", "ON_CHANGE", "REPORT"}, "",
                                  Code::kUnknownPolicy);
@@ -114,8 +140,11 @@ bool RuleReader::policy(Scanner& s, syntax::Policies& policies) {
 bool RuleReader::trigger(Scanner& s) {
   if (!inside_rule("TRIGGER")) return false;
   if (into_->rules.back().trigger) return duplicate_line("TRIGGER");
+  if (s.at_end())
+    return read_.fail(Code::kSyntax, s.peek().span, "a condition is missing here",
+                      "write when the failure is there, as in TRIGGER age(/scan) > 1s");
   auto expression = read_.expression(s);
-  if (!expression || !read_.line_ends(s)) return false;
+  if (!expression || !read_.condition_ends(s)) return false;
   into_->rules.back().trigger = std::move(*expression);
   return true;
 }
@@ -141,6 +170,10 @@ bool RuleReader::strategy(Scanner& s) {
   if (!confidence) return false;
   const bool is_last_resort = s.peek().text == "LASTRESORT";
   if (is_last_resort) s.next();
+  if (const Token& next = s.peek(); is_last_resort && next.kind == Token::Kind::kDuration)
+    return read_.fail(Code::kExtraText, next.span, "no duration stands behind LASTRESORT",
+                      "write WITHIN in front of it",
+                      Edit{{next.span.begin, next.span.begin}, "WITHIN "});
   std::optional<Duration> within;
   if (s.peek().text == "WITHIN") {
     const Token word = s.next();
@@ -154,11 +187,31 @@ bool RuleReader::strategy(Scanner& s) {
   if (s.peek().text == "WHEN") {
     s.next();
     when = read_.expression(s);
-    if (!when || !read_.line_ends(s)) return false;
+    if (!when || !read_.condition_ends(s)) return false;
   }
-  rule.strategies.back() = {std::move(*name), *probability, *confidence, std::move(when), {},
-                            is_last_resort,   within,       false};
+  if (!when && !strategy_ends(s)) return false;
+  rule.strategies.back() = {std::move(*name),
+                            *probability,
+                            *confidence,
+                            std::move(when),
+                            {},
+                            is_last_resort,
+                            within,
+                            std::exchange(has_stray_adaptation_, false)};
   return true;
+}
+
+bool RuleReader::strategy_ends(Scanner& s) {
+  const Token& token = s.peek();
+  const std::string upper = upper_case(token.text);
+  if (upper == "IF" || upper == "UNLESS")
+    return read_.fail(Code::kExtraText, token.span, "a strategy has no " + std::string(token.text),
+                      "did you mean WHEN?", Edit{token.span, upper == "IF" ? "WHEN" : "WHEN !"});
+  if (upper == "LAST_RESORT" || upper == "LAST")
+    return read_.fail(Code::kExtraText, token.span, "a strategy has no " + std::string(token.text),
+                      "did you mean LASTRESORT?");
+  return read_.line_ends(
+      s, "behind the probability and the confidence stand only LASTRESORT, WITHIN and WHEN");
 }
 
 bool RuleReader::step(Scanner& s) {
@@ -183,11 +236,14 @@ bool RuleReader::adaptation(Scanner& s) {
   syntax::Rule& rule = into_->rules.back();
   if (rule.strategies.empty()) {
     if (rule.has_broken_part) return false;
+    has_stray_adaptation_ = true;
     return read_.fail(Code::kOutOfPlace, keyword_, "an ADAPTATION belongs to a STRATEGY",
                       "put a STRATEGY line before it");
   }
   auto adaptation = read_adaptation(read_, source_, s);
-  if (!adaptation) return false;
+  constexpr std::string_view kEnd =
+      "the impact, a number of cycles without a unit, is the last word of the line";
+  if (!adaptation || !read_.line_ends(s, kEnd)) return false;
   adaptation->span.begin = keyword_.begin;
   rule.strategies.back().adaptations.push_back(std::move(*adaptation));
   return true;
@@ -195,7 +251,10 @@ bool RuleReader::adaptation(Scanner& s) {
 
 bool RuleReader::inside_rule(std::string_view keyword) {
   if (is_in_rule_) return true;
-  stray_part_ = true;
+  // The line above may be what should begin the rule.
+  if (is_below_unknown_line_) return begin_unnamed_rule(), true;
+  // One mistake, one message: the rule has more parts.
+  if (std::exchange(stray_part_, true)) return false;
   return read_.fail(Code::kOutOfPlace, keyword_, std::string(keyword) + " belongs to a RULE",
                     into_->rules.empty()
                         ? "put a RULE line before it"
