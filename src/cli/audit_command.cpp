@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "base/amount.h"
 #include "cli/commands.h"
 #include "cli/journal_file.h"
 #include "journal/json.h"
@@ -61,7 +62,7 @@ int verify(const VerifyOptions& options) {
     fmt::print("... and {} more\n", result->findings.size() - kShown);
   const bool is_whole = result->findings.empty();
   fmt::print(
-      "{} rows{}: {}\n", result->rows,
+      "{}{}: {}\n", amount_of(static_cast<std::size_t>(result->rows), "row"),
       result->first > 1 ? fmt::format(" ({} older ones were dropped)", result->first - 1) : "",
       is_whole ? "all as they were written" : "NOT as they were written");
   fmt::print("newest {}:{}\n", result->newest.id, journal::to_hex(result->newest.hash));

@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "base/amount.h"
 #include "base/text_file.h"
 #include "cli/check_bag.h"
 #include "cli/commands.h"
@@ -42,14 +43,6 @@ struct CheckOptions {
 std::ptrdiff_t own_templates(const Expansion& file) {
   return std::ranges::count_if(file.templates,
                                [](const auto& each) { return each.second.name.file == 0; });
-}
-
-// "1 rule", "2 rules"
-std::string amount_of(std::size_t number, const char* what) {
-  return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
-}
-std::string amount_of(std::size_t number, const char* one, const char* several) {
-  return fmt::format("{} {}", number, number == 1 ? one : several);
 }
 
 // For people: mistakes go to stderr, a line for each good file to stdout.
@@ -272,7 +265,7 @@ void add_check(CLI::App& app, int& exit_code) {
   CLI::Option* bags =
       command
           ->add_option("--bag", options->recorded.bags,
-                       "Say for each rule whether this recording can judge it; may be given again")
+                       "Report for each rule whether this recording can judge it; repeatable")
           ->type_name("FILE")
           ->allow_extra_args(false)
           ->excludes(robot);

@@ -8,6 +8,7 @@
 #include <fmt/chrono.h>
 #include <fmt/core.h>
 
+#include "base/amount.h"
 #include "base/text_file.h"
 #include "base/units.h"
 #include "cli/commands.h"
@@ -135,9 +136,9 @@ int save_robot(const doctor::Picture& picture, const Report& report, const std::
     return fail("the robot is not healthy, so " + file + " was not written");
   if (const auto written = write_text(file, to_text(baseline_of(picture))); !written)
     return fail(written.error());
-  say(stderr,
-      "culprit: {} has {} nodes and {} topics; compare with it: culprit doctor --against {}\n",
-      file, baseline_of(picture).nodes.size(), picture.flows.size(), file);
+  say(stderr, "culprit: {} has {} and {}; compare with it: culprit doctor --against {}\n", file,
+      amount_of(baseline_of(picture).nodes.size(), "node"),
+      amount_of(picture.flows.size(), "topic"), file);
   return exit_code_of(report);
 }
 
@@ -236,9 +237,8 @@ void add_doctor(CLI::App& app, int& exit_code) {
       "warnings");
   CLI::Option* bags = add_bag_options(*command, options->recorded);
   add_seconds(*command, "--for", options->seconds, "How long to look", 0.1, 3600)->excludes(bags);
-  auto* json = command->add_flag("--json", options->json, "For programs");
-  command->add_flag("--sarif", options->sarif, "For programs that read SARIF 2.1.0")
-      ->excludes(json);
+  auto* json = command->add_flag("--json", options->json, "Print the findings as a JSON document");
+  command->add_flag("--sarif", options->sarif, "Print the findings as SARIF 2.1.0")->excludes(json);
   auto* watch = command
                     ->add_flag("--watch", options->watch,
                                "Look again and again, and report new and cleared findings")

@@ -323,7 +323,7 @@ Expected<void> may_be_written(const DrillOptions& options) {
 int run_drill(DrillOptions options) {
   for (const std::string& word : options.kinds) {
     const auto kind = drill::fault_kind(word);
-    if (!kind) return fail("--kinds: '" + word + "' is no kind of fault", kUsage);
+    if (!kind) return fail("--kinds: " + drill::no_fault_kind(word), kUsage);
     options.plan.kinds.push_back(*kind);
   }
   options.plan.hang = from_seconds(options.hang_seconds);
@@ -379,7 +379,7 @@ void add_drill(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<DrillOptions>();
   CLI::App* command = app.add_subcommand(
       "drill",
-      "Inject faults into a live robot, one at a time, and measure what the rules make of them.\n"
+      "Inject faults into a live robot, one at a time, and measure how the rules respond.\n"
       "Shows the plan and asks first. A culprit of its own heals meanwhile (docs/drill.md).");
   command->add_option("RULES", options->rules, "The rule file")->type_name("FILE")->required();
   command->add_option("--only", options->plan.only, "Components to break (default: all)")
@@ -401,7 +401,7 @@ void add_drill(CLI::App& app, int& exit_code) {
   add_seconds(*command, "--hang", options->hang_seconds, "How long a process is stopped or slow",
               0.2, 600);
   add_seconds(*command, "--patience", options->patience_seconds,
-              "Time for the robot to get well, before and after a fault", 5, 3600);
+              "Time for the robot to recover, before and after a fault", 5, 3600);
   command->add_option("--abort", options->abort,
                       "A condition of the rule language that ends the drill at once");
   command->add_flag("--yes", options->is_agreed, "Agree to the plan without being asked");

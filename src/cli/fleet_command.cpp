@@ -106,7 +106,7 @@ void add_report(CLI::App& fleet, const Kind& kind, int& exit_code) {
   command->add_option("--days", options->scope.days, "Number of past days")
       ->check(CLI::Range(1, 3650))
       ->capture_default_str();
-  auto* json = command->add_flag("--json", options->as_json, "For programs");
+  auto* json = command->add_flag("--json", options->as_json, "Print the result as a JSON document");
   auto* html =
       command->add_option("--html", options->html, "As one HTML file, there")->type_name("FILE");
   auto* sql = command->add_flag("--sql", options->as_sql, "The queries that make the tables");

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "base/amount.h"
 #include "base/text_file.h"
 #include "cli/commands.h"
 #include "import/importer.h"
@@ -19,8 +20,9 @@ struct ImportOptions {
 
 // Each note once, with the first line that it is about; the output has it at every place.
 void print_summary(const ImportOptions& options, const Imported& imported) {
-  fmt::print(stderr, "culprit: {}: {} rules imported, {} kept as comments, {} notes\n",
-             options.file, imported.rules, imported.rules_as_comments, imported.notes.size());
+  fmt::print(stderr, "culprit: {}: {} imported, {} kept as comments, {}\n", options.file,
+             amount_of(static_cast<std::size_t>(imported.rules), "rule"),
+             imported.rules_as_comments, amount_of(imported.notes.size(), "note"));
   std::map<std::string_view, int> times;
   for (const foreign::Note& note : imported.notes) ++times[note.text];
   for (const foreign::Note& note : imported.notes) {

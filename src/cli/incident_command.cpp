@@ -177,7 +177,7 @@ void add_incident(CLI::App& app, int& exit_code) {
       ->needs(id);
   command
       ->add_option("--since", options->since,
-                   "Only incidents of this past time, and those that lasted then: 10min, 2h")
+                   "Only incidents of the last 10min, 2h ..., and those that lasted until then")
       ->excludes(id);
   command->add_flag("--json", options->json,
                     "The list, or the incident with its events and recordings, as JSON");

@@ -7,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include "base/amount.h"
 #include "base/environment.h"
 #include "base/text_file.h"
 #include "base/units.h"
@@ -89,9 +90,10 @@ Expected<init::RobotProfile> look(const InitOptions& options) {
 // Reports the written file in a sentence, with the next step.
 void advise(const std::string& file, const RuleSet& rules) {
   say(stderr,
-      "culprit: {} has {} components and {} rules. Read it, then try it:\n"
+      "culprit: {} has {} and {}. Read it, then try it:\n"
       "  culprit check --robot {}\n  culprit run --dry-run {}\n",
-      file, rules.components.size(), rules.rules.size(), file, file);
+      file, amount_of(rules.components.size(), "component"), amount_of(rules.rules.size(), "rule"),
+      file, file);
 }
 
 int draft_rules(const InitOptions& options) {

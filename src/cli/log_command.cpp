@@ -87,7 +87,7 @@ void add_log(CLI::App& app, int& exit_code) {
   command->add_option("-n,--lines", options->lines, "How many of the latest rows")
       ->check(CLI::Range(1, 1'000'000'000))
       ->capture_default_str();
-  command->add_option("--since", options->since, "Only rows of this past time: 10min, 2h");
+  command->add_option("--since", options->since, "Only rows of the last 10min, 2h ...");
   command->add_option("--kind", options->kind, "All rows of this kind only")
       ->check(CLI::IsMember({"session", "robot", "event", "intent", "outcome", "belief", "coupling",
                              "latency", "gap", "end"}));

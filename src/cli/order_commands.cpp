@@ -176,7 +176,7 @@ int list_silences(const OrderOptions& options) {
 CLI::App* add_order(CLI::App& app, int& exit_code, const char* name, const char* description,
                     MakeOrder make, const std::shared_ptr<OrderOptions>& options) {
   CLI::App* command = app.add_subcommand(name, description);
-  command->add_option("--reason", options->reason, "Why, for the record");
+  command->add_option("--reason", options->reason, "Reason, kept in the journal");
   command->add_flag("--json", options->json, "Print the result as a JSON document");
   options->which.add_to(*command);
   command->callback(
@@ -223,7 +223,7 @@ void add_end_started(CLI::App& app, int& exit_code) {
       "end-started",
       "End the processes that culprit started, also those that a culprit left behind.\nA running "
       "culprit keeps them down until culprit revive.");
-  command->add_option("--reason", options->reason, "Why, for the record");
+  command->add_option("--reason", options->reason, "Reason, kept in the journal");
   options->which.add_to(*command);
   command->callback([options, &exit_code] { exit_code = end_started(*options); });
 }
@@ -251,10 +251,10 @@ void add_orders(CLI::App& app, int& exit_code) {
   silence->add_option("NAME", options->name, "A component or a rule; list: what is left alone now")
       ->type_name("NAME")
       ->required();
-  auto* lasts = add_seconds(*silence, "--for", options->seconds,
-                            "Duration (default: until it is lifted)", 1, 7 * 24 * 3600)
+  auto* lasts = add_seconds(*silence, "--for", options->seconds, "How long (default: until --lift)",
+                            1, 7 * 24 * 3600)
                     ->default_str("");
-  silence->add_flag("--lift", options->lifts, "Lift the silence")->excludes(lasts);
+  silence->add_flag("--lift", options->lifts, "End it now")->excludes(lasts);
   silence->callback([options, &exit_code] {
     const bool is_list = options->name == "list" && !options->lifts;
     exit_code = is_list ? list_silences(*options) : order(*options, silence_of);

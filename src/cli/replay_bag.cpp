@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "bag/bag_file.h"
+#include "base/amount.h"
 #include "base/environment.h"
 #include "base/live_clock.h"
 #include "base/name_grammar.h"
@@ -96,8 +97,9 @@ class BagOutput {
                  escape_controls(verdict(each, replay)));
     const std::string late =
         bag.out_of_order() > 0 ? fmt::format(" ({} out of order)", bag.out_of_order()) : "";
-    fmt::print("{} messages{} in {:.3f} s, {} decisions\n", replay.messages(), late,
-               replay.start() ? seconds(replay.end() - *replay.start()) : 0.0, replay.decisions());
+    fmt::print("{}{} in {:.3f} s, {}\n", amount_of(replay.messages(), "message"), late,
+               replay.start() ? seconds(replay.end() - *replay.start()) : 0.0,
+               amount_of(replay.decisions(), "decision"));
   }
 
  private:

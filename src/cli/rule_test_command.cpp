@@ -92,7 +92,8 @@ int run_tests(const TestOptions& options) {
     fmt::print(stderr, "{}", run.complaints);
     if (!options.json) fmt::print("{}", run.output);
     totals.add(run);
-    if (!run.is_usable) fmt::print(stderr, "culprit: {} cannot be run\n", file);
+    const bool is_read = !run.complaints.starts_with("culprit: ");
+    if (!run.is_usable && is_read) fmt::print(stderr, "culprit: {} cannot be run\n", file);
     std::move(run.suites.begin(), run.suites.end(), std::back_inserter(suites));
   }
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
@@ -122,7 +123,7 @@ void add_test(CLI::App& app, int& exit_code) {
   command->add_option("--filter", options->filter, "Only tests whose name contains this");
   command->add_option("--junit", options->junit, "Write the results as JUnit XML to this file")
       ->type_name("FILE");
-  command->add_flag("--json", options->json, "The results as a JSON document");
+  command->add_flag("--json", options->json, "Print the results as a JSON document");
   options->planner.add_to(*command);
   command->callback([options, &exit_code] { exit_code = run_tests(*options); });
 }

@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include "base/amount.h"
+#include "base/name_grammar.h"
 #include "cli/commands.h"
 #include "cli/listeners.h"
 #include "cli/run_alerts.h"
@@ -230,9 +232,9 @@ Expected<void> Run::manage(live::LoadedRules rules, StopSignals& signals) {
     live_.leave();
   });
   say(remarks_,
-      "culprit: watching {} with {} rules{}; Ctrl-C ends it and leaves the robot "
+      "culprit: watching {} with {}{}; Ctrl-C ends it and leaves the robot "
       "as it is\n",
-      robot, count, options_.dry_run ? " (dry run)" : "");
+      robot, amount_of(count, "rule"), options_.dry_run ? " (dry run)" : "");
   live_.begin(orders_, signals.stopped());
   if (options_.is_on_web) {
     if (const auto served = serve_page(); !served) return Error{served.error()};
@@ -253,6 +255,17 @@ Expected<void> Run::manage(live::LoadedRules rules, StopSignals& signals) {
   return ended;
 }
 
+// A mistyped path begins a journal that knows neither what was learned nor who paused culprit.
+std::string remark_on_folder(const std::string& journal) {
+  const std::filesystem::path folder = std::filesystem::path(journal).parent_path();
+  std::error_code error;
+  if (folder.empty() || std::filesystem::exists(folder, error)) return "";
+  return fmt::format(
+      "culprit: --journal: there is no folder '{}' yet; it is created, and the journal begins "
+      "empty\n",
+      printable(folder.string()));
+}
+
 int run(const RunOptions& options) {
   owners::keep_files_private();
   auto rules = live::trusted_rules(options.rules, options.improvise, colour_of(STDERR_FILENO));
@@ -261,7 +274,7 @@ int run(const RunOptions& options) {
   const auto trusted = live::trust_state(options.state_path(), journal);
   if (!trusted) return fail(trusted.error());
   live::make_private(journal);
-  say(stderr, "{}", rules->remarks);
+  say(stderr, "{}{}", rules->remarks, remark_on_folder(options.journal));
   auto session = options.session(rules->rules);
   if (!session) return fail(session.error(), kUsage);
   std::optional<live::NodeNameClaim> node_name;

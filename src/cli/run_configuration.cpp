@@ -13,6 +13,7 @@
 #include "cli/run_options.h"
 #include "terminal/help.h"
 #include "terminal/listed.h"
+#include "terminal/wrong_call.h"
 
 namespace culprit::cli {
 namespace {
@@ -53,6 +54,9 @@ struct ConfigurationFile {
 
 Error unknown_key(const ConfigurationFile& file, const std::string& key,
                   const std::vector<std::string>& known) {
+  // "settle: 5s", as YAML and JSON write it.
+  if (const auto colon = key.find(':'); colon != std::string::npos)
+    return Error{file.place(key) + "'" + printable(key) + "' is no setting; write settle = \"5s\""};
   std::string plain = key;
   std::replace(plain.begin(), plain.end(), '_', '-');
   const bool is_known = std::find(known.begin(), known.end(), plain) != known.end();
@@ -75,7 +79,7 @@ Expected<std::vector<std::string>> words_of_item(const ConfigurationFile& file,
     option.add_result(item.inputs);
     option.run_callback();
   } catch (const CLI::Error& error) {
-    return Error{file.place(item.name) + error.what()};
+    return Error{file.place(item.name) + words_of_invalid_value(error.what())};
   }
   if (option.get_positional()) return item.inputs;
   std::vector<std::string> words;
@@ -103,6 +107,8 @@ Expected<std::vector<std::string>> words_of_file(const ConfigurationFile& file, 
     const bool is_known = std::find(known.begin(), known.end(), item.name) != known.end();
     if (!is_known) return unknown_key(file, item.name, known);
     CLI::Option* option = run.get_option(item.name == kRulesKey ? "RULES" : "--" + item.name);
+    const bool is_twice = std::ranges::count(items, item.name, &CLI::ConfigItem::name) > 1;
+    if (is_twice) return Error{file.place(item.name) + item.name + " is given twice; keep one"};
     if (option->count() > 0) continue;  // by the command line or the environment
     auto more = words_of_item(file, item, *option);
     if (!more) return more;

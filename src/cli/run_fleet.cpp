@@ -14,8 +14,9 @@ void FleetOptions::add_to(CLI::App& command) {
                      "Share outcomes with other robots in this PostgreSQL database "
                      "(postgresql://HOST/DATABASE, without a password; docs/fleet.md)");
   command.add_option("--fleet-name", name, "This robot's name for people (default: its host name)");
-  command.add_option("--fleet-context", context,
-                     "Its place or task; outcomes of robots in other contexts do not count");
+  command.add_option(
+      "--fleet-context", context,
+      "The robot's place or task; outcomes of robots in other contexts do not count");
 }
 
 #ifdef CULPRIT_FLEET

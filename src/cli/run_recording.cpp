@@ -61,7 +61,13 @@ void RecordingOptions::add_to(CLI::App& command) {
                "Request a snapshot from this recorder at each incident; the one of 'ros2 bag "
                "record --snapshot-mode' is /rosbag2_recorder (docs/recording.md)")
       ->group(kGroup);
-  command.get_option("--record-budget")->check(CLI::Range(kLeastMemory, kMostMemory));
+  const auto in_range = [](const std::string& bytes) {
+    std::size_t number = 0;
+    const bool is_in =
+        CLI::detail::lexical_cast(bytes, number) && number >= kLeastMemory && number <= kMostMemory;
+    return is_in ? std::string() : bytes + " B is not from 1MB to 100GB; write a unit, as in 200MB";
+  };
+  command.get_option("--record-budget")->check(CLI::Validator(in_range, ""));
   for (CLI::Option* option : command.get_options()) {
     const std::string name = option->get_name();
     if (name.rfind("--record", 0) != 0) continue;

@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "base/amount.h"
 #include "base/name_grammar.h"
 #include "knowledge/describe.h"
 #include "terminal/console.h"
@@ -46,10 +47,6 @@ std::vector<std::string> texts_at(const Json& json, const char* name) {
 }
 
 // ---- words
-
-std::string counted(std::size_t count, const char* one) {
-  return fmt::format("{} {}{}", count, one, count == 1 ? "" : "s");
-}
 
 enum class Precision : std::uint8_t { kSecond, kTenth };
 
@@ -253,8 +250,8 @@ std::string counts_line(const WhatCulpritSays& said) {
     return fmt::format(", {} {} ({})", names_of.size(), what, listed(first));
   };
   const std::size_t blind = blind_rules(said).size();
-  return fmt::format("{}{}{}; {}, {} with a failure{}", counted(components.size(), "component"),
-                     some(gone, "down"), some(ill, "affected"), counted(rules.size(), "rule"),
+  return fmt::format("{}{}{}; {}, {} with a failure{}", amount_of(components.size(), "component"),
+                     some(gone, "down"), some(ill, "affected"), amount_of(rules.size(), "rule"),
                      failing, blind == 0 ? "" : fmt::format(", {} blind", blind));
 }
 

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "base/amount.h"
 #include "base/invariant.h"
 #include "live/announcements.h"
 #include "live/begin_anew.h"
@@ -186,9 +187,10 @@ void LiveRun::change_rules(Next next, OrderTaker& desk) {
       session_->hand_over((*opened)->rules(), "reloaded by " + next.author);
   session_ = std::move(*opened);
   session_->begin(std::move(handover));
-  session_->announce(announcements::kReloaded,
-                     fmt::format("{}: {} is reloaded, with {} rules", next.author,
-                                 options_.session.rules_file, session_->rules().rules.size()));
+  session_->announce(
+      announcements::kReloaded,
+      fmt::format("{}: {} is reloaded, with {}", next.author, options_.session.rules_file,
+                  amount_of(session_->rules().rules.size(), "rule")));
   open(desk);
 }
 

@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "base/amount.h"
 #include "journal/requests.h"
 #include "knowledge/describe.h"
 #include "live/health.h"
@@ -291,9 +292,9 @@ void LiveSession::inherit(RunBeginning& beginning) {
   beginning.past = journal::still_counting(journal::joined(beginning.past, (*told)->past, rules_),
                                            robot_->now(), rules_);
   beginning.findings.push_back(
-      fmt::format("what the culprit that managed before had learned of {} strategies is known, and "
+      fmt::format("what the culprit that managed before had learned of {} is known, and "
                   "what it had tried",
-                  (*told)->learned.beliefs.size()));
+                  amount_of((*told)->learned.beliefs.size(), "strategy", "strategies")));
 }
 
 void LiveSession::begin(const std::atomic<bool>& stop, const KnownRobot& known_robot) {

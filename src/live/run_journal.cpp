@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "base/amount.h"
 #include "journal/requests.h"
 
 namespace culprit::live {
@@ -97,7 +98,8 @@ std::optional<Recovery> take_over(const journal::Reader& reader,
   std::erase_if(beginning.past, journal::is_about_silence);
   if (!learned->beliefs.empty())
     beginning.findings.push_back(
-        fmt::format("what was learned of {} strategies is known", learned->beliefs.size()));
+        fmt::format("what was learned of {} is known",
+                    amount_of(learned->beliefs.size(), "strategy", "strategies")));
   if (recovery->is_other_robot()) return *recovery;
   for (const Interrupted& each : recovery->interrupted)
     beginning.interrupted.push_back(journal::to_json(each, rules));

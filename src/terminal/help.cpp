@@ -19,7 +19,11 @@ constexpr std::size_t kTexts = 70;
 
 class HelpFormatter : public CLI::Formatter {
  public:
-  HelpFormatter() { column_width(kNames); }
+  HelpFormatter() {
+    column_width(kNames);
+    label("SUBCOMMAND", "COMMAND");
+    label("Positionals", "Arguments");
+  }
 
   std::string make_option_opts(const CLI::Option* option) const override {
     const std::string value = option->get_positional() ? "" : value_of(*option);

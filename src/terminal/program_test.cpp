@@ -77,15 +77,25 @@ TEST(Program, SaysWhichOptionWasMeant) {
 }
 
 TEST(Program, SaysHowACommandIsCalled) {
-  EXPECT_THAT(ended({"test"}).said,
-              HasSubstr("FILES is missing\nUsage: culprit test [OPTIONS] FILES ...\nRun 'culprit "
-                        "help test' for more information."));
+  EXPECT_THAT(
+      ended({"test"}).said,
+      HasSubstr("FILES is missing (files)\nUsage: culprit test [OPTIONS] FILES ...\nRun 'culprit "
+                "help test' for more information."));
 }
 
 TEST(Program, ExplainsEachKindOfMistakeInOneLine) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> mistakes = {
-      {{"check", "-x"}, "check has no option '-x'\n"},
-      {{"check", "--verbose"}, "check has no option '--verbose'; test has it\n"},
+      {{"check", "-x"}, "'-x'; it has --robot, --wait, --format, --port, --pair\n"},
+      {{"check", "--verbose"}, "'--verbose'; did you mean 'culprit test --verbose'?\n"},
+      {{"check", "-robot"}, "check has no option '-robot'; did you mean '--robot'?\n"},
+      {{"check", "--no-robot"}, "check has no option '--no-robot'; leave --robot out\n"},
+      {{"check", "--web-port", "3"}, "'--web-port'; did you mean '--port'?\n"},
+      {{"check", "a", "--", "--robot"},
+       "'--robot' stands behind '--', so it is an argument; remove the '--'\n"},
+      {{"--check"}, "there is no option '--check'; did you mean 'check'?\n"},
+      {{"my.rules"}, "there is no command 'my.rules'; did you mean 'culprit run my.rules'?\n"},
+      {{"version"}, "there is no command 'version'; did you mean '--version'?\n"},
+      {{"bag", "check"}, "there is no command 'bag'\n"},
       {{"check", "a", "b"}, "'b' is one argument too many"},
       {{"check", "--format", "json", "--format", "text"},
        "--format is given more than once; give it once\n"},
@@ -96,13 +106,16 @@ TEST(Program, ExplainsEachKindOfMistakeInOneLine) {
       {{"check", "--format"}, "--format needs a value: {text,json}\n"},
       {{"check", "--robot", "a", "5"}, "'5' is one argument too many; FILE is 'a' already\n"},
       {{"check", "a", "--robot", "5"}, "'5' is one argument too many; --robot takes no value\n"},
-      {{"check", "a", "--wait", "5", "minutes"}, "; a duration is one word, as in 10min\n"},
+      {{"check", "a", "--wait", "5", "minutes"},
+       "--wait: a duration is one word; write --wait 5min\n"},
+      {{"check", "--wait=5", "s", "a"}, "--wait: a duration is one word; write --wait 5s\n"},
       {{"check", "a", "two words"}, "'two words' is one argument too many"},
       {{"check", "--robot=5"}, "--robot takes no value, as '5'\n"},
       {{"check", "--seconds", "3"}, "check has no option '--seconds'; did you mean '--wait'?\n"},
       {{"--robot", "check"}, "'--robot' stands in front of the command; write it behind check\n"},
       {{"lint"}, "there is no command 'lint'; did you mean 'check'?\n"},
-      {{"note", "hello"}, "'hello' is one argument too many; did you mean --reason 'hello'?\n"},
+      {{"note", "hello"}, "'hello' is one argument too many; note takes no arguments\n"},
+      {{"note", "it is hot"}, "; did you mean --reason 'it is hot'?\n"},
       {{"check", "--pair", "a"}, "--pair needs at least 2 values\n"},
       {{"beliefs"}, "beliefs needs a command: show\n"},
       {{"beliefs", "shwo"}, "beliefs has no command 'shwo'; did you mean 'show'?\n"},

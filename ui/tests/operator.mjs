@@ -71,7 +71,7 @@ async function reload(page) {
   await page.getByText('Reloading the rules: done').waitFor()
   await page.getByRole('link', { name: 'Robot' }).click()
   const log = page.getByRole('region', { name: 'Event log' })
-  await log.getByText(`${path} is reloaded, with 1 rules`).waitFor()
+  await log.getByText(`${path} is reloaded, with 1 rule`).waitFor()
   expect(readFileSync(path, 'utf8').includes('camera_redeploy 70 10'), 'the file was not saved')
   await page.getByRole('region', { name: 'Explanation' }).getByText('All is well').waitFor()
 }

@@ -1,5 +1,6 @@
 #include "alerts/settings.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
@@ -36,6 +37,12 @@ std::string word_of(const YAML::Node& node, const std::string& what) {
   return node.Scalar();
 }
 
+std::string listed(const std::vector<std::string_view>& words) {
+  std::string list;
+  for (const std::string_view word : words) list += (list.empty() ? "" : ", ") + std::string(word);
+  return list;
+}
+
 // The keys of a mapping are of these, each once.
 void check_keys(const YAML::Node& map, const std::vector<std::string_view>& known) {
   if (!map.IsMap()) refuse(map, "this has to be a mapping: 'key: value'");
@@ -44,8 +51,9 @@ void check_keys(const YAML::Node& map, const std::vector<std::string_view>& know
     const std::string key = word_of(entry.first, "a key");
     const std::string near = closest(key, known);
     if (std::find(known.begin(), known.end(), key) == known.end())
-      refuse(entry.first, "there is no setting '" + printable(key) + "'" +
-                              (near.empty() ? "" : "; did you mean '" + near + "'?"));
+      refuse(entry.first,
+             "there is no setting '" + printable(key) + "'; " +
+                 (near.empty() ? "there are " + listed(known) : "did you mean '" + near + "'?"));
     if (!seen.insert(key).second) refuse(entry.first, key + " is there twice");
   }
 }
@@ -107,7 +115,7 @@ Settings read_document(const YAML::Node& root) {
     settings.wait = *wait;
   }
   if (!root["to"] || !root["to"].IsSequence() || root["to"].size() == 0)
-    refuse(root, "there has to be a list 'to' of where alerts go");
+    refuse(root, "there has to be a list 'to' of where alerts go, as in docs/alerts.md");
   for (const YAML::Node& each : root["to"]) settings.to.push_back(read_destination(each));
   return settings;
 }
@@ -148,6 +156,9 @@ Expected<Url> read_url(const std::string& text) {
 }
 
 Expected<Settings> read_settings(const std::string& path) {
+  if (path.ends_with(".rules"))
+    return Error{fmt::format(
+        "'{}' is a rule file; the receivers of alerts stand in a file of their own", path)};
   struct stat status {};
   if (stat(path.c_str(), &status) != 0)
     return Error{fmt::format("cannot read '{}': {}", path, std::strerror(errno))};
@@ -160,7 +171,7 @@ Expected<Settings> read_settings(const std::string& path) {
   try {
     return read_document(YAML::Load(*text));
   } catch (const WrongSettings& wrong) {
-    return Error{fmt::format("{}:{}: {}", path, wrong.mark.line + 1, wrong.what())};
+    return Error{fmt::format("{}:{}: {}", path, std::max(wrong.mark.line + 1, 1), wrong.what())};
   } catch (const YAML::Exception& error) {
     // Not its what(): that may hold the line, and the line a secret.
     return Error{fmt::format("{}:{}: this is no YAML: {}", path, error.mark.line + 1, error.msg)};

@@ -193,6 +193,7 @@ Expected<BagParts> find_parts(const fs::path& path) {
   BagParts all;
   if (!fs::is_directory(path, error)) {
     if (const std::string why = why_no_part(path); !why.empty()) return Error{why};
+    if (path.extension() == ".rules") return Error{"it is a rule file; culprit check reads it"};
     if (!is_part(path)) return Error{"it ends neither in .db3 nor in .mcap, or that with .zstd"};
     all.parts.push_back(part_at(path));
     return all;

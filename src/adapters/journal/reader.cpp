@@ -36,6 +36,8 @@ Expected<Reader> Reader::open(const std::filesystem::path& path) {
   };
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return failure("there is no such file");
+  if (std::filesystem::is_directory(path, error))
+    return failure("it is a folder; name the .journal file in it");
   auto database = Database::open(path, Database::Mode::kRead);
   if (!database) return failure(database.error());
   if (const auto fits = check_schema(*database); !fits) return failure(fits.error());

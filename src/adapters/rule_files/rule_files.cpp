@@ -67,7 +67,7 @@ const fs::path& installed() {
 Expected<Source> load(const std::string& file, const std::string& from) {
   const fs::path name(file);
   if (name.extension() != kExtension)
-    return Error{"a file that is included is called *.rules, and not '" + file + "'"};
+    return Error{"a file that is included is called *.rules, and not '" + file + "'; rename it"};
   std::vector<fs::path> places = {(folder_of(from) / name).lexically_normal()};
   if (name.is_relative()) places.push_back((installed() / name).lexically_normal());
   for (const fs::path& place : places) {

@@ -518,7 +518,7 @@ class Checker {
       report(
           Code::kTypeMismatch, written.value->span,
           std::string(keyword(written.type)) + " needs a number; this is " + describe(typed.type),
-          "");
+          "write by how much the value changes, or use set_parameter");
     } else if (typed.type == Type::kDuration) {
       report(Code::kTypeMismatch, written.value->span, "ROS parameters hold no durations",
              "write the number that the node expects, for example its seconds");
@@ -533,8 +533,16 @@ class Checker {
     if (typed->type == Type::kBool) return typed;
     report(Code::kTypeMismatch, e.span,
            what + " is true or false; this is " + describe(typed->type),
-           "compare it with something, as in rate(/topic) < 1");
+           remedy_of_no_condition(*typed, e));
     return std::nullopt;
+  }
+
+  static std::string remedy_of_no_condition(const Typed& typed, const syntax::Expression& e) {
+    if (typed.type == Type::kDuration) return "compare it with a duration, as in age(/topic) > 1s";
+    if (typed.type != Type::kString) return "compare it with something, as in rate(/topic) < 1";
+    return e.kind == syntax::Expression::Kind::kLiteral
+               ? "write the condition without quotes"
+               : "compare it with a text, as in lifecycle(camera) != \"active\"";
   }
 
   bool fits_stack(const Typed& typed, const syntax::Expression& e) {

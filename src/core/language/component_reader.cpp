@@ -5,8 +5,6 @@
 #include <optional>
 #include <utility>
 
-#include "language/foreign_words.h"
-
 namespace culprit {
 namespace {
 namespace component_reader {
@@ -150,10 +148,9 @@ bool read_component_clauses(LineReader& read, const Source& source, Scanner& s,
     const Token& word = s.peek();
     const auto clause = std::ranges::find(kClauses, word.text, &Clause::word);
     if (clause == kClauses.end() || clause->is_there(component)) {
-      const std::string_view near = clause_of_other_tools(word.text);
-      if (near.empty()) return read.unexpected_clause(word, {kWords.begin(), kWords.end()});
-      return read.fail(Code::kSyntax, word.span, "a component has no " + std::string(word.text),
-                       "did you mean " + std::string(near) + "?");
+      const bool is_node = word.is("/") && !component.node;
+      return read.unexpected_clause(word, {kWords.begin(), kWords.end()},
+                                    is_node ? "write NODE in front of the node's name" : "");
     }
     s.next();
     if (!clause->parse(reader, clause->what, clause->remedy)) return false;

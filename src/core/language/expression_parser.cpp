@@ -1,9 +1,17 @@
 #include "language/expression_parser.h"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
+#include <charconv>
+#include <cstdint>
+#include <string>
 #include <utility>
 
+#include "base/closest.h"
+#include "language/foreign_words.h"
 #include "language/functions.h"
+#include "language/line_reader.h"
 
 namespace culprit {
 namespace {
@@ -53,7 +61,9 @@ class ExpressionParser {
     if (depth >= kMaxNesting) return too_deep();
     scanner_.next();
     auto yes = conditional(depth + 1);
-    if (!yes || !expect(":", "':' and the value for 'otherwise'")) return std::nullopt;
+    if (!yes ||
+        !expect(":", "':' and the value for 'otherwise'", "write both values, as in x > 1 ? 2 : 3"))
+      return std::nullopt;
     auto no = conditional(depth + 1);
     if (!no) return std::nullopt;
     Expression e;
@@ -80,6 +90,7 @@ class ExpressionParser {
       if (op.is("%") && !begins_value(scanner_.peek()))
         return fail(Code::kSyntax, op.span, "no '%' stands behind a number",
                     "write a share from 0 to 1, as in 0.2 for 20 percent");
+      if (scanner_.at_end()) return unfinished(op);
       auto right = binary(found->precedence + 1, depth + length);
       if (!right) return std::nullopt;
       Expression e;
@@ -89,7 +100,7 @@ class ExpressionParser {
       adopt(e, std::move(*left), std::move(*right));
       left = std::move(e);
     }
-    if (auto slip = foreign_operator()) return fail(std::move(*slip));
+    if (auto slip = foreign_operator(*left)) return fail(std::move(*slip));
     return left;
   }
 
@@ -130,11 +141,67 @@ class ExpressionParser {
                       "write pow(base, exponent)"};
   }
 
-  // An operator of another language behind a value.
-  std::optional<Diagnostic> foreign_operator() {
+  std::nullopt_t unfinished(const Token& op) {
+    return fail(Code::kSyntax, op.span, "a value is missing behind '" + std::string(op.text) + "'",
+                "write it on this line: a statement is one line");
+  }
+
+  // "alive camera": a function as other languages call it. "age /scan" is a division (typing.cpp).
+  std::optional<Diagnostic> call_without_parentheses(const Expression& name) {
+    const bool is_function = name.kind == Kind::kName && find_function(name.name.text) != nullptr;
+    Scanner ahead = scanner_.ahead();
+    const Token& next = ahead.peek();
+    const bool is_apart = next.span.begin > name.span.end;
+    const bool is_word = next.kind == Token::Kind::kIdentifier || next.kind == Token::Kind::kString;
+    if (!is_function || !is_apart || !is_word) return std::nullopt;
+    const syntax::Name argument = ahead.next_name();
+    const std::string upper = upper_case(argument.text);
+    const auto words = reserved_words();
+    const bool is_operator = !operator_of_word(argument.text).empty() || upper == "BETWEEN" ||
+                             std::ranges::find(words, upper) != words.end();
+    if (argument.text.empty() || is_operator) return std::nullopt;
+    const Span span{name.span.begin, argument.span.end};
+    const std::string meant = name.name.text + "(" + argument.text + ")";
+    return Diagnostic{Code::kSyntax,
+                      Severity::kError,
+                      span,
+                      "the argument of a function stands in parentheses",
+                      "write " + meant,
+                      Edit{span, meant}};
+  }
+
+  // A word for the state of a component: "camera is dead".
+  static std::optional<bool> is_word_for_alive(std::string_view word) {
+    constexpr std::array<std::string_view, 4> kAlive = {"alive", "up", "running", "online"};
+    constexpr std::array<std::string_view, 8> kDown = {"dead",   "down",    "gone",    "offline",
+                                                       "exited", "crashed", "missing", "stopped"};
+    if (std::ranges::find(kAlive, word) != kAlive.end()) return true;
+    if (std::ranges::find(kDown, word) != kDown.end()) return false;
+    return std::nullopt;
+  }
+
+  std::optional<Diagnostic> state_in_words(const Expression& left, const Token& verb) {
+    Scanner ahead = scanner_.ahead();
+    ahead.next();
+    const Token& second = ahead.peek();
+    const auto is_alive = is_word_for_alive(second.text);
+    if (left.kind != Kind::kName || !is_alive) return std::nullopt;
+    const Span span{left.span.begin, second.span.end};
+    const std::string meant = (*is_alive ? "alive(" : "!alive(") + left.name.text + ")";
+    return Diagnostic{
+        Code::kSyntax,
+        Severity::kError,
+        span,
+        "'" + std::string(verb.text) + " " + std::string(second.text) + "' is no comparison",
+        "write " + meant,
+        Edit{span, meant}};
+  }
+
+  // An operator of another language behind the value `left`.
+  std::optional<Diagnostic> foreign_operator(const Expression& left) {
     const Token& token = scanner_.peek();
     if (token.is("=")) {
-      Scanner ahead = scanner_;
+      Scanner ahead = scanner_.ahead();
       ahead.next();
       const Token& second = ahead.peek();
       const bool adjoins = second.span.begin == token.span.end;
@@ -146,35 +213,57 @@ class ExpressionParser {
       return slip;
     }
     if (token.kind != Token::Kind::kIdentifier) return std::nullopt;
-    struct Word {
-      std::string_view word, meant;
-    };
-    constexpr std::array<Word, 12> kWords = {{{"and", "&&"},
-                                              {"AND", "&&"},
-                                              {"or", "||"},
-                                              {"OR", "||"},
-                                              {"is", "=="},
-                                              {"IS", "=="},
-                                              {"equals", "=="},
-                                              {"eq", "=="},
-                                              {"gt", ">"},
-                                              {"lt", "<"},
-                                              {"ge", ">="},
-                                              {"le", "<="}}};
-    for (const auto& [word, meant] : kWords) {
-      if (token.text != word) continue;
-      Scanner ahead = scanner_;
-      ahead.next();
-      const Token& second = ahead.peek();
-      const bool is_negated = meant == "==" && (second.text == "not" || second.text == "NOT");
-      if (is_negated)
-        return wrong_operator({token.span.begin, second.span.end},
-                              std::string(word) + " " + std::string(second.text), "!=");
-      auto slip = wrong_operator(token.span, std::string(word), std::string(meant));
-      slip.remedy += " for '" + std::string(word) + "'";
-      return slip;
+    return operator_in_words(left, token);
+  }
+
+  // The operator that a word stands for; empty: it is none.
+  static std::string_view operator_of_word(std::string_view word) {
+    constexpr auto kWords = std::to_array<std::pair<std::string_view, std::string_view>>(
+        {{"and", "&&"},    {"or", "||"},     {"is", "=="},     {"equals", "=="}, {"equal", "=="},
+         {"eq", "=="},     {"gt", ">"},      {"lt", "<"},      {"ge", ">="},     {"gte", ">="},
+         {"le", "<="},     {"lte", "<="},    {"ne", "!="},     {"above", ">"},   {"over", ">"},
+         {"exceeds", ">"}, {"greater", ">"}, {"more", ">"},    {"larger", ">"},  {"below", "<"},
+         {"under", "<"},   {"less", "<"},    {"smaller", "<"}, {"lower", "<"},   {"higher", ">"}});
+    std::string lower(word);
+    std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
+    for (const auto& [theirs, ours] : kWords) {
+      if (theirs == lower) return ours;
     }
-    return std::nullopt;
+    return "";
+  }
+
+  std::optional<Diagnostic> operator_in_words(const Expression& left, const Token& first) {
+    if (upper_case(first.text) == "BETWEEN" || upper_case(first.text) == "IN")
+      return Diagnostic{Code::kSyntax, Severity::kError, first.span,
+                        "'" + std::string(first.text) + "' is no operator",
+                        "to test a range, write low <= x && x <= high"};
+    std::string meant(operator_of_word(first.text));
+    if (meant.empty()) return std::nullopt;
+    if (auto slip = state_in_words(left, first)) return slip;
+    Scanner ahead = scanner_.ahead();
+    ahead.next();
+    Span span = first.span;
+    // "is not", "is greater than", "less than or equal to"
+    for (Token next = ahead.next(); next.kind == Token::Kind::kIdentifier; next = ahead.next()) {
+      const std::string word = upper_case(next.text);
+      const std::string_view other = operator_of_word(next.text);
+      const bool is_filler = word == "THAN" || word == "TO" || word == "THE";
+      const bool joins = other == "&&" || (other == "||" && meant.size() == 2);
+      if (word == "NOT" && meant == "==") {
+        meant = "!=";
+      } else if (joins || (!is_filler && other.empty())) {
+        break;
+      } else if (other == "==" && meant.size() == 1) {
+        meant += "=";
+      } else if (!other.empty() && other != "||") {
+        meant = other;
+      }
+      span.end = next.span.end;
+    }
+    const std::string written(text_of(span));
+    auto slip = wrong_operator(span, written, meant);
+    slip.remedy += " for '" + written + "'";
+    return slip;
   }
 
   std::optional<Expression> unary(int depth) {
@@ -224,14 +313,16 @@ class ExpressionParser {
                       "write ! for 'not', as in !docked",
                       Edit{{token.span.begin, scanner_.position()}, "!"});
         }
-        if ((token.text == "if" || token.text == "IF" || token.text == "when") &&
-            continues(scanner_.peek()) && !scanner_.peek().is("(")) {
+        if (const std::string upper = upper_case(token.text);
+            (upper == "IF" || upper == "WHEN" || upper == "UNLESS") && continues(scanner_.peek()) &&
+            !scanner_.peek().is("(")) {
           return fail(Code::kSyntax, token.span,
                       "no '" + std::string(token.text) + "' stands in front of a condition",
                       "remove it", Edit{{token.span.begin, scanner_.position()}, ""});
         }
         e.kind = Kind::kName;
         e.name = {std::string(token.text), token.span};
+        if (auto slip = call_without_parentheses(e)) return fail(std::move(*slip));
         return scanner_.peek().is("(") ? call(std::move(e), depth) : std::optional(std::move(e));
       case Token::Kind::kSymbol:
         if (token.is("(")) return parenthesis(token, depth);
@@ -255,17 +346,35 @@ class ExpressionParser {
                         "rates are in Hz and have no unit",
                         "leave the unit out",
                         Edit{{number.span.end, end}, ""}};
+    const std::string written(text_of(number.span));
+    if (const auto remedy = remedy_of_memory(written, unit))
+      return Diagnostic{Code::kSyntax,
+                        Severity::kError,
+                        {number.span.begin, end},
+                        "memory is in MiB and has no unit",
+                        "write " + *remedy,
+                        Edit{{number.span.begin, end}, *remedy}};
+    if (unit == "m")
+      return Diagnostic{Code::kSyntax,
+                        Severity::kError,
+                        {number.span.begin, end},
+                        "a duration has no blank in it",
+                        "write " + written + "min for minutes, or " + written + "ms"};
     const std::string meant(duration_unit(unit));
     if (meant.empty()) return std::nullopt;
     return Diagnostic{Code::kSyntax,
                       Severity::kError,
                       {number.span.begin, end},
                       "a duration has no blank in it",
-                      "write the number and '" + meant + "' as one word, as in 2" + meant,
+                      "write " + written + meant,
                       Edit{{number.span.end, end}, meant}};
   }
 
   std::nullopt_t value_is_missing(const Token& token) {
+    if (token.is("&&") || token.is("||") || token.is("="))
+      return fail(Code::kSyntax, token.span,
+                  "a value is missing in front of '" + std::string(token.text) + "'",
+                  "write it, or remove the '" + std::string(token.text) + "'");
     return fail(
         Code::kSyntax, token.span, "a value is missing here",
         "write a number, true or false, a \"text\", a signal, a constant or a function call");
@@ -301,8 +410,7 @@ class ExpressionParser {
   std::optional<Expression> call(Expression e, int depth) {
     const FunctionInfo* function = find_function(e.name.text);
     if (function == nullptr) {
-      std::string near = function_of_other_tools(e.name.text);
-      if (near.empty()) near = closest(e.name.text, function_names());
+      const std::string near = meant_function(e.name.text);
       return fail(Code::kUnknownFunction, e.name.span, "there is no function '" + e.name.text + "'",
                   near.empty() ? "known functions: rate age phi loss alive lifecycle parameter "
                                  "level mean min max stddev "
@@ -333,25 +441,12 @@ class ExpressionParser {
     return e;
   }
 
-  // As other tools call it.
-  static std::string function_of_other_tools(std::string_view word) {
-    constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kWords = {
-        {{"hz", "rate"},
-         {"freq", "rate"},
-         {"frequency", "rate"},
-         {"avg", "mean"},
-         {"average", "mean"},
-         {"std", "stddev"},
-         {"stdev", "stddev"},
-         {"timeout", "age"},
-         {"elapsed", "age"},
-         {"param", "parameter"},
-         {"state", "lifecycle"},
-         {"running", "alive"}}};
-    for (const auto& [theirs, ours] : kWords) {
-      if (theirs == word) return std::string(ours);
-    }
-    return "";
+  static std::string meant_function(std::string_view word) {
+    std::string lower(word);
+    std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
+    if (find_function(lower) != nullptr) return lower;
+    const std::string_view foreign = function_of_other_tools(lower);
+    return foreign.empty() ? closest(lower, function_names()) : std::string(foreign);
   }
 
   std::optional<Expression> argument(const FunctionInfo& function, std::size_t index, int depth) {
@@ -366,7 +461,11 @@ class ExpressionParser {
       return fail(Code::kSyntax, e.span, "a name is missing here",
                   "usage: " + std::string(function.usage));
     }
-    if (function.arguments[index] != Argument::kTopic || scanner_.peek().text != "FROM") return e;
+    const Token& from = scanner_.peek();
+    if (function.arguments[index] != Argument::kTopic || upper_case(from.text) != "FROM") return e;
+    if (from.text != "FROM")
+      return fail(Code::kSyntax, from.span, "'" + std::string(from.text) + "' is no word here",
+                  "did you mean FROM?", Edit{from.span, "FROM"});
     scanner_.next();
     Expression publisher;
     publisher.kind = Kind::kName;
@@ -402,21 +501,41 @@ class ExpressionParser {
         remedy = "rates are in Hz and have no unit: write " + std::string(number.substr(0, end));
         fix = Edit{token.span, std::string(number.substr(0, end))};
       }
-      if (end != std::string_view::npos && is_mebibyte(number.substr(end))) {
-        remedy = "memory is in MiB and has no unit: write " + std::string(number.substr(0, end));
-        fix = Edit{token.span, std::string(number.substr(0, end))};
+      if (end != std::string_view::npos) {
+        if (const auto meant = remedy_of_memory(number.substr(0, end), number.substr(end))) {
+          remedy = "memory is in MiB and has no unit: write " + *meant;
+          fix = Edit{token.span, *meant};
+        }
       }
     }
+    const std::string_view written = text_of(token.span);
+    if (written == "{" || written == "[") remedy = "write parentheses: ( and )";
     return fail(Code::kBadToken, token.span, cause, remedy, fix);
   }
 
-  static bool is_mebibyte(std::string_view word) {
-    return word == "MB" || word == "MiB" || word == "mb" || word == "M";
+  // The number in MiB; nothing: `unit` is none of memory.
+  static std::optional<std::string> remedy_of_memory(std::string_view number,
+                                                     std::string_view unit) {
+    const std::string upper = upper_case(unit);
+    const bool is_mebi = upper == "MB" || upper == "MIB" || unit == "M";
+    const bool is_gibi = upper == "GB" || upper == "GIB" || unit == "G";
+    if (is_mebi) return std::string(number);
+    double gibi = 0;
+    const char* end = number.data() + number.size();
+    if (!is_gibi || std::from_chars(number.data(), end, gibi).ec != std::errc())
+      return std::nullopt;
+    return std::to_string(static_cast<std::int64_t>(gibi * 1024));
   }
+
+  std::string_view text_of(Span span) const { return scanner_.text(span); }
 
   // `next` is what stands where the ')' was missed, `end` where it would have come.
   std::nullopt_t not_closed(const Token& open, Token::Kind next, std::uint32_t end) {
     std::optional<Edit> fix;
+    if (text_of({end, end + 2}) == "//")
+      return fail(Code::kSyntax, {end, end + 2},
+                  "'//' begins a comment, so this '(' is never closed", "write one '/'",
+                  Edit{{end, end + 2}, "/"});
     if (next == Token::Kind::kEnd) fix = {{end, end}, ")"};
     return fail(Code::kSyntax, open.span, "this '(' is never closed", "add a ')'", std::move(fix));
   }

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "language/line_reader.h"
 #include "language/scanner.h"
 
 namespace culprit {
@@ -44,7 +45,7 @@ bool is_of_yaml(std::string_view line) {
 }
 
 bool is_of_python(std::string_view line) {
-  return line.starts_with("import ") ||
+  return line.starts_with("import ") || line.starts_with("def ") || line.starts_with("class ") ||
          (line.starts_with("from ") && line.find(" import ") != std::string_view::npos);
 }
 
@@ -53,7 +54,12 @@ std::string_view language_of(const Source& source) {
   if (source.text().find('\0') != std::string_view::npos) return "binary";
   const auto lines = statement_lines(source);
   if (lines.empty() || std::any_of(lines.begin(), lines.end(), is_of_rules)) return "";
+  if (source.text().starts_with("#!")) return "a script";
   const std::string_view first = lines.front();
+  const bool is_word_in_brackets = first.size() > 1 && first[0] == '[' &&
+                                   std::isalpha(static_cast<unsigned char>(first[1])) != 0;
+  if (is_word_in_brackets) return "INI or TOML";
+  if (first.starts_with("{%") || first.starts_with("{{")) return "a template of another tool";
   if (first.starts_with('{') || first.starts_with('[')) return "JSON";
   const bool is_tag = first.starts_with('<') && first.size() > 1 &&
                       (std::isalpha(static_cast<unsigned char>(first[1])) != 0 || first[1] == '?' ||
@@ -112,6 +118,37 @@ void condense_comments(const Source& source, std::vector<Diagnostic>& diagnostic
   }
 }
 
+// A merge that was not finished: its marks are in the text, and both sides.
+std::optional<Diagnostic> open_merge(const Source& source) {
+  for (std::uint32_t number = 1; number <= source.line_count(); ++number) {
+    const Span line = source.line(number);
+    if (source.text(line).starts_with("<<<<<<< "))
+      return Diagnostic{Code::kBadToken, Severity::kError, line, "a merge was not finished here",
+                        "keep one of the two sides, and remove the three marks"};
+  }
+  return std::nullopt;
+}
+
+// A text without a single statement: that it is another file says more than each of its lines.
+std::optional<Diagnostic> other_text(const Source& source, const std::vector<Diagnostic>& all) {
+  const auto lines = statement_lines(source);
+  const bool is_any = std::ranges::any_of(lines, [](std::string_view line) {
+    const std::string_view word = line.substr(0, line.find_first_of(" \t(:"));
+    const auto words = reserved_words();
+    return std::ranges::find(words, word) != words.end() || word == "THEN" || word == "INCLUDE" ||
+           word == "USE" || word == "TEMPLATE" || word == "END";
+  });
+  const bool are_unknown = std::ranges::all_of(all, [](const Diagnostic& d) {
+    const auto words = reserved_words();
+    const bool is_typo = d.fix && std::ranges::find(words, d.fix->text) != words.end();
+    return !is_typo && (d.code == Code::kUnknownStatement || d.code == Code::kBadToken);
+  });
+  if (is_any || !are_unknown || lines.size() < 2 || all.size() < 2) return std::nullopt;
+  return Diagnostic{Code::kBadToken, Severity::kError, all.front().span,
+                    "no line of this file is a statement of the rule language",
+                    std::string(kDraft)};
+}
+
 // The '}' of a '{' that was reported.
 void condense_braces(const Source& source, std::vector<Diagnostic>& diagnostics) {
   const auto is_open = [&](const Diagnostic& d) {
@@ -132,6 +169,12 @@ void condense(const Source& source, std::vector<Diagnostic>& diagnostics) {
       source.text().starts_with("\xff\xfe") || source.text().starts_with("\xfe\xff");
   if (auto foreign = foreign_language(source); foreign && !is_utf16) {
     diagnostics = {std::move(*foreign)};
+    return;
+  }
+  auto whole = is_utf16 ? std::nullopt : open_merge(source);
+  if (!whole && !is_utf16) whole = other_text(source, diagnostics);
+  if (whole) {
+    diagnostics = {std::move(*whole)};
     return;
   }
   condense_comments(source, diagnostics);

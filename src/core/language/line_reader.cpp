@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 
 #include "language/expression_parser.h"
+#include "language/foreign_words.h"
 
 namespace culprit {
 namespace {
@@ -19,6 +21,12 @@ constexpr std::array<std::string_view, 51> kReservedWords = {
     "ENV",       "SETUP",      "CWD",      "IN",        "PLUGIN",     "PACKAGE", "PARAMETERS",
     "REMAP",     "CONTAINER",  "HOST",     "WITHIN",    "READY",      "GROUP",   "MANAGER",
     "ABORT",     "DRILL"};
+
+// They cannot be confused with a name where one may stand, so they are not reserved.
+bool is_word_of_reuse(std::string_view word) {
+  return word == "THEN" || word == "INCLUDE" || word == "TEMPLATE" || word == "USE" ||
+         word == "END";
+}
 
 bool is_reserved(std::string_view word) {
   // Most names have something else in them.
@@ -58,12 +66,54 @@ bool is_nearly(const Token& token, std::string_view word) {
 
 bool is_unclosed(const Token& token) { return token.flaw == Token::Flaw::kUnclosed; }
 
+constexpr std::string_view kNameRemedy =
+    "a name is made of letters, digits and '_', and begins with no digit";
+
+// A sign that other languages put between the parts of a line.
+bool is_separator(const Token& token) { return token.is(":") || token.is("=") || token.is(","); }
+
+// A bracket stands where another token was expected: the place says more than the character.
+bool is_bracket(const Token& token, std::string_view written) {
+  return token.flaw == Token::Flaw::kMeaningless &&
+         std::string_view("{}[]").find(written) != std::string_view::npos;
+}
+
+// The words of a text in quotes as one name; empty: it cannot be one.
+std::string as_name(std::string_view text) {
+  std::string name;
+  for (const char c : trimmed(text)) name += c == ' ' || c == '-' ? '_' : c;
+  return is_component_reference(name) && !name.starts_with('/') ? name : "";
+}
+
+// Words that people write in front of a number.
+bool is_label_of_number(std::string_view word) {
+  constexpr std::array<std::string_view, 9> kLabels = {
+      "PROBABILITY", "PROB", "P", "CONFIDENCE", "CONF", "C", "IMPACT", "CYCLES", "SUCCESS"};
+  return std::ranges::find(kLabels, upper_case(word)) != kLabels.end();
+}
+
 }  // namespace
 
 bool is_component_reference(std::string_view name) {
   return name.starts_with('/')
              ? is_ros_name(name)
              : is_ros_name("/" + std::string(name)) && name.find('/') == std::string_view::npos;
+}
+
+std::string remedy_of_ros_name(std::string_view name) {
+  const std::string written(name);
+  if (is_ros_name("/" + written)) {
+    return name.find('/') != std::string_view::npos
+               ? "write /" + written
+               : "write /" + written + ", or with its namespace: /namespace/" + written;
+  }
+  if (name.ends_with('/') && is_ros_name(name.substr(0, name.size() - 1)))
+    return "write " + written.substr(0, written.size() - 1);
+  if (const auto dot = name.find('.');
+      dot != std::string_view::npos && is_ros_name(name.substr(0, dot)))
+    return "write the topic and the field apart: " + written.substr(0, dot) + " FIELD " +
+           written.substr(dot + 1);
+  return "full names look like /namespace/name: letters, digits and '_' between slashes";
 }
 
 std::string upper_case(std::string_view word) {
@@ -81,10 +131,18 @@ std::optional<Name> LineReader::identifier(Scanner& s, std::string_view what) {
   if (token.flaw == Token::Flaw::kNumber) {
     fail(Code::kBadToken, token.span,
          "'" + std::string(source_.text(token.span)) + "' begins with a digit",
-         "a name is made of letters, digits and '_', and begins with no digit");
+         std::string(kNameRemedy));
     return std::nullopt;
   }
-  fail_token(token, what, "a name is made of letters, digits and '_', and begins with no digit");
+  if (token.kind == Token::Kind::kString) {
+    const std::string name = as_name(std::get<std::string>(token.value()));
+    const std::string remedy = name.empty() ? kNameRemedy.data() : "write " + name;
+    fail(Code::kSyntax, token.span, "a name has no quotes", remedy,
+         name.empty() ? std::nullopt : std::optional(Edit{token.span, name}));
+    return std::nullopt;
+  }
+  const bool is_missing = token.kind == Token::Kind::kEnd || token.kind == Token::Kind::kNumber;
+  fail_token(token, what, is_missing ? "write a name here" : std::string(kNameRemedy));
   return std::nullopt;
 }
 
@@ -122,13 +180,15 @@ std::optional<Name> LineReader::component_reference(Scanner& s) {
 }
 
 std::optional<Name> LineReader::ros_name(Scanner& s, std::string_view what) {
+  if (const Token& token = s.peek(); token.is(":") || token.is("=")) {
+    fail_token(token, what, "");
+    return std::nullopt;
+  }
   auto name = name_or_text(s, what);
   if (!name || is_ros_name(name->text)) return name;
   if (s.allows_holes() && is_ros_name(filled(name->text))) return name;
   fail(Code::kBadRosName, name->span, "'" + name->text + "' is no full ROS name",
-       is_ros_name("/" + name->text)
-           ? "write /" + name->text + ", or with its namespace: /namespace/" + name->text
-           : "full names look like /namespace/name: letters, digits and '_' between slashes");
+       remedy_of_ros_name(name->text));
   return std::nullopt;
 }
 
@@ -183,6 +243,14 @@ std::optional<syntax::Number> LineReader::number(Scanner& s, std::string_view wh
     return syntax::Number{std::get<double>(token.literal), false, token.span};
   }
   std::optional<Edit> fix;
+  if (token.kind == Token::Kind::kIdentifier && is_label_of_number(token.text) && !s.at_end()) {
+    const bool has_sign = s.peek().is("=") || s.peek().is(":");
+    const Span label{token.span.begin, has_sign ? s.peek().span.end : s.position()};
+    fail(Code::kSyntax, token.span,
+         "no '" + std::string(token.text) + "' stands in front of a number",
+         "write only the number", Edit{label, ""});
+    return std::nullopt;
+  }
   if (token.kind == Token::Kind::kEnd && remedy.empty())
     remedy = "a number is missing at the end of this line";
   if (token.is("%")) {
@@ -194,6 +262,7 @@ std::optional<syntax::Number> LineReader::number(Scanner& s, std::string_view wh
   if (token.is("-")) remedy = "write a positive number";
   if (token.kind == Token::Kind::kDuration && remedy.empty())
     remedy = "write a number without a unit";
+  if (token.kind == Token::Kind::kIdentifier && remedy.empty()) remedy = "write a number in digits";
   fail_token(token, what, std::move(remedy), std::move(fix));
   return std::nullopt;
 }
@@ -230,14 +299,15 @@ bool LineReader::expect_word(Scanner& s, std::string_view word, std::string reme
 
 bool LineReader::is_one_word(const Scanner& s, const Name& name,
                              std::span<const std::string_view> followers) {
-  Scanner ahead = s;
+  Scanner ahead = s.ahead();
   std::uint32_t end = name.span.end;
   bool has_dash = false;
   while (!ahead.at_end()) {
     const Token& token = ahead.peek();
     const bool adjoins = token.span.begin == end;
     const bool is_dash = token.is("-") && adjoins;
-    const bool is_word = token.kind == Token::Kind::kIdentifier && !is_reserved(token.text);
+    const bool is_word = token.kind == Token::Kind::kIdentifier && !is_reserved(token.text) &&
+                         !is_label_of_number(token.text);
     const bool is_number = token.kind == Token::Kind::kNumber && adjoins;
     if (token.has_hole || (!is_dash && !is_word && !is_number)) break;
     has_dash = has_dash || is_dash;
@@ -272,14 +342,19 @@ bool LineReader::fail(Code code, Span span, std::string cause, std::string remed
 
 bool LineReader::fail_token(const Token& token, std::string_view expected, std::string remedy,
                             std::optional<Edit> fix) {
-  if (token.kind == Token::Kind::kBad) {
+  const std::string written(source_.text(token.span));
+  if (is_separator(token) && expected != "'" + written + "'" && !fix) {
+    return fail(Code::kSyntax, token.span, "no '" + written + "' stands here",
+                "remove the '" + written + "'", Edit{token.span, blank_for(token)});
+  }
+  if (token.is("(") && (remedy.empty() || remedy == kNameRemedy)) remedy = "remove the parentheses";
+  const bool is_of_place = is_bracket(token, written) && !remedy.empty();
+  if (token.kind == Token::Kind::kBad && !is_of_place) {
     const auto [cause, its_fix, its_remedy] = complaint_about(token);
     if (!its_remedy.empty()) remedy = its_remedy;
     return fail(Code::kBadToken, token.span, cause, std::move(remedy), its_fix);
   }
-  const std::string got = token.kind == Token::Kind::kEnd
-                              ? ""
-                              : ", not '" + std::string(source_.text(token.span)) + "'";
+  const std::string got = token.kind == Token::Kind::kEnd ? "" : ", not '" + written + "'";
   return fail(Code::kSyntax, token.span, "expected " + std::string(expected) + got,
               std::move(remedy), std::move(fix));
 }
@@ -291,21 +366,35 @@ bool LineReader::unexpected_clause(const Token& token, std::vector<std::string_v
   if (std::find(known.begin(), known.end(), token.text) != known.end()) {
     return fail(code, token.span, std::string(token.text) + " is given twice", "keep one of them");
   }
+  if (is_separator(token)) return fail_token(token, "", "");
   std::string list;
   for (const std::string_view word : known) list += (list.empty() ? "" : ", ") + std::string(word);
   std::string near = upper_case(token.text);
   if (std::find(known.begin(), known.end(), near) == known.end()) near = closest(token.text, known);
   if (near.empty()) near = closest(upper_case(token.text), known);
-  if (!near.empty()) remedy = "did you mean " + near + "?";
+  const std::string_view foreign =
+      near.empty() ? clause_of_other_tools(token.text, known) : std::string_view();
+  if (!near.empty() || !foreign.empty()) {
+    remedy = "did you mean " + near + std::string(foreign) + "?";
+  } else if (const auto line = statement_of_clause(token.text); !line.empty() && remedy.empty()) {
+    remedy = upper_case(token.text) + " belongs to the " + std::string(line) + " line";
+  }
   const std::string got = token.kind == Token::Kind::kEnd
                               ? ""
                               : ", not '" + std::string(source_.text(token.span)) + "'";
-  auto fix = replacement(token.span, near);
-  if (token.is("=") || token.is(":")) {
-    remedy = "remove the '" + std::string(token.text) + "'";
-    fix = Edit{token.span, ""};
-  }
-  return fail(code, token.span, "expected one of " + list + got, std::move(remedy), fix);
+  if (remedy.empty() && token.kind != Token::Kind::kEnd)
+    remedy = "remove it, or write one of these words";
+  if (!foreign.empty())
+    return fail(code, token.span, "no '" + std::string(token.text) + "' stands in this line",
+                std::move(remedy));
+  return fail(code, token.span, "expected one of " + list + got, std::move(remedy),
+              replacement(token.span, near));
+}
+
+std::string LineReader::blank_for(const Token& separator) const {
+  const std::string_view text = source_.text();
+  const std::uint32_t end = separator.span.end;
+  return end < text.size() && !is_blank(text[end]) ? " " : "";
 }
 
 bool LineReader::fail_comma(const Token& comma) {
@@ -320,20 +409,7 @@ bool LineReader::fail_comma(const Token& comma) {
               "remove the ','", Edit{comma.span, ""});
 }
 
-namespace {
-
-// The statement whose line has the clause; empty: it is no clause of a rule's lines.
-std::string_view line_of_clause(std::string_view word) {
-  constexpr std::array<std::string_view, 5> kOfPolicies = {"FOR", "HOLD", "COOLDOWN", "ATTEMPTS",
-                                                           "ON_CHANGE"};
-  constexpr std::array<std::string_view, 3> kOfStrategies = {"WHEN", "LASTRESORT", "WITHIN"};
-  if (std::ranges::find(kOfPolicies, word) != kOfPolicies.end()) return "POLICIES";
-  return std::ranges::find(kOfStrategies, word) != kOfStrategies.end() ? "STRATEGY" : "";
-}
-
-}  // namespace
-
-bool LineReader::line_ends(Scanner& s) {
+bool LineReader::line_ends(Scanner& s, std::string_view remedy) {
   const Token& token = s.peek();
   if (token.kind == Token::Kind::kEnd) return true;
   if (token.kind == Token::Kind::kBad) return fail_token(token, "", "");
@@ -369,17 +445,38 @@ bool LineReader::line_ends(Scanner& s) {
     return fail(Code::kExtraText, {begin, begin + 2}, "no comment begins with '--'",
                 "begin a comment with #", Edit{{begin, begin + 2}, "#"});
   }
-  if (const std::string_view line_of_it = line_of_clause(upper_case(token.text));
-      !line_of_it.empty())
+  if (const std::string_view line_of_it = statement_of_clause(token.text); !line_of_it.empty())
     return fail(Code::kExtraText, token.span,
                 std::string(token.text) + " has no place in this line",
                 "write " + upper_case(token.text) + " on the " + std::string(line_of_it) + " line");
-  if (is_reserved(token.text))
-    return fail(Code::kExtraText, token.span,
-                std::string(token.text) + " has no place in this line",
-                "begin a new line with it if it is a statement, or remove it");
+  if (is_reserved(token.text) || is_word_of_reuse(token.text))
+    return fail(Code::kExtraText, token.span, std::string(token.text) + " begins a line of its own",
+                "begin a new line in front of it",
+                Edit{{token.span.begin, token.span.begin}, "\n"});
   return fail(Code::kExtraText, s.rest(), std::string(kCause),
-              "a line holds one statement; a comment begins with #");
+              !remedy.empty() ? std::string(remedy)
+                              : "a line holds one statement; a comment begins with #");
+}
+
+bool LineReader::condition_ends(Scanner& s) {
+  const Token& token = s.peek();
+  const std::string_view text = source_.text();
+  const bool is_of_number =
+      token.span.begin > 0 && token.span.end < text.size() &&
+      std::isdigit(static_cast<unsigned char>(text[token.span.begin - 1])) != 0 &&
+      std::isdigit(static_cast<unsigned char>(text[token.span.end])) != 0;
+  if (token.is(",") && !is_of_number)
+    return fail(Code::kExtraText, token.span, "no ',' stands between two conditions",
+                "write && if both must hold, || if one is enough", Edit{token.span, " &&"});
+  if (is_bracket(token, source_.text(token.span)))
+    return fail(
+        Code::kBadToken, token.span,
+        "'" + std::string(source_.text(token.span)) + "' means nothing here",
+        "a function has parentheses, as in alive(camera); a signal has no labels, and no index");
+  if (upper_case(token.text) == "FROM")
+    return fail(Code::kExtraText, token.span, "FROM stands inside the parentheses",
+                "write it behind the topic, as in age(/scan FROM lidar)");
+  return line_ends(s, "join two conditions with && or ||, or remove it; a comment begins with #");
 }
 
 std::optional<syntax::Expression> LineReader::expression(Scanner& s) {

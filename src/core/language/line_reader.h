@@ -28,6 +28,9 @@ std::string upper_case(std::string_view word);
 // A component's own name, or the full name of its node.
 bool is_component_reference(std::string_view name);
 
+// How to write `name`, which is no full ROS name.
+std::string remedy_of_ros_name(std::string_view name);
+
 class LineReader {
  public:
   LineReader(const Source& source, std::vector<Diagnostic>& diagnostics)
@@ -57,8 +60,10 @@ class LineReader {
   bool is_one_word(const Scanner& s, const syntax::Name& name,
                    std::span<const std::string_view> followers = {});
   bool expect_symbol(Scanner& s, std::string_view symbol, std::string remedy = "");
-  // Does the line end here, except for a comment?
-  bool line_ends(Scanner& s);
+  // Does the line end here, except for a comment? `remedy` is for text that nothing is known about.
+  bool line_ends(Scanner& s, std::string_view remedy = "");
+  // The same behind a condition.
+  bool condition_ends(Scanner& s);
   bool fail_comma(const Token& comma);
 
   // Complaints. All give false, for `return fail(...)`.
@@ -71,12 +76,17 @@ class LineReader {
 
   // The mistakes that follow from the first one of a line, which was reported.
   std::size_t complaints() const { return diagnostics_.size(); }
+  // @pre there is a complaint
+  std::uint32_t last_place() const { return diagnostics_.back().span.begin; }
   void forget_since(std::size_t complaints) {
     diagnostics_.erase(diagnostics_.begin() + static_cast<std::ptrdiff_t>(complaints),
                        diagnostics_.end());
   }
 
  private:
+  // The replacement for a separator that is removed, so that no two words become one.
+  std::string blank_for(const Token& separator) const;
+
   const Source& source_;
   std::vector<Diagnostic>& diagnostics_;
 };

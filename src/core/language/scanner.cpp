@@ -173,7 +173,10 @@ Complaint meaningless(Span span, std::string_view rest) {
         return {cause + "; a parameter in braces stands for something in a TEMPLATE only"};
       return {cause, Edit{span, ""}, "remove it: a rule ends where the next one begins"};
     case ';':
-      return {cause, Edit{span, ""}, "remove it: a statement ends with its line"};
+      return {cause, Edit{span, ""},
+              trimmed(rest.substr(1)).empty()
+                  ? "remove it: a statement ends with its line"
+                  : "remove it: a statement ends with its line; a comment begins with #"};
     case '[':
     case ']':
       return {cause, std::nullopt, "write parentheses: ( and )"};
@@ -181,8 +184,10 @@ Complaint meaningless(Span span, std::string_view rest) {
       return {cause, std::nullopt, "write pow(base, exponent)"};
     case '.':
       return {cause, std::nullopt, "write alive(camera) for a node, and SIGNAL for a field"};
+    case '\\':
+      return {cause, Edit{span, ""}, "remove it: a statement is one line"};
     default:
-      return {cause, std::nullopt, "a comment begins with #"};
+      return {cause, std::nullopt, "remove it; a comment begins with #"};
   }
 }
 
@@ -191,6 +196,15 @@ Complaint not_a_number(Span span, std::string_view text) {
   std::size_t end = 0;
   while (end < text.size() && (is_digit(text[end]) || text[end] == '.')) ++end;
   const std::string number(text.substr(0, end));
+  if (text.starts_with("0x") || text.starts_with("0X"))
+    return {"'" + std::string(text) + "' is no number of the language", std::nullopt,
+            "write it as a decimal number"};
+  if (text.find('_') != std::string_view::npos &&
+      text.find_first_not_of("0123456789_") == std::string_view::npos) {
+    std::string plain(text);
+    std::erase(plain, '_');
+    return {"a number has no '_' in it", Edit{span, plain}, "write " + plain};
+  }
   const std::string_view letters = text.substr(end);
   const std::string cause = "'" + std::string(text) + "' is neither a number nor a duration";
   if (letters == "m")
@@ -248,7 +262,7 @@ Complaint complaint_about(const Token& bad) {
       return {"this whole number does not fit in 64 bits", std::nullopt,
               "write it with a decimal point"};
     case Token::Flaw::kRange:
-      return {"this number is out of range"};
+      return {"this number is out of range", std::nullopt, "write one below 1.7e308"};
     case Token::Flaw::kEscape:
       return {"unknown escape in a string; known: \\\" \\\\ \\n \\t"};
     case Token::Flaw::kUnclosed:

@@ -111,6 +111,13 @@ class Scanner {
   // of the line.
   syntax::Name next_name();
 
+  // For a look at what follows: what is taken off it is not recorded.
+  Scanner ahead() const {
+    Scanner copy = *this;
+    copy.record_ = nullptr;
+    return copy;
+  }
+
   // Takes `symbol`, one character that no expression has, as a brace is. False: another one is next.
   bool take(char symbol);
 
@@ -118,6 +125,10 @@ class Scanner {
   bool at_end() const;
   // The word of letters that begins the rest of the line; empty if none does.
   std::string_view next_letters() const;
+  // A part of the whole text; shorter where the text ends.
+  std::string_view text(Span span) const {
+    return span.begin >= text_.size() ? "" : text_.substr(span.begin, span.end - span.begin);
+  }
   // Where what was taken last ends.
   std::uint32_t taken() const { return at_; }
   // Where the next token begins.

@@ -69,7 +69,7 @@ Expected<Source> Source::read(const std::string& path) {
   if (kind == std::filesystem::file_type::directory)
     return Error{"'" + path + "' is a folder; name a rule file in it"};
   std::ifstream file(path, std::ios::binary);
-  if (!file) return Error{"cannot read rule file '" + path + "': " + std::strerror(errno)};
+  if (!file) return Error{"cannot read '" + path + "': " + std::strerror(errno)};
   std::string text;
   std::error_code error;
   if (const auto size = std::filesystem::file_size(path, error); !error && size <= kMaxSize)
@@ -78,9 +78,9 @@ Expected<Source> Source::read(const std::string& path) {
   while (file.read(block, sizeof block) || file.gcount() > 0) {
     text.append(block, static_cast<std::size_t>(file.gcount()));
     if (text.size() > kMaxSize)
-      return Error{"rule file '" + path + "' is larger than 64 MiB; is it a rule file?"};
+      return Error{"'" + path + "' is larger than 64 MiB; is it a rule file?"};
   }
-  if (file.bad() || !file.eof()) return Error{"cannot read rule file '" + path + "' to its end"};
+  if (file.bad() || !file.eof()) return Error{"cannot read '" + path + "' to its end"};
   return Source(path, std::move(text));
 }
 

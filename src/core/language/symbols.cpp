@@ -612,6 +612,10 @@ bool Symbols::is_looked_up(const std::string& signal) const {
          std::holds_alternative<LookedUp>(rules_[*found].source);
 }
 
+bool Symbols::is_declared_component(std::string_view name) const {
+  return std::ranges::find(declared_components_, name) != declared_components_.end();
+}
+
 std::string Symbols::forget_near_miss(const std::string& signal) {
   const auto found = near_misses_.find(signal);
   if (found == near_misses_.end()) return "";

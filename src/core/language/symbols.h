@@ -54,6 +54,8 @@ class Symbols {
   ParameterId parameter(ComponentId component, const std::string& name);
   InputId input(const Input& wanted);
 
+  bool is_declared_component(std::string_view name) const;
+
   // If `signal` was reported as a near miss of a declared name: takes that report back, since its
   // caller has a better one, and gives the declared name. Otherwise empty.
   std::string forget_near_miss(const std::string& signal);

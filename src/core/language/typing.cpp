@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 
+#include "base/units.h"
 #include "language/compiler.h"
 #include "language/evaluate.h"
 #include "language/functions.h"
@@ -110,12 +111,23 @@ class Typer {
       return literal(constant->value);
     }
     const SignalId signal = symbols_.signal(e.name);
+    warn_of_bare_function(e);
     const auto type = symbols_.type_of(signal);
     if (!type) return unknown_type(e);
     Input wanted;
     wanted.kind = Input::Kind::kSignal;
     wanted.signal = signal;
     return input(wanted, *type);
+  }
+
+  // `memory > 500` waits for a signal of that name.
+  void warn_of_bare_function(const Expression& e) {
+    const FunctionInfo* function = find_function(e.name.text);
+    if (is_part_of_call_ || function == nullptr || !symbols_.is_looked_up(e.name.text)) return;
+    diagnostics_.push_back(
+        {Code::kUnknownName, Severity::kWarning, e.span,
+         "without parentheses, '" + e.name.text + "' is a signal, which is looked up on the robot",
+         "usage of the function: " + std::string(function->usage)});
   }
 
   std::nullopt_t unknown_type(const Expression& e) {
@@ -175,10 +187,12 @@ class Typer {
   }
 
   std::optional<Typed> binary(const Expression& e) {
+    is_part_of_call_ = may_be_call(e);
     auto left = type(e.children[0]);
+    is_part_of_call_ = false;
     if (!left) return std::nullopt;
     auto right = type(e.children[1]);
-    if (!right) return std::nullopt;
+    if (!right || is_call_without_parentheses(e)) return std::nullopt;
     switch (e.op) {
       case Operator::kAnd:
         return logic(e, Op::kAnd, std::move(*left), std::move(*right));
@@ -204,6 +218,27 @@ class Typer {
     }
   }
 
+  // "age /scan" is a division for the parser.
+  static bool may_be_call(const Expression& e) {
+    return e.op == Operator::kDivide && e.children[0].kind == Kind::kName &&
+           e.children[1].kind == Kind::kName && find_function(e.children[0].name.text) != nullptr;
+  }
+
+  // Reported, if neither name is declared.
+  bool is_call_without_parentheses(const Expression& e) {
+    if (!may_be_call(e)) return false;
+    const std::string& function = e.children[0].name.text;
+    const std::string& topic = e.children[1].name.text;
+    if (!symbols_.is_looked_up(function) || !symbols_.is_looked_up(topic)) {
+      warn_of_bare_function(e.children[0]);
+      return false;
+    }
+    const std::string meant = function + "(/" + topic + ")";
+    fail(Code::kSyntax, e.span, "the argument of a function stands in parentheses",
+         "write " + meant, Edit{e.span, meant});
+    return true;
+  }
+
   std::optional<Typed> logic(const Expression& e, Op op, Typed&& left, Typed&& right) {
     if (left.type == Type::kBool && right.type == Type::kBool) {
       return node(op, Type::kBool, std::move(left), std::move(right));
@@ -224,6 +259,7 @@ class Typer {
     if (a == Type::kString) warn_of_bare_text(e);
     const bool has_whole = a == Type::kInt || b == Type::kInt;
     if (has_whole && !check_bare_level(e)) return std::nullopt;
+    warn_of_bare_value(e);
     const Op op = member(family, left.type);
     if (op == kNone) {
       return fail(Code::kTypeMismatch, e.span, "true and false have no order",
@@ -247,6 +283,39 @@ class Typer {
            "a state stands in quotes: write \"" + name + "\"",
            Edit{side.span, "\"" + name + "\""}});
     }
+  }
+
+  // `entropy > high` would wait for a signal of that name. Two names may be two signals of the robot.
+  void warn_of_bare_value(const Expression& e) {
+    const Expression& left = e.children[0];
+    const Expression& right = e.children[1];
+    const auto is_unknown_name = [&](const Expression& side) {
+      return side.kind == Kind::kName && symbols_.is_looked_up(side.name.text);
+    };
+    const bool is_value = left.kind == Kind::kLiteral;
+    if (is_value || !is_unknown_name(right) || is_unknown_name(left)) return;
+    const bool is_reported = std::ranges::any_of(
+        diagnostics_, [&](const Diagnostic& d) { return d.span == right.span; });
+    if (is_reported) return;
+    const std::string& name = right.name.text;
+    diagnostics_.push_back(
+        {Code::kUnknownName, Severity::kWarning, right.span,
+         "'" + name + "' is not declared: it is a signal, which is looked up on the robot",
+         remedy_of_bare_value(left, name)});
+  }
+
+  static std::string remedy_of_bare_value(const Expression& left, const std::string& name) {
+    const std::string word = upper_case(name);
+    const auto is_one_of = [&](std::initializer_list<std::string_view> words) {
+      return std::ranges::find(words, word) != words.end();
+    };
+    if (is_one_of({"NAN"}))
+      return "write isnan(" + (left.kind == Kind::kName ? left.name.text : "signal") + ")";
+    if (is_one_of({"NULL", "NONE", "NIL", "UNKNOWN", "UNDEFINED"}))
+      return "no value can be compared with a missing one: age(/topic) > 1s tells that none comes";
+    if (is_one_of({"YES", "ON"})) return "write true";
+    if (is_one_of({"NO", "OFF"})) return "write false";
+    return "write a value, or declare it: CONST " + name + " = 0.5, or SIGNAL " + name + " ...";
   }
 
   static bool is_call_of(const Expression& e, std::string_view function) {
@@ -362,6 +431,7 @@ class Typer {
         return input(wanted, function == Function::kAlive ? Type::kBool : Type::kString);
       case Function::kParameter: {
         wanted.kind = Input::Kind::kParameter;
+        if (is_swapped(e)) return std::nullopt;
         wanted.component = symbols_.component(e.children[0].name);
         wanted.parameter = symbols_.parameter(wanted.component, e.children[1].name.text);
         const auto type = symbols_.type_of(wanted.parameter);
@@ -434,6 +504,19 @@ class Typer {
     return std::nullopt;
   }
 
+  // parameter(fps, camera): reported.
+  bool is_swapped(const Expression& e) {
+    const std::string& first = e.children[0].name.text;
+    const std::string& second = e.children[1].name.text;
+    if (symbols_.is_declared_component(first) || !symbols_.is_declared_component(second))
+      return false;
+    const Span both{e.children[0].span.begin, e.children[1].span.end};
+    const std::string right = second + ", " + first;
+    fail(Code::kArguments, both, "the component stands in front of its parameter",
+         "write parameter(" + right + ")", Edit{both, right});
+    return true;
+  }
+
   std::optional<Typed> goals(const Expression& e) {
     const auto topic = action_argument(e.children[0]);
     if (!topic) return std::nullopt;
@@ -460,7 +543,8 @@ class Typer {
     const syntax::Name& word = e.children[1].name;
     const auto level = log_level(word.text);
     if (!level) {
-      const std::string near = closest(word.text, log_levels());
+      const std::string upper = upper_case(word.text);
+      const std::string near = log_level(upper) ? upper : closest(upper, log_levels());
       return fail(
           Code::kArguments, word.span, "no log has the level '" + word.text + "'",
           near.empty() ? "write DEBUG, INFO, WARN, ERROR or FATAL" : "did you mean '" + near + "'?",
@@ -551,7 +635,7 @@ class Typer {
   }
 
   std::optional<TopicId> topic_argument(const Expression& e) {
-    if (e.name.text.starts_with('/') && e.name.text.size() > 1) {
+    if (e.name.text.starts_with('/') && is_component_reference(e.name.text)) {
       std::optional<ComponentId> publisher;
       if (!e.children.empty()) {
         const syntax::Name& name = e.children[0].name;
@@ -563,7 +647,9 @@ class Typer {
       return symbols_.topic(e.name.text, publisher);
     }
     return fail(Code::kBadRosName, e.span, "'" + e.name.text + "' is no full topic name",
-                "write it with its namespace, as in /robot/camera/image");
+                e.name.text.starts_with('/')
+                    ? remedy_of_ros_name(e.name.text)
+                    : "write it with its namespace, as in /robot/camera/image");
   }
 
   std::optional<Typed> extreme(const Expression& e, Op exact, Op real) {
@@ -621,7 +707,7 @@ class Typer {
     if (verb == "compare" && (left == Type::kString || right == Type::kString))
       remedy = text_remedy(e, left == Type::kString ? 1 : 0);
     if (verb == "compare" && remedy.empty() && (left == Type::kBool || right == Type::kBool))
-      remedy = "write the condition by itself, or ! in front of it";
+      remedy = truth_remedy(e, left == Type::kBool ? 0 : 1);
     if (verb == "compare" && is_comparison(e.children[0]))
       remedy = "to test a range, write a < x && x < b";
     for (std::size_t i = 0; i < 2 && verb == "compare"; ++i) {
@@ -655,6 +741,13 @@ class Typer {
     return "give the number a unit, as in 500ms or 2s";
   }
 
+  // `truth`: which side of `e` is true or false.
+  static std::string truth_remedy(const Expression& e, std::size_t truth) {
+    const bool is_literal = e.children[truth].kind == Kind::kLiteral;
+    return is_literal ? "compare it with a number, as in x > 0.5"
+                      : "write the condition by itself, or ! in front of it";
+  }
+
   // `other`: which side of `e` is no text.
   static std::string text_remedy(const Expression& e, std::size_t other) {
     const Expression& side = e.children[other];
@@ -664,6 +757,7 @@ class Typer {
     if (written == nullptr)
       return "this side is a text: compare it with a text in quotes, as in \"active\"";
     if (*written == "true" || *written == "false") return "write " + *written + " without quotes";
+    if (parse_duration(*written)) return "write " + *written + " without quotes";
     double number = 0;
     const char* end = written->data() + written->size();
     const auto read = std::from_chars(written->data(), end, number);
@@ -692,6 +786,7 @@ class Typer {
   const Expression& whole_;
   Symbols& symbols_;
   std::vector<Diagnostic>& diagnostics_;
+  bool is_part_of_call_ = false;  // the name at hand, probably
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/amount.h"
 #include "base/closest.h"
 #include "base/duration_words.h"
 
@@ -171,8 +172,9 @@ std::vector<std::string> plan_lines(const DrillPlan& plan, const PlanOptions& op
     lines.push_back(fmt::format("{} is left alone: {}", component, why));
   if (plan.beyond_budget > 0)
     lines.push_back(fmt::format("{} more do not fit into the budget", plan.beyond_budget));
-  lines.push_back(fmt::format("{} faults in random order (seed {}), about {}", plan.steps.size(),
-                              options.seed, in_words(plan.estimate)));
+  lines.push_back(fmt::format("{} in random order (seed {}), about {}",
+                              amount_of(plan.steps.size(), "fault"), options.seed,
+                              in_words(plan.estimate)));
   return lines;
 }
 

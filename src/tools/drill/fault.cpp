@@ -1,6 +1,12 @@
 #include "drill/fault.h"
 
+#include <string>
+#include <vector>
+
+#include "base/closest.h"
+#include "base/name_grammar.h"
 #include "journal/json.h"
+#include "language/foreign_words.h"
 
 namespace culprit::drill {
 namespace {
@@ -17,6 +23,19 @@ std::optional<FaultKind> fault_kind(std::string_view word) {
     if (word_of(kind) == word) return kind;
   }
   return std::nullopt;
+}
+
+std::string no_fault_kind(std::string_view word) {
+  std::vector<std::string_view> known;
+  std::string list;
+  for (const FaultKind kind : kFaultKinds) {
+    known.push_back(word_of(kind));
+    list += (list.empty() ? "" : ", ") + std::string(known.back());
+  }
+  std::string near(clause_of_other_tools(word, known));
+  if (near.empty()) near = closest(word, known);
+  return "'" + printable(word) + "' is none of " + list +
+         (near.empty() ? "" : "; did you mean '" + near + "'?");
 }
 
 bool acts_on_process(FaultKind kind) {

@@ -30,6 +30,8 @@ inline constexpr FaultKind kFaultKinds[] = {
 // "kill", "hang", ... as DRILL lines and --kinds take them. These words stand in files.
 std::string_view word_of(FaultKind kind);
 std::optional<FaultKind> fault_kind(std::string_view word);
+// The message about a word that names none: the kinds, and the one that was probably meant.
+std::string no_fault_kind(std::string_view word);
 
 struct Fault {
   FaultKind kind = FaultKind::kKill;

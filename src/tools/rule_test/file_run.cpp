@@ -53,7 +53,7 @@ FileRun run_file(const std::string& path, const std::string& filter, const Plann
   FileRun run;
   const auto source = Source::read(path);
   if (!source) {
-    run.complaints = source.error() + "\n";
+    run.complaints = "culprit: " + source.error() + "\n";
     return run;
   }
   std::vector<Diagnostic> diagnostics;

@@ -1,0 +1,242 @@
+#include "language/adaptation_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <optional>
+#include <utility>
+
+#include "base/closest.h"
+#include "language/foreign_words.h"
+
+namespace culprit {
+namespace {
+
+using syntax::Name;
+
+class AdaptationReader {
+ public:
+  AdaptationReader(LineReader& read, const Source& source) : read_(read), source_(source) {}
+
+  std::optional<syntax::Adaptation> read(Scanner& s) {
+    auto component = read_.component_reference(s);
+    if (!component) return std::nullopt;
+    syntax::Adaptation adaptation;
+    adaptation.span.begin = component->span.begin;
+    if (!is_one_component(s, *component)) return std::nullopt;
+    const Token word = s.next();
+    const auto type = syntax::adaptation_type(word.text);
+    if (!type && syntax::adaptation_type(component->text))
+      lacks_component(*component, word);
+    else if (!type)
+      unknown_adaptation(word, s);
+    if (!type) return std::nullopt;
+    adaptation.component = std::move(*component);
+    adaptation.type = *type;
+    if (!adaptation_arguments(s, adaptation)) return std::nullopt;
+    if (is_call(s)) return std::nullopt;
+    const auto impact = read_.number(s, "the impact in cycles", impact_remedy(adaptation, s));
+    if (!impact) return std::nullopt;
+    adaptation.impact = *impact;
+    adaptation.span.end = impact->span.end;
+    return adaptation;
+  }
+
+ private:
+  // "camera.redeploy", "camera, lidar redeploy", "robot/camera redeploy": reported.
+  bool is_one_component(Scanner& s, const Name& component) {
+    const Token& next = s.peek();
+    const std::string_view written = source_.text(next.span);
+    if (written == ".")
+      return read_.fail(Code::kSyntax, next.span, "no '.' stands behind a component",
+                        "write a blank", Edit{next.span, " "});
+    if (next.is(","))
+      return read_.fail(Code::kSyntax, next.span, "one line adapts one component",
+                        "write a line of its own for each component");
+    if (next.is("/"))
+      return read_.fail(Code::kBadRosName, component.span,
+                        "'" + component.text + "/' begins no full ROS name",
+                        "write the component, or the full name of its node with a '/' in front",
+                        Edit{{component.span.begin, component.span.begin}, "/"});
+    return true;
+  }
+
+  // "redeploy() 10": reported.
+  bool is_call(Scanner& s) {
+    const Token& next = s.peek();
+    return next.is("(") && !read_.fail(Code::kSyntax, next.span, "an adaptation has no parentheses",
+                                       "write its arguments behind it, with blanks between them");
+  }
+
+  bool adaptation_arguments(Scanner& s, syntax::Adaptation& adaptation) {
+    using enum syntax::AdaptationType;
+    const auto take_name = [&](Name& name, std::string_view what) {
+      auto found = read_.name_or_text(s, what);
+      if (!found) return false;
+      name = std::move(*found);
+      // The impact, which a name stands in front of.
+      const bool is_number = s.at_end() && source_.text(name.span).find_first_not_of(
+                                               "0123456789") == std::string_view::npos;
+      return !is_number || read_.fail(Code::kSyntax, name.span,
+                                      "expected " + std::string(what) + ", not '" + name.text + "'",
+                                      "write it in front of the impact");
+    };
+    switch (adaptation.type) {
+      case kSetParameter:
+      case kIncreaseParameter:
+      case kDecreaseParameter:
+        if (!take_name(adaptation.subject, "the parameter")) return false;
+        return value(s, adaptation);
+      case kChangeCommunication:
+        return take_name(adaptation.subject, "the parameter that holds the topic") &&
+               take_name(adaptation.topic, "the topic");
+      case kChangeMode:
+        return take_name(adaptation.subject, "the mode");
+      case kCall:
+        if (!take_name(adaptation.subject, "the service")) return false;
+        if (s.peek().kind == Token::Kind::kString)
+          adaptation.request = read_.text(s, "the request", "");
+        if (const Token& next = s.peek(); next.kind == Token::Kind::kIdentifier
+                                              ? !source_.text(next.span).starts_with('{')
+                                              : source_.text(next.span) == "{")
+          return read_.fail(Code::kSyntax, next.span, "a request stands in quotes",
+                            "write it as in call ~/enable \"data: true\" 5");
+        return true;
+      case kActivate:
+      case kDeactivate:
+      case kRestart:
+      case kRedeploy:
+      case kStart:
+      case kStop:
+      case kStartGroup:
+        return true;
+    }
+    return false;
+  }
+
+  bool value(Scanner& s, syntax::Adaptation& adaptation) {
+    const Token& next = s.peek();
+    constexpr std::string_view kNoSign = "no '=' stands between a parameter and its value";
+    if (next.text == "to" || next.text == "by")
+      return read_.fail(Code::kSyntax, next.span,
+                        "no '" + std::string(next.text) + "' stands in front of a value",
+                        "remove it", Edit{{next.span.begin, next.span.end + 1}, ""});
+    if (source_.text(next.span) == "[")
+      return read_.fail(Code::kSyntax, next.span, "a list stands in quotes",
+                        "write it as in set_parameter gains \"[1, 2]\" 5");
+    if (adaptation.subject.text.size() > 1 && adaptation.subject.text.ends_with(':')) {
+      const Span colon{adaptation.subject.span.end - 1, adaptation.subject.span.end};
+      return read_.fail(Code::kExtraText, colon, "no ':' stands behind a parameter",
+                        "remove the ':'", Edit{colon, ""});
+    }
+    // "gain=2.0 5": what stands behind it is the impact.
+    if (const auto sign = adaptation.subject.text.find('=');
+        sign != std::string::npos && holds_one_number(s)) {
+      const auto at = adaptation.subject.span.begin + static_cast<std::uint32_t>(sign);
+      return read_.fail(Code::kSyntax, {at, at + 1}, std::string(kNoSign), "write a blank",
+                        Edit{{at, at + 1}, " "});
+    }
+    if (next.is("="))
+      return read_.fail(Code::kSyntax, next.span, std::string(kNoSign), "remove the '='",
+                        Edit{next.span, ""});
+    adaptation.value = read_.expression(s);
+    return adaptation.value.has_value();
+  }
+
+  bool holds_one_number(const Scanner& s) const {
+    const std::string_view rest = source_.text(s.rest());
+    return !rest.empty() && rest.find_first_not_of("0123456789.") == std::string_view::npos;
+  }
+
+  // Where one number is there, it was read as the value.
+  static std::string impact_remedy(const syntax::Adaptation& adaptation, Scanner& s) {
+    if (s.peek().kind == Token::Kind::kDuration)
+      return "an impact counts cycles, not time: write it without a unit";
+    if (!adaptation.value && s.at_end()) return "add it at the end: a usual impact is 10";
+    if (!adaptation.value && adaptation.subject.text.empty() &&
+        s.peek().kind != Token::Kind::kSymbol && !is_last_word(s))
+      return "remove it: " + std::string(keyword(adaptation.type)) + " takes the impact only";
+    if (!adaptation.value) return "";
+    if (!s.at_end()) return "";
+    const std::string word(keyword(adaptation.type));
+    return "the value and the impact stand at the end: " + word + " " + adaptation.subject.text +
+           (adaptation.type == syntax::AdaptationType::kSetParameter ? " true 2" : " 0.5 2");
+  }
+
+  static bool is_last_word(const Scanner& s) {
+    Scanner ahead = s.ahead();
+    ahead.next();
+    return ahead.at_end();
+  }
+
+  // "ADAPTATION redeploy camera 10", or no component at all
+  bool lacks_component(const Name& type, const Token& word) {
+    if (word.is("("))
+      return read_.fail(Code::kSyntax, type.span, "an adaptation has no parentheses",
+                        "write the component in front of it, as in ADAPTATION camera " + type.text);
+    const bool is_swapped = word.kind == Token::Kind::kIdentifier;
+    const std::string component = is_swapped ? std::string(word.text) : "component";
+    const std::string right = component + " " + type.text;
+    const Span span{type.span.begin, is_swapped ? word.span.end : type.span.end};
+    return read_.fail(Code::kSyntax, span, "the component stands in front of what to do with it",
+                      "write ADAPTATION " + right,
+                      is_swapped ? std::optional(Edit{span, right}) : std::nullopt);
+  }
+
+  bool unknown_adaptation(const Token& word, Scanner& s) {
+    if (hyphenated_adaptation(word, s)) return false;
+    if (word.kind != Token::Kind::kIdentifier)
+      return read_.fail_token(word, "what to do with the component",
+                              "write for example restart, redeploy or set_parameter");
+    std::string plain(word.text);
+    std::transform(plain.begin(), plain.end(), plain.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
+    if (plain.starts_with("action_")) plain.erase(0, 7);  // as in the reference's dialect
+    std::string near =
+        syntax::adaptation_type(plain) ? plain : std::string(adaptation_of_other_tools(plain));
+    if (near.empty()) near = closest(plain, syntax::adaptation_keywords());
+    constexpr std::array<std::string_view, 9> kCommands = {
+        "exec", "execute", "command", "shell", "script", "bash", "systemctl", "system", "ros2"};
+    if (std::ranges::find(kCommands, plain) != kCommands.end())
+      return read_.fail(
+          Code::kUnknownAdaptation, word.span, "no adaptation runs a command",
+          "redeploy starts a component anew, by its LAUNCH or UNIT; call calls a service");
+    return read_.fail(
+        Code::kUnknownAdaptation, word.span,
+        "there is no adaptation '" + std::string(word.text) + "'",
+        near.empty()
+            ? "known: set_parameter increase_parameter decrease_parameter change_communication "
+              "activate deactivate restart redeploy start stop change_mode call start_group"
+            : "did you mean '" + near + "'?",
+        replacement(word.span, near));
+  }
+
+  // "re-deploy", "set-parameter": reported.
+  bool hyphenated_adaptation(const Token& word, Scanner& s) {
+    const Token dash = s.peek();
+    if (!dash.is("-") || dash.span.begin != word.span.end) return false;
+    s.next();
+    const Token second = s.next();
+    for (const char* between : {"", "_"}) {
+      const std::string meant = std::string(word.text) + between + std::string(second.text);
+      if (!syntax::adaptation_type(meant)) continue;
+      const Span span{word.span.begin, second.span.end};
+      return !read_.fail(Code::kUnknownAdaptation, span,
+                         "there is no adaptation '" + std::string(source_.text(span)) + "'",
+                         "did you mean '" + meant + "'?", Edit{span, meant});
+    }
+    return false;
+  }
+
+  LineReader& read_;
+  const Source& source_;
+};
+
+}  // namespace
+
+std::optional<syntax::Adaptation> read_adaptation(LineReader& read, const Source& source,
+                                                  Scanner& s) {
+  return AdaptationReader(read, source).read(s);
+}
+
+}  // namespace culprit

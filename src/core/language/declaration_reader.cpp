@@ -1,0 +1,309 @@
+#include "language/declaration_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "base/closest.h"
+#include "language/component_reader.h"
+
+namespace culprit {
+namespace {
+
+using syntax::Name;
+
+constexpr std::array<std::string_view, 1> kEqualsSign = {"="};
+constexpr std::array<std::string_view, 3> kSignalSources = {"DIAGNOSTIC", "TOPIC", "PARAMETER"};
+
+// Whether the next word is none of these `clauses` nor one of them written wrong.
+bool is_clause_far(const Scanner& s, std::span<const std::string_view> clauses) {
+  const Token& token = s.peek();
+  if (std::find(clauses.begin(), clauses.end(), token.text) != clauses.end()) return false;
+  const std::string upper = upper_case(token.text);
+  return std::find(clauses.begin(), clauses.end(), upper) == clauses.end() &&
+         closest(upper, {clauses.begin(), clauses.end()}).empty();
+}
+
+}  // namespace
+
+bool DeclarationReader::robot(Scanner& s) {
+  const auto name = read_.identifier(s, "the robot's name");
+  if (!name || !read_.is_one_word(s, *name)) return false;
+  if (into_.robot)
+    return read_.fail(Code::kDuplicateName, name->span, "the robot has a name already",
+                      "keep one ROBOT line");
+  into_.robot = *name;
+  return true;
+}
+
+bool DeclarationReader::cycle(Scanner& s) {
+  const Span span = s.rest();
+  const auto length = read_.duration(s, "the length of a cycle");
+  if (!length) return false;
+  if (into_.cycle)
+    return read_.fail(Code::kDuplicateName, span, "CYCLE is set already", "keep one CYCLE line");
+  if (*length <= Duration::zero())
+    return read_.fail(Code::kPolicyRange, span, "a cycle takes some time",
+                      "write for example 200ms");
+  into_.cycle = {*length, span};
+  return true;
+}
+
+bool DeclarationReader::constant(Scanner& s) {
+  auto name = read_.declared_name(s, "the constant's name");
+  if (!name || !read_.is_one_word(s, *name, kEqualsSign) || !equals_sign(s, *name)) return false;
+  auto value = read_.expression(s);
+  if (!value || !read_.line_ends(s)) return false;
+  into_.constants.push_back({std::move(*name), std::move(*value)});
+  return true;
+}
+
+bool DeclarationReader::equals_sign(Scanner& s, const Name& constant) {
+  const Token token = s.next();
+  if (token.is("=")) return true;
+  const bool is_assignment = token.is(":") && s.peek().is("=");
+  return read_.fail_token(
+      token, "'='", "write CONST " + constant.text + " = 0.5",
+      is_assignment ? Edit{token.span, ""} : Edit{{token.span.begin, token.span.begin}, "= "});
+}
+
+bool DeclarationReader::component(Scanner& s) {
+  if (const Span rest = s.rest(); source_.text(rest).starts_with('/'))
+    return read_.fail(Code::kSyntax, rest, "a component's name is no node's name",
+                      "write its own name first: COMPONENT camera NODE /robot/camera");
+  auto name = read_.declared_name(s, "the component's name");
+  if (!name) return false;
+  const auto clauses = component_clauses();
+  if (is_clause_far(s, clauses) && !read_.is_one_word(s, *name, clauses)) return false;
+  syntax::Component component{std::move(*name), {}, {}};
+  if (!read_component_clauses(read_, source_, s, component)) return false;
+  into_.components.push_back(std::move(component));
+  return true;
+}
+
+bool DeclarationReader::dependency(Scanner& s) {
+  auto consumer = read_.component_reference(s);
+  if (!consumer || !on(s)) return false;
+  syntax::Dependency dependency{std::move(*consumer), {}};
+  do {
+    if (s.peek().is(",")) return read_.fail_comma(s.next());
+    auto producer = read_.component_reference(s);
+    if (!producer) return false;
+    dependency.producers.push_back(std::move(*producer));
+  } while (!s.at_end());
+  into_.dependencies.push_back(std::move(dependency));
+  return true;
+}
+
+// Or a word or an arrow in its place, which is reported.
+bool DeclarationReader::on(Scanner& s) {
+  Scanner behind = s.ahead();
+  const Token word = behind.next();
+  if (word.text == "ON") return s.next(), true;
+  const Token& second = behind.peek();
+  const bool is_arrow = word.is("-") && second.is(">");
+  const bool is_phrase = upper_case(second.text) == "ON";
+  const bool is_name = word.kind == Token::Kind::kIdentifier && behind.at_end();
+  const Span span{word.span.begin, is_arrow || is_phrase ? second.span.end : word.span.end};
+  std::optional<Edit> fix;
+  if (is_arrow || is_phrase || upper_case(word.text) == "ON") fix = Edit{span, "ON"};
+  if (is_name && !fix) fix = Edit{{word.span.begin, word.span.begin}, "ON "};
+  const std::string got =
+      word.kind == Token::Kind::kEnd ? "" : ", not '" + std::string(source_.text(span)) + "'";
+  return read_.fail(
+      Code::kSyntax, span, "expected ON" + got,
+      "write the component that needs the other one first: DEPENDENCY fusion ON camera", fix);
+}
+
+bool DeclarationReader::group(Scanner& s) {
+  auto name = read_.declared_name(s, "the group's name");
+  if (!name) return false;
+  syntax::Group group{std::move(*name), {}, {}};
+  if (!s.take('{'))
+    return read_.fail_token(s.next(), "'{'",
+                            "write the components in braces: GROUP navigation { planner, "
+                            "controller } MANAGER lifecycle_manager");
+  do {
+    if (const Span next = s.peek().span; source_.text(next) == "}")
+      return read_.fail(Code::kSyntax, next, "a component is missing here",
+                        "write the components of the group, with commas between them");
+    auto member = read_.identifier(s, "a component of the group");
+    if (!member) return false;
+    group.members.push_back(std::move(*member));
+  } while (s.take(','));
+  if (!s.take('}'))
+    return read_.fail_token(s.next(), "',' or '}'",
+                            "commas stand between the components, and a brace behind the last one");
+  if (!read_.expect_word(s, "MANAGER",
+                         "write the component of its lifecycle manager, as in MANAGER "
+                         "lifecycle_manager"))
+    return false;
+  auto manager = read_.identifier(s, "the component that manages the group");
+  if (!manager) return false;
+  group.manager = std::move(*manager);
+  into_.groups.push_back(std::move(group));
+  return true;
+}
+
+bool DeclarationReader::ignore(Scanner& s) {
+  if (const Span rest = s.rest(); source_.text(rest).starts_with('/'))
+    return read_.fail(Code::kSyntax, rest,
+                      "expected TOPIC, not '" + std::string(source_.text(rest)) + "'",
+                      "write TOPIC in front of it", Edit{{rest.begin, rest.begin}, "TOPIC "});
+  if (!read_.expect_word(s, "TOPIC")) return false;
+  do {
+    if (s.peek().is(",")) return read_.fail_comma(s.next());
+    auto topic = read_.ros_name(s, "a topic");
+    if (!topic) return false;
+    into_.ignored_topics.push_back(std::move(*topic));
+  } while (!s.at_end());
+  return true;
+}
+
+bool DeclarationReader::interlock(Scanner& s) { return condition(s, into_.interlocks); }
+bool DeclarationReader::abort(Scanner& s) { return condition(s, into_.aborts); }
+
+bool DeclarationReader::condition(Scanner& s, std::vector<syntax::Interlock>& all) {
+  auto condition = read_.expression(s);
+  if (!condition || !read_.condition_ends(s)) return false;
+  std::string text(source_.text(condition->span));
+  all.push_back({std::move(*condition), std::move(text)});
+  return true;
+}
+
+bool DeclarationReader::drill(Scanner& s) {
+  using What = syntax::Drill::What;
+  auto component = read_.component_reference(s);
+  if (!component) return false;
+  syntax::Drill drill{.component = std::move(*component)};
+  const Token word = s.next();
+  if (word.text == "set_parameter") {
+    drill.what = What::kSetParameter;
+    auto parameter = read_.name_or_text(s, "the parameter");
+    if (!parameter) return false;
+    drill.subject = std::move(*parameter);
+    drill.value = read_.expression(s);
+    if (!drill.value || !read_.line_ends(s)) return false;
+  } else if (word.text == "without") {
+    drill.what = What::kWithout;
+    const Token fault = s.next();
+    const auto known = syntax::drill_faults();
+    if (std::ranges::find(known, fault.text) == known.end())
+      return read_.unexpected_clause(fault, known);
+    drill.subject = {std::string(fault.text), fault.span};
+  } else if (word.text == "limit") {
+    const auto times = read_.whole_number(s, "how often it is broken at most");
+    if (!times) return false;
+    drill.times = *times;
+  } else {
+    const auto faults = syntax::drill_faults();
+    const std::string fault(word.text);
+    const bool is_fault = std::ranges::find(faults, word.text) != faults.end();
+    return read_.unexpected_clause(
+        word, {"set_parameter", "without", "limit"},
+        is_fault ? "drills do that already; DRILL camera without " + fault + " forbids it"
+                 : "write the component and what drills may do to it, as in DRILL camera limit 3");
+  }
+  into_.drills.push_back(std::move(drill));
+  return true;
+}
+
+bool DeclarationReader::signal(Scanner& s) {
+  auto name = read_.declared_name(s, "the signal's name");
+  if (!name) return false;
+  if (is_clause_far(s, kSignalSources) && !read_.is_one_word(s, *name, kSignalSources))
+    return false;
+  syntax::Signal signal{std::move(*name), {}, {}, {}};
+  if (!signal_source(s, signal)) return false;
+  while (!s.at_end()) {
+    const Token& clause = s.peek();
+    if (clause.text == "STALE" && !signal.stale) {
+      s.next();
+      signal.stale = read_.positive_duration(s, "how old a value may become");
+      if (!signal.stale) return false;
+    } else if (clause.text == "RANGE" && !signal.range) {
+      s.next();
+      if (!range(s, signal)) return false;
+    } else {
+      const bool is_publisher = upper_case(clause.text) == "FROM";
+      if (is_publisher && clause.text != "FROM")
+        return read_.fail(Code::kSyntax, clause.span,
+                          "'" + std::string(clause.text) + "' is no word here",
+                          "did you mean FROM?", Edit{clause.span, "FROM"});
+      return read_.unexpected_clause(
+          clause, {"STALE", "RANGE"},
+          !is_publisher ? ""
+          : std::holds_alternative<syntax::ParameterSource>(signal.source)
+              ? "remove it: a parameter is its component's own"
+          : signal.from ? "remove it: one FROM is enough"
+                        : "write FROM behind the key or the field, in front of STALE and RANGE");
+    }
+  }
+  into_.signals.push_back(std::move(signal));
+  return true;
+}
+
+bool DeclarationReader::signal_source(Scanner& s, syntax::Signal& signal) {
+  const Token kind = s.next();
+  if (kind.text == "DIAGNOSTIC") {
+    auto status = read_.name_or_text(s, "the status's name or hardware id");
+    if (!status || !read_.expect_word(s, "KEY", "write KEY and the key, as in KEY temperature"))
+      return false;
+    auto key = read_.name_or_text(s, "the key");
+    if (!key || !publisher(s, signal)) return false;
+    signal.source = syntax::DiagnosticSource{std::move(*status), std::move(*key)};
+  } else if (kind.text == "TOPIC") {
+    auto topic = read_.ros_name(s, "the topic");
+    if (!topic ||
+        !read_.expect_word(s, "FIELD", "write FIELD and the path of the field, as in FIELD data"))
+      return false;
+    auto field = read_.name_or_text(s, "the field, for example data or pose.position.x");
+    if (!field || !publisher(s, signal)) return false;
+    signal.source = syntax::TopicSource{std::move(*topic), std::move(*field)};
+  } else if (kind.text == "PARAMETER") {
+    auto component = read_.component_reference(s);
+    if (!component) return false;
+    auto parameter = read_.name_or_text(s, "the parameter");
+    if (!parameter) return false;
+    signal.source = syntax::ParameterSource{std::move(*component), std::move(*parameter)};
+  } else {
+    constexpr std::string_view kRemedy =
+        "write where its value comes from, as in TOPIC /battery FIELD percentage";
+    return read_.unexpected_clause(kind, {kSignalSources.begin(), kSignalSources.end()},
+                                   kind.is("/")
+                                       ? "write TOPIC in front of the topic, and FIELD behind it"
+                                       : std::string(kRemedy));
+  }
+  return true;
+}
+
+// FROM, if it is there.
+bool DeclarationReader::publisher(Scanner& s, syntax::Signal& signal) {
+  if (s.peek().text != "FROM") return true;
+  s.next();
+  auto component = read_.component_reference(s);
+  if (!component) return false;
+  signal.from = std::move(*component);
+  return true;
+}
+
+bool DeclarationReader::range(Scanner& s, syntax::Signal& signal) {
+  constexpr std::string_view kRemedy = "write the two ends, as in RANGE 0..100";
+  const Span span = s.rest();
+  const std::string_view first = source_.text(s.peek().span);
+  if (first == "[" || first == "(")
+    return read_.fail(Code::kSyntax, s.peek().span, "a range has no brackets",
+                      std::string(kRemedy));
+  const auto low = read_.signed_number(s);
+  if (!low || !read_.expect_symbol(s, "..", std::string(kRemedy))) return false;
+  if (const Span next = s.peek().span;
+      source_.text(next).starts_with('.') && next.begin == s.taken())
+    return read_.fail(Code::kSyntax, {next.begin, next.begin + 1}, "a range has two points",
+                      "remove the third one", Edit{{next.begin, next.begin + 1}, ""});
+  const auto high = read_.signed_number(s);
+  if (!high) return false;
+  signal.range = {*low, *high, span};
+  return true;
+}
+
+}  // namespace culprit

@@ -1,0 +1,137 @@
+#include "language/unknown_line.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "base/closest.h"
+#include "language/foreign_words.h"
+#include "language/syntax.h"
+
+namespace culprit {
+namespace {
+
+struct Remedy {
+  std::string text;
+  std::optional<Edit> fix{};
+};
+
+// A comment of another language; empty: it is none.
+std::optional<Span> foreign_comment(const Token& head, const Token& second) {
+  const bool adjoins = second.span.begin == head.span.end;
+  const bool is_pair =
+      adjoins && ((head.is("-") && second.is("-")) || (head.is("/") && second.is("*")));
+  if (is_pair) return Span{head.span.begin, second.span.end};
+  return std::nullopt;
+}
+
+bool is_adaptation(std::string_view word) {
+  return syntax::adaptation_type(word).has_value() || !adaptation_of_other_tools(word).empty();
+}
+
+// The numbers of a rule have no words.
+std::string_view place_of_number(std::string_view upper) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kNumbers = {
+      {{"PROBABILITY", "it is the first number of a STRATEGY line: STRATEGY name 80 10"},
+       {"CONFIDENCE", "it is the second number of a STRATEGY line: STRATEGY name 80 10"},
+       {"IMPACT", "it is the last number of an ADAPTATION line: ADAPTATION camera redeploy 10"},
+       {"COST", "it is the last number of an ADAPTATION line: ADAPTATION camera redeploy 10"}}};
+  for (const auto& [word, place] : kNumbers) {
+    if (word == upper) return place;
+  }
+  return "";
+}
+
+// A line whose first character is no letter.
+std::optional<Remedy> remedy_of_symbol(const UnknownLine& line, const Token& head,
+                                       std::string_view written) {
+  if (written == "[")
+    return Remedy{"a rule file has no sections: a rule begins with RULE and its name"};
+  if (written == "<")
+    return Remedy{"a rule file has no tags: a rule begins with RULE and its name"};
+  if (written == "`") return Remedy{"remove the line: a rule file has no code fences"};
+  constexpr std::string_view kOperators = "&& || & | < <= > >= == != + * / %";
+  const bool is_operator =
+      head.kind != Token::Kind::kIdentifier && kOperators.find(written) != std::string_view::npos;
+  if (is_operator && line.is_in_rule)
+    return Remedy{"write it at the end of the line above: a statement is one line"};
+  return std::nullopt;
+}
+
+std::string list_of(std::span<const std::string_view> keywords) {
+  std::string list;
+  for (const std::string_view word : keywords) list += " " + std::string(word);
+  return list;
+}
+
+Remedy remedy_of_word(const UnknownLine& line, const Token& head, const Scanner& s,
+                      const std::string& near) {
+  const std::string upper = upper_case(head.text);
+  if (const auto place = place_of_number(upper); !place.empty()) return {std::string(place)};
+  if (const auto statement = statement_of_clause(upper); !statement.empty() && near.empty())
+    return {"write it on the line of its " + std::string(statement) + ": a statement is one line"};
+  if (near == "TRIGGER" && !line.is_in_rule)
+    return {"write RULE and its name, then lines with POLICIES, TRIGGER, STRATEGY and ADAPTATION"};
+  if (!near.empty()) return {"did you mean " + near + "?", Edit{head.span, near}};
+  const Token& second = s.peek();
+  const Span in_front{head.span.begin, head.span.begin};
+  if (second.is("=") && head.kind == Token::Kind::kIdentifier)
+    return {"a constant begins with CONST, as in CONST limit = 0.5", Edit{in_front, "CONST "}};
+  if (is_adaptation(second.text))
+    return {
+        "did you mean ADAPTATION " + std::string(head.text) + " " + std::string(second.text) + "?",
+        Edit{in_front, "ADAPTATION "}};
+  if (is_adaptation(head.text) && second.kind == Token::Kind::kIdentifier)
+    return {"did you mean ADAPTATION " + std::string(second.text) + " " + std::string(head.text) +
+            "?"};
+  return {"a line begins with one of" + list_of(line.keywords)};
+}
+
+// The keyword that `head` stands for; empty: none.
+std::string meant_keyword(const UnknownLine& line, const Token& head) {
+  const std::string upper = upper_case(head.text);
+  if (std::ranges::find(line.keywords, upper) != line.keywords.end()) return upper;
+  const std::string_view foreign = statement_of_other_tools(upper);
+  if (!foreign.empty()) return std::string(foreign);
+  if (!statement_of_clause(upper).empty() || !place_of_number(upper).empty()) return "";
+  return closest(upper, {line.keywords.begin(), line.keywords.end()});
+}
+
+}  // namespace
+
+std::string report_unknown_line(const UnknownLine& line, const Token& head, const Scanner& s) {
+  const std::string written(line.source.text(head.span));
+  const auto comment = written == ";" ? std::optional(head.span) : foreign_comment(head, s.peek());
+  if (comment) {
+    line.read.fail(Code::kUnknownStatement, *comment,
+                   "no comment begins with '" + std::string(line.source.text(*comment)) + "'",
+                   "begin each line of a comment with #", Edit{*comment, "#"});
+    return "";
+  }
+  const std::string near = meant_keyword(line, head);
+  if (line.is_below_unfinished && near.empty()) return "";
+  const std::string cause = "no statement begins with '" + written + "'";
+  if (const auto remedy = remedy_of_symbol(line, head, written)) {
+    line.read.fail(Code::kUnknownStatement, head.span, cause, remedy->text, remedy->fix);
+    return "";
+  }
+  if (head.kind == Token::Kind::kBad) {
+    line.read.fail_token(head, "a statement", "");
+    return "";
+  }
+  const Remedy remedy = remedy_of_word(line, head, s, near);
+  line.read.fail(Code::kUnknownStatement, head.span, cause, remedy.text, remedy.fix);
+  // A word of another tool may stand for a line that the rule has as well.
+  const bool is_foreign = near != "RULE" && near == statement_of_other_tools(upper_case(head.text));
+  return is_foreign ? "" : near;
+}
+
+bool is_unfinished(std::string_view line) {
+  line = trimmed(line);
+  constexpr std::array<std::string_view, 12> kEnds = {"&&", "||", "<", ">", "=",  "+",
+                                                      "-",  "*",  "(", ",", "\\", "&"};
+  return std::ranges::any_of(kEnds, [&](std::string_view end) { return line.ends_with(end); });
+}
+
+}  // namespace culprit

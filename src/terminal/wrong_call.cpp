@@ -1,0 +1,486 @@
+#include "terminal/wrong_call.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <initializer_list>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "base/closest.h"
+#include "base/name_grammar.h"
+#include "base/units.h"
+#include "terminal/help.h"
+#include "terminal/listed.h"
+
+namespace culprit {
+namespace {
+
+bool is_one_of(std::string_view word, std::initializer_list<std::string_view> words) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+std::vector<std::string_view> names_of(const std::vector<const CLI::App*>& commands) {
+  std::vector<std::string_view> names;
+  for (const CLI::App* command : commands) names.push_back(command->get_name());
+  return names;
+}
+
+std::vector<std::string> options_of(const CLI::App& command) {
+  std::vector<const CLI::Option*> options = options_in(command);
+  const auto all = command.get_options();  // with those that are not listed
+  options.insert(options.end(), all.begin(), all.end());
+  std::vector<std::string> names;
+  for (const CLI::Option* option : options) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+  }
+  return names;
+}
+
+using Words = std::vector<std::pair<std::string_view, std::string_view>>;
+
+// "min" for "minutes"; empty: `word` is no unit.
+std::string unit_of_words(std::string_view word) {
+  constexpr auto kUnits = std::to_array<std::string_view>({"ms", "s", "min", "h"});
+  constexpr auto kLongForms =
+      std::to_array<std::string_view>({"milliseconds", "seconds", "minutes", "hours"});
+  for (std::size_t i = 0; i < kUnits.size(); ++i) {
+    const bool is_unit = word == kUnits[i] || (word.size() > 2 && kLongForms[i].starts_with(word));
+    if (is_unit) return std::string(kUnits[i]);
+  }
+  return "";
+}
+
+// The first word behind `word` that is known; empty: there is none.
+std::string_view translated(std::string_view word, const Words& words,
+                            const std::vector<std::string_view>& known) {
+  for (const auto& [theirs, ours] : words) {
+    if (theirs == word && std::ranges::find(known, ours) != known.end()) return ours;
+  }
+  return "";
+}
+
+// As other tools call it.
+std::string_view command_of_other_tools(std::string_view word,
+                                        const std::vector<std::string_view>& known) {
+  static const Words kWords = {
+      {"start", "run"},         {"launch", "run"},     {"up", "run"},         {"stop", "pause"},
+      {"continue", "resume"},   {"unpause", "resume"}, {"ps", "status"},      {"list", "status"},
+      {"show", "status"},       {"watch", "top"},      {"history", "log"},    {"events", "log"},
+      {"why", "explain"},       {"lint", "check"},     {"validate", "check"}, {"verify", "check"},
+      {"diagnose", "doctor"},   {"mute", "silence"},   {"unmute", "silence"}, {"format", "fmt"},
+      {"draft", "init"},        {"generate", "init"},  {"new", "init"},       {"simulate", "test"},
+      {"logs", "log"},          {"journal", "log"},    {"reject", "refuse"},  {"deny", "refuse"},
+      {"unsilence", "silence"}, {"nodes", "graph"},    {"topics", "graph"},   {"restart", "revive"},
+      {"monitor", "run"},       {"daemon", "run"},     {"service", "run"},    {"bag", "info"},
+      {"diff", "fmt"},          {"web-ui", "web"},     {"ui", "web"},         {"edit", "web"}};
+  return translated(word, kWords, known);
+}
+
+std::string_view option_of_other_tools(std::string_view option,
+                                       const std::vector<std::string_view>& known) {
+  static const Words kWords = {
+      {"--seconds", "--for"},   {"--seconds", "--wait"},     {"--duration", "--for"},
+      {"--duration", "--wait"}, {"--time", "--for"},         {"--time", "--wait"},
+      {"--timeout", "--wait"},  {"--follow", "--watch"},     {"--lines", "--last"},
+      {"--out", "--output"},    {"--simulate", "--dry-run"}, {"--fault", "--kinds"},
+      {"--until", "--for"},     {"--tail", "--lines"},       {"--count", "--lines"},
+      {"--noop", "--dry-run"},  {"--name", "--component"},   {"--size", "--record-budget"},
+      {"--only", "--filter"},   {"--follow", "--for"},       {"--node", "--component"},
+      {"--faults", "--kinds"},  {"--component", "--only"}};
+  return translated(option, kWords, known);
+}
+
+// Options that no command has, since something else does what they are for.
+std::string_view advice_about(std::string_view option, std::string_view command) {
+  struct Advice {
+    std::string_view option, command, text;  // command: empty for all
+  };
+  constexpr std::string_view kDomain = "set ROS_DOMAIN_ID, which every command heeds";
+  constexpr std::string_view kEvents = "culprit log -f shows each event as it comes";
+  constexpr std::string_view kService = "run it as a service of systemd (docs/install.md)";
+  constexpr std::string_view kFile = "write > FILE behind the command";
+  constexpr auto kAdvice = std::to_array<Advice>({{"--domain", "", kDomain},
+                                                  {"--domain-id", "", kDomain},
+                                                  {"--verbose", "run", kEvents},
+                                                  {"-v", "run", kEvents},
+                                                  {"--debug", "run", kEvents},
+                                                  {"--log-level", "run", kEvents},
+                                                  {"--daemon", "run", kService},
+                                                  {"--background", "run", kService},
+                                                  {"--no-color", "", "set NO_COLOR=1"},
+                                                  {"--output", "graph", kFile},
+                                                  {"-o", "graph", kFile},
+                                                  {"--output", "plan", kFile},
+                                                  {"-o", "plan", kFile},
+                                                  {"--output", "log", kFile},
+                                                  {"-o", "log", kFile}});
+  for (const Advice& each : kAdvice) {
+    if (each.option == option && (each.command.empty() || each.command == command))
+      return each.text;
+  }
+  return "";
+}
+
+// The known option that `option` ends with: --port of "--web-port"; empty: none.
+std::string_view end_of(std::string_view option, const std::vector<std::string>& known) {
+  for (const std::string_view each : known) {
+    const bool is_word = each.starts_with("--") && each.size() < option.size();
+    if (is_word && option.ends_with(each.substr(1))) return each;
+  }
+  return "";
+}
+
+// "; did you mean 'check'?", or nothing.
+std::string meant(std::string_view word, const std::vector<std::string_view>& known) {
+  std::string lower(word);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  const bool is_case_only = lower != word && std::ranges::find(known, lower) != known.end();
+  const std::string near = is_case_only ? lower : closest(word, known);
+  return near.empty() ? "" : "; did you mean '" + near + "'?";
+}
+
+std::string comma_separated(const std::vector<std::string_view>& words) {
+  std::string out;
+  for (const std::string_view word : words) out += (out.empty() ? "" : ", ") + std::string(word);
+  return out;
+}
+
+// A word with a digit behind its '-' is a number.
+bool is_option(std::string_view word) {
+  return word.size() > 1 && word[0] == '-' && (word[1] < '0' || word[1] > '9') && word[1] != '.';
+}
+
+// The first option on the command line that the command has not; empty: there is none.
+std::string unknown_option(const std::vector<std::string>& known, int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word(argv[i]);
+    std::string option(word.substr(0, word.find('=')));
+    if (option == "--") return "";
+    if (!is_option(option)) continue;
+    const bool is_single = !option.starts_with("--");
+    if (is_single && std::ranges::find(known, "-" + option) != known.end())
+      return option;                  // "-launch"
+    if (is_single) option.resize(2);  // "-n5"
+    if (std::find(known.begin(), known.end(), option) == known.end()) return option;
+  }
+  return "";
+}
+
+// Which of the other commands have it.
+std::vector<std::string_view> commands_with(const CLI::App& app, const std::string& option) {
+  std::vector<std::string_view> names;
+  for (const CLI::App* command : commands_in(app)) {
+    if (command->get_option_no_throw(option) != nullptr) names.push_back(command->get_name());
+  }
+  return names;
+}
+
+// The argument that has the option's name, or stands for it: BAG for "--bag", NAME for
+// "--component"; empty: there is none.
+std::string positional_called(const CLI::App& command, const std::string& option) {
+  std::string upper(option);
+  std::transform(upper.begin(), upper.end(), upper.begin(),
+                 [](unsigned char c) { return std::toupper(c); });
+  const bool is_name = is_one_of(option, {"--component", "--rule"});
+  const bool is_file = is_one_of(option, {"--file", "--input", "--rules"});
+  for (const CLI::Option* each : command.get_options()) {
+    if (!each->get_positional()) continue;
+    const std::string name = each->get_name(true);
+    if ("--" + name == upper || (is_name && name == "NAME") || (is_file && name == "RULES"))
+      return name;
+  }
+  return "";
+}
+
+// Of a command with few options: all of them. Nothing for others.
+std::string few_options(const std::vector<std::string>& known) {
+  constexpr std::size_t kFew = 6;
+  std::vector<std::string_view> own;
+  for (const std::string_view each : known) {
+    if (each.starts_with("--") && each != "--help" && std::ranges::find(own, each) == own.end())
+      own.push_back(each);
+  }
+  return own.empty() || own.size() > kFew ? "" : "; it has " + comma_separated(own);
+}
+
+// The remedy for an option that `command`, with the options `known`, has not: "; test has it".
+std::string remedy_of(const CLI::App& app, const CLI::App& command, const std::string& option,
+                      const std::vector<std::string>& known) {
+  const bool is_program = &command == &app;
+  const auto is_known = [&](const std::string& each) {
+    return std::ranges::find(known, each) != known.end();
+  };
+  const auto ask = [](std::string_view word) {
+    return "; did you mean '" + std::string(word) + "'?";
+  };
+  if (is_program && (option == "-v" || option == "-V")) return ask("--version");
+  if (is_known("-" + option)) return ask("-" + option);
+  const std::string word = option.substr(std::min(option.find_first_not_of('-'), option.size()));
+  if (is_program && command_named(app, word) != nullptr) return ask(word);
+  if (const std::string name = positional_called(command, option); !name.empty())
+    return "; write " + name + " without it";
+  if (option.starts_with("--no-") && is_known("--" + option.substr(5)))
+    return "; leave --" + option.substr(5) + " out";
+  if (const auto end = end_of(option, known); !end.empty()) return ask(end);
+  if (const auto ours = option_of_other_tools(option, {known.begin(), known.end()}); !ours.empty())
+    return ask(ours);
+  if (std::string near = meant(option, {known.begin(), known.end()}); !near.empty()) return near;
+  if (const auto parts = commands_with(command, option); !is_program && !parts.empty())
+    return "; it stands behind " + comma_separated(parts);
+  if (const auto advice = advice_about(option, command.get_name()); !advice.empty())
+    return "; " + std::string(advice);
+  const auto others = commands_with(app, option);
+  if (option.starts_with("--") && others.size() == 1)
+    return ask(app.get_name() + " " + std::string(others.front()) + " " + option);
+  return is_program ? "" : few_options(known);
+}
+
+std::string remedy_of_command(const CLI::App& app, std::string_view word) {
+  const std::vector<std::string_view> known = names_of(commands_in(app));
+  if (word == "version") return "; did you mean '--version'?";
+  if (const auto ours = command_of_other_tools(word, known); !ours.empty())
+    return "; did you mean '" + std::string(ours) + "'?";
+  if (std::string near = meant(word, known); !near.empty()) return near;
+  if (word.ends_with(".rules") && command_named(app, "check") != nullptr)
+    return "; did you mean '" + app.get_name() + " run " + printable(word) + "'?";
+  return "";
+}
+
+// The mistake, where the name of a command or of an option is not known; nothing where something
+// else is wrong.
+std::optional<std::string> unknown_word(const CLI::App& app, const Chosen& line, int argc,
+                                        char** argv) {
+  if (argc > 1 && !is_option(argv[1]) && command_named(app, argv[1]) == nullptr)
+    return "there is no command '" + printable(argv[1]) + "'" + remedy_of_command(app, argv[1]);
+  const auto parts = commands_in(*line.command);
+  if (!parts.empty() && line.depth + 1 < argc && !is_option(argv[line.depth + 1])) {
+    const char* word = argv[line.depth + 1];
+    const std::vector<std::string_view> known = names_of(parts);
+    const std::string near = meant(word, known);
+    return line.command->get_name() + " has no command '" + printable(word) + "'" +
+           (near.empty() ? "; it has " + comma_separated(known) : near);
+  }
+  const std::vector<std::string> options = options_of(*line.command);
+  const std::string option = unknown_option(options, argc, argv);
+  if (option.empty()) return std::nullopt;
+  const std::string cause =
+      (line.command == &app ? "there is" : line.command->get_name() + " has") + " no option '" +
+      printable(option) + "'";
+  return cause + remedy_of(app, *line.command, option, options);
+}
+
+std::string without(std::string text, std::string_view prefix) {
+  return text.starts_with(prefix) ? text.substr(prefix.size()) : text;
+}
+
+// "0.100000" as people write it.
+std::string plain_range(std::string text) {
+  for (auto at = text.find('.'); at != std::string::npos; at = text.find('.', at + 1)) {
+    auto end = text.find_first_not_of("0123456789", at + 1);
+    if (end == std::string::npos) end = text.size();
+    auto last = end;
+    while (last > at + 1 && text[last - 1] == '0') --last;
+    if (last == at + 1) --last;
+    text.erase(last, end - last);
+  }
+  return text;
+}
+
+// "The rule file" within a sentence.
+std::string lower_first(std::string text) {
+  const bool is_word =
+      text.size() > 1 && (text[1] == ' ' || std::islower(static_cast<unsigned char>(text[1])) != 0);
+  if (is_word) text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
+std::string missing(const CLI::RequiredError& error, const CLI::App& command) {
+  const std::string text = error.what();
+  constexpr std::string_view kRequired = " is required";
+  if (text == "A subcommand is required")
+    return command.get_name() +
+           " needs a command: " + comma_separated(names_of(commands_in(command)));
+  constexpr std::string_view kOneOf = "Exactly 1 option from [";
+  if (text.starts_with(kOneOf)) {
+    const bool is_none = text.ends_with(" 0 were given");
+    std::string options = text.substr(kOneOf.size(), text.find(']') - kOneOf.size());
+    for (auto at = options.find(','); at != std::string::npos; at = options.find(',', at + 4))
+      options.replace(at, 1, " or ");
+    return "give " + options + (is_none ? "" : ", and not both");
+  }
+  constexpr std::string_view kRequires = " requires ";
+  if (const auto at = text.find(kRequires); at != std::string::npos && !text.ends_with(kRequired))
+    return text.substr(0, at) + " needs " + text.substr(at + kRequires.size()) + ", too";
+  if (!text.ends_with(kRequired)) return text;
+  const std::string name = text.substr(0, text.size() - kRequired.size());
+  const CLI::Option* option = command.get_option_no_throw(name);
+  std::string what = option != nullptr ? option->get_description() : "";
+  what = what.substr(0, what.find_first_of("\n;("));
+  while (what.ends_with(' ')) what.pop_back();
+  return name + " is missing" + (what.empty() ? "" : " (" + lower_first(what) + ")");
+}
+
+// The probable remedy for the argument that is too many, behind the word `before`.
+std::string remedy_of_extra(std::string_view extra, std::string_view before,
+                            const CLI::App& command) {
+  const CLI::Option* option =
+      is_option(before) ? command.get_option_no_throw(std::string(before)) : nullptr;
+  if (option != nullptr && option->get_items_expected_max() == 0)
+    return "; " + std::string(before) + " takes no value";
+  bool takes_arguments = false;
+  for (const CLI::Option* each : command.get_options()) {
+    if (!each->get_positional()) continue;
+    takes_arguments = true;
+    if (each->get_items_expected_max() == 1 && !each->results().empty())
+      return "; " + each->get_name(true) + " is '" + printable(each->results().front()) +
+             "' already";
+  }
+  if (takes_arguments) return "";
+  // A reason is a sentence.
+  const bool is_sentence = extra.find(' ') != std::string_view::npos;
+  for (const char* known : {"--output", "--component", is_sentence ? "--reason" : "--output"}) {
+    if (command.get_option_no_throw(known) != nullptr)
+      return fmt::format("; did you mean {} '{}'?", known, printable(extra));
+  }
+  return "; " + command.get_name() + " takes no arguments";
+}
+
+std::string too_many(const CLI::App& app, const CLI::App& command, int argc, char** argv) {
+  std::vector<std::string> extras = command.remaining();
+  if (extras.empty()) extras = app.remaining();
+  if (extras.empty()) return "there is one argument too many";
+  const std::string& extra = extras.front();
+  const std::vector<std::string_view> words(argv, argv + argc);
+  if (is_option(extra) && std::ranges::find(words, "--") != words.end())
+    return "'" + printable(extra) + "' stands behind '--', so it is an argument; remove the '--'";
+  if (is_option(extra))
+    return "'" + printable(extra) + "' stands in front of the command; write it behind " +
+           command.get_name();
+  std::string_view before;
+  for (int i = 2; i < argc; ++i) {
+    if (extra == argv[i]) before = argv[i - 1];
+  }
+  return "'" + printable(extra) + "' is one argument too many" +
+         remedy_of_extra(extra, before, command);
+}
+
+// ": FILE", or nothing.
+std::string kind_of_value(const CLI::App& command, const std::string& name) {
+  const CLI::Option* option = command.get_option_no_throw(name);
+  const std::string value = option != nullptr ? value_of(*option) : "";
+  return value.empty() || value == "TEXT" ? "" : ": " + value;
+}
+
+// "--for 10 minutes"
+std::optional<std::string> duration_of_two_words(const CLI::App& command, int argc, char** argv) {
+  for (int i = 2; i + 1 < argc; ++i) {
+    const std::string word(argv[i]);
+    const auto equals = word.find('=');
+    const bool is_joined = word.starts_with("--") && equals != std::string::npos;
+    const std::string option = is_joined ? word.substr(0, equals) : argv[i - 1];
+    const std::string number = is_joined ? word.substr(equals + 1) : word;
+    const CLI::Option* known = command.get_option_no_throw(option);
+    const bool is_duration = known != nullptr && value_of(*known) == "DURATION";
+    const bool is_number =
+        !number.empty() && number.find_first_not_of("0123456789.") == std::string::npos;
+    const std::string unit = unit_of_words(argv[i + 1]);
+    if (is_duration && is_number && !unit.empty())
+      return option + ": a duration is one word; write " + option + " " + number + unit;
+  }
+  return std::nullopt;
+}
+
+// The mistake in the words of people. CLI11 has its own for each.
+std::string cause_of(const CLI::ParseError& error, const CLI::App& app, const CLI::App& command,
+                     int argc, char** argv) {
+  const std::string text = error.what();
+  if (auto slip = duration_of_two_words(command, argc, argv)) return *slip;
+  constexpr std::string_view kExcludes = " excludes ";
+  if (const auto at = text.find(kExcludes); at != std::string::npos)
+    return text.substr(0, at) + " and " + text.substr(at + kExcludes.size()) +
+           " exclude each other; leave one of them out";
+  if (const auto* required = dynamic_cast<const CLI::RequiredError*>(&error))
+    return missing(*required, command);
+  if (dynamic_cast<const CLI::ValidationError*>(&error) != nullptr)
+    return words_of_invalid_value(text);
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr)
+    return too_many(app, command, argc, argv);
+  constexpr std::string_view kNoConversion = "Could not convert: ";
+  if (text.starts_with(kNoConversion)) {
+    const std::string rest = text.substr(kNoConversion.size());
+    const auto equals = rest.find(" = ");
+    const CLI::Option* option =
+        equals != std::string::npos ? command.get_option_no_throw(rest.substr(0, equals)) : nullptr;
+    if (option != nullptr && option->get_items_expected_max() == 0)
+      return rest.substr(0, equals) + " takes no value, as '" + printable(rest.substr(equals + 3)) +
+             "'";
+    if (equals != std::string::npos)
+      return rest.substr(0, equals) + ": '" + printable(rest.substr(equals + 3)) + "' is no number";
+  }
+  constexpr std::string_view kOneMissing = ": 1 required ";
+  if (const auto at = text.find(kOneMissing); at != std::string::npos)
+    return text.substr(0, at) + " needs a value" + kind_of_value(command, text.substr(0, at));
+  constexpr std::string_view kTwice = ": At Most 1 required but received";
+  if (const auto at = text.find(kTwice); at != std::string::npos)
+    return text.substr(0, at) + " is given more than once; give it once";
+  constexpr std::string_view kMoreMissing = ": At least ";
+  if (const auto at = text.find(kMoreMissing); at != std::string::npos)
+    return text.substr(0, at) + " needs at least " +
+           text.substr(at + kMoreMissing.size(),
+                       text.find(' ', at + kMoreMissing.size()) - at - kMoreMissing.size()) +
+           " values";
+  return text;
+}
+
+}  // namespace
+
+std::string cause_of_wrong_call(const CLI::ParseError& error, const CLI::App& app,
+                                const Chosen& line, int argc, char** argv) {
+  if (auto word = unknown_word(app, line, argc, argv)) return *word;
+  return cause_of(error, app, *line.command, argc, argv);
+}
+
+std::string words_of_invalid_value(const std::string& text) {
+  const std::size_t colon = text.find(": ");
+  if (colon == std::string::npos) return text;
+  const std::string option = text.substr(0, colon + 2);
+  const std::string rest = without(text.substr(colon + 2), "Value ");
+  if (rest.starts_with("takes no value")) return text.substr(0, colon) + " " + printable(rest);
+  constexpr std::string_view kRange = " not in range ";
+  if (const auto at = rest.find(kRange); at != std::string::npos)
+    return option + "'" + rest.substr(0, at) + "' is no number from " +
+           plain_range(rest.substr(at + kRange.size()));
+  constexpr std::string_view kSet = " not in {";
+  const auto at = rest.find(kSet);
+  if (at == std::string::npos || !rest.ends_with('}')) return text;
+  const std::string value = rest.substr(0, at);
+  const std::string list = rest.substr(at + kSet.size(), rest.size() - at - kSet.size() - 1);
+  std::vector<std::string_view> known;
+  for (std::string_view left = list; !left.empty();) {
+    const auto comma = left.find(',');
+    known.push_back(left.substr(0, comma));
+    left = comma == std::string_view::npos ? "" : left.substr(comma + 1);
+  }
+  return option + "'" + value + "' is none of " + comma_separated(known) + meant(value, known);
+}
+
+Chosen chosen(const CLI::App& app) {
+  Chosen out{&app, app.get_name()};
+  while (!out.command->get_subcommands().empty()) {
+    out.command = out.command->get_subcommands().front();
+    out.path += " " + out.command->get_name();
+    ++out.depth;
+  }
+  return out;
+}
+
+}  // namespace culprit
