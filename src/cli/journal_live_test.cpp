@@ -122,6 +122,7 @@ TEST_F(Journal, ThatCannotBeWrittenKeepsNobodyFromManaging) {
   run.signal(SIGINT);
   EXPECT_EQ(run.wait(), 0);
   EXPECT_THAT(run.output(), HasSubstr("are lost"));
+  EXPECT_THAT(run.output(), HasSubstr("there is no folder '/proc/nowhere' yet"));
 }
 
 TEST_F(Journal, BeliefsGoFromRobotToRobot) {

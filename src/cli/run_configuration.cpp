@@ -68,6 +68,8 @@ Error unknown_key(const ConfigurationFile& file, const std::string& key,
 // The words that stand for one line of the file. Errors: its value is wrong.
 Expected<std::vector<std::string>> words_of_item(const ConfigurationFile& file,
                                                  const CLI::ConfigItem& item, CLI::Option& option) {
+  if (item.inputs.size() > 1 && option.get_items_expected_max() <= 1)
+    return Error{file.place(item.name) + item.name + " is given twice; keep one"};
   const std::string& value = item.inputs.empty() ? std::string() : item.inputs.front();
   if (is_flag(option)) {
     if (value == "false") return std::vector<std::string>{};
@@ -107,8 +109,6 @@ Expected<std::vector<std::string>> words_of_file(const ConfigurationFile& file, 
     const bool is_known = std::find(known.begin(), known.end(), item.name) != known.end();
     if (!is_known) return unknown_key(file, item.name, known);
     CLI::Option* option = run.get_option(item.name == kRulesKey ? "RULES" : "--" + item.name);
-    const bool is_twice = std::ranges::count(items, item.name, &CLI::ConfigItem::name) > 1;
-    if (is_twice) return Error{file.place(item.name) + item.name + " is given twice; keep one"};
     if (option->count() > 0) continue;  // by the command line or the environment
     auto more = words_of_item(file, item, *option);
     if (!more) return more;

@@ -66,6 +66,9 @@ TEST_F(RunConfigurationFile, NamesTheLineOfAMistake) {
             file_ + ":1: culprit run has no option 'dry_run'; did you mean 'dry-run'?");
   EXPECT_THAT(error_of("\nsettle = \"soon\"\n"), HasSubstr(":2: --settle: "));
   EXPECT_EQ(error_of("web = \"maybe\"\n"), file_ + ":1: web is true or false, not 'maybe'");
+  EXPECT_THAT(error_of("settle: 5s\n"), HasSubstr("is no setting; write settle = \"5s\""));
+  EXPECT_THAT(error_of("web = true\nweb = true\n"), HasSubstr("web is given twice; keep one"));
+  EXPECT_THAT(error_of("planner = \"foo\"\n"), HasSubstr("'foo' is none of bayes, paper"));
   EXPECT_THAT(error_of("[run]\nweb = true\n"), HasSubstr("the file has no sections"));
   EXPECT_THAT(error_of("config = \"other.toml\"\n"), HasSubstr("has no option 'config'"));
 }

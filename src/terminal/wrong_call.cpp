@@ -201,7 +201,7 @@ std::string positional_called(const CLI::App& command, const std::string& option
   return "";
 }
 
-// Of a command with few options: all of them. Nothing for others.
+// All options of a command that has few; nothing for others.
 std::string few_options(const std::vector<std::string>& known) {
   constexpr std::size_t kFew = 6;
   std::vector<std::string_view> own;

@@ -143,7 +143,7 @@ class ExpressionParser {
 
   std::nullopt_t unfinished(const Token& op) {
     return fail(Code::kSyntax, op.span, "a value is missing behind '" + std::string(op.text) + "'",
-                "write it on this line: a statement is one line");
+                "write the other side; a statement is one line");
   }
 
   // "alive camera": a function as other languages call it. "age /scan" is a division (typing.cpp).

@@ -83,7 +83,7 @@ TEST(FromJson, SaysWhichMemberIsWrongAndWhatItHasToBe) {
       {R"({"statement": "TRIGGER", "expression": "a > 1"})",
        "/statements/0: TRIGGER belongs to a RULE"},
       {R"({"statement": "CONST", "name": "a", "value": "1 +"})",
-       "/statements/0/value: a value is missing here"},
+       "/statements/0/value: a value is missing behind '+'"},
       {R"({"statement": "CONST", "name": "a", "value": 1})",
        "/statements/0/value: this must be a text with one expression"},
       {R"({"statement": "CYCLE", "length": "200"})",
