@@ -21,10 +21,10 @@ def comparison_figure(rows):
             if row["published"]:
                 draw_mean(axis, row["published"][key], y + 0.17, "D", LIGHT["theirs"])
         axis.set_xlim(left=0)
-        axis.set_title(title)
+        axis.set_xlabel(title)
         axis.grid(axis="x")
     axes[0].set_yticks(range(len(rows)), [row["manager"] for row in rows])
-    axes[0].invert_yaxis()
+    axes[0].set_ylim(len(rows) - 0.5, -0.5)
     handles = [pyplot.Line2D([], [], marker=marker, color=colour, markersize=4, label=text) for marker, colour, text in
                (("o", LIGHT["ours"], "measured, mean ± sd"), ("D", LIGHT["theirs"], "published, mean ± sd"))]
     axes[1].legend(handles=handles, loc="lower right", bbox_to_anchor=(1, 1.0), ncols=2)
