@@ -35,7 +35,7 @@ double healed_s(const std::string& fault) {
   return all[2];
 }
 
-// docs/rover.md: seconds until healed, live, under bayes.
+// docs/rover.md: seconds until healed, live, under bayes. Without stop:base and stop:planner_server, which the load slowed down.
 const std::map<std::string, double>& live() {
   static const std::map<std::string, double> kLive = {{"kill:lidar", 4.9},
                                                       {"kill:camera", 0.9},

@@ -32,7 +32,7 @@ using RoverResults = std::vector<std::vector<RoverResult>>;
 RoverResults play_all(const RuleSet& rules, const std::vector<RoverPlay>& plays,
                       const RoverCampaign& campaign);
 
-// What is compared, of the plays in which something mends each fault. Less is better, but for goals.
+// The compared figures, of the plays in which something mends each fault. Less is better, but for goals.
 enum class RoverMetric : std::uint8_t { kHealed_s, kStood_s, kGoals, kWrongRestarts, kCalls };
 inline constexpr std::size_t kRoverMetrics = 5;
 // A play that did not heal counts with RoverTimes::kPatience.

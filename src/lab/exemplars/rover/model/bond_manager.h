@@ -21,7 +21,7 @@ class BondManager {
     kBlocks,  // it hangs, or the middleware has not noticed its death
     kNobody   // no server of that name
   };
-  // What the manager knows of the servers, by their places in the order of start-up.
+  // The servers as the manager sees them, by their places in the order of start-up.
   struct Servers {
     std::size_t count = 0;
     std::function<Reach(std::size_t)> reach;

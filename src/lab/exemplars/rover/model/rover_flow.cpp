@@ -1,4 +1,4 @@
-// What flows between the nodes of the model, tick by tick: physics, devices, topics, place, costmaps, status.
+// The data that flow between the nodes of the model, tick by tick: physics, devices, topics, place, costmaps, status.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-// Processes, lifecycles and requests; what flows between the nodes is in rover_flow.cpp.
+// Processes, lifecycles and requests; the data between the nodes are in rover_flow.cpp.
 #include "exemplars/rover/model/rover_model.h"
 
 #include <algorithm>

@@ -14,7 +14,7 @@ namespace culprit::rover::model {
 
 class Trip {
  public:
-  // What the navigation finds in one tick.
+  // The inputs of the navigation in one tick.
   struct Works {
     bool navigator = false;  // its server is active and answers; so the next three
     bool planner = false;
