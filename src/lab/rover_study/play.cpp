@@ -1,0 +1,119 @@
+#include "rover_study/play.h"
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+
+#include "demo/episode.h"
+#include "exemplars/rover/model/rover_model.h"
+#include "manager/manager.h"
+#include "manager/runtime.h"
+#include "plan/bayes/bayes_planner.h"
+#include "plan/paper_planner.h"
+#include "rover_study/rivals.h"
+#include "simulation/random.h"
+
+namespace culprit::study {
+namespace {
+
+using namespace std::chrono_literals;
+using rover::model::RoverModel;
+
+constexpr Duration kLooks = 100ms;
+constexpr Duration kCalm = 2s;
+
+std::unique_ptr<ManagingSystem> manager_of(const std::string& name, const RuleSet& rules,
+                                           const RoverPlay& play, Time at) {
+  const Manager::Options options{.discovery = Duration::zero()};
+  if (name == "bayes")
+    return std::make_unique<Manager>(rules, std::make_unique<BayesPlanner>(), options);
+  if (name == "paper")
+    return std::make_unique<Manager>(rules, std::make_unique<PaperPlanner>(), options);
+  if (name == "oracle") return std::make_unique<RoverOracle>(rules, play.faults, at);
+  if (name == "respawn") return std::make_unique<ProcessKeeper>(rules, ProcessKeeper::respawn());
+  if (name == "watchdog") return std::make_unique<ProcessKeeper>(rules, ProcessKeeper::watchdog());
+  return std::make_unique<RoverOracle>(rules, std::vector<const rover::Fault*>{}, at);
+}
+
+bool is_call(const Event& event, const RuleSet& rules) {
+  if (std::holds_alternative<RuleExhausted>(event.what)) return true;
+  const auto* detected = std::get_if<FailureDetected>(&event.what);
+  return detected != nullptr && rules[detected->rule].strategies.empty();
+}
+
+}  // namespace
+
+const std::vector<std::string>& rover_managers() {
+  static const std::vector<std::string> kAll = {"none",  "nav2",  "respawn", "watchdog",
+                                                "paper", "bayes", "oracle"};
+  return kAll;
+}
+
+std::string RoverPlay::name() const {
+  std::string text;
+  for (const rover::Fault* fault : faults) text += (text.empty() ? "" : "+") + fault->name;
+  return text;
+}
+
+bool RoverPlay::is_fixable() const {
+  return std::ranges::all_of(faults, &rover::Fault::is_fixable);
+}
+
+RoverResult play(const RuleSet& rules, const RoverPlay& play, const std::string& manager,
+                 Duration watched, const std::function<void(const Event&)>& on_event) {
+  simulation::Random random(play.seed);
+  RoverModel model(rules, {.seed = play.seed, .has_bonds = manager != "none"});
+  const Time at = Time{RoverTimes::kWarmUp + from_seconds(random.uniform(0, 5))};
+  const auto system = manager_of(manager, rules, play, at);
+  std::optional<lab::Episode> episode;
+  RoverResult result;
+  Runtime runtime(*system, model);
+  runtime.on_events = [&](std::span<const Event> events) {
+    for (const Event& event : events) {
+      if (episode) episode->add(event);
+      if (episode && is_call(event, rules)) ++result.calls;
+      if (on_event) on_event(event);
+    }
+  };
+  const std::atomic<bool> never = false;
+  runtime.run(never, at);
+  const auto is_cause = [&play](const std::string& name) {
+    return std::ranges::find(play.faults, name, &rover::Fault::cause) != play.faults.end();
+  };
+  model.on_healthy_taken_down = [&](ComponentId id) {
+    if (!is_cause(rules[id].name)) ++result.wrong_restarts;
+  };
+  const auto before = model.measure();
+  episode.emplace(rules);
+  for (const rover::Fault* fault : play.faults) model.inject(*fault);
+
+  std::optional<Time> well;
+  const Time end = later(at, watched);
+  for (Time look = at; look < end;) {
+    look = std::min(later(look, kLooks), end);
+    runtime.run(never, look);
+    if (result.healed_s) continue;
+    const bool is_over = std::ranges::all_of(
+        play.faults, [&](const rover::Fault* fault) { return model.is_over(*fault); });
+    const bool is_well = is_over && model.measure().complaint.empty() && episode->open() == 0;
+    if (!is_well) well.reset();
+    if (is_well && !well) well = look;
+    if (well && *well < later(at, RoverTimes::kPatience) && look >= later(*well, kCalm))
+      result.healed_s = seconds(*well - at);
+  }
+
+  const auto after = model.measure();
+  if (after.standing_s > 2)
+    result.stands_after_s = std::max(0.0, seconds(watched) - after.standing_s);
+  result.stood_s = after.stood_s - before.stood_s;
+  result.goals = after.goals_reached - before.goals_reached;
+  result.complaint = after.complaint;
+  result.is_noticed = !episode->failures().empty();
+  result.names = episode->blamed();
+  result.strategies = episode->strategies();
+  for (const rover::Fault* fault : play.faults)
+    result.blamed += std::ranges::find(result.names, fault->cause) != result.names.end() ? 1 : 0;
+  return result;
+}
+
+}  // namespace culprit::study
