@@ -20,7 +20,7 @@ bool is_lock_of_port(const std::string& file) {
          file.ends_with("_el") && file.rfind('/') == std::string_view(kFolder).size();
 }
 
-// Nothing if a process holds it, or it is no file any more.
+// Returns nothing if a process holds the file, or it was removed.
 std::optional<FileDescriptor> lock(const std::string& file) {
   FileDescriptor lock(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   if (!lock || flock(lock.get(), LOCK_EX | LOCK_NB) != 0) return std::nullopt;
