@@ -15,8 +15,14 @@
 namespace culprit {
 namespace {
 
-Error failure(const std::string& what, const std::string& path) {
-  return {"cannot " + what + " '" + path + "': " + std::strerror(errno)};
+Error failure(const std::string& what, const std::filesystem::path& path) {
+  const int reason = errno;
+  const std::filesystem::path folder = path.parent_path();
+  std::error_code unknown;
+  const bool lacks_folder =
+      reason == ENOENT && !folder.empty() && !std::filesystem::exists(folder, unknown);
+  return {"cannot " + what + " '" + path.string() + "': " +
+          (lacks_folder ? "there is no folder '" + folder.string() + "'" : std::strerror(reason))};
 }
 
 Expected<std::string> read_all(std::istream& in, const std::string& path) {

@@ -42,7 +42,10 @@ Expected<Duration> parse_duration(std::string_view text) {
         return from_nanoseconds(number * static_cast<double>(unit.length.count()));
     }
   }
-  return Error{"'" + std::string(text) +
+  const std::string given(text);
+  if (name == "m")
+    return Error{"'" + given + "' is not a duration; write " + given + "in for minutes"};
+  return Error{"'" + given +
                "' is not a duration; write a number and a unit, as in 500ms, 2s or 1.5min"};
 }
 

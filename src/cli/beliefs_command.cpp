@@ -2,7 +2,9 @@
 
 #include <fmt/core.h>
 
+#include "base/amount.h"
 #include "base/live_clock.h"
+#include "base/name_grammar.h"
 #include "base/text_file.h"
 #include "cli/commands.h"
 #include "cli/journal_file.h"
@@ -132,13 +134,18 @@ int read_in(const BeliefsOptions& options) {
 }
 
 int reset(const BeliefsOptions& options) {
-  if (options.rule.empty() == !options.all)
-    return fail("say which rule to forget, or --all"), kUsage;
+  if (options.rule.empty() && !options.all)
+    return fail("say which rule to forget, or --all", kUsage);
+  if (!options.rule.empty() && options.all)
+    return fail("give a rule or --all, and not both", kUsage);
   auto writer = open_writer(options);
   if (!writer) return fail(writer.error());
   const auto count = writer->forget(options.rule, wall_now());
   if (!count) return fail(count.error());
-  fmt::print("{} beliefs forgotten\n", *count);
+  if (*count == 0 && !options.all)
+    return fail("nothing was learned about a rule '" + printable(options.rule) +
+                "'; culprit beliefs show lists the rules");
+  fmt::print("{} forgotten\n", amount_of(*count, "belief"));
   return kOk;
 }
 

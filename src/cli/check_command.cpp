@@ -288,8 +288,11 @@ void add_check(CLI::App& app, int& exit_code) {
                    "text for people; json or sarif (2.1.0) for programs, on stdout")
       ->check(CLI::IsMember({"text", "json", "sarif"}))
       ->capture_default_str();
-  command->add_flag_function(
-      "--json", [options](std::int64_t) { options->format = "json"; }, "The same as --format json");
+  command
+      ->add_flag_function(
+          "--json", [options](std::int64_t) { options->format = "json"; },
+          "The same as --format json")
+      ->excludes(command->get_option("--format"));
   bags->excludes(command->get_option("--format"))->excludes(command->get_option("--json"));
   command->callback([options, &exit_code] { exit_code = check_files(*options); });
 }

@@ -99,7 +99,9 @@ void advise(const std::string& file, const RuleSet& rules) {
 int draft_rules(const InitOptions& options) {
   const bool has_file = !options.output.empty();
   if (has_file && std::filesystem::exists(options.output))
-    return fail(options.output + " is there already; name another file, or move it away", kUsage);
+    return fail(
+        options.output + " is there already; name another file, or write --update in place of -o",
+        kUsage);
   if (const auto robot = ros2::options_from_environment(); !robot)
     return fail(robot.error(), kUsage);
   auto dump = dump_of(options);
@@ -149,7 +151,9 @@ int draft_rules(const InitOptions& options) {
 int draft_from_bags(const InitOptions& options) {
   const bool has_file = !options.output.empty();
   if (has_file && std::filesystem::exists(options.output))
-    return fail(options.output + " is there already; name another file, or move it away", kUsage);
+    return fail(
+        options.output + " is there already; name another file, or write --update in place of -o",
+        kUsage);
   std::vector<bag_doctor::BagCourse> courses;
   for (const std::string& bag : options.bags) {
     ros2::MessageLibrary library(

@@ -103,6 +103,8 @@ void add_lsp(CLI::App& app, const std::string& version, int& exit_code) {
   auto options = std::make_shared<LspOptions>();
   CLI::App* command = app.add_subcommand(
       "lsp", "Serve an editor: the Language Server Protocol on standard input and output");
+  command->add_flag_function(
+      "--stdio", [](std::int64_t) {}, "For editors that give it: culprit lsp always uses these");
   command->add_flag("--robot", options->robot,
                     "Also show the live robot's names and values, and names that it lacks");
   command

@@ -68,7 +68,8 @@ void print_curves_document(const CurveOptions& options, const replay::Curves& cu
 
 int replay_curves(const CurveOptions& options, const journal::Reader& journal) {
   const auto since = parse_duration(options.since);
-  if (!since) return fail("--curve needs --since, such as 2h: " + since.error(), kUsage);
+  if (options.since.empty()) return fail("--curve needs --since, such as 2h", kUsage);
+  if (!since) return fail("--since: " + since.error(), kUsage);
   const auto until =
       options.until.empty() ? Expected<Duration>(Duration::zero()) : parse_duration(options.until);
   if (!until) return fail("--until: " + until.error(), kUsage);

@@ -4,6 +4,9 @@
 #include <string_view>
 #include <vector>
 
+#include <fmt/core.h>
+#include <fmt/format.h>
+
 #include "base/closest.h"
 #include "base/name_grammar.h"
 #include "base/wrapped.h"
@@ -76,9 +79,13 @@ void add_help(CLI::App& app, int& exit_code) {
         std::vector<std::string_view> known;
         for (const CLI::App* each : commands_in(*about)) known.push_back(each->get_name());
         const std::string near = closest(word, known);
-        exit_code = fail("there is no command '" + printable(word) + "'" +
-                             (near.empty() ? "; " + app.get_name() + " help lists them"
-                                           : "; did you mean '" + near + "'?"),
+        const bool is_program = about == &app;
+        std::string remedy = is_program      ? "; " + app.get_name() + " help lists them"
+                             : known.empty() ? ""
+                                             : fmt::format("; it has {}", fmt::join(known, ", "));
+        if (!near.empty()) remedy = "; did you mean '" + near + "'?";
+        exit_code = fail((is_program ? "there is" : about->get_name() + " has") + " no command '" +
+                             printable(word) + "'" + remedy,
                          kUsage);
         return;
       }

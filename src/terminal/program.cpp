@@ -28,7 +28,7 @@ void refuse_values_of_flags(CLI::App& app) {
     const bool is_flag = option->get_items_expected_max() == 0 && option->nonpositional();
     if (!is_flag || option == app.get_help_ptr() || option == app.get_version_ptr()) continue;
     option->check([](const std::string& value) {
-      return value == "true" || value == "false" ? "" : "takes no value, as '" + value + "'";
+      return value == "true" || value == "false" ? "" : "takes no value; remove '=" + value + "'";
     });
   }
   for (CLI::App* part : app.get_subcommands([](CLI::App*) { return true; }))

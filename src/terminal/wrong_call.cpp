@@ -94,7 +94,8 @@ std::string_view option_of_other_tools(std::string_view option,
       {"--until", "--for"},     {"--tail", "--lines"},       {"--count", "--lines"},
       {"--noop", "--dry-run"},  {"--name", "--component"},   {"--size", "--record-budget"},
       {"--only", "--filter"},   {"--follow", "--for"},       {"--node", "--component"},
-      {"--faults", "--kinds"},  {"--component", "--only"}};
+      {"--faults", "--kinds"},  {"--component", "--only"},   {"--live", "--robot"},
+      {"-n", "--dry-run"},      {"--token", "--token-file"}, {"--level", "--kind"}};
   return translated(option, kWords, known);
 }
 
@@ -107,12 +108,22 @@ std::string_view advice_about(std::string_view option, std::string_view command)
   constexpr std::string_view kEvents = "culprit log -f shows each event as it comes";
   constexpr std::string_view kService = "run it as a service of systemd (docs/install.md)";
   constexpr std::string_view kFile = "write > FILE behind the command";
+  constexpr std::string_view kRosArguments =
+      "leave it out, for culprit takes no arguments of ROS; see culprit run --help";
+  constexpr std::string_view kSends = "alerts only sends a test";
+  constexpr std::string_view kWrites = "fmt writes the file unless --check or --diff is given";
   constexpr auto kAdvice = std::to_array<Advice>({{"--domain", "", kDomain},
                                                   {"--domain-id", "", kDomain},
                                                   {"--verbose", "run", kEvents},
                                                   {"-v", "run", kEvents},
                                                   {"--debug", "run", kEvents},
                                                   {"--log-level", "run", kEvents},
+                                                  {"--ros-args", "", kRosArguments},
+                                                  {"-r", "", kRosArguments},
+                                                  {"--write", "fmt", kWrites},
+                                                  {"--in-place", "fmt", kWrites},
+                                                  {"-i", "fmt", kWrites},
+                                                  {"--dry-run", "alerts", kSends},
                                                   {"--daemon", "run", kService},
                                                   {"--background", "run", kService},
                                                   {"--no-color", "", "set NO_COLOR=1"},
@@ -230,14 +241,14 @@ std::string remedy_of(const CLI::App& app, const CLI::App& command, const std::s
     return "; write " + name + " without it";
   if (option.starts_with("--no-") && is_known("--" + option.substr(5)))
     return "; leave --" + option.substr(5) + " out";
+  if (const auto advice = advice_about(option, command.get_name()); !advice.empty())
+    return "; " + std::string(advice);
   if (const auto end = end_of(option, known); !end.empty()) return ask(end);
   if (const auto ours = option_of_other_tools(option, {known.begin(), known.end()}); !ours.empty())
     return ask(ours);
   if (std::string near = meant(option, {known.begin(), known.end()}); !near.empty()) return near;
   if (const auto parts = commands_with(command, option); !is_program && !parts.empty())
     return "; it stands behind " + comma_separated(parts);
-  if (const auto advice = advice_about(option, command.get_name()); !advice.empty())
-    return "; " + std::string(advice);
   const auto others = commands_with(app, option);
   if (option.starts_with("--") && others.size() == 1)
     return ask(app.get_name() + " " + std::string(others.front()) + " " + option);
@@ -311,7 +322,7 @@ std::string missing(const CLI::RequiredError& error, const CLI::App& command) {
            " needs a command: " + comma_separated(names_of(commands_in(command)));
   constexpr std::string_view kOneOf = "Exactly 1 option from [";
   if (text.starts_with(kOneOf)) {
-    const bool is_none = text.ends_with(" 0 were given");
+    const bool is_none = !text.ends_with(" were given");
     std::string options = text.substr(kOneOf.size(), text.find(']') - kOneOf.size());
     for (auto at = options.find(','); at != std::string::npos; at = options.find(',', at + 4))
       options.replace(at, 1, " or ");
@@ -336,10 +347,18 @@ std::string remedy_of_extra(std::string_view extra, std::string_view before,
       is_option(before) ? command.get_option_no_throw(std::string(before)) : nullptr;
   if (option != nullptr && option->get_items_expected_max() == 0)
     return "; " + std::string(before) + " takes no value";
+  const auto has = [&](const char* name) { return command.get_option_no_throw(name) != nullptr; };
+  const std::string duration = std::string(extra) + (extra.ends_with('m') ? "in" : "");
+  if (has("--for") && parse_duration(duration)) return "; did you mean --for " + duration + "?";
+  const bool is_rule_file = extra.ends_with(".rules");
+  if (has("--output") && !is_rule_file && extra.find('.') != std::string_view::npos)
+    return "; did you mean --output '" + printable(extra) + "'?";
   bool takes_arguments = false;
   for (const CLI::Option* each : command.get_options()) {
     if (!each->get_positional()) continue;
     takes_arguments = true;
+    if (each->get_name(true) == "STRATEGY" && !each->results().empty())
+      return "; write " + printable(each->results().front() + "." + std::string(extra));
     if (each->get_items_expected_max() == 1 && !each->results().empty())
       return "; " + each->get_name(true) + " is '" + printable(each->results().front()) +
              "' already";
@@ -399,11 +418,33 @@ std::optional<std::string> duration_of_two_words(const CLI::App& command, int ar
   return std::nullopt;
 }
 
+// "--use-sim-time true"; "use_sim_time:=true", as ROS's tools have it; a dash that an editor made of two.
+std::optional<std::string> slip_in_word(const CLI::App& command, int argc, char** argv) {
+  for (int i = 2; i < argc; ++i) {
+    const std::string word(argv[i]);
+    for (const char* dash : {"\u2014", "\u2013", "\u2212"}) {
+      if (word.starts_with(dash))
+        return "an argument begins with a typographic dash; write --" +
+               printable(word.substr(std::string_view(dash).size()));
+    }
+    const CLI::Option* before = command.get_option_no_throw(argv[i - 1]);
+    const bool is_switch = is_one_of(word, {"true", "false", "yes", "no", "on", "off"});
+    if (is_switch && before != nullptr && before->get_items_expected_max() == 0)
+      return std::string(argv[i - 1]) + " takes no value; remove '" + word + "'";
+    std::string option = "--" + word.substr(0, std::min(word.find(":="), word.size()));
+    std::replace(option.begin(), option.end(), '_', '-');
+    if (word.find(":=") != std::string::npos && command.get_option_no_throw(option) != nullptr)
+      return "'" + printable(word) + "' is an argument of ROS; write " + option;
+  }
+  return std::nullopt;
+}
+
 // The mistake in the words of people. CLI11 has its own for each.
 std::string cause_of(const CLI::ParseError& error, const CLI::App& app, const CLI::App& command,
                      int argc, char** argv) {
   const std::string text = error.what();
   if (auto slip = duration_of_two_words(command, argc, argv)) return *slip;
+  if (auto slip = slip_in_word(command, argc, argv)) return *slip;
   constexpr std::string_view kExcludes = " excludes ";
   if (const auto at = text.find(kExcludes); at != std::string::npos)
     return text.substr(0, at) + " and " + text.substr(at + kExcludes.size()) +
@@ -421,8 +462,8 @@ std::string cause_of(const CLI::ParseError& error, const CLI::App& app, const CL
     const CLI::Option* option =
         equals != std::string::npos ? command.get_option_no_throw(rest.substr(0, equals)) : nullptr;
     if (option != nullptr && option->get_items_expected_max() == 0)
-      return rest.substr(0, equals) + " takes no value, as '" + printable(rest.substr(equals + 3)) +
-             "'";
+      return rest.substr(0, equals) +
+             " takes no value; remove '=" + printable(rest.substr(equals + 3)) + "'";
     if (equals != std::string::npos)
       return rest.substr(0, equals) + ": '" + printable(rest.substr(equals + 3)) + "' is no number";
   }
@@ -459,6 +500,8 @@ std::string words_of_invalid_value(const std::string& text) {
   if (const auto at = rest.find(kRange); at != std::string::npos)
     return option + "'" + rest.substr(0, at) + "' is no number from " +
            plain_range(rest.substr(at + kRange.size()));
+  if (rest.find("unit not recognized") != std::string::npos)
+    return option + "unknown unit; write a number and kB, MB or GB, as in 200MB";
   constexpr std::string_view kSet = " not in {";
   const auto at = rest.find(kSet);
   if (at == std::string::npos || !rest.ends_with('}')) return text;

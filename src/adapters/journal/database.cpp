@@ -21,7 +21,7 @@ std::string why(int code, const char* message) {
     case SQLITE_CORRUPT:
       return "it is damaged (" + std::string(message) + ")";
     case SQLITE_NOTADB:
-      return "it is no SQLite database, or its beginning is damaged";
+      return "it is no journal, or its beginning is damaged";
     default:
       return message;
   }

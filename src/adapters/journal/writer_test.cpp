@@ -237,7 +237,7 @@ TEST(Faults, AFileThatIsNoJournalIsLeftAlone) {
   std::ofstream(folder / "notes.txt") << "to do: nothing\n";
   const auto failed = Writer::open(folder / "notes.txt", {});
   ASSERT_FALSE(failed);
-  EXPECT_THAT(failed.error(), HasSubstr("it is no SQLite database"));
+  EXPECT_THAT(failed.error(), HasSubstr("it is no journal"));
   EXPECT_TRUE(std::filesystem::exists(folder / "notes.txt"));
   run_sql(folder / "other.journal", "CREATE TABLE t(a)");
   const auto foreign = Writer::open(folder / "other.journal", {});
