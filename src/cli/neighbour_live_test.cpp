@@ -337,7 +337,7 @@ RULE CameraGone
   ASSERT_EQ(first->wait(), -SIGKILL);
   ASSERT_TRUE(second->prints("this one manages the robot from now on")) << second->output();
   EXPECT_THAT(second->output(), HasSubstr("what the culprit that managed before had learned of 1 "
-                                          "strategies is known, and what it had tried"));
+                                          "strategy is known, and what it had tried"));
   // It cannot be healed here either: a culprit without that knowledge would try it.
   EXPECT_TRUE(second->prints("CameraGone is exhausted")) << second->output();
   std::this_thread::sleep_for(3s);
