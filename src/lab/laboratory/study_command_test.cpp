@@ -183,7 +183,8 @@ TEST_F(StudyCommand, WritesAReportAndPlots) {
             kOk)
       << complaint;
   const std::string page = text(path("report.html"));
-  EXPECT_THAT(page, HasSubstr("culprit study sunset --learning --experiments 4"));
+  EXPECT_THAT(page,
+              HasSubstr("culprit study sunset --planner paper --profile paper --runs 4 --seed 1"));
   EXPECT_THAT(page, HasSubstr("is held responsible for"));
   for (const char* section :
        {"id=\"agreement\"", "id=\"plot-equivalence-paper-paper\"", "id=\"ablation\"",
