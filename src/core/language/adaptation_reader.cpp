@@ -30,11 +30,11 @@ class AdaptationReader {
       lacks_component(*component, word);
     else if (!type)
       unknown_adaptation(word, s);
-    if (!type) return std::nullopt;
+    if (!type || is_command(*component, word, s)) return std::nullopt;
     adaptation.component = std::move(*component);
     adaptation.type = *type;
     if (!adaptation_arguments(s, adaptation)) return std::nullopt;
-    if (is_call(s)) return std::nullopt;
+    if (is_call(s) || is_negative_impact(adaptation, s)) return std::nullopt;
     const auto impact = read_.number(s, "the impact in cycles", impact_remedy(adaptation, s));
     if (!impact) return std::nullopt;
     adaptation.impact = *impact;
@@ -59,6 +59,33 @@ class AdaptationReader {
                         "write the component, or the full name of its node with a '/' in front",
                         Edit{{component.span.begin, component.span.begin}, "/"});
     return true;
+  }
+
+  // "systemctl restart camera 3": reported.
+  bool is_command(const Name& program, const Token& type, Scanner& s) {
+    if (!is_command_word(program.text) || s.peek().kind != Token::Kind::kIdentifier) return false;
+    Scanner ahead = s.ahead();
+    const std::string component(ahead.next().text);
+    const std::string impact(ahead.at_end() ? "10" : source_.text(ahead.rest()));
+    const Span span{program.span.begin, s.rest().end};
+    const std::string meant = component + " " + std::string(type.text) + " " + impact;
+    return !read_.fail(Code::kUnknownAdaptation, span, "no adaptation runs a command",
+                       "write ADAPTATION " + meant, Edit{span, meant});
+  }
+
+  // "set_parameter level true -5", where the last number is read as a part of the value: reported.
+  bool is_negative_impact(const syntax::Adaptation& adaptation, const Scanner& s) {
+    if (!adaptation.value || !s.at_end()) return false;
+    const syntax::Expression& value = *adaptation.value;
+    if (value.kind != syntax::Expression::Kind::kBinary || value.op != syntax::Operator::kSubtract)
+      return false;
+    const Span number = value.children[1].span;
+    const bool adjoins = source_.text()[number.begin - 1] == '-';
+    const bool is_apart = number.begin > 1 && source_.text()[number.begin - 2] == ' ';
+    if (!adjoins || !is_apart) return false;
+    return !read_.fail(
+        Code::kImpactRange, {number.begin - 1, number.end}, "an impact is at least 1",
+        "write how many cycles it takes, as in " + std::string(source_.text(number)));
   }
 
   // "redeploy() 10": reported.
@@ -139,6 +166,11 @@ class AdaptationReader {
     if (next.is("="))
       return read_.fail(Code::kSyntax, next.span, std::string(kNoSign), "remove the '='",
                         Edit{next.span, ""});
+    Scanner ahead = s.ahead();
+    if (ahead.next().kind == Token::Kind::kNumber && !duration_unit(ahead.next_letters()).empty())
+      return read_.fail(Code::kTypeMismatch, {next.span.begin, ahead.peek().span.end},
+                        "ROS parameters hold no durations",
+                        "write only the number, in the unit that the node expects");
     adaptation.value = read_.expression(s);
     return adaptation.value.has_value();
   }
@@ -195,9 +227,12 @@ class AdaptationReader {
     std::string near =
         syntax::adaptation_type(plain) ? plain : std::string(adaptation_of_other_tools(plain));
     if (near.empty()) near = closest(plain, syntax::adaptation_keywords());
-    constexpr std::array<std::string_view, 9> kCommands = {
-        "exec", "execute", "command", "shell", "script", "bash", "systemctl", "system", "ros2"};
-    if (std::ranges::find(kCommands, plain) != kCommands.end())
+    if (const Token next = s.peek(); plain == "param" && next.text == "set") {
+      const Span span{word.span.begin, next.span.end};
+      return read_.fail(Code::kUnknownAdaptation, span, "there is no adaptation 'param set'",
+                        "did you mean 'set_parameter'?", Edit{span, "set_parameter"});
+    }
+    if (is_command_word(plain))
       return read_.fail(
           Code::kUnknownAdaptation, word.span, "no adaptation runs a command",
           "redeploy starts a component anew, by its LAUNCH or UNIT; call calls a service");
@@ -209,6 +244,13 @@ class AdaptationReader {
               "activate deactivate restart redeploy start stop change_mode call start_group"
             : "did you mean '" + near + "'?",
         replacement(word.span, near));
+  }
+
+  static bool is_command_word(std::string_view word) {
+    constexpr std::array<std::string_view, 11> kCommands = {
+        "exec", "execute",   "command", "shell", "script", "bash",
+        "sudo", "systemctl", "system",  "ros2",  "docker"};
+    return std::ranges::find(kCommands, word) != kCommands.end();
   }
 
   // "re-deploy", "set-parameter": reported.

@@ -63,9 +63,28 @@ bool nodes(Reader& r, std::string_view what, std::string_view remedy) {
 
 bool unit(Reader& r, std::string_view what, std::string_view remedy) {
   if (!name<&Component::unit, Form::kNameOrText>(r, what, remedy)) return false;
+  const Span next = r.s.rest();
+  if (constexpr std::string_view kOption = "--user"; r.source.text(next).starts_with(kOption)) {
+    const Span option{next.begin, next.begin + static_cast<std::uint32_t>(kOption.size())};
+    return r.read.fail(Code::kSyntax, option, "no options stand behind a unit",
+                       "did you mean USER?", Edit{option, "USER"});
+  }
   r.component.is_users_unit = r.s.peek().text == "USER";
   if (r.component.is_users_unit) r.s.next();
   return true;
+}
+
+// ssh has its own place for the port.
+bool host(Reader& r, std::string_view what, std::string_view remedy) {
+  if (!name<&Component::host, Form::kNameOrText>(r, what, remedy)) return false;
+  const Name& written = *r.component.host;
+  const auto colon = written.text.find(':');
+  const bool has_port =
+      colon != std::string::npos && colon + 1 < written.text.size() &&
+      written.text.find_first_not_of("0123456789", colon + 1) == std::string::npos;
+  return !has_port || r.read.fail(Code::kSyntax, written.span, "a HOST has no port",
+                                  "write HOST " + written.text.substr(0, colon) +
+                                      ", and the port in the configuration of ssh");
 }
 
 bool engine(Reader& r, std::string_view what, std::string_view remedy) {
@@ -109,8 +128,7 @@ constexpr std::array kClauses = {
            "the folder to run in"},
     Clause{"UNIT", has<&Component::unit>, unit, "the unit's name"},
     Clause{"CONTAINER", has<&Component::engine>, engine, "the engine: docker or podman"},
-    Clause{"HOST", has<&Component::host>, name<&Component::host, Form::kNameOrText>,
-           "the computer that runs it, as for ssh"},
+    Clause{"HOST", has<&Component::host>, host, "the computer that runs it, as for ssh"},
     Clause{"IN", has<&Component::container>, name<&Component::container, Form::kRosName>,
            "the full name of the node that loads it"},
     Clause{"PLUGIN", has<&Component::plugin>, name<&Component::plugin, Form::kNameOrText>,
@@ -135,6 +153,25 @@ constexpr auto kWords = [] {
   return words;
 }();
 
+// A clause of a unit's file or of a launch file: reported.
+bool fail_foreign_clause(Reader& r) {
+  Scanner ahead = r.s.ahead();
+  const Token word = ahead.next();
+  const std::string written(word.text);
+  if (r.component.unit && ahead.peek().is("=")) {
+    const Span span{word.span.begin, r.s.rest().end};
+    return !r.read.fail(Code::kExtraText, span, "no settings of the unit stand here",
+                        "remove it: the file of the unit says that");
+  }
+  if (r.component.package && upper_case(written) == "EXECUTABLE") {
+    const std::string program = ahead.next_name().text;
+    return !r.read.fail(Code::kSyntax, word.span, "no '" + written + "' stands in this line",
+                        "write LAUNCH \"ros2 run " + r.component.package->text + " " + program +
+                            "\" instead of both");
+  }
+  return false;
+}
+
 }  // namespace component_reader
 }  // namespace
 
@@ -148,6 +185,7 @@ bool read_component_clauses(LineReader& read, const Source& source, Scanner& s,
     const Token& word = s.peek();
     const auto clause = std::ranges::find(kClauses, word.text, &Clause::word);
     if (clause == kClauses.end() || clause->is_there(component)) {
+      if (fail_foreign_clause(reader)) return false;
       const bool is_node = word.is("/") && !component.node;
       return read.unexpected_clause(word, {kWords.begin(), kWords.end()},
                                     is_node ? "write NODE in front of the node's name" : "");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <utility>
 
 #include "base/closest.h"
@@ -38,6 +39,14 @@ bool DeclarationReader::robot(Scanner& s) {
 
 bool DeclarationReader::cycle(Scanner& s) {
   const Span span = s.rest();
+  const std::string written(source_.text(s.peek().span));
+  const auto digits = written.find_first_not_of("0123456789");
+  const int hertz = digits == std::string::npos || digits > 3 ? 0 : std::atoi(written.c_str());
+  if (hertz > 0 && is_hertz(written.substr(digits))) {
+    const std::string meant = to_string(Duration(std::chrono::milliseconds(1000 / hertz)));
+    return read_.fail(Code::kBadToken, s.peek().span, "a cycle is a duration, and no rate",
+                      "write " + meant, Edit{s.peek().span, meant});
+  }
   const auto length = read_.duration(s, "the length of a cycle");
   if (!length) return false;
   if (into_.cycle)
@@ -53,6 +62,9 @@ bool DeclarationReader::constant(Scanner& s) {
   auto name = read_.declared_name(s, "the constant's name");
   if (!name || !read_.is_one_word(s, *name, kEqualsSign) || !equals_sign(s, *name)) return false;
   auto value = read_.expression(s);
+  if (value && s.peek().is(","))
+    return read_.fail(Code::kExtraText, s.peek().span, "one line has one constant",
+                      "write the next one on a line of its own that begins with CONST");
   if (!value || !read_.line_ends(s)) return false;
   into_.constants.push_back({std::move(*name), std::move(*value)});
   return true;
@@ -62,18 +74,31 @@ bool DeclarationReader::equals_sign(Scanner& s, const Name& constant) {
   const Token token = s.next();
   if (token.is("=")) return true;
   const bool is_assignment = token.is(":") && s.peek().is("=");
-  return read_.fail_token(
-      token, "'='", "write CONST " + constant.text + " = 0.5",
-      is_assignment ? Edit{token.span, ""} : Edit{{token.span.begin, token.span.begin}, "= "});
+  Scanner value = s.ahead();
+  if (is_assignment) value.next();
+  const bool is_sign = token.is(":");
+  const Span rest{is_sign ? value.position() : token.span.begin, s.rest().end};
+  const std::string written(rest.begin < rest.end ? source_.text(rest) : "0.5");
+  return read_.fail_token(token, "'='", "write CONST " + constant.text + " = " + written,
+                          is_assignment ? Edit{token.span, ""}
+                          : is_sign     ? Edit{token.span, " ="}
+                                        : Edit{{token.span.begin, token.span.begin}, "= "});
 }
 
 bool DeclarationReader::component(Scanner& s) {
   if (const Span rest = s.rest(); source_.text(rest).starts_with('/'))
     return read_.fail(Code::kSyntax, rest, "a component's name is no node's name",
                       "write its own name first: COMPONENT camera NODE /robot/camera");
+  const auto clauses = component_clauses();
+  if (const Token& word = s.peek(); std::ranges::find(clauses, word.text) != clauses.end()) {
+    const std::string rest(source_.text(s.rest()));
+    const bool has_node = word.text == "NODE" && rest.rfind('/') != std::string::npos;
+    return read_.fail(Code::kReservedWord, word.span, "the component's name is missing",
+                      "write it in front: COMPONENT " +
+                          (has_node ? rest.substr(rest.rfind('/') + 1) : "camera") + " " + rest);
+  }
   auto name = read_.declared_name(s, "the component's name");
   if (!name) return false;
-  const auto clauses = component_clauses();
   if (is_clause_far(s, clauses) && !read_.is_one_word(s, *name, clauses)) return false;
   syntax::Component component{std::move(*name), {}, {}};
   if (!read_component_clauses(read_, source_, s, component)) return false;
@@ -213,6 +238,7 @@ bool DeclarationReader::signal(Scanner& s) {
   if (!name) return false;
   if (is_clause_far(s, kSignalSources) && !read_.is_one_word(s, *name, kSignalSources))
     return false;
+  if (const Token& sign = s.peek(); sign.is("=")) return assigned_signal(*name, sign);
   syntax::Signal signal{std::move(*name), {}, {}, {}};
   if (!signal_source(s, signal)) return false;
   while (!s.at_end()) {
@@ -243,6 +269,43 @@ bool DeclarationReader::signal(Scanner& s) {
   return true;
 }
 
+// "SIGNAL battery = /battery.percentage"
+bool DeclarationReader::assigned_signal(const Name& name, const Token& sign) {
+  const Span line = source_.line(source_.position(sign.span.begin).line);
+  Scanner ahead(source_.text(), {sign.span.end, line.end});
+  const Name value = ahead.next_name();
+  const auto dot = value.text.find('.');
+  const bool is_field = value.text.starts_with('/') && dot != std::string::npos;
+  const std::string source =
+      is_field ? "TOPIC " + value.text.substr(0, dot) + " FIELD " + value.text.substr(dot + 1)
+               : "TOPIC /battery FIELD percentage";
+  return read_.fail(
+      Code::kSyntax, sign.span, "no '=' stands here", "write SIGNAL " + name.text + " " + source,
+      is_field ? std::optional(Edit{{sign.span.begin, value.span.end}, source}) : std::nullopt);
+}
+
+// How the path of a field is not written.
+bool DeclarationReader::check_field(const Scanner& s, const Name& field) {
+  const std::string_view text = source_.text();
+  const bool is_quoted = text[field.span.begin] == '"';
+  if (const Token& next = s.peek(); !is_quoted && next.is("(")) {
+    const auto close = text.find(')', next.span.end);
+    const Span line = source_.line(source_.position(field.span.begin).line);
+    if (close < line.end) {
+      const Span span{field.span.begin, static_cast<std::uint32_t>(close) + 1};
+      const std::string quoted = "\"" + std::string(source_.text(span)) + "\"";
+      return read_.fail(Code::kSyntax, span, "parentheses stand in a field only in quotes",
+                        "write " + quoted, Edit{span, quoted});
+    }
+  }
+  const auto dot = field.text.rfind('.');
+  const std::string index = dot == std::string::npos ? "" : field.text.substr(dot + 1);
+  if (index.empty() || index.find_first_not_of("0123456789") != std::string::npos) return true;
+  const std::string meant = field.text.substr(0, dot) + "[" + index + "]";
+  return read_.fail(Code::kSyntax, field.span, "an element of a list stands in brackets",
+                    "write " + meant, Edit{field.span, meant});
+}
+
 bool DeclarationReader::signal_source(Scanner& s, syntax::Signal& signal) {
   const Token kind = s.next();
   if (kind.text == "DIAGNOSTIC") {
@@ -258,11 +321,16 @@ bool DeclarationReader::signal_source(Scanner& s, syntax::Signal& signal) {
         !read_.expect_word(s, "FIELD", "write FIELD and the path of the field, as in FIELD data"))
       return false;
     auto field = read_.name_or_text(s, "the field, for example data or pose.position.x");
-    if (!field || !publisher(s, signal)) return false;
+    if (!field || !check_field(s, *field) || !publisher(s, signal)) return false;
     signal.source = syntax::TopicSource{std::move(*topic), std::move(*field)};
   } else if (kind.text == "PARAMETER") {
     auto component = read_.component_reference(s);
     if (!component) return false;
+    if (const auto slash = component->text.rfind('/');
+        s.at_end() && slash != std::string::npos && slash > 0)
+      return read_.fail(Code::kSyntax, component->span, "a parameter is no part of a node's name",
+                        "write PARAMETER " + component->text.substr(0, slash) + " " +
+                            component->text.substr(slash + 1));
     auto parameter = read_.name_or_text(s, "the parameter");
     if (!parameter) return false;
     signal.source = syntax::ParameterSource{std::move(*component), std::move(*parameter)};

@@ -34,6 +34,8 @@ class DeclarationReader {
   bool on(Scanner& s);
   bool equals_sign(Scanner& s, const syntax::Name& constant);
   bool condition(Scanner& s, std::vector<syntax::Interlock>& all);
+  bool assigned_signal(const syntax::Name& name, const Token& sign);
+  bool check_field(const Scanner& s, const syntax::Name& field);
   bool signal_source(Scanner& s, syntax::Signal& signal);
   bool publisher(Scanner& s, syntax::Signal& signal);
   bool range(Scanner& s, syntax::Signal& signal);

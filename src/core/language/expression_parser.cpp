@@ -402,9 +402,29 @@ class ExpressionParser {
     if (!inner) return std::nullopt;
     const Token close = scanner_.next();
     if (close.kind == Token::Kind::kBad) return bad(close);
+    if (close.kind == Token::Kind::kIdentifier) return stray_word(close);
     if (!close.is(")")) return not_closed(open, close.kind, inner->span.end);
     inner->span = {open.span.begin, close.span.end};
     return inner;
+  }
+
+  // Behind a value in parentheses.
+  std::nullopt_t stray_word(const Token& word) {
+    const std::string written(word.text);
+    return fail(Code::kSyntax, word.span, "no '" + written + "' stands behind a value",
+                upper_case(written) == "IF" || upper_case(written) == "ELSE"
+                    ? "to choose between two values, write condition ? one : other"
+                    : "remove it, or write an operator or a ')' in front of it");
+  }
+
+  // "age(Image /robot/image)": one name too many. Reported; false: a parenthesis is missing.
+  bool has_stray_name(const FunctionInfo& function, const Expression& first) {
+    Scanner ahead = scanner_.ahead();
+    const syntax::Name name = ahead.next_name();
+    if (!name.text.starts_with('/') || !ahead.peek().is(")")) return false;
+    fail(Code::kSyntax, name.span, "no second name stands behind '" + first.name.text + "'",
+         "usage: " + std::string(function.usage));
+    return true;
   }
 
   std::optional<Expression> call(Expression e, int depth) {
@@ -422,8 +442,10 @@ class ExpressionParser {
     e.kind = Kind::kCall;
     const Token open = scanner_.next();
     while (!scanner_.peek().is(")")) {
-      if (!e.children.empty() && binary_operator(scanner_.peek()) != nullptr)
-        return not_closed(open, Token::Kind::kEnd, e.children.back().span.end);
+      const bool is_behind_operand =
+          !e.children.empty() && binary_operator(scanner_.peek()) != nullptr;
+      if (is_behind_operand && has_stray_name(*function, e.children.back())) return std::nullopt;
+      if (is_behind_operand) return not_closed(open, Token::Kind::kEnd, e.children.back().span.end);
       if (!e.children.empty() &&
           !expect(",", "',' or ')'", "usage: " + std::string(function->usage)))
         return std::nullopt;
@@ -455,8 +477,11 @@ class ExpressionParser {
     if (!is_name) return conditional(depth + 1);
     Expression e;
     e.kind = Kind::kName;
+    const std::uint32_t at = scanner_.taken();
     e.name = scanner_.next_name();
     e.span = e.name.span;
+    if (const Span next{at, at + 2}; e.name.text.empty() && text_of(next) == "//")
+      return fail(Code::kSyntax, next, "'//' begins a comment", "write one '/'", Edit{next, "/"});
     if (e.name.text.empty()) {
       return fail(Code::kSyntax, e.span, "a name is missing here",
                   "usage: " + std::string(function.usage));
@@ -509,8 +534,21 @@ class ExpressionParser {
       }
     }
     const std::string_view written = text_of(token.span);
-    if (written == "{" || written == "[") remedy = "write parentheses: ( and )";
+    if (const std::string name = name_in_braces(token); !name.empty()) {
+      remedy = "write " + name + " without the braces";
+      fix = Edit{{token.span.begin, token.span.begin + static_cast<std::uint32_t>(name.size()) + 2},
+                 name};
+    } else if (written == "{" || written == "[")
+      remedy = "write parentheses: ( and )";
     return fail(Code::kBadToken, token.span, cause, remedy, fix);
+  }
+
+  // "{limit}"; empty: no such name begins there.
+  std::string name_in_braces(const Token& brace) const {
+    constexpr std::uint32_t kMost = 255;
+    const std::string_view text = text_of({brace.span.begin, brace.span.begin + kMost});
+    const std::size_t length = hole_length(text);
+    return length > 2 ? std::string(text.substr(1, length - 2)) : "";
   }
 
   // The number in MiB; nothing: `unit` is none of memory.

@@ -92,6 +92,13 @@ bool is_label_of_number(std::string_view word) {
   return std::ranges::find(kLabels, upper_case(word)) != kLabels.end();
 }
 
+// The types of other languages, which stand in front of a name there.
+bool is_type_word(std::string_view word) {
+  constexpr std::array<std::string_view, 9> kTypes = {
+      "float", "double", "int", "bool", "string", "auto", "duration", "number", "float64"};
+  return std::ranges::find(kTypes, word) != kTypes.end();
+}
+
 }  // namespace
 
 bool is_component_reference(std::string_view name) {
@@ -107,6 +114,8 @@ std::string remedy_of_ros_name(std::string_view name) {
                ? "write /" + written
                : "write /" + written + ", or with its namespace: /namespace/" + written;
   }
+  if (name.find('*') != std::string_view::npos)
+    return "there are no wildcards: write each full name";
   if (name.ends_with('/') && is_ros_name(name.substr(0, name.size() - 1)))
     return "write " + written.substr(0, written.size() - 1);
   if (const auto dot = name.find('.');
@@ -209,6 +218,7 @@ std::optional<Duration> LineReader::duration(Scanner& s, std::string_view what) 
   const Token unit = s.peek();
   const std::string one_word = std::string(source_.text(token.span)).append(unit.text);
   const std::string number(source_.text(token.span));
+  if (fail_foreign_duration(token, s)) return std::nullopt;
   if (unit.kind == Token::Kind::kIdentifier && parse_duration(one_word)) {
     remedy = "write " + one_word + ", without the blank";
     fix = {{token.span.begin, unit.span.end}, one_word};
@@ -221,6 +231,27 @@ std::optional<Duration> LineReader::duration(Scanner& s, std::string_view what) 
   }
   fail_token(token, what, std::move(remedy), std::move(fix));
   return std::nullopt;
+}
+
+bool LineReader::fail_foreign_duration(const Token& token, const Scanner& behind) {
+  Scanner ahead = behind.ahead();
+  const Token second = ahead.next();
+  const std::string written(source_.text(token.span));
+  if (token.kind == Token::Kind::kIdentifier && second.kind == Token::Kind::kDuration)
+    return !fail(Code::kSyntax, token.span, "no '" + written + "' stands in front of a duration",
+                 "remove it", Edit{{token.span.begin, second.span.begin}, ""});
+  const auto* minutes = std::get_if<std::int64_t>(&token.literal);
+  const Token third = ahead.next();
+  const auto* seconds = std::get_if<std::int64_t>(&third.literal);
+  constexpr std::int64_t kMost = 100'000;
+  if (second.is(":") && minutes != nullptr && seconds != nullptr && *minutes < kMost &&
+      *seconds < 60) {
+    const std::string meant = to_string(Duration(std::chrono::seconds(*minutes * 60 + *seconds)));
+    const Span span{token.span.begin, third.span.end};
+    return !fail(Code::kSyntax, span, "a duration is a number and its unit", "write " + meant,
+                 Edit{span, meant});
+  }
+  return false;
 }
 
 std::optional<Duration> LineReader::positive_duration(Scanner& s, std::string_view what) {
@@ -316,6 +347,11 @@ bool LineReader::is_one_word(const Scanner& s, const Name& name,
   const auto follows = std::find(followers.begin(), followers.end(), ahead.peek().text);
   if (end == name.span.end || (!followers.empty() && follows == followers.end())) return true;
   const Span span{name.span.begin, end};
+  if (is_type_word(name.text) && !has_dash) {
+    const Span type{name.span.begin, s.peek().span.begin};
+    return fail(Code::kSyntax, name.span, "no type stands in front of a name",
+                "remove '" + name.text + "'", Edit{type, ""});
+  }
   std::string meant;
   for (const char c : source_.text(span)) {
     const bool is_break = c == '-' || is_blank(c);
@@ -329,6 +365,8 @@ bool LineReader::expect_symbol(Scanner& s, std::string_view symbol, std::string 
   const Token token = s.next();
   if (token.is(symbol)) return true;
   const bool is_other = token.kind == Token::Kind::kSymbol;
+  if (remedy.empty() && is_other && !token.is("("))
+    remedy = "write '" + std::string(symbol) + "' in its place";
   return fail_token(token, "'" + std::string(symbol) + "'", std::move(remedy),
                     is_other ? std::optional(Edit{token.span, std::string(symbol)}) : std::nullopt);
 }
@@ -468,6 +506,10 @@ bool LineReader::condition_ends(Scanner& s) {
   if (token.is(",") && !is_of_number)
     return fail(Code::kExtraText, token.span, "no ',' stands between two conditions",
                 "write && if both must hold, || if one is enough", Edit{token.span, " &&"});
+  const bool is_behind_call = token.span.begin > 0 && text[token.span.begin - 1] == ')';
+  if (source_.text(token.span) == "." && is_behind_call)
+    return fail(Code::kBadToken, token.span, "a value has no methods",
+                "compare it, as in lifecycle(camera) == \"active\"");
   if (is_bracket(token, source_.text(token.span)))
     return fail(
         Code::kBadToken, token.span,

@@ -48,6 +48,8 @@ class LineReader {
   std::optional<syntax::Name> text(Scanner& s, std::string_view what, std::string_view remedy);
 
   std::optional<Duration> duration(Scanner& s, std::string_view what);
+  // "00:10", "EVERY 200ms" in place of a duration: reported.
+  bool fail_foreign_duration(const Token& token, const Scanner& behind);
   std::optional<Duration> positive_duration(Scanner& s, std::string_view what);
   std::optional<syntax::Number> number(Scanner& s, std::string_view what, std::string remedy = "");
   std::optional<std::int64_t> whole_number(Scanner& s, std::string_view what);

@@ -34,6 +34,7 @@ class Parser {
       }
       Scanner scanner(source_.text(), line_, lexemes_);
       if (!scanner.at_end()) statement(scanner);
+      if (scanner.at_end()) foreign_directive();
     }
     if (template_) {
       if (!template_->name.text.empty())
@@ -125,6 +126,7 @@ class Parser {
     is_unfinished_ = is_unfinished_ && meant == nullptr &&
                      is_unfinished(source_.text({head.span.begin, s.rest().end}));
     is_unknown_ = meant == nullptr;
+    if (is_unknown_ && s.peek().is("=")) declare_broken_constant(head);  // "limit = 0.5"
     return meant;
   }
 
@@ -149,13 +151,33 @@ class Parser {
     return true;
   }
 
+  // "#define limit 0.5", which is a comment.
+  void foreign_directive() {
+    constexpr std::string_view kDefine = "#define ";
+    const std::string_view text = source_.text(line_);
+    if (!text.starts_with(kDefine)) return;
+    const auto begin = line_.begin + static_cast<std::uint32_t>(kDefine.size());
+    Scanner s(source_.text(), {begin, line_.end});
+    const Token name = s.next();
+    if (name.kind != Token::Kind::kIdentifier || s.at_end()) return;
+    const Span line{line_.begin, s.rest().end};
+    const std::string meant =
+        "CONST " + std::string(name.text) + " = " + std::string(source_.text(s.rest()));
+    read_.fail(Code::kUnknownStatement, line, "this line is a comment, as it begins with '#'",
+               "write " + meant, Edit{line, meant});
+    declare_broken_constant(name);
+  }
+
+  void declare_broken_constant(const Token& name) {
+    into_->broken_declarations.push_back(
+        {syntax::BrokenDeclaration::Kind::kConstant, {std::string(name.text), name.span}});
+  }
+
   // The name that the line was about to declare, so that its uses are not called undeclared.
   void broken_declaration(std::string_view keyword, Scanner s) {
     using Broken = syntax::BrokenDeclaration::Kind;
     const auto declare = [&](const Token& name) {
-      if (keyword == "CONST")
-        into_->broken_declarations.push_back(
-            {Broken::kConstant, {std::string(name.text), name.span}});
+      if (keyword == "CONST") declare_broken_constant(name);
       if (keyword == "COMPONENT")
         into_->broken_declarations.push_back(
             {Broken::kComponent, {std::string(name.text), name.span}});

@@ -192,6 +192,23 @@ Complaint meaningless(Span span, std::string_view rest) {
 }
 
 // `text`: digits, and letters that are no unit.
+// "1m30s", "1h5min" -> the same in one unit; empty: it is nothing of the kind.
+std::string in_one_unit(std::string_view text) {
+  Duration sum{};
+  while (!text.empty()) {
+    const auto digits = std::min(text.find_first_not_of("0123456789"), text.size());
+    const auto end = std::min(text.find_first_of("0123456789", digits), text.size());
+    std::string part(text.substr(0, end));
+    if (part.ends_with('m')) part += "in";
+    constexpr std::size_t kMostDigits = 6;
+    const auto read = parse_duration(part);
+    if (!read || digits > kMostDigits) return "";
+    sum += *read;
+    text.remove_prefix(end);
+  }
+  return to_string(sum);
+}
+
 Complaint not_a_number(Span span, std::string_view text) {
   std::size_t end = 0;
   while (end < text.size() && (is_digit(text[end]) || text[end] == '.')) ++end;
@@ -209,6 +226,8 @@ Complaint not_a_number(Span span, std::string_view text) {
   const std::string cause = "'" + std::string(text) + "' is neither a number nor a duration";
   if (letters == "m")
     return {cause, std::nullopt, "write " + number + "min for minutes, or " + number + "ms"};
+  if (const std::string whole = in_one_unit(text); !whole.empty())
+    return {"a duration has one unit", Edit{span, whole}, "write " + whole};
   const std::string_view unit = duration_unit(letters);
   if (unit.empty()) return {cause};
   const std::string meant = number + std::string(unit);

@@ -225,7 +225,9 @@ void Symbols::declare_launch(const syntax::Component& written, Component& compon
   };
   const auto whole_path = [&](const syntax::Name& path) {
     if (!path.text.starts_with('/'))
-      report(path, "this path is not whole", "write it from the root, with a '/' in front");
+      report(path, "this path is not whole",
+             path.text.starts_with('~') ? "write it from the root, as in /home/robot/ws"
+                                        : "write it from the root, with a '/' in front");
     return path.text;
   };
   if (is_for_launch("SETUP", written.setup)) component.setup = whole_path(*written.setup);
@@ -333,7 +335,9 @@ void Symbols::declare_composition(const syntax::Component& written, Component& c
                                      {"REMAP", &written.remaps}}) {
       if (*what)
         report(**what, std::string(word) + " is for a component that a container loads",
-               "add IN and the full name of the container's node: IN /container");
+               written.launch && what == &written.remaps
+                   ? "write it in LAUNCH: --ros-args -r " + (*what)->text
+                   : "add IN and the full name of the container's node: IN /container");
     }
     return;
   }
@@ -420,7 +424,7 @@ void Symbols::check_field(const syntax::Name& field) {
   if (field.text.find('/') == std::string::npos ||
       field.text.find_first_of("[(") != std::string::npos)
     return;
-  std::string meant = field.text;
+  std::string meant = field.text.substr(field.text.starts_with('/') ? 1 : 0);
   std::replace(meant.begin(), meant.end(), '/', '.');
   diagnostics_.push_back({Code::kSyntax, Severity::kError, field.span,
                           "a path of fields has dots, and no '/'", "write " + meant,
@@ -610,6 +614,12 @@ bool Symbols::is_looked_up(const std::string& signal) const {
   const auto found = known_signal(signal);
   return strictness_ == Strictness::kLenient && found &&
          std::holds_alternative<LookedUp>(rules_[*found].source);
+}
+
+std::string Symbols::topic_of_signal(std::string_view name) const {
+  const auto found = known_signal(name);
+  const auto* field = found ? std::get_if<TopicField>(&rules_[*found].source) : nullptr;
+  return field != nullptr ? rules_[field->topic].name : "";
 }
 
 bool Symbols::is_declared_component(std::string_view name) const {

@@ -110,6 +110,11 @@ class Typer {
       if (constant->broken) return std::nullopt;  // reported where it is defined
       return literal(constant->value);
     }
+    if (symbols_.is_declared_component(e.name.text) && symbols_.is_looked_up(e.name.text)) {
+      const std::string meant = "alive(" + e.name.text + ")";
+      return fail(Code::kUnknownName, e.span, "'" + e.name.text + "' is a component, and no value",
+                  "write " + meant, Edit{e.span, meant});
+    }
     const SignalId signal = symbols_.signal(e.name);
     warn_of_bare_function(e);
     const auto type = symbols_.type_of(signal);
@@ -187,6 +192,7 @@ class Typer {
   }
 
   std::optional<Typed> binary(const Expression& e) {
+    if (is_comparison(e) && compares_with_nothing(e)) return std::nullopt;
     is_part_of_call_ = may_be_call(e);
     auto left = type(e.children[0]);
     is_part_of_call_ = false;
@@ -266,6 +272,20 @@ class Typer {
                   "compare them with == or !=");
     }
     return node(op, Type::kBool, std::move(left), std::move(right));
+  }
+
+  // "battery == nan", "battery == None": reported.
+  bool compares_with_nothing(const Expression& e) {
+    constexpr std::array<std::string_view, 5> kNothing = {"NAN", "NONE", "NULL", "NIL",
+                                                          "UNDEFINED"};
+    const Expression& side = e.children[1];
+    const bool is_so = side.kind == Kind::kName && symbols_.is_looked_up(side.name.text) &&
+                       std::ranges::find(kNothing, upper_case(side.name.text)) != kNothing.end();
+    if (!is_so) return false;
+    symbols_.forget_near_miss(side.name.text);
+    fail(Code::kUnknownName, side.span, "'" + side.name.text + "' is no value of the language",
+         remedy_of_bare_value(e.children[0], side.name.text));
+    return true;
   }
 
   // `lifecycle(camera) == active` would wait for a signal of that name.
@@ -646,10 +666,27 @@ class Typer {
       }
       return symbols_.topic(e.name.text, publisher);
     }
+    if (const auto bracket = e.name.text.find('['); bracket != std::string::npos)
+      return window_in_brackets(e, bracket);
+    if (const auto topic = symbols_.topic_of_signal(e.name.text); !topic.empty())
+      return fail(Code::kBadRosName, e.span, "'" + e.name.text + "' is a signal, and no topic",
+                  "write its topic, " + topic, Edit{e.span, topic});
     return fail(Code::kBadRosName, e.span, "'" + e.name.text + "' is no full topic name",
                 e.name.text.starts_with('/')
                     ? remedy_of_ros_name(e.name.text)
                     : "write it with its namespace, as in /robot/camera/image");
+  }
+
+  // "rate(/scan[5m])"
+  std::nullopt_t window_in_brackets(const Expression& e, std::size_t bracket) {
+    const std::string topic = e.name.text.substr(0, bracket);
+    std::string window = e.name.text.substr(bracket + 1);
+    if (window.ends_with(']')) window.pop_back();
+    if (window.ends_with('m')) window += "in";
+    const bool is_window = parse_duration(window).has_value();
+    return fail(Code::kBadRosName, e.span, "no brackets stand behind a topic",
+                is_window ? "write " + topic + ", " + window + ": only rate takes a window"
+                          : "write " + topic);
   }
 
   std::optional<Typed> extreme(const Expression& e, Op exact, Op real) {
@@ -749,11 +786,16 @@ class Typer {
   }
 
   // `other`: which side of `e` is no text.
-  static std::string text_remedy(const Expression& e, std::size_t other) {
+  std::string text_remedy(const Expression& e, std::size_t other) const {
     const Expression& side = e.children[other];
     const Expression& text = e.children[1 - other];
     const auto* written =
         text.kind == Kind::kLiteral ? std::get_if<std::string>(&*text.literal) : nullptr;
+    const auto* constant = text.kind == Kind::kName ? symbols_.constant(text.name.text) : nullptr;
+    if (constant != nullptr)
+      return "'" + text.name.text + "' is a text: remove the quotes in its CONST line";
+    if (written != nullptr && symbols_.constant(*written) != nullptr)
+      return "'" + *written + "' is a constant: remove the quotes";
     if (written == nullptr)
       return "this side is a text: compare it with a text in quotes, as in \"active\"";
     if (*written == "true" || *written == "false") return "write " + *written + " without quotes";

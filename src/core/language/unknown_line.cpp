@@ -77,7 +77,10 @@ Remedy remedy_of_word(const UnknownLine& line, const Token& head, const Scanner&
   const Token& second = s.peek();
   const Span in_front{head.span.begin, head.span.begin};
   if (second.is("=") && head.kind == Token::Kind::kIdentifier)
-    return {"a constant begins with CONST, as in CONST limit = 0.5", Edit{in_front, "CONST "}};
+    return {"a constant begins with CONST: write CONST " +
+                std::string(line.source.text({head.span.begin, s.rest().end})),
+            Edit{in_front, "CONST "}};
+  if (upper == "VERSION") return {"remove the line: a rule file has no version"};
   if (is_adaptation(second.text))
     return {
         "did you mean ADAPTATION " + std::string(head.text) + " " + std::string(second.text) + "?",
@@ -102,7 +105,9 @@ std::string meant_keyword(const UnknownLine& line, const Token& head) {
 
 std::string report_unknown_line(const UnknownLine& line, const Token& head, const Scanner& s) {
   const std::string written(line.source.text(head.span));
-  const auto comment = written == ";" ? std::optional(head.span) : foreign_comment(head, s.peek());
+  const bool is_percent = head.is("%") && !line.is_in_rule;
+  const auto comment =
+      written == ";" || is_percent ? std::optional(head.span) : foreign_comment(head, s.peek());
   if (comment) {
     line.read.fail(Code::kUnknownStatement, *comment,
                    "no comment begins with '" + std::string(line.source.text(*comment)) + "'",

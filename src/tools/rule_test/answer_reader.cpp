@@ -1,6 +1,10 @@
 #include "rule_test/answer_reader.h"
 
+#include <set>
+#include <string>
 #include <vector>
+
+#include "language/foreign_words.h"
 
 namespace culprit::rule_test {
 namespace {
@@ -20,13 +24,12 @@ class AnswerReader {
     if (!component) return false;
     const Token word = s_.next();
     const auto type = syntax::adaptation_type(word.text);
-    if (!type) {
-      const std::string near = closest(word.text, syntax::adaptation_keywords());
-      return read_.fail_token(word, "an adaptation, such as restart or set_parameter",
-                              near.empty() ? "" : "did you mean " + near + "?");
-    }
+    if (!type) return unknown_adaptation(*component, word);
     std::optional<Name> subject;
-    if (!is_answer(s_.peek().text)) {
+    if (!is_answer(s_.peek().text) && has_place(*component, *type)) {
+      if (has_place(*component, *type, ""))
+        return read_.unexpected_clause(s_.next(), kAnswers,
+                                       s_.at_end() ? "add for example TAKES 2s" : "");
       subject = read_.name_or_text(s_, kAnswersText);
       if (!subject) return false;
     }
@@ -42,7 +45,8 @@ class AnswerReader {
     if (places.empty())
       return read_.fail(Code::kUnknownName,
                         {name->span.begin, (subject ? subject->span : word.span).end},
-                        "no strategy of the rules adapts " + name->text + " in this way", "");
+                        "no strategy of the rules adapts " + name->text + " in this way",
+                        adaptations_of(*component));
     return answers(places);
   }
 
@@ -58,6 +62,47 @@ class AnswerReader {
     std::optional<std::size_t> adaptation;  // nothing: all of them
   };
   static constexpr const char* kAnswersText = "HEALS, TAKES, REFUSED or UNANSWERED";
+  static inline const std::vector<std::string_view> kAnswers = {"HEALS", "TAKES", "REFUSED",
+                                                                "UNANSWERED"};
+
+  template <class Take>
+  void each_adaptation(ComponentId component, Take take) const {
+    for (const Strategy& strategy : rules_.strategies) {
+      for (const Adaptation& adaptation : strategy.adaptations) {
+        if (adaptation.component == component) take(adaptation);
+      }
+    }
+  }
+
+  bool has_place(ComponentId component, syntax::AdaptationType type,
+                 std::optional<std::string_view> subject = {}) const {
+    bool is_there = false;
+    each_adaptation(component, [&](const Adaptation& a) {
+      is_there = is_there || (a.type == type && (!subject || a.subject == *subject));
+    });
+    return is_there;
+  }
+
+  // "they use restart, set_parameter focus"; empty: the rules leave the component alone.
+  std::string adaptations_of(ComponentId component) const {
+    std::set<std::string> ways;
+    each_adaptation(component, [&](const Adaptation& a) {
+      ways.insert(std::string(syntax::keyword(a.type)) + (a.subject.empty() ? "" : " ") +
+                  a.subject);
+    });
+    std::string list;
+    for (const std::string& way : ways) list += (list.empty() ? "they use " : ", ") + way;
+    return list;
+  }
+
+  bool unknown_adaptation(ComponentId component, const Token& word) {
+    std::string near = closest(word.text, syntax::adaptation_keywords());
+    if (near.empty()) near = adaptation_of_other_tools(word.text);
+    return read_.fail_token(
+        word, "an adaptation, such as restart or set_parameter",
+        near.empty() ? adaptations_of(component) : "did you mean " + near + "?");
+  }
+
   static bool is_answer(std::string_view word) {
     return word == "HEALS" || word == "TAKES" || word == "REFUSED" || word == "UNANSWERED";
   }
@@ -76,7 +121,7 @@ class AnswerReader {
       } else if (word.text == "UNANSWERED") {
         answer(places, Answer::Manner::kNeverAnswers, {});
       } else {
-        return read_.unexpected_clause(word, {"HEALS", "TAKES", "REFUSED", "UNANSWERED"});
+        return read_.unexpected_clause(word, kAnswers);
       }
     } while (!s_.at_end());
     return true;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "knowledge/signal_store.h"
+#include "language/typing.h"
 
 namespace culprit::rule_test {
 namespace {
@@ -66,6 +67,9 @@ class CourseReader {
     const auto from = read_.duration(s_, "a time, as in 2s: or 2s..5s:");
     if (!from) return false;
     stretch.from = *from;
+    if (const Token& next = s_.peek(); next.is("-"))
+      return read_.fail(Code::kSyntax, next.span, "no '-' stands between two times", "write '..'",
+                        Edit{next.span, ".."});
     if (s_.peek().is("..")) {
       s_.next();
       const Span span = s_.peek().span;
@@ -77,7 +81,8 @@ class CourseReader {
         return read_.fail(Code::kSyntax, span, "a parameter keeps its value until it is set again",
                           "write the time from which on it has it, as in 2s: true");
     }
-    if (!read_.expect_symbol(s_, ":")) return false;
+    if (!read_.expect_symbol(s_, ":", "write a ':' behind the time, as in 2s: silent"))
+      return false;
     if (!value(course.subject, stretch)) return false;
     course.stretches.push_back(std::move(stretch));
     return true;
@@ -101,15 +106,27 @@ class CourseReader {
 
   bool rate(Stretch& stretch) {
     const Name name = s_.next_name();
+    if (const auto end = name.span.end; name.text.ends_with(';') && name.text.size() > 1)
+      return read_.fail(Code::kSyntax, {end - 1, end}, "no ';' stands between two times",
+                        "remove the ';'", Edit{{end - 1, end}, ""});
     const auto rate = rate_of(name.text);
     if (!rate)
       return read_.fail(Code::kSyntax, name.span, "expected a rate, or silent",
-                        "a rate is written like 10Hz");
+                        remedy_of_rate(name.text));
     if (!(*rate > 0 && *rate <= kHighestRate))
       return read_.fail(Code::kPolicyRange, name.span, "a rate is above 0Hz and at most 1000Hz",
                         "write silent where nothing comes");
     stretch.value = Value(*rate);
     return true;
+  }
+
+  static std::string remedy_of_rate(const std::string& written) {
+    if (written.empty()) return "a rate is written like 10Hz";
+    if (written.find_first_not_of("0123456789.") == std::string::npos)
+      return "write " + written + "Hz";
+    const bool has_digit = written.find_first_of("0123456789") != std::string::npos;
+    return has_digit ? "a rate is written like 10Hz"
+                     : "write silent where nothing comes, or a rate like 10Hz";
   }
 
   std::optional<Value> literal() {
@@ -119,6 +136,12 @@ class CourseReader {
     last_end_ = token.span.end;
     const bool is_truth =
         token.kind == Token::Kind::kIdentifier && (token.text == "true" || token.text == "false");
+    if (token.kind == Token::Kind::kNumber && s_.peek().is("%")) {
+      read_.fail(Code::kSyntax, s_.peek().span, "no '%' stands behind a number",
+                 "remove it; where the rules use a share from 0 to 1, write 0.8 for 80 percent",
+                 Edit{s_.peek().span, ""});
+      return std::nullopt;
+    }
     if (token.kind == Token::Kind::kNumber) {
       if (const auto* whole = std::get_if<std::int64_t>(&token.literal))
         return Value(negative ? -*whole : *whole);
@@ -136,14 +159,18 @@ class CourseReader {
 
   bool fits(const Value& value, SignalId id, Span span) {
     std::string text;
+    const Type type = rules_[id].type;
+    const std::string a_type = describe(type);
+    if (std::holds_alternative<std::string>(value) && type != Type::kString)
+      return read_.fail(Code::kTypeMismatch, span,
+                        rules_[id].name + " is " + a_type + " in the rules, and this is a text",
+                        as_type(value, type, text).known ? "remove the quotes" : "write " + a_type);
     const auto* number = std::get_if<double>(&value);
     const bool is_nan = number != nullptr && std::isnan(*number);
-    if (is_nan ? rules_[id].type == Type::kDouble : as_type(value, rules_[id].type, text).known)
-      return true;
+    if (is_nan ? type == Type::kDouble : as_type(value, type, text).known) return true;
     return read_.fail(Code::kTypeMismatch, span,
-                      rules_[id].name + " is a " + std::string(to_string(rules_[id].type)) +
-                          " in the rules, and this is none",
-                      "");
+                      rules_[id].name + " is " + a_type + " in the rules, and this is none",
+                      type == Type::kString ? "write it in quotes" : "write " + a_type);
   }
 
   bool is_level(const Value& value, Span span) {

@@ -1,5 +1,6 @@
 #include "rule_test/expectation_reader.h"
 
+#include <algorithm>
 #include <array>
 
 #include "knowledge/describe.h"
@@ -63,6 +64,9 @@ class ExpectationReader {
 
   bool sentence() {
     e_.wanted = !took("NOT");
+    if (const Token& next = s_.peek(); !e_.wanted && next.text == "STRATEGY")
+      return read_.fail(Code::kSyntax, next.span, "no NOT stands in front of STRATEGY",
+                        "write EXPECT NO STRATEGY");
     if (took("BLAME")) {
       e_.kind = Kind::kBlamed;
       return names_clause(About::kComponent, "a component");
@@ -76,6 +80,8 @@ class ExpectationReader {
     for (const Verb& verb : kVerbs) {
       if (word.text == verb.word) {
         e_.kind = verb.kind;
+        if (!fits(subject->text, verb.about) && knows(subject->text))
+          return wrong_verb(*subject, word);
         return resolve(*subject, verb.about) && (e_.kind != Kind::kRanked || rank());
       }
     }
@@ -85,11 +91,40 @@ class ExpectationReader {
                         "the rules have no rule, strategy or component '" + subject->text + "'",
                         near.empty() ? "" : "did you mean " + near + "?");
     }
+    const auto fitting = verbs_of(subject->text);
+    return read_.unexpected_clause(
+        word, fitting,
+        word.kind == Token::Kind::kEnd ? "add for example " + std::string(fitting.front()) : "");
+  }
+
+  std::vector<std::string_view> verbs_of(const std::string& name) const {
     std::vector<std::string_view> fitting;
     for (const Verb& verb : kVerbs) {
-      if (fits(subject->text, verb.about)) fitting.push_back(verb.word);
+      if (fits(name, verb.about)) fitting.push_back(verb.word);
     }
-    return read_.unexpected_clause(word, fitting);
+    return fitting;
+  }
+
+  std::string_view kind_of(const std::string& name) const {
+    return fits(name, About::kRule)       ? "a rule"
+           : fits(name, About::kStrategy) ? "a strategy"
+                                          : "a component";
+  }
+
+  // "camera DETECTED", "CameraDead BLAMED FOR camera"
+  bool wrong_verb(const Name& subject, const Token& verb) {
+    std::string list;
+    for (const std::string_view word : verbs_of(subject.text))
+      list += (list.empty() ? "" : ", ") + std::string(word);
+    const std::string cause = "'" + subject.text + "' is " + std::string(kind_of(subject.text)) +
+                              ", which is never " + std::string(verb.text);
+    Scanner ahead = s_.ahead();
+    const bool has_other = ahead.next().text == "FOR";
+    const Name other = has_other ? ahead.next_name() : Name{};
+    if (e_.kind == Kind::kBlamed && names_.is_component(other.text))
+      return read_.fail(Code::kUnknownName, subject.span, cause,
+                        "write " + other.text + " BLAMED FOR " + subject.text);
+    return read_.fail(Code::kUnknownName, subject.span, cause, "it may be " + list);
   }
 
   static bool is_time(std::string_view word) { return word == "BY" || word == "AFTER"; }
@@ -155,6 +190,9 @@ class ExpectationReader {
     const bool has_rule = e_.kind == Kind::kBlamed || e_.kind == Kind::kAnyChosen;
     if (is("BY", true, !e_.by)) {
       by_span_ = s_.peek().span;
+      if (const std::string name(s_.peek().text); names_.is_strategy(name))
+        return read_.fail(Code::kSyntax, by_span_, "'" + name + "' is a strategy, and no time",
+                          "write WITH in front of a strategy, and BY in front of a time");
       e_.by = read_.duration(s_, "a time");
       return e_.by.has_value();
     }
@@ -166,10 +204,40 @@ class ExpectationReader {
     if (is("FOR", has_rule, !e_.rule)) return names_clause(About::kRule, "a rule");
     if (is("OF", e_.kind == Kind::kAnyChosen, !e_.component))
       return names_clause(About::kComponent, "a component");
-    if (is("WITH", e_.kind == Kind::kResolved, !e_.strategy))
-      return names_clause(About::kStrategy, "a strategy");
+    if (is("WITH", e_.kind == Kind::kResolved, !e_.strategy)) return resolving_strategy();
     if (is("BECAUSE", e_.kind == Kind::kExcluded, !e_.condition)) return because();
+    const std::string_view missing = clause_of(word);
+    if (!missing.empty() && std::ranges::find(known, missing) != known.end())
+      return read_.fail(Code::kSyntax, word.span,
+                        "no '" + std::string(missing) + "' stands in front of this",
+                        "write " + std::string(missing) + " in front of it",
+                        Edit{{word.span.begin, word.span.begin}, std::string(missing) + " "});
     return read_.unexpected_clause(word, known);
+  }
+
+  // The clause that names what `word` names; empty: none does.
+  std::string_view clause_of(const Token& word) const {
+    const std::string name(word.text);
+    return word.kind == Token::Kind::kDuration ? "BY"
+           : fits(name, About::kRule)          ? "FOR"
+           : fits(name, About::kStrategy)      ? "WITH"
+           : fits(name, About::kComponent)     ? "OF"
+                                               : "";
+  }
+
+  // Only a strategy of the rule can resolve it.
+  bool resolving_strategy() {
+    const auto name = read_.name_or_text(s_, "a strategy");
+    if (!name) return false;
+    const std::string own = names_.label(*e_.rule) + "." + name->text;
+    const bool is_own = names_.is_strategy(own);
+    if (!resolve(is_own ? Name{own, name->span} : *name, About::kStrategy)) return false;
+    const std::string owner = names_.rule_of(*e_.strategy);
+    return owner == names_.label(*e_.rule) ||
+           read_.fail(Code::kUnknownName, name->span,
+                      "'" + name->text + "' is a strategy of " + owner + ", so it cannot resolve " +
+                          names_.label(*e_.rule),
+                      "name a strategy of " + names_.label(*e_.rule));
   }
 
   bool names_clause(About about, std::string_view what) {

@@ -15,11 +15,13 @@ struct Part {
 };
 
 // The tests as they are read for one rule file. Empty if there are errors.
-std::optional<Part> read_part(const Source& source, const std::string& rules_path, Colour colour,
-                              std::string& complaints) {
+std::optional<Part> read_part(const Source& source, Span name, const std::string& rules_path,
+                              Colour colour, std::string& complaints) {
   const auto rules = rule_files::read(rules_path);
   if (!rules) {
-    complaints += source.name() + ": " + rules.error() + "\n";
+    complaints +=
+        render(Diagnostic{Code::kCannotInclude, Severity::kError, name, rules.error(), ""}, source,
+               colour);
     return std::nullopt;
   }
   Checked checked = check(*rules);
@@ -65,7 +67,7 @@ FileRun run_file(const std::string& path, const std::string& filter, const Plann
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   for (const syntax::Name& file : files) {
     const std::string rules_path = (folder / file.text).lexically_normal().string();
-    auto part = read_part(*source, rules_path, colour, run.complaints);
+    auto part = read_part(*source, file.span, rules_path, colour, run.complaints);
     if (!part) continue;
     for (Test& test : part->suite.tests) {
       if (!test.bag.empty()) test.bag = (folder / test.bag).lexically_normal().string();

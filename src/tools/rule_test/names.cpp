@@ -18,6 +18,18 @@ std::string nearest(const std::string& name, std::vector<std::string_view> keys)
   return closest(name, keys);
 }
 
+// The names that there are, while they fit on a line.
+std::string remedy_for(const std::string& name, std::vector<std::string_view> keys) {
+  constexpr std::size_t kMostListed = 8;
+  std::sort(keys.begin(), keys.end());
+  const std::string near = closest(name, keys);
+  if (!near.empty()) return "did you mean " + near + "?";
+  if (keys.empty() || keys.size() > kMostListed) return "";
+  std::string list;
+  for (const std::string_view key : keys) list += (list.empty() ? "" : ", ") + std::string(key);
+  return "they have: " + list;
+}
+
 }  // namespace
 
 Names::Names(const RuleSet& rules, std::vector<Diagnostic>& diagnostics)
@@ -45,10 +57,9 @@ std::optional<I> Names::look_up(const Table<I>& table, const syntax::Name& name,
   if (const auto found = table.find(name.text); found != table.end()) return found->second;
   std::vector<std::string_view> keys;
   add_keys(table, keys);
-  const std::string near = nearest(name.text, std::move(keys));
   diagnostics_.push_back({Code::kUnknownName, Severity::kError, name.span,
                           "the rules have no " + std::string(what) + " '" + name.text + "'",
-                          near.empty() ? "" : "did you mean " + near + "?"});
+                          remedy_for(name.text, std::move(keys))});
   return std::nullopt;
 }
 

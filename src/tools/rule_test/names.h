@@ -33,6 +33,10 @@ class Names {
   bool is_rule(const std::string& name) const { return rules_by_name_.contains(name); }
   bool is_component(const std::string& name) const { return components_.contains(name); }
   bool is_strategy(const std::string& name) const { return strategies_.contains(name); }
+  const std::string& label(RuleId rule) const { return rules_[rule].name; }
+  const std::string& rule_of(StrategyId strategy) const {
+    return rules_[rules_[strategy].rule].name;
+  }
   // The rule, component or strategy that `name` was probably meant to be; empty if none is near.
   std::string closest_subject(const std::string& name) const;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <unordered_set>
+#include <utility>
 
 #include "language/line_reader.h"
 #include "language/scanner.h"
@@ -54,8 +55,16 @@ class Reader {
     }
     keyword_ = head.span;
     const auto is_read = read_statement(head.text, s);
-    if (!is_read) fail_unknown_statement(read_, source_, head, all_keywords());
+    if (!is_read) unknown_statement(head, s);
     if (!is_read.value_or(false) || !read_.line_ends(s)) is_broken_ = true;
+  }
+
+  // One mistake, one message: the lines that follow belong to a test.
+  void unknown_statement(const Token& head, Scanner& s) {
+    if (fail_unknown_statement(read_, source_, head, all_keywords()) != "TEST") return;
+    const std::size_t complaints = read_.complaints();
+    test(s);
+    read_.forget_since(complaints);
   }
 
   // Empty if no statement begins with `keyword`.
@@ -82,8 +91,9 @@ class Reader {
   }
 
   bool inside_test(std::string_view what) {
-    return !suite_.tests.empty() ||
-           read_.fail(Code::kOutOfPlace, keyword_, std::string(what) + " stands outside of a test",
+    if (!suite_.tests.empty()) return true;
+    if (std::exchange(has_stray_line_, true)) return false;  // one TEST line is missing
+    return read_.fail(Code::kOutOfPlace, keyword_, std::string(what) + " stands outside of a test",
                       "begin one with TEST \"name\"");
   }
 
@@ -147,7 +157,8 @@ class Reader {
                         "keep one RUN line");
     test.length = std::min(*length, kLongestRun);
     if (*length > kLongestRun)
-      return read_.fail(Code::kPolicyRange, span, "a test runs at most 1h", "");
+      return read_.fail(Code::kPolicyRange, span, "a test runs at most 1h",
+                        "write a shorter time, at most 1h");
     return true;
   }
 
@@ -192,8 +203,9 @@ class Reader {
   std::vector<Diagnostic>& diagnostics_;
   Suite suite_;
   std::unordered_set<std::string> test_names_;
-  bool has_scenario_ = false;  // the test under way says what happens
-  bool is_broken_ = false;     // a line of the test under way; what follows from it is not reported
+  bool has_scenario_ = false;    // the test under way says what happens
+  bool has_stray_line_ = false;  // outside of a test, which was reported
+  bool is_broken_ = false;  // a line of the test under way; what follows from it is not reported
   Span keyword_;
 };
 
@@ -215,6 +227,10 @@ std::vector<Name> rule_files(const Source& source, std::vector<Diagnostic>& diag
   for (std::uint32_t line = 1; line <= source.line_count(); ++line) {
     Scanner s(source.text(), source.line(line));
     if (s.next().text != "RULES") continue;
+    if (const Token& next = s.peek(); next.is(":") || next.is("=")) {
+      read.fail_token(next, "the path of a rule file", "");
+      break;
+    }
     do {
       auto name = read.name_or_text(s, "the path of a rule file");
       if (!name) break;

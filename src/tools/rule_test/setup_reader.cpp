@@ -1,9 +1,12 @@
 #include "rule_test/setup_reader.h"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "base/invariant.h"
 #include "knowledge/component_states.h"
+#include "language/foreign_words.h"
 #include "rule_test/course_reader.h"
 
 namespace culprit::rule_test {
@@ -25,6 +28,43 @@ std::optional<Lifecycle> lifecycle_of(std::string_view word) {
     if (word == to_string(state)) return state;
   }
   return std::nullopt;
+}
+
+const std::vector<std::string_view> kIncidents = {"KILLED", "STOPPED", "HUNG", "STATE"};
+
+// The statement that other tools for tests call `upper`; empty: it is none of `known`.
+std::string statement_for(std::string_view upper, const std::vector<std::string_view>& known) {
+  constexpr auto kWords =
+      std::to_array<std::pair<std::string_view, std::string_view>>({{"ASSERT", "EXPECT"},
+                                                                    {"VERIFY", "EXPECT"},
+                                                                    {"CHECK", "EXPECT"},
+                                                                    {"SHOULD", "EXPECT"},
+                                                                    {"THEN", "EXPECT"},
+                                                                    {"WAIT", "RUN"},
+                                                                    {"TIMEOUT", "RUN"},
+                                                                    {"SLEEP", "RUN"},
+                                                                    {"DURATION", "RUN"},
+                                                                    {"LENGTH", "RUN"},
+                                                                    {"CASE", "TEST"},
+                                                                    {"SCENARIO", "TEST"},
+                                                                    {"INCLUDE", "RULES"},
+                                                                    {"NODE", "COMPONENT"},
+                                                                    {"DIAGNOSTIC", "LEVEL"},
+                                                                    {"ACTION", "GOAL"},
+                                                                    {"PARAM", "PARAMETER"},
+                                                                    {"WHEN", "AT"}});
+  for (const auto& [theirs, ours] : kWords) {
+    if (theirs == upper && std::ranges::find(known, ours) != known.end()) return std::string(ours);
+  }
+  return "";
+}
+
+// Whether a line of a rule file begins with it.
+bool is_of_rules(std::string_view upper) {
+  constexpr auto kWords = std::to_array<std::string_view>(
+      {"RULE", "POLICIES", "TRIGGER", "CONST", "DEPENDENCY", "INTERLOCK", "CYCLE", "ROBOT", "GROUP",
+       "IGNORE", "TEMPLATE", "USE"});
+  return std::ranges::find(kWords, upper) != kWords.end();
 }
 
 // The incidents of a process.
@@ -88,6 +128,7 @@ bool SetupReader::component_clause(Scanner& s, ComponentId id) {
 template <class Take>
 bool SetupReader::each_name(Scanner& s, Take take) {
   do {
+    if (s.peek().is(",")) return read_.fail_comma(s.next());
     const auto name = read_.name_or_text(s, "a name");
     if (!name || !take(*name)) return false;
   } while (!s.at_end() && !is_component_clause(s.peek().text));
@@ -119,6 +160,9 @@ bool SetupReader::publishes(ComponentId id, const Name& name) {
 }
 
 bool SetupReader::needs(ComponentId consumer, const Name& name) {
+  if (name.text.starts_with('/') && !names_.is_component(name.text))
+    return read_.fail(Code::kUnknownName, name.span, "NEEDS names components",
+                      "for a topic write SUBSCRIBES " + name.text);
   const auto producer = names_.component(name);
   if (!producer) return false;
   if (*producer == consumer)
@@ -233,7 +277,7 @@ bool SetupReader::log(Scanner& s) {
 
 bool SetupReader::at(Scanner& s) {
   const auto time = read_.duration(s, "a time");
-  if (!time) return false;
+  if (!time || !is_subject_of_at(s)) return false;
   const auto name = read_.component_reference(s);
   const auto id = name ? names_.component(*name) : std::nullopt;
   if (!id) return false;
@@ -248,24 +292,58 @@ bool SetupReader::at(Scanner& s) {
       return read_.unexpected_clause(word, {"active", "inactive", "unconfigured", "finalized"});
     incident.lifecycle = *state;
   } else {
-    return read_.unexpected_clause(what, {"KILLED", "STOPPED", "HUNG", "STATE"});
+    return read_.unexpected_clause(what, kIncidents);
   }
   scenario_->incidents.push_back(incident);
   return true;
 }
 
-void fail_unknown_statement(LineReader& read, const Source& source, const Token& head,
-                            const std::vector<std::string_view>& keywords) {
-  std::string upper(head.text);
-  std::transform(upper.begin(), upper.end(), upper.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  const bool lower_case = std::find(keywords.begin(), keywords.end(), upper) != keywords.end();
-  const std::string near = lower_case ? upper : closest(upper, keywords);
-  std::string all;
-  for (const std::string_view keyword : keywords) all += " " + std::string(keyword);
+// "AT 2s KILL camera", "AT 2s TOPIC /rgb silent": reported.
+bool SetupReader::is_subject_of_at(const Scanner& s) {
+  Scanner ahead = s.ahead();
+  const Token word = ahead.next();
+  if (word.kind != Token::Kind::kIdentifier || names_.is_component(std::string(word.text)))
+    return true;
+  const std::string upper = upper_case(word.text);
+  const auto& statements = keywords();
+  if (std::ranges::find(statements, upper) != statements.end() && upper != "COMPONENT")
+    return read_.fail(Code::kSyntax, word.span, "AT says only what happens to a component",
+                      "write the time behind the name, as in TOPIC /scan 2s: silent");
+  std::string incident = closest(upper, kIncidents);
+  if (std::ranges::find(kIncidents, upper) != kIncidents.end()) incident = upper;
+  if (incident.empty()) incident = clause_of_other_tools(upper, kIncidents);
+  const bool is_swapped = incident_of(incident).has_value();
+  if (!is_swapped) return true;
+  if (ahead.at_end())
+    return read_.fail(Code::kSyntax, word.span,
+                      "a component is missing in front of '" + std::string(word.text) + "'",
+                      "write for example AT 2s camera " + incident);
+  const syntax::Name component = ahead.next_name();
+  const Span span{word.span.begin, component.span.end};
+  const std::string meant = component.text + " " + incident;
+  return read_.fail(Code::kSyntax, span, "the component stands in front of what happens to it",
+                    "write " + meant, Edit{span, meant});
+}
+
+std::string fail_unknown_statement(LineReader& read, const Source& source, const Token& head,
+                                   const std::vector<std::string_view>& keywords) {
+  const std::string upper = upper_case(head.text);
+  const bool is_there = std::ranges::find(keywords, upper) != keywords.end();
+  std::string near = is_there ? upper : statement_for(upper, keywords);
+  std::string remedy = "did you mean " + near + "?";
+  if (near.empty() && is_of_rules(upper)) {
+    remedy = "it stands in the .rules file, which RULES names";
+  } else if (near.empty()) {
+    near = closest(upper, keywords);
+    remedy = "did you mean " + near + "?";
+  }
+  if (near.empty() && !is_of_rules(upper)) {
+    remedy = "a line begins with one of";
+    for (const std::string_view keyword : keywords) remedy += " " + std::string(keyword);
+  }
   read.fail(Code::kUnknownStatement, head.span,
-            "no statement begins with '" + std::string(source.text(head.span)) + "'",
-            near.empty() ? "a line begins with one of" + all : "did you mean " + near + "?");
+            "no statement begins with '" + std::string(source.text(head.span)) + "'", remedy);
+  return near;
 }
 
 }  // namespace culprit::rule_test

@@ -47,6 +47,7 @@ class SetupReader {
   bool course(Scanner& s, Subject subject);
 
   bool at(Scanner& s);
+  bool is_subject_of_at(const Scanner& s);
 
   const Source& source_;
   const RuleSet& rules_;
@@ -55,8 +56,9 @@ class SetupReader {
   Scenario* scenario_ = nullptr;  // of the statement that is read
 };
 
-// Reports that a line begins with `head`, which is none of `keywords`.
-void fail_unknown_statement(LineReader& read, const Source& source, const Token& head,
-                            const std::vector<std::string_view>& keywords);
+// Reports that a line begins with `head`, which is none of `keywords`. Gives the one that was meant;
+// empty: none is near.
+std::string fail_unknown_statement(LineReader& read, const Source& source, const Token& head,
+                                   const std::vector<std::string_view>& keywords);
 
 }  // namespace culprit::rule_test

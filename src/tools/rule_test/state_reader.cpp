@@ -57,7 +57,8 @@ class StateReader {
       return read_.fail(Code::kDuplicateName, keyword, "the moment of this state is set already",
                         "keep one RUN line");
     if (*moment > kLongestRun)
-      return read_.fail(Code::kPolicyRange, span, "a state runs at most 1h", "");
+      return read_.fail(Code::kPolicyRange, span, "a state runs at most 1h",
+                        "write a shorter time, at most 1h");
     state_.moment = moment;
     return true;
   }

@@ -37,6 +37,20 @@ bool add_parameter(LineReader& read, syntax::TemplateParameter parameter,
   return true;
 }
 
+// "name=camera": reported.
+bool is_named(LineReader& read, const Name& argument) {
+  const auto sign = argument.text.find('=');
+  const bool is_quoted = argument.span.end - argument.span.begin > argument.text.size();
+  if (sign == std::string::npos || is_quoted ||
+      !is_component_reference(argument.text.substr(0, sign)))
+    return false;
+  const std::string value = argument.text.substr(sign + 1);
+  return !read.fail(
+      Code::kTemplateArguments, argument.span, "arguments have no names",
+      "write only " + (value.empty() ? "the value" : value) + ", in the order of the template",
+      value.empty() ? std::nullopt : std::optional(Edit{argument.span, value}));
+}
+
 // "(a, b)": `read_one` takes one of them, and gives false if it cannot.
 template <class ReadOne>
 bool list(LineReader& read, Scanner& s, ReadOne read_one) {
@@ -78,6 +92,7 @@ std::optional<syntax::Use> read_use(LineReader& read, Scanner& s, Span line) {
   syntax::Use use{std::move(*pattern), {}, {}, {line.begin, s.taken()}};
   const bool is_good = list(read, s, [&] {
     auto argument = read.name_or_text(s, "an argument");
+    if (argument && is_named(read, *argument)) return false;
     if (argument) use.arguments.push_back(std::move(*argument));
     return argument.has_value();
   });
