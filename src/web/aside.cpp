@@ -1,7 +1,6 @@
 #include "web/aside.h"
 
 #include <csignal>
-#include <stdlib.h>
 #include <sys/wait.h>
 
 #include "base/text_file.h"
@@ -9,25 +8,13 @@
 
 namespace culprit::web {
 
-namespace fs = std::filesystem;
-
-AsideFolder::AsideFolder() {
-  std::string name = (fs::temp_directory_path() / "culprit-aside-XXXXXX").string();
-  if (mkdtemp(name.data()) != nullptr) path_ = name;
-}
-
-AsideFolder::~AsideFolder() {
-  std::error_code error;
-  if (!path_.empty()) fs::remove_all(path_, error);
-}
-
-Expected<Printed> run_aside(std::vector<std::string> arguments, const AsideFolder& folder,
+Expected<Printed> run_aside(std::vector<std::string> arguments, const TemporaryFolder& folder,
                             int most_seconds) {
   const std::string limit =
       "--cpu=" + std::to_string(most_seconds) + ":" + std::to_string(most_seconds + 1);
   std::vector<std::string> all = {"nice", "-n", "19", "prlimit", limit};
   all.insert(all.end(), arguments.begin(), arguments.end());
-  const std::string output = folder.file("printed");
+  const std::string output = folder / "printed";
   owners::Program program{std::move(all), {}, output};
   program.lifetime = owners::Lifetime::kStarter;
   const auto pid = owners::spawn(program);

@@ -16,13 +16,14 @@ constexpr int kMostSecondsOfReplay = 60;
 
 Answer look_back(const std::string& rules, std::int64_t seconds,
                  const std::filesystem::path& journal) {
-  const AsideFolder folder;
-  const std::string file = folder.file("my.rules");
+  const auto folder = TemporaryFolder::make("aside");
+  if (!folder) return refuse(503, folder.error());
+  const std::string file = *folder / "my.rules";
   if (const auto written = write_text(file, rules); !written) return refuse(503, written.error());
   const auto looked =
       run_aside({(own_folder() / "culprit").string(), "replay", journal.string(), "--rules", file,
                  "--since", std::to_string(seconds) + "s", "--json"},
-                folder, kMostSecondsOfReplay);
+                *folder, kMostSecondsOfReplay);
   if (!looked) return refuse(503, "the journal could not be replayed: " + looked.error());
   if (looked->status != 0) return refuse(422, looked->text);
   Json body = parse_json(looked->text);

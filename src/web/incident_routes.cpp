@@ -176,8 +176,9 @@ Answer page(Hub& hub, const std::filesystem::path& journal, const std::filesyste
   if (journal.empty() || text_of(query, "from") == "stream") return page_of_stream(hub, *id);
   if (!making.try_lock()) return refuse(409, "another page is being made; ask again in a moment");
   const MutexLock lock(making, std::adopt_lock);
-  const AsideFolder folder;
-  const std::string file = folder.file("incident.html");
+  const auto folder = TemporaryFolder::make("aside");
+  if (!folder) return refuse(503, folder.error());
+  const std::string file = *folder / "incident.html";
   std::vector<std::string> command = {(own_folder() / "culprit").string(),
                                       "incident",
                                       *id,
@@ -186,7 +187,7 @@ Answer page(Hub& hub, const std::filesystem::path& journal, const std::filesyste
                                       "-o",
                                       file};
   if (!recordings.empty()) command.insert(command.end(), {"--record-folder", recordings.string()});
-  const auto made = run_aside(std::move(command), folder, kMostSecondsOfPage);
+  const auto made = run_aside(std::move(command), *folder, kMostSecondsOfPage);
   if (!made) return refuse(503, "the page could not be made: " + made.error());
   if (made->status != 0) return refuse(404, made->text);
   auto html = read_text(file);

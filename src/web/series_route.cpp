@@ -97,7 +97,9 @@ Answer answer_past(const Json& body, const std::filesystem::path& journal, Mutex
                                       ago(to),
                                       "--curve"};
   command.insert(command.end(), names->begin(), names->end());
-  const auto read = run_aside(std::move(command), AsideFolder(), kMostSecondsOfCurves);
+  const auto folder = TemporaryFolder::make("aside");
+  if (!folder) return refuse(503, folder.error());
+  const auto read = run_aside(std::move(command), *folder, kMostSecondsOfCurves);
   if (!read) return refuse(503, "the journal could not be replayed: " + read.error());
   if (read->status != 0) return refuse(404, read->text);
   Json curves = parse_json(read->text);

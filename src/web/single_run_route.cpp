@@ -23,12 +23,13 @@ constexpr int kMostSecondsOfRun = 600;
 Answer play(const Json& request) {
   const auto laboratory = find_laboratory();
   if (!laboratory) return refuse(503, laboratory.error());
-  const AsideFolder folder;
-  const std::string wish = folder.file("request.json");
+  const auto folder = TemporaryFolder::make("aside");
+  if (!folder) return refuse(503, folder.error());
+  const std::string wish = *folder / "request.json";
   if (const auto written = write_text(wish, to_line(request)); !written)
     return refuse(503, written.error());
   const auto played =
-      run_aside({laboratory->string(), "play-again", wish}, folder, kMostSecondsOfRun);
+      run_aside({laboratory->string(), "play-again", wish}, *folder, kMostSecondsOfRun);
   if (!played) return refuse(503, "the run could not be played: " + played.error());
   if (played->status != 0) return refuse(422, played->text);
   Json body = parse_json(played->text);

@@ -3,8 +3,8 @@
 // An absent node has not failed. A name that was never seen may be one that no robot has, or a node that comes
 // later: triggers read it as unknown, so nothing is done about it.
 //
-//   a component  was seen once its node was in the graph
-//   a topic      once a node published it, or a message came on it
+//   a component  was seen once its node was in the graph;
+//   a topic      was seen once a node published it, or a message came on it.
 //
 // Also the messages and values that were received, for the next run (known_robot.h).
 #pragma once

@@ -1,7 +1,7 @@
 #include "laboratory/live_campaign.h"
 
 #include <csignal>
-#include <cstdlib>
+#include <filesystem>
 #include <optional>
 #include <string_view>
 #include <sys/wait.h>
@@ -87,18 +87,9 @@ std::string last_line(const std::filesystem::path& log) {
 }  // namespace
 
 Expected<LiveCampaign> LiveCampaign::open() {
-  std::string path = (std::filesystem::temp_directory_path() / "culprit-live-XXXXXX").string();
-  if (mkdtemp(path.data()) == nullptr)
-    return Error{"cannot make a folder in " + std::filesystem::temp_directory_path().string()};
-  return LiveCampaign(std::move(path));
-}
-
-LiveCampaign::LiveCampaign(LiveCampaign&& other) noexcept
-    : folder_(std::exchange(other.folder_, {})) {}
-
-LiveCampaign::~LiveCampaign() {
-  std::error_code error;
-  if (!folder_.empty()) std::filesystem::remove_all(folder_, error);
+  auto folder = TemporaryFolder::make("live");
+  if (!folder) return Error{folder.error()};
+  return LiveCampaign(std::move(*folder));
 }
 
 Expected<study::RunMetrics> LiveCampaign::play(const study::Configuration& configuration,

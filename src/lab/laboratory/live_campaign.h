@@ -7,9 +7,10 @@
 #pragma once
 
 #include <atomic>
-#include <filesystem>
+#include <utility>
 
 #include "base/expected.h"
+#include "base/temporary_folder.h"
 #include "study/campaign.h"
 #include "study/run_metrics.h"
 
@@ -21,9 +22,6 @@ class LiveCampaign {
 
   // Errors: no folder can be made for what the runs write.
   static Expected<LiveCampaign> open();
-  // Removes the folder.
-  ~LiveCampaign();
-  LiveCampaign(LiveCampaign&& other) noexcept;
 
   // From several threads. `seed` is of this run (SunsetStudy::seed_of). An error is the reason of
   // the last failure, or that `stop` was set.
@@ -31,11 +29,11 @@ class LiveCampaign {
                                    std::uint64_t seed, const std::atomic<bool>& stop) const;
 
  private:
-  explicit LiveCampaign(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  explicit LiveCampaign(TemporaryFolder folder) : folder_(std::move(folder)) {}
   Expected<study::RunMetrics> attempt(const study::Configuration& configuration, std::uint32_t run,
                                       std::uint64_t seed, const std::atomic<bool>& stop) const;
 
-  std::filesystem::path folder_;  // empty: moved from
+  TemporaryFolder folder_;
 };
 
 }  // namespace culprit::lab

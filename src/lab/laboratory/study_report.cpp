@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include "base/environment.h"
+#include "base/temporary_folder.h"
 #include "base/text_file.h"
 #include "owners/spawn.h"
 #include "study/tables/render.h"
@@ -23,24 +24,6 @@ constexpr const char* kPackages = "python3-matplotlib python3-scipy";
 fs::path script(const std::string& name) {
   return (own_folder() / "../share/culprit/studies" / name).lexically_normal();
 }
-
-// A folder that is removed with this object.
-class TemporaryFolder {
- public:
-  TemporaryFolder() : path_((fs::temp_directory_path() / "culprit-report-XXXXXX").string()) {
-    if (mkdtemp(path_.data()) == nullptr) path_.clear();
-  }
-  ~TemporaryFolder() {
-    std::error_code error;
-    if (!path_.empty()) fs::remove_all(path_, error);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-
-  fs::path operator/(const char* name) const { return fs::path(path_) / name; }
-
- private:
-  std::string path_;
-};
 
 // Runs a script to its end. Errors: it cannot be started, or it failed: then the last line that it
 // printed.
@@ -88,10 +71,11 @@ void ReportOptions::add_to(CLI::App& command) {
 }
 
 Expected<std::string> find_report_python() {
-  const TemporaryFolder folder;
+  const auto folder = TemporaryFolder::make("report");
+  if (!folder) return Error{folder.error()};
   std::string missing = std::string("python3 ") + kPackages;
   for (const char* python : kPythons) {
-    const auto checked = run({python, kNoBytecode, script("report.py")}, folder / "log");
+    const auto checked = run({python, kNoBytecode, script("report.py")}, *folder / "log");
     if (checked) return std::string(python);
     if (checked.error().starts_with("python3-")) missing = checked.error();
   }
@@ -106,30 +90,32 @@ void warn_of_missing_python(const ReportOptions& options) {
 
 Expected<void> make_report(const std::string& study, const std::vector<ReportFile>& files,
                            const ReportOptions& options) {
-  const TemporaryFolder temporary;
-  const fs::path data = options.folder.empty() ? temporary / "data" : fs::path(options.folder);
+  const auto temporary = TemporaryFolder::make("report");
+  if (!temporary) return Error{temporary.error()};
+  const fs::path data = options.folder.empty() ? *temporary / "data" : fs::path(options.folder);
   if (auto written = write_files(files, data); !written) return written;
   const auto python = find_report_python();
   if (!python) return Error{"no report is written: " + python.error()};
   const std::vector<std::string> command = {*python, kNoBytecode, script(study + ".py"), data};
   if (!options.folder.empty()) {
-    if (auto made = run(command, temporary / "log"); !made) return made;
+    if (auto made = run(command, *temporary / "log"); !made) return made;
   }
   if (options.html.empty() && options.plot_folder.empty()) return {};
   std::vector<std::string> parts = command;
   if (!options.html.empty()) parts.insert(parts.end(), {"--html", options.html});
   if (!options.plot_folder.empty()) parts.insert(parts.end(), {"--svg", options.plot_folder});
-  return run(parts, temporary / "log");
+  return run(parts, *temporary / "log");
 }
 
 Expected<std::string> latex(const std::vector<study::Table>& tables) {
-  const TemporaryFolder folder;
-  const fs::path input = folder / "tables.json";
-  const fs::path output = folder / "tables.tex";
+  const auto folder = TemporaryFolder::make("report");
+  if (!folder) return Error{folder.error()};
+  const fs::path input = *folder / "tables.json";
+  const fs::path output = *folder / "tables.tex";
   if (auto written = write_text(input.string(), study::tables_json(tables)); !written)
     return Error{written.error()};
   const auto made =
-      run({"python3", kNoBytecode, script("latex.py"), input, output}, folder / "log");
+      run({"python3", kNoBytecode, script("latex.py"), input, output}, *folder / "log");
   if (!made) return Error{"LaTeX needs Python (sudo apt install python3): " + made.error()};
   return read_text(output.string());
 }

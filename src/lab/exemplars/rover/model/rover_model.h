@@ -3,7 +3,7 @@
 // It models what a manager observes and commands, not pixels and paths:
 // - processes that take time to start, exit, are stopped, and hang; their lifecycles, parameters and topics
 // - Nav2's lifecycle managers (bond_manager.h) and the navigation with its mission (trip.h)
-// - where the rover believes to be: amcl is lost after a kidnapping, by a base that counts anew, and by scans that do not fit
+// - where the rover believes to be: amcl is lost after a kidnapping, by a base that counts anew, and by scans that do not fit.
 //
 // Physics and topics advance in ticks of 50 ms, as the fastest devices send; processes and requests have exact times. The same
 // seed gives the same run.
