@@ -106,23 +106,20 @@ struct Finding {
 };
 
 // "Active" for "active", 20 for a share of 20 percent; empty: neither.
-std::string meant_value(const Typed& comparison, const Input& input) {
-  if (comparison.op == Op::kNot) return meant_value(comparison.children[0], input);
+std::string meant_value(const Typed& comparison, const Input& input, const RuleSet& rules) {
+  if (comparison.op == Op::kNot) return meant_value(comparison.children[0], input, rules);
   if (input.kind == Input::Kind::kLoss) {
     for (const double percent : thresholds_of(comparison)) {
       if (percent > 1 && percent <= 100) return "write " + plain_number(percent / 100);
     }
   }
-  if (input.kind != Input::Kind::kLifecycle) return "";
+  const auto states = states_of(input, rules);
   for (const Typed& side : comparison.children) {
-    if (side.op != Op::kConstant) continue;
+    if (side.op != Op::kConstant || states.empty()) continue;
     std::string lower = side.constant->text;
-    std::transform(lower.begin(), lower.end(), lower.begin(),
-                   [](unsigned char c) { return std::tolower(c); });
-    const std::vector<std::string_view> states = {"unconfigured", "inactive", "active",
-                                                  "finalized"};
+    std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
     const bool is_case_only = std::ranges::find(states, lower) != states.end();
-    const std::string near = is_case_only ? lower : closest(lower, states);
+    const std::string near = is_case_only ? lower : closest(lower, {states.begin(), states.end()});
     if (!near.empty()) return "did you mean \"" + near + "\"?";
   }
   return "";
@@ -156,7 +153,7 @@ void find_constant_parts(const Typed& condition, const RuleSet& rules,
   } else if (const Typed* input = compared_input(condition)) {
     reason = known_of(input->input, rules);
     is_by_range = has_declared_range(input->input, rules);
-    if (never) remedy = meant_value(condition, rules[input->input]);
+    remedy = meant_value(condition, rules[input->input], rules);
   }
   if (remedy.empty())
     remedy = is_by_range ? "correct the condition, or the RANGE if the value can be another"

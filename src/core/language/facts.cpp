@@ -71,18 +71,13 @@ Interval first_interval(const Input& input, const RuleSet& rules) {
 
 bool is_number(Type type) { return type != Type::kBool && type != Type::kString; }
 
-bool is_group(const Input& input, const RuleSet& rules) {
-  return input.kind == Input::Kind::kSignal &&
-         std::holds_alternative<GroupId>(rules[input.signal].source);
-}
-
 ValueSet first_values(const Input& input, const RuleSet& rules) {
   if (is_number(input.type)) return first_interval(input, rules);
-  if (is_group(input, rules))
-    return TextSet{{"active", "half_up", "inactive", "down", "changing"}, false};
-  if (input.kind != Input::Kind::kLifecycle) return all_values(input.type);
-  return TextSet{{"unconfigured", "inactive", "active", "finalized", "unknown", "in transition"},
-                 false};
+  const auto states = states_of(input, rules);
+  if (states.empty()) return all_values(input.type);
+  TextSet set{{states.begin(), states.end()}, false};
+  if (input.kind == Input::Kind::kLifecycle) set.texts.insert({"unknown", "in transition"});
+  return set;
 }
 
 bool is_single(const Interval& i) { return i.low == i.high; }
@@ -127,6 +122,16 @@ Interval all_but(const Interval& single, const Interval& of) {
 }
 
 }  // namespace
+
+std::span<const std::string_view> states_of(const Input& input, const RuleSet& rules) {
+  static constexpr std::array<std::string_view, 5> kOfGroup = {"active", "half_up", "inactive",
+                                                               "down", "changing"};
+  const bool is_group = input.kind == Input::Kind::kSignal &&
+                        std::holds_alternative<GroupId>(rules[input.signal].source);
+  if (is_group) return kOfGroup;
+  if (input.kind == Input::Kind::kLifecycle) return kLifecycleStates;
+  return {};
+}
 
 ValueSet Facts::values_of(InputId input) const {
   if (is_number((*rules_)[input].type)) return interval_of(input);

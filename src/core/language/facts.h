@@ -10,6 +10,9 @@
 // for which an expression is known to be true or false.
 #pragma once
 
+#include <array>
+#include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -18,6 +21,12 @@
 #include "language/value_set.h"
 
 namespace culprit {
+
+// The states of a managed node in which it stays.
+inline constexpr std::array<std::string_view, 4> kLifecycleStates = {"unconfigured", "inactive",
+                                                                     "active", "finalized"};
+// The states that a lifecycle() or a group can be in; empty: `input` is none of these.
+std::span<const std::string_view> states_of(const Input& input, const RuleSet& rules);
 
 class Facts {
  public:

@@ -15,6 +15,8 @@ namespace {
 constexpr std::string_view kDraft =
     "a rule file is plain text; culprit init -o my.rules drafts one from the robot";
 
+constexpr std::string_view kTest = "a test of rules";
+
 // The lines that have something else than a comment.
 std::vector<std::string_view> statement_lines(const Source& source) {
   constexpr std::size_t kEnough = 100;
@@ -53,7 +55,9 @@ bool is_of_python(std::string_view line) {
 std::string_view language_of(const Source& source) {
   if (source.text().find('\0') != std::string_view::npos) return "binary";
   const auto lines = statement_lines(source);
-  if (lines.empty() || std::any_of(lines.begin(), lines.end(), is_of_rules)) return "";
+  if (lines.empty()) return "";
+  if (lines.front().starts_with("RULES ")) return kTest;
+  if (std::any_of(lines.begin(), lines.end(), is_of_rules)) return "";
   if (source.text().starts_with("#!")) return "a script";
   const std::string_view first = lines.front();
   const bool is_word_in_brackets = first.size() > 1 && first[0] == '[' &&
@@ -75,9 +79,10 @@ std::optional<Diagnostic> foreign_language(const Source& source) {
   if (language.empty()) return std::nullopt;
   const auto begin = static_cast<std::uint32_t>(
       language == "binary" ? 0 : statement_lines(source).front().data() - source.text().data());
-  const std::string remedy = language == "JSON"
-                                 ? "culprit import reads the JSON that culprit export --json wrote"
-                                 : std::string(kDraft);
+  const std::string remedy(language == "JSON"
+                               ? "culprit import reads the JSON that culprit export --json wrote"
+                           : language == kTest ? "culprit test runs it"
+                                               : kDraft);
   return Diagnostic{Code::kBadToken,
                     Severity::kError,
                     {begin, begin + 1},

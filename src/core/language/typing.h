@@ -40,6 +40,8 @@ std::optional<Typed> type_expression(const syntax::Expression& expression, Symbo
 // `typed` as a `wanted`: itself, or a whole number as a number. Empty if that cannot be.
 std::optional<Typed> converted(Typed typed, Type wanted);
 
+bool is_numeric(Type type);  // a whole number or a number
+
 // For messages: "a number", "true or false".
 const char* describe(Type type);
 
