@@ -217,6 +217,7 @@ void Analyzer::detect(RuleId id, Time now) {
   // It is due anew, also if the failure is the same one.
   state.search.is_at_last_resort = false;
   state.search.last_resort_at = kLongAgo;
+  state.search.refused.clear();
   if (is_same) {
     write_.states.go_on_searching(id, now);
   } else {

@@ -13,25 +13,54 @@ bool is_kept_in_process(const Adaptation& adaptation) {
   return syntax::names_parameter(adaptation.type) || adaptation.type == AdaptationType::kChangeMode;
 }
 
+// How often it could not be carried out.
+int refuse(Search& search, StrategyId strategy, Time now) {
+  auto refused = std::ranges::find(search.refused, strategy, &Search::Refused::strategy);
+  if (refused == search.refused.end()) refused = search.refused.insert(refused, {strategy, 0, {}});
+  refused->again = later(now, pause_after(++refused->times));
+  return refused->times;
+}
+
 }  // namespace
 
 std::optional<StrategyId> LastResorts::next(RuleId id) const {
   std::optional<StrategyId> next;
   for (const StrategyId strategy : knowledge_.rules[id].strategies) {
-    const Strategy& last = knowledge_.rules[strategy];
-    if (!last.is_last_resort || knowledge_.states.is_tried(strategy)) continue;
-    if (!next || last.within < knowledge_.rules[*next].within) next = strategy;
+    const bool is_sooner =
+        !next || knowledge_.rules[strategy].within < knowledge_.rules[*next].within;
+    if (is_left(strategy) && is_sooner) next = strategy;
   }
   return next;
 }
 
-std::optional<StrategyId> LastResorts::due(RuleId id, Time now) const {
+Time LastResorts::begins(RuleId id, StrategyId strategy) const {
   const RuleState& state = knowledge_.states[id];
+  const Search& search = state.search;
+  const auto refused = std::ranges::find(search.refused, strategy, &Search::Refused::strategy);
+  if (refused != search.refused.end()) return refused->again;
+  const Time within = later(state.failing_since, knowledge_.rules[strategy].within);
+  if (!search.is_at_last_resort) return within;
+  return strategy == next(id) ? search.last_resort_at : std::max(search.last_resort_at, within);
+}
+
+std::vector<StrategyId> LastResorts::due(RuleId id, Time now) const {
+  const RuleState& state = knowledge_.states[id];
+  std::vector<StrategyId> all;
   const bool is_there = state.phase != RulePhase::kQuiet && !is_false(state.detection.trigger);
-  if (!is_there || !state.search.is_at_last_resort || state.last_resort ||
-      state.search.last_resort_at > now)
-    return std::nullopt;
-  return next(id);
+  if (!is_there || !state.search.is_at_last_resort || state.last_resort) return all;
+  std::ranges::copy_if(
+      knowledge_.rules[id].strategies, std::back_inserter(all),
+      [&](StrategyId strategy) { return is_left(strategy) && begins(id, strategy) <= now; });
+  std::ranges::sort(all, {}, [&](StrategyId strategy) {
+    const auto refused =
+        std::ranges::find(state.search.refused, strategy, &Search::Refused::strategy);
+    return std::pair(refused != state.search.refused.end(), knowledge_.rules[strategy].within);
+  });
+  return all;
+}
+
+bool LastResorts::is_left(StrategyId strategy) const {
+  return knowledge_.rules[strategy].is_last_resort && !knowledge_.states.is_tried(strategy);
 }
 
 void LastResorts::turn_to(RuleId id, Time now) {
@@ -57,8 +86,7 @@ void LastResorts::judge(RuleId id, Time now) {
   if (!has_effect) {
     write_.events.tell(now, StrategyFailed{attempt.strategy, attempt.obstacle});
     if (attempt.has_no_failure) return;
-    search.last_resort_at = later(now, pause_after(++search.last_resort_obstacles));
-    if (search.last_resort_obstacles < knowledge_.rules[id].policies.attempts) return;
+    if (refuse(search, attempt.strategy, now) < knowledge_.rules[id].policies.attempts) return;
   } else if (attempt.has_no_failure) {
     return write_.events.tell(now, OrderCarriedOut{attempt.strategy});
   } else {
@@ -70,7 +98,8 @@ void LastResorts::judge(RuleId id, Time now) {
         duration_of(knowledge_.rules[attempt.strategy].impact, knowledge_.rules);
     search.last_resort_at = later(attempt.effective, impact + knowledge_.signals.latency(id));
   }
-  search.last_resort_obstacles = 0;
+  std::erase_if(search.refused,
+                [&](const auto& each) { return each.strategy == attempt.strategy; });
   write_.states.set_tried(attempt.strategy, true);
   if (const auto following = next(id))
     search.last_resort_at = std::max(
@@ -106,12 +135,12 @@ std::optional<StrategyId> LastResorts::that_helped(RuleId id) const {
 }
 
 Time LastResorts::next_time(RuleId id) const {
-  const RuleState& state = knowledge_.states[id];
-  const auto following = next(id);
-  if (!following || state.phase == RulePhase::kQuiet) return kNever;
-  return state.search.is_at_last_resort
-             ? state.search.last_resort_at
-             : later(state.failing_since, knowledge_.rules[*following].within);
+  Time earliest = kNever;
+  if (knowledge_.states[id].phase == RulePhase::kQuiet) return earliest;
+  for (const StrategyId strategy : knowledge_.rules[id].strategies) {
+    if (is_left(strategy)) earliest = std::min(earliest, begins(id, strategy));
+  }
+  return earliest;
 }
 
 }  // namespace culprit

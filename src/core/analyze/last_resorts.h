@@ -3,11 +3,12 @@
 // They are due WITHIN their time of the detection, or earlier if no other strategy can begin or help
 // by then, and go beside whatever is under way. They have no verdict: their changes stay while the
 // failure is there, and the other strategies go on. One that could not be carried out is tried again
-// with back-off, up to ATTEMPTS times. Several follow each other by WITHIN, each after the impact of
-// the one before.
+// with back-off, up to ATTEMPTS times, and meanwhile the next one begins in its time. Several follow
+// each other by WITHIN, each after the impact of the one before.
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "analyze/coupling_watch.h"
 #include "analyze/parameter_fights.h"
@@ -30,8 +31,8 @@ class LastResorts {
 
   // The one that comes next, due or not; empty: each took effect, or there is none.
   std::optional<StrategyId> next(RuleId id) const;
-  // The one that has to be begun now.
-  std::optional<StrategyId> due(RuleId id, Time now) const;
+  // Those that have to be begun now, one at a time: the first of these that can be.
+  std::vector<StrategyId> due(RuleId id, Time now) const;
   // No other strategy of the rule can begin or help in time: they are due, if there are any.
   void turn_to(RuleId id, Time now);
   // The one under way is abandoned. @pre there is one
@@ -48,6 +49,10 @@ class LastResorts {
   Time next_time(RuleId id) const;
 
  private:
+  bool is_left(StrategyId strategy) const;
+  // When it is due.
+  Time begins(RuleId id, StrategyId strategy) const;
+
   const Knowledge& knowledge_;
   Writes write_;
 };

@@ -48,7 +48,13 @@ struct Search {
   // effect, or could not be carried out ATTEMPTS times.
   bool is_at_last_resort = false;  // the first of them is due, since nothing else helps in time
   Time last_resort_at = kLongAgo;  // the next of them is not begun before
-  int last_resort_obstacles = 0;   // how often in a row it could not be carried out
+  // Those that could not be carried out, so often in a row; tried again at `again`.
+  struct Refused {
+    StrategyId strategy;
+    int times = 0;
+    Time again{};
+  };
+  std::vector<Refused> refused;
 };
 
 // The progress that an earlier process of culprit left.

@@ -333,6 +333,46 @@ TEST_P(LastResort, SeveralFollowEachOther) {
   EXPECT_EQ(robot["base"].parameters["brake"], Value(true)) << transcript(robot);
 }
 
+// The base cannot slow down: power is cut in the time of that one.
+class LastResortsOfTwo : public LastResort {
+ protected:
+  TestRobot driving() const {
+    TestRobot robot = LastResort::driving(
+        "COMPONENT motor NODE /motor LAUNCH \"motor\"\n" + loc_lost() +
+        "STRATEGY cut 100 10 LASTRESORT WITHIN 3s\nADAPTATION motor set_parameter cut true 1\n");
+    robot.add("motor").parameters["cut"] = Value(false);
+    robot.discover();
+    robot.run_for(4s);
+    return robot;
+  }
+  static void expect_cut_in_time(TestRobot& robot) {
+    robot["loc"].fault = "a person";
+    robot.run_for(4s);
+    EXPECT_EQ(robot["motor"].parameters["cut"], Value(true)) << transcript(robot);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(EachPlanner, LastResortsOfTwo, testing::Values(resort_paper, resort_bayes),
+                         [](const auto& test) { return test.index == 0 ? "paper" : "bayes"; });
+
+TEST_P(LastResortsOfTwo, TheSecondDoesNotWaitForOneThatIsRefused) {
+  TestRobot robot = driving();
+  robot["base"].refuses = true;
+  expect_cut_in_time(robot);
+  robot["base"].refuses = false;
+  robot.run_for(10s);
+  EXPECT_TRUE(stands_still(robot)) << "it is tried again" << transcript(robot);
+}
+
+TEST_P(LastResortsOfTwo, TheSecondDoesNotWaitForOneWhoseComponentIsDown) {
+  TestRobot robot = driving();
+  robot.kill("base");
+  robot.run_for(3s);
+  expect_cut_in_time(robot);
+  robot.start_by_hand("base");
+  robot.run_for(3s);
+  EXPECT_TRUE(stands_still(robot)) << transcript(robot);
+}
+
 TEST_P(LastResort, ComesAgainWithTheFailure) {
   TestRobot robot = driving(loc_lost());
   for (int time = 0; time < 2; ++time) {

@@ -8,7 +8,7 @@
 #include "knowledge/undoes.h"
 #include "plan/allowed.h"
 #include "plan/also_ended.h"
-#include "plan/awaits_repair.h"
+#include "plan/awaits_valid_strategy.h"
 #include "plan/beside_exhausted.h"
 #include "plan/explained_by.h"
 #include "plan/validity.h"
@@ -346,7 +346,7 @@ void Manager::plan(Time now, std::vector<Command>& commands) {
                                governor_.withholds(*decision.chosen, now) ||
                                is_beside_last_resort(*decision.chosen);
       if (!has_to_wait) carry_out(decision, now);
-    } else if (decision.is_spent && !plan::awaits_repair(decision, knowledge_)) {
+    } else if (decision.is_spent && !plan::awaits_valid_strategy(decision, knowledge_)) {
       hold_back(decision, now);
       // While an unreachable computer explains the failure, attempts in vain are repeated once it is
       // reachable again.
@@ -404,22 +404,24 @@ void Manager::begin_last_resorts(Time now) {
     const bool goes_away = state.detection.trigger.known && !state.detection.trigger.b;
     if (!goes_away && (now >= limit || !is_help_possible(id, limit, now)))
       analyzer_.last_resorts().turn_to(id, now);
-    if (const auto due = analyzer_.last_resorts().due(id, now)) begin_last_resort(*due, now);
+    for (const StrategyId due : analyzer_.last_resorts().due(id, now)) {
+      if (begin_last_resort(due, now)) break;
+    }
   }
 }
 
 // A person's pause holds it, and a robot that cannot do it: then it is tried again in each cycle.
-void Manager::begin_last_resort(StrategyId strategy, Time now) {
+bool Manager::begin_last_resort(StrategyId strategy, Time now) {
   const RuleId rule = knowledge_.rules[strategy].rule;
   const bool is_dry = autonomy_ == Autonomy::kAdvise;
-  if (is_dry && knowledge_.states[rule].is_last_resort_advised) return;
+  if (is_dry && knowledge_.states[rule].is_last_resort_advised) return true;
   refresh_conditions(strategy, now);
   std::optional<std::string> obstacle;
   if (auto invalid = plan::impossibility(knowledge_.rules[strategy], knowledge_))
     obstacle = std::move(invalid->reason);
   if (governor_.holds_last_resort_back(strategy, std::move(obstacle), now)) {
     next_plan_ = std::min(next_plan_, later(now, knowledge_.rules.cycle));
-    return;
+    return false;
   }
   if (!is_dry) go_before_others(strategy, now);
   Candidate itself;
@@ -436,6 +438,7 @@ void Manager::begin_last_resort(StrategyId strategy, Time now) {
   } else {
     begin(strategy, now);
   }
+  return true;
 }
 
 // Abandons the strategies that would change the same thing; all others go on beside it.

@@ -111,7 +111,7 @@ class Manager : public ManagingSystem {
   void plan(Time now, std::vector<Command>& commands);
   void ask(const Decision& decision, Time now, std::vector<Command>& commands);
   void begin_last_resorts(Time now);
-  void begin_last_resort(StrategyId strategy, Time now);
+  bool begin_last_resort(StrategyId strategy, Time now);  // false: it is held back
   void go_before_others(StrategyId last_resort, Time now);
   bool is_beside_last_resort(StrategyId strategy) const;
   bool is_help_possible(RuleId rule, Time limit, Time now) const;

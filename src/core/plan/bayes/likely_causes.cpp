@@ -98,13 +98,23 @@ bool LikelyCauses::is_left_to_person(std::size_t node) const {
 }
 
 std::optional<std::size_t> LikelyCauses::of(std::size_t failure) const {
-  if (diagnosis_.against_others(failure) >= 0.5) return diagnosis_.dead_in_loop(failure);
+  const double own = diagnosis_.against_others(failure);
+  if (own >= 0.5) return diagnosis_.dead_in_loop(failure);
   std::int64_t most = 0;
   std::size_t cause = failure;
   diagnosis_.for_each_share(failure, [&](std::size_t j, double share) {
     if (parts(share) > most) std::tie(most, cause) = std::pair(parts(share), j);
   });
-  return most > 0 ? std::optional(cause) : std::nullopt;
+  if (most == 0) return std::nullopt;
+  // To wait for a person in vain is worse than a strategy in vain.
+  constexpr double kWorthATry = 1.0 / 3;
+  if (own >= kWorthATry && is_exhausted(cause)) return diagnosis_.dead_in_loop(failure);
+  return cause;
+}
+
+bool LikelyCauses::is_exhausted(std::size_t node) const {
+  return causes_[node].kind == CauseNode::Kind::kFailure &&
+         knowledge_.states.awaits_person(causes_[node].rule);
 }
 
 std::optional<ComponentId> LikelyCauses::missing_member(RuleId rule) const {

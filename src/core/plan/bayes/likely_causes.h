@@ -21,8 +21,8 @@ class LikelyCauses {
   LikelyCauses(const Knowledge& knowledge, const diagnose::Examination& found,
                std::span<const RuleId> failures);
 
-  // The likeliest cause outside its loop, if the failure more likely has one than not; or else the
-  // member of its loop that is known to be dead.
+  // The likeliest cause outside its loop, if the failure more likely has one than not (an exhausted
+  // cause: twice as likely); or else the member of its loop that is known to be dead.
   std::optional<std::size_t> of(std::size_t failure) const;
   // The component on an unreachable computer that the failure is about, or can have spread from. It
   // explains the failure for sure; a learned coupling does not.
@@ -45,6 +45,7 @@ class LikelyCauses {
   ComponentId component_of(std::size_t node) const;
 
  private:
+  bool is_exhausted(std::size_t node) const;
   std::vector<std::optional<ComponentId>> all_unheard() const;
   std::optional<ComponentId> unheard_behind(std::size_t failure) const;
   // The first member that is not up, of a group that a strategy of the rule brings up; its manager

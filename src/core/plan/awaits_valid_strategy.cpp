@@ -1,7 +1,8 @@
-#include "plan/awaits_repair.h"
+#include "plan/awaits_valid_strategy.h"
 
 #include <algorithm>
 
+#include "language/evaluate.h"
 #include "plan/validity.h"
 
 namespace culprit::plan {
@@ -35,16 +36,23 @@ bool is_under_repair(ComponentId component, const Knowledge& knowledge) {
   return false;
 }
 
+bool awaits_when(const Strategy& strategy, const Knowledge& knowledge) {
+  if (strategy.when.empty()) return false;
+  const Slot when = evaluate(strategy.when, knowledge.signals.slots());
+  return !when.known || !when.b;
+}
+
 }  // namespace
 
-bool awaits_repair(const Decision& decision, const Knowledge& knowledge) {
-  if (decision.candidates.empty()) return false;
-  // Tried strategies, and strategies that are invalid for another reason, count as in any other
-  // round.
-  return std::all_of(decision.candidates.begin(), decision.candidates.end(),
-                     [](const Candidate& c) { return c.excluded == Condition::kInvalid; }) &&
-         std::any_of(decision.candidates.begin(), decision.candidates.end(),
-                     [&](const Candidate& c) { return is_under_repair(c.component, knowledge); });
+bool awaits_valid_strategy(const Decision& decision, const Knowledge& knowledge) {
+  // Rounds in which a strategy was tried count.
+  const auto& all = decision.candidates;
+  return std::ranges::all_of(
+             all, [](const Candidate& c) { return c.excluded == Condition::kInvalid; }) &&
+         std::ranges::any_of(all, [&](const Candidate& c) {
+           return is_under_repair(c.component, knowledge) ||
+                  awaits_when(knowledge.rules[c.strategy], knowledge);
+         });
 }
 
 }  // namespace culprit::plan

@@ -1,4 +1,4 @@
-#include "plan/awaits_repair.h"
+#include "plan/awaits_valid_strategy.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@ namespace culprit::plan {
 namespace {
 
 // b has exited. The strategy that starts it again sets a parameter of a, too.
-TEST(AwaitsRepair, AlsoOfAStrategyThatDoesMoreThanToStartIt) {
+TEST(AwaitsValidStrategy, AlsoOfAStrategyThatDoesMoreThanToStartIt) {
   Scene scene(
       "COMPONENT a NODE /a\nCOMPONENT b NODE /b LAUNCH \"b\"\n"
       "RULE B\nPOLICIES ERROR\nTRIGGER x > 1\nSTRATEGY anew 50 10\nADAPTATION b redeploy 2\n"
@@ -22,9 +22,9 @@ TEST(AwaitsRepair, AlsoOfAStrategyThatDoesMoreThanToStartIt) {
   tune.component = scene.component("b");
   tune.excluded = Condition::kInvalid;
   const Decision decision{scene.rule("Blurred"), {}, true, {tune}, {}};
-  EXPECT_FALSE(awaits_repair(decision, *scene)) << "nothing repairs b";
+  EXPECT_FALSE(awaits_valid_strategy(decision, *scene)) << "nothing repairs b";
   scene.fail("B");
-  EXPECT_TRUE(awaits_repair(decision, *scene));
+  EXPECT_TRUE(awaits_valid_strategy(decision, *scene));
 }
 
 }  // namespace
