@@ -13,6 +13,7 @@
 #include "incident_reports/incident_words.h"
 #include "incident_reports/regression.h"
 #include "terminal/console.h"
+#include "terminal/seconds_option.h"
 
 namespace culprit::cli {
 namespace {
@@ -51,8 +52,8 @@ void print_incident(const Incident& incident,
 int list_incidents(const IncidentOptions& options) {
   double since = 0;
   if (!options.since.empty()) {
-    const auto age = parse_duration(options.since);
-    if (!age) return fail("--since: " + age.error(), kUsage);
+    const auto age = duration_of_option("--since", options.since);
+    if (!age) return fail(age.error(), kUsage);
     since = kNanosecondInSeconds *
             static_cast<double>(std::max<std::int64_t>(0, wall_now() - age->count()));
   }

@@ -10,6 +10,7 @@
 #include "cli/commands.h"
 #include "cli/journal_file.h"
 #include "json/json.h"
+#include "terminal/seconds_option.h"
 
 namespace culprit::cli {
 namespace {
@@ -57,8 +58,8 @@ Expected<std::int64_t> print_rows(const journal::Reader& journal, std::int64_t f
 int show(const LogOptions& options) {
   std::int64_t earliest = INT64_MIN;
   if (!options.since.empty()) {
-    const auto age = parse_duration(options.since);
-    if (!age) return fail("--since: " + age.error()), kUsage;
+    const auto age = duration_of_option("--since", options.since);
+    if (!age) return fail(age.error(), kUsage);
     earliest = wall_now() - age->count();
   }
   const auto journal = options.journal.open();

@@ -21,6 +21,7 @@
 #include "knowledge/describe.h"
 #include "replay/bag_replay.h"
 #include "terminal/console.h"
+#include "terminal/seconds_option.h"
 
 namespace culprit::cli {
 namespace {
@@ -219,8 +220,8 @@ int replay_bag(const BagReplayOptions& options) {
   if (rules == nullptr) return kFailed;
   std::optional<Duration> since;
   if (!options.since.empty()) {
-    const auto parsed = parse_duration(options.since);
-    if (!parsed) return fail("--since: " + parsed.error(), kUsage);
+    const auto parsed = duration_of_option("--since", options.since);
+    if (!parsed) return fail(parsed.error(), kUsage);
     since = *parsed;
   }
   auto bag = bag::BagFile::open(std::filesystem::path(options.bag));

@@ -19,6 +19,7 @@
 #include "replay/replay.h"
 #include "terminal/console.h"
 #include "terminal/planner_options.h"
+#include "terminal/seconds_option.h"
 
 namespace culprit::cli {
 namespace {
@@ -226,9 +227,9 @@ std::vector<Advice> advice(const replay::Hindsight& hindsight) {
 
 // Compares these rules with those that ran, over the last while.
 int look_back(const ReplayOptions& options, const journal::Reader& journal, bool other_planner) {
-  const auto age = parse_duration(options.since);
-  if (!age) return fail("--since: " + age.error()), kUsage;
-  if (options.rules.empty()) return fail("--since is about other rules: add --rules"), kUsage;
+  const auto age = duration_of_option("--since", options.since);
+  if (!age) return fail(age.error(), kUsage);
+  if (options.rules.empty()) return fail("--since is about other rules: add --rules", kUsage);
   const std::unique_ptr<const RuleSet> rules = load_rules(options.rules);
   if (rules == nullptr) return kFailed;
   const std::int64_t since = wall_now() - age->count();
@@ -282,6 +283,10 @@ int replay_any(const ReplayOptions& options, bool other_planner) {
     return fail("--html is for a bag; culprit incident ID -o FILE writes one of a journal", kUsage);
   if (!options.mcap.empty()) return fail("--mcap is for a bag", kUsage);
   if (!options.fail_on.empty()) return fail("--fail-on is for a bag", kUsage);
+  if (options.journal.ends_with(".rules"))
+    return fail("'" + options.journal +
+                    "' is no recording: write culprit replay RECORDING --rules " + options.journal,
+                kUsage);
   const auto journal = journal::Reader::open(options.journal);
   if (!journal) return fail(journal.error());
   if (!options.curves.empty()) {

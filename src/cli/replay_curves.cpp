@@ -5,13 +5,13 @@
 #include <fmt/core.h>
 
 #include "base/live_clock.h"
-#include "base/units.h"
 #include "incident_reports/incident_json.h"
 #include "incident_reports/journal_incidents.h"
 #include "json/json.h"
 #include "replay/curves.h"
 #include "terminal/command.h"
 #include "terminal/console.h"
+#include "terminal/seconds_option.h"
 
 namespace culprit::cli {
 namespace {
@@ -67,12 +67,12 @@ void print_curves_document(const CurveOptions& options, const replay::Curves& cu
 }  // namespace
 
 int replay_curves(const CurveOptions& options, const journal::Reader& journal) {
-  const auto since = parse_duration(options.since);
   if (options.since.empty()) return fail("--curve needs --since, such as 2h", kUsage);
-  if (!since) return fail("--since: " + since.error(), kUsage);
-  const auto until =
-      options.until.empty() ? Expected<Duration>(Duration::zero()) : parse_duration(options.until);
-  if (!until) return fail("--until: " + until.error(), kUsage);
+  const auto since = duration_of_option("--since", options.since);
+  if (!since) return fail(since.error(), kUsage);
+  const auto until = options.until.empty() ? Expected<Duration>(Duration::zero())
+                                           : duration_of_option("--until", options.until);
+  if (!until) return fail(until.error(), kUsage);
   const std::int64_t now = wall_now();
   const replay::CurveWish wish{options.names, now - since->count(), now - until->count()};
   const auto curves = replay::curves_of(journal, wish);

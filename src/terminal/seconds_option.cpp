@@ -7,9 +7,13 @@
 namespace culprit {
 namespace {
 
+bool is_number(const std::string& text) {
+  return text.find_first_not_of("+-.0123456789eE") == std::string::npos;
+}
+
 // A number of seconds stays unchanged, and so does invalid text: CLI11 reports its error then.
 std::string in_seconds(std::string& text) {
-  if (text.find_first_not_of("+-.0123456789eE") == std::string::npos) return "";
+  if (is_number(text)) return "";
   const auto time = parse_duration(text);
   if (!time) return time.error();
   text = fmt::format("{}", seconds(*time));
@@ -17,6 +21,12 @@ std::string in_seconds(std::string& text) {
 }
 
 }  // namespace
+
+Expected<Duration> duration_of_option(const std::string& name, const std::string& text) {
+  auto duration = parse_duration(is_number(text) ? text + "s" : text);
+  if (!duration) return Error{name + ": " + duration.error()};
+  return duration;
+}
 
 CLI::Option* add_seconds(CLI::App& command, const std::string& name, double& value,
                          const std::string& what, double least, double most) {
