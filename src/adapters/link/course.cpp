@@ -18,6 +18,7 @@ void ValueCourse::note(const Value& value) {
   const double number = number_in(value);
   if (!std::isfinite(number)) {
     ++others;
+    note_text(value);
     return;
   }
   if (numbers++ == 0) least = most = last = number;
@@ -34,6 +35,13 @@ void ValueCourse::note(const Value& value) {
   least = std::min(least, number);
   most = std::max(most, number);
   last = number;
+}
+
+void ValueCourse::note_text(const Value& value) {
+  const auto* now = std::get_if<std::string>(&value);
+  if (now == nullptr) return;
+  if (texts++ > 0 && *now != text) texts_differ = true;
+  text = *now;
 }
 
 }  // namespace culprit::ros2

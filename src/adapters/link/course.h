@@ -24,9 +24,15 @@ struct ValueCourse {
   std::size_t row = 0;      // of equal numbers, now
   std::size_t longest_row = 0;
   bool is_rising = false;  // at the last change
+  std::string text{};      // the last one
+  std::size_t texts = 0;
+  bool texts_differ = false;  // ever, from one to the next
   bool operator==(const ValueCourse&) const = default;
 
   void note(const Value& value);
+
+ private:
+  void note_text(const Value& value);
 };
 
 // The course of a diagnostic status.

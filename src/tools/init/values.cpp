@@ -1,6 +1,7 @@
 #include "init/values.h"
 
 #include <algorithm>
+#include <cctype>
 #include <optional>
 #include <string_view>
 
@@ -19,10 +20,13 @@ using namespace std::chrono_literals;
 using ros2::ValueCourse;
 
 constexpr std::size_t kFewestNumbers = 30;
+constexpr std::size_t kFewestTexts = 30;
 constexpr std::size_t kMostSignals = 4;  // of a topic
 constexpr Duration kShortestFrozen = 2s;
 constexpr Duration kLongestFrozen = 60s;
 constexpr std::size_t kRowsUntilFrozen = 5;
+// All measurements() have a header.
+constexpr const char* kFrame = "header.frame_id";
 
 struct Measurement {
   std::string_view type;
@@ -74,6 +78,13 @@ bool jitters(const ValueCourse& course) {
   return 10 * course.changes >= 7 * course.numbers && 10 * course.turns >= 3 * course.changes;
 }
 
+// Such names need no escapes in a rule file. Others are unusual, and get no rule.
+bool is_plain(const std::string& frame) {
+  return !frame.empty() && std::ranges::all_of(frame, [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '/' || c == '-' || c == '.';
+  });
+}
+
 // At most kMostSignals of them, spread from the first to the last.
 std::vector<std::string> spread(const std::vector<std::string>& all) {
   if (all.size() <= kMostSignals) return all;
@@ -115,8 +126,15 @@ class Values {
       longest_row = std::max(longest_row, course->second.longest_row);
     }
     const std::vector<std::string> fields = spread(noisy.empty() ? finite : noisy);
-    if (fields.empty()) return;
     const auto window = noisy.empty() ? std::nullopt : frozen_after(topic, longest_row);
+    std::string text = of_numbers(topic, fields, window) + of_frame(topic, courses);
+    if (!text.empty())
+      parts_.push_back({.kind = Part::Kind::kValues, .subject = topic, .text = std::move(text)});
+  }
+
+  std::string of_numbers(const std::string& topic, const std::vector<std::string>& fields,
+                         std::optional<Duration> window) {
+    if (fields.empty()) return "";
     const std::string base = topic.substr(1);
     std::string text = fmt::format("# guess: {} numbers of {} were finite{}.\n", fields.size(),
                                    topic, window ? ", and changed up and down by themselves" : "");
@@ -131,7 +149,22 @@ class Values {
                    of_each("frozen({}, " + to_string(*window) + ")", names, " && "));
     text += rule(base + "_nan", " FOR 1s",
                  of_each("isnan({})", names, is_of_list(fields.front()) ? " && " : " || "));
-    parts_.push_back({.kind = Part::Kind::kValues, .subject = topic, .text = std::move(text)});
+    return text;
+  }
+
+  std::string of_frame(const std::string& topic, const Courses& courses) {
+    const auto course = courses.find(kFrame);
+    if (course == courses.end() || course->second.texts < kFewestTexts ||
+        course->second.texts_differ || !is_plain(course->second.text))
+      return "";
+    const std::string& frame = course->second.text;
+    const std::string signal = names_.take(topic.substr(1) + "_frame");
+    return fmt::format(
+               "# guess: all messages of {} were in the frame {}. If they are in another one, a "
+               "person is notified.\nSIGNAL {} TOPIC {} FIELD {}\n",
+               topic, frame, signal, topic, kFrame) +
+           rule(topic.substr(1) + "_wrong_frame", " FOR 1s",
+                fmt::format("{} != \"{}\"", signal, frame));
   }
 
   // Nothing: they stay the same for so long when all is well that nobody would wait for it.
@@ -168,7 +201,9 @@ class Values {
 std::set<std::string> fields_of_measurement(const std::string& type) {
   const Measurement* measured = measurement_of(type);
   if (measured == nullptr) return {};
-  return {measured->fields.begin(), measured->fields.end()};
+  std::set<std::string> fields(measured->fields.begin(), measured->fields.end());
+  fields.insert(kFrame);
+  return fields;
 }
 
 std::vector<Part> values(const RobotProfile& seen, Names& names) {

@@ -91,6 +91,32 @@ TEST(Values, ThatWereNotAlwaysFiniteOrCameSeldomHaveNoRule) {
   EXPECT_THAT(draft(seen), Not(HasSubstr("SIGNAL")));
 }
 
+TEST(Values, OfAnotherFrameThanEverAreReported) {
+  RobotProfile seen = with_scan(noise);
+  for (int i = 0; i < 300; ++i) seen.fields["/scan"]["header.frame_id"].note(std::string("laser"));
+  const RuleSet rules = strict_rules(seen);
+  EXPECT_THAT(draft(seen), HasSubstr(R"(
+# guess: all messages of /scan were in the frame laser. If they are in another one, a person is notified.
+SIGNAL scan_frame TOPIC /scan FIELD header.frame_id
+RULE scan_wrong_frame
+  POLICIES WARNING FOR 1s REPORT
+  TRIGGER scan_frame != "laser"
+)"));
+  for (const Rule& rule : rules.rules)
+    EXPECT_TRUE(rule.name != "scan_wrong_frame" || rule.strategies.empty());
+}
+
+TEST(Values, OfAFrameThatVariesIsMissingOrNeedsEscapesHaveNoRule) {
+  for (const std::vector<std::string>& frames :
+       {std::vector<std::string>{"left", "right"}, {""}, {"a \"b\""}, {"two words"}}) {
+    RobotProfile seen = with_scan(noise);
+    for (std::size_t i = 0; i < 300; ++i)
+      seen.fields["/scan"]["header.frame_id"].note(frames[i % frames.size()]);
+    EXPECT_THAT(draft(seen), Not(HasSubstr("frame"))) << frames.front();
+    (void)strict_rules(seen);
+  }
+}
+
 TEST(Values, OfTwoPublishersAreNobodys) {
   RobotProfile seen = with_scan(noise);
   seen.robot.topics["/scan"].publishers.insert("/other");
