@@ -70,6 +70,25 @@ void LastResorts::turn_to(RuleId id, Time now) {
   write_.events.tell(now, LastResortReached{id});
 }
 
+bool LastResorts::has_to_give_way(RuleId id, Time now) const {
+  const RuleState& state = knowledge_.states[id];
+  if (!state.last_resort || state.last_resort->stage == Attempt::Stage::kWaiting) return false;
+  const Strategy& current = knowledge_.rules[state.last_resort->strategy];
+  return std::ranges::any_of(knowledge_.rules[id].strategies, [&](StrategyId other) {
+    const Duration within = knowledge_.rules[other].within;
+    return is_left(other) && within > current.within &&
+           std::ranges::find(state.search.refused, other, &Search::Refused::strategy) ==
+               state.search.refused.end() &&
+           now >= later(state.failing_since, within);
+  });
+}
+
+void LastResorts::give_way(RuleId id, Time now) {
+  const StrategyId strategy = knowledge_.states[id].last_resort->strategy;
+  abandon(id, now);
+  refuse(write_.states.state(id).search, strategy, now);
+}
+
 void LastResorts::abandon(RuleId id, Time now) {
   const Attempt attempt = *std::exchange(write_.states.state(id).last_resort, std::nullopt);
   write_.couplings.ended(attempt, now);

@@ -35,6 +35,11 @@ class LastResorts {
   std::vector<StrategyId> due(RuleId id, Time now) const;
   // No other strategy of the rule can begin or help in time: they are due, if there are any.
   void turn_to(RuleId id, Time now);
+  // Has the one under way had no effect, although the time of the next one has come? It cannot
+  // wait for a service that does not answer.
+  bool has_to_give_way(RuleId id, Time now) const;
+  // The one under way is abandoned, and tried again later. @pre there is one
+  void give_way(RuleId id, Time now);
   // The one under way is abandoned. @pre there is one
   void abandon(RuleId id, Time now);
   // The one under way, if any: it took effect, or could not be carried out.

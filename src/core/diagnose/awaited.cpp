@@ -92,6 +92,7 @@ void Awaited::collect(Time latest_onset) {
 }
 
 void Awaited::find_past() {
+  const auto is_recent = [&](Time over) { return knowledge_.now < later(over, kLongestEvidence); };
   for (std::size_t r = 0; r < knowledge_.rules.rules.size(); ++r) {
     const RuleId rule(r);
     if (cleared_lately(rule, knowledge_))
@@ -103,9 +104,12 @@ void Awaited::find_past() {
   }
   for (std::size_t c = 0; c < knowledge_.rules.components.size(); ++c) {
     const auto& anew = knowledge_.components[ComponentId(c)].begun_anew;
-    if (anew && knowledge_.now < later(anew->done, kLongestEvidence))
+    if (anew && is_recent(anew->done))
       past_.push_back({knowledge_.rules[anew->by].rule, ComponentId(c), anew->since, anew->done,
                        Symptom::kOutage});
+    const auto& trouble = knowledge_.components[ComponentId(c)].past_trouble;
+    if (trouble && is_recent(trouble->over))
+      past_.push_back({{}, ComponentId(c), trouble->since, trouble->over, Symptom::kOutage});
   }
 }
 
@@ -116,10 +120,10 @@ void Awaited::place_past() {
     if (const auto scc = knowledge_.graph.scc_of(c)) set(own_past_[*scc], p);
   };
   for (std::size_t p = 0; p < past_.size(); ++p) {
-    if (past_[p].begun_anew) {
-      mark(*past_[p].begun_anew, p);
+    if (past_[p].component) {
+      mark(*past_[p].component, p);
     } else {
-      for (const ComponentId c : knowledge_.rules[past_[p].rule].components) mark(c, p);
+      for (const ComponentId c : knowledge_.rules[*past_[p].rule].components) mark(c, p);
     }
   }
 }
@@ -166,7 +170,7 @@ Awaiting Awaited::awaiting(RuleId failure) const {
   const Duration passing = duration_of(kPassing, knowledge_.rules);
   const auto fade = [&](const Past& past, Duration passed_on) {
     const Time until = fades(failure, past, passed_on);
-    if (until > found.until) found = {until, past.rule, true, past.begun_anew};
+    if (until > found.until) found = {until, past.rule.value_or(failure), true, past.component};
   };
   for (const ComponentId c : knowledge_.rules[failure].components) {
     const auto scc = knowledge_.graph.scc_of(c);
@@ -183,7 +187,7 @@ Awaiting Awaited::awaiting(RuleId failure) const {
     }
     for_each(upstream_past_[*scc], [&](std::size_t p) { fade(past_[p], passing); });
     for_each(own_past_[*scc], [&](std::size_t p) {
-      const bool is_its_own = past_[p].begun_anew == c;
+      const bool is_its_own = past_[p].component == c;
       if (is_its_own || is_circle_[*scc]) fade(past_[p], is_its_own ? Duration{} : passing);
     });
   }
@@ -194,11 +198,14 @@ Time Awaited::fades(RuleId failure, const Past& past, Duration passing) const {
   // One reading of a common monitor shows both values: it decides whether the failure settles
   // (Settling).
   const bool is_value = symptom_of(failure, knowledge_) == Symptom::kValue;
-  const bool has_echo =
-      is_value ? knowledge_.latencies.is_late(failure) : past.symptom == Symptom::kOutage;
+  const bool has_echo = !is_value || knowledge_.latencies.is_late(failure);
   const Onset onset = onset_of(failure, knowledge_);
-  const Time passed = later(past.over, passing);
-  const bool is_same = !past.begun_anew && past.rule == failure;
+  // It may have been as bad until its rule cleared: a silence shows at once that it is over.
+  const bool ends_late = !is_value && past.symptom == Symptom::kValue;
+  const Duration shown =
+      ends_late ? knowledge_.latencies.lateness(*past.rule).presumed : Duration::zero();
+  const Time passed = later(past.over, shown + passing);
+  const bool is_same = !past.component && past.rule == failure;
   if (is_same || !has_echo || past.began > onset.latest || onset.earliest > passed) return kLongAgo;
   return later(passed, std::min(clears_within(failure, knowledge_), kLongestEvidence));
 }

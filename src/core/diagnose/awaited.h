@@ -3,9 +3,10 @@
 //
 //     W_i = max_u min(b_i + E_u, d_i + kLongestEvidence)     quiet rules u upstream of i, of a
 //                                                            symptom that can cause i's
-//     Z_i = max_u r_u + passing + C_i                        such rules that cleared lately, and
+//     Z_i = max_u r_u + passing + C_i                        rules that cleared lately, and
 //                                                            components upstream (or i's own) that a
-//                                                            strategy began anew lately, if
+//                                                            strategy began anew lately or that
+//                                                            were in trouble lately, if
 //                                                            e_u <= l_i and e_i <= r_u + passing
 //
 //   e_i, E_u        onset and evidence time (timing.h); d_i the detection of i
@@ -38,8 +39,8 @@ struct Awaiting {
   Time until = kLongAgo;
   RuleId because;        // the rule that can still fire, or cleared
   bool is_echo = false;  // the latter
-  // is_echo: that was down for a strategy of `because`.
-  std::optional<ComponentId> begun_anew{};
+  // is_echo: that was down for a strategy of `because`, or in trouble (`because` is the failure itself).
+  std::optional<ComponentId> component{};
 };
 
 class Awaited {
@@ -77,10 +78,11 @@ class Awaited {
   void carry();
   void look_at(RuleId failure);
   Awaiting awaiting(RuleId failure) const;
-  // A past event that may still show effects: a failure that cleared, or a component that was down.
+  // A past event that may still show effects: a failure that cleared, or a component that was down
+  // for a strategy, or in trouble.
   struct Past {
-    RuleId rule;  // that cleared, or of the strategy
-    std::optional<ComponentId> begun_anew{};
+    std::optional<RuleId> rule;  // that cleared, or of the strategy
+    std::optional<ComponentId> component{};
     Time began{};
     Time over{};
     Symptom symptom{};

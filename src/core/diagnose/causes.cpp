@@ -5,6 +5,7 @@
 
 #include "base/invariant.h"
 #include "diagnose/imminent.h"
+#include "diagnose/touched.h"
 
 namespace culprit::diagnose {
 namespace {
@@ -75,11 +76,14 @@ Onset onset_of_node(RuleId failure, const Knowledge& knowledge) {
   return {std::min(onset.earliest, first_onset_of(failure, knowledge)), onset.latest};
 }
 
-// Does the rule change modes, or read the lifecycle of a component?
-bool is_about_states(RuleId rule, const RuleSet& rules) {
+// Does the rule change modes, or is it about a lifecycle? One that reads the lifecycle of a component
+// that is active is about something else.
+bool is_about_states(RuleId rule, const Knowledge& knowledge) {
+  const RuleSet& rules = knowledge.rules;
   const auto& inputs = rules[rule].inputs;
   const bool reads_lifecycle = std::any_of(inputs.begin(), inputs.end(), [&](InputId id) {
-    return rules[id].kind == Input::Kind::kLifecycle;
+    return rules[id].kind == Input::Kind::kLifecycle &&
+           knowledge.components[rules[id].component].lifecycle != Lifecycle::kActive;
   });
   const auto changes_mode = [](const Adaptation& a) {
     return a.type == AdaptationType::kChangeMode;
@@ -98,20 +102,6 @@ bool never_worked(RuleId rule, const Knowledge& knowledge) {
 }
 
 }  // namespace
-
-std::vector<ComponentId> touched_by(RuleId rule, const Knowledge& knowledge) {
-  const Rule& of = knowledge.rules[rule];
-  std::vector<ComponentId> touched;
-  for (const StrategyId id : of.strategies) {
-    const Strategy& strategy = knowledge.rules[id];
-    if (strategy.is_last_resort) continue;
-    touched.insert(touched.end(), strategy.components.begin(), strategy.components.end());
-  }
-  if (touched.empty()) return of.components;
-  std::sort(touched.begin(), touched.end());
-  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-  return touched;
-}
 
 Causes::Causes(const Knowledge& knowledge, const Reach& reach, const Paths& paths,
                std::span<const RuleId> imminent,
@@ -207,9 +197,10 @@ void Causes::connect(const Knowledge& knowledge, const Reach& reach, const Paths
     connect_learned(knowledge, i);
     clear(row, i);
     for_each(row, [&](std::size_t j) {
-      const bool is_possible = nodes_[j].kind == CauseNode::Kind::kTrouble
-                                   ? can_explain(j, i, knowledge)
-                                   : can_precede(j, i);
+      const bool is_trouble = nodes_[j].kind == CauseNode::Kind::kTrouble;
+      const bool is_possible =
+          is_trouble ? can_explain(j, i, knowledge) && !may_be_effect(j, i, reach, knowledge)
+                     : can_precede(j, i);
       if (!is_possible) clear(row, j);
     });
   }
@@ -229,7 +220,7 @@ void Causes::connect_learned(const Knowledge& knowledge, std::size_t i) {
 }
 
 // Leaves out, by level, less critical failures of values that are only ever reconfigured. Such a
-// failure is no cause: its author finds nothing broken there, and the bad value may be old, because a
+// failure is no cause of an outage: its author finds nothing broken there, and the bad value may be old, because a
 // publisher of better values exited.
 void Causes::leave_out_slight(const Knowledge& knowledge) {
   const RuleSet& rules = knowledge.rules;
@@ -242,7 +233,7 @@ void Causes::leave_out_slight(const Knowledge& knowledge) {
       set(slight[level], j);
   }
   for (std::size_t i = 0; i < size(); ++i) {
-    if (!nodes_[i].is_rule()) continue;
+    if (!nodes_[i].is_rule() || !nodes_[i].is_outage) continue;
     for_each(slight[level_of(rules[nodes_[i].rule])],
              [&](std::size_t cause) { clear(causes_[i], cause); });
   }
@@ -255,8 +246,8 @@ bool Causes::can_explain(std::size_t j, std::size_t i, const Knowledge& knowledg
   const RuleId rule = nodes_[i].rule;
   const bool is_of_state =
       nodes_[j].trouble == Trouble::kNotActive || nodes_[j].trouble == Trouble::kNotYetActive;
-  if (is_of_state && (is_container(nodes_[j].component, knowledge.rules) ||
-                      is_about_states(rule, knowledge.rules)))
+  if (is_of_state &&
+      (is_container(nodes_[j].component, knowledge.rules) || is_about_states(rule, knowledge)))
     return false;
   switch (nodes_[j].trouble) {
     case Trouble::kNeverSeen:
@@ -265,6 +256,16 @@ bool Causes::can_explain(std::size_t j, std::size_t i, const Knowledge& knowledg
     default:
       return can_precede(j, i);
   }
+}
+
+// In a loop of the graph each may have silenced the other: the one that fell silent first did.
+bool Causes::may_be_effect(std::size_t silent, std::size_t i, const Reach& reach,
+                           const Knowledge& knowledge) const {
+  const CauseNode& node = nodes_[silent];
+  if (node.trouble != Trouble::kSilent || node.onset.latest <= nodes_[i].onset.latest) return false;
+  const auto upstream = reach.upstream(reach.place_of(node.component));
+  return std::ranges::any_of(touched_by(nodes_[i].rule, knowledge),
+                             [&](ComponentId c) { return has(upstream, reach.place_of(c)); });
 }
 
 bool Causes::can_precede(std::size_t j, std::size_t i) const {

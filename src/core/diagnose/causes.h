@@ -10,7 +10,7 @@
 // Node j may be the cause of node i if a component of j is upstream of one of i, along a path that
 // the effect can have taken (paths.h). Criticality does not matter: the effects decide how bad a
 // cause is (plan/bayes/levels.h). One exception: a bad value whose strategies begin nothing anew and call
-// nothing is no cause of a more critical failure. Two failures that were seen to clear together count as if they
+// nothing is no cause of a more critical outage. Two failures that were seen to clear together count as if they
 // were connected, although the graph shows no edge. A cause begins before its effect (timing.h), or,
 // if the effect outlasts an earlier cause or its own component's new beginning, before that.
 // Nodes that may be the causes of each other, directly or through others, form a feedback loop. It
@@ -35,10 +35,6 @@ inline constexpr std::size_t kLevels = 3;  // of criticality
 inline constexpr Duration kUsualDelay = std::chrono::seconds(5);
 // Learned couplings off the graph count from this mean on.
 inline constexpr double kKnownCoupling = 0.3;
-
-// The components by which a failure of the rule is explained: those that its strategies adapt, but for
-// what only a last resort adapts.
-std::vector<ComponentId> touched_by(RuleId rule, const Knowledge& knowledge);
 
 struct CauseNode {
   enum class Kind : std::uint8_t { kFailure, kImminent, kTrouble, kUnsupplied };
@@ -92,6 +88,8 @@ class Causes {
   void connect_learned(const Knowledge& knowledge, std::size_t i);
   void leave_out_slight(const Knowledge& knowledge);
   bool can_explain(std::size_t j, std::size_t i, const Knowledge& knowledge) const;
+  bool may_be_effect(std::size_t silent, std::size_t i, const Reach& reach,
+                     const Knowledge& knowledge) const;
   bool can_precede(std::size_t j, std::size_t i) const;
   void find_loops(const BitRows& effects);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "diagnose/known_down.h"
+#include "diagnose/touched.h"
 
 namespace culprit::diagnose {
 namespace {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "diagnose/imminent.h"
+#include "diagnose/touched.h"
 
 namespace culprit::diagnose {
 namespace {
@@ -16,6 +17,10 @@ std::vector<ComponentId> components_that_matter(
       const auto& others = knowledge.components[c].ends_with;
       all.push_back(c);
       all.insert(all.end(), others.begin(), others.end());
+    }
+    if (knowledge.rules[rule].components.empty()) {
+      const std::vector<ComponentId> touched = touched_by(rule, knowledge);
+      all.insert(all.end(), touched.begin(), touched.end());
     }
   };
   std::for_each(knowledge.states.active().begin(), knowledge.states.active().end(), add);

@@ -20,11 +20,23 @@ bool is_coming(const RuleState& state, const Policies& policies) {
   return 2 * state.detection.true_in_history > policies.hold_needed;
 }
 
+// Will a silence that goes on have reached what the input is compared with while that is waited for?
+bool comes_in_time(const Input& input, const Knowledge& knowledge) {
+  Duration needs{};
+  if (input.kind == Kind::kRate) needs = input.window;
+  if (input.kind == Kind::kAge && !input.thresholds.empty())
+    needs = from_seconds(input.thresholds.back());
+  const Time since = knowledge.signals.rhythm(input.topic).silent_since();
+  return later(since, needs) <= later(knowledge.now, kLongestEvidence);
+}
+
 bool fires_if_silence_lasts(RuleId rule, const Knowledge& knowledge) {
   std::vector<Assumed> assumed;
   for (const InputId id : knowledge.rules[rule].inputs) {
     const Input& input = knowledge.rules[id];
-    if (!reads_topic(input) || !is_silent(input.topic, knowledge.now, knowledge)) continue;
+    if (!reads_topic(input) || !is_silent(input.topic, knowledge.now, knowledge) ||
+        !comes_in_time(input, knowledge))
+      continue;
     if (const auto value = after_long_silence(input)) assumed.push_back({id, *value});
   }
   if (assumed.empty()) return false;

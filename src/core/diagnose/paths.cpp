@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnose/touched.h"
+
 namespace culprit::diagnose {
 namespace {
 
@@ -49,8 +51,12 @@ std::vector<Signs> signs_of(const Knowledge& knowledge, std::span<const RuleId> 
   std::vector<Signs> signs(knowledge.rules.components.size());
   const auto add = [&](RuleId rule, bool is_ill) {
     const auto symptom = static_cast<std::size_t>(symptom_of(rule, knowledge));
-    for (const ComponentId c : knowledge.rules[rule].components)
+    const auto mark = [&](ComponentId c) {
       (is_ill ? signs[c.index].has_ill : signs[c.index].is_watched)[symptom] = true;
+    };
+    const auto& components = knowledge.rules[rule].components;
+    std::ranges::for_each(components, mark);
+    if (components.empty() && is_ill) std::ranges::for_each(touched_by(rule, knowledge), mark);
   };
   for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
     const RuleState& state = knowledge.states[RuleId(r)];

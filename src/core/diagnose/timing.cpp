@@ -8,14 +8,6 @@ namespace {
 
 using Kind = Input::Kind;
 
-bool watches_a_topic(const Input& input) {
-  return input.kind == Kind::kAge || input.kind == Kind::kPhi || input.kind == Kind::kRate;
-}
-
-bool watches_a_component(const Input& input) {
-  return input.kind == Kind::kAlive || input.kind == Kind::kLifecycle;
-}
-
 // The onset of a silence or a death that the input shows now; empty: it shows none.
 std::optional<Onset> outage_of(const Input& input, Time now, const Knowledge& knowledge) {
   if (watches_a_topic(input)) {
@@ -58,6 +50,14 @@ Onset onset_of_value(RuleId rule, Time since, const Knowledge& knowledge) {
 }
 
 }  // namespace
+
+bool watches_a_topic(const Input& input) {
+  return input.kind == Kind::kAge || input.kind == Kind::kPhi || input.kind == Kind::kRate;
+}
+
+bool watches_a_component(const Input& input) {
+  return input.kind == Kind::kAlive || input.kind == Kind::kLifecycle;
+}
 
 Symptom symptom_of(RuleId rule, const Knowledge& knowledge) {
   const auto& inputs = knowledge.rules[rule].inputs;

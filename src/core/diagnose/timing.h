@@ -38,6 +38,9 @@ enum class Symptom : std::uint8_t {
 };
 Symptom symptom_of(RuleId rule, const Knowledge& knowledge);
 
+bool watches_a_topic(const Input& input);
+bool watches_a_component(const Input& input);
+
 // A topic counts as silent after this many of its usual gaps.
 inline constexpr int kSilentGaps = 2;
 // Evidence that takes longer than this is not waited for.

@@ -25,9 +25,18 @@ Value negated(const Value& value) {
   return -std::get<double>(value);
 }
 
+bool deactivates(const Rule& rule, ComponentId component, const RuleSet& rules) {
+  return std::ranges::any_of(rule.strategies, [&](StrategyId id) {
+    return std::ranges::any_of(rules[id].adaptations, [&](const Adaptation& a) {
+      return a.component == component && a.type == AdaptationType::kDeactivate;
+    });
+  });
+}
+
 // The lifecycle state that rules demand of the component: a trigger that is true now would be true
-// if it were inactive and not if it were active, or the other way round. Empty if no rule demands
-// one.
+// if it were inactive and not if it were active; or the other way round, and the rule deactivates
+// it. Otherwise `lifecycle(c) == "active" && ...` only says when the rule looks. Empty if no rule
+// demands one.
 std::optional<Lifecycle> demanded(ComponentId component, const Knowledge& knowledge) {
   const RuleSet& rules = knowledge.rules;
   const auto fires = [&](const Rule& rule, std::string_view state) {
@@ -48,7 +57,9 @@ std::optional<Lifecycle> demanded(ComponentId component, const Knowledge& knowle
     if (!reads) continue;
     const bool if_active = fires(rule, to_string(Lifecycle::kActive));
     const bool if_inactive = fires(rule, to_string(Lifecycle::kInactive));
-    if (if_active != if_inactive) return if_active ? Lifecycle::kInactive : Lifecycle::kActive;
+    if (if_inactive && !if_active) return Lifecycle::kActive;
+    if (if_active && !if_inactive && deactivates(rule, component, rules))
+      return Lifecycle::kInactive;
   }
   return std::nullopt;
 }

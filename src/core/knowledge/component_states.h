@@ -31,6 +31,12 @@ struct BegunAnew {
   Time done{};   // the component was back
 };
 
+// A trouble (diagnose/trouble.h) that a failure was there beside, and that is over.
+struct PastTrouble {
+  Time since{};
+  Time over{};
+};
+
 struct ComponentState {
   bool in_graph = false;      // its node is there, and its process is not known to be gone
   Time node_seen = kLongAgo;  // when the node joined the graph last
@@ -65,7 +71,8 @@ struct ComponentState {
   bool is_rising = false;          // it was seen unconfigured, and is not active yet
   Time culprit_raised = kLongAgo;  // when culprit took it through its lifecycle last
   Time worked = kLongAgo;          // when its process was last reported to work (ProcessWorked)
-  std::optional<BegunAnew> begun_anew{};  // the last time
+  std::optional<BegunAnew> begun_anew{};      // the last time
+  std::optional<PastTrouble> past_trouble{};  // likewise
   bool took_place = false;  // its process took another's place, and its lifecycle was not read yet
 
   // Why it cannot be started now (StartBarred); empty: nothing is known to be missing.

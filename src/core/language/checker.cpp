@@ -322,7 +322,7 @@ class Checker {
     const bool is_report = rule.policies && rule.policies->is_report;
     need(is_report || std::any_of(rule.strategies.begin(), rule.strategies.end(),
                                   [](const syntax::Strategy& s) { return !s.is_last_resort; }),
-         "STRATEGY");
+         rule.strategies.empty() ? "STRATEGY" : "STRATEGY but a LASTRESORT");
     if (is_report && !rule.strategies.empty())
       report(Code::kContradiction, rule.strategies.front().name.span,
              "rule '" + rule.name.text + "' only reports, so none of its strategies would be used",
@@ -333,6 +333,8 @@ class Checker {
         : missing == "TRIGGER" ? "add when the failure is there, as in TRIGGER age(/topic) > 1s"
         : missing == "STRATEGY"
             ? "add a STRATEGY with what may help, or REPORT to its POLICIES to notify a person"
+        : missing == "STRATEGY but a LASTRESORT"
+            ? "add a STRATEGY that may help: a last resort only makes the robot safe"
             : "a rule says how critical the failure is (POLICIES), when it is there (TRIGGER) and "
               "what may help (STRATEGY), or that a person is notified (POLICIES ... REPORT)";
     report(Code::kIncomplete, rule.name.span,

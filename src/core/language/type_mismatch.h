@@ -1,4 +1,4 @@
-// What to say about two values of types that do not fit together.
+// Messages about operands whose types do not fit together.
 #pragma once
 
 #include <string>

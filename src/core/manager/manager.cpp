@@ -76,6 +76,7 @@ Manager::Manager(const RuleSet& rules, std::unique_ptr<const Planner> planner, O
                  knowledge_.latencies, knowledge_.coincidences, knowledge_.transients,
                  knowledge_.outcomes, knowledge_.blindness, knowledge_.events},
                 options.start, later(options.start, options.discovery)),
+      troubles_(knowledge_, knowledge_.components),
       planner_(std::move(planner)),
       executor_(knowledge_, {Attempts(knowledge_.states), knowledge_.components, knowledge_.signals,
                              knowledge_.outcomes, knowledge_.rivals, knowledge_.events}),
@@ -333,6 +334,7 @@ void Manager::make_way_for(StrategyId strategy, Time now) {
 }
 
 void Manager::plan(Time now, std::vector<Command>& commands) {
+  troubles_.look(now, !knowledge_.states.active().empty());
   const std::vector<RuleId> failures = analyzer_.plannable(now);
   for (const RuleId failure : failures) {
     for (const StrategyId strategy : knowledge_.rules[failure].strategies)
@@ -404,6 +406,11 @@ void Manager::begin_last_resorts(Time now) {
     const bool goes_away = state.detection.trigger.known && !state.detection.trigger.b;
     if (!goes_away && (now >= limit || !is_help_possible(id, limit, now)))
       analyzer_.last_resorts().turn_to(id, now);
+    if (analyzer_.last_resorts().has_to_give_way(id, now)) {
+      knowledge_.events.tell(
+          now, StrategyAbandoned{state.last_resort->strategy, "the next last resort is due"});
+      analyzer_.last_resorts().give_way(id, now);
+    }
     for (const StrategyId due : analyzer_.last_resorts().due(id, now)) {
       if (begin_last_resort(due, now)) break;
     }

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "analyze/analyzer.h"
+#include "analyze/trouble_watch.h"
 #include "execute/governor.h"
 #include "execute/strategy_executor.h"
 #include "incidents/incidents.h"
@@ -125,6 +126,7 @@ class Manager : public ManagingSystem {
   Knowledge knowledge_;
   Monitor monitor_;
   Analyzer analyzer_;
+  TroubleWatch troubles_;
   std::unique_ptr<const Planner> planner_;
   StrategyExecutor executor_;
   Governor governor_;

@@ -30,6 +30,16 @@ int redeployments(const Strategy& strategy) {
                     [](const Adaptation& a) { return a.type == AdaptationType::kRedeploy; }));
 }
 
+// Are its adaptations those of the other one? Values of parameters are not compared.
+bool does_the_same(const Strategy& a, const Strategy& b) {
+  const auto is_same = [](const Adaptation& one, const Adaptation& other) {
+    return one.component == other.component && one.type == other.type &&
+           one.subject == other.subject && one.topic == other.topic &&
+           one.request == other.request && !syntax::names_parameter(one.type);
+  };
+  return std::ranges::equal(a.adaptations, b.adaptations, is_same);
+}
+
 }  // namespace
 
 PlanningStep::PlanningStep(std::span<const RuleId> failures, const Knowledge& knowledge,
@@ -299,10 +309,39 @@ void PlanningStep::select(Criticality level) {
   }
 
   const std::vector<WeighedCandidate*> chosen = weigh_together(open, chosen_together(open));
-  for (const WeighedCandidate* weighed : chosen) choose(*weighed);
+  for (WeighedCandidate* weighed : chosen) {
+    if (const auto other = done_for_another(*weighed, chosen)) {
+      const RuleId rule = knowledge_.rules[*other].rule;
+      exclude(*weighed, {Condition::kSettling, likely_.likeliest_component(rule), rule});
+    } else {
+      choose(*weighed);
+    }
+  }
   for (WeighedCandidate* weighed : open) {
     if (std::find(chosen.begin(), chosen.end(), weighed) == chosen.end()) is_taken(*weighed);
   }
+}
+
+// The strategy of another failure, under way or of those chosen with it, that does what another
+// strategy of this failure would do: it may clear both.
+std::optional<StrategyId> PlanningStep::done_for_another(
+    const WeighedCandidate& weighed, const std::vector<WeighedCandidate*>& chosen) const {
+  const auto would_do = [&](StrategyId other) {
+    const auto& chances = likely_.chances(weighed.failure);
+    return std::ranges::any_of(chances, [&](const StrategyChance& own) {
+      return !own.is_out() && own.strategy != weighed.candidate.strategy &&
+             does_the_same(knowledge_.rules[own.strategy], knowledge_.rules[other]);
+    });
+  };
+  for (const WeighedCandidate* other : chosen) {
+    const bool begins = other != &weighed && !other->candidate.excluded;
+    if (begins && would_do(other->candidate.strategy)) return other->candidate.strategy;
+  }
+  for (const RuleId id : knowledge_.states.active()) {
+    const auto& attempt = knowledge_.states[id].attempt;
+    if (attempt && would_do(attempt->strategy)) return attempt->strategy;
+  }
+  return std::nullopt;
 }
 
 // The conflict-free ones of the highest total worth.

@@ -41,6 +41,8 @@ class PlanningStep {
   std::vector<WeighedCandidate*> chosen_together(const std::vector<WeighedCandidate*>& open) const;
   std::vector<WeighedCandidate*> weigh_together(const std::vector<WeighedCandidate*>& open,
                                                 const std::vector<WeighedCandidate*>& chosen) const;
+  std::optional<StrategyId> done_for_another(const WeighedCandidate& weighed,
+                                             const std::vector<WeighedCandidate*>& chosen) const;
   bool is_taken(WeighedCandidate& weighed) const;
   std::vector<Decision> decisions();
   bool is_before(const WeighedCandidate& a, const WeighedCandidate& b) const;

@@ -107,9 +107,11 @@ bool ReasonsToWait::exclude_unproven(WeighedCandidate& weighed, double chance) c
       knowledge_.couplings.of(awaiting->because, rule).mean(Coupling::kUsual) > 0.5;
   if (need_not_wait || !is_coupled) return false;
   exclude(weighed, {awaiting->is_echo ? Condition::kSettling : Condition::kSuspect,
-                    awaiting->begun_anew.value_or(likely_.likeliest_component(awaiting->because)),
+                    awaiting->component.value_or(likely_.likeliest_component(awaiting->because)),
                     awaiting->because});
-  if (awaiting->begun_anew) weighed.candidate.remark = "was down for a strategy";
+  if (awaiting->component)
+    weighed.candidate.remark =
+        awaiting->because == rule ? "works again" : "was down for a strategy";
   return true;
 }
 

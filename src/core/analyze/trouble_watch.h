@@ -1,0 +1,31 @@
+// Notes when troubles of components end (ComponentState::past_trouble): what depends on them needs a
+// moment to work again. Only while there are failures, whose plans it is called before.
+#pragma once
+
+#include <vector>
+
+#include "knowledge/knowledge.h"
+
+namespace culprit {
+
+class TroubleWatch {
+ public:
+  // Both must outlive it.
+  TroubleWatch(const Knowledge& knowledge, ComponentStates& components)
+      : knowledge_(knowledge), components_(components) {}
+
+  // To be called before each plan. `is_any_failing`: there is a failure to plan for.
+  void look(Time now, bool is_any_failing);
+
+ private:
+  struct Open {
+    ComponentId component;
+    Time since{};
+  };
+
+  const Knowledge& knowledge_;
+  ComponentStates& components_;
+  std::vector<Open> open_;
+};
+
+}  // namespace culprit
