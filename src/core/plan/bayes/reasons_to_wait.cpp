@@ -106,12 +106,12 @@ bool ReasonsToWait::exclude_unproven(WeighedCandidate& weighed, double chance) c
       awaiting->because == rule ||
       knowledge_.couplings.of(awaiting->because, rule).mean(Coupling::kUsual) > 0.5;
   if (need_not_wait || !is_coupled) return false;
+  const bool was_in_trouble = awaiting->component && awaiting->because == rule;
   exclude(weighed, {awaiting->is_echo ? Condition::kSettling : Condition::kSuspect,
                     awaiting->component.value_or(likely_.likeliest_component(awaiting->because)),
-                    awaiting->because});
+                    was_in_trouble ? std::nullopt : std::optional(awaiting->because)});
   if (awaiting->component)
-    weighed.candidate.remark =
-        awaiting->because == rule ? "works again" : "was down for a strategy";
+    weighed.candidate.remark = was_in_trouble ? "was in trouble" : "was down for a strategy";
   return true;
 }
 
