@@ -6,8 +6,8 @@ import { hasToken } from './api'
 import { freshness, nowByTheClock } from './freshness'
 import { canOrder, order } from './order'
 import type { Tone } from './looks'
-import { status, title } from './status'
-import { can, control } from './store'
+import { type Mode, status, title } from './status'
+import { can, control, presentIncidents } from './store'
 import { colour, isDark } from './theme'
 
 const isOrdering = signal(false)
@@ -98,9 +98,11 @@ export function StatusBar() {
 }
 const kMostModes = 2
 
-// In two lines, what the modes mean.
+// In two lines, what the modes mean, where nothing else says it: incidents say that nothing is done in a pause.
+const kSaidElsewhere = ['acting', 'none', 'bygone', 'approval', 'deaf']
 export function ModeNotes() {
-  const notes = status.value.modes.filter((m) => !['acting', 'none', 'bygone', 'approval'].includes(m.name))
+  const isSaid = ({ name }: Mode) => kSaidElsewhere.includes(name) || (name === 'paused' && presentIncidents.value.length > 0)
+  const notes = status.value.modes.filter((m) => !isSaid(m))
   return (
     <>
       {notes.map((m) => (
