@@ -38,7 +38,7 @@ function viewOf({ width, height, resolution, origin: [x, y, yaw] }: Grid, wide: 
   return { scale, at }
 }
 
-// What is old is hollow.
+// An old pose is hollow.
 function drawRobot(context: CanvasRenderingContext2D, [x, y]: [number, number], { yaw, age }: Robot) {
   context.save()
   context.translate(x, y)

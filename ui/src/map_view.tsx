@@ -58,7 +58,7 @@ export function MapView() {
         <div class="bar">
           <label>
             map{' '}
-            <select value={wanted.value || map!.topic} onChange={(e) => (wanted.value = e.currentTarget.value)}>
+            <select aria-label="Topic of the map" value={wanted.value || map!.topic} onChange={(e) => (wanted.value = e.currentTarget.value)}>
               {topics.map((topic) => (
                 <option>{topic}</option>
               ))}

@@ -1,6 +1,6 @@
 // Above every page, always at the same place: how the robot is, whose fault it is and since when; whether culprit
 // acts; whether all this is new; and the brake.
-import { effect, signal } from '@preact/signals'
+import { computed, effect, signal } from '@preact/signals'
 import { byTheClock } from './clock'
 import { hasToken } from './api'
 import { freshness, nowByTheClock } from './freshness'
@@ -130,7 +130,10 @@ function icon(tone: Tone, isPaused: boolean): string {
   return `data:image/svg+xml,${encodeURIComponent(svg)}`
 }
 
-// The window in the task bar is looked at more often than the page.
+// The window in the task bar is looked at more often than the page. To ask for a colour takes the time of a frame, so the icon
+// follows what it shows and not each state.
+const iconTone = computed(() => status.value.tone)
+const iconPaused = computed(() => control.value?.paused ?? false)
 export function followInTitle(): void {
   const link = document.querySelector<HTMLLinkElement>('link[rel="icon"]')!
   effect(() => {
@@ -138,7 +141,7 @@ export function followInTitle(): void {
   })
   effect(() => {
     isDark.value
-    const next = icon(status.value.tone, control.value?.paused ?? false)
+    const next = icon(iconTone.value, iconPaused.value)
     if (link.href !== next) link.href = next
   })
 }

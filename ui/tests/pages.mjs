@@ -352,7 +352,7 @@ async function drawsTheMap(page, server) {
   await page.getByRole('status').getByText('no transform on /tf leads from lazer to map').waitFor()
   await expectSoon(async () => (await colourAt(0.5, 1.5)) !== robot, 'a robot that was lost looks as one that is there')
   await isAccessible(page)
-  await page.getByLabel('map', { exact: true }).selectOption('/local_costmap/costmap')
+  await page.getByLabel('Topic of the map').selectOption('/local_costmap/costmap')
   await expectSoon(() => asked().at(-1)[1].topic === '/local_costmap/costmap', 'the other map is not asked for')
   map = { ...kMap, topics: [], topic: '', number: 0, robots: [], path: null, scan: null }
   await page.getByText('Looking for a map').waitFor()

@@ -35,7 +35,7 @@ class FrameTree {
   std::optional<Placed> place(const std::string& frame, const std::string& ancestor,
                               Time now) const;
 
-  // Of all frames, those with this name behind their last '/'.
+  // The frames with this name behind their last '/'.
   std::vector<std::string> called(std::string_view name) const;
 
  private:

@@ -20,7 +20,7 @@ constexpr std::array kUsual = {Usual{msg::OccupancyGrid::kType, "map"},
                                Usual{msg::Path::kType, "plan"},
                                Usual{msg::LaserScan::kType, "scan"}};
 
-// Of this type, the usual one first.
+// The topics of a type, the usual one first.
 std::vector<MapWatch::Topic> topics_of(const std::vector<MapWatch::Topic>& all,
                                        const Usual& usual) {
   std::vector<MapWatch::Topic> found;

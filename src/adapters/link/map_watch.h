@@ -37,7 +37,7 @@ class MapWatch {
 
  private:
   enum Part : std::uint8_t { kGrid, kPath, kScan, kTransforms, kStaticTransforms, kParts };
-  // Of the executor's thread.
+  // Used by the executor's thread.
   struct Source {
     std::string topic;
     bool latches = false;
