@@ -84,6 +84,8 @@ std::vector<web::Route> page_routes(web::Hub& hub, const web::Histories& histori
   add(all, web::incident_routes(hub, journal, recordings));
   add(all, web::doctor_routes(web::examine_robot));
   all.push_back(web::component_route(hub, histories.usage, look, log_of));
+  all.push_back(web::map_route(
+      [&names](const std::string& topic, std::uint64_t known) { return names.map(topic, known); }));
   all.push_back(web::series_route(histories));
   all.push_back(web::past_series_route(journal));
   all.push_back(web::hindsight_route(journal_of));

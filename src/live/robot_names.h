@@ -16,6 +16,8 @@ class RobotNames {
   Expected<LiveInventory> look(const LiveInterest& interest);
   // The last lines that a node has logged since this was called first, the newest last. Errors: the same.
   Expected<std::vector<ros2::msg::Log>> log_of(const std::string& node);
+  // The content of a map view (Survey::map()). Errors: the same.
+  Expected<ros2::MapPicture> map(const std::string& topic, std::uint64_t known);
 
  private:
   Expected<void> open() CULPRIT_REQUIRES(mutex_);

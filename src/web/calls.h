@@ -16,6 +16,7 @@
 #include "http/routes.h"
 #include "language/live_inventory.h"
 #include "language/reuse/expansion.h"
+#include "link/map_picture.h"
 #include "plan/planner.h"
 #include "ros2/messages.h"
 #include "web/metrics.h"
@@ -48,6 +49,12 @@ using LogOf = std::function<Expected<std::vector<ros2::msg::Log>>(const std::str
 // One component, beyond the stream's data on all: its process's usage, now and before, its parameters, and its latest log
 // lines. A page calls it repeatedly while it shows the component.
 Route component_route(Hub& hub, const UsageHistory& usage, Look look, LogOf log_of);
+
+// The content of a map view; `known` is the number of the map that the page has. Errors: as above.
+using MapOf =
+    std::function<Expected<ros2::MapPicture>(const std::string& topic, std::uint64_t known)>;
+// The map, with the robot, its path and its laser scan. A page calls it repeatedly while it shows the map.
+Route map_route(MapOf map_of);
 
 // Both observe the robot once they are started, whether a page is open or not.
 struct Histories {

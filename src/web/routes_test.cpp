@@ -78,6 +78,10 @@ struct Routes : testing::Test {
       return std::vector<ros2::msg::Log>{{{7, 500'000'000}, 30, node, "it is dark", "", "", 0}};
     };
     all.push_back(component_route(hub, histories.usage, look, log_of));
+    all.push_back(map_route([this](const std::string& topic, std::uint64_t known) {
+      map_asked = {topic, known};
+      return map;
+    }));
     all.push_back(series_route(histories));
     all.push_back(past_series_route(""));
     all.push_back(hindsight_route([](const std::string&) -> Expected<std::filesystem::path> {
@@ -120,6 +124,8 @@ struct Routes : testing::Test {
   std::string reloaded_by;
   std::optional<Studies::Campaign> started;
   LiveInterest looked_at;
+  Expected<ros2::MapPicture> map = ros2::MapPicture{};
+  std::pair<std::string, std::uint64_t> map_asked;
   std::string injected;
   std::vector<Order> orders;
   std::vector<Route> all;
@@ -640,6 +646,30 @@ TEST_F(Routes, TellWhatAComponentUsesAndLogged) {
   EXPECT_EQ(ask("get /api/component", {{"name", "lidar"}}).body["process"], nullptr);
   EXPECT_EQ(ask("get /api/component", {{"name", "nobody"}}).status, 404);
   EXPECT_EQ(ask("get /api/component").status, 400);
+}
+
+TEST_F(Routes, DrawTheRobotOnItsMap) {
+  ros2::MapPicture picture;
+  picture.topics = {"/map"};
+  picture.topic = "/map";
+  picture.number = 7;
+  picture.grid = ros2::GridPicture{2, 1, 0.05, 1, {{-1, 2, 0}, {}}, "0?"};
+  picture.robots = {{"base_link", {1.23456, 2}, 0.5, std::chrono::milliseconds(250)}};
+  picture.path = {"/plan", {{0, 0}, {1, 1}}, {}};
+  map = picture;
+  const Json drawn = ask("get /api/map", {{"topic", "/map"}, {"known", "6"}}).body;
+  EXPECT_EQ(map_asked, std::pair(std::string("/map"), std::uint64_t{6}));
+  EXPECT_EQ(drawn["grid"]["cells"], "0?");
+  EXPECT_EQ(drawn["grid"]["origin"], Json({-1.0, 2.0, 0.0}));
+  EXPECT_EQ(drawn["robots"][0]["at"], Json({1.235, 2.0}));
+  EXPECT_EQ(drawn["robots"][0]["age"], 0.25);
+  EXPECT_EQ(drawn["path"]["points"], Json({{0.0, 0.0}, {1.0, 1.0}}));
+  EXPECT_EQ(drawn["scan"], nullptr);
+
+  EXPECT_EQ(ask("get /api/map", {{"known", "-1"}}).status, 200);
+  EXPECT_EQ(map_asked, std::pair(std::string(), std::uint64_t{0}));
+  map = Error{"the domain cannot be joined"};
+  EXPECT_EQ(ask("get /api/map").status, 503);
 }
 
 TEST_F(Routes, ExamineTheRobotForAsLongAsOneAsks) {

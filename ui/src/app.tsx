@@ -6,10 +6,11 @@ import { IncidentsPage, showIncident } from './incidents_page'
 import { BeliefsPage } from './beliefs_page'
 import { DoctorPage } from './doctor_page'
 import { HelpPage, Meaning } from './glossary'
+import { hasMap } from './map'
 import { Notices } from './notices'
 import { fromAddress } from './plotted'
 import { PlotsPage } from './plots_page'
-import { RobotPage } from './robot_page'
+import { MapPage, RobotPage } from './robot_page'
 import { RulesPage } from './rules_page'
 import { SimulatorPage } from './simulator_page'
 import { isOld } from './freshness'
@@ -21,6 +22,7 @@ import { WallPage } from './wall_page'
 
 const kPages = [
   { name: 'robot', title: 'Robot', needs: 'get /api/stream', Page: RobotPage },
+  { name: 'map', title: 'Map', needs: 'get /api/map', Page: MapPage },
   { name: 'incidents', title: 'Incidents', needs: 'get /api/incidents', Page: IncidentsPage },
   { name: 'plots', title: 'Plots', needs: 'get /api/series', Page: PlotsPage },
   { name: 'doctor', title: 'Doctor', needs: 'post /api/doctor', Page: DoctorPage },
@@ -45,7 +47,8 @@ const trouble = signal('')
 const kAgain = 1000 // ms
 
 function App() {
-  const offered = kPages.filter((p) => calls.value.has(p.needs) || (!p.needs && calls.value.size > 0))
+  const isThere = (name: string) => name !== 'map' || hasMap.value || page.value === 'map'
+  const offered = kPages.filter((p) => isThere(p.name) && (calls.value.has(p.needs) || (!p.needs && calls.value.size > 0)))
   if (page.value === 'wall' && can('get', '/api/stream')) return <WallPage />
   const current = offered.find((p) => p.name === page.value) ?? offered[0]
   return (

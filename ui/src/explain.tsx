@@ -3,7 +3,7 @@
 import { type Signal, signal } from '@preact/signals'
 import { ComponentPanel } from './component_panel'
 import { byTheClock, lasting, lastingSoFar, when } from './clock'
-import { nowByTheClock } from './freshness'
+import { isOld, nowByTheClock } from './freshness'
 import { Term } from './glossary'
 import { search } from './graph_model'
 import { type Failure, healthOf, type View } from './history'
@@ -29,7 +29,7 @@ function EvidenceList({ evidence }: { evidence: Evidence[] }) {
       {evidence.map((each) => (
         <li>
           {each.text}
-          {each.age_ns === undefined ? '' : `, for ${lasting(each.age_ns / 1e9)}`}{' '}
+          {each.age_ns ? `, for ${lasting(each.age_ns / 1e9)}` : ''}{' '}
           <small title="log-odds: above 0 it speaks for this suspect">
             {each.source} {signed(each.log_odds)}
           </small>
@@ -138,14 +138,11 @@ export function Candidates({ list, chosen }: { list: Candidate[]; chosen?: strin
 }
 
 // The current action and the next one: for the present only, since the past has its events.
+const kSaidByNext = ['approval_asked', 'action_held_back'] // events
 function Next({ incident }: { incident: Incident }) {
-  if (!isLive.value || !incident.doing) return null
-  return (
-    <p class="next">
-      Now: {incident.doing}
-      {incident.next && `; ${incident.next}`}.
-    </p>
-  )
+  const { doing, next } = incident
+  if (!isLive.value || !doing) return null
+  return <p class="next">{sentence(next ? `${doing}; ${next}` : doing)}</p>
 }
 
 // By the clock; of a run that is over, by its own time.
@@ -183,7 +180,7 @@ function Consequence({ failure, view }: { failure: Failure; view: View }) {
           <Since {...{ failure, view }} />
         </small>
       </p>
-      {failure.decision && <p class="muted">{failure.decision.text}.</p>}
+      {failure.decision?.text && <p class="muted">{failure.decision.text}.</p>}
       <Why failure={failure} isOpen={false} />
     </li>
   )
@@ -232,7 +229,7 @@ function IncidentCard({ incident, view }: { incident: Incident; view: View }) {
           )}
         </p>
       )}
-      {root?.decision && <p>{root.decision.text}.</p>}
+      {root?.decision?.text && !(isLive.value && kSaidByNext.includes(root.decision.type)) && <p>{root.decision.text}.</p>}
       {view === live && <Next incident={incident} />}
       {view === live && <PlotLink rules={[incident.rule, ...incident.consequences]} />}
       {consequences.length > 0 && (
@@ -388,9 +385,9 @@ function NoIncident({ view }: { view: View }) {
   return (
     <p class={`headline look-${look} ${look === 'OK' ? 'well' : ''}`}>
       <b>
-        {kLooks[look].sign} {sentence(headline)}
+        {kLooks[look].sign} {sentence(isOld.value ? `It was: ${headline}` : headline)}
       </b>{' '}
-      {sentence(detail)}
+      {blindRules.value.length === 0 && sentence(detail)}
     </p>
   )
 }

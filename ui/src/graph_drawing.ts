@@ -22,7 +22,6 @@ export const kDiscovery = 10_000 // ms
 export const isUpright = matchMedia('(max-width: 700px)')
 const kUprightRow = 208
 const kUprightLayer = 130
-const kUprightGroups = { x: 2.1, y: 0.36 } // of blocks of nodes, which are wider than high
 const kBack = 30 // how far an edge bends that has another one in the opposite direction
 const kText = 17
 const kUnmanaged = { height: 44, textSize: 13 } // a node that no rule is about
@@ -64,7 +63,7 @@ export class Drawing {
   constructor(container: HTMLElement) {
     this.held = readPlaces()
     this.scene = new Scene(container, () => ({ text: this.colours('text'), surface: this.colours('surface'), accent: this.colours('accent') }))
-    this.minimap = new Minimap(this.scene, container)
+    this.minimap = new Minimap(this.scene, container, () => this.colours('accent'))
     this.scene.onPress = (id) => {
       const box = this.scene.content.boxes.find((b) => b.id === id)
       if (box) this.scene.fit(extentOf([box]), 40)
@@ -219,10 +218,9 @@ export class Drawing {
     }
   }
 
-  // The data flow down a screen that is higher than wide.
+  // The data flow down a screen that is higher than wide; groups are blocks that do not become higher by it.
   private onScreen({ x, y }: Point): Point {
-    if (!isUpright.matches) return { x, y }
-    if (this.grouping !== 'none') return { x: y * kUprightGroups.x, y: x * kUprightGroups.y }
+    if (!isUpright.matches || this.grouping !== 'none') return { x, y }
     return { x: (y / kRow) * kUprightRow, y: (x / kLayer) * kUprightLayer }
   }
 
@@ -260,7 +258,7 @@ export class Drawing {
     const { boxes, nodes } = this.scene.content
     if (boxes.length + nodes.length === 0) return
     const all = extentOf([...boxes, ...nodes])
-    this.scene.fit(all, this.grouping === 'none' ? 24 : 40, kMostFitted)
+    this.scene.fit(all, isUpright.matches ? 10 : this.grouping === 'none' ? 24 : 40, kMostFitted)
     // From far away one reads the groups.
     if (isWhole || this.grouping !== 'none' || this.scene.zoom >= kNearly * kLeastZoom) return
     const guilty = nodes.filter((n) => n.halo)

@@ -1,6 +1,5 @@
 // All of the graph in a corner, with what one sees of it: for graphs that are larger than the screen. A press goes there.
 import { extentOf, type Scene } from './scene'
-import { colour } from './theme'
 
 const kWide = 170
 const kHigh = 110
@@ -12,7 +11,8 @@ export class Minimap {
 
   constructor(
     private readonly scene: Scene,
-    parent: HTMLElement
+    parent: HTMLElement,
+    private readonly accent: () => string
   ) {
     this.canvas.className = 'minimap'
     const sharp = devicePixelRatio || 1
@@ -20,7 +20,8 @@ export class Minimap {
     this.canvas.height = kHigh * sharp
     parent.append(this.canvas)
     const go = (e: PointerEvent) => {
-      if (e.buttons & 1) this.goTo(e.offsetX, e.offsetY)
+      const larger = kWide / this.canvas.clientWidth // it is smaller on a phone
+      if (e.buttons & 1) this.goTo(e.offsetX * larger, e.offsetY * larger)
     }
     this.canvas.addEventListener('pointerdown', go)
     this.canvas.addEventListener('pointermove', go)
@@ -51,12 +52,11 @@ export class Minimap {
 
   private draw(): void {
     this.frame = 0
-    this.canvas.hidden = true
-    if (this.nodes().length === 0) return
     const { box, factor, x, y } = this.scale()
     const { view } = this.scene
-    if (view.left <= box.left && view.top <= box.top && view.right >= box.right && view.bottom >= box.bottom) return
-    this.canvas.hidden = false
+    // Without nodes the extent is infinite, the wrong way round.
+    this.canvas.hidden = view.left <= box.left && view.top <= box.top && view.right >= box.right && view.bottom >= box.bottom
+    if (this.canvas.hidden) return
     const context = this.canvas.getContext('2d')!
     const sharp = devicePixelRatio || 1
     context.setTransform(sharp, 0, 0, sharp, 0, 0)
@@ -67,7 +67,7 @@ export class Minimap {
       const [w, h] = [Math.max(2, node.width * factor), Math.max(2, node.height * factor)]
       context.fillRect(x(node.x) - w / 2, y(node.y) - h / 2, w, h)
     }
-    context.strokeStyle = colour('accent')
+    context.strokeStyle = this.accent()
     context.lineWidth = 2
     context.strokeRect(x(view.left), y(view.top), (view.right - view.left) * factor, (view.bottom - view.top) * factor)
   }

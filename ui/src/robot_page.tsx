@@ -1,13 +1,15 @@
+import type { VNode } from 'preact'
 import { Approvals, Control } from './control'
 import { Components, Explanation } from './explain'
 import { Faults } from './faults'
 import { GraphView } from './graph_view'
+import { MapView } from './map_view'
 import { ModeNotes } from './status_bar'
 import { live } from './store'
 import { EventLog, Timeline } from './timeline'
 
 // The cause stands first also where there is but one column.
-export function RobotPage() {
+function Page({ View }: { View: () => VNode }) {
   return (
     <main class="robot">
       <div class="cause-first">
@@ -16,7 +18,7 @@ export function RobotPage() {
         <Explanation view={live} />
       </div>
       <div class="scene">
-        <GraphView />
+        <View />
         <Timeline view={live} />
       </div>
       <div class="more">
@@ -31,3 +33,6 @@ export function RobotPage() {
     </main>
   )
 }
+
+export const RobotPage = () => <Page View={GraphView} />
+export const MapPage = () => <Page View={MapView} />

@@ -1,13 +1,13 @@
 // Above every page, always at the same place: how the robot is, whose fault it is and since when; whether culprit
 // acts; whether all this is new; and the brake.
-import { effect, signal } from '@preact/signals'
+import { computed, effect, signal } from '@preact/signals'
 import { byTheClock } from './clock'
 import { hasToken } from './api'
 import { freshness, nowByTheClock } from './freshness'
 import { canOrder, order } from './order'
 import type { Tone } from './looks'
-import { status, title } from './status'
-import { can, control } from './store'
+import { type Mode, status, title } from './status'
+import { can, control, presentIncidents } from './store'
 import { colour, isDark } from './theme'
 
 const isOrdering = signal(false)
@@ -98,9 +98,11 @@ export function StatusBar() {
 }
 const kMostModes = 2
 
-// In two lines, what the modes mean.
+// In two lines, what the modes mean, where nothing else says it: incidents say that nothing is done in a pause.
+const kSaidElsewhere = ['acting', 'none', 'bygone', 'approval', 'deaf']
 export function ModeNotes() {
-  const notes = status.value.modes.filter((m) => !['acting', 'none', 'bygone', 'approval'].includes(m.name))
+  const isSaid = ({ name }: Mode) => kSaidElsewhere.includes(name) || (name === 'paused' && presentIncidents.value.length > 0)
+  const notes = status.value.modes.filter((m) => !isSaid(m))
   return (
     <>
       {notes.map((m) => (
@@ -128,7 +130,10 @@ function icon(tone: Tone, isPaused: boolean): string {
   return `data:image/svg+xml,${encodeURIComponent(svg)}`
 }
 
-// The window in the task bar is looked at more often than the page.
+// The window in the task bar is looked at more often than the page. To ask for a colour takes the time of a frame, so the icon
+// follows what it shows and not each state.
+const iconTone = computed(() => status.value.tone)
+const iconPaused = computed(() => control.value?.paused ?? false)
 export function followInTitle(): void {
   const link = document.querySelector<HTMLLinkElement>('link[rel="icon"]')!
   effect(() => {
@@ -136,7 +141,7 @@ export function followInTitle(): void {
   })
   effect(() => {
     isDark.value
-    const next = icon(status.value.tone, control.value?.paused ?? false)
+    const next = icon(iconTone.value, iconPaused.value)
     if (link.href !== next) link.href = next
   })
 }

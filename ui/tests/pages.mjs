@@ -23,6 +23,7 @@ const kCalls = {
   'get /api/component': () => [200, { node: '/camera', process: { pid: 12, memory: 123_000_000, threads: 7 }, usage: [0.25, 0.5, 0.125].map((processor, look) => ({ clock: kToday / 1000 - 15 + 5 * look, processor, memory: 120_000_000 + 1_000_000 * look })), parameters: { gain: 0.5, matrix: null }, log: [{ clock: kToday / 1000 - 13, level: 'warning', text: 'no frame for 200 ms' }] }],
   'post /api/series/past': ({ names, from, to }) => [200, pastOf(names, from, to)],
   'get /api/series': ({ name, since }) => [200, curveOf(name, Number(since ?? 0))],
+  'get /api/map': ({ topic, known }) => [200, { ...map, topic: topic || '/map', grid: Number(known) === map.number || !map.number ? null : kHouse }],
   'post /api/doctor': () => [200, { domain: 7, nodes: 5, findings }],
   'get /api/rules': () => [200, { path: 'rover.rules', text: '', version: '1', can_save: true }],
   'post /api/rules/json': () => [200, { version: 1, statements: rules }],
@@ -32,7 +33,24 @@ const kCalls = {
   'post /api/what-if': () => [200, { failures: [], near: [], unknown: [] }],
   'get /api/studies': () => [200, { study: null }],
 }
-const kPages = ['robot', 'incidents', 'plots', 'doctor', 'rules', 'beliefs', 'simulator', 'studies', 'help']
+const kPages = ['robot', 'map', 'incidents', 'plots', 'doctor', 'rules', 'beliefs', 'simulator', 'studies', 'help']
+
+// A house of two rooms, 12 m wide, of which one is unknown; the robot is in the other.
+const kHouse = {
+  width: 60, height: 40, resolution: 0.2, coarser: 1, origin: [-2, -1, 0],
+  cells: Array.from({ length: 2400 }, (_, i) => {
+    const [column, row] = [i % 60, Math.floor(i / 60)]
+    const isWall = row === 0 || row === 39 || column === 0 || column === 59 || (column === 30 && (row < 15 || row > 24))
+    return isWall ? '9' : column > 30 ? '?' : '0'
+  }).join(''),
+}
+const kMap = {
+  topics: ['/map', '/local_costmap/costmap'], topic: '/map', frame: 'map', number: 3, troubles: [],
+  robots: [{ frame: 'base_link', at: [0.5, 1.5], yaw: 0.5, age: 0.05 }],
+  path: { topic: '/plan', age: 0.4, points: [[0.5, 1.5], [2, 2.5], [4, 3], [6, 3]] },
+  scan: { topic: '/scan', age: 0.1, points: Array.from({ length: 30 }, (_, i) => [-1.8, -0.5 + 0.2 * i]) },
+}
+let map = kMap
 
 // The last five minutes, as if asked at kToday: the camera's topics went silent 12 s before.
 function curveOf(name, since) {
@@ -307,6 +325,45 @@ async function guidesNewcomers(page, server) {
   expect((await tour.count()) === 0, 'the tour does not end')
 }
 
+// The robot is drawn where it is, for as long as somebody looks; what is old looks old.
+async function drawsTheMap(page, server) {
+  await become(page, server, kStates.ill, 'map')
+  await page.getByRole('img', { name: 'Map /map: base_link at x 0.5 m, y 1.5 m, 29°' }).waitFor()
+  const place = page.locator('canvas.map')
+  // The colour at a place of the map, in metres.
+  const colourAt = (x, y) =>
+    place.evaluate((canvas, [px, py]) => {
+      const { clientWidth: wide, clientHeight: high } = canvas
+      const scale = Math.min((wide - 24) / 12, (high - 24) / 8)
+      const sharp = canvas.width / wide
+      const at = [wide / 2 + scale * (px - 4), high / 2 - scale * (py - 3)].map((p) => Math.round(p * sharp))
+      return [...canvas.getContext('2d').getImageData(...at, 1, 1).data].join()
+    }, [x, y])
+  const [wall, free, unknown, door] = [await colourAt(-1.9, 3), await colourAt(1, 5), await colourAt(8, 5), await colourAt(4.1, 5)]
+  expect(wall === door && new Set([wall, free, unknown]).size === 3, `walls, free and unknown places look alike: ${[wall, door, free, unknown]}`)
+  const robot = await colourAt(0.5, 1.5)
+  expect(![wall, free].includes(robot), 'the robot is not there')
+  await page.getByRole('region', { name: 'Explanation' }).getByRole('heading', { name: 'camera is down' }).waitFor()
+  const asked = () => server.received.filter(([call]) => call === 'get /api/map')
+  await expectSoon(() => asked().at(-1)[1].known === '3', 'the map is sent again and again')
+
+  map = { ...kMap, robots: [{ ...kMap.robots[0], age: 4.2 }], scan: null, troubles: ['/scan is not drawn: no transform on /tf leads from lazer to map'] }
+  await page.getByText('as of 4.2 s ago').waitFor()
+  await page.getByRole('status').getByText('no transform on /tf leads from lazer to map').waitFor()
+  await expectSoon(async () => (await colourAt(0.5, 1.5)) !== robot, 'a robot that was lost looks as one that is there')
+  await isAccessible(page)
+  await page.getByLabel('Topic of the map').selectOption('/local_costmap/costmap')
+  await expectSoon(() => asked().at(-1)[1].topic === '/local_costmap/costmap', 'the other map is not asked for')
+  map = { ...kMap, topics: [], topic: '', number: 0, robots: [], path: null, scan: null }
+  await page.getByText('Looking for a map').waitFor()
+  map = kMap
+  await page.evaluate(() => (location.hash = 'robot'))
+  await page.locator('.graph canvas').first().waitFor()
+  const count = asked().length
+  await page.waitForTimeout(1000) // five times as long as between two calls
+  expect(asked().length - count <= 1, 'it asks on while nobody looks at the map')
+}
+
 // Findings without a rule; and which of them are new since the last time.
 async function examines(page, server, album) {
   await become(page, server, kStates.well, 'doctor')
@@ -432,6 +489,7 @@ await suite(() =>
       await dragsAThreshold(page, server, album)
       await imaginesTheRobotAsItIs(page, server)
       await plotsSignals(page, server, album)
+      await drawsTheMap(page, server)
       await theKeyPauses(page, server)
       await staysUsableWhenLarge(page, server, album)
       await album.end()

@@ -89,7 +89,7 @@ const kCameraDead = [
 const reasons = { rule: 'RGBDead', strategy: 'rgb_redeploy', components: ['camera'], candidates: kAll, suspects: kSuspects }
 const chosen = (dry_run) => event(kBroken + 0.02, 'strategy_chosen', 'decided', 'warning', 'action', 'camera is held responsible for RGBDead: redeploy camera', { ...reasons, explains: ['FusionSilent', 'SegmentationBad'], actions: ['redeploy camera'], dry_run })
 const heldBack = (reason) => event(kBroken + 0.02, 'action_held_back', 'held back', 'warning', 'warning', `RGBDead.rgb_redeploy is held back: ${reason}`, { rule: 'RGBDead', strategy: 'rgb_redeploy', components: ['camera'], reason })
-const heldBackWithReasons = event(kBroken + 0.03, 'failure_held_back', 'waits', 'info', 'aside', 'RGBDead waits', { rule: 'RGBDead', candidates: [kAll[0], candidate('rgb_redeploy', { condition: 'withheld', text: 'paused by a person' })], suspects: kSuspects })
+const heldBackWithReasons = event(kBroken + 0.03, 'failure_held_back', 'waits', 'info', 'aside', '', { rule: 'RGBDead', candidates: [kAll[0], candidate('rgb_redeploy', { condition: 'withheld', text: 'paused by a person' })], suspects: kSuspects })
 
 const failing = { phase: 'failing', since: kBroken + 0.01, attempts: 1 }
 const kSuffering = { dead: 'camera', FusionSilent: { phase: 'failing', since: kBroken + 0.4, attempts: 0 }, SegmentationBad: { phase: 'failing', since: kBroken + 0.9, attempts: 0 } }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <future>
 
+#include "base/live_clock.h"
 #include "ros2/process_finder.h"
 
 namespace culprit::ros2 {
@@ -31,6 +32,7 @@ Survey::~Survey() {
   tasks_.reset();
   topics_read_.clear();
   nodes_read_.clear();
+  map_.reset();
   log_.reset();
   diagnostics_.reset();
   parameter_events_.reset();
@@ -52,6 +54,7 @@ Expected<void> Survey::start() {
   if (!node) return Error{node.error()};
   node_ = std::move(*node);
   types_ = std::make_unique<TypeFinder>(*node_, options_.types);
+  map_ = std::make_unique<MapWatch>(node_->entry());
   if (auto listening = listen(); !listening) return listening;
   thread_ = std::thread([this] { executor_.run(); });
   return {};
@@ -108,6 +111,31 @@ std::vector<msg::Log> Survey::log_of(const std::string& logger) const {
       all, {}, [](const msg::Log& line) { return std::pair(line.stamp.sec, line.stamp.nanosec); });
   if (all.size() > kMaxLines) all.erase(all.begin(), all.end() - kMaxLines);
   return all;
+}
+
+MapPicture Survey::map(const std::string& wanted, std::uint64_t known) {
+  tasks_->post([this, wanted] { follow_map(wanted); });
+  return map_->picture(known, live_now());
+}
+
+void Survey::follow_map(const std::string& wanted) {
+  std::vector<MapWatch::Topic> published;
+  for (const auto& [name, use] : topics_) {
+    if (!use.publishers.empty()) published.push_back({name, use.type, use.offered});
+  }
+  map_->follow(published, wanted);
+  const bool is_first = map_asked_ == kLongAgo;
+  map_asked_ = live_now();
+  if (is_first) end_map_lease();
+}
+
+void Survey::end_map_lease() {
+  if (live_now() >= later(map_asked_, kMapLease)) {
+    map_->stop();
+    map_asked_ = kLongAgo;
+    return;
+  }
+  tasks_->post_at(Executor::Clock::now() + kMapLease, [this] { end_map_lease(); });
 }
 
 LiveInventory Survey::inventory() const {

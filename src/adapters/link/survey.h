@@ -16,6 +16,7 @@
 #include "base/mutex.h"
 #include "language/live_inventory.h"
 #include "link/course.h"
+#include "link/map_watch.h"
 #include "link/node_reading.h"
 #include "link/rhythm.h"
 #include "link/topic_reading.h"
@@ -46,6 +47,10 @@ class Survey {
   void listen_to_log();
   // The last lines that loggers of this name, and of names below it, wrote since then; the newest last.
   std::vector<msg::Log> log_of(const std::string& logger) const;
+  // The content of a map view (map_watch.h), with the cells unless their number is `known`. `wanted`: the topic of the map; empty:
+  // the usual one. It subscribes to it at the first call, which finds nothing, and no longer if nobody calls for kMapLease.
+  MapPicture map(const std::string& wanted, std::uint64_t known);
+  static constexpr Duration kMapLease = std::chrono::seconds(5);
   // How the messages came of the topics that were asked for, since they are.
   std::map<std::string, Rhythm> rhythms() const;
   // The same of each node that publishes the topic with one writer; by topic and node. Waits for the executor's thread, so it
@@ -83,6 +88,8 @@ class Survey {
   void on_diagnostics(const msg::DiagnosticArray& message);
   void on_log(const msg::Log& line);
   void on_interest(LiveInterest interest);
+  void follow_map(const std::string& wanted);
+  void end_map_lease();
   void read_node(const std::string& node);
   void read_topic(const std::string& topic);
   void read_topic_with(const std::string& topic, const std::string& type,
@@ -99,6 +106,8 @@ class Survey {
   std::unique_ptr<Subscription> diagnostics_;
   std::unique_ptr<Subscription> log_;
   std::unique_ptr<TypeFinder> types_;
+  std::unique_ptr<MapWatch> map_;
+  Time map_asked_ = kLongAgo;  // of the executor's thread; kLongAgo: nobody looks
 
   // Guards what follows, which only the executor's thread changes: it may read without it.
   // Its thread changes these four with the mutex, and reads them without; others read with it.

@@ -4,6 +4,7 @@
 
 #include "ros2/lifecycle_node.h"
 #include "ros2/live_test.h"
+#include "ros2/navigation_messages.h"
 #include "ros2/timer.h"
 
 namespace culprit::ros2 {
@@ -136,6 +137,116 @@ TEST(Survey, MeasuresTheRhythmOfEachPublisherOfATopic) {
     also.reset();
     node.reset();
   });
+}
+
+// A robot that drives: its map is published once, before anybody looks.
+struct DrivingRobot {
+  explicit DrivingRobot(const TestDomain& domain) : context(domain.options()) {
+    context.run([&] {
+      node = std::move(*Node::create(*context, {"/", "robot"}));
+      constexpr Qos kLatched{.durability = Durability::kTransientLocal, .depth = 1};
+      maps.emplace(publisher<msg::OccupancyGrid>("/map", kLatched));
+      costs.emplace(publisher<msg::OccupancyGrid>("/costmap", qos::kDefault));
+      moving.emplace(publisher<msg::TFMessage>("/tf", qos::kDefault));
+      fixed.emplace(publisher<msg::TFMessage>("/tf_static", kLatched));
+      plans.emplace(publisher<msg::Path>("/plan", qos::kDefault));
+      scans.emplace(publisher<msg::LaserScan>("/scan", qos::kSensorData));
+      maps->publish(map("map", {0, 100}));
+      fixed->publish({{edge("base_link", "laser", 0.5)}});
+      ticking = std::make_unique<Timer>(context->executor(), 20ms, [this] { tick(); });
+    });
+  }
+  ~DrivingRobot() {
+    context.run([&] {
+      ticking.reset();
+      maps.reset(), costs.reset(), moving.reset(), fixed.reset(), plans.reset(), scans.reset();
+      node.reset();
+    });
+  }
+  template <class Message>
+  Publisher<Message> publisher(const std::string& topic, const Qos& qos) {
+    return std::move(*node->create_publisher<Message>(topic, qos));
+  }
+  static msg::OccupancyGrid map(const char* frame, std::vector<std::int8_t> cells) {
+    const auto width = static_cast<std::uint32_t>(cells.size());
+    return {{{}, frame}, {{}, 1, width, 1, {}}, std::move(cells)};
+  }
+  static msg::TransformStamped edge(const char* parent, const char* child, double x) {
+    return {{{}, parent}, child, {{x, 0, 0}, {}}};
+  }
+  void tick() {
+    moving->publish({{edge("map", "odom", 1), edge("odom", "base_link", 2)}});
+    costs->publish(map("odom", {50, 50, 50}));
+    plans->publish({{{}, "map"}, {{{}, {{3, 0, 0}, {}}}, {{}, {{4, 0, 0}, {}}}}});
+    scans->publish({{{}, "laser"}, 0, 0, 0, 0, 0, 0, 10, {2}, {}});
+  }
+
+  LiveContext context;
+  std::unique_ptr<Node> node;
+  std::optional<Publisher<msg::OccupancyGrid>> maps;
+  std::optional<Publisher<msg::OccupancyGrid>> costs;
+  std::optional<Publisher<msg::TFMessage>> moving;
+  std::optional<Publisher<msg::TFMessage>> fixed;
+  std::optional<Publisher<msg::Path>> plans;
+  std::optional<Publisher<msg::LaserScan>> scans;
+  std::unique_ptr<Timer> ticking;
+};
+
+// Asks again and again until the map is as wanted, which is returned.
+template <class Predicate>
+MapPicture map_of(Survey& survey, const std::string& topic, std::uint64_t known, Predicate wanted) {
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  while (true) {
+    MapPicture map = survey.map(topic, known);
+    if (wanted(map) || std::chrono::steady_clock::now() > end) return map;
+    std::this_thread::sleep_for(5ms);
+  }
+}
+
+TEST(Survey, DrawsARobotOnItsMapWhileSomebodyLooks) {
+  const TestDomain domain;
+  DrivingRobot robot(domain);
+  const auto survey = survey_of(domain);
+  const auto is_whole = [](const MapPicture& map) {
+    return map.grid && map.robots.size() == 1 && map.path && map.scan;
+  };
+  const MapPicture map = map_of(*survey, "", 0, is_whole);
+  ASSERT_TRUE(is_whole(map));
+  EXPECT_EQ(map.topics, (std::vector<std::string>{"/map", "/costmap"}));
+  EXPECT_EQ(map.grid->cells, "09");
+  EXPECT_DOUBLE_EQ(map.robots[0].at.x, 3) << "in the map's frame";
+  EXPECT_DOUBLE_EQ(map.path->points.back().x, 4);
+  EXPECT_DOUBLE_EQ(map.scan->points.at(0).x, 5.5);
+  EXPECT_TRUE(map.troubles.empty()) << map.troubles[0];
+  EXPECT_FALSE(survey->map("", map.number).grid) << "it is sent once";
+
+  const auto is_other = [](const MapPicture& other) {
+    return other.topic == "/costmap" && other.grid && other.robots.size() == 1;
+  };
+  const MapPicture costs = map_of(*survey, "/costmap", map.number, is_other);
+  ASSERT_TRUE(is_other(costs));
+  EXPECT_EQ(costs.grid->cells, "444");
+  EXPECT_DOUBLE_EQ(costs.robots[0].at.x, 2) << "in this map's frame";
+  EXPECT_EQ(costs.troubles.size(), 1u) << "the path is in a frame that is not below this one";
+
+  EXPECT_TRUE(robot.context.changes().wait_for_one([](const GraphChange& change) {
+    const auto* left = std::get_if<EndpointLeft>(&change);
+    return left != nullptr && left->name == "/tf" && left->kind == EndpointKind::kSubscriber;
+  })) << "nobody looks any more";
+}
+
+TEST(Survey, SaysWhyItDoesNotDrawAMap) {
+  const TestDomain domain;
+  DrivingRobot robot(domain);
+  msg::OccupancyGrid hostile = DrivingRobot::map("map", {0});
+  hostile.info.width = hostile.info.height = 100'000;
+  robot.context.run([&] { robot.maps->publish(hostile); });
+  const auto survey = survey_of(domain);
+  const auto is_told = [](const MapPicture& map) { return !map.troubles.empty(); };
+  const MapPicture map = map_of(*survey, "", 0, is_told);
+  ASSERT_TRUE(is_told(map));
+  EXPECT_EQ(map.troubles[0], "/map is not drawn: it claims 100000 × 100000 cells, and has 1");
+  EXPECT_FALSE(map.grid);
 }
 
 TEST(Survey, ForgetsWhatIsGone) {

@@ -207,6 +207,8 @@ std::vector<web::Route> web_routes(web::Faults faults, web::Hub& hub, const web:
   routes.push_back(
       web::component_route(hub, histories.usage, look,
                            [&names](const std::string& node) { return names.log_of(node); }));
+  routes.push_back(web::map_route(
+      [&names](const std::string& topic, std::uint64_t known) { return names.map(topic, known); }));
   routes.push_back(web::series_route(histories));
   routes.push_back(web::past_series_route(""));
   routes.push_back(web::what_if_route(std::move(planner)));

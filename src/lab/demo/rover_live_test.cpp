@@ -1,11 +1,26 @@
 // Culprit heals the live rover: a fault, the right component held responsible, no other restarted, and the mission goes on.
+// The map view finds it on its map.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "demo/rover_demo.h"
+#include "live/robot_names.h"
 
 namespace culprit::lab {
 namespace {
+
+// As a map view asks for it.
+ros2::MapPicture whole_map_within(Duration patience) {
+  live::RobotNames names;
+  const auto end = std::chrono::steady_clock::now() + patience;
+  while (true) {
+    const auto map = names.map("", 0);
+    if (!map) return {};
+    const bool is_whole = map->grid && !map->robots.empty() && map->path && map->scan;
+    if (is_whole || std::chrono::steady_clock::now() > end) return *map;
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+}
 
 TEST(Rover, GoesOnDrivingAfterItsLidarStalled) {
   const std::atomic<bool> stop = false;
@@ -19,6 +34,14 @@ TEST(Rover, GoesOnDrivingAfterItsLidarStalled) {
   EXPECT_THAT(outcome->redeployed, testing::ElementsAre("lidar"));
   EXPECT_EQ(outcome->collisions, 0);
   EXPECT_GT((*demo)->measure().driven_m, driven);
+
+  const ros2::MapPicture map = whole_map_within(std::chrono::seconds(60));
+  ASSERT_TRUE(map.grid);
+  EXPECT_EQ(map.topic, "/map");
+  ASSERT_EQ(map.robots.size(), 1u) << testing::PrintToString(map.troubles);
+  EXPECT_LT(map.robots[0].at.x, 12);
+  EXPECT_TRUE(map.path);
+  EXPECT_TRUE(map.scan) << testing::PrintToString(map.troubles);
 }
 
 TEST(Rover, SaysWhichFaultsThereAre) {

@@ -3,25 +3,10 @@
 #include <algorithm>
 
 #include "base/live_clock.h"
-#include "ros2/messages.h"
+#include "ros2/navigation_messages.h"
 
 namespace culprit::doctor {
 namespace {
-
-constexpr const char* kType = "tf2_msgs/msg/TFMessage";
-
-struct TransformStamped {
-  ros2::msg::Header header;
-  std::string child_frame_id;
-  std::array<double, 7> transform{};
-  static void visit(auto& self, auto& each) {
-    each(self.header, self.child_frame_id, self.transform);
-  }
-};
-struct TransformMessage {
-  std::vector<TransformStamped> transforms;
-  static void visit(auto& self, auto& each) { each(self.transforms); }
-};
 
 // "/base" was "base" in ROS 1, and some still write it.
 std::string frame(const std::string& name) { return name.starts_with('/') ? name.substr(1) : name; }
@@ -35,7 +20,7 @@ void TransformListening::listen_to(const std::string& topic, Time now) {
       is_static ? ros2::Qos{.durability = ros2::Durability::kTransientLocal, .depth = 100}
                 : ros2::Qos{.reliability = ros2::Reliability::kBestEffort, .depth = 100};
   auto subscription = ros2::RawSubscription::create(
-      self_, topic, kType, qos, ros2::PayloadUse::kWhole,
+      self_, topic, ros2::msg::TFMessage::kType, qos, ros2::PayloadUse::kWhole,
       [this, is_static](const ros2::Sample& sample) { on_sample(sample, is_static); });
   if (!subscription) return;
   subscriptions_[topic] = std::move(*subscription);
@@ -47,11 +32,11 @@ Duration TransformListening::listened(Time now) const {
 }
 
 void TransformListening::on_sample(const ros2::Sample& sample, bool is_static) {
-  const auto message = ros2::decode<TransformMessage>(sample.payload);
+  const auto message = ros2::decode<ros2::msg::TFMessage>(sample.payload);
   if (!message) return;
   const Time now = live_now();
   const MutexLock lock(mutex_);
-  for (const TransformStamped& each : message->transforms) {
+  for (const ros2::msg::TransformStamped& each : message->transforms) {
     const Key key{frame(each.header.frame_id), frame(each.child_frame_id), sample.identity.writer,
                   is_static};
     if (edges_.size() >= kMostEdges && !edges_.contains(key)) continue;

@@ -82,7 +82,7 @@ class ImuDriver final : public RoverNode {
 };
 
 // base_driver: drives as /cmd_vel says, and stops if nothing came for 0.5 s. Integrates the wheels' encoders: /odom and
-// odom -> base_link on /tf, 20 Hz. Passes on /battery_state. Without the parameter motor_power it stands, and senses.
+// odom -> base_link on /tf, 20 Hz. base_link -> laser on /tf_static. Passes on /battery_state. Without the parameter motor_power it stands, and senses.
 //
 // Faults: "odom_frozen" (encoders read zero), "tf_stopped", "tf_late" (stamps 3 s old), "stall" (obeys no command).
 class BaseDriver final : public RoverNode {
@@ -95,6 +95,8 @@ class BaseDriver final : public RoverNode {
     offer(motors_, "/hardware/motors");
     offer(odom_, "/odom");
     offer(tf_, "/tf", {.depth = 100});
+    offer(tf_static_, "/tf_static", {.durability = ros2::Durability::kTransientLocal, .depth = 1});
+    if (tf_static_) tf_static_->publish({{{header_now("base_link"), "laser", {}}}});
     offer(battery_, "/battery_state");
     hear<msg::Twist>("/cmd_vel", ros2::qos::kDefault, [this](const msg::Twist& twist) {
       command_ = twist;
@@ -132,6 +134,7 @@ class BaseDriver final : public RoverNode {
   std::optional<ros2::Publisher<msg::Twist>> motors_;
   std::optional<ros2::Publisher<msg::Odometry>> odom_;
   std::optional<ros2::Publisher<msg::TFMessage>> tf_;
+  std::optional<ros2::Publisher<msg::TFMessage>> tf_static_;
   std::optional<ros2::Publisher<msg::BatteryState>> battery_;
 };
 

@@ -1,14 +1,23 @@
-// The message, service and action types of the rover that ros2/messages.h does not have. Field for field as in the files
+// The message, service and action types of the rover that ros2/ does not have. Field for field as in the files
 // that kType names.
 #pragma once
 
-#include "exemplars/geometry_messages.h"
-#include "ros2/messages.h"
+#include "ros2/navigation_messages.h"
 
 namespace culprit::rover::msg {
 
 using ros2::msg::Header;
+using ros2::msg::LaserScan;
+using ros2::msg::OccupancyGrid;
+using ros2::msg::Path;
+using ros2::msg::Point;
+using ros2::msg::Pose;
+using ros2::msg::PoseStamped;
+using ros2::msg::Quaternion;
+using ros2::msg::TFMessage;
 using ros2::msg::Time;
+using ros2::msg::TransformStamped;
+using ros2::msg::Vector3;
 
 struct Empty {
   static constexpr std::string_view kType = "std_msgs/msg/Empty";
@@ -23,19 +32,6 @@ struct Duration {
   static void visit(auto& self, auto& each) { each(self.sec, self.nanosec); }
 };
 
-struct Vector3 {
-  static constexpr std::string_view kType = "geometry_msgs/msg/Vector3";
-  double x = 0;
-  double y = 0;
-  double z = 0;
-  static void visit(auto& self, auto& each) { each(self.x, self.y, self.z); }
-};
-
-using geometry::msg::Point;
-using geometry::msg::Pose;
-using geometry::msg::PoseStamped;
-using geometry::msg::Quaternion;
-
 struct PoseWithCovariance {
   static constexpr std::string_view kType = "geometry_msgs/msg/PoseWithCovariance";
   Pose pose;
@@ -48,29 +44,6 @@ struct PoseWithCovarianceStamped {
   Header header;
   PoseWithCovariance pose;
   static void visit(auto& self, auto& each) { each(self.header, self.pose); }
-};
-
-struct Transform {
-  static constexpr std::string_view kType = "geometry_msgs/msg/Transform";
-  Vector3 translation;
-  Quaternion rotation;
-  static void visit(auto& self, auto& each) { each(self.translation, self.rotation); }
-};
-
-struct TransformStamped {
-  static constexpr std::string_view kType = "geometry_msgs/msg/TransformStamped";
-  Header header;
-  std::string child_frame_id;
-  Transform transform;
-  static void visit(auto& self, auto& each) {
-    each(self.header, self.child_frame_id, self.transform);
-  }
-};
-
-struct TFMessage {
-  static constexpr std::string_view kType = "tf2_msgs/msg/TFMessage";
-  std::vector<TransformStamped> transforms;
-  static void visit(auto& self, auto& each) { each(self.transforms); }
 };
 
 struct Twist {
@@ -95,51 +68,6 @@ struct Odometry {
   TwistWithCovariance twist;
   static void visit(auto& self, auto& each) {
     each(self.header, self.child_frame_id, self.pose, self.twist);
-  }
-};
-
-struct MapMetaData {
-  static constexpr std::string_view kType = "nav_msgs/msg/MapMetaData";
-  Time map_load_time;
-  float resolution = 0;
-  std::uint32_t width = 0;
-  std::uint32_t height = 0;
-  Pose origin;
-  static void visit(auto& self, auto& each) {
-    each(self.map_load_time, self.resolution, self.width, self.height, self.origin);
-  }
-};
-
-struct OccupancyGrid {
-  static constexpr std::string_view kType = "nav_msgs/msg/OccupancyGrid";
-  Header header;
-  MapMetaData info;
-  std::vector<std::int8_t> data;  // 0 free to 100 occupied, -1 unknown
-  static void visit(auto& self, auto& each) { each(self.header, self.info, self.data); }
-};
-
-struct Path {
-  static constexpr std::string_view kType = "nav_msgs/msg/Path";
-  Header header;
-  std::vector<PoseStamped> poses;
-  static void visit(auto& self, auto& each) { each(self.header, self.poses); }
-};
-
-struct LaserScan {
-  static constexpr std::string_view kType = "sensor_msgs/msg/LaserScan";
-  Header header;
-  float angle_min = 0;
-  float angle_max = 0;
-  float angle_increment = 0;
-  float time_increment = 0;
-  float scan_time = 0;
-  float range_min = 0;
-  float range_max = 0;
-  std::vector<float> ranges;
-  std::vector<float> intensities;
-  static void visit(auto& self, auto& each) {
-    each(self.header, self.angle_min, self.angle_max, self.angle_increment, self.time_increment,
-         self.scan_time, self.range_min, self.range_max, self.ranges, self.intensities);
   }
 };
 

@@ -1,14 +1,13 @@
 // Positions of the vehicle as messages.
 #pragma once
 
-#include "exemplars/geometry_messages.h"
 #include "exemplars/suave/model/position.h"
-#include "ros2/messages.h"
+#include "ros2/navigation_messages.h"
 
 namespace culprit::suave::msg {
 
-using geometry::msg::Point;
-using geometry::msg::PoseStamped;
+using ros2::msg::Point;
+using ros2::msg::PoseStamped;
 
 inline PoseStamped to_message(const model::Position& p) {
   PoseStamped message;

@@ -1,0 +1,50 @@
+// Where the frames of a robot are, as /tf and /tf_static say (REP 105): a tree, of which each frame has its newest transform.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/time.h"
+#include "ros2/navigation_messages.h"
+
+namespace culprit::ros2 {
+
+// The point `p` of the frame that is at `place`, in the frame that `place` is given in.
+msg::Vector3 moved_by(const msg::Transform& place, const msg::Vector3& p);
+// About the z axis, in (-pi, pi].
+double yaw_of(const msg::Quaternion& rotation);
+// Its numbers are finite, and the quaternion is a rotation.
+bool is_valid(const msg::Transform& transform);
+
+class FrameTree {
+ public:
+  static constexpr std::size_t kMostFrames = 10'000;  // the network decides how many there are
+
+  enum class Kind : std::uint8_t { kMoving, kStatic };
+  // Transforms that are not valid, and new frames behind the limit, are dropped.
+  void add(const msg::TFMessage& message, Kind kind, Time now);
+
+  struct Placed {
+    msg::Transform transform;
+    Duration age{};  // of the oldest transform in between that is not static
+  };
+  // The place of `frame` in `ancestor`. Nothing: transforms do not lead there.
+  std::optional<Placed> place(const std::string& frame, const std::string& ancestor,
+                              Time now) const;
+
+  // The frames with this name behind their last '/'.
+  std::vector<std::string> called(std::string_view name) const;
+
+ private:
+  struct Edge {
+    std::string parent;
+    msg::Transform transform;
+    std::optional<Time> arrived;  // nothing: it is static
+  };
+  std::map<std::string, Edge> edges_;  // by child
+};
+
+}  // namespace culprit::ros2
