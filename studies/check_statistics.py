@@ -7,10 +7,11 @@ Prints the number of compared figures. Exits with 1, and names the first that di
 import re
 import sys
 
+import report  # first: it says which library is absent
+
 import numpy
 from scipy import stats
 
-import report
 import sunset
 
 checked = 0

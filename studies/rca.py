@@ -1,9 +1,9 @@
 """The report of `culprit study rca`: the planners beside one another or, with --learn, how true what was learned is."""
+import report  # first: it says which library is absent
+from report import LIGHT
+
 import numpy
 from matplotlib import pyplot
-
-import report
-from report import LIGHT
 
 
 def calibration_figure(calibration):

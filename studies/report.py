@@ -2,7 +2,8 @@
 
 A script of a study (sunset.py, suave.py, rca.py) reads the files that `culprit study` writes, draws with matplotlib, and hands
 sections to a Report. The page needs no network and no other file, and follows the reader's preference for light or dark.
-Run as a program, this file says whether the libraries are there.
+Run as a program, this file says whether the libraries are there. Imported, it ends the program with a message if one is
+absent: scripts import it before the libraries.
 """
 import argparse
 import csv
@@ -97,6 +98,11 @@ def safe_id(text):
 def script_data(data):
     """JSON for a <script> element, which nothing in it can end."""
     return json.dumps(data).replace("<", "\\u003c")
+
+
+def p_value(p):
+    """As the tables have it: no p is 0."""
+    return "< 0.001" if p < 0.001 else f"{p:.3f}"
 
 
 class Report:
@@ -228,8 +234,6 @@ def main(report_of):
     options.add_argument("--html", help="write only the page, there")
     options.add_argument("--svg", help="write only the figures, into this folder")
     arguments = options.parse_args()
-    if missing := missing_packages():
-        sys.exit(f"the report needs a library of Python; install it: sudo apt install {' '.join(missing)}")
     use_style()
     try:
         report_of(Data(arguments.folder)).write(arguments)
@@ -237,6 +241,7 @@ def main(report_of):
         sys.exit(f"{error.filename}: {error.strerror}")
 
 
-if __name__ == "__main__":
-    if absent := missing_packages():
+if absent := missing_packages():
+    if __name__ == "__main__":
         sys.exit(" ".join(absent))
+    sys.exit(f"{Path(sys.argv[0]).name}: {sys.executable} lacks a library that reports need; install: sudo apt install {' '.join(absent)}")

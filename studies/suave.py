@@ -1,11 +1,11 @@
 """The report of `culprit study suave`: tables, search and distance beside the paper's, and one run of each manager from above."""
 import re
 
+import report  # first: it says which library is absent
+from report import LIGHT
+
 import numpy
 from matplotlib import pyplot
-
-import report
-from report import LIGHT
 
 SPEED = 15  # the vehicle on the page moves this much faster than the real one
 AIR = 3  # metres around everything

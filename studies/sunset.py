@@ -1,10 +1,10 @@
-"""The report of `culprit study sunset`: how well ours agree with the paper, tables, distributions, learning, timelines."""
+"""The report of `culprit study sunset`: how well ours agree with the paper, tables, distributions, learning, timelines; or its sweep."""
+import report  # first: it says which library is absent
+from report import LIGHT
+
 import numpy
 from matplotlib import pyplot
 from scipy import stats
-
-import report
-from report import LIGHT
 
 PUBLISHED_RUNS = 162  # of each configuration of the paper
 MARGIN_IN_SD = 0.5  # means that differ by less than this share of the paper's sd are alike
@@ -268,7 +268,7 @@ def equivalence_table(planner, profile, tests):
         "rows": [[{"text": text, "bold": test["p_holm"] < 0.05 and i == 6} for i, text in enumerate((
             test["label"], METRICS[test["metric"]][0], number(test["difference"]),
             f"{number(test['low'])} to {number(test['high'])}", number(MARGIN_IN_SD * test["sd"]),
-            number(test["p"], 3), number(test["p_holm"], 3), number(test["g"])))] for test in tests],
+            report.p_value(test["p"]), report.p_value(test["p_holm"]), number(test["g"])))] for test in tests],
         "notes": ["Reaction times of one run are not independent. The paper does not print how many it pooled; they count as one a run."],
     }
 
@@ -294,6 +294,52 @@ def plot_section(data, page):
     page.section("plots", "Plots", f'<div class="plots">\n{body}</div>\n')
 
 
+# ---- the sweep of the constants that the paper leaves open
+
+def sweep_figure(points):
+    """How ours are ordered beside the paper's, by the time of a relaunch; and where both orders agree at once."""
+    figure, axes = pyplot.subplots(1, 3, figsize=(10.5, 3.8), layout="constrained")
+    relaunches = sorted({point["relaunch_s"] for point in points})
+    windows = sorted({point["window"] for point in points})
+    for axis, metric in zip(axes, ("reaction_s", "downtime_s")):
+        for i, window in enumerate(windows):
+            mine = [point for point in points if point["window"] == window]
+            x = [point["relaunch_s"] + 0.09 * (i - (len(windows) - 1) / 2) for point in mine]
+            axis.plot(x, [point["rho"][metric] for point in mine], "o", color=report.CURVES[i], markersize=3.5, alpha=0.7, linewidth=0,
+                      label=f"window {window:g}")
+        means = [numpy.mean([point["rho"][metric] or 0 for point in points if point["relaunch_s"] == relaunch]) for relaunch in relaunches]
+        axis.plot(relaunches, means, color=LIGHT["ink"], linewidth=1.5, label="mean")
+        axis.axhline(0, color=LIGHT["faint"], linewidth=1)
+        axis.set(title=f"ρ of {METRICS[metric][0]}", xlabel="relaunch [s]", ylim=(-1.05, 1.05), xticks=relaunches)
+        axis.grid(axis="y")
+    axes[0].legend(fontsize=7.5, loc="upper left", bbox_to_anchor=(0, -0.2), ncols=4, columnspacing=0.8, handletextpad=0.2)
+    axes[2].fill_between([0, 1.05], 0, 1.05, color=LIGHT["ours"], alpha=0.15, linewidth=0)
+    for i, relaunch in enumerate(relaunches):
+        mine = [point["rho"] for point in points if point["relaunch_s"] == relaunch]
+        axes[2].plot([rho["reaction_s"] for rho in mine], [rho["downtime_s"] for rho in mine], "o", color=report.CURVES[i], markersize=4,
+                     alpha=0.7, label=f"relaunch {relaunch:g} s")
+    axes[2].set(title="both at once", xlabel="ρ of reaction", ylabel="ρ of downtime", xlim=(-1.05, 1.05), ylim=(-1.05, 1.05))
+    axes[2].legend(fontsize=7.5, loc="upper left", bbox_to_anchor=(0, -0.2), ncols=2, columnspacing=0.8, handletextpad=0.2)
+    axes[2].grid()
+    return figure
+
+
+def sweep_report(data, study):
+    campaign, points = study["campaign"], study["sweep"]
+    page = report.Report("SUNSET: the constants that the paper leaves open", [
+        ("Command", campaign["command"]), ("Seed", campaign["seed"]), ("Version", f"culprit {campaign['version']}"),
+        ("Points", f"{len(points)}, each of 8 configurations × {campaign['runs']} runs")],
+        "Spearman's ρ between our means of the eight configurations and the paper's. Each dot is a point of a full factorial design.")
+    body = ""
+    for planner in dict.fromkeys(point["planner"] for point in points):
+        body += page.figure(
+            f"sweep-{planner}", f"{planner}.", "In the shaded part both orders are like the paper's.",
+            sweep_figure([point for point in points if point["planner"] == planner]))
+    page.section("plots", "Plots", body)
+    page.table_section(data.json("tables.json"))
+    return page
+
+
 def timeline_section(data, page):
     runs = data.json("timelines.json")
     if not runs:
@@ -311,7 +357,10 @@ def timeline_section(data, page):
 
 
 def report_of(data):
-    campaign = data.json("study.json")["campaign"]
+    study = data.json("study.json")
+    if "sweep" in study:
+        return sweep_report(data, study)
+    campaign = study["campaign"]
     page = report.Report("SUNSET", [
         ("Command", campaign["command"]), ("Seed", campaign["seed"]), ("Version", f"culprit {campaign['version']}"),
         ("Runs", f"{len(campaign['rows'])} configurations × {campaign['runs']} runs")])

@@ -22,5 +22,13 @@ TEST(StudyProgress, OfACampaignThatTellsNoneIsUnknown) {
     EXPECT_FALSE(last_progress(log)) << log;
 }
 
+TEST(StudyProgress, IsNotPartOfWhatWentWrong) {
+  const std::string progress = progress_line(10, 20, 0, std::chrono::seconds(1)) + "\n";
+  EXPECT_EQ(web::after_progress("warning\n" + progress + progress + "no report\n"), "no report\n");
+  for (const char* log : {"", "no such file", "no such file\nat all\n"})
+    EXPECT_EQ(web::after_progress(log), log);
+  EXPECT_EQ(web::after_progress(progress), "");
+}
+
 }  // namespace
 }  // namespace culprit

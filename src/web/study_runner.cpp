@@ -1,5 +1,6 @@
 #include "web/study_runner.h"
 
+#include <algorithm>
 #include <charconv>
 #include <csignal>
 #include <sys/wait.h>
@@ -55,6 +56,16 @@ std::optional<std::pair<std::uint64_t, std::uint64_t>> last_progress(const std::
   return has_done && has_total ? std::optional(done) : std::nullopt;
 }
 
+std::string after_progress(const std::string& log) {
+  std::size_t begin = 0;
+  for (std::size_t line = 0; line < log.size();) {
+    const std::size_t end = std::min(log.find('\n', line), log.size() - 1) + 1;
+    if (log[line] == '[') begin = end;
+    line = end;
+  }
+  return log.substr(begin);
+}
+
 Expected<void> StudyRunner::start(const Studies::Campaign& campaign) {
   const MutexLock lock(mutex_);
   look();
@@ -99,7 +110,7 @@ void StudyRunner::look() {
   const bool is_whole = WIFEXITED(status) && WEXITSTATUS(status) == 0;
   last_->state = is_done ? "done" : "failed";
   last_->has_report = is_whole && std::filesystem::exists(file(kReport), error);
-  if (!is_whole) last_->trouble = log ? *log : log.error();
+  if (!is_whole) last_->trouble = log ? after_progress(*log) : log.error();
 }
 
 std::optional<Studies::Progress> StudyRunner::progress() {

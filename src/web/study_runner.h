@@ -47,4 +47,7 @@ class StudyRunner {
 // How many of how many: what the last line of progress in `log` says.
 std::optional<std::pair<std::uint64_t, std::uint64_t>> last_progress(const std::string& log);
 
+// The lines behind the last one of progress; all if there is none.
+std::string after_progress(const std::string& log);
+
 }  // namespace culprit::web

@@ -124,6 +124,7 @@ std::string command_of(const StudyOptions& options) {
   if (options.live) command += " --live";
   if (options.ablation) command += " --ablation";
   if (options.robustness) command += " --robustness";
+  if (options.sweep) command += " --sweep";
   if (options.learning)
     command += fmt::format(" --learning --experiments {} --repetitions {}", options.experiments,
                            options.repetitions);
@@ -238,6 +239,7 @@ int explain(const StudyOptions& options) {
 int sweep(const StudyOptions& options) {
   const study::SweepCampaign campaign{options.planners, options.profile, options.runs,
                                       options.seed};
+  warn_of_missing_python(options.output.report);
   const StopSignals signals;
   Progress progress(0, study::sweep_size(campaign));
   const auto points = study::sweep(campaign, options.jobs(), [&](std::uint64_t done) {
@@ -247,7 +249,9 @@ int sweep(const StudyOptions& options) {
   progress.end();
   if (!points) return fail(points.error(), kUsage);
   if (signals.stopped()) return fail("interrupted; nothing is written", kFailed);
-  const auto written = write(study::sweep_tables(*points, campaign), options.output);
+  const auto written = write_sweep(
+      study::sweep_tables(*points, campaign),
+      study::sweep_json(*points, campaign, command_of(options), options.version), options.output);
   return written ? kOk : fail(written.error(), kFailed);
 }
 

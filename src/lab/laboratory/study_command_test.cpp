@@ -143,7 +143,8 @@ TEST_F(StudyCommand, ShardsOfSuaveMergeToTheSameBytes) {
 TEST_F(StudyCommand, SaysWhichManagersOfSuaveThereAre) {
   EXPECT_EQ(run({"suave", "--managers", "me"}), kUsage);
   EXPECT_THAT(complaint, HasSubstr("there are none, random, bt, metacontrol, rosa, rebet, "
-                                   "rebet-ucb, rebet-greedy, rebet-random, bandit, culprit"));
+                                   "rebet-ucb, rebet-greedy, rebet-random, bandit, ac-ros, "
+                                   "vogel, ghahremani, culprit"));
   EXPECT_EQ(run({"suave", "--managers", "bt,culprit,bt"}), kUsage);
   EXPECT_THAT(complaint, HasSubstr("manager 'bt' is there twice"));
 }
@@ -220,6 +221,19 @@ TEST_F(StudyCommand, WritesAFolderForAPaper) {
   EXPECT_THAT(text(path("paper/tables/effects-paper-paper.tex")), HasSubstr("\\cellcolor{green!"));
 }
 
+TEST_F(StudyCommand, DrawsItsSweep) {
+  ASSERT_EQ(run({"sunset", "--sweep", "--planner", "reference", "--runs", "1", "--report",
+                 path("sweep")}),
+            kOk)
+      << complaint;
+  EXPECT_THAT(text(path("sweep/study.json")), HasSubstr("\"relaunch_s\": 0.5"));
+  EXPECT_THAT(text(path("sweep/figures/sweep-reference.svg")), HasSubstr("window 7"));
+  const std::string page = text(path("sweep/report.html"));
+  EXPECT_THAT(page, HasSubstr("--sweep --planner reference --profile paper --runs 1"));
+  EXPECT_THAT(page, HasSubstr("id=\"sweep-closest\""));
+  EXPECT_EQ(run({"sunset", "--sweep", "--runs", "1", "--format", "csv"}), kFailed);
+}
+
 TEST_F(StudyCommand, HasTheStatisticsThatSciPyComputes) {
   ASSERT_EQ(run({"sunset", "--ablation", "--runs", "18", "--planner", "paper", "--planner",
                  "reference", "--report", path("data")}),
@@ -229,6 +243,8 @@ TEST_F(StudyCommand, HasTheStatisticsThatSciPyComputes) {
   ASSERT_TRUE(python) << python.error();
   const std::string check = *python + " -B studies/check_statistics.py '" + path("data") + "'";
   EXPECT_EQ(std::system(check.c_str()), 0);
+  EXPECT_THAT(text(path("data/report.html")), HasSubstr("&lt; 0.001"));
+  EXPECT_THAT(text(path("data/report.html")), Not(HasSubstr(">0.000<")));
   std::string metrics = text(path("data/metrics.csv"));
   metrics.replace(metrics.find(",downtime_s,18,") + 15, 1, "9");
   write(path("data/metrics.csv"), metrics);

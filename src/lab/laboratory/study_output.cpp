@@ -107,6 +107,17 @@ Expected<void> write(const std::vector<study::Table>& tables, const StudyOutput&
   return write(tables_as(tables, output.format), output.output);
 }
 
+Expected<void> write_sweep(const std::vector<study::Table>& tables, const std::string& json,
+                           const StudyOutput& output) {
+  if (output.format.ends_with("csv"))
+    return Error{"a sweep has no CSV; there are text, markdown, latex and json"};
+  const auto written =
+      write(output.format == "json" ? json : tables_as(tables, output.format), output.output);
+  if (!written || !output.report.is_wanted()) return written;
+  return make_report("sunset", {{"study.json", json}, {"tables.json", study::tables_json(tables)}},
+                     output.report);
+}
+
 std::string timeline_text(const study::Timeline& timeline) {
   std::string out = fmt::format("run {} of {}: {}\n", timeline.run,
                                 study::label(timeline.configuration), timeline.scenario);

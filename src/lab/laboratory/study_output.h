@@ -40,6 +40,9 @@ Expected<void> write(const study::SuaveResult& result, const StudyOutput& output
 Expected<void> write(const study::Validation& validation, const StudyOutput& output);
 // As text, markdown or latex.
 Expected<void> write(const std::vector<study::Table>& tables, const StudyOutput& output);
+// A sweep: its tables, and its points as JSON (sunset_study/sweep.h).
+Expected<void> write_sweep(const std::vector<study::Table>& tables, const std::string& json,
+                           const StudyOutput& output);
 
 // One run, a line for each happening.
 std::string timeline_text(const study::Timeline& timeline);

@@ -95,7 +95,12 @@ Expected<void> make_report(const std::string& study, const std::vector<ReportFil
   const fs::path data = options.folder.empty() ? *temporary / "data" : fs::path(options.folder);
   if (auto written = write_files(files, data); !written) return written;
   const auto python = find_report_python();
-  if (!python) return Error{"no report is written: " + python.error()};
+  if (!python) {
+    const std::string& place = !options.folder.empty() ? options.folder
+                               : !options.html.empty() ? options.html
+                                                       : options.plot_folder;
+    return Error{place + ": no report is written: " + python.error()};
+  }
   const std::vector<std::string> command = {*python, kNoBytecode, script(study + ".py"), data};
   if (!options.folder.empty()) {
     if (auto made = run(command, *temporary / "log"); !made) return made;

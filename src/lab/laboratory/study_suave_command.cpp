@@ -332,7 +332,7 @@ void add_study_suave(CLI::App& study, const std::string& version, int& exit_code
   command
       ->add_option("--managers", options->managers,
                    "Only these of none, random, bt, metacontrol, rosa, rebet, rebet-ucb, "
-                   "rebet-greedy, rebet-random, bandit, culprit")
+                   "rebet-greedy, rebet-random, bandit, ac-ros, vogel, ghahremani, culprit")
       ->delimiter(',');
   command->add_option("--generation", options->generation, "Which SUAVE: era (published) or new")
       ->capture_default_str();

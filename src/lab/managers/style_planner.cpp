@@ -17,12 +17,26 @@ constexpr std::array<std::pair<std::string_view, Style>, 4> kStyles = {{
     {"ghahremani", Style::kGhahremani},
 }};
 
-double value_of(RuleId rule, const Knowledge& knowledge) {
-  const Rule& wrong = knowledge.rules[rule];
-  double depending = 0;
-  for (const ComponentId component : wrong.components)
-    depending += 1 + static_cast<double>(knowledge.graph.downstream(component).size());
-  return (1 + static_cast<double>(wrong.policies.criticality)) * depending;
+// By component, how many connectors join it with others, as mRUBiS counts: one for each pair of a
+// producer and a consumer.
+std::vector<double> connectors(const Knowledge& knowledge) {
+  std::vector<double> by_vertex(knowledge.graph.size());
+  knowledge.graph.for_each_channel([&](std::span<const DependencyGraph::Vertex> producers,
+                                       std::span<const DependencyGraph::Vertex> consumers) {
+    for (const auto producer : producers) {
+      for (const auto consumer : consumers) {
+        if (producer == consumer) continue;
+        by_vertex[producer] += 1;
+        by_vertex[consumer] += 1;
+      }
+    }
+  });
+  std::vector<double> counts;
+  for (std::size_t c = 0; c < knowledge.rules.components.size(); ++c) {
+    const auto vertex = knowledge.graph.vertex_of(ComponentId(c));
+    counts.push_back(vertex ? by_vertex[*vertex] : 0);
+  }
+  return counts;
 }
 
 // Finds the reason why a strategy cannot be executed now, apart from the other chosen strategies.
@@ -73,26 +87,35 @@ std::optional<RuleId> StylePlanner::comes_first(RuleId rule, const Knowledge& kn
   return found == active.end() ? std::nullopt : std::optional(*found);
 }
 
-double StylePlanner::worth(StrategyId id, const Knowledge& knowledge) const {
-  const Strategy& strategy = knowledge.rules[id];
-  const double success = knowledge.beliefs[id].mean().value;
-  switch (style_) {
-    case Style::kRebet:
-      return 0;
-    case Style::kAcRos:
-    case Style::kVogel:
-      return success;
-    case Style::kGhahremani:
-      break;
+std::map<StrategyId, double> StylePlanner::worths(std::span<const RuleId> failures,
+                                                  const Knowledge& knowledge) const {
+  std::vector<double> connected;
+  if (style_ == Style::kGhahremani) connected = connectors(knowledge);
+  std::map<StrategyId, double> all;
+  for (const RuleId rule : failures) {
+    const Rule& wrong = knowledge.rules[rule];
+    double utility = 1;
+    if (style_ == Style::kGhahremani) {
+      utility = 0;
+      for (const ComponentId component : wrong.components) utility += connected[component.index];
+      utility *= 1 + static_cast<double>(wrong.policies.criticality);
+    }
+    for (const StrategyId id : wrong.strategies) {
+      const auto cycles = std::max<std::int64_t>(1, knowledge.rules[id].impact.count);
+      const double success = knowledge.beliefs[id].mean().value;
+      all[id] = style_ == Style::kRebet        ? 0
+                : style_ == Style::kGhahremani ? success * utility / static_cast<double>(cycles)
+                                               : success;
+    }
   }
-  const auto cycles = static_cast<double>(std::max<std::int64_t>(1, strategy.impact.count));
-  return success * value_of(strategy.rule, knowledge) / cycles;
+  return all;
 }
 
 std::vector<Decision> StylePlanner::plan(std::span<const RuleId> failures,
                                          const Knowledge& knowledge) const {
+  const std::map<StrategyId, double> worth = worths(failures, knowledge);
   const auto is_worthier = [&](StrategyId a, StrategyId b) {
-    return plan::parts(worth(a, knowledge)) > plan::parts(worth(b, knowledge));
+    return plan::parts(worth.at(a)) > plan::parts(worth.at(b));
   };
   std::vector<Decision> decisions;
   for (const RuleId id : failures) {
@@ -109,34 +132,38 @@ std::vector<Decision> StylePlanner::plan(std::span<const RuleId> failures,
     });
   }
   std::vector<ComponentId> affected;
-  for (Decision& decision : decisions) {
-    const std::optional<RuleId> first = comes_first(decision.rule, knowledge);
-    decision.is_spent = true;
-    for (Candidate& candidate : decision.candidates) {
-      const bool is_predefined = candidate.strategy == decision.candidates.front().strategy;
-      examine(candidate, affected, knowledge);
-      const bool is_out =
-          candidate.excluded == Condition::kTried || candidate.excluded == Condition::kInvalid;
-      if (style_ == Style::kAcRos && !is_predefined) {
-        candidate.excluded = Condition::kOneEach;
-        continue;
-      }
-      decision.is_spent &= is_out;
-      if (candidate.excluded) continue;
-      if (first) {
-        candidate.excluded = Condition::kInTheWay;
-        candidate.component = knowledge.rules[*first].components.front();
-        candidate.failure = first;
-      } else if (decision.chosen) {
-        candidate.excluded = Condition::kOneEach;
-      } else {
-        decision.chosen = candidate.strategy;
-        const auto& adapted = knowledge.rules[candidate.strategy].components;
-        affected.insert(affected.end(), adapted.begin(), adapted.end());
-      }
+  for (Decision& decision : decisions) choose(decision, affected, knowledge);
+  return decisions;
+}
+
+// `affected`: components that a strategy chosen before adapts.
+void StylePlanner::choose(Decision& decision, std::vector<ComponentId>& affected,
+                          const Knowledge& knowledge) const {
+  const std::optional<RuleId> first = comes_first(decision.rule, knowledge);
+  decision.is_spent = true;
+  for (Candidate& candidate : decision.candidates) {
+    const bool is_predefined = candidate.strategy == decision.candidates.front().strategy;
+    examine(candidate, affected, knowledge);
+    const bool is_out =
+        candidate.excluded == Condition::kTried || candidate.excluded == Condition::kInvalid;
+    if (has_one_strategy() && !is_predefined) {
+      candidate.excluded = Condition::kOneEach;
+      continue;
+    }
+    decision.is_spent &= is_out;
+    if (candidate.excluded) continue;
+    if (first) {
+      candidate.excluded = Condition::kInTheWay;
+      candidate.component = knowledge.rules[*first].components.front();
+      candidate.failure = first;
+    } else if (decision.chosen) {
+      candidate.excluded = Condition::kOneEach;
+    } else {
+      decision.chosen = candidate.strategy;
+      const auto& adapted = knowledge.rules[candidate.strategy].components;
+      affected.insert(affected.end(), adapted.begin(), adapted.end());
     }
   }
-  return decisions;
 }
 
 }  // namespace culprit::study

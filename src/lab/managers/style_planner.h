@@ -1,23 +1,37 @@
-// How managers plan that the paper names beside those of the SUAVE study, each after its own
-// description. None asks which failure is another one's effect.
+// How managers plan that the paper names beside those of the SUAVE study. None asks which failure is
+// another one's effect. Their articles were not at hand: each comes with the source that it was taken
+// from, and with what of it can be checked (style_planner_test.cpp).
 //
-//   rebet       Alberts et al., ReBeT, its reactive adaptation logic: decorators of a behaviour
-//               tree, one around each action. Each adapts by itself when its own condition holds,
-//               and goes through its options in their order. Its bandits: bandit_manager.h.
-//   ac-ros      Cheng et al., AC-ROS: the goal model is evaluated, and for each violated goal its
-//               one predefined plan is executed, over and over; no goal comes before another.
-//   vogel       Vogel and Giese, executable runtime megamodels: one feedback loop repairs
-//               (ERROR), the next one optimises (the other levels) once nothing is left to repair.
-//   ghahremani  Ghahremani et al., utility-driven and rule-based: of the rules that match an issue
-//               the one that gains most utility for its cost, the worthiest issue first. The worth
-//               of a repaired component is its level, 1 to 3, times itself and all that depend
-//               on it.
+//   rebet       Alberts et al., ReBeT, its reactive adaptation logic, from its public code
+//               (EGAlberts/ReBeT, rebet/include/rebet/adapt_node.h): decorators of a behaviour tree,
+//               one around each action. Each adapts by itself when its own condition holds, and goes
+//               through its options in their order. Its bandits: bandit_manager.h.
+//   ac-ros      Cheng et al., AC-ROS, from the paper's related work, and from another's public robot
+//               after AC-ROS (solzilberman/adaptobot, SAS.py): the utility functions of all goals are
+//               evaluated, and the one tactic of each violated goal is executed in the same loop, over
+//               and over; no goal comes before another. Check: both tactics, if two goals are
+//               violated ("00" in SAS.py).
+//   vogel       Vogel and Giese, executable runtime megamodels. From Vogel's public exemplar
+//               (thomas-vogel/mRUBiS, statemape/Analyze.java and Plan.java): a loop finds all issues,
+//               and a static mapping has one strategy for each type. From the paper's related work:
+//               the loops are sequential; one repairs (ERROR), the next one optimises (the other
+//               levels) once nothing is left to repair. Check: a round of Plan.java plans a strategy
+//               for each issue.
+//   ghahremani  Ghahremani, Giese and Vogel, utility-driven and rule-based. From the abstracts of
+//               ICAC 2017 and TAAS 2020: of the rules that match an issue the one that gains most
+//               utility for its cost, the worthiest issue first. From mRUBiS, their exemplar
+//               (utility/MRubisSelfHealingUtilityFunction.java): the utility of a component is its
+//               reliability times its criticality times its number of connectors. Criticality is the
+//               level here, 1 to 3; reliability, which rules do not have, is 1. Check: one after the
+//               other, this order yields the most utility over time of all, as the abstracts claim.
 //
 // Where they leave open which strategy is meant (vogel, ac-ros) it is the likeliest.
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -45,8 +59,13 @@ class StylePlanner : public Planner {
  private:
   // The failure that one of `rule` waits for.
   std::optional<RuleId> comes_first(RuleId rule, const Knowledge& knowledge) const;
-  // The value of a strategy, or of all strategies of a failure: the higher, the earlier.
-  double worth(StrategyId id, const Knowledge& knowledge) const;
+  // By strategy of `failures`, the value of choosing it: the higher, the earlier.
+  std::map<StrategyId, double> worths(std::span<const RuleId> failures,
+                                      const Knowledge& knowledge) const;
+  // Whether a failure has only one strategy.
+  bool has_one_strategy() const { return style_ == Style::kAcRos || style_ == Style::kVogel; }
+  void choose(Decision& decision, std::vector<ComponentId>& affected,
+              const Knowledge& knowledge) const;
 
   Style style_;
   Ranking ranking_;

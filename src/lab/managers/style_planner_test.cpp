@@ -1,10 +1,15 @@
 // The managers that the paper names beside those of the SUAVE study, on SUNSET.
 #include "managers/style_planner.h"
 
+#include <algorithm>
+#include <array>
+#include <numeric>
 #include <set>
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
+#include "plan/bayes/test_scene.h"
 #include "sunset_study/study.h"
 
 namespace culprit::study {
@@ -50,8 +55,8 @@ TEST(Styles, RepairFailuresSideBySideAndWhatFollowsFromThemToo) {
   }
 }
 
-// A restart that did not help is followed by a redeployment, but of AC-ROS's one plan.
-TEST(Styles, OnlyAcRosHasOnePlanForEachFailure) {
+// A restart that did not help is followed by a redeployment, but where each failure has one plan.
+TEST(Styles, OfAcRosAndVogelHaveOnePlanForEachFailure) {
   for (const char* planner : {"rebet", "ac-ros", "vogel", "ghahremani"}) {
     const RuleSet rules = rules_of(planner);
     std::set<StrategyId> executed;
@@ -61,12 +66,64 @@ TEST(Styles, OnlyAcRosHasOnePlanForEachFailure) {
     }
     std::set<RuleId> repaired;
     for (const StrategyId id : executed) repaired.insert(rules[id].rule);
-    if (std::string_view(planner) == "ac-ros") {
+    if (std::string_view(planner) == "ac-ros" || std::string_view(planner) == "vogel") {
       EXPECT_EQ(executed.size(), repaired.size());
     } else {
       EXPECT_GT(executed.size(), repaired.size()) << planner;
     }
   }
+}
+
+// A loop of AC-ROS or mRUBiS (style_planner.h) plans for each failure, also if another explains it.
+TEST(Styles, OfAcRosAndVogelHaveAPlanForEachFailureInOneLoop) {
+  for (const Style style : {Style::kAcRos, Style::kVogel}) {
+    plan::Scene scene(plan::failure_of("a", "A") + plan::failure_of("b", "B") +
+                      plan::failure_of("c", "C"));
+    scene.link("a", "b").fail("A").fail("B").fail("C");
+    EXPECT_EQ(scene.plan(StylePlanner(style)), "A.redeploy B.redeploy C.redeploy");
+  }
+}
+
+// A robot whose components a to d have failures of other levels, durations and numbers of connectors.
+struct Issue {
+  const char* component;
+  const char* rule;
+  double utility;  // level times connectors
+  double cycles;
+};
+constexpr std::array<Issue, 4> kIssues = {
+    {{"a", "A", 3 * 1, 2}, {"b", "B", 1 * 3, 9}, {"c", "C", 2 * 2, 3}, {"d", "D", 3 * 2, 20}}};
+
+std::string rule_of(const Issue& issue, const char* level) {
+  return fmt::format(
+      "COMPONENT {0} NODE /{0} LAUNCH \"{0}\"\nRULE {1}\n  POLICIES {2}\n  TRIGGER x > 1\n"
+      "    STRATEGY restart 90 10\n      ADAPTATION {0} restart {3}\n",
+      issue.component, issue.rule, level, issue.cycles);
+}
+
+// Utility that is lost until all are repaired, one after the other.
+double lost(const std::vector<std::size_t>& order) {
+  double time = 0;
+  double sum = 0;
+  for (const std::size_t i : order) sum += kIssues[i].utility * (time += kIssues[i].cycles);
+  return sum;
+}
+
+// Ghahremani et al. claim that their order is optimal in utility over time.
+TEST(Styles, OfGhahremaniLosesTheLeastUtilityOverTimeOfAllOrders) {
+  plan::Scene scene(rule_of(kIssues[0], "ERROR") + rule_of(kIssues[1], "NON_CRITICAL") +
+                    rule_of(kIssues[2], "WARNING") + rule_of(kIssues[3], "ERROR"));
+  scene.link("a", "b").link("b", "c").link("c", "d").link("b", "d");
+  for (const Issue& issue : kIssues) scene.fail(issue.rule);
+  scene.plan(StylePlanner(Style::kGhahremani));
+  std::vector<std::size_t> chosen;
+  for (const Decision& decision : scene.decisions()) chosen.push_back(decision.rule.index);
+  ASSERT_EQ(chosen.size(), kIssues.size());
+  std::vector<std::size_t> order(kIssues.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  do {
+    EXPECT_LE(lost(chosen), lost(order) + 1e-9);
+  } while (std::ranges::next_permutation(order).found);
 }
 
 // None of them asks which failure is an effect; only Random repairs one after the other.

@@ -95,20 +95,12 @@ std::vector<Repair> working_repairs(const RcaScenario& scenario, const InjectedF
 
 // ---- what others see of it
 
-// Lets each failure wait.
-class SilentPlanner : public Planner {
- public:
-  std::vector<Decision> plan(std::span<const RuleId> failures, const Knowledge&) const override {
-    std::vector<Decision> decisions;
-    for (const RuleId rule : failures) decisions.emplace_back().rule = rule;
-    return decisions;
-  }
-};
-
 // Asks a planner about what the manager knows.
 class Adviser {
  public:
   explicit Adviser(std::unique_ptr<const Planner> planner) : planner_(std::move(planner)) {}
+
+  const Planner& planner() const { return *planner_; }
 
   void look(const Manager& manager, Time now) {
     now_ = now;
@@ -122,7 +114,7 @@ class Adviser {
     }
   }
 
-  Advice advice() const {
+  Advice advice(const RuleSet& rules) {
     std::vector<Weight> weights;
     const auto weight = [&](std::size_t component) -> Weight& {
       for (Weight& its : weights) {
@@ -156,6 +148,7 @@ class Adviser {
       advice.ranked.push_back(its.component);
       if (!is_probability || its.own > 0.5) advice.causes.push_back(its.component);
     }
+    for (const std::size_t cause : advice.causes) propose_best(cause, rules);
     advice.repairs = proposals_;
     return advice;
   }
@@ -171,6 +164,17 @@ class Adviser {
     std::size_t number = 0;
     Decision decision;
   };
+
+  // The strategy that it would choose for a cause once nothing stands in its way any more.
+  void propose_best(std::size_t cause, const RuleSet& rules) {
+    const auto latest = latest_.find(cause);
+    if (latest == latest_.end()) return;
+    for (const Candidate& candidate : latest->second.decision.candidates) {
+      const bool is_out =
+          candidate.excluded == Condition::kTried || candidate.excluded == Condition::kInvalid;
+      if (!is_out) return propose(rules[candidate.strategy]);
+    }
+  }
 
   void propose(const Strategy& strategy) {
     const std::size_t component = strategy.components.front().index;
@@ -190,23 +194,96 @@ class Adviser {
   std::vector<Proposal> proposals_;
 };
 
-void record(const Runtime::Step& step, RcaCase& made) {
-  for (const Observation& observation : step.observations) {
-    const double at_s = seconds(observation.at.time_since_epoch());
-    if (const auto* read = std::get_if<SignalRead>(&observation.what)) {
-      if (made.times_s.empty() || made.times_s.back() < at_s) {
-        made.times_s.push_back(at_s);
-        made.readings.emplace_back(made.watched.size(), false);
+using Advisers = std::map<std::string, Adviser>;
+
+// Chooses nothing, so that each failure waits; but asks what the advisers want to ask.
+class AskingPlanner : public Planner {
+ public:
+  // `advisers` must outlive it.
+  explicit AskingPlanner(const Advisers& advisers) : advisers_(advisers) {}
+
+  std::vector<Decision> plan(std::span<const RuleId> failures,
+                             const Knowledge& knowledge) const override {
+    std::vector<Decision> decisions;
+    for (const RuleId rule : failures) decisions.emplace_back().rule = rule;
+    for (const auto& [name, adviser] : advisers_) {
+      for (const Decision& theirs : adviser.planner().plan(failures, knowledge)) {
+        if (!theirs.asks.empty())
+          *std::ranges::find(decisions, theirs.rule, &Decision::rule) = ask(theirs);
       }
-      made.readings.back()[read->signal.index] = read->value == Value(true);
     }
-    const auto* seen = std::get_if<ProcessSeen>(&observation.what);
-    if (seen != nullptr && seen->state == ProcessState::kGone)
-      made.exits.push_back({at_s, seen->component.index});
+    return decisions;
   }
-}
+
+ private:
+  static Decision ask(const Decision& theirs) {
+    Decision decision;
+    decision.rule = theirs.rule;
+    decision.asks = theirs.asks;
+    Candidate& waiting = decision.candidates.emplace_back();
+    waiting.strategy = theirs.candidates.front().strategy;
+    waiting.excluded = Condition::kSuspect;
+    waiting.component = theirs.asks.front();
+    return decision;
+  }
+
+  const Advisers& advisers_;
+};
+
+// Notes what others may see of a case.
+class Recorder {
+ public:
+  explicit Recorder(RcaCase& made) : made_(made) {}
+
+  void record(const Runtime::Step& step) {
+    for (const Observation& observation : step.observations) {
+      const double at_s = seconds(observation.at.time_since_epoch());
+      if (const auto* read = std::get_if<SignalRead>(&observation.what)) note(*read, at_s);
+      const auto* seen = std::get_if<ProcessSeen>(&observation.what);
+      if (seen != nullptr && seen->state == ProcessState::kGone)
+        made_.events.push_back({at_s, seen->component.index, CaseEventKind::kExited});
+      if (const auto* reply = std::get_if<Reply>(&observation.what)) note(*reply, at_s);
+    }
+    for (const Command& command : step.commands) {
+      if (std::holds_alternative<Probe>(command.what)) asked_[command.id] = command.component.index;
+    }
+  }
+
+ private:
+  void note(const SignalRead& read, double at_s) {
+    if (made_.times_s.empty() || made_.times_s.back() < at_s) {
+      made_.times_s.push_back(at_s);
+      made_.readings.emplace_back(made_.watched.size(), false);
+    }
+    made_.readings.back()[read.signal.index] = read.value == Value(true);
+  }
+
+  void note(const Reply& reply, double at_s) {
+    const auto asked = asked_.find(reply.command);
+    if (asked == asked_.end()) return;
+    const bool has_answered = reply.outcome == Outcome::kDone;
+    made_.events.push_back({at_s, asked->second,
+                            has_answered ? CaseEventKind::kAnswered : CaseEventKind::kUnanswered});
+    asked_.erase(asked);
+  }
+
+  RcaCase& made_;
+  std::map<CommandId, std::size_t> asked_;  // the component
+};
 
 }  // namespace
+
+std::string_view to_string(CaseEventKind kind) {
+  switch (kind) {
+    case CaseEventKind::kExited:
+      return "exited";
+    case CaseEventKind::kAnswered:
+      return "answered";
+    case CaseEventKind::kUnanswered:
+      break;
+  }
+  return "unanswered";
+}
 
 std::optional<CaseTruth> truth_of(const RcaScenario& scenario) {
   const auto& components = scenario.components;
@@ -269,17 +346,18 @@ std::optional<RcaCase> case_of(RcaScenario scenario, std::span<const std::string
   RcaRobot robot(made.scenario, rules);
   Manager::Options options;
   options.discovery = Duration::zero();
-  Manager manager(rules, std::make_unique<SilentPlanner>(), options);
-  std::map<std::string, Adviser> asked;
+  Advisers asked;
   for (const std::string& name : advisers)
     asked.emplace(name, std::move(*make_planner(name, objective, made.scenario)));
+  Manager manager(rules, std::make_unique<AskingPlanner>(asked), options);
+  Recorder recorder(made);
   Runtime runtime(manager, robot);
   runtime.on_step = [&](const Runtime::Step& step) {
-    record(step, made);
+    recorder.record(step);
     for (auto& [name, adviser] : asked) adviser.look(manager, step.now);
   };
   runtime.run(robot.is_over(), Time(from_seconds(made.truth.end_s)));
-  for (const auto& [name, adviser] : asked) made.advice[name] = adviser.advice();
+  for (auto& [name, adviser] : asked) made.advice[name] = adviser.advice(rules);
   return made;
 }
 

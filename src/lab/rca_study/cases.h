@@ -3,14 +3,16 @@
 //
 // A case is made from a random scenario. Its components get an order of their own, since those of
 // the generator go from drivers to outputs. The faults begin later, so that the robot is well for a
-// while. The manager has a planner that chooses nothing; other planners advise beside it, and
-// nothing that they advise is executed. The case ends 5 s after the last failure began.
+// while. The manager has a planner that chooses nothing; other planners advise beside it. Only their
+// questions reach the robot, whether a component answers, which change nothing. The case ends 5 s
+// after the last failure began.
 #pragma once
 
 #include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "plan/bayes/objective.h"
@@ -41,9 +43,17 @@ struct CaseTruth {
 // effect that shows: its own component or each component that is ill because of it is unwatched.
 std::optional<CaseTruth> truth_of(const RcaScenario& scenario);
 
-struct ProcessExit {
+enum class CaseEventKind : std::uint8_t {
+  kExited,     // its process
+  kAnswered,   // the component, a question of an adviser
+  kUnanswered  // it did not, within 0.5 s
+};
+std::string_view to_string(CaseEventKind kind);  // "exited", "answered", "unanswered"
+
+struct CaseEvent {
   double at_s = 0;
   std::size_t component = 0;
+  CaseEventKind kind = CaseEventKind::kExited;
 };
 
 struct Proposal {
@@ -58,7 +68,9 @@ struct Advice {
   // the planner has these; else those that it would repair, in its order. As of the last 2 s.
   std::vector<std::size_t> ranked;
   std::vector<std::size_t> causes;  // more likely than not, or those that it would repair
-  std::vector<Proposal> repairs;    // of each component the first that it would choose
+  // The first that it would choose for each component; at the end, also one for each of its causes
+  // that still waits for others.
+  std::vector<Proposal> repairs;
 };
 
 struct RcaCase {
@@ -67,7 +79,7 @@ struct RcaCase {
   std::vector<std::size_t> watched;         // components with a detector
   std::vector<double> times_s;              // of the readings
   std::vector<std::vector<bool>> readings;  // by time, by place in `watched`: reported ill
-  std::vector<ProcessExit> exits;
+  std::vector<CaseEvent> events;
   std::map<std::string, Advice> advice;  // by planner
 };
 

@@ -120,9 +120,10 @@ TEST(RcaCase, HasTheExitsOfProcesses) {
   const std::vector<std::string> none;
   const auto made = case_of(chain({{0, FaultKind::kCrash, 3}}), none);
   ASSERT_TRUE(made);
-  ASSERT_EQ(made->exits.size(), 1U);
-  EXPECT_EQ(made->exits[0].component, made->truth.causes[0].fault.component);
-  EXPECT_NEAR(made->exits[0].at_s, made->truth.causes[0].fault.at_s, 1e-6);
+  ASSERT_EQ(made->events.size(), 1U);
+  EXPECT_EQ(made->events[0].kind, CaseEventKind::kExited);
+  EXPECT_EQ(made->events[0].component, made->truth.causes[0].fault.component);
+  EXPECT_NEAR(made->events[0].at_s, made->truth.causes[0].fault.at_s, 1e-6);
 }
 
 TEST(RcaCase, GivesItsComponentsAnOrderThatSaysNothing) {
@@ -153,6 +154,41 @@ TEST(RcaCase, IsAdvisedOnWithoutAnyAction) {
     EXPECT_GT(advice.repairs[0].at_s, made->truth.causes[0].fault.at_s) << name;
   }
   EXPECT_EQ(made->advice.at("bayes").ranked.size(), 3U);
+}
+
+// The same chain, where nothing but a restart helps, which takes a component down.
+RcaScenario restartable(std::vector<InjectedFault> faults) {
+  RcaScenario scenario = chain(std::move(faults));
+  for (RcaComponent& component : scenario.components)
+    component.treatments.erase(component.treatments.begin());
+  return scenario;
+}
+
+// bayes takes down no component before those upstream of it have answered.
+TEST(RcaCase, PutsTheQuestionsOfAdvisersToTheRobot) {
+  const std::vector<std::string> advisers = {"bayes"};
+  const auto made = case_of(restartable({silent(1)}), advisers);
+  ASSERT_TRUE(made);
+  const std::size_t cause = made->truth.causes[0].fault.component;
+  ASSERT_FALSE(made->events.empty());
+  EXPECT_EQ(made->events[0].kind, CaseEventKind::kAnswered);
+  EXPECT_NE(made->events[0].component, cause);
+  const auto& repairs = made->advice.at("bayes").repairs;
+  ASSERT_FALSE(repairs.empty());
+  EXPECT_EQ(repairs[0].component, cause);
+  EXPECT_LT(repairs[0].at_s, made->truth.end_s - 1);
+}
+
+TEST(RcaCase, ShowsWhoDoesNotAnswer) {
+  RcaScenario scenario = restartable({{0, FaultKind::kHang, 3}});
+  scenario.components[0].detector.latency_s = 3;  // so that the failure of c1 is detected first
+  const std::vector<std::string> advisers = {"bayes"};
+  const auto made = case_of(std::move(scenario), advisers);
+  ASSERT_TRUE(made);
+  const std::size_t cause = made->truth.causes[0].fault.component;
+  ASSERT_FALSE(made->events.empty());
+  for (const CaseEvent& event : made->events)
+    EXPECT_EQ(event.component == cause, event.kind == CaseEventKind::kUnanswered);
 }
 
 }  // namespace

@@ -71,9 +71,9 @@ std::string signals_of(const RcaCase& made) {
 
 std::string events_of(const RcaCase& made) {
   std::string text = "time_s,component,event\n";
-  for (const ProcessExit& exit : made.exits)
-    text += fmt::format("{},{},exited\n", in_milliseconds(exit.at_s),
-                        made.scenario.components[exit.component].name);
+  for (const CaseEvent& event : made.events)
+    text += fmt::format("{},{},{}\n", in_milliseconds(event.at_s),
+                        made.scenario.components[event.component].name, to_string(event.kind));
   return text;
 }
 

@@ -413,8 +413,8 @@ def baseline_answer(case, ranked):
 # ---- output
 
 COLUMNS = (
-    ("top1", "top 1 [%]", 100),
-    ("top3", "top 3 [%]", 100),
+    ("top1", "AC@1 [%]", 100),
+    ("top3", "AC@3 [%]", 100),
     ("exact", "exact set [%]", 100),
     ("wrong_components", "wrong", 1),
     ("useless_repairs", "useless", 1),

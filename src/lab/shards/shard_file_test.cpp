@@ -381,7 +381,8 @@ TEST(ShardFile, SaysWhatIsWrongWithACampaignOfSuave) {
   EXPECT_EQ(complaint("managers", {"me"}),
             begin +
                 "managers is wrong: there is no manager 'me'; there are none, random, bt, "
-                "metacontrol, rosa, rebet, rebet-ucb, rebet-greedy, rebet-random, bandit, culprit");
+                "metacontrol, rosa, rebet, rebet-ucb, rebet-greedy, rebet-random, bandit, "
+                "ac-ros, vogel, ghahremani, culprit");
   EXPECT_EQ(complaint("mission", "moon").find(begin + "mission is wrong: "), 0u);
   EXPECT_EQ(complaint("generation", "next").find(begin + "generation is wrong: "), 0u);
   EXPECT_EQ(complaint("runs", 0), begin + "runs is 0");

@@ -120,7 +120,7 @@ SingleRun single_run(const SuaveCampaign& campaign, RunId id) {
   SingleRun run;
   run.scenario =
       fmt::format("the {} mission, which begins at {:.1f} s", campaign.plan->name, begin_s);
-  run.is_told = campaign.managers[id.row] == kCulprit;
+  run.is_told = has_rules(campaign.managers[id.row]);
   run.rules = rules_for(*campaign.plan);
   for (const simulation::Fault& fault : campaign.plan->faults)
     run.incidents.push_back(

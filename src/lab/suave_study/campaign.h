@@ -108,7 +108,7 @@ SuaveResult run_campaign(const SuaveCampaign& campaign, unsigned jobs);
 // The first run of each manager again, with its track.
 std::vector<Track> first_tracks(const SuaveCampaign& campaign);
 
-// A run again, to look at moment by moment. Managers of others report no events; the vehicle's
+// A run again, to look at moment by moment. Managers without rules report no events; the vehicle's
 // actions and the faults are reported for all.
 SingleRun single_run(const SuaveCampaign& campaign, RunId id);
 

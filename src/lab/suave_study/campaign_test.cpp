@@ -91,6 +91,16 @@ TEST(SuaveCulprit, IsBetterThanAllOthersUnderStress) {
   }
 }
 
+// Planners of others with culprit's rules and delays; without a cascade there is little to tell apart.
+TEST(SuaveStyles, SearchAndInspectAsCulpritDoes) {
+  const auto rows = play(campaign("standard", {"ac-ros", "vogel", "ghahremani", kCulprit}));
+  for (const SuaveRow& row : rows) {
+    EXPECT_EQ(row.found, row.runs) << row.manager;
+    EXPECT_NEAR(row.searched_s.mean(), rows.back().searched_s.mean(), 1) << row.manager;
+    EXPECT_NEAR(row.last_distance_m.mean(), rows.back().last_distance_m.mean(), 1) << row.manager;
+  }
+}
+
 TEST(SuaveCampaign, IsTheSameOnAnyNumberOfThreads) {
   const SuaveCampaign small = campaign("stress", {"random", "rosa", kCulprit}, 6);
   const std::string once = suave_json(run_campaign(small, 1));

@@ -61,31 +61,29 @@ Table results_table(const SuaveCampaign& campaign, const std::vector<SuaveRow>& 
   Table table{"suave",
               fmt::format("SUAVE, {} mission: mean ± sd", campaign.plan->name),
               {{"", "manager", "", "", Align::kLeft},
-               {"", "from", "", "", Align::kLeft},
                {"", "search [s]"},
                {"", "inspected [m]"},
                {"reaction [s]", "visibility"},
-               {"reaction [s]", "thruster"},
-               {"reaction [s]", "battery"}},
+               {"reaction [s]", "thruster"}},
               {},
               {}};
+  const bool has_battery = campaign.plan->needs_battery;
+  if (has_battery) table.columns.push_back({"reaction [s]", "battery"});
   for (const SuaveRow& row : rows) {
     table.rows.push_back({{row.manager},
-                          {"measured"},
                           {mean_sd(row.search_s)},
                           {mean_sd(row.distance_m)},
                           {mean(row.visibility)},
-                          {mean(row.thruster)},
-                          {mean(row.battery)}});
+                          {mean(row.thruster)}});
+    if (has_battery) table.rows.back().push_back({mean(row.battery)});
     const auto* paper = published::find_suave(campaign.plan->name, row.manager);
     if (paper == nullptr) continue;
-    table.rows.push_back({{""},
-                          {row.manager == kCulprit ? "paper's \"Ours\"" : "paper"},
+    table.rows.push_back({{(row.manager == kCulprit ? "\"Ours\"" : row.manager) + ", paper"},
                           {mean_sd(paper->search_s)},
                           {mean_sd(paper->distance_m)},
                           {mean(paper->visibility_s)},
-                          {mean(paper->thruster_s)},
-                          {mean(paper->battery_s)}});
+                          {mean(paper->thruster_s)}});
+    if (has_battery) table.rows.back().push_back({mean(paper->battery_s)});
   }
   for (const SuaveRow& row : rows) {
     if (row.manager == kCulprit)

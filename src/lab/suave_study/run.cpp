@@ -8,6 +8,7 @@
 #include "manager/manager.h"
 #include "manager/runtime.h"
 #include "managers/paced_manager.h"
+#include "managers/style_planner.h"
 #include "managers/suave_manager.h"
 #include "plan/paper_planner.h"
 #include "simulation/simulated_robot.h"
@@ -26,6 +27,11 @@ constexpr Pace kOwn{{}, {std::chrono::milliseconds(1), std::chrono::milliseconds
 
 // The rules are the project's own, and a test checks them.
 RuleSet checked(const char* name, const char* text) { return *check(Source(name, text)).rules; }
+
+std::unique_ptr<const Planner> planner_of(const std::string& manager) {
+  if (const auto style = find_style(manager)) return std::make_unique<StylePlanner>(*style);
+  return std::make_unique<PaperPlanner>();
+}
 
 const SuaveBaseline* find_baseline(const std::string& name) {
   const auto all = suave_baselines();
@@ -75,10 +81,15 @@ const RuleSet& rules_for(const suave::model::MissionPlan& plan) {
   return plan.needs_battery ? kExtended : kStandard;
 }
 
+bool has_rules(const std::string& contender) { return find_baseline(contender) == nullptr; }
+
 std::vector<SuaveContender> suave_contenders() {
   std::vector<SuaveContender> contenders;
   for (const SuaveBaseline& each : suave_baselines())
     contenders.push_back({std::string(each.name), std::string(each.summary)});
+  contenders.push_back({"ac-ros", "AC-ROS: one plan for each violated goal"});
+  contenders.push_back({"vogel", "Vogel: repairs first, then optimises"});
+  contenders.push_back({"ghahremani", "Ghahremani: most utility for its cost first"});
   contenders.push_back({kCulprit, "rules, checked after each event"});
   return contenders;
 }
@@ -100,9 +111,8 @@ SuaveRun play_suave(const std::string& manager, const suave::model::Generation& 
     run_mission(model, suave_names(), *system, telling);
   } else {
     Manager::Options options;
-    PacedManager system(
-        std::make_unique<Manager>(rules_for(plan), std::make_unique<PaperPlanner>(), options), kOwn,
-        options.start, seed);
+    PacedManager system(std::make_unique<Manager>(rules_for(plan), planner_of(manager), options),
+                        kOwn, options.start, seed);
     run_mission(model, rules_for(plan), system, telling);
   }
   if (telling != nullptr) {

@@ -37,12 +37,16 @@ struct SuaveTelling {
 
 inline constexpr const char* kCulprit = "culprit";
 
-// Who manages: the baselines (managers/suave_manager.h), and culprit.
+// Who manages: the baselines (managers/suave_manager.h); other planners with culprit's rules
+// (managers/style_planner.h); and culprit.
 struct SuaveContender {
   std::string name;
   std::string summary;
 };
 std::vector<SuaveContender> suave_contenders();
+
+// Has it culprit's rules, and so events to report?
+bool has_rules(const std::string& contender);
 
 // The rules that culprit has in such a mission.
 const RuleSet& rules_for(const suave::model::MissionPlan& plan);

@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "json/json.h"
 #include "study/ordered_work.h"
 #include "study/tables/columns.h"
 #include "sunset_study/study.h"
@@ -229,6 +230,35 @@ Expected<std::vector<SweepPoint>> sweep(const SweepCampaign& campaign, unsigned 
 std::vector<Table> sweep_tables(const std::vector<SweepPoint>& points,
                                 const SweepCampaign& campaign) {
   return {effects_table(points, campaign), closest_table(points, campaign)};
+}
+
+std::string sweep_json(const std::vector<SweepPoint>& points, const SweepCampaign& campaign,
+                       const std::string& command, const std::string& version) {
+  Json all = Json::array();
+  for (const SweepPoint& point : points) {
+    Json rho = Json::object();
+    for (const OrderAgreement& agreement : point.order) {
+      const auto& known = agreement.spearman_rho;
+      rho[std::string(traits(agreement.metric).key)] = known ? Json(*known) : Json();
+    }
+    all.push_back({{"planner", point.planner},
+                   {"relaunch_s", seconds(*point.variation.relaunch)},
+                   {"blackboard_period_s", seconds(*point.variation.blackboard_period)},
+                   {"window", *point.variation.window},
+                   {"patience", point.variation.patience},
+                   {"rho", std::move(rho)},
+                   {"reaction_by_impact", point.reaction_by_impact},
+                   {"means_near", point.means_near}});
+  }
+  return to_indented({{"study", "sunset"},
+                      {"campaign",
+                       {{"command", command},
+                        {"version", version},
+                        {"profile", campaign.profile},
+                        {"runs", campaign.runs},
+                        {"seed", campaign.seed}}},
+                      {"sweep", std::move(all)}}) +
+         "\n";
 }
 
 }  // namespace culprit::study

@@ -43,4 +43,11 @@ std::uint64_t sweep_size(const SweepCampaign& campaign);
 std::vector<Table> sweep_tables(const std::vector<SweepPoint>& points,
                                 const SweepCampaign& campaign);
 
+// {"study": "sunset", "campaign": {"command", "version", "profile", "runs", "seed"},
+//  "sweep": [{"planner", "relaunch_s", "blackboard_period_s", "window", "patience",
+//             "rho": {"ratio": 0.76, ...}, "reaction_by_impact": [-35, -30], "means_near": 25}]}
+// `command` repeats the sweep; a correlation that is not defined is null.
+std::string sweep_json(const std::vector<SweepPoint>& points, const SweepCampaign& campaign,
+                       const std::string& command, const std::string& version);
+
 }  // namespace culprit::study

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "json/json.h"
 #include "sunset_study/study.h"
 
 namespace culprit::study {
@@ -65,6 +66,11 @@ TEST(Sweep, StopsWhenItIsTold) {
   ASSERT_EQ(tables.size(), 2u);
   for (const Table& table : tables)
     for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.columns.size());
+  const Json json = parse_strict_json(sweep_json(*points, campaign, "the command", "test"));
+  EXPECT_EQ(json["campaign"]["command"], "the command");
+  ASSERT_EQ(json["sweep"].size(), 2u);
+  EXPECT_EQ(json["sweep"][0]["relaunch_s"], 0.5);
+  EXPECT_TRUE(json["sweep"][0]["rho"].contains("downtime_s"));
   EXPECT_GT(sweep_size(campaign), 20u);
   campaign.planners = {"bt"};
   EXPECT_FALSE(sweep(campaign, 1, [](std::uint64_t) { return true; }));

@@ -49,8 +49,8 @@ std::vector<Column> claim_columns(const std::string& group) {
 
 std::vector<std::string> claim_notes() {
   return {
-      "k/n: parts of the claim that are significant by themselves, and the deciding part: the "
-      "weakest, or the strongest against the claim. g: Hedges' effect size.",
+      "k/n: parts that are significant by themselves; then the deciding part: the weakest, or the "
+      "strongest against the claim. g: Hedges' effect size.",
       "p by Holm over the table, against the claim where it is contradicted. Open: neither is "
       "significant at 5 %."};
 }

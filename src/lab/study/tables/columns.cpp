@@ -53,6 +53,7 @@ ConfigurationColumns::ConfigurationColumns(const std::vector<Row>& rows) {
   for (const Row& row : rows) {
     const Configuration& first = rows.front().configuration;
     const Configuration& other = row.configuration;
+    has_switches_ = has_switches_ || other.switches != first.switches;
     has_planners_ = has_planners_ || other.planner != first.planner;
     has_profiles_ = has_profiles_ || other.profile != first.profile;
     has_probabilities_ = has_probabilities_ || other.probabilities != first.probabilities;
@@ -60,7 +61,7 @@ ConfigurationColumns::ConfigurationColumns(const std::vector<Row>& rows) {
 }
 
 std::vector<Column> ConfigurationColumns::columns() const {
-  std::vector<Column> columns = switch_columns();
+  std::vector<Column> columns = has_switches() ? switch_columns() : std::vector<Column>();
   const auto add = [&columns](bool is_wanted, const char* title, const char* latex) {
     if (is_wanted) columns.push_back({"", title, "", latex, Align::kLeft});
   };
@@ -71,7 +72,8 @@ std::vector<Column> ConfigurationColumns::columns() const {
 }
 
 std::vector<Cell> ConfigurationColumns::cells(const Configuration& configuration) const {
-  std::vector<Cell> cells = switch_cells(configuration.switches);
+  std::vector<Cell> cells =
+      has_switches() ? switch_cells(configuration.switches) : std::vector<Cell>();
   if (has_planners_) cells.push_back({configuration.planner});
   if (has_profiles_) cells.push_back({configuration.profile});
   if (has_probabilities_) {

@@ -22,14 +22,17 @@ std::string p_value(double p);
 std::vector<Column> switch_columns();
 std::vector<Cell> switch_cells(const PaperSwitches& switches);
 
-// The switches, and the other columns that distinguish the campaign's rows.
+// The columns that distinguish the campaign's rows. The switches are among them unless only planners
+// differ, most of which have none.
 class ConfigurationColumns {
  public:
   explicit ConfigurationColumns(const std::vector<Row>& rows);
   std::vector<Column> columns() const;
   std::vector<Cell> cells(const Configuration& configuration) const;
+  bool has_switches() const { return has_switches_ || !has_planners_; }
 
  private:
+  bool has_switches_ = false;
   bool has_planners_ = false;
   bool has_profiles_ = false;
   bool has_probabilities_ = false;

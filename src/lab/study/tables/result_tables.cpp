@@ -74,9 +74,9 @@ Table results_table(const CampaignResult& result) {
       cells.push_back(result_cell(row, metric, best(result.rows, metric)));
     table.rows.push_back(std::move(cells));
   }
-  table.notes.push_back(
-      "D: dependency graph, C: criticality level, S: system impact. The best mean of each metric "
-      "is bold.");
+  if (configuration.has_switches())
+    table.notes.push_back("D: dependency graph, C: criticality level, S: system impact.");
+  table.notes.push_back("The best mean of each metric is bold.");
   table.notes.push_back(runs_note(result));
   return table;
 }
@@ -84,22 +84,19 @@ Table results_table(const CampaignResult& result) {
 Table honest_table(const CampaignResult& result) {
   Table table = interval_table(result, "honest", "Honest metrics",
                                {kHonestCosts.begin(), kHonestCosts.end()});
-  table.columns.push_back({"", "not recovered"});
+  table.columns.push_back({"", fmt::format("not recovered of {}", result.campaign.runs)});
   table.columns.push_back({"", "on the front", "", "", Align::kCentre});
   const auto front = on_front(result);
   for (std::size_t i = 0; i < result.rows.size(); ++i) {
     const Row& row = result.rows[i];
-    table.rows[i].push_back({fmt::format("{} of {}", row[Metric::kRecovery].censored(), row.runs)});
+    table.rows[i].push_back({fmt::format("{}", row[Metric::kRecovery].censored())});
     table.rows[i].push_back({!front[i] ? "" : *front[i] ? "✓" : "–"});
   }
   table.notes.push_back(
-      "A run that did not recover counts with all the time that it was watched, so its mean time "
-      "to "
-      "recovery is a lower bound.");
+      "A run that did not recover counts with the time that it was watched: a lower bound.");
   table.notes.push_back(
-      "On the (Pareto) front: no other row of the same profile and probabilities has means as low "
-      "in "
-      "all five, and a lower one.");
+      "On the (Pareto) front: no other row of the same profile and probabilities has five means as "
+      "low, and a lower one.");
   return table;
 }
 
