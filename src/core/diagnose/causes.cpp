@@ -220,7 +220,7 @@ void Causes::connect_learned(const Knowledge& knowledge, std::size_t i) {
 }
 
 // Leaves out, by level, less critical failures of values that are only ever reconfigured. Such a
-// failure is no cause of an outage: its author finds nothing broken there, and the bad value may be old, because a
+// failure is no cause: its author finds nothing broken there, and the bad value may be old, because a
 // publisher of better values exited.
 void Causes::leave_out_slight(const Knowledge& knowledge) {
   const RuleSet& rules = knowledge.rules;
@@ -233,7 +233,7 @@ void Causes::leave_out_slight(const Knowledge& knowledge) {
       set(slight[level], j);
   }
   for (std::size_t i = 0; i < size(); ++i) {
-    if (!nodes_[i].is_rule() || !nodes_[i].is_outage) continue;
+    if (!nodes_[i].is_rule()) continue;
     for_each(slight[level_of(rules[nodes_[i].rule])],
              [&](std::size_t cause) { clear(causes_[i], cause); });
   }
