@@ -236,9 +236,10 @@ TEST_F(Composed, CulpritMayBeKilledAtAnyInstantOfAReload) {
   };
   std::mt19937 random(static_cast<unsigned>(setting("CULPRIT_CHAOS_SEED", 1)));
   std::uniform_int_distribution<int> reloading(0, 800);
+  // No repair is proven before the next kill, so all count as attempts for one failure.
   const std::string text = rules("") + R"(
 RULE DetectorWeak
-  POLICIES ERROR
+  POLICIES ERROR ATTEMPTS 1000
   TRIGGER parameter(detector, gain) < 5
     STRATEGY detector_redeploy 90 10
       ADAPTATION detector redeploy 5
