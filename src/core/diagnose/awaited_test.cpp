@@ -136,7 +136,7 @@ TEST_F(TwoMonitors, AFailureMayShowThatAStrategyTookItsComponentDown) {
         BegunAnew{strategy, scene_->now - 1500ms, scene_->now - 500ms};
     const auto echo = awaited(400ms);
     ASSERT_TRUE(echo) << component;
-    EXPECT_EQ(echo->begun_anew, scene_.component(component));
+    EXPECT_EQ(echo->component, scene_.component(component));
     EXPECT_FALSE(awaited(2500ms)) << component << ": it failed before";
   }
 }
