@@ -189,21 +189,25 @@ std::string about_states(const std::string& trigger, const std::string& adaptati
          "\nSTRATEGY cure 50 10\n" + adaptations;
 }
 
-// Its supplier is not active, which is just what the rule is about.
+// Its supplier is not active, which is just what the rule is about. A rule that only looks while its
+// component is active is about something else.
 TEST(Diagnosis, ALifecycleExplainsNoRuleAboutStates) {
   const std::string sets = "ADAPTATION b set_parameter gain 1 2\n";
   const std::string changes = "ADAPTATION b change_mode slow 2\n";
-  const auto own_of = [](const std::string& rule) {
+  const auto own_of = [](const std::string& rule, Lifecycle of_b = Lifecycle::kActive) {
     Scene scene("COMPONENT a NODE /a\n" + rule);
     ComponentState& a = scene->components[scene.component("a")];
     a.lifecycle = Lifecycle::kInactive;
     a.was_active = true;
+    scene->components[scene.component("b")].lifecycle = of_b;
     scene.link("a", "b").fail("B");
     return own(scene, "B");
   };
   EXPECT_LT(own_of(about_states("x > 1", sets)), 0.5);
   EXPECT_DOUBLE_EQ(own_of(about_states("x > 1", sets + changes)), 1);
-  EXPECT_DOUBLE_EQ(own_of(about_states("x > 1 || lifecycle(b) != \"active\"", sets)), 1);
+  EXPECT_DOUBLE_EQ(
+      own_of(about_states("x > 1 || lifecycle(b) != \"active\"", sets), Lifecycle::kInactive), 1);
+  EXPECT_LT(own_of(about_states("x > 1 && lifecycle(b) == \"active\"", sets)), 0.5);
 }
 
 // A failure that strategies only reconfigure is no cause of worse ones.
