@@ -11,7 +11,7 @@ void TroubleWatch::look(Time now, bool is_any_failing) {
   const auto troubles = diagnose::all_troubles(knowledge_);
   std::erase_if(open_, [&](const Open& each) {
     const bool is_over = !troubles[each.component.index];
-    // What is on an unreachable computer has no known state.
+    // The state of a component on an unreachable computer is not known.
     if (is_over && !knowledge_.is_unheard(each.component))
       components_[each.component].past_trouble = PastTrouble{each.since, now};
     return is_over;

@@ -159,7 +159,9 @@ class ExpressionParser {
     const auto words = reserved_words();
     const bool is_operator = !operator_of_word(argument.text).empty() || upper == "BETWEEN" ||
                              std::ranges::find(words, upper) != words.end();
-    if (argument.text.empty() || is_operator) return std::nullopt;
+    // A parameter of a template may be the number behind an expression that ends in this name.
+    const bool is_parameter = argument.text.starts_with('{');
+    if (argument.text.empty() || is_operator || is_parameter) return std::nullopt;
     const Span span{name.span.begin, argument.span.end};
     const std::string meant = name.name.text + "(" + argument.text + ")";
     return Diagnostic{Code::kSyntax,
