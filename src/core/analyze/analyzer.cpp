@@ -96,10 +96,8 @@ std::vector<RuleId> Analyzer::plannable(Time now) const {
 
 bool Analyzer::goes_on(RuleId id) const {
   if (!knowledge_.states.awaits_person(id)) return false;
-  return std::ranges::any_of(knowledge_.rules[id].strategies, [&](StrategyId strategy) {
-    const Strategy& each = knowledge_.rules[strategy];
-    return !each.is_last_resort && knowledge_.only_starts_the_gone(each);
-  });
+  return std::ranges::any_of(knowledge_.rules[id].strategies,
+                             [&](StrategyId strategy) { return knowledge_.goes_on(strategy); });
 }
 
 bool Analyzer::anything_to_do(Time now) const {
@@ -219,6 +217,7 @@ void Analyzer::detect(RuleId id, Time now) {
   state.search.last_resort_at = kLongAgo;
   state.search.refused.clear();
   if (is_same) {
+    if (now < state.search.ready_until) take_back_starts(id);
     write_.states.go_on_searching(id, now);
   } else {
     write_.states.begin_search(id, now);
@@ -248,11 +247,35 @@ void Analyzer::detect(RuleId id, Time now) {
   }
 }
 
+// What the last strategy started has ended within its READY: that was a try of one attempt.
+void Analyzer::take_back_starts(RuleId id) {
+  for (const StrategyId strategy : knowledge_.rules[id].strategies) {
+    const auto& all = knowledge_.rules[strategy].adaptations;
+    const bool has_ended = std::ranges::any_of(all, [&](const Adaptation& a) {
+      return launches(a) && knowledge_.is_known_gone(a.component);
+    });
+    if (!has_ended || !knowledge_.states.is_tried(strategy)) continue;
+    write_.states.set_tried(strategy, false);
+    --write_.states.state(id).search.attempts;
+  }
+}
+
+// Until when an end of what the attempt started is a try of it. A later try begins no new READY.
+void Analyzer::note_ready(RuleId id, const Attempt& attempt) {
+  Search& search = write_.states.state(id).search;
+  if (attempt.first_change == kNever || attempt.first_change < search.ready_until) return;
+  for (const Adaptation& a : knowledge_.rules[attempt.strategy].adaptations) {
+    if (launches(a))
+      search.ready_until = std::max(
+          search.ready_until, later(attempt.first_change, knowledge_.rules[a.component].ready));
+  }
+}
+
 void Analyzer::watch_failing(RuleId id, Time now) {
   const RuleState& state = knowledge_.states[id];
   if (is_gone(id, now)) {
     if (const auto tried = std::exchange(write_.states.state(id).tried_alone, std::nullopt))
-      note_latency(id, *tried);
+      note_latency(id, tried->effective);
     if (const auto cleared_by = std::exchange(write_.states.state(id).cleared_by, std::nullopt)) {
       resolve(id, {id, FailureResolved::How::kByStrategy, cleared_by->strategy, {}}, now);
       outcomes_.judged(*cleared_by, true, now);
@@ -310,7 +333,7 @@ void Analyzer::judge(RuleId id, Time now) {
   // Anew each time: how long a signal takes to show a change may have become known meanwhile.
   const Duration impact =
       std::max(duration_of(knowledge_.rules[attempt.strategy].impact, knowledge_.rules),
-               knowledge_.latencies.lateness(id).most);
+               knowledge_.latencies.patience(id));
   const Time given = std::max({later(attempt.effective, impact), shows_from(attempt),
                                knowledge_.signals.heard_again_by(id)});
   attempt.deadline = later(given, knowledge_.signals.latency(id));
@@ -340,8 +363,7 @@ Time Analyzer::shows_from(const Attempt& attempt) const {
   std::vector<ComponentId> hearing;
   Time speaks = kLongAgo;
   for (const Adaptation& adaptation : strategy.adaptations) {
-    if (adaptation.type != AdaptationType::kRedeploy && adaptation.type != AdaptationType::kStart)
-      continue;
+    if (!launches(adaptation)) continue;
     hearing.push_back(adaptation.component);
     const ComponentState& started = knowledge_.components[adaptation.component];
     if (is_read(adaptation.component)) speaks = std::max(speaks, started.awaits_ends_until);
@@ -418,9 +440,15 @@ void Analyzer::succeed(RuleId id, Time now) {
   const bool caused = !is_suspended && !went_away_before(attempt);
   if (caused) couplings_.resolved(attempt, !attempt.is_ambiguous, now);
   couplings_.ended(attempt, now);
-  if (caused && !attempt.is_ambiguous) note_latency(id, attempt.effective);
-  // It helped after all, and its rule showed that late.
-  if (!caused && !is_suspended && state.tried_alone) note_latency(id, *state.tried_alone);
+  const auto& before = state.tried_alone;
+  if (caused && before && before->strategy == attempt.strategy) {
+    // Either time may have helped: the next time there is more patience with the first one.
+    write_.latencies.suspect(id, state.detection.trigger_since - before->effective);
+  } else if (caused && !attempt.is_ambiguous) {
+    note_latency(id, attempt.effective);
+  } else if (!caused && !is_suspended && before) {
+    note_latency(id, before->effective);  // it helped after all, and its rule showed that late
+  }
   state.tried_alone.reset();
   // Its components are free for what brings up the group.
   if (!knowledge_.rules[id].policies.on_change && missing_group(id, now)) {
@@ -436,6 +464,7 @@ void Analyzer::succeed(RuleId id, Time now) {
     resolve(id, {id, FailureResolved::How::kWithoutStrategy, {}, {}}, now);
   }
   // If the failure comes back, this one was tried.
+  note_ready(id, attempt);
   ++state.search.attempts;
   write_.states.set_tried(attempt.strategy, true);
   if (caused) outcomes_.judged(attempt, true, now);
@@ -510,8 +539,7 @@ void Analyzer::excuse(RuleId id, ComponentId unheard, Time now) {
 std::optional<ComponentId> Analyzer::barred_behind(const Attempt& attempt) const {
   if (attempt.obstacle.empty()) return std::nullopt;
   for (const Adaptation& adaptation : knowledge_.rules[attempt.strategy].adaptations) {
-    const bool starts =
-        adaptation.type == AdaptationType::kRedeploy || adaptation.type == AdaptationType::kStart;
+    const bool starts = launches(adaptation);
     if (starts && !knowledge_.components[adaptation.component].start_missing.empty())
       return adaptation.component;
   }
@@ -560,7 +588,10 @@ void Analyzer::fail(RuleId id, Time now) {
     ++state.search.attempts;
     if (!went_away_before(attempt)) outcomes_.judged(attempt, false, now);
     state.tried_alone.reset();
-    if (!attempt.is_ambiguous && attempt.effective != kNever) state.tried_alone = attempt.effective;
+    if (!attempt.is_ambiguous && attempt.effective != kNever) {
+      state.tried_alone = {attempt.strategy, attempt.effective};
+      write_.latencies.stays(id, now - attempt.effective);
+    }
   }
   const auto group = is_false(state.detection.trigger) ? missing_group(id, now) : std::nullopt;
   const std::string reason = !attempt.obstacle.empty() ? attempt.obstacle
@@ -635,7 +666,7 @@ void Analyzer::exhaust(RuleId id, Time now) {
   stay_exhausted(id, now);
 }
 
-// A process that is known to have exited is started again after a while (goes_on()).
+// What goes on nevertheless (Knowledge::goes_on) does so after a while.
 void Analyzer::stay_exhausted(RuleId id, Time now) {
   Search& search = write_.states.state(id).search;
   const int beyond = search.attempts - knowledge_.rules[id].policies.attempts;

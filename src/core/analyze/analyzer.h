@@ -158,6 +158,8 @@ class Analyzer {
   void resolve(RuleId id, FailureResolved how, Time now);
   void exhaust_if_spent(RuleId id, Time now);
   bool has_components_back(const Attempt& attempt) const;
+  void take_back_starts(RuleId id);
+  void note_ready(RuleId id, const Attempt& attempt);
   void exhaust(RuleId id, Time now);
   void stay_exhausted(RuleId id, Time now);
   bool went_away_before(const Attempt& attempt) const;

@@ -10,8 +10,7 @@ namespace {
 bool can_bring_back(const Rule& rule, ComponentId component, const RuleSet& rules) {
   return std::ranges::any_of(rule.strategies, [&](StrategyId id) {
     return std::ranges::any_of(rules[id].adaptations, [&](const Adaptation& a) {
-      return a.component == component &&
-             (a.type == AdaptationType::kRedeploy || a.type == AdaptationType::kStart);
+      return a.component == component && launches(a);
     });
   });
 }

@@ -46,7 +46,8 @@ void LeftOffSearches::remember_tried(StrategyId strategy) {
   auto& left = states_.state(tried.rule).left_off;
   if (!left || tried.is_last_resort) return;
   ++left->search.attempts;
-  left->search.tried[knowledge_.states.place_of(strategy)] = true;
+  const std::size_t place = knowledge_.states.place_of(strategy);
+  left->search.tried[place] = left->search.ever_tried[place] = true;
 }
 
 void LeftOffSearches::remember_detected(RuleId id, Time at) {
@@ -59,8 +60,8 @@ void LeftOffSearches::remember_detected(RuleId id, Time at) {
     return;
   }
   left.emplace().since = at;
+  left->search = Search(knowledge_.rules[id].strategies.size());
   left->search.times = 1;
-  left->search.tried.assign(knowledge_.rules[id].strategies.size(), false);
 }
 
 void LeftOffSearches::remember_gone(RuleId id, Time at, Duration quiet) {

@@ -42,9 +42,8 @@ std::size_t level_of(const Rule& rule) {
 // cycle the power of a device)?
 bool may_be_broken(RuleId rule, const RuleSet& rules) {
   const auto mends = [](const Adaptation& adaptation) {
-    return adaptation.type == AdaptationType::kRestart ||
-           adaptation.type == AdaptationType::kRedeploy ||
-           adaptation.type == AdaptationType::kStart || adaptation.type == AdaptationType::kCall;
+    return adaptation.type == AdaptationType::kRestart || launches(adaptation) ||
+           adaptation.type == AdaptationType::kCall;
   };
   return std::any_of(
       rules[rule].strategies.begin(), rules[rule].strategies.end(), [&](StrategyId s) {

@@ -12,11 +12,8 @@ bool is_known_down(ComponentId component, const Knowledge& knowledge) {
 }
 
 bool replaces(const Strategy& strategy, ComponentId component) {
-  return std::any_of(
-      strategy.adaptations.begin(), strategy.adaptations.end(), [&](const Adaptation& a) {
-        return a.component == component &&
-               (a.type == AdaptationType::kRedeploy || a.type == AdaptationType::kStart);
-      });
+  return std::any_of(strategy.adaptations.begin(), strategy.adaptations.end(),
+                     [&](const Adaptation& a) { return a.component == component && launches(a); });
 }
 
 bool revives(const Strategy& strategy, const Knowledge& knowledge) {

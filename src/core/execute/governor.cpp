@@ -485,10 +485,10 @@ void Governor::began(StrategyId strategy, Time now) {
 
 bool Governor::is_open(const Question& question) const {
   const RuleState& state = knowledge_.states[knowledge_.rules[question.strategy].rule];
-  const bool is_open = state.phase == RulePhase::kFailing ||
-                       (state.phase == RulePhase::kExhausted && question.is_proposed) ||
-                       (state.phase == RulePhase::kExhausted &&
-                        knowledge_.only_starts_the_gone(knowledge_.rules[question.strategy]));
+  const bool is_open =
+      state.phase == RulePhase::kFailing ||
+      (state.phase == RulePhase::kExhausted && question.is_proposed) ||
+      (state.phase == RulePhase::kExhausted && knowledge_.goes_on(question.strategy));
   return is_open && state.failing_since == question.failing_since;
 }
 

@@ -78,10 +78,6 @@ StrategyKind kind_of(const Strategy& strategy) {
   return kind;
 }
 
-bool launches(const Adaptation& adaptation) {
-  return adaptation.type == AdaptationType::kRedeploy || adaptation.type == AdaptationType::kStart;
-}
-
 Limits::Limits(const Knowledge& knowledge, Options options)
     : knowledge_(knowledge),
       options_(options),

@@ -24,9 +24,6 @@ enum class StrategyKind : std::uint8_t {
 };
 StrategyKind kind_of(const Strategy& strategy);
 
-// Does it start a process?
-bool launches(const Adaptation& adaptation);
-
 class Limits {
  public:
   // A component's restarts get apart: `first` after the first one, doubled with each further one

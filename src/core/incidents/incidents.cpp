@@ -86,16 +86,19 @@ std::string time_until(Time at, Time now) {
   return tenths % 10 == 0 ? seconds + " s" : seconds + "." + std::to_string(tenths % 10) + " s";
 }
 
-// The next step for a failure that is being repaired, and its time.
 std::string next_of_exhausted(RuleId rule, const Knowledge& knowledge) {
   const auto& strategies = knowledge.rules[rule].strategies;
-  const bool goes_on = std::any_of(strategies.begin(), strategies.end(), [&](StrategyId id) {
-    return knowledge.only_starts_the_gone(knowledge.rules[id]);
-  });
-  if (!goes_on) return "nothing more is tried: a person must look";
+  const auto next =
+      std::ranges::find_if(strategies, [&](StrategyId id) { return knowledge.goes_on(id); });
+  if (next == strategies.end()) return "nothing more is tried: a person must look";
+  if (!knowledge.only_starts_the_gone(knowledge.rules[*next]))
+    return "a person must look; " + knowledge.rules[*next].name +
+           " is tried once its WHEN condition is true";
   return "a person must look; the process that is gone is started again in " +
          time_until(knowledge.states[rule].search.retry_at, knowledge.now);
 }
+
+// The next step for a failure that is being repaired, and its time.
 
 std::string next_of(RuleId rule, const Knowledge& knowledge) {
   const RuleSet& rules = knowledge.rules;

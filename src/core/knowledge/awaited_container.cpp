@@ -8,8 +8,7 @@ namespace {
 bool replaces(const Strategy& strategy, ComponentId component) {
   return !strategy.is_last_resort &&
          std::ranges::any_of(strategy.adaptations, [&](const Adaptation& a) {
-           return a.component == component &&
-                  (a.type == AdaptationType::kRedeploy || a.type == AdaptationType::kStart);
+           return a.component == component && launches(a);
          });
 }
 

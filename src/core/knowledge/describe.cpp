@@ -102,9 +102,7 @@ class Describer {
     return e.succeeded ? e.what + " again" : "cannot be undone: " + e.what;
   }
   std::string operator()(const RoundSpent& e) const {
-    return rules_[e.rule].name +
-           ": all strategies were tried and none helped for good; they are tried anew after a "
-           "while";
+    return rules_[e.rule].name + ": no strategy helped for long; all are tried again after a pause";
   }
   std::string operator()(const RuleExhausted& e) const {
     const Rule& rule = rules_[e.rule];
@@ -616,7 +614,7 @@ std::string describe_exclusion(const Candidate& candidate, const RuleSet& rules)
     case Condition::kTried:
       return strategy + " was tried already";
     case Condition::kInvalid:
-      return strategy + " makes no sense now: " + candidate.remark;
+      return strategy + " is not possible now: " + candidate.remark;
     case Condition::kAdapting:
       return component + " is being adapted";
     case Condition::kAffected:

@@ -33,7 +33,8 @@ enum class Condition : std::uint8_t {
   kInTheWay,    // it would be in the way of the repair of another failure
   // Of both planners:
   kWithheld,  // the governor does not allow it now
-  // Its component, or one that may be the cause (bayes), is on an unreachable computer.
+  // Its component, or one that may be the cause (bayes), is on an unreachable computer, or cannot be
+  // judged now for another reason (Candidate::remark).
   kUnheard
 };
 

@@ -186,6 +186,12 @@ bool Knowledge::only_starts_the_gone(const Strategy& strategy) const {
   return starts_any;
 }
 
+bool Knowledge::goes_on(StrategyId id) const {
+  const Strategy& strategy = rules[id];
+  if (strategy.is_last_resort) return false;
+  return only_starts_the_gone(strategy) || (!strategy.when.empty() && !states.was_ever_tried(id));
+}
+
 std::optional<TopicId> Knowledge::heard_topic(ComponentId component, Time at) const {
   constexpr Duration kSlack = std::chrono::milliseconds(100);
   for (std::size_t t = 0; t < rules.topics.size(); ++t) {

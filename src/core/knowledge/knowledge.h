@@ -78,6 +78,9 @@ struct Knowledge {
   bool is_known_gone(ComponentId component) const;
   // Does the strategy start such processes, and nothing else? That harms nothing.
   bool only_starts_the_gone(const Strategy& strategy) const;
+  // May the strategy be begun though its rule is exhausted? One that starts the gone; and one that was never
+  // tried for the failure, because its WHEN was not true.
+  bool goes_on(StrategyId strategy) const;
 
   // Since when it is unknown whether the rule's failure is present; empty: the rule can see.
   std::optional<Time> blind_since(RuleId rule) const {

@@ -75,6 +75,7 @@ Latencies::Latencies(const RuleSet& rules)
     : is_late_(rules.rules.size(), false),
       stated_(rules.rules.size()),
       learned_(rules.rules.size()),
+      suspected_(rules.rules.size()),
       cycle_(rules.cycle) {
   std::map<std::string, std::set<std::size_t>> readers;  // of each status: rules
   for (std::size_t r = 0; r < rules.rules.size(); ++r) {
@@ -115,6 +116,23 @@ Duration Latencies::reckon_with(RuleId rule) const {
   return is_unproven ? std::max(most, kUnproven) : most;
 }
 
+Duration Latencies::patience(RuleId rule) const {
+  const Suspected& suspected = suspected_[rule.index];
+  const Duration most = lateness(rule).most;
+  return suspected.is_refuted ? most : std::max(most, suspected.after);
+}
+
+void Latencies::suspect(RuleId rule, Duration after) {
+  Suspected& suspected = suspected_[rule.index];
+  if (is_late_[rule.index])
+    suspected.after = std::min(std::max(after, suspected.after), kMostPatience);
+}
+
+void Latencies::stays(RuleId rule, Duration after) {
+  Suspected& suspected = suspected_[rule.index];
+  suspected.is_refuted |= suspected.after > lateness(rule).most && after >= suspected.after;
+}
+
 double Latencies::repairs() const {
   double sum = 0;
   for (std::size_t r = 0; r < learned_.size(); ++r) {
@@ -152,6 +170,7 @@ void Latencies::set(RuleId rule, const Learned& learned) {
 
 void Latencies::forget(RuleId rule) {
   learned_[rule.index] = {};
+  suspected_[rule.index] = {};
   excess_ = Duration::zero();
   statement_ = Statement::kUnproven;
   for (std::size_t r = 0; r < learned_.size(); ++r) extend_excess(r);

@@ -46,6 +46,8 @@ class Latencies {
   enum class Statement : std::uint8_t { kUnproven, kKept, kExceeded };
   // A monitor that checks once a second, and debounces, is late by this.
   static constexpr Duration kSlowMonitor = std::chrono::seconds(3);
+  // suspect() makes the patience no longer than this.
+  static constexpr Duration kMostPatience = std::chrono::seconds(10);
 
   explicit Latencies(const RuleSet& rules);
 
@@ -64,6 +66,15 @@ class Latencies {
   // together with the latencies that were learned.
   void weigh(double spreading);
 
+  // For how long after a strategy took effect the failure may still be shown: the most of lateness(), or what is
+  // suspected.
+  Duration patience(RuleId rule) const;
+  // A strategy did not help within the patience, and helped at once when it was tried again. Its first try may
+  // have helped, so long `after` it. Only stays() and cleared() show whether it was so.
+  void suspect(RuleId rule, Duration after);
+  // A strategy took effect so long ago, and the failure is still there.
+  void stays(RuleId rule, Duration after);
+
   // A proven repair took effect, and the rule's trigger was false so long `after` that. Ignored for
   // rules that have no lateness.
   void cleared(RuleId rule, Duration after);
@@ -80,6 +91,12 @@ class Latencies {
   std::vector<bool> is_late_;  // by rule: it reads values of a monitor of its own
   std::vector<Range> stated_;
   std::vector<Learned> learned_;
+  // The patience that is tried out, by rule.
+  struct Suspected {
+    Duration after{};
+    bool is_refuted = false;
+  };
+  std::vector<Suspected> suspected_;
   Duration cycle_;
   Duration excess_{};  // of what was learned over what was stated
   Statement statement_ = Statement::kUnproven;

@@ -12,7 +12,7 @@ RuleStates::RuleStates(const RuleSet& rules)
       failing_(rules.components.size()) {
   find_touching();
   for (std::size_t r = 0; r < rules.rules.size(); ++r) {
-    states_[r].search.tried.assign(rules.rules[r].strategies.size(), false);
+    states_[r].search = Search(rules.rules[r].strategies.size());
     const int window = rules.rules[r].policies.hold_window;
     if (window > 1) states_[r].detection.history.assign(static_cast<std::size_t>(window), false);
     const bool has_last = std::ranges::any_of(
@@ -64,8 +64,14 @@ bool RuleStates::is_tried(StrategyId id) const {
   return states_[rules_[id].rule.index].search.tried[place_of(id)];
 }
 
+bool RuleStates::was_ever_tried(StrategyId id) const {
+  return states_[rules_[id].rule.index].search.ever_tried[place_of(id)];
+}
+
 void RuleStates::set_tried(StrategyId id, bool tried) {
-  states_[rules_[id].rule.index].search.tried[place_of(id)] = tried;
+  Search& search = states_[rules_[id].rule.index].search;
+  search.tried[place_of(id)] = tried;
+  if (tried) search.ever_tried[place_of(id)] = true;
 }
 
 void RuleStates::begin_search(RuleId id, Time now) {
@@ -75,9 +81,8 @@ void RuleStates::begin_search(RuleId id, Time now) {
     state.search = left_off->search;
     state.recurring_since = left_off->since;
   } else {
-    state.search = {};
+    state.search = Search(rules_[id].strategies.size());
     state.search.times = 1;
-    state.search.tried.assign(rules_[id].strategies.size(), false);
   }
   state.search.attempts_before = state.search.attempts;
   state.search.retry_at = std::max(now, state.search.retry_at);

@@ -36,13 +36,19 @@ struct Settling {
 
 // How far the search for a strategy that helps has come.
 struct Search {
-  int attempts = 0;           // strategies executed for the failure, also before it came back
-  int attempts_before = 0;    // those of before it came back
-  int times = 0;              // the failure was detected, until it was proven gone
-  int round = 0;              // how often all strategies were gone through
-  Time retry_at = kLongAgo;   // back-off after a round
-  std::vector<bool> tried;    // in this round, by place in Rule::strategies
-  bool is_exhausted = false;  // nothing is left, until it is proven gone
+  Search() = default;
+  explicit Search(std::size_t strategies) : tried(strategies), ever_tried(strategies) {}
+
+  int attempts = 0;              // strategies executed for the failure, also before it came back
+  int attempts_before = 0;       // those of before it came back
+  int times = 0;                 // the failure was detected, until it was proven gone
+  int round = 0;                 // how often all strategies were gone through
+  Time retry_at = kLongAgo;      // back-off after a round
+  std::vector<bool> tried;       // in this round, by place in Rule::strategies
+  std::vector<bool> ever_tried;  // likewise, in any round
+  bool is_exhausted = false;     // nothing is left, until it is proven gone
+  // A process that a strategy started, and that ends before this, was a try of the same attempt (READY).
+  Time ready_until = kLongAgo;
 
   // The last resorts, which are no part of the rounds. `tried` means for each of them that it took
   // effect, or could not be carried out ATTEMPTS times.
@@ -108,8 +114,12 @@ struct RuleState {
     Time since{};
   };
   std::vector<Standing> standing;
-  // When the last attempt that failed took effect, if nothing else can have helped since.
-  std::optional<Time> tried_alone;
+  // The last attempt that failed, and when it took effect, if nothing else can have helped since.
+  struct TriedAlone {
+    StrategyId strategy;
+    Time effective{};
+  };
+  std::optional<TriedAlone> tried_alone;
   // The attempt that made the trigger false, while a group that the rule is about is not active yet.
   std::optional<Attempt> cleared_by;
   bool is_advised = false;              // dry run: the decision was reported
@@ -135,8 +145,9 @@ class RuleStates {
 
   // Where the strategy stands in Rule::strategies.
   std::size_t place_of(StrategyId id) const;
-  // Was it tried in this round?
+  // Was it tried in this round? In any round?
   bool is_tried(StrategyId id) const;
+  bool was_ever_tried(StrategyId id) const;
   void set_tried(StrategyId id, bool tried);
   // Dry run: the decision about the failure was reported; or is to be reported anew.
   void advise(RuleId id) { states_[id.index].is_advised = true; }

@@ -335,9 +335,7 @@ void check_last_resort(const RuleConditions& rule, const RuleSet& rules,
                        std::vector<Diagnostic>& diagnostics) {
   const Rule& checked = rules[rule.rule];
   const auto can_be_launched = [&](ComponentId c) { return rules[c].can_start_again(); };
-  const auto launches = [&](const Adaptation& a) {
-    return a.type == AdaptationType::kRedeploy || a.type == AdaptationType::kStart || a.group;
-  };
+  const auto launches = [&](const Adaptation& a) { return launches(a) || a.group; };
   const auto helps_a_hung_process = [&](StrategyId s) {
     const auto& adaptations = rules[s].adaptations;
     return std::any_of(adaptations.begin(), adaptations.end(), launches);

@@ -311,10 +311,28 @@ struct RuleSet {
   const Strategy& operator[](StrategyId id) const { return strategies[id.index]; }
 };
 
-// The component that a signal is declared FROM.
+// Does it start a process?
+inline bool launches(const Adaptation& adaptation) {
+  return adaptation.type == AdaptationType::kRedeploy || adaptation.type == AdaptationType::kStart;
+}
+
+// Does a status of this name come from the component? "camera", "/camera_node", "camera: frame rate".
+inline bool is_named_after(std::string_view status, const Component& component) {
+  std::string_view name = status.substr(0, status.find(':'));
+  if (name.starts_with('/')) name.remove_prefix(1);
+  const std::string_view node = component.node;
+  return name == component.name || (!node.empty() && name == node.substr(1));
+}
+
+// The component that a signal is declared FROM; or that its diagnostic is named after.
 inline std::optional<ComponentId> publisher_of(SignalId signal, const RuleSet& rules) {
   const auto& source = rules[signal].source;
-  if (const auto* key = std::get_if<DiagnosticKey>(&source)) return key->publisher;
+  if (const auto* key = std::get_if<DiagnosticKey>(&source)) {
+    for (std::size_t c = 0; !key->publisher && c < rules.components.size(); ++c) {
+      if (is_named_after(key->status, rules.components[c])) return ComponentId(c);
+    }
+    return key->publisher;
+  }
   if (const auto* field = std::get_if<TopicField>(&source)) return rules[field->topic].publisher;
   return std::nullopt;
 }

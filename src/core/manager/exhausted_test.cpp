@@ -119,7 +119,7 @@ TEST(Exhausted, LetsAReconfigurationBeTriedThatMadeNoSenseBefore) {
   robot.signal("blur", Value(1.0));
   robot["c0"].fault = "a person";
   robot.run_for(500ms);
-  ASSERT_EQ(robot.count("Blurred waits: focus makes no sense now"), 1u) << transcript(robot);
+  ASSERT_EQ(robot.count("Blurred waits: focus is not possible now"), 1u) << transcript(robot);
   robot.signal("is_tunable", Value(1.0));
   robot.run_for(1500ms);
   ASSERT_FALSE(robot.was_asked("c1: set angle")) << transcript(robot);

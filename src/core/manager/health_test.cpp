@@ -252,7 +252,7 @@ TEST(ProvenHealth, WhatIsTriedAnewAfterAPauseIsSoAcrossACrashOfCulprit) {
   TestRobot robot = robot_that_is_well(20s);
   robot["camera"].fault = "a person";
   const Time end = robot.now + 60s;
-  while (robot.count("they are tried anew after a while") == 0 && robot.now < end)
+  while (robot.count("all are tried again after a pause") == 0 && robot.now < end)
     robot.run_for(100ms);
   const std::size_t before = robot.count("camera is held responsible");
   ASSERT_EQ(before, 2u) << transcript(robot);

@@ -9,11 +9,8 @@ namespace culprit::plan {
 namespace {
 
 bool brings_back(const Strategy& strategy, ComponentId component) {
-  return std::any_of(
-      strategy.adaptations.begin(), strategy.adaptations.end(), [&](const Adaptation& a) {
-        return a.component == component &&
-               (a.type == AdaptationType::kRedeploy || a.type == AdaptationType::kStart);
-      });
+  return std::any_of(strategy.adaptations.begin(), strategy.adaptations.end(),
+                     [&](const Adaptation& a) { return a.component == component && launches(a); });
 }
 
 bool may_bring_back(RuleId rule, ComponentId component, const Knowledge& knowledge) {

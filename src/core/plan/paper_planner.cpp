@@ -102,7 +102,7 @@ void PaperPlanner::examine(Candidate& candidate, Criticality level, const Knowle
     return;
   }
   if (auto invalid = plan::invalidity(strategy, knowledge)) {
-    candidate.excluded = invalid->is_unheard ? Condition::kUnheard : Condition::kInvalid;
+    candidate.excluded = invalid->waits ? Condition::kUnheard : Condition::kInvalid;
     candidate.component = invalid->component;
     candidate.remark = std::move(invalid->reason);
     return;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "knowledge/group_health.h"
 #include "language/evaluate.h"
 
 namespace culprit::plan {
@@ -37,9 +38,7 @@ bool cannot_be_reached(const Adaptation& adaptation, const Knowledge& knowledge)
 
 // The thing that its start needs and that is not there; empty: none is known to be missing.
 std::string missing_for(const Adaptation& adaptation, const Knowledge& knowledge) {
-  const bool starts = adaptation.type == AdaptationType::kRedeploy ||
-                      adaptation.type == AdaptationType::kStart ||
-                      starts_member(adaptation, knowledge);
+  const bool starts = launches(adaptation) || starts_member(adaptation, knowledge);
   const std::string& missing = knowledge.components[adaptation.component].start_missing;
   return starts && !missing.empty() ? "cannot be started: " + missing : "";
 }
@@ -175,17 +174,46 @@ std::optional<Invalid> needless_start(const Strategy& strategy, const Knowledge&
                  "all of " + knowledge.rules[*first.group].name + " are active already"};
 }
 
+// Its component lives, and is not active because its group is paused, or is being brought up or down: there is
+// nothing to repair in it. A rule that reads its lifecycle says so itself.
+std::optional<Invalid> not_active_with_group(const Strategy& strategy, const Knowledge& knowledge) {
+  const RuleSet& rules = knowledge.rules;
+  const auto reads_lifecycle = [&](ComponentId component) {
+    return std::ranges::any_of(rules[strategy.rule].inputs, [&](InputId id) {
+      return rules[id].kind == Input::Kind::kLifecycle && rules[id].component == component;
+    });
+  };
+  for (const Adaptation& a : strategy.adaptations) {
+    const ComponentState& state = knowledge.components[a.component];
+    const bool is_down = state.alive == true && state.lifecycle != Lifecycle::kActive;
+    if (a.group || !is_down || reads_lifecycle(a.component)) continue;
+    for (const Group& group : rules.groups) {
+      if (std::ranges::find(group.members, a.component) == group.members.end()) continue;
+      const GroupHealth health = health_of(group, knowledge.components, knowledge.now);
+      if (health == GroupHealth::kInactive)
+        return Invalid{a.component, "is not active: its group " + group.name + " is paused", true};
+      if (health == GroupHealth::kChanging)
+        return Invalid{a.component,
+                       "is not active: its group " + group.name + " is being brought up or down",
+                       true};
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<Invalid> invalidity(const Strategy& strategy, const Knowledge& knowledge) {
   if (strategy.is_last_resort)
     return Invalid{strategy.adaptations.front().component, "it is the last resort"};
+  const StrategyId id(static_cast<std::size_t>(&strategy - knowledge.rules.strategies.data()));
   const bool is_exhausted = knowledge.states[strategy.rule].search.is_exhausted;
-  if (is_exhausted && !knowledge.only_starts_the_gone(strategy))
+  if (is_exhausted && !knowledge.goes_on(id))
     return Invalid{strategy.adaptations.front().component,
                    "its rule is exhausted, and only exited processes are started again"};
   if (auto held = held_by_last_resort(strategy, knowledge)) return held;
   if (auto barred = barred_by_another(strategy, knowledge)) return barred;
+  if (auto not_active = not_active_with_group(strategy, knowledge)) return not_active;
   return impossibility(strategy, knowledge);
 }
 

@@ -11,10 +11,11 @@
 //   - start: it has a LAUNCH command and is not there;
 //   - stop: it is there.
 // A component on a computer that is unreachable, or cannot be asked, cannot be adapted. A redeploy or a start
-// waits while a thing that the start needs is missing (StartBarred). For an exhausted rule only the start of a
-// process that is known to have exited is valid. A strategy is valid if each of its adaptations is, given the ones
+// waits while a thing that the start needs is missing (StartBarred). For an exhausted rule only what goes on is
+// valid (Knowledge::goes_on). A strategy is valid if each of its adaptations is, given the ones
 // before it, and its WHEN condition is true. Further, no last resort whose failure is still there may have set the
-// same thing, and it must not have brought back a more critical failure (analyze/parameter_fights.h). A last
+// same thing, it must not have brought back a more critical failure (analyze/parameter_fights.h), and its component
+// must not be out of work with its group: paused, or being brought up or down. A last
 // resort is never valid for a planner: the manager begins it.
 #pragma once
 
@@ -28,9 +29,9 @@ namespace culprit::plan {
 struct Invalid {
   ComponentId component;  // what it is about; for a WHEN condition the strategy's first
   std::string reason;
-  // Its state is unknown (Knowledge::is_unheard), or it cannot be asked now: the strategy waits,
-  // and uses up no attempt.
-  bool is_unheard = false;
+  // Its state is unknown (Knowledge::is_unheard), it cannot be asked now, or it is as its group is: the
+  // strategy waits, and uses up no attempt.
+  bool waits = false;
 };
 
 // Empty if the strategy is valid.

@@ -41,7 +41,7 @@ TEST(Validity, RulesOutToEndOrStartWhatIsOnAComputerThatCannotBeAsked) {
   scene->components[scene.component("lidar")].is_out_of_reach = true;
   ASSERT_TRUE(invalid("Dark.again"));
   EXPECT_EQ(invalid("Dark.again")->reason, "is on rover2, which cannot be asked");
-  EXPECT_TRUE(invalid("Dark.again")->is_unheard);
+  EXPECT_TRUE(invalid("Dark.again")->waits);
   EXPECT_FALSE(invalid("Dark.tune")) << "its node is heard";
 }
 

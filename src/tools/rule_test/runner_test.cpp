@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{kCameraKilled, "NO STRATEGY BY 2s", "NO STRATEGY", "happened at 2.010 s"},
         Case{kCameraKilled, "camera_restart EXCLUDED BECAUSE invalid ON camera",
              "camera_restart EXCLUDED BECAUSE tried",
-             "what was said of it: camera_restart makes no sense now: camera is not alive"},
+             "what was said of it: camera_restart is not possible now: camera is not alive"},
         Case{kCameraKilled, "fusion_redeploy EXCLUDED BECAUSE dependency ON camera",
              "fusion_redeploy EXCLUDED BECAUSE dependency ON fusion", "depends on camera"},
         Case{kCameraSick, "camera_redeploy EXCLUDED BECAUSE other_chosen", "focus EXCLUDED",

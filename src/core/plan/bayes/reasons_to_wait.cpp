@@ -147,7 +147,7 @@ bool ReasonsToWait::exclude_transient(WeighedCandidate& weighed) const {
 void ReasonsToWait::look_at(WeighedCandidate& weighed, const Invalid& why) const {
   if (const auto held = exclusions_.reserved(weighed.level, weighed.affected))
     return exclude(weighed, *held);
-  weighed.candidate.excluded = why.is_unheard ? Condition::kUnheard : Condition::kInvalid;
+  weighed.candidate.excluded = why.waits ? Condition::kUnheard : Condition::kInvalid;
   weighed.candidate.component = why.component;
   weighed.candidate.remark = why.reason;
 }
