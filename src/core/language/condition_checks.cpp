@@ -335,10 +335,10 @@ void check_last_resort(const RuleConditions& rule, const RuleSet& rules,
                        std::vector<Diagnostic>& diagnostics) {
   const Rule& checked = rules[rule.rule];
   const auto can_be_launched = [&](ComponentId c) { return rules[c].can_start_again(); };
-  const auto launches = [&](const Adaptation& a) { return launches(a) || a.group; };
+  const auto begins = [&](const Adaptation& a) { return launches(a) || a.group; };
   const auto helps_a_hung_process = [&](StrategyId s) {
     const auto& adaptations = rules[s].adaptations;
-    return std::any_of(adaptations.begin(), adaptations.end(), launches);
+    return std::any_of(adaptations.begin(), adaptations.end(), begins);
   };
   const auto launchable =
       std::find_if(checked.components.begin(), checked.components.end(), can_be_launched);

@@ -90,7 +90,7 @@ void check_short_impacts(const syntax::Rule& rule, const RuleSet& rules,
                          std::vector<Diagnostic>& diagnostics) {
   for (const syntax::Strategy& strategy : rule.strategies) {
     for (const syntax::Adaptation& a : strategy.adaptations) {
-      const bool starts = launches(a);
+      const bool starts = a.type == AdaptationType::kRedeploy || a.type == AdaptationType::kStart;
       const Duration given = duration_of(Cycles{static_cast<std::int64_t>(a.impact.value)}, rules);
       if (!starts || given >= kFastestStart) continue;
       diagnostics.push_back(

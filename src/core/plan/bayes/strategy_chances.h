@@ -39,7 +39,7 @@ struct StrategyChance {
   bool is_withheld = false;  // by the governor; it would help as well as ever
 
   bool is_out() const { return is_tried || invalid.has_value(); }
-  bool is_unheard() const { return !is_tried && invalid && invalid->is_unheard; }
+  bool is_unheard() const { return !is_tried && invalid && invalid->waits; }
 };
 
 // The chances of all strategies of the rule, in their order.
