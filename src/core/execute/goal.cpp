@@ -77,6 +77,15 @@ PresentGoal present(const Adaptation& adaptation, const Knowledge& knowledge) {
   return goal;
 }
 
+// Who states a long impact may mean a routine that answers when it has done its work.
+ServiceGoal calling(const Adaptation& adaptation, const Knowledge& knowledge) {
+  ServiceGoal goal;
+  goal.service = service_of(adaptation.subject, knowledge.graph.node_name(adaptation.component));
+  goal.request = adaptation.request;
+  goal.answer = std::max(goal.answer, duration_of(adaptation.impact, knowledge.rules));
+  return goal;
+}
+
 // NaN cannot be set and read back.
 bool is_nan(const Value& value) {
   const auto* number = std::get_if<double>(&value);
@@ -90,7 +99,7 @@ Duration patience(const Goal& goal) {
       Overload{[](const ParameterGoal&) -> Duration { return 3s; },
                [](const LifecycleGoal& g) -> Duration { return g.patience + g.grace; },
                [](const ModeGoal&) -> Duration { return 10s; },
-               [](const ServiceGoal&) -> Duration { return 10s; },
+               [](const ServiceGoal& g) -> Duration { return g.answer + 5s; },
                [](const GoneGoal&) -> Duration { return 15s; },
                [](const PresentGoal& g) -> Duration { return g.patience; }},
       goal);
@@ -287,9 +296,7 @@ Expected<std::vector<Goal>> goals_of(const Adaptation& adaptation, const Knowled
     case AdaptationType::kStartGroup:  // a rule set holds its parts instead
       return std::vector<Goal>{};
     case AdaptationType::kCall:
-      return std::vector<Goal>{ServiceGoal{
-          service_of(adaptation.subject, knowledge.graph.node_name(adaptation.component)),
-          adaptation.request}};
+      return std::vector<Goal>{calling(adaptation, knowledge)};
   }
   return std::vector<Goal>{};
 }

@@ -47,6 +47,7 @@ struct ModeGoal {
 struct ServiceGoal {
   std::string service;
   std::string request{};
+  Duration answer = std::chrono::seconds(5);  // it may take so long to answer
 };
 // Reached at once if another process than `pid` has taken its place; 0: whichever is there is
 // meant.

@@ -120,9 +120,9 @@ Duration Pursuit::timeout(const Request& request) const {
   if (present != nullptr && std::holds_alternative<StartProcess>(request)) return present->answer;
   if (std::holds_alternative<ChangeLifecycle>(request))
     return std::min<Duration>(5s, patience(goal_));
-  const bool is_slow = std::holds_alternative<CallService>(request) ||
-                       std::holds_alternative<ChangeMode>(request) ||
-                       std::holds_alternative<StartProcess>(request);
+  if (const auto* service = std::get_if<ServiceGoal>(&goal_)) return service->answer;
+  const bool is_slow =
+      std::holds_alternative<ChangeMode>(request) || std::holds_alternative<StartProcess>(request);
   return is_slow ? 5s : 1s;
 }
 
