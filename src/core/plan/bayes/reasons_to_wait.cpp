@@ -167,8 +167,11 @@ bool ReasonsToWait::is_quicker_than_repair(StrategyId id, std::size_t cause) con
       if (!each.is_out() && (!repair || impact < *repair)) repair = impact;
     }
   }
-  return repair && duration_of(*repair, knowledge_.rules) >=
-                       duration_of(strategy.impact, knowledge_.rules) + kWorkaroundGain;
+  if (!repair) return false;
+  // What has taken so long already will presumably take as long again.
+  const Duration so_far = knowledge_.now - knowledge_.states[rule].failing_since;
+  return std::max(so_far, duration_of(*repair, knowledge_.rules)) >=
+         duration_of(strategy.impact, knowledge_.rules) + kWorkaroundGain;
 }
 
 // The cause has been repaired, and counts as over once a group is active that this strategy brings up. If it waited for the
