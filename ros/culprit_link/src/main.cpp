@@ -15,6 +15,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <sys/mman.h>
 #include <sys/socket.h>
 #include <thread>
 #include <unistd.h>
@@ -487,6 +488,39 @@ class Helper {
   GraphSeen told_;
 };
 
+const char* environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value != nullptr ? value : "";
+}
+
+// A killed process leaves its ports in shared memory, where publishers write for nobody from then on; and this one has to
+// receive right after its killed predecessor. Fast DDS before 2.12 does not know the variable, and obeys a profile only.
+// rmw_fastrtps adds shared memory where ROS_LOCALHOST_ONLY is set, so that the profile has to say that as well.
+void use_no_shared_memory() {
+  setenv("FASTDDS_BUILTIN_TRANSPORTS", "UDPv4", 0);
+  const std::string rmw = environment("RMW_IMPLEMENTATION");
+  const bool is_fast_dds = rmw.empty() || rmw.find("fastrtps") != std::string::npos;
+  const bool has_profile = *environment("FASTRTPS_DEFAULT_PROFILES_FILE") != 0 ||
+                           *environment("FASTDDS_DEFAULT_PROFILES_FILE") != 0;
+  if (!is_fast_dds || has_profile) return;
+  const bool is_local = std::strcmp(environment("ROS_LOCALHOST_ONLY"), "1") == 0;
+  const std::string only_here =
+      is_local ? "<interfaceWhiteList><address>127.0.0.1</address></interfaceWhiteList>" : "";
+  const std::string profile =
+      R"(<profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">)"
+      "<transport_descriptors><transport_descriptor><transport_id>udp</transport_id>"
+      "<type>UDPv4</type>" +
+      only_here +
+      "</transport_descriptor></transport_descriptors>"
+      R"(<participant profile_name="culprit_link" is_default_profile="true"><rtps>)"
+      "<userTransports><transport_id>udp</transport_id></userTransports>"
+      "<useBuiltinTransports>false</useBuiltinTransports></rtps></participant></profiles>";
+  const int file = memfd_create("culprit_link.xml", MFD_CLOEXEC);
+  if (file < 0 || write(file, profile.data(), profile.size()) < 0) return;
+  setenv("FASTRTPS_DEFAULT_PROFILES_FILE", ("/proc/self/fd/" + std::to_string(file)).c_str(), 1);
+  if (is_local) unsetenv("ROS_LOCALHOST_ONLY");
+}
+
 }  // namespace
 }  // namespace culprit_link
 
@@ -499,9 +533,7 @@ int main(int argc, char** argv) {
   // Ctrl-C reaches the whole group; culprit ends first, and this program with it.
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGHUP, SIG_IGN);
-  // A killed process leaves locks in shared memory, and this one has to work right after its killed predecessor. Fast DDS
-  // before 2.12 does not know the variable.
-  setenv("FASTDDS_BUILTIN_TRANSPORTS", "UDPv4", 0);
+  culprit_link::use_no_shared_memory();
   culprit_link::Helper(socket).run();
   return 0;
 }

@@ -334,7 +334,8 @@ class Checker {
         : missing == "STRATEGY"
             ? "add a STRATEGY with what may help, or REPORT to its POLICIES to notify a person"
         : missing == "STRATEGY but a LASTRESORT"
-            ? "add a STRATEGY that may help, or leave out LASTRESORT if this one does: a last resort only makes the robot safe"
+            ? "add a STRATEGY that may help, or leave out LASTRESORT if this one does: a last "
+              "resort only makes the robot safe"
             : "a rule says how critical the failure is (POLICIES), when it is there (TRIGGER) and "
               "what may help (STRATEGY), or that a person is notified (POLICIES ... REPORT)";
     report(Code::kIncomplete, rule.name.span,

@@ -84,13 +84,13 @@ void Monitor::see(TopicId topic, Time at) {
 Time Monitor::silent_from(TopicId topic) const {
   if (const auto& since = topics_[topic.index].silent_since) return *since;
   const auto first = knowledge_.discovered.first(topic);
-  return first ? later(std::max(*first, start_), discovered_ - start_) : kNever;
+  return first ? later(std::max({*first, start_, awake_}), discovered_ - start_) : kNever;
 }
 
 // For a topic that was seen and from which no message has come.
 Time Monitor::listened_since(TopicId topic) const {
   return topics_[topic.index].silent_since.value_or(
-      std::max(*knowledge_.discovered.first(topic), start_));
+      std::max({*knowledge_.discovered.first(topic), start_, awake_}));
 }
 
 // From when on its rate is known although it has not spoken.
