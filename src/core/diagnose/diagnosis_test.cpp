@@ -284,6 +284,21 @@ TEST(Diagnosis, AnInputWithoutASupplierExplainsAFunctionThatNeverWorked) {
   EXPECT_DOUBLE_EQ(own(scene, "B"), 1) << "it worked without it";
 }
 
+// It is deactivated only while the driver is replaced. Without that, it is itself what is repaired.
+TEST(Diagnosis, AFailureIsNotWhereAStrategyOnlyPauses) {
+  const auto own_of = [](const std::string& between) {
+    Scene scene(failure_of("ctl", "Ctl") +
+                "COMPONENT driver NODE /driver LAUNCH \"driver\"\nCOMPONENT planner NODE /planner\n"
+                "RULE Driver\nPOLICIES ERROR\nTRIGGER y > 1\nSTRATEGY safe 80 10\n"
+                "ADAPTATION planner deactivate 2\n" +
+                between + "THEN ADAPTATION planner activate 2\n");
+    scene.link("driver", "ctl").link("ctl", "planner").fail("Ctl").fail("Driver");
+    return own(scene, "Driver");
+  };
+  EXPECT_DOUBLE_EQ(own_of("THEN ADAPTATION driver redeploy 10\n"), 1);
+  EXPECT_LT(own_of(""), 0.5);
+}
+
 // A safe stop adapts a component that has nothing to do with the failure.
 TEST(Diagnosis, ALastResortTouchesNothing) {
   Scene scene(failure_of("a", "A") + failure_of("b", "B") +
