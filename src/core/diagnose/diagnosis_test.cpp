@@ -51,6 +51,20 @@ TEST(Paths, AManyReadTopicCarriesFailuresWhereAllOfItsReadersAreIll) {
   EXPECT_GT(own(scene, "P"), 0.5);
 }
 
+// Its memory is in order, and nothing comes through it.
+TEST(Paths, AreNotCutByARuleThatTellsNothingOfData) {
+  const auto own_of = [](const std::string& trigger) {
+    std::string middle = failure_of("b", "B");
+    middle.replace(middle.find("x > 1"), 5, trigger);
+    Scene scene(failure_of("a", "A") + middle + failure_of("c", "C"));
+    scene.link("a", "b").link("b", "c").fail("A", -1h).fail("C", -1h);
+    scene->states.state(scene.rule("B")).detection.trigger = Slot::of(false);
+    return own(scene, "C");
+  };
+  EXPECT_DOUBLE_EQ(own_of("y > 1"), 1);
+  EXPECT_DOUBLE_EQ(own_of("memory(b) > 100"), own_cause(kPi, kKappa));
+}
+
 TEST(OwnCause, IsTheNoisyOrsPosterior) {
   EXPECT_DOUBLE_EQ(own_cause(0.05, 0), 1) << "nothing else explains it";
   EXPECT_DOUBLE_EQ(own_cause(0.05, 0.95), 0.05 / (0.05 + 0.95 * 0.95));

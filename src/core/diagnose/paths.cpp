@@ -61,7 +61,8 @@ std::vector<Signs> signs_of(const Knowledge& knowledge, std::span<const RuleId> 
   for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
     const RuleState& state = knowledge.states[RuleId(r)];
     const bool is_seen_ill = is_ill(state);
-    const bool sees = state.detection.trigger.known && has_heard(RuleId(r), knowledge);
+    const bool sees = state.detection.trigger.known && tells_of_data(RuleId(r), knowledge.rules) &&
+                      has_heard(RuleId(r), knowledge);
     if (is_seen_ill || sees) add(RuleId(r), is_seen_ill);
   }
   for (const RuleId rule : imminent) add(rule, true);

@@ -59,6 +59,34 @@ bool watches_a_component(const Input& input) {
   return input.kind == Kind::kAlive || input.kind == Kind::kLifecycle;
 }
 
+bool tells_of_data(RuleId rule, const RuleSet& rules) {
+  const auto is_data = [&](InputId id) {
+    const Input& input = rules[id];
+    switch (input.kind) {
+      case Kind::kAlive:
+      case Kind::kLifecycle:
+      case Kind::kParameter:
+      case Kind::kCpu:
+      case Kind::kMemory:
+      case Kind::kLogs:
+        return false;
+      case Kind::kRate:
+      case Kind::kAge:
+      case Kind::kPhi:
+      case Kind::kLoss:
+      case Kind::kGoals:
+      case Kind::kGoalAge:
+      case Kind::kLevel:
+        return true;
+      default:
+        break;
+    }
+    const auto& source = rules[input.signal].source;
+    return !std::holds_alternative<ParameterId>(source) && !std::holds_alternative<GroupId>(source);
+  };
+  return std::ranges::any_of(rules[rule].inputs, is_data);
+}
+
 Symptom symptom_of(RuleId rule, const Knowledge& knowledge) {
   const auto& inputs = knowledge.rules[rule].inputs;
   const bool reads_values = std::any_of(inputs.begin(), inputs.end(), [&](InputId id) {

@@ -40,6 +40,9 @@ Symptom symptom_of(RuleId rule, const Knowledge& knowledge);
 
 bool watches_a_topic(const Input& input);
 bool watches_a_component(const Input& input);
+// Does the rule tell whether data flows, or whether it is good? One that reads only whether its
+// component is there and active, its load, its log or its parameters does not.
+bool tells_of_data(RuleId rule, const RuleSet& rules);
 
 // A topic counts as silent after this many of its usual gaps.
 inline constexpr int kSilentGaps = 2;
