@@ -170,7 +170,7 @@ Awaiting Awaited::awaiting(RuleId failure) const {
     const auto& [within, rule] = evidence.without(failure);
     if (!rule) return;
     const Duration least =
-        std::min<Duration>(within, knowledge_.signals.latency(*rule) / 2 + knowledge_.rules.cycle);
+        std::min<Duration>(within, reading_of(*rule, knowledge_) + knowledge_.rules.cycle);
     const Time until = std::clamp(later(latest - lateness, within), later(latest, least),
                                   later(detected, kLongestEvidence));
     if (until > found.until) found = {until, *rule, false};
