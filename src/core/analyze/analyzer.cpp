@@ -223,7 +223,7 @@ void Analyzer::detect(RuleId id, Time now) {
     write_.states.begin_search(id, now);
   }
   state.onset = diagnose::onset_now(id, now, knowledge_);
-  state.masked_until = kLongAgo;
+  state.masked_until = masked_until(id);
   if (!recurs) {
     state.first_onset = state.onset->latest;
     state.worked_until = state.detection.last_false;
@@ -631,6 +631,23 @@ void Analyzer::unmask_effects_of(RuleId gone, Time now) {
       if (may_be) write_.states.state(effect).masked_until = now;
     }
   }
+}
+
+// The same for a failure that is detected only now: until when a failure upstream was there that may have
+// caused it, and has cleared. kLongAgo: none was.
+Time Analyzer::masked_until(RuleId effect) const {
+  const Time began = diagnose::onset_of(effect, knowledge_).latest;
+  Time until = kLongAgo;
+  for (const ComponentId c : knowledge_.graph.upstream(knowledge_.rules[effect].components)) {
+    for (const RuleId cause : knowledge_.states.touching(c)) {
+      const RuleState& past = knowledge_.states[cause];
+      const bool may_be = cause != effect && past.phase == RulePhase::kQuiet &&
+                          past.gone_since > began &&
+                          diagnose::onset_of(cause, knowledge_).earliest <= began;
+      if (may_be) until = std::max(until, past.gone_since);
+    }
+  }
+  return until;
 }
 
 void Analyzer::round_is_spent(RuleId id, Time now) {

@@ -145,6 +145,7 @@ class Analyzer {
   void watch_failing(RuleId id, Time now);
   void leave(RuleId id, Time now);
   void unmask_effects_of(RuleId gone, Time now);
+  Time masked_until(RuleId effect) const;
   void judge(RuleId id, Time now);
   // Its effect cannot be seen before.
   Time shows_from(const Attempt& attempt) const;

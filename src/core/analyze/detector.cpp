@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "diagnose/timing.h"
 #include "language/evaluate.h"
 
 namespace culprit {
@@ -17,13 +18,22 @@ Duration longest_detection(const RuleSet& rules) {
 void Detector::evaluate(RuleId id, Time now) {
   Detection& detection = states_.state(id).detection;
   const Slot is = value(id, now);
-  if (is_false(is) || is_false(detection.trigger)) detection.last_false = now;
+  if ((is_false(is) || is_false(detection.trigger)) && has_heard_topics(id))
+    detection.last_false = now;
   if (!same(is, detection.trigger, Type::kBool) || detection.trigger_since == kLongAgo) {
     detection.trigger = is;
     detection.trigger_since = now;
   }
   if (!is_true(is)) detection.armed = true;
   if (!detection.history.empty()) sample_history(detection, now);
+}
+
+// A topic that never came is not older than its limit at first: that does not prove that it works.
+bool Detector::has_heard_topics(RuleId id) const {
+  return std::ranges::all_of(knowledge_.rules[id].inputs, [&](InputId input) {
+    const Input& read = knowledge_.rules[input];
+    return !diagnose::watches_a_topic(read) || knowledge_.signals.rhythm(read.topic).last;
+  });
 }
 
 Slot Detector::value(RuleId id, Time now) {

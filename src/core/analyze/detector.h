@@ -39,6 +39,7 @@ class Detector {
 
  private:
   Slot value(RuleId id, Time now);
+  bool has_heard_topics(RuleId id) const;
   void sample_history(Detection& detection, Time now) const;
   Duration clearing_time(RuleId id) const;
 

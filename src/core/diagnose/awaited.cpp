@@ -2,10 +2,18 @@
 
 #include <algorithm>
 
+#include "diagnose/touched.h"
+
 namespace culprit::diagnose {
 namespace {
 
 std::size_t at(Symptom symptom) { return static_cast<std::size_t>(symptom); }
+
+// Where its failure is. A rule that only reports waits for nothing, and nothing waits for it.
+std::vector<ComponentId> places_of(RuleId rule, const Knowledge& knowledge) {
+  if (knowledge.rules[rule].components.empty()) return {};
+  return touched_by(rule, knowledge);
+}
 
 // Since when the rule does not show its failure; kLongAgo: it does, or never did. An exhausted failure
 // that its trigger does not show any more is about to clear.
@@ -81,7 +89,7 @@ void Awaited::collect(Time latest_onset) {
     const Duration within = evidence_within(rule, latest_onset, knowledge_);
     if (within == Duration::zero()) continue;
     const bool is_gone = cleared_lately(rule, knowledge_);
-    for (const ComponentId c : knowledge_.rules[rule].components) {
+    for (const ComponentId c : places_of(rule, knowledge_)) {
       const auto scc = knowledge_.graph.scc_of(c);
       if (!scc) continue;
       Place& place = places_[*scc];
@@ -123,7 +131,7 @@ void Awaited::place_past() {
     if (past_[p].component) {
       mark(*past_[p].component, p);
     } else {
-      for (const ComponentId c : knowledge_.rules[*past_[p].rule].components) mark(c, p);
+      for (const ComponentId c : places_of(*past_[p].rule, knowledge_)) mark(c, p);
     }
   }
 }
@@ -162,7 +170,7 @@ Awaiting Awaited::awaiting(RuleId failure) const {
     const auto& [within, rule] = evidence.without(failure);
     if (!rule) return;
     const Duration least =
-        std::min<Duration>(within, knowledge_.signals.latency(*rule) / 2 + knowledge_.rules.cycle);
+        std::min<Duration>(within, reading_of(*rule, knowledge_) + knowledge_.rules.cycle);
     const Time until = std::clamp(later(latest - lateness, within), later(latest, least),
                                   later(detected, kLongestEvidence));
     if (until > found.until) found = {until, *rule, false};
@@ -172,7 +180,7 @@ Awaiting Awaited::awaiting(RuleId failure) const {
     const Time until = fades(failure, past, passed_on);
     if (until > found.until) found = {until, past.rule.value_or(failure), true, past.component};
   };
-  for (const ComponentId c : knowledge_.rules[failure].components) {
+  for (const ComponentId c : places_of(failure, knowledge_)) {
     const auto scc = knowledge_.graph.scc_of(c);
     if (!scc) continue;
     const Place& place = places_[*scc];

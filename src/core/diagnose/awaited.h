@@ -11,7 +11,7 @@
 //
 //   e_i, E_u        onset and evidence time (timing.h); d_i the detection of i
 //   b_i             when i presumably began: l_i, less the presumed lateness of a value's rule, but at
-//                   most so early that a reading and a cycle of u are waited for after d_i. If i comes
+//                   most so early that a reading and a cycle of u are waited for after l_i. If i comes
 //                   and goes, b_i and d_i are those of the first time, but for rules u that cleared
 //                   lately: they may come and go with i
 //   r_u             when u recovered: it cleared then, less its presumed lateness; a component was

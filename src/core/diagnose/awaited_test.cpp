@@ -87,6 +87,25 @@ TEST_F(TwoMonitors, TwoRulesThatAreEquallyLateNeedNotWait) {
   EXPECT_FALSE(awaited(500ms));
 }
 
+// A minimum over 3 s shows a bad value when all of the 3 s are bad.
+TEST(Awaited, ARuleOverAWindowIsWaitedForUntilTheWindowIsFull) {
+  std::string text = failure_of("a", "A") + failure_of("b", "B");
+  text.replace(text.rfind("x > 1"), 5, "y > 1");
+  text.replace(text.find("x > 1"), 5, "min(x, 3s) > 1");
+  Scene scene(text);
+  scene.link("a", "b");
+  scene->latencies.weigh(-3);
+  scene->signals.set_latency(scene.rules()[scene.rule("A")].inputs.front(), 3400ms);
+  scene->signals.set_latency(scene.rules()[scene.rule("B")].inputs.front(), 400ms);
+  scene->states.state(scene.rule("A")).detection.trigger = Slot::of(false);
+  const auto awaited = [&](Duration detected_ago) {
+    scene.fail("B", 10s - detected_ago);
+    return Awaited(*scene, scene->states.active()).of(scene.rule("B")).has_value();
+  };
+  EXPECT_TRUE(awaited(3399ms));
+  EXPECT_FALSE(awaited(3401ms));
+}
+
 // A recovered a moment ago; what B shows may be the echo of that.
 TEST_F(TwoMonitors, AFailureMayBeTheEchoOfOneThatCleared) {
   state("A").onset = Onset{scene_->now - 2s, scene_->now - 1500ms};

@@ -51,12 +51,14 @@ bool may_be_broken(RuleId rule, const RuleSet& rules) {
       });
 }
 
-// When the last process of a component that the rule touches began, if that runs.
+// When the last process of a component that the rule touches began, and its node was there, if that
+// runs.
 Time begun_last(RuleId rule, const Knowledge& knowledge) {
   Time last = kLongAgo;
   for (const ComponentId c : touched_by(rule, knowledge)) {
     const ComponentState& state = knowledge.components[c];
-    if (state.process == ProcessState::kRunning) last = std::max(last, state.process_since);
+    if (state.process == ProcessState::kRunning)
+      last = std::max({last, state.process_since, state.node_seen});
   }
   return last;
 }

@@ -51,6 +51,20 @@ TEST(Paths, AManyReadTopicCarriesFailuresWhereAllOfItsReadersAreIll) {
   EXPECT_GT(own(scene, "P"), 0.5);
 }
 
+// Its memory is in order, and nothing comes through it.
+TEST(Paths, AreNotCutByARuleThatTellsNothingOfData) {
+  const auto own_of = [](const std::string& trigger) {
+    std::string middle = failure_of("b", "B");
+    middle.replace(middle.find("x > 1"), 5, trigger);
+    Scene scene(failure_of("a", "A") + middle + failure_of("c", "C"));
+    scene.link("a", "b").link("b", "c").fail("A", -1h).fail("C", -1h);
+    scene->states.state(scene.rule("B")).detection.trigger = Slot::of(false);
+    return own(scene, "C");
+  };
+  EXPECT_DOUBLE_EQ(own_of("y > 1"), 1);
+  EXPECT_DOUBLE_EQ(own_of("memory(b) > 100"), own_cause(kPi, kKappa));
+}
+
 TEST(OwnCause, IsTheNoisyOrsPosterior) {
   EXPECT_DOUBLE_EQ(own_cause(0.05, 0), 1) << "nothing else explains it";
   EXPECT_DOUBLE_EQ(own_cause(0.05, 0.95), 0.05 / (0.05 + 0.95 * 0.95));
@@ -282,6 +296,21 @@ TEST(Diagnosis, AnInputWithoutASupplierExplainsAFunctionThatNeverWorked) {
   EXPECT_LT(own(scene, "B"), 0.5);
   scene->states.state(scene.rule("B")).detection.last_false = Time(50s);
   EXPECT_DOUBLE_EQ(own(scene, "B"), 1) << "it worked without it";
+}
+
+// It is deactivated only while the driver is replaced. Without that, it is itself what is repaired.
+TEST(Diagnosis, AFailureIsNotWhereAStrategyOnlyPauses) {
+  const auto own_of = [](const std::string& between) {
+    Scene scene(failure_of("ctl", "Ctl") +
+                "COMPONENT driver NODE /driver LAUNCH \"driver\"\nCOMPONENT planner NODE /planner\n"
+                "RULE Driver\nPOLICIES ERROR\nTRIGGER y > 1\nSTRATEGY safe 80 10\n"
+                "ADAPTATION planner deactivate 2\n" +
+                between + "THEN ADAPTATION planner activate 2\n");
+    scene.link("driver", "ctl").link("ctl", "planner").fail("Ctl").fail("Driver");
+    return own(scene, "Driver");
+  };
+  EXPECT_DOUBLE_EQ(own_of("THEN ADAPTATION driver redeploy 10\n"), 1);
+  EXPECT_LT(own_of(""), 0.5);
 }
 
 // A safe stop adapts a component that has nothing to do with the failure.

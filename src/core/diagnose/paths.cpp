@@ -54,14 +54,15 @@ std::vector<Signs> signs_of(const Knowledge& knowledge, std::span<const RuleId> 
     const auto mark = [&](ComponentId c) {
       (is_ill ? signs[c.index].has_ill : signs[c.index].is_watched)[symptom] = true;
     };
-    const auto& components = knowledge.rules[rule].components;
-    std::ranges::for_each(components, mark);
-    if (components.empty() && is_ill) std::ranges::for_each(touched_by(rule, knowledge), mark);
+    // A quiet rule that only reports is no proof of health.
+    if (is_ill || !knowledge.rules[rule].components.empty())
+      std::ranges::for_each(touched_by(rule, knowledge), mark);
   };
   for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
     const RuleState& state = knowledge.states[RuleId(r)];
     const bool is_seen_ill = is_ill(state);
-    const bool sees = state.detection.trigger.known && has_heard(RuleId(r), knowledge);
+    const bool sees = state.detection.trigger.known && tells_of_data(RuleId(r), knowledge.rules) &&
+                      has_heard(RuleId(r), knowledge);
     if (is_seen_ill || sees) add(RuleId(r), is_seen_ill);
   }
   for (const RuleId rule : imminent) add(rule, true);

@@ -4,7 +4,8 @@
 // kind of symptom (an outage, or a bad value), are
 //   - components that are well: a rule of that kind touches them and is quiet, no rule that touches
 //     them fails or is imminent, and they are in no trouble; a component that sends has no outage,
-//     however bad the values are;
+//     however bad the values are. A rule that tells nothing of data (timing.h) does not count: that a
+//     node answers or is active is no proof that anything comes through it;
 //   - topics and services that evidently carry no failures: of n consumers that are well or
 //     fail, more are well than kSpared n and kDeviations standard deviations of the binomial
 //     distribution. /tf and its like are read by many.

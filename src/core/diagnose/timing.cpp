@@ -36,9 +36,10 @@ Duration held_at_most(RuleId rule, const Knowledge& knowledge) {
   return duration_of(Cycles{window > 1 ? window : 0}, knowledge.rules);
 }
 
-// A latency is two of the intervals that a signal is read in.
-Duration reading_of(RuleId rule, const Knowledge& knowledge) {
-  return knowledge.signals.latency(rule) / 2;
+// Does the input show a change of its signal only once that lasted for its window?
+bool is_over_window(const Input& input) {
+  return input.kind == Kind::kMean || input.kind == Kind::kMin || input.kind == Kind::kMax ||
+         input.kind == Kind::kStddev || input.kind == Kind::kFrozen;
 }
 
 // The onset of a bad value that made the trigger true `since` then.
@@ -57,6 +58,45 @@ bool watches_a_topic(const Input& input) {
 
 bool watches_a_component(const Input& input) {
   return input.kind == Kind::kAlive || input.kind == Kind::kLifecycle;
+}
+
+bool tells_of_data(RuleId rule, const RuleSet& rules) {
+  const auto is_data = [&](InputId id) {
+    const Input& input = rules[id];
+    switch (input.kind) {
+      case Kind::kAlive:
+      case Kind::kLifecycle:
+      case Kind::kParameter:
+      case Kind::kCpu:
+      case Kind::kMemory:
+      case Kind::kLogs:
+        return false;
+      case Kind::kRate:
+      case Kind::kAge:
+      case Kind::kPhi:
+      case Kind::kLoss:
+      case Kind::kGoals:
+      case Kind::kGoalAge:
+      case Kind::kLevel:
+        return true;
+      default:
+        break;
+    }
+    const auto& source = rules[input.signal].source;
+    return !std::holds_alternative<ParameterId>(source) && !std::holds_alternative<GroupId>(source);
+  };
+  return std::ranges::any_of(rules[rule].inputs, is_data);
+}
+
+// A latency is two of the intervals that a signal is read in, and its window.
+Duration reading_of(RuleId rule, const Knowledge& knowledge) {
+  Duration longest{};
+  for (const InputId id : knowledge.rules[rule].inputs) {
+    const Input& input = knowledge.rules[id];
+    const Duration window = is_over_window(input) ? input.window : Duration::zero();
+    longest = std::max<Duration>(longest, (knowledge.signals.latency(id) + window) / 2);
+  }
+  return longest;
 }
 
 Symptom symptom_of(RuleId rule, const Knowledge& knowledge) {
@@ -138,7 +178,7 @@ Duration evidence_within(RuleId quiet, Time onset, const Knowledge& knowledge) {
 }
 
 Duration clears_within(RuleId failure, const Knowledge& knowledge) {
-  return 2 * reading_of(failure, knowledge) + knowledge.latencies.reckon_with(failure) +
+  return knowledge.signals.latency(failure) + knowledge.latencies.reckon_with(failure) +
          held_at_most(failure, knowledge);
 }
 

@@ -15,9 +15,9 @@
 //
 // where t is the time from which the trigger has been true (HOLD n/k: the detection; k cycles more for
 // e_r and E_r, n - 1 cycles less for l_r), `gap` the usual pause of the topic, `reading` the period of
-// the signal; `silent since` is the last sample, or the time when culprit received again after a gap; and
-// the lateness is that of knowledge/latencies.h. If a trigger reads several inputs, silent topics and dead
-// components decide before values.
+// the signal and the window that the trigger looks at; `silent since` is the last sample, or the time
+// when culprit received again after a gap; and the lateness is that of knowledge/latencies.h. If a
+// trigger reads several inputs, silent topics and dead components decide before values.
 //
 // Rule u can be the cause of failure i only if it began before it: e_u <= l_i. While
 //
@@ -40,6 +40,9 @@ Symptom symptom_of(RuleId rule, const Knowledge& knowledge);
 
 bool watches_a_topic(const Input& input);
 bool watches_a_component(const Input& input);
+// Does the rule tell whether data flows, or whether it is good? One that reads only whether its
+// component is there and active, its load, its log or its parameters does not.
+bool tells_of_data(RuleId rule, const RuleSet& rules);
 
 // A topic counts as silent after this many of its usual gaps.
 inline constexpr int kSilentGaps = 2;
@@ -52,6 +55,10 @@ bool is_silent(TopicId topic, Time now, const Knowledge& knowledge);
 // For a component that hangs, or did not answer a probe: its failure may have begun right after its
 // last answer.
 Onset onset_of_hang(const ComponentState& state);
+// How long after a change the rule reads it at the latest, besides its lateness: the period of its
+// signal, and the window that it looks at.
+Duration reading_of(RuleId rule, const Knowledge& knowledge);
+
 // The onset of what the rule sees, if its failure is detected at `now`.
 Onset onset_now(RuleId rule, Time now, const Knowledge& knowledge);
 // The onset of a detected failure, as it is there now; and the latest onset of the first of its

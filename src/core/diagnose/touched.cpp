@@ -1,6 +1,7 @@
 #include "diagnose/touched.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "diagnose/timing.h"
 
@@ -10,6 +11,27 @@ namespace {
 void sort_unique(std::vector<ComponentId>& all) {
   std::ranges::sort(all);
   all.erase(std::unique(all.begin(), all.end()), all.end());
+}
+
+// Does the strategy only deactivate the component, and activate it again later?
+bool only_pauses(const Strategy& strategy, ComponentId component) {
+  bool is_down = false;
+  for (const Adaptation& a : strategy.adaptations) {
+    if (a.component != component) continue;
+    if (a.type != (is_down ? AdaptationType::kActivate : AdaptationType::kDeactivate)) return false;
+    is_down = !is_down;
+  }
+  return !is_down;
+}
+
+// Adds what the strategy repairs. One that does nothing but pause repairs what it pauses.
+void add_repaired(const Strategy& strategy, std::vector<ComponentId>& to) {
+  const auto& all = strategy.components;
+  const std::size_t before = to.size();
+  std::ranges::copy_if(all, std::back_inserter(to), [&](ComponentId c) {
+    return !strategy.has_steps() || !only_pauses(strategy, c);
+  });
+  if (to.size() == before) to.insert(to.end(), all.begin(), all.end());
 }
 
 // Those that alone publish what the rule reads: what a rule without strategies is about.
@@ -41,8 +63,7 @@ std::vector<ComponentId> touched_by(RuleId rule, const Knowledge& knowledge) {
   std::vector<ComponentId> touched;
   for (const StrategyId id : of.strategies) {
     const Strategy& strategy = knowledge.rules[id];
-    if (strategy.is_last_resort) continue;
-    touched.insert(touched.end(), strategy.components.begin(), strategy.components.end());
+    if (!strategy.is_last_resort) add_repaired(strategy, touched);
   }
   if (touched.empty() && of.components.empty()) return publishers_read(of, knowledge);
   if (touched.empty()) return of.components;

@@ -74,8 +74,10 @@ struct LeftOff {
 struct Detection {
   Slot trigger;                   // as last evaluated
   Time trigger_since = kLongAgo;  // since when it has that value
-  Time last_false = kLongAgo;     // when it was known to be false last; kLongAgo: never yet
-  bool armed = true;              // ON_CHANGE: the trigger was not true since the rule acted
+  // When it was known to be false last although each topic that it reads had come: the function
+  // worked. kLongAgo: never yet.
+  Time last_false = kLongAgo;
+  bool armed = true;  // ON_CHANGE: the trigger was not true since the rule acted
 
   // HOLD n/k: the last k evaluations, one per cycle, newest at `newest`.
   std::vector<bool> history;
