@@ -9,8 +9,27 @@
 namespace culprit {
 namespace {
 
-bool is_kept_in_process(const Adaptation& adaptation) {
-  return syntax::names_parameter(adaptation.type) || adaptation.type == AdaptationType::kChangeMode;
+// A node that was just started may be taken through its lifecycle for so long; later, that is a wish.
+constexpr Duration kComesUp = std::chrono::seconds(30);
+
+// Has a process that began since then not got what the last resort changed?
+bool is_lost(const Adaptation& adaptation, Time since, const ComponentState& state) {
+  const bool is_settled_otherwise = adaptation.type == AdaptationType::kDeactivate
+                                        ? state.lifecycle == Lifecycle::kActive
+                                        : adaptation.type == AdaptationType::kActivate &&
+                                              (state.lifecycle == Lifecycle::kInactive ||
+                                               state.lifecycle == Lifecycle::kUnconfigured);
+  if (is_settled_otherwise)
+    return state.alive == true && std::max(state.node_seen, state.lifecycle_since) > since &&
+           state.lifecycle_since <= later(state.node_seen, kComesUp);
+  const bool is_set =
+      syntax::names_parameter(adaptation.type) || adaptation.type == AdaptationType::kChangeMode;
+  return is_set && state.node_seen > since;
+}
+
+void stand(RuleState& state, StrategyId strategy, Time since) {
+  std::erase_if(state.standing, [&](const auto& each) { return each.strategy == strategy; });
+  state.standing.push_back({strategy, since});
 }
 
 // How often it could not be carried out.
@@ -105,14 +124,17 @@ void LastResorts::judge(RuleId id, Time now) {
   if (!has_effect) {
     write_.events.tell(now, StrategyFailed{attempt.strategy, attempt.obstacle});
     if (attempt.has_no_failure) return;
+    // One part failed; what the others changed stays.
+    const bool has_parts = knowledge_.rules[attempt.strategy].adaptations.size() > 1;
+    if (has_parts && attempt.first_change != kNever && state.phase != RulePhase::kQuiet)
+      stand(state, attempt.strategy, now);
     if (refuse(search, attempt.strategy, now) < knowledge_.rules[id].policies.attempts) return;
   } else if (attempt.has_no_failure) {
     return write_.events.tell(now, OrderCarriedOut{attempt.strategy});
   } else {
     write_.fights.took_effect(attempt.strategy);
     write_.events.tell(now, LastResortDone{attempt.strategy});
-    if (state.phase != RulePhase::kQuiet)
-      state.standing.push_back({attempt.strategy, attempt.effective});
+    if (state.phase != RulePhase::kQuiet) stand(state, attempt.strategy, attempt.effective);
     const Duration impact =
         duration_of(knowledge_.rules[attempt.strategy].impact, knowledge_.rules);
     search.last_resort_at = later(attempt.effective, impact + knowledge_.signals.latency(id));
@@ -129,12 +151,12 @@ void LastResorts::watch(RuleId id, Time now) {
   RuleState& state = write_.states.state(id);
   if (state.phase == RulePhase::kQuiet) return;
   std::erase_if(state.standing, [&](const RuleState::Standing& each) {
-    const bool is_lost =
-        std::ranges::any_of(knowledge_.rules[each.strategy].adaptations, [&](const Adaptation& a) {
-          return is_kept_in_process(a) && knowledge_.components[a.component].node_seen > each.since;
-        });
-    if (is_lost) write_.states.set_tried(each.strategy, false);
-    return is_lost;
+    const auto& parts = knowledge_.rules[each.strategy].adaptations;
+    const bool begins_again = std::ranges::any_of(parts, [&](const Adaptation& a) {
+      return is_lost(a, each.since, knowledge_.components[a.component]);
+    });
+    if (begins_again) write_.states.set_tried(each.strategy, false);
+    return begins_again;
   });
   const auto following = next(id);
   if (following && !is_false(state.detection.trigger) &&
