@@ -22,7 +22,7 @@ std::optional<Value> value_of(const Program& program, const Knowledge& knowledge
                                     : to_value(slot, program.type);
 }
 
-// Of one parameter of one component.
+// @pre both set one parameter of one component, in whatever way
 bool set_same_value(const Adaptation& a, const Adaptation& b, const Knowledge& knowledge) {
   if (a.type != b.type) return false;
   if (a.type == AdaptationType::kChangeCommunication) return a.topic == b.topic;

@@ -1,4 +1,4 @@
-// What last resorts hold while their failures are there (docs/governor.md).
+// The things that last resorts hold while their failures are there (docs/governor.md).
 //
 //   - A parameter or a mode: it is not set to anything else. A process that begins anew has lost it, and
 //     the last resort begins again; so none is kept from beginning.
@@ -6,7 +6,7 @@
 //     deactivated is not redeployed while it lives; one that is dead is, and is then brought to inactive.
 //   - A process that was stopped is not started; one that was started is not stopped.
 //
-// What would not change it is not held: the same value or state.
+// The same value or state may be set again.
 #pragma once
 
 #include <optional>

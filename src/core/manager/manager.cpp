@@ -409,7 +409,7 @@ void Manager::begin_last_resorts(Time now) {
     std::ranges::copy_if(*list, std::back_inserter(rules),
                          [&](RuleId id) { return analyzer_.last_resorts().next(id).has_value(); });
   }
-  // What a more critical one holds, a less critical one leaves alone.
+  // The most critical one comes first: it holds what the others then leave alone.
   std::ranges::stable_sort(rules, std::greater{},
                            [&](RuleId id) { return knowledge_.rules[id].policies.criticality; });
   for (const RuleId id : rules) {

@@ -13,9 +13,9 @@
 // A component on a computer that is unreachable, or cannot be asked, cannot be adapted. A redeploy or a start
 // waits while a thing that the start needs is missing (StartBarred). For an exhausted rule only what goes on is
 // valid (Knowledge::goes_on). A strategy is valid if each of its adaptations is, given the ones
-// before it, and its WHEN condition is true. Further, no last resort whose failure is still there may hold what it
-// would change (knowledge/held.h), it must not have brought back a more critical failure (analyze/parameter_fights.h), and its component
-// must not be out of work with its group: paused, or being brought up or down. A last
+// before it, and its WHEN condition is true. Further, no last resort may hold what it would change
+// (knowledge/held.h). It must not have brought back a more critical failure (analyze/parameter_fights.h), and its
+// component must not be out of work with its group: paused, or being brought up or down. A last
 // resort is never valid for a planner: the manager begins it.
 #pragma once
 
@@ -38,13 +38,13 @@ struct Invalid {
 // Empty if the strategy is valid.
 std::optional<Invalid> invalidity(const Strategy& strategy, const Knowledge& knowledge);
 
-// What there is to do of a last resort, which has no other obstacles than these: a part cannot be carried out,
-// one that is as critical holds what it would change, or its WHEN is not true.
+// A last resort has only these obstacles: a part cannot be carried out, one that is as critical holds what the
+// part would change, or its WHEN is not true.
 struct LastResortParts {
-  std::vector<std::string>
-      obstacles;  // by place in Strategy::adaptations; empty: it can be, or holds already
-  std::string
-      obstacle;  // why the last resort cannot be begun; empty: a part can be (of steps: each)
+  // By place in Strategy::adaptations. Empty: the part can be carried out, or holds already.
+  std::vector<std::string> obstacles;
+  // Why none can be begun. Empty: one can, or, if it has steps, each.
+  std::string obstacle;
 };
 LastResortParts parts_of_last_resort(const Strategy& strategy, const Knowledge& knowledge);
 
