@@ -14,19 +14,22 @@ constexpr Duration kComesUp = std::chrono::seconds(30);
 
 // Has a process that began since then not got what the last resort changed?
 bool is_lost(const Adaptation& adaptation, Time since, const ComponentState& state) {
-  const bool is_settled_otherwise = adaptation.type == AdaptationType::kDeactivate
-                                        ? state.lifecycle == Lifecycle::kActive
-                                        : adaptation.type == AdaptationType::kActivate &&
-                                              (state.lifecycle == Lifecycle::kInactive ||
-                                               state.lifecycle == Lifecycle::kUnconfigured);
-  if (is_settled_otherwise)
-    return state.alive == true && std::max(state.node_seen, state.lifecycle_since) > since &&
-           state.lifecycle_since <= later(state.node_seen, kComesUp);
-  const bool is_set =
-      syntax::names_parameter(adaptation.type) || adaptation.type == AdaptationType::kChangeMode;
-  return is_set && state.node_seen > since;
+  const bool comes_up =
+      state.lifecycle_since > since && state.lifecycle_since <= later(state.node_seen, kComesUp);
+  switch (adaptation.type) {
+    case AdaptationType::kDeactivate:
+      return comes_up && state.lifecycle == Lifecycle::kActive;
+    case AdaptationType::kActivate:
+      return comes_up && (state.lifecycle == Lifecycle::kInactive ||
+                          state.lifecycle == Lifecycle::kUnconfigured);
+    case AdaptationType::kChangeMode:
+      return state.node_seen > since;
+    default:
+      return syntax::names_parameter(adaptation.type) && state.node_seen > since;
+  }
 }
 
+// Its changes stay from now on.
 void stand(RuleState& state, StrategyId strategy, Time since) {
   std::erase_if(state.standing, [&](const auto& each) { return each.strategy == strategy; });
   state.standing.push_back({strategy, since});
