@@ -153,14 +153,14 @@ void LastResorts::judge(RuleId id, Time now) {
 void LastResorts::watch(RuleId id, Time now) {
   RuleState& state = write_.states.state(id);
   if (state.phase == RulePhase::kQuiet) return;
-  std::erase_if(state.standing, [&](const RuleState::Standing& each) {
+  for (RuleState::Standing& each : state.standing) {
     const auto& parts = knowledge_.rules[each.strategy].adaptations;
-    const bool begins_again = std::ranges::any_of(parts, [&](const Adaptation& a) {
+    const bool begins_again = !each.is_lost && std::ranges::any_of(parts, [&](const Adaptation& a) {
       return is_lost(a, each.since, knowledge_.components[a.component]);
     });
+    each.is_lost |= begins_again;
     if (begins_again) write_.states.set_tried(each.strategy, false);
-    return begins_again;
-  });
+  }
   const auto following = next(id);
   if (following && !is_false(state.detection.trigger) &&
       now >= later(state.failing_since, knowledge_.rules[*following].within))
@@ -170,12 +170,12 @@ void LastResorts::watch(RuleId id, Time now) {
 std::optional<StrategyId> LastResorts::that_helped(RuleId id) const {
   const RuleState& state = knowledge_.states[id];
   if (state.standing.empty()) return std::nullopt;
-  const auto& [strategy, since] = state.standing.back();
+  const RuleState::Standing& last = state.standing.back();
   const Time gone = state.detection.trigger_since;
-  const Duration impact = duration_of(knowledge_.rules[strategy].impact, knowledge_.rules);
+  const Duration impact = duration_of(knowledge_.rules[last.strategy].impact, knowledge_.rules);
   const bool is_in_time =
-      gone >= since && gone <= later(since, impact + knowledge_.signals.latency(id));
-  return is_in_time ? std::optional(strategy) : std::nullopt;
+      gone >= last.since && gone <= later(last.since, impact + knowledge_.signals.latency(id));
+  return is_in_time ? std::optional(last.strategy) : std::nullopt;
 }
 
 Time LastResorts::next_time(RuleId id) const {

@@ -81,12 +81,16 @@ std::optional<StrategyId> holder_of(const Adaptation& change, const Knowledge& k
   return holder(change, knowledge, [](const Strategy&) { return true; });
 }
 
-std::optional<StrategyId> holder_against(const Strategy& last_resort, const Adaptation& change,
+std::optional<StrategyId> holder_against(const Strategy& strategy, const Adaptation& change,
                                          const Knowledge& knowledge) {
-  const RuleSet& rules = knowledge.rules;
+  const auto level = [&](const Strategy& s) {
+    return knowledge.rules[s.rule].policies.criticality;
+  };
   return holder(change, knowledge, [&](const Strategy& standing) {
-    return standing.rule != last_resort.rule && rules[standing.rule].policies.criticality >=
-                                                    rules[last_resort.rule].policies.criticality;
+    const bool is_own = standing.rule == strategy.rule;
+    if (strategy.is_last_resort) return !is_own && level(standing) >= level(strategy);
+    const bool replaces = launches(change) && knowledge.components[change.component].alive == true;
+    return !(is_own && replaces);
   });
 }
 

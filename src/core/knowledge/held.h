@@ -20,11 +20,11 @@ bool changes(const Adaptation& change, const Adaptation& held, const Knowledge& 
 
 // The last resort that holds what `change` would change; empty: there is none.
 std::optional<StrategyId> holder_of(const Adaptation& change, const Knowledge& knowledge);
-// The same for a change by `last_resort`: it yields to those of other rules that are as critical as its
-// own, or more.
-std::optional<StrategyId> holder_against(const Strategy& last_resort, const Adaptation& change,
+// The same for a change by `strategy`. A last resort yields to those of other rules that are as critical as its
+// own, or more. Any other strategy may replace a process that its own rule deactivated: that may repair it, and
+// the new process is brought to inactive.
+std::optional<StrategyId> holder_against(const Strategy& strategy, const Adaptation& change,
                                          const Knowledge& knowledge);
-
 // There is nothing to deactivate: its process is gone, or it is in a state from which only others take it.
 bool is_inactive_anyway(const ComponentState& state);
 

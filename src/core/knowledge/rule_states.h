@@ -112,8 +112,13 @@ struct RuleState {
   struct Standing {
     StrategyId strategy;
     Time since{};
+    bool is_lost = false;  // a new process has not got them yet
   };
   std::vector<Standing> standing;
+  bool stands(StrategyId strategy) const {
+    return std::ranges::any_of(standing,
+                               [&](const Standing& each) { return each.strategy == strategy; });
+  }
   // The last attempt that failed, and when it took effect, if nothing else can have helped since.
   struct TriedAlone {
     StrategyId strategy;

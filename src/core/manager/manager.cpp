@@ -469,6 +469,8 @@ void Manager::go_before_others(StrategyId strategy, Time now) {
   for (const RuleId id : active) {
     const auto& attempt = knowledge_.states[id].attempt;
     if (!attempt) continue;
+    // Since it was done first, its own rule respects it (holder_against), and would begin the same again.
+    if (knowledge_.states[id].stands(strategy)) continue;
     const Strategy& other = knowledge_.rules[attempt->strategy];
     if (!undoes(last_resort, other) && !touch_one_thing(last_resort, other)) continue;
     knowledge_.events.tell(

@@ -171,7 +171,7 @@ std::string held_by(StrategyId holder, const RuleSet& rules) {
 std::optional<Invalid> held_by_last_resort(const Strategy& strategy, const Knowledge& knowledge) {
   const RuleSet& rules = knowledge.rules;
   for (const Adaptation& a : strategy.adaptations) {
-    const auto holder = holder_of(a, knowledge);
+    const auto holder = holder_against(strategy, a, knowledge);
     if (!holder) continue;
     const std::string why = held_by(*holder, rules);
     if (rules[*holder].rule != strategy.rule) return Invalid{a.component, why, true};

@@ -105,6 +105,18 @@ TEST(Validity, LeavesInactiveWhatALastResortHasDeactivated) {
   EXPECT_FALSE(invalid_in(scene, "Other.anew")) << "a dead process is started again";
 }
 
+// Its own rule goes on: the new process is brought to inactive.
+TEST(Validity, LetsARuleReplaceWhatItHasDeactivated) {
+  Scene scene(
+      "COMPONENT tool NODE /tool LAUNCH \"tool\"\nRULE Lost\nPOLICIES ERROR\nTRIGGER x > 1\n"
+      "STRATEGY anew 50 10\nADAPTATION tool redeploy 2\n"
+      "STRATEGY again 50 10\nADAPTATION tool restart 2\n"
+      "STRATEGY safe 50 10 LASTRESORT\nADAPTATION tool deactivate 1\n");
+  let_stand(scene);
+  EXPECT_FALSE(invalid_in(scene, "Lost.anew"));
+  EXPECT_TRUE(invalid_in(scene, "Lost.again"));
+}
+
 TEST(Validity, LeavesStoppedWhatALastResortHasStopped) {
   Scene scene = beside_last_resort("ERROR", "ADAPTATION tool stop 1\n",
                                    "STRATEGY anew 50 10\nADAPTATION tool redeploy 2\n"
