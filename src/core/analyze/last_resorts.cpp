@@ -9,8 +9,30 @@
 namespace culprit {
 namespace {
 
-bool is_kept_in_process(const Adaptation& adaptation) {
-  return syntax::names_parameter(adaptation.type) || adaptation.type == AdaptationType::kChangeMode;
+// A node that was just started may be taken through its lifecycle for so long; later, that is a wish.
+constexpr Duration kComesUp = std::chrono::seconds(30);
+
+// Has a process that began since then not got what the last resort changed?
+bool is_lost(const Adaptation& adaptation, Time since, const ComponentState& state) {
+  const bool comes_up =
+      state.lifecycle_since > since && state.lifecycle_since <= later(state.node_seen, kComesUp);
+  switch (adaptation.type) {
+    case AdaptationType::kDeactivate:
+      return comes_up && state.lifecycle == Lifecycle::kActive;
+    case AdaptationType::kActivate:
+      return comes_up && (state.lifecycle == Lifecycle::kInactive ||
+                          state.lifecycle == Lifecycle::kUnconfigured);
+    case AdaptationType::kChangeMode:
+      return state.node_seen > since;
+    default:
+      return syntax::names_parameter(adaptation.type) && state.node_seen > since;
+  }
+}
+
+// Its changes stay from now on.
+void stand(RuleState& state, StrategyId strategy, Time since) {
+  std::erase_if(state.standing, [&](const auto& each) { return each.strategy == strategy; });
+  state.standing.push_back({strategy, since});
 }
 
 // How often it could not be carried out.
@@ -105,14 +127,17 @@ void LastResorts::judge(RuleId id, Time now) {
   if (!has_effect) {
     write_.events.tell(now, StrategyFailed{attempt.strategy, attempt.obstacle});
     if (attempt.has_no_failure) return;
+    // One part failed; what the others changed stays.
+    const bool has_parts = knowledge_.rules[attempt.strategy].adaptations.size() > 1;
+    if (has_parts && attempt.first_change != kNever && state.phase != RulePhase::kQuiet)
+      stand(state, attempt.strategy, now);
     if (refuse(search, attempt.strategy, now) < knowledge_.rules[id].policies.attempts) return;
   } else if (attempt.has_no_failure) {
     return write_.events.tell(now, OrderCarriedOut{attempt.strategy});
   } else {
     write_.fights.took_effect(attempt.strategy);
     write_.events.tell(now, LastResortDone{attempt.strategy});
-    if (state.phase != RulePhase::kQuiet)
-      state.standing.push_back({attempt.strategy, attempt.effective});
+    if (state.phase != RulePhase::kQuiet) stand(state, attempt.strategy, attempt.effective);
     const Duration impact =
         duration_of(knowledge_.rules[attempt.strategy].impact, knowledge_.rules);
     search.last_resort_at = later(attempt.effective, impact + knowledge_.signals.latency(id));
@@ -128,14 +153,14 @@ void LastResorts::judge(RuleId id, Time now) {
 void LastResorts::watch(RuleId id, Time now) {
   RuleState& state = write_.states.state(id);
   if (state.phase == RulePhase::kQuiet) return;
-  std::erase_if(state.standing, [&](const RuleState::Standing& each) {
-    const bool is_lost =
-        std::ranges::any_of(knowledge_.rules[each.strategy].adaptations, [&](const Adaptation& a) {
-          return is_kept_in_process(a) && knowledge_.components[a.component].node_seen > each.since;
-        });
-    if (is_lost) write_.states.set_tried(each.strategy, false);
-    return is_lost;
-  });
+  for (RuleState::Standing& each : state.standing) {
+    const auto& parts = knowledge_.rules[each.strategy].adaptations;
+    const bool begins_again = !each.is_lost && std::ranges::any_of(parts, [&](const Adaptation& a) {
+      return is_lost(a, each.since, knowledge_.components[a.component]);
+    });
+    each.is_lost |= begins_again;
+    if (begins_again) write_.states.set_tried(each.strategy, false);
+  }
   const auto following = next(id);
   if (following && !is_false(state.detection.trigger) &&
       now >= later(state.failing_since, knowledge_.rules[*following].within))
@@ -145,12 +170,12 @@ void LastResorts::watch(RuleId id, Time now) {
 std::optional<StrategyId> LastResorts::that_helped(RuleId id) const {
   const RuleState& state = knowledge_.states[id];
   if (state.standing.empty()) return std::nullopt;
-  const auto& [strategy, since] = state.standing.back();
+  const RuleState::Standing& last = state.standing.back();
   const Time gone = state.detection.trigger_since;
-  const Duration impact = duration_of(knowledge_.rules[strategy].impact, knowledge_.rules);
+  const Duration impact = duration_of(knowledge_.rules[last.strategy].impact, knowledge_.rules);
   const bool is_in_time =
-      gone >= since && gone <= later(since, impact + knowledge_.signals.latency(id));
-  return is_in_time ? std::optional(strategy) : std::nullopt;
+      gone >= last.since && gone <= later(last.since, impact + knowledge_.signals.latency(id));
+  return is_in_time ? std::optional(last.strategy) : std::nullopt;
 }
 
 Time LastResorts::next_time(RuleId id) const {

@@ -44,7 +44,7 @@ class LastResorts {
   void abandon(RuleId id, Time now);
   // The one under way, if any: it took effect, or could not be carried out.
   void judge(RuleId id, Time now);
-  // Those whose settings a new process has lost are tried again, and the time of the next may have come.
+  // Those whose changes a new process has lost are tried again, and the time of the next may have come.
   void watch(RuleId id, Time now);
 
   // The one whose effect the failure went away by: in the time that the latest one had for that, and

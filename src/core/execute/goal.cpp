@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/ros_names.h"
+#include "knowledge/held.h"
 #include "language/evaluate.h"
 
 namespace culprit::execute {
@@ -229,6 +230,14 @@ Expected<std::vector<Goal>> setting(const Adaptation& adaptation, const Knowledg
       ParameterGoal{adaptation.subject, up ? value : negated(value), ParameterGoal::Kind::kAdd}};
 }
 
+// A last resort holds that it is not active.
+bool is_kept_inactive(ComponentId component, const Knowledge& knowledge) {
+  Adaptation activation;
+  activation.component = component;
+  activation.type = AdaptationType::kActivate;
+  return holder_of(activation, knowledge).has_value();
+}
+
 // A managed node comes back unconfigured unless it brings itself up: it is brought to where it was, or to where a rule
 // says that it must be.
 std::vector<Goal> redeploying(const Adaptation& adaptation, const Knowledge& knowledge) {
@@ -238,7 +247,9 @@ std::vector<Goal> redeploying(const Adaptation& adaptation, const Knowledge& kno
       is_left_to_group(adaptation.component, knowledge))
     return goals;
   const Lifecycle target =
-      demanded(adaptation.component, knowledge).value_or(state.intended_lifecycle);
+      is_kept_inactive(adaptation.component, knowledge)
+          ? Lifecycle::kInactive
+          : demanded(adaptation.component, knowledge).value_or(state.intended_lifecycle);
   if (target == Lifecycle::kActive || target == Lifecycle::kInactive)
     goals.push_back(bringing_up(adaptation, target, knowledge));
   return goals;
@@ -250,7 +261,11 @@ std::vector<Goal> starting(const Adaptation& adaptation, const Knowledge& knowle
   std::vector<Goal> goals{present(adaptation, knowledge)};
   if (state.intended_lifecycle != Lifecycle::kUnknown &&
       !is_left_to_group(adaptation.component, knowledge))
-    goals.push_back(bringing_up(adaptation, Lifecycle::kActive, knowledge));
+    goals.push_back(bringing_up(adaptation,
+                                is_kept_inactive(adaptation.component, knowledge)
+                                    ? Lifecycle::kInactive
+                                    : Lifecycle::kActive,
+                                knowledge));
   return goals;
 }
 

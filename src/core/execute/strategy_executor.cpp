@@ -6,6 +6,7 @@
 #include "base/invariant.h"
 #include "execute/limits.h"
 #include "knowledge/ambiguity.h"
+#include "knowledge/held.h"
 
 namespace culprit {
 
@@ -17,14 +18,14 @@ StrategyExecutor::StrategyExecutor(const Knowledge& knowledge, Writes writes)
 
 StrategyExecutor::~StrategyExecutor() = default;
 
-void StrategyExecutor::begin(StrategyId strategy, Time now) {
+void StrategyExecutor::begin(StrategyId strategy, Time now, std::vector<std::string> obstacles) {
   const Strategy& begun = knowledge_.rules[strategy];
   CULPRIT_ASSERT(begun.is_last_resort ||
                  std::none_of(begun.components.begin(), begun.components.end(), [&](ComponentId c) {
                    return knowledge_.states.reservation(c) != nullptr;
                  }));
   write_.attempts.begin(strategy, now);
-  add_run(strategy);
+  add_run(strategy).obstacles = std::move(obstacles);
 }
 
 StrategyExecutor::Run& StrategyExecutor::add_run(StrategyId strategy) {
@@ -196,6 +197,7 @@ bool StrategyExecutor::next_goal(Run& run, Time now) {
   while (run.adaptation < adaptations.size()) {
     const Adaptation& adaptation = adaptations[run.adaptation];
     if (run.goals.empty()) {
+      if (leaves_out(run)) continue;
       if (const auto other = deactivated_meanwhile(run)) {
         write_.attempts.make_ambiguous(run.strategy);
         const std::string reason = knowledge_.rules[*other].name +
@@ -204,10 +206,9 @@ bool StrategyExecutor::next_goal(Run& run, Time now) {
         obstruct(run, reason, reason, now);
         return false;
       }
-      auto goals =
-          is_managed_still(run) ? std::vector<Goal>() : execute::goals_of(adaptation, knowledge_);
+      auto goals = goals_of(run, now);
       if (!goals) {
-        obstruct(run, goals.error(), goals.error(), now);
+        if (goes_past(run, goals.error(), goals.error(), now)) continue;
         return false;
       }
       run.goals = std::move(*goals);
@@ -234,9 +235,51 @@ bool StrategyExecutor::next_goal(Run& run, Time now) {
     run.remark.clear();
     ++run.adaptation;
   }
-  write_.attempts.took_effect(run.strategy, now);
+  if (run.missed.empty())
+    write_.attempts.took_effect(run.strategy, now);
+  else
+    write_.attempts.obstruct(run.strategy, run.missed);
   write_.signals.touch(run.rule);
   return false;
+}
+
+Expected<std::vector<Goal>> StrategyExecutor::goals_of(const Run& run, Time now) {
+  const Strategy& strategy = knowledge_.rules[run.strategy];
+  const Adaptation& adaptation = strategy.adaptations[run.adaptation];
+  const ComponentState& state = knowledge_.components[adaptation.component];
+  if (is_managed_still(run)) return std::vector<Goal>();
+  const bool is_done = strategy.is_last_resort && !strategy.has_steps() &&
+                       adaptation.type == AdaptationType::kDeactivate && is_inactive_anyway(state);
+  if (!is_done) return execute::goals_of(adaptation, knowledge_);
+  // The process that takes its place is not brought up further either.
+  if (state.intended_lifecycle != Lifecycle::kUnknown)
+    write_.components.intend_lifecycle(adaptation.component, Lifecycle::kInactive, now,
+                                       write_.events);
+  return std::vector<Goal>();
+}
+
+// A part of a last resort that had an obstacle when it was begun.
+bool StrategyExecutor::leaves_out(Run& run) {
+  if (run.adaptation >= run.obstacles.size() || run.obstacles[run.adaptation].empty()) return false;
+  if (run.missed.empty()) run.missed = run.obstacles[run.adaptation];
+  ++run.adaptation;
+  return true;
+}
+
+// The adaptation could not be carried out. Does the strategy go on all the same?
+bool StrategyExecutor::goes_past(Run& run, const std::string& obstacle, const std::string& reason,
+                                 Time now) {
+  const Strategy& strategy = knowledge_.rules[run.strategy];
+  if (!strategy.is_last_resort || strategy.has_steps()) {
+    obstruct(run, obstacle, reason, now);
+    return false;
+  }
+  write_.events.tell(now, AdaptationFailed{run.strategy, run.adaptation, reason});
+  if (run.missed.empty()) run.missed = obstacle;
+  run.goals.clear();
+  run.remark.clear();
+  ++run.adaptation;
+  return true;
 }
 
 // A member of a group that was brought up, and is not up any more though its process lives: to bring it up
@@ -326,8 +369,8 @@ void StrategyExecutor::finish_goal(Run& run, Time now) {
   } else if (!replace_hung_member(run) && !start_again(run, now)) {
     if (pursuit.met_rival()) note_rival(run, now);
     if (launches(adaptation) && pursuit.took_too_long()) note_too_long(pursuit, now);
-    obstruct(run, knowledge_.rules[pursuit.component()].name + ": " + pursuit.remark(),
-             pursuit.remark(), now);
+    goes_past(run, knowledge_.rules[pursuit.component()].name + ": " + pursuit.remark(),
+              pursuit.remark(), now);
   }
   run.pursuit.reset();
 }
@@ -425,21 +468,23 @@ std::optional<StrategyExecutor::Missing> StrategyExecutor::missing_for(
 
 // A last resort has changed the same since, and that stays.
 bool StrategyExecutor::is_held_by_last_resort(const execute::Undo& undo) const {
-  const auto* parameter = std::get_if<execute::ParameterGoal>(&undo.goal);
-  const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&undo.goal);
-  const bool is_mode = std::holds_alternative<execute::ModeGoal>(undo.goal);
-  bool is_held = false;
-  knowledge_.states.for_each_standing([&](StrategyId strategy) {
-    for (const Adaptation& held : knowledge_.rules[strategy].adaptations) {
-      if (held.component != undo.component) continue;
-      is_held |=
-          parameter != nullptr && names_parameter(held.type) && held.subject == parameter->name;
-      is_held |= lifecycle != nullptr && (held.type == AdaptationType::kActivate ||
-                                          held.type == AdaptationType::kDeactivate);
-      is_held |= is_mode && held.type == AdaptationType::kChangeMode;
-    }
-  });
-  return is_held;
+  Adaptation change;
+  change.component = undo.component;
+  if (const auto* parameter = std::get_if<execute::ParameterGoal>(&undo.goal)) {
+    change.type = AdaptationType::kSetParameter;
+    change.subject = parameter->name;
+  } else if (const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&undo.goal)) {
+    change.type = lifecycle->target == Lifecycle::kActive ? AdaptationType::kActivate
+                                                          : AdaptationType::kDeactivate;
+  } else if (const auto* mode = std::get_if<execute::ModeGoal>(&undo.goal)) {
+    change.type = AdaptationType::kChangeMode;
+    change.subject = mode->mode;
+  } else if (std::holds_alternative<execute::PresentGoal>(undo.goal)) {
+    change.type = AdaptationType::kStart;
+  } else {
+    return false;
+  }
+  return holder_of(change, knowledge_).has_value();
 }
 
 // No process is there to be asked. The next process may start with the values of the last one: many

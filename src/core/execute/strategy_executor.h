@@ -9,6 +9,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "execute/pursuit.h"
@@ -38,7 +39,9 @@ class StrategyExecutor {
 
   // The rule's attempt begins. @pre none of the rule is under way (a last resort:
   // none of its last resorts); none has its components, or it is a last resort
-  void begin(StrategyId strategy, Time now);
+  // Of a last resort without steps no part keeps the others from being carried out: not one that fails, and not
+  // those that have an obstacle (by place; empty: none), which are left out. Then it failed for that.
+  void begin(StrategyId strategy, Time now, std::vector<std::string> obstacles = {});
 
   // Goes on from `from` on with an attempt of an earlier process; its outcome will prove nothing.
   // @pre nothing was begun yet
@@ -83,7 +86,9 @@ class StrategyExecutor {
       ComponentId component;
       Time at{};
     };
-    std::vector<BroughtUp> brought_up{};  // of a group
+    std::vector<BroughtUp> brought_up{};   // of a group
+    std::vector<std::string> obstacles{};  // of the parts of a last resort
+    std::string missed{};                  // why a part of it was not carried out
     // For a resumed run, until the robot had the time to show itself.
     std::optional<Interrupted> interrupted;
     Time from = kLongAgo;
@@ -99,6 +104,9 @@ class StrategyExecutor {
   bool take_up(Run& run, Time now);
   Purpose purpose_of(const Run& run) const;
   bool next_goal(Run& run, Time now);
+  Expected<std::vector<execute::Goal>> goals_of(const Run& run, Time now);
+  bool leaves_out(Run& run);
+  bool goes_past(Run& run, const std::string& obstacle, const std::string& reason, Time now);
   bool start_again(Run& run, Time now);
   bool is_first_rise(const execute::Pursuit& pursuit) const;
   std::optional<ComponentId> deactivated_meanwhile(const Run& run) const;

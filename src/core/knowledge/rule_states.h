@@ -109,13 +109,18 @@ struct RuleState {
   Search search;
   std::optional<Attempt> attempt;
   std::optional<Attempt> last_resort;  // of a last resort, beside that one
-  // The last resorts that took effect for the failure, and when. Their changes stay as long as it
-  // is there.
+  // The last resorts that took effect for the failure, all or in part, and when. Their changes stay as
+  // long as it is there.
   struct Standing {
     StrategyId strategy;
     Time since{};
+    bool is_lost = false;  // a new process has not got them yet
   };
   std::vector<Standing> standing;
+  bool stands(StrategyId strategy) const {
+    return std::ranges::any_of(standing,
+                               [&](const Standing& each) { return each.strategy == strategy; });
+  }
   // The last attempt that failed, and when it took effect, if nothing else can have helped since.
   struct TriedAlone {
     StrategyId strategy;
@@ -205,13 +210,15 @@ class RuleStates {
   const std::optional<Bar>& bar_of(StrategyId id) const { return bars_[id.index]; }
   void bar(StrategyId id, Bar bar) { bars_[id.index] = bar; }
 
-  // Calls `visit(strategy)` for each last resort that took effect for a failure that is still there.
+  // Calls `visit(strategy)` for each last resort that took effect, or is under way, for a failure that is
+  // still there.
   template <class Visit>
   void for_each_standing(Visit visit) const {
     for (const RuleId id : with_last_resort_) {
       const RuleState& state = states_[id.index];
       if (!is_active(state.phase) && state.phase != RulePhase::kExhausted) continue;
       for (const RuleState::Standing& each : state.standing) visit(each.strategy);
+      if (state.last_resort) visit(state.last_resort->strategy);
     }
   }
 

@@ -269,6 +269,18 @@ TEST_P(LastResort, StaysAgainstOtherStrategies) {
   EXPECT_TRUE(stands_still(robot)) << "it is not undone" << transcript(robot);
 }
 
+TEST_P(LastResort, YieldsToAPersonsOrder) {
+  TestRobot robot = driving(loc_lost() +
+                            "RULE Late\nPOLICIES ERROR\nTRIGGER delay > 5\nSTRATEGY faster 60 10\n"
+                            "ADAPTATION base set_parameter max_speed 2.0 10\n");
+  robot["loc"].fault = "a person";
+  robot.run_for(4s);
+  ASSERT_TRUE(stands_still(robot)) << transcript(robot);
+  robot.order({1, "Ann", "", RunStrategy{StrategyId(2)}});
+  robot.run_for(10s);
+  EXPECT_EQ(robot["base"].parameters["max_speed"], Value(2.0)) << transcript(robot);
+}
+
 // A strategy of its own rule fails after it: what that had set before is not set again.
 TEST_P(LastResort, IsNotUndoneByTheUndoingOfAnother) {
   TestRobot robot = driving(

@@ -1,10 +1,12 @@
 #include "manager/manager.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "analyze/backoff.h"
 #include "base/invariant.h"
 #include "diagnose/questions.h"
+#include "knowledge/held.h"
 #include "knowledge/undoes.h"
 #include "plan/allowed.h"
 #include "plan/also_ended.h"
@@ -391,6 +393,14 @@ bool touch_one_thing(const Strategy& last_resort, const Strategy& other) {
   });
 }
 
+bool would_change(const Strategy& other, const Strategy& last_resort, const Knowledge& knowledge) {
+  return std::ranges::any_of(other.adaptations, [&](const Adaptation& change) {
+    return std::ranges::any_of(last_resort.adaptations, [&](const Adaptation& held) {
+      return changes(change, held, knowledge);
+    });
+  });
+}
+
 }  // namespace
 
 void Manager::begin_last_resorts(Time now) {
@@ -399,6 +409,9 @@ void Manager::begin_last_resorts(Time now) {
     std::ranges::copy_if(*list, std::back_inserter(rules),
                          [&](RuleId id) { return analyzer_.last_resorts().next(id).has_value(); });
   }
+  // The most critical one comes first: it holds what the others then leave alone.
+  std::ranges::stable_sort(rules, std::greater{},
+                           [&](RuleId id) { return knowledge_.rules[id].policies.criticality; });
   for (const RuleId id : rules) {
     const StrategyId next = *analyzer_.last_resorts().next(id);
     const RuleState& state = knowledge_.states[id];
@@ -423,9 +436,9 @@ bool Manager::begin_last_resort(StrategyId strategy, Time now) {
   const bool is_dry = autonomy_ == Autonomy::kAdvise;
   if (is_dry && knowledge_.states[rule].is_last_resort_advised) return true;
   refresh_conditions(strategy, now);
+  plan::LastResortParts parts = plan::parts_of_last_resort(knowledge_.rules[strategy], knowledge_);
   std::optional<std::string> obstacle;
-  if (auto invalid = plan::impossibility(knowledge_.rules[strategy], knowledge_))
-    obstacle = std::move(invalid->reason);
+  if (!parts.obstacle.empty()) obstacle = std::move(parts.obstacle);
   if (governor_.holds_last_resort_back(strategy, std::move(obstacle), now)) {
     next_plan_ = std::min(next_plan_, later(now, knowledge_.rules.cycle));
     return false;
@@ -443,24 +456,37 @@ bool Manager::begin_last_resort(StrategyId strategy, Time now) {
   if (is_dry) {
     knowledge_.states.advise_last_resort(rule);
   } else {
-    begin(strategy, now);
+    begin(strategy, now, std::move(parts.obstacles));
   }
   return true;
 }
 
-// Abandons the strategies that would change the same thing; all others go on beside it.
+// Abandons the strategies that would change the same thing, less critical last resorts among them; all
+// others go on beside it.
 void Manager::go_before_others(StrategyId strategy, Time now) {
   const Strategy& last_resort = knowledge_.rules[strategy];
   const std::vector<RuleId> active = knowledge_.states.active();
   for (const RuleId id : active) {
     const auto& attempt = knowledge_.states[id].attempt;
     if (!attempt) continue;
+    // Since it was done first, its own rule respects it (holder_against), and would begin the same again.
+    if (knowledge_.states[id].stands(strategy)) continue;
     const Strategy& other = knowledge_.rules[attempt->strategy];
     if (!undoes(last_resort, other) && !touch_one_thing(last_resort, other)) continue;
     knowledge_.events.tell(
         now, StrategyAbandoned{attempt->strategy,
                                "the last resort " + last_resort.name + " goes first"});
     analyzer_.abandon(id, now);
+  }
+  const Criticality level = knowledge_.rules[last_resort.rule].policies.criticality;
+  for (std::size_t r = 0; r < knowledge_.rules.rules.size(); ++r) {
+    const auto& attempt = knowledge_.states[RuleId(r)].last_resort;
+    if (!attempt || knowledge_.rules.rules[r].policies.criticality >= level) continue;
+    if (!would_change(knowledge_.rules[attempt->strategy], last_resort, knowledge_)) continue;
+    knowledge_.events.tell(
+        now, StrategyAbandoned{attempt->strategy,
+                               "the last resort " + last_resort.name + " goes first"});
+    analyzer_.last_resorts().give_way(RuleId(r), now);
   }
 }
 
@@ -545,10 +571,10 @@ void Manager::carry_out(const Decision& decision, Time now) {
   begin(strategy, now);
 }
 
-void Manager::begin(StrategyId strategy, Time now) {
+void Manager::begin(StrategyId strategy, Time now, std::vector<std::string> obstacles) {
   for (const Adaptation& adaptation : knowledge_.rules[strategy].adaptations)
     monitor_.refresh(adaptation.value, now);
-  executor_.begin(strategy, now);
+  executor_.begin(strategy, now, std::move(obstacles));
   governor_.began(strategy, now);
 }
 

@@ -117,7 +117,8 @@ class Manager : public ManagingSystem {
   bool is_beside_last_resort(StrategyId strategy) const;
   bool is_help_possible(RuleId rule, Time limit, Time now) const;
   std::vector<Decision> allowed_plan(const std::vector<RuleId>& failures, Time now);
-  void begin(StrategyId strategy, Time now);
+  // Those parts of a last resort that have an obstacle are left out.
+  void begin(StrategyId strategy, Time now, std::vector<std::string> obstacles = {});
   void carry_out(const Decision& decision, Time now);
   void hold_back(const Decision& decision, Time now);
   void follow_incidents();

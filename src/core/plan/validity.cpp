@@ -1,8 +1,10 @@
 #include "plan/validity.h"
 
 #include <algorithm>
+#include <span>
 
 #include "knowledge/group_health.h"
+#include "knowledge/held.h"
 #include "language/evaluate.h"
 
 namespace culprit::plan {
@@ -54,6 +56,11 @@ bool owes_answers(ComponentId component, const Knowledge& knowledge) {
          !knowledge.heard_topic(component, knowledge.now);
 }
 
+bool uses_already(const Adaptation& change, const Knowledge& knowledge) {
+  const auto& value = knowledge.components[change.parameter];
+  return value && *value == Value(change.topic);
+}
+
 // Why `adaptation` is invalid; empty if it is not.
 std::string obstacle(const Adaptation& adaptation, const Knowledge& knowledge) {
   const ComponentState& state = knowledge.components[adaptation.component];
@@ -84,11 +91,8 @@ std::string obstacle(const Adaptation& adaptation, const Knowledge& knowledge) {
       return state.lifecycle == Lifecycle::kActive ? "" : "is not active";
     case AdaptationType::kRestart:
       return has_lifecycle(state.lifecycle) ? "" : "has no known lifecycle state";
-    case AdaptationType::kChangeCommunication: {
-      const auto& value = knowledge.components[adaptation.parameter];
-      const bool is_set = value && *value == Value(adaptation.topic);
-      return is_set ? "uses " + adaptation.topic + " already" : "";
-    }
+    case AdaptationType::kChangeCommunication:
+      return uses_already(adaptation, knowledge) ? "uses " + adaptation.topic + " already" : "";
     default:
       return "";
   }
@@ -109,6 +113,19 @@ bool is_met(const Adaptation& adaptation, const Knowledge& knowledge) {
       return state.alive == false && state.known_pid() == 0;
     default:
       return false;
+  }
+}
+
+// Whether there is nothing left to do for it as a part of a last resort.
+bool holds_already(const Adaptation& adaptation, const Knowledge& knowledge) {
+  switch (adaptation.type) {
+    case AdaptationType::kDeactivate:
+      return is_inactive_anyway(knowledge.components[adaptation.component]) ||
+             is_met(adaptation, knowledge);
+    case AdaptationType::kChangeCommunication:
+      return uses_already(adaptation, knowledge);
+    default:
+      return is_met(adaptation, knowledge);
   }
 }
 
@@ -144,21 +161,23 @@ std::optional<Invalid> barred_by_another(const Strategy& strategy, const Knowled
   return std::nullopt;
 }
 
-// A last resort has set what the strategy would set, and its failure is still there.
+std::string held_by(StrategyId holder, const RuleSet& rules) {
+  const Strategy& last = rules[holder];
+  return "is held by " + last.name + ", the last resort of " + rules[last.rule].name;
+}
+
+// A last resort holds what the strategy would change. It waits for the other failure; what its own rule holds
+// is out for good.
 std::optional<Invalid> held_by_last_resort(const Strategy& strategy, const Knowledge& knowledge) {
-  std::optional<Invalid> invalid;
-  knowledge.states.for_each_standing([&](StrategyId standing) {
-    const Strategy& last = knowledge.rules[standing];
-    for (const Adaptation& a : strategy.adaptations) {
-      const bool is_held = std::ranges::any_of(
-          last.adaptations, [&](const Adaptation& held) { return is_set_by_both(a, held); });
-      if (!invalid && is_held)
-        invalid =
-            Invalid{a.component, knowledge.rules[a.component].name + " was set by " + last.name +
-                                     ", the last resort of " + knowledge.rules[last.rule].name};
-    }
-  });
-  return invalid;
+  const RuleSet& rules = knowledge.rules;
+  for (const Adaptation& a : strategy.adaptations) {
+    const auto holder = holder_against(strategy, a, knowledge);
+    if (!holder) continue;
+    const std::string why = held_by(*holder, rules);
+    if (rules[*holder].rule != strategy.rule) return Invalid{a.component, why, true};
+    return Invalid{a.component, rules[a.component].name + " " + why};
+  }
+  return std::nullopt;
 }
 
 // It starts a group of which all members are active, and whose manager is there or cannot be started.
@@ -201,6 +220,45 @@ std::optional<Invalid> not_active_with_group(const Strategy& strategy, const Kno
   return std::nullopt;
 }
 
+// Its WHEN condition is not true.
+std::optional<Invalid> untimely_by_when(const Strategy& strategy, const Knowledge& knowledge) {
+  if (strategy.when.empty()) return std::nullopt;
+  const Slot when = evaluate(strategy.when, knowledge.signals.slots());
+  if (when.known && when.b) return std::nullopt;
+  return Invalid{strategy.adaptations.front().component,
+                 when.known ? "its WHEN condition is false" : "its WHEN condition is unknown"};
+}
+
+// Why its adaptation at `place` cannot be carried out, or is pointless.
+std::optional<Invalid> obstacle_to_part(const Strategy& strategy, std::size_t place,
+                                        const Knowledge& knowledge) {
+  const Adaptation& adaptation = strategy.adaptations[place];
+  const auto before = std::span(strategy.adaptations).first(place);
+  // The effect of an earlier adaptation of the same strategy is not known yet: start, then set a
+  // parameter.
+  const bool is_changed_before = std::ranges::any_of(
+      before, [&](const Adaptation& a) { return a.component == adaptation.component; });
+  if (is_changed_before) return std::nullopt;
+  if (cannot_be_reached(adaptation, knowledge))
+    return Invalid{adaptation.component, knowledge.why_unheard(adaptation.component), true};
+  if (std::string missing = missing_for(adaptation, knowledge); !missing.empty())
+    return Invalid{adaptation.component, std::move(missing), true};
+  const std::string reason = obstacle(adaptation, knowledge);
+  const bool is_done_step = strategy.has_steps() && is_met(adaptation, knowledge);
+  if (reason.empty() || is_done_step) return std::nullopt;
+  return Invalid{adaptation.component, knowledge.rules[adaptation.component].name + " " + reason};
+}
+
+// Why it cannot be carried out now, or is pointless.
+std::optional<Invalid> impossibility(const Strategy& strategy, const Knowledge& knowledge) {
+  if (auto untimely = untimely_by_when(strategy, knowledge)) return untimely;
+  if (auto needless = needless_start(strategy, knowledge)) return needless;
+  for (std::size_t i = 0; i < strategy.adaptations.size(); ++i) {
+    if (auto obstacle = obstacle_to_part(strategy, i, knowledge)) return obstacle;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<Invalid> invalidity(const Strategy& strategy, const Knowledge& knowledge) {
@@ -217,36 +275,31 @@ std::optional<Invalid> invalidity(const Strategy& strategy, const Knowledge& kno
   return impossibility(strategy, knowledge);
 }
 
-std::optional<Invalid> impossibility(const Strategy& strategy, const Knowledge& knowledge) {
-  if (!strategy.when.empty()) {
-    const Slot when = evaluate(strategy.when, knowledge.signals.slots());
-    if (!when.known)
-      return Invalid{strategy.adaptations.front().component, "its WHEN condition is unknown"};
-    if (!when.b)
-      return Invalid{strategy.adaptations.front().component, "its WHEN condition is false"};
+LastResortParts parts_of_last_resort(const Strategy& strategy, const Knowledge& knowledge) {
+  LastResortParts parts;
+  if (const auto untimely = untimely_by_when(strategy, knowledge)) {
+    parts.obstacle = untimely->reason;
+    return parts;
   }
-  if (auto needless = needless_start(strategy, knowledge)) return needless;
+  std::size_t possible = 0;
   for (std::size_t i = 0; i < strategy.adaptations.size(); ++i) {
-    const Adaptation& adaptation = strategy.adaptations[i];
-    bool is_changed_before = false;
-    for (std::size_t before = 0; before < i; ++before) {
-      is_changed_before |= strategy.adaptations[before].component == adaptation.component;
+    const Adaptation& a = strategy.adaptations[i];
+    const std::string& name = knowledge.rules[a.component].name;
+    std::string& why = parts.obstacles.emplace_back();
+    if (const auto holder = holder_against(strategy, a, knowledge)) {
+      why = name + " " + held_by(*holder, knowledge.rules);
+    } else if (const auto invalid = obstacle_to_part(strategy, i, knowledge)) {
+      if (invalid->waits)
+        why = name + " " + invalid->reason;
+      else if (!holds_already(a, knowledge))
+        why = invalid->reason;
     }
-    // The effect of an earlier adaptation of the same strategy is not known yet: start, then set a
-    // parameter.
-    if (is_changed_before) continue;
-    if (cannot_be_reached(adaptation, knowledge))
-      return Invalid{adaptation.component, knowledge.why_unheard(adaptation.component), true};
-    if (std::string missing = missing_for(adaptation, knowledge); !missing.empty())
-      return Invalid{adaptation.component, std::move(missing), true};
-    const std::string reason = obstacle(adaptation, knowledge);
-    const bool is_done_step = strategy.has_steps() && is_met(adaptation, knowledge);
-    if (!reason.empty() && !is_done_step) {
-      return Invalid{adaptation.component,
-                     knowledge.rules[adaptation.component].name + " " + reason};
-    }
+    if (why.empty()) ++possible;
+    if (!why.empty() && parts.obstacle.empty()) parts.obstacle = why;
   }
-  return std::nullopt;
+  const std::size_t needed = strategy.has_steps() ? strategy.adaptations.size() : 1;
+  if (possible >= needed) parts.obstacle.clear();
+  return parts;
 }
 
 }  // namespace culprit::plan

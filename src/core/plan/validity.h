@@ -13,14 +13,15 @@
 // A component on a computer that is unreachable, or cannot be asked, cannot be adapted. A redeploy or a start
 // waits while a thing that the start needs is missing (StartBarred). For an exhausted rule only what goes on is
 // valid (Knowledge::goes_on). A strategy is valid if each of its adaptations is, given the ones
-// before it, and its WHEN condition is true. Further, no last resort whose failure is still there may have set the
-// same thing, it must not have brought back a more critical failure (analyze/parameter_fights.h), and its component
-// must not be out of work with its group: paused, or being brought up or down. A last
+// before it, and its WHEN condition is true. Further, no last resort may hold what it would change
+// (knowledge/held.h). It must not have brought back a more critical failure (analyze/parameter_fights.h), and its
+// component must not be out of work with its group: paused, or being brought up or down. A last
 // resort is never valid for a planner: the manager begins it.
 #pragma once
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "knowledge/knowledge.h"
 
@@ -30,15 +31,21 @@ struct Invalid {
   ComponentId component;  // what it is about; for a WHEN condition the strategy's first
   std::string reason;
   // Its state is unknown (Knowledge::is_unheard), it cannot be asked now, or it is as its group is: the
-  // strategy waits, and uses up no attempt.
+  // strategy waits, and uses up no attempt. So it does for the failure of a last resort that holds it.
   bool waits = false;
 };
 
 // Empty if the strategy is valid.
 std::optional<Invalid> invalidity(const Strategy& strategy, const Knowledge& knowledge);
 
-// The same for a last resort, which has only two obstacles: it cannot be carried out, or its WHEN
-// is not true.
-std::optional<Invalid> impossibility(const Strategy& strategy, const Knowledge& knowledge);
+// A last resort has only these obstacles: a part cannot be carried out, one that is as critical holds what the
+// part would change, or its WHEN is not true.
+struct LastResortParts {
+  // By place in Strategy::adaptations. Empty: the part can be carried out, or holds already.
+  std::vector<std::string> obstacles;
+  // Why none can be begun. Empty: one can, or, if it has steps, each.
+  std::string obstacle;
+};
+LastResortParts parts_of_last_resort(const Strategy& strategy, const Knowledge& knowledge);
 
 }  // namespace culprit::plan

@@ -1,6 +1,9 @@
 // Which strategies make sense now (paper, condition 2)?
 #include "plan/validity.h"
 
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "plan/bayes/test_scene.h"
@@ -63,6 +66,103 @@ TEST(Validity, RulesOutToSetWhatALastResortHasSet) {
   scene->states.state(scene.rule("Lost")).standing = {{scene.strategy("Lost.halt"), scene->now}};
   EXPECT_TRUE(is_invalid("Slow.faster"));
   EXPECT_FALSE(is_invalid("Slow.tune"));
+}
+
+// The rule Lost of `level` has this last resort, and Other of level WARNING has `strategies`.
+Scene beside_last_resort(const std::string& level, const std::string& last_resort,
+                         const std::string& strategies) {
+  return Scene(
+      "COMPONENT loc NODE /loc LAUNCH \"loc\"\nCOMPONENT tool NODE /tool LAUNCH \"tool\"\n"
+      "COMPONENT relay NODE /relay\n"
+      "RULE Lost\nPOLICIES " +
+      level + "\nTRIGGER x > 1\nSTRATEGY look 50 10\nADAPTATION loc restart 2\n" +
+      "STRATEGY safe 50 10 LASTRESORT\n" + last_resort +
+      "RULE Other\nPOLICIES WARNING\nTRIGGER y > 1\n" + strategies);
+}
+
+void let_stand(Scene& scene) {
+  scene.fail("Lost");
+  scene->states.state(scene.rule("Lost")).standing = {{scene.strategy("Lost.safe"), scene->now}};
+}
+
+std::optional<Invalid> invalid_in(Scene& scene, const char* strategy) {
+  return invalidity(scene.rules()[scene.strategy(strategy)], *scene);
+}
+
+TEST(Validity, LeavesInactiveWhatALastResortHasDeactivated) {
+  Scene scene = beside_last_resort("ERROR", "ADAPTATION tool deactivate 1\n",
+                                   "STRATEGY again 50 10\nADAPTATION tool restart 2\n"
+                                   "STRATEGY anew 50 10\nADAPTATION tool redeploy 2\n"
+                                   "STRATEGY off 50 10\nADAPTATION tool stop 2\n");
+  EXPECT_FALSE(invalid_in(scene, "Other.again"));
+  let_stand(scene);
+  EXPECT_TRUE(invalid_in(scene, "Other.again"));
+  ASSERT_TRUE(invalid_in(scene, "Other.anew"));
+  EXPECT_EQ(invalid_in(scene, "Other.anew")->reason, "is held by safe, the last resort of Lost");
+  EXPECT_TRUE(invalid_in(scene, "Other.anew")->waits) << "it is no attempt in vain";
+  EXPECT_FALSE(invalid_in(scene, "Other.off"));
+  scene.process("tool", ProcessState::kGone);
+  EXPECT_FALSE(invalid_in(scene, "Other.anew")) << "a dead process is started again";
+}
+
+// Its own rule goes on: the new process is brought to inactive.
+TEST(Validity, LetsARuleReplaceWhatItHasDeactivated) {
+  Scene scene(
+      "COMPONENT tool NODE /tool LAUNCH \"tool\"\nRULE Lost\nPOLICIES ERROR\nTRIGGER x > 1\n"
+      "STRATEGY anew 50 10\nADAPTATION tool redeploy 2\n"
+      "STRATEGY again 50 10\nADAPTATION tool restart 2\n"
+      "STRATEGY safe 50 10 LASTRESORT\nADAPTATION tool deactivate 1\n");
+  let_stand(scene);
+  EXPECT_FALSE(invalid_in(scene, "Lost.anew"));
+  EXPECT_TRUE(invalid_in(scene, "Lost.again"));
+}
+
+TEST(Validity, LeavesStoppedWhatALastResortHasStopped) {
+  Scene scene = beside_last_resort("ERROR", "ADAPTATION tool stop 1\n",
+                                   "STRATEGY anew 50 10\nADAPTATION tool redeploy 2\n"
+                                   "STRATEGY back 50 10\nADAPTATION tool start 2\n");
+  scene.process("tool", ProcessState::kGone);
+  EXPECT_FALSE(invalid_in(scene, "Other.anew")) << "it died by itself";
+  let_stand(scene);
+  EXPECT_TRUE(invalid_in(scene, "Other.anew"));
+  EXPECT_TRUE(invalid_in(scene, "Other.back"));
+}
+
+// A part that holds already is done, and one that cannot be done keeps no other from being begun.
+TEST(LastResortParts, AreDoneEachForItself) {
+  Scene scene = beside_last_resort(
+      "ERROR", "ADAPTATION tool deactivate 1\nADAPTATION relay set_parameter cut true 1\n",
+      "STRATEGY anew 50 10\nADAPTATION tool redeploy 2\n");
+  const auto parts = [&] {
+    return parts_of_last_resort(scene.rules()[scene.strategy("Lost.safe")], *scene);
+  };
+  EXPECT_EQ(parts().obstacles, (std::vector<std::string>{"", ""}));
+  scene->components[scene.component("tool")].lifecycle = Lifecycle::kInactive;
+  EXPECT_EQ(parts().obstacles, (std::vector<std::string>{"", ""}));
+  scene.process("tool", ProcessState::kGone);
+  EXPECT_EQ(parts().obstacles, (std::vector<std::string>{"", ""})) << "a dead tool does nothing";
+  scene->components[scene.component("tool")].in_graph = true;
+  EXPECT_EQ(parts().obstacles, (std::vector<std::string>{"tool is not alive", ""}))
+      << "one that hangs may";
+  EXPECT_EQ(parts().obstacle, "");
+  scene.process("relay", ProcessState::kGone);
+  EXPECT_EQ(parts().obstacle, "tool is not alive");
+}
+
+TEST(LastResortParts, YieldToWhatIsAsCriticalOrMore) {
+  const std::string slower =
+      "STRATEGY look 50 10\nADAPTATION relay set_parameter on true 2\n"
+      "STRATEGY slower 50 10 LASTRESORT\nADAPTATION tool set_parameter speed 0.4 1\n";
+  const auto obstacle = [&](const char* level, const char* value) {
+    Scene scene = beside_last_resort(
+        level, std::string("ADAPTATION tool set_parameter speed ") + value + " 1\n", slower);
+    let_stand(scene);
+    return parts_of_last_resort(scene.rules()[scene.strategy("Other.slower")], *scene).obstacle;
+  };
+  EXPECT_EQ(obstacle("ERROR", "0.0"), "tool is held by safe, the last resort of Lost");
+  EXPECT_EQ(obstacle("WARNING", "0.0"), "tool is held by safe, the last resort of Lost");
+  EXPECT_EQ(obstacle("ERROR", "0.4"), "") << "it sets the same";
+  EXPECT_EQ(obstacle("NON_CRITICAL", "0.0"), "");
 }
 
 }  // namespace
