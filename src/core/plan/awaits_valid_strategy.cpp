@@ -38,7 +38,7 @@ bool awaits_when(const Strategy& strategy, const Knowledge& knowledge) {
   return !when.known || !when.b;
 }
 
-// What an adaptation makes of an input about its component's lifecycle or process; empty: nothing.
+// An input about its component's lifecycle or process as the adaptation makes it; empty: it leaves it as it is.
 std::optional<Slot> brought_about(const Adaptation& adaptation, const Input& input) {
   if (input.component != adaptation.component) return std::nullopt;
   const bool is_lifecycle = input.kind == Input::Kind::kLifecycle;

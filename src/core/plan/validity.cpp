@@ -102,7 +102,7 @@ bool is_met(const Adaptation& adaptation, const Knowledge& knowledge) {
     case AdaptationType::kActivate:
       return is_alive && state.lifecycle == Lifecycle::kActive;
     case AdaptationType::kDeactivate:
-      return is_alive && state.lifecycle == Lifecycle::kInactive;
+      return state.is_at_rest();
     case AdaptationType::kStart:
       return is_alive;
     case AdaptationType::kStop:
@@ -110,6 +110,17 @@ bool is_met(const Adaptation& adaptation, const Knowledge& knowledge) {
     default:
       return false;
   }
+}
+
+// Whether the adaptation at `place` is a step with nothing to do: that is so already, or it would give back what
+// no step has to take.
+bool is_done_step(std::size_t place, const Strategy& strategy, const Knowledge& knowledge) {
+  const Adaptation& adaptation = strategy.adaptations[place];
+  if (!strategy.has_steps()) return false;
+  if (is_met(adaptation, knowledge)) return true;
+  const ComponentState& state = knowledge.components[adaptation.component];
+  return gives_back(place, strategy) && state.is_at_rest() &&
+         (state.alive == false || !state.is_to_be_given_back());
 }
 
 // Both set the same thing of one component, and not a whole process.
@@ -175,7 +186,8 @@ std::optional<Invalid> needless_start(const Strategy& strategy, const Knowledge&
 }
 
 // Its component lives, and is not active because its group is paused, or is being brought up or down: there is
-// nothing to repair in it. A rule that reads its lifecycle says so itself.
+// nothing to repair in it. A rule that reads its lifecycle says so itself. A step that leaves a paused one as it is
+// disturbs nothing.
 std::optional<Invalid> not_active_with_group(const Strategy& strategy, const Knowledge& knowledge) {
   const RuleSet& rules = knowledge.rules;
   const auto reads_lifecycle = [&](ComponentId component) {
@@ -183,14 +195,15 @@ std::optional<Invalid> not_active_with_group(const Strategy& strategy, const Kno
       return rules[id].kind == Input::Kind::kLifecycle && rules[id].component == component;
     });
   };
-  for (const Adaptation& a : strategy.adaptations) {
+  for (std::size_t i = 0; i < strategy.adaptations.size(); ++i) {
+    const Adaptation& a = strategy.adaptations[i];
     const ComponentState& state = knowledge.components[a.component];
     const bool is_down = state.alive == true && state.lifecycle != Lifecycle::kActive;
     if (a.group || !is_down || reads_lifecycle(a.component)) continue;
     for (const Group& group : rules.groups) {
       if (std::ranges::find(group.members, a.component) == group.members.end()) continue;
       const GroupHealth health = health_of(group, knowledge.components, knowledge.now);
-      if (health == GroupHealth::kInactive)
+      if (health == GroupHealth::kInactive && !is_done_step(i, strategy, knowledge))
         return Invalid{a.component, "is not active: its group " + group.name + " is paused", true};
       if (health == GroupHealth::kChanging)
         return Invalid{a.component,
@@ -226,11 +239,13 @@ std::optional<Invalid> impossibility(const Strategy& strategy, const Knowledge& 
       return Invalid{strategy.adaptations.front().component, "its WHEN condition is false"};
   }
   if (auto needless = needless_start(strategy, knowledge)) return needless;
+  bool changes_anything = false;
   for (std::size_t i = 0; i < strategy.adaptations.size(); ++i) {
     const Adaptation& adaptation = strategy.adaptations[i];
     bool is_changed_before = false;
     for (std::size_t before = 0; before < i; ++before) {
-      is_changed_before |= strategy.adaptations[before].component == adaptation.component;
+      is_changed_before |= strategy.adaptations[before].component == adaptation.component &&
+                           !is_done_step(before, strategy, knowledge);
     }
     // The effect of an earlier adaptation of the same strategy is not known yet: start, then set a
     // parameter.
@@ -239,14 +254,18 @@ std::optional<Invalid> impossibility(const Strategy& strategy, const Knowledge& 
       return Invalid{adaptation.component, knowledge.why_unheard(adaptation.component), true};
     if (std::string missing = missing_for(adaptation, knowledge); !missing.empty())
       return Invalid{adaptation.component, std::move(missing), true};
+    if (is_done_step(i, strategy, knowledge)) continue;
+    changes_anything = true;
     const std::string reason = obstacle(adaptation, knowledge);
-    const bool is_done_step = strategy.has_steps() && is_met(adaptation, knowledge);
-    if (!reason.empty() && !is_done_step) {
+    if (!reason.empty()) {
       return Invalid{adaptation.component,
                      knowledge.rules[adaptation.component].name + " " + reason};
     }
   }
-  return std::nullopt;
+  if (changes_anything) return std::nullopt;
+  const Adaptation& first = strategy.adaptations.front();
+  return Invalid{first.component,
+                 knowledge.rules[first.component].name + " " + obstacle(first, knowledge)};
 }
 
 }  // namespace culprit::plan

@@ -189,7 +189,7 @@ bool ReasonsToWait::ends_wait_of(StrategyId id, std::size_t cause) const {
          });
 }
 
-// Nothing can be done about the cause before this strategy has made that possible. If it waited for the cause, each
+// The cause has no possible strategy before this one has made one possible. If it waited for the cause, each
 // would wait for the other.
 bool ReasonsToWait::opens_way_for(StrategyId id, std::size_t cause) const {
   if (causes_[cause].kind != CauseNode::Kind::kFailure) return false;
