@@ -18,11 +18,14 @@ namespace culprit::execute {
 struct ParameterGoal {
   std::string name;
   // kSet: `value`, set even if the parameter has it already, because setting may start a routine.
-  // kAdd: `value` more than the parameter is now. kRestore: `value`, set only if it is another.
+  // kAdd: `value` more than the parameter is now. kRestore: `value`, set only if it is another; and where
+  // `left` is given, only if the parameter is that still.
   Value value;
   enum class Kind : std::uint8_t { kSet, kAdd, kRestore } kind = Kind::kSet;
   // Of kSet: what the parameter is known to be. It saves the look before the change, a round trip.
   std::optional<Value> present{};
+  std::optional<Value>
+      left{};  // of kRestore: what a strategy has set; another value is somebody else's
 };
 struct LifecycleGoal {
   Lifecycle target = Lifecycle::kActive;

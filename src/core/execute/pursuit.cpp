@@ -290,6 +290,8 @@ std::optional<Pursuit::Request> Pursuit::pursue(const ParameterGoal& goal, Time 
     wanted_ = in_type_of(*target, *present);
   }
   const bool is_there = *present == *wanted_;
+  if (!has_changed_anything() && !is_there && goal.left && *present != *goal.left)
+    return give_up("something else has set it to " + to_string(*present) + " since");
   if (!has_changed_anything() && !(is_there && goal.kind == ParameterGoal::Kind::kRestore)) {
     return change(SetParameter{goal.name, *wanted_}, now);
   }
@@ -461,6 +463,10 @@ std::optional<Pursuit::Request> Pursuit::give_up(std::string reason) {
   status_ = Status::kGivenUp;
   remark_ = std::move(reason);
   return std::nullopt;
+}
+
+std::optional<Value> Pursuit::left() const {
+  return is_reached() && remark_.empty() ? wanted_ : std::nullopt;
 }
 
 bool Pursuit::is_left() const {

@@ -67,6 +67,9 @@ class Pursuit {
   // When to advance even if nothing was observed.
   Time next_deadline() const;
 
+  // ParameterGoal, reached: what it was set to; empty if it reads back as something else.
+  std::optional<Value> left() const;
+
   // When the last change was asked for, and the first; kNever before.
   Time changed() const { return changed_; }
   Time first_changed() const { return first_changed_; }

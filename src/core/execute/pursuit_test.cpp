@@ -295,6 +295,21 @@ TEST(PursuitOfAParameter, RestoresOnlyWhatIsAnother) {
   EXPECT_TRUE(is<SetParameter>(other.advance(one.knowledge, kStart)));
 }
 
+TEST(PursuitOfAParameter, RestoresItOnlyWhereNothingElseHasSetItSince) {
+  One one;
+  const ParameterGoal goal{"gain", Value(1.0), ParameterGoal::Kind::kRestore, {}, Value(2.0)};
+  Pursuit ours(goal, one.c, kStart);
+  ASSERT_TRUE(is<ReadParameter>(ours.advance(one.knowledge, kStart)));
+  ours.answered(done(Value(2.0)), kStart);
+  EXPECT_TRUE(is<SetParameter>(ours.advance(one.knowledge, kStart)));
+  Pursuit theirs(goal, one.c, kStart);
+  ASSERT_TRUE(is<ReadParameter>(theirs.advance(one.knowledge, kStart)));
+  theirs.answered(done(Value(3.0)), kStart);
+  EXPECT_FALSE(theirs.advance(one.knowledge, kStart));
+  EXPECT_FALSE(theirs.is_reached());
+  EXPECT_EQ(theirs.remark(), "something else has set it to 3.0 since");
+}
+
 // A process that came in another's place may be another version, without the parameter.
 TEST(PursuitOfAParameter, HasNothingToRestoreWhereThereIsNone) {
   One one;

@@ -206,11 +206,13 @@ bool StrategyExecutor::next_goal(Run& run, Time now) {
         obstruct(run, reason, reason, now);
         return false;
       }
-      auto goals = goals_of(run, now);
+      const bool is_needless = has_nothing_to_do(run, now);
+      auto goals = is_needless ? std::vector<Goal>() : goals_of(run, now);
       if (!goals) {
         if (goes_past(run, goals.error(), goals.error(), now)) continue;
         return false;
       }
+      if (is_needless) run.remark = "nothing to do";
       run.goals = std::move(*goals);
       take_owed(adaptation, run.goals);
       run.goal = 0;
@@ -282,6 +284,34 @@ bool StrategyExecutor::goes_past(Run& run, const std::string& obstacle, const st
   return true;
 }
 
+// A step that would take down what is down already; or that would give back what no step has taken. A component
+// that died meanwhile is not brought up here: whatever starts it again does that.
+bool StrategyExecutor::has_nothing_to_do(const Run& run, Time now) {
+  const Strategy& strategy = knowledge_.rules[run.strategy];
+  const Adaptation& adaptation = strategy.adaptations[run.adaptation];
+  const ComponentState& state = knowledge_.components[adaptation.component];
+  // One that is said to be inactive is looked at: that may have changed.
+  if (strategy.has_steps() && adaptation.type == AdaptationType::kDeactivate)
+    return state.is_at_rest() && (state.alive == false || state.lifecycle != Lifecycle::kInactive);
+  // No record is kept of what a last resort has taken.
+  if (strategy.is_last_resort || !gives_back(run.adaptation, strategy)) return false;
+  if (!has_taken(run, adaptation.component)) return true;
+  if (state.alive != false) return false;
+  write_.components.intend_lifecycle(adaptation.component, Lifecycle::kActive, now, write_.events);
+  return true;
+}
+
+// Whether this try has deactivated it, or an earlier one that could not activate it again; and nothing else has
+// changed that.
+bool StrategyExecutor::has_taken(const Run& run, ComponentId component) const {
+  const ComponentState& state = knowledge_.components[component];
+  if (state.is_to_be_given_back()) return true;
+  const bool is_changed = state.brought && state.brought->is_changed;
+  return !is_changed && std::ranges::any_of(run.undo, [&](const execute::Undo& undo) {
+    return undo.component == component && std::holds_alternative<execute::LifecycleGoal>(undo.goal);
+  });
+}
+
 // A member of a group that was brought up, and is not up any more though its process lives: to bring it up
 // again would be a fight with whoever did that.
 std::optional<ComponentId> StrategyExecutor::deactivated_meanwhile(const Run& run) const {
@@ -349,6 +379,7 @@ void StrategyExecutor::finish_goal(Run& run, Time now) {
   const Adaptation& adaptation = knowledge_.rules[run.strategy].adaptations[run.adaptation];
   // A last resort is to last, even after its failure has cleared.
   const bool is_to_last = knowledge_.rules[run.strategy].is_last_resort;
+  note_brought(pursuit);
   // Members that are up stay up: a part of the group is better than nothing.
   if (!is_to_last && !adaptation.group && pursuit.has_changed_anything()) note_undo(run);
   if (pursuit.is_reached()) {
@@ -386,7 +417,7 @@ bool StrategyExecutor::replace_hung_member(Run& run) const {
 }
 
 // How the goal that was pursued last is taken back. A state that two steps change is brought
-// back to where it was before the first.
+// back to where it was before the first. A step that gives back takes nothing.
 void StrategyExecutor::note_undo(Run& run) {
   const Pursuit& pursuit = *run.pursuit;
   const auto& adaptations = knowledge_.rules[run.strategy].adaptations;
@@ -396,13 +427,16 @@ void StrategyExecutor::note_undo(Run& run) {
     const Lifecycle before = knowledge_.components[adaptation.component].intended_lifecycle;
     for (Goal& goal : execute::starting_again(adaptation, before, knowledge_))
       run.undo.push_back({adaptation.component, std::move(goal)});
-  } else if (pursuit.before()) {
+  } else if (pursuit.before() && !gives_back(run.adaptation, knowledge_.rules[run.strategy])) {
     auto goal = execute::undoing(pursuit.goal(), adaptation.type, *pursuit.before());
-    const bool is_known = goal && std::ranges::any_of(run.undo, [&](const execute::Undo& known) {
-                            return known.component == pursuit.component() &&
-                                   execute::are_of_one_thing(known.goal, *goal);
-                          });
-    if (goal && !is_known) run.undo.push_back({pursuit.component(), std::move(*goal)});
+    if (!goal) return;
+    auto known = std::ranges::find_if(run.undo, [&](const execute::Undo& each) {
+      return each.component == pursuit.component() && execute::are_of_one_thing(each.goal, *goal);
+    });
+    if (known == run.undo.end())
+      known = run.undo.insert(known, execute::Undo{pursuit.component(), std::move(*goal)});
+    if (auto* parameter = std::get_if<execute::ParameterGoal>(&known->goal))
+      parameter->left = pursuit.left();
   }
 }
 
@@ -414,13 +448,16 @@ bool StrategyExecutor::next_undo(Run& run, Time now) {
     if (is_held_by_last_resort(undo)) continue;
     if (starts && (state.alive == true || (state.pid != 0 && state.process != ProcessState::kGone)))
       continue;  // it is there
+    if (is_changed_by_another(undo)) {
+      tell_left_out(run, "something else has changed it since", now);
+      continue;
+    }
     if (const auto missing = missing_for(run, undo)) {
-      write_.events.tell(
-          now, Undone{run.strategy,
-                      knowledge_.rules[undo.component].name + ": " + execute::describe(undo.goal) +
-                          ": it may depend on " + knowledge_.rules[missing->component].name +
-                          ", which " + missing->why,
-                      false});
+      owe(undo);
+      tell_left_out(run,
+                    "it may depend on " + knowledge_.rules[missing->component].name + ", which " +
+                        missing->why,
+                    now);
       continue;
     }
     if (!starts && state.process == ProcessState::kGone) {
@@ -433,6 +470,31 @@ bool StrategyExecutor::next_undo(Run& run, Time now) {
   write_.attempts.undone(run.strategy);
   write_.signals.touch(run.rule);
   return false;
+}
+
+// Its next undo is left out.
+void StrategyExecutor::tell_left_out(const Run& run, const std::string& why, Time now) {
+  const execute::Undo& undo = run.undo.back();
+  write_.events.tell(now, Undone{run.strategy,
+                                 knowledge_.rules[undo.component].name + ": " +
+                                     execute::describe(undo.goal) + ": " + why,
+                                 false});
+}
+
+// A person, or another program, has brought it to another state since. Where that is the one to go back to, nothing
+// is to be done. A parameter is looked at when it is undone.
+bool StrategyExecutor::is_changed_by_another(const execute::Undo& undo) const {
+  const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&undo.goal);
+  const ComponentState& state = knowledge_.components[undo.component];
+  return lifecycle != nullptr && state.brought && state.brought->is_changed &&
+         state.lifecycle != lifecycle->target;
+}
+
+// It stays deactivated: the next try gives it back.
+void StrategyExecutor::owe(const execute::Undo& undo) {
+  const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&undo.goal);
+  if (lifecycle != nullptr && lifecycle->target == Lifecycle::kActive)
+    write_.components[undo.component].brought = Brought{Lifecycle::kInactive, false, true};
 }
 
 // The component that keeps another one, which the strategy took down, from being brought up again: one
@@ -496,6 +558,8 @@ void StrategyExecutor::undo_at_next_start(StrategyId strategy, const execute::Un
   } else if (const auto* parameter = std::get_if<execute::ParameterGoal>(&undo.goal)) {
     forget_owed(undo.component, parameter->name);
     owed_.push_back({strategy, undo});
+    // The next process starts with a value of its own.
+    std::get<execute::ParameterGoal>(owed_.back().undo.goal).left.reset();
   }
 }
 
@@ -534,7 +598,11 @@ void StrategyExecutor::forget_owed(ComponentId component, const std::string& par
 void StrategyExecutor::finish_undo(Run& run, Time now) {
   const Pursuit& pursuit = *run.pursuit;
   const bool reached = pursuit.is_reached();
-  if (reached) note_lifecycle(pursuit, now);
+  if (reached) {
+    note_lifecycle(pursuit, now);
+  } else {
+    owe(run.undo.back());
+  }
   // A mode that is back by itself was set back, and that is remembered.
   if (std::holds_alternative<execute::ModeGoal>(pursuit.goal()) && pursuit.has_changed_anything())
     write_.rivals.forget(pursuit.component());
@@ -560,6 +628,19 @@ void StrategyExecutor::note_lifecycle(const Pursuit& pursuit, Time now) {
   const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&pursuit.goal());
   if (lifecycle != nullptr)
     write_.components.intend_lifecycle(pursuit.component(), lifecycle->target, now, write_.events);
+}
+
+// From now on another state is somebody else's doing. An unproven change may still come.
+void StrategyExecutor::note_brought(const Pursuit& pursuit) {
+  const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&pursuit.goal());
+  if (lifecycle == nullptr || !pursuit.has_changed_anything()) return;
+  auto& brought = write_.components[pursuit.component()].brought;
+  const bool is_owed = brought && brought->is_owed;
+  if (pursuit.is_reached()) {
+    brought = Brought{lifecycle->target};
+  } else if (!is_owed) {
+    brought.reset();
+  }
 }
 
 // It stayed unconfigured until a rule had culprit bring it up: it has no other driver.

@@ -2,8 +2,10 @@
 //
 // A strategy's adaptations are carried out in the order they are written, each to its proof
 // (goal.h), before the next begins. If one cannot be carried out, or the verdict is that the
-// strategy failed, its changes are undone in reverse order where they can be. A component that was
-// taken down while another one was adapted is not brought up again where that one is down. From its choice to
+// strategy failed, its changes are undone in reverse order where they can be, and where nothing else has
+// changed the same since. A component that was taken down while another one was adapted is not brought up
+// again where that one is down. A step that activates what an earlier one deactivates gives back what that
+// one took: what was not active before stays so. From its choice to
 // the end of its undoing a strategy has its components to itself, but for last resorts: these go
 // beside it and are not undone, and no other undoing touches their changes.
 #pragma once
@@ -107,6 +109,8 @@ class StrategyExecutor {
   Expected<std::vector<execute::Goal>> goals_of(const Run& run, Time now);
   bool leaves_out(Run& run);
   bool goes_past(Run& run, const std::string& obstacle, const std::string& reason, Time now);
+  bool has_nothing_to_do(const Run& run, Time now);
+  bool has_taken(const Run& run, ComponentId component) const;
   bool start_again(Run& run, Time now);
   bool is_first_rise(const execute::Pursuit& pursuit) const;
   std::optional<ComponentId> deactivated_meanwhile(const Run& run) const;
@@ -120,6 +124,9 @@ class StrategyExecutor {
   };
   std::optional<Missing> missing_for(const Run& run, const execute::Undo& undo) const;
   bool is_held_by_last_resort(const execute::Undo& undo) const;
+  bool is_changed_by_another(const execute::Undo& undo) const;
+  void tell_left_out(const Run& run, const std::string& why, Time now);
+  void owe(const execute::Undo& undo);
   void finish_goal(Run& run, Time now);
   bool replace_hung_member(Run& run) const;
   void finish_undo(Run& run, Time now);
@@ -133,6 +140,7 @@ class StrategyExecutor {
   void note_mode(const execute::Pursuit& pursuit, Time now);
   void note_rival(const Run& run, Time now);
   void note_lifecycle(const execute::Pursuit& pursuit, Time now);
+  void note_brought(const execute::Pursuit& pursuit);
   void note_coming_up(const execute::Pursuit& pursuit, Time now);
   void note_too_long(const execute::Pursuit& pursuit, Time now);
   void note_transition(const execute::Pursuit& pursuit, const execute::Pursuit::Request& request,

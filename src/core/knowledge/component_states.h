@@ -31,6 +31,15 @@ struct BegunAnew {
   Time done{};   // the component was back
 };
 
+// A strategy brought it to another state of its lifecycle.
+struct Brought {
+  Lifecycle to = Lifecycle::kUnknown;
+  // Its process was in another state since: a person, or another program, has changed it.
+  bool is_changed = false;
+  // It was deactivated, and could not be activated again when that was undone.
+  bool is_owed = false;
+};
+
 // A trouble (diagnose/trouble.h) that a failure was there beside, and that is over.
 struct PastTrouble {
   Time since{};
@@ -71,7 +80,8 @@ struct ComponentState {
   bool is_rising = false;          // it was seen unconfigured, and is not active yet
   Time culprit_raised = kLongAgo;  // when culprit took it through its lifecycle last
   Time worked = kLongAgo;          // when its process was last reported to work (ProcessWorked)
-  std::optional<BegunAnew> begun_anew{};      // the last time
+  std::optional<Brought> brought{};           // the last time
+  std::optional<BegunAnew> begun_anew{};      // likewise
   std::optional<PastTrouble> past_trouble{};  // likewise
   bool took_place = false;  // its process took another's place, and its lifecycle was not read yet
 
@@ -97,6 +107,16 @@ struct ComponentState {
 
   // Its process runs, or is somewhere else, and it does nothing more.
   bool hangs() const { return in_graph && process == ProcessState::kRunning && alive == false; }
+
+  // It does nothing that a deactivation would end: it is dead or hangs, or is known not to be active.
+  bool is_at_rest() const {
+    return alive == false || (alive == true && (lifecycle == Lifecycle::kInactive ||
+                                                lifecycle == Lifecycle::kUnconfigured ||
+                                                lifecycle == Lifecycle::kFinalized));
+  }
+
+  // An earlier strategy has left it deactivated, and nothing else has changed that.
+  bool is_to_be_given_back() const { return brought && brought->is_owed && !brought->is_changed; }
 
   // Its process runs, and its node is not there, or not there yet.
   bool is_coming_up() const { return !in_graph && pid != 0 && process == ProcessState::kRunning; }

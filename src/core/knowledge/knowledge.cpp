@@ -167,19 +167,15 @@ bool Knowledge::is_known_gone(ComponentId component) const {
 bool Knowledge::only_starts_the_gone(const Strategy& strategy) const {
   using enum AdaptationType;
   bool starts_any = false;
-  for (const Adaptation& adaptation : strategy.adaptations) {
+  for (std::size_t i = 0; i < strategy.adaptations.size(); ++i) {
+    const Adaptation& adaptation = strategy.adaptations[i];
     const ComponentId component = adaptation.component;
-    const bool starts = adaptation.type == kRedeploy || adaptation.type == kStart;
-    const bool takes_back = std::ranges::any_of(strategy.adaptations, [&](const Adaptation& a) {
-      return a.type == kDeactivate && a.component == component && &a < &adaptation;
-    });
     const bool is_done_step =
         (adaptation.type == kStop && is_known_gone(component)) ||
-        (adaptation.type == kDeactivate && components[component].lifecycle == Lifecycle::kInactive);
-    if (starts && rules[component].can_start() && is_known_gone(component)) {
+        (adaptation.type == kDeactivate && components[component].is_at_rest());
+    if (launches(adaptation) && rules[component].can_start() && is_known_gone(component)) {
       starts_any = true;
-    } else if (!strategy.has_steps() ||
-               !(is_done_step || (adaptation.type == kActivate && takes_back))) {
+    } else if (!strategy.has_steps() || !(is_done_step || gives_back(i, strategy))) {
       return false;
     }
   }

@@ -316,6 +316,19 @@ inline bool launches(const Adaptation& adaptation) {
   return adaptation.type == AdaptationType::kRedeploy || adaptation.type == AdaptationType::kStart;
 }
 
+// Does the adaptation at `place` activate what an earlier step of the strategy deactivates? Then it gives
+// back what that one took, and no more: what was not active before stays so.
+inline bool gives_back(std::size_t place, const Strategy& strategy) {
+  const auto& all = strategy.adaptations;
+  const Adaptation& back = all[place];
+  return strategy.has_steps() && back.type == AdaptationType::kActivate && !back.group &&
+         std::any_of(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(place),
+                     [&](const Adaptation& taken) {
+                       return taken.type == AdaptationType::kDeactivate &&
+                              taken.component == back.component;
+                     });
+}
+
 // Does a status of this name come from the component? "camera", "/camera_node", "camera: frame rate".
 inline bool is_named_after(std::string_view status, const Component& component) {
   std::string_view name = status.substr(0, status.find(':'));

@@ -69,6 +69,49 @@ TEST(Steps, EachBeginsWhenTheOneBeforeIsProven) {
       << transcript(robot);
 }
 
+TEST(Steps, NothingIsActivatedThatWasNotActive) {
+  TestRobot robot = arm_robot(arm_with(kAround));
+  robot["planner"].state = Lifecycle::kInactive;
+  robot.tell(LifecycleRead{robot.id("planner"), Lifecycle::kInactive});
+  robot["driver"].fault = "redeploy";
+  robot.run_for(20s);
+  EXPECT_EQ(robot.count("Silent resolved by in_steps"), 1u) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("planner: activate")) << transcript(robot);
+  EXPECT_EQ(robot["planner"].state, Lifecycle::kInactive) << transcript(robot);
+}
+
+// A process that is dead is deactivated enough.
+TEST(Steps, TheDriverIsReplacedBehindADeadPlanner) {
+  TestRobot robot = arm_robot(arm_with(kAround));
+  robot.kill("planner");
+  robot.run_for(5s);
+  robot["driver"].fault = "redeploy";
+  robot.run_for(20s);
+  EXPECT_EQ(robot.count("Silent resolved by in_steps"), 1u) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("planner: deactivate")) << transcript(robot);
+  EXPECT_FALSE(robot.was_asked("planner: activate")) << transcript(robot);
+}
+
+TEST(Steps, UndoingLeavesWhatAPersonHasChangedSince) {
+  TestRobot robot =
+      arm_robot(arm_with("      ADAPTATION light deactivate 2\n"
+                         "      THEN ADAPTATION driver set_parameter gain 2.0 20\n",
+                         "ATTEMPTS 1"));
+  robot["driver"].parameters = {{"gain", Value(1.0)}};
+  robot["driver"].fault = "nothing helps";
+  for (int i = 0; i < 100 && robot["light"].state == Lifecycle::kActive; ++i) robot.run_for(100ms);
+  ASSERT_EQ(robot["light"].state, Lifecycle::kInactive) << transcript(robot);
+  for (const Lifecycle wish : {Lifecycle::kActive, Lifecycle::kInactive}) {
+    robot.run_for(500ms);
+    robot["light"].state = wish;
+    robot.tell(LifecycleRead{robot.id("light"), wish});
+  }
+  robot.run_for(20s);
+  EXPECT_EQ(robot["light"].state, Lifecycle::kInactive) << transcript(robot);
+  EXPECT_EQ(robot.count("light: active: something else has changed it since"), 1u)
+      << transcript(robot);
+}
+
 TEST(Steps, UndoingDoesNotActivateWhatCommandsADeadDriver) {
   TestRobot robot = arm_robot(arm_with(kAround, "ATTEMPTS 1"));
   robot["driver"].dies_at_start = true;

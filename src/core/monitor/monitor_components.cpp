@@ -179,10 +179,14 @@ void Monitor::remember(const History& past) {
 
 void Monitor::on(Time at, const LifecycleRead& seen) {
   ComponentState& state = write_.components[seen.component];
+  const bool is_primary = seen.state != Lifecycle::kUnknown && seen.state != Lifecycle::kTransition;
+  // A new process comes up from an unknown state, and that is no change.
+  if (is_primary && state.lifecycle != Lifecycle::kUnknown && seen.state != state.lifecycle &&
+      state.brought)
+    state.brought->is_changed |= seen.state != state.brought->to;
   if (seen.state != state.lifecycle) state.lifecycle_since = at;
   state.lifecycle = seen.state;
   state.was_active |= seen.state == Lifecycle::kActive;
-  const bool is_primary = seen.state != Lifecycle::kUnknown && seen.state != Lifecycle::kTransition;
   if (seen.state != Lifecycle::kTransition) {
     state.changes_until = kNever;
   } else if (state.changes_until == kNever) {
@@ -546,6 +550,7 @@ void Monitor::forget_process(ComponentId component, Time at) {
   state.questioned = {};
   state.transition_patience = {};
   if (state.lifecycle != Lifecycle::kUnknown) state.took_place = true;
+  if (state.brought && state.brought->is_changed) state.brought.reset();
   on(at, LifecycleRead{component, Lifecycle::kUnknown});
   for (std::size_t p = 0; p < knowledge_.rules.parameters.size(); ++p) {
     if (knowledge_.rules.parameters[p].component != component) continue;

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "language/evaluate.h"
-#include "plan/validity.h"
 
 namespace culprit::plan {
 namespace {
@@ -39,7 +38,49 @@ bool awaits_when(const Strategy& strategy, const Knowledge& knowledge) {
   return !when.known || !when.b;
 }
 
+// An input about its component's lifecycle or process as the adaptation makes it; empty: it leaves it as it is.
+std::optional<Slot> brought_about(const Adaptation& adaptation, const Input& input) {
+  if (input.component != adaptation.component) return std::nullopt;
+  const bool is_lifecycle = input.kind == Input::Kind::kLifecycle;
+  const bool is_alive = input.kind == Input::Kind::kAlive;
+  switch (adaptation.type) {
+    case AdaptationType::kActivate:
+    case AdaptationType::kRestart:
+      return is_lifecycle ? std::optional(Slot::of(to_string(Lifecycle::kActive))) : std::nullopt;
+    case AdaptationType::kDeactivate:
+      return is_lifecycle ? std::optional(Slot::of(to_string(Lifecycle::kInactive))) : std::nullopt;
+    case AdaptationType::kRedeploy:
+    case AdaptationType::kStart:
+      return is_alive ? std::optional(Slot::of(true)) : std::nullopt;
+    case AdaptationType::kStop:
+      return is_alive ? std::optional(Slot::of(false)) : std::nullopt;
+    default:
+      return std::nullopt;
+  }
+}
+
+bool makes_true(const Strategy& strategy, const Program& when, const Knowledge& knowledge) {
+  std::vector<Assumed> assumed;
+  for (const Instruction& each : when.code) {
+    if (each.op != Op::kInput) continue;
+    const InputId input(each.operand);
+    std::optional<Slot> value;
+    for (const Adaptation& adaptation : strategy.adaptations) {
+      if (auto made = brought_about(adaptation, knowledge.rules[input])) value = made;
+    }
+    if (value) assumed.push_back({input, *value});
+  }
+  const Slot result = evaluate(when, knowledge.signals.slots(), assumed);
+  return result.known && result.b;
+}
+
 }  // namespace
+
+bool makes_possible(const Strategy& strategy, const Strategy& waiting, const Invalid& why,
+                    const Knowledge& knowledge) {
+  if (awaits_when(waiting, knowledge)) return makes_true(strategy, waiting.when, knowledge);
+  return knowledge.components[why.component].alive == false && brings_back(strategy, why.component);
+}
 
 bool awaits_valid_strategy(const Decision& decision, const Knowledge& knowledge) {
   // Rounds in which a strategy was tried count.

@@ -7,13 +7,20 @@
 //     failure may bring the component back, or waits for a person together with that failure. If no
 //     strategy repairs the component, the round counts, since otherwise no person would be told.
 //   - The WHEN of one is not true, as of one that may open a gripper only while it holds nothing.
+// A strategy that ends such a wait does not itself wait for that failure, even as an effect of it.
 #pragma once
 
 #include "plan/planner.h"
+#include "plan/validity.h"
 
 namespace culprit::plan {
 
 // `decision` is of a failure for which nothing was chosen.
 bool awaits_valid_strategy(const Decision& decision, const Knowledge& knowledge);
+
+// Would `strategy` make `waiting` possible, which is invalid now (`why`)? It brings back the component that is
+// down, or makes the WHEN true.
+bool makes_possible(const Strategy& strategy, const Strategy& waiting, const Invalid& why,
+                    const Knowledge& knowledge);
 
 }  // namespace culprit::plan

@@ -27,5 +27,28 @@ TEST(AwaitsValidStrategy, AlsoOfAStrategyThatDoesMoreThanToStartIt) {
   EXPECT_TRUE(awaits_valid_strategy(decision, *scene));
 }
 
+TEST(MakesPossible, WhatMakesTheWhenTrueOrBringsBackWhatIsDown) {
+  Scene scene(
+      "COMPONENT driver NODE /driver LAUNCH \"driver\"\n"
+      "COMPONENT arm NODE /arm LAUNCH \"arm\"\n"
+      "RULE Driver\nPOLICIES ERROR\nTRIGGER x > 1\n"
+      "STRATEGY safe 50 10 WHEN lifecycle(arm) == \"inactive\"\nADAPTATION driver redeploy 2\n"
+      "STRATEGY gentle 50 10\nADAPTATION arm set_parameter hold true 2\n"
+      "RULE Arm\nPOLICIES ERROR\nTRIGGER y > 1\n"
+      "STRATEGY off 50 10\nADAPTATION arm deactivate 2\n"
+      "STRATEGY again 50 10\nADAPTATION arm redeploy 2\n");
+  const auto makes = [&](const char* strategy, const char* waiting) {
+    const Strategy& of = scene.rules()[scene.strategy(waiting)];
+    const auto why = invalidity(of, *scene);
+    return why && makes_possible(scene.rules()[scene.strategy(strategy)], of, *why, *scene);
+  };
+  EXPECT_TRUE(makes("Arm.off", "Driver.safe"));
+  EXPECT_FALSE(makes("Arm.again", "Driver.safe"));
+  EXPECT_FALSE(makes("Arm.again", "Driver.gentle")) << "it is possible now";
+  scene.process("arm", ProcessState::kGone);
+  EXPECT_TRUE(makes("Arm.again", "Driver.gentle"));
+  EXPECT_FALSE(makes("Arm.off", "Driver.gentle"));
+}
+
 }  // namespace
 }  // namespace culprit::plan

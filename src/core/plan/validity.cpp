@@ -106,7 +106,7 @@ bool is_met(const Adaptation& adaptation, const Knowledge& knowledge) {
     case AdaptationType::kActivate:
       return is_alive && state.lifecycle == Lifecycle::kActive;
     case AdaptationType::kDeactivate:
-      return is_alive && state.lifecycle == Lifecycle::kInactive;
+      return state.is_at_rest();
     case AdaptationType::kStart:
       return is_alive;
     case AdaptationType::kStop:
@@ -116,17 +116,29 @@ bool is_met(const Adaptation& adaptation, const Knowledge& knowledge) {
   }
 }
 
-// Whether there is nothing left to do for it as a part of a last resort.
+// Whether there is nothing left to do for it as a part of a last resort. A component that hangs may still do what
+// the last resort is to end.
 bool holds_already(const Adaptation& adaptation, const Knowledge& knowledge) {
+  const ComponentState& state = knowledge.components[adaptation.component];
   switch (adaptation.type) {
     case AdaptationType::kDeactivate:
-      return is_inactive_anyway(knowledge.components[adaptation.component]) ||
-             is_met(adaptation, knowledge);
+      return is_inactive_anyway(state) || (state.is_at_rest() && !state.hangs());
     case AdaptationType::kChangeCommunication:
       return uses_already(adaptation, knowledge);
     default:
       return is_met(adaptation, knowledge);
   }
+}
+
+// Whether the adaptation at `place` is a step with nothing to do: that is so already, or it would give back what
+// no step has to take.
+bool is_done_step(std::size_t place, const Strategy& strategy, const Knowledge& knowledge) {
+  const Adaptation& adaptation = strategy.adaptations[place];
+  if (!strategy.has_steps()) return false;
+  if (is_met(adaptation, knowledge)) return true;
+  const ComponentState& state = knowledge.components[adaptation.component];
+  return gives_back(place, strategy) && state.is_at_rest() &&
+         (state.alive == false || !state.is_to_be_given_back());
 }
 
 // Both set the same thing of one component, and not a whole process.
@@ -194,7 +206,8 @@ std::optional<Invalid> needless_start(const Strategy& strategy, const Knowledge&
 }
 
 // Its component lives, and is not active because its group is paused, or is being brought up or down: there is
-// nothing to repair in it. A rule that reads its lifecycle says so itself.
+// nothing to repair in it. A rule that reads its lifecycle says so itself. A step that leaves a paused one as it is
+// disturbs nothing.
 std::optional<Invalid> not_active_with_group(const Strategy& strategy, const Knowledge& knowledge) {
   const RuleSet& rules = knowledge.rules;
   const auto reads_lifecycle = [&](ComponentId component) {
@@ -202,14 +215,15 @@ std::optional<Invalid> not_active_with_group(const Strategy& strategy, const Kno
       return rules[id].kind == Input::Kind::kLifecycle && rules[id].component == component;
     });
   };
-  for (const Adaptation& a : strategy.adaptations) {
+  for (std::size_t i = 0; i < strategy.adaptations.size(); ++i) {
+    const Adaptation& a = strategy.adaptations[i];
     const ComponentState& state = knowledge.components[a.component];
     const bool is_down = state.alive == true && state.lifecycle != Lifecycle::kActive;
     if (a.group || !is_down || reads_lifecycle(a.component)) continue;
     for (const Group& group : rules.groups) {
       if (std::ranges::find(group.members, a.component) == group.members.end()) continue;
       const GroupHealth health = health_of(group, knowledge.components, knowledge.now);
-      if (health == GroupHealth::kInactive)
+      if (health == GroupHealth::kInactive && !is_done_step(i, strategy, knowledge))
         return Invalid{a.component, "is not active: its group " + group.name + " is paused", true};
       if (health == GroupHealth::kChanging)
         return Invalid{a.component,
@@ -233,19 +247,19 @@ std::optional<Invalid> untimely_by_when(const Strategy& strategy, const Knowledg
 std::optional<Invalid> obstacle_to_part(const Strategy& strategy, std::size_t place,
                                         const Knowledge& knowledge) {
   const Adaptation& adaptation = strategy.adaptations[place];
-  const auto before = std::span(strategy.adaptations).first(place);
   // The effect of an earlier adaptation of the same strategy is not known yet: start, then set a
   // parameter.
-  const bool is_changed_before = std::ranges::any_of(
-      before, [&](const Adaptation& a) { return a.component == adaptation.component; });
-  if (is_changed_before) return std::nullopt;
+  for (std::size_t before = 0; before < place; ++before) {
+    const bool is_same = strategy.adaptations[before].component == adaptation.component;
+    if (is_same && !is_done_step(before, strategy, knowledge)) return std::nullopt;
+  }
   if (cannot_be_reached(adaptation, knowledge))
     return Invalid{adaptation.component, knowledge.why_unheard(adaptation.component), true};
   if (std::string missing = missing_for(adaptation, knowledge); !missing.empty())
     return Invalid{adaptation.component, std::move(missing), true};
+  if (is_done_step(place, strategy, knowledge)) return std::nullopt;
   const std::string reason = obstacle(adaptation, knowledge);
-  const bool is_done_step = strategy.has_steps() && is_met(adaptation, knowledge);
-  if (reason.empty() || is_done_step) return std::nullopt;
+  if (reason.empty()) return std::nullopt;
   return Invalid{adaptation.component, knowledge.rules[adaptation.component].name + " " + reason};
 }
 
@@ -253,10 +267,15 @@ std::optional<Invalid> obstacle_to_part(const Strategy& strategy, std::size_t pl
 std::optional<Invalid> impossibility(const Strategy& strategy, const Knowledge& knowledge) {
   if (auto untimely = untimely_by_when(strategy, knowledge)) return untimely;
   if (auto needless = needless_start(strategy, knowledge)) return needless;
+  bool changes_anything = false;
   for (std::size_t i = 0; i < strategy.adaptations.size(); ++i) {
     if (auto obstacle = obstacle_to_part(strategy, i, knowledge)) return obstacle;
+    changes_anything |= !is_done_step(i, strategy, knowledge);
   }
-  return std::nullopt;
+  if (changes_anything) return std::nullopt;
+  const Adaptation& first = strategy.adaptations.front();
+  return Invalid{first.component,
+                 knowledge.rules[first.component].name + " " + obstacle(first, knowledge)};
 }
 
 }  // namespace

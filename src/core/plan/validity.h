@@ -10,6 +10,8 @@
 //   - redeploy: it has a LAUNCH command;
 //   - start: it has a LAUNCH command and is not there;
 //   - stop: it is there.
+// In steps, one that is so already is passed over: a dead component is deactivated. So is the activation of what
+// an earlier step had not to deactivate. Not all may be.
 // A component on a computer that is unreachable, or cannot be asked, cannot be adapted. A redeploy or a start
 // waits while a thing that the start needs is missing (StartBarred). For an exhausted rule only what goes on is
 // valid (Knowledge::goes_on). A strategy is valid if each of its adaptations is, given the ones

@@ -48,6 +48,36 @@ TEST(Validity, RulesOutToEndOrStartWhatIsOnAComputerThatCannotBeAsked) {
   EXPECT_FALSE(invalid("Dark.tune")) << "its node is heard";
 }
 
+// A dead or inactive component is deactivated already, and what no step takes is not given back. But one of the steps
+// has to change something.
+TEST(Validity, PassesOverStepsThatHaveNothingToDo) {
+  Scene scene(
+      "COMPONENT planner NODE /planner\nCOMPONENT driver NODE /driver LAUNCH \"driver\"\n"
+      "COMPONENT lamp NODE /lamp\n"
+      "RULE Silent\nPOLICIES ERROR\nTRIGGER x > 1\n"
+      "STRATEGY around 50 10\nADAPTATION planner deactivate 2\nTHEN ADAPTATION driver redeploy 5\n"
+      "THEN ADAPTATION planner activate 2\n"
+      "STRATEGY lit 50 10\nADAPTATION planner deactivate 2\nTHEN ADAPTATION lamp activate 5\n"
+      "THEN ADAPTATION planner activate 2\n"
+      "STRATEGY tuned 50 10\nADAPTATION planner deactivate 2\n"
+      "THEN ADAPTATION planner set_parameter gain 1 2\nTHEN ADAPTATION driver redeploy 5\n");
+  const auto reason = [&](const char* strategy) {
+    const auto found = invalidity(scene.rules()[scene.strategy(strategy)], *scene);
+    return found ? found->reason : "";
+  };
+  EXPECT_EQ(reason("Silent.around"), "");
+  EXPECT_EQ(reason("Silent.lit"), "");
+  ComponentState& planner = scene->components[scene.component("planner")];
+  planner.lifecycle = Lifecycle::kInactive;
+  EXPECT_EQ(reason("Silent.around"), "");
+  EXPECT_EQ(reason("Silent.lit"), "planner is not active") << "it would change nothing";
+  planner.brought = Brought{Lifecycle::kInactive, false, true};
+  EXPECT_EQ(reason("Silent.lit"), "") << "an earlier try has left it inactive";
+  scene.process("planner", ProcessState::kGone);
+  EXPECT_EQ(reason("Silent.around"), "");
+  EXPECT_EQ(reason("Silent.tuned"), "planner is not alive") << "a dead one sets no parameter";
+}
+
 // It holds what it has set as long as its failure is there, and no more than that.
 TEST(Validity, RulesOutToSetWhatALastResortHasSet) {
   Scene scene(

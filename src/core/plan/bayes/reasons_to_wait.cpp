@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "diagnose/known_down.h"
+#include "plan/awaits_valid_strategy.h"
 #include "plan/beside_exhausted.h"
 #include "plan/ties.h"
 
@@ -188,11 +189,26 @@ bool ReasonsToWait::ends_wait_of(StrategyId id, std::size_t cause) const {
          });
 }
 
+// The cause has no possible strategy before this one has made one possible. If it waited for the cause, each
+// would wait for the other.
+bool ReasonsToWait::opens_way_for(StrategyId id, std::size_t cause) const {
+  if (causes_[cause].kind != CauseNode::Kind::kFailure) return false;
+  const RuleId rule = causes_[cause].rule;
+  const std::vector<StrategyChance>& all = likely_.chances(cause);
+  if (knowledge_.states[rule].attempt || knowledge_.states.awaits_person(rule)) return false;
+  return std::ranges::all_of(all,
+                             [](const StrategyChance& each) { return each.invalid.has_value(); }) &&
+         std::ranges::any_of(all, [&](const StrategyChance& each) {
+           return makes_possible(knowledge_.rules[id], knowledge_.rules[each.strategy],
+                                 *each.invalid, knowledge_);
+         });
+}
+
 // Does it wait for a cause that more likely explains it?
 bool ReasonsToWait::exclude_effect(WeighedCandidate& weighed) const {
   const StrategyId strategy = weighed.candidate.strategy;
   if (const auto cause = likely_.of(weighed.failure)) {
-    if (ends_wait_of(strategy, *cause)) return false;
+    if (ends_wait_of(strategy, *cause) || opens_way_for(strategy, *cause)) return false;
     const bool goes_round =
         may_be_tried_beside_exhausted(strategy, knowledge_) && likely_.is_left_to_person(*cause);
     weighed.goes_round = !goes_round && is_quicker_than_repair(strategy, *cause);

@@ -39,6 +39,7 @@ class ReasonsToWait {
   bool is_settling(RuleId rule) const;
   bool is_sure(RuleId rule) const;
   bool ends_wait_of(StrategyId strategy, std::size_t cause) const;
+  bool opens_way_for(StrategyId strategy, std::size_t cause) const;
   bool is_quicker_than_repair(StrategyId strategy, std::size_t cause) const;
 
   const Knowledge& knowledge_;
