@@ -165,15 +165,16 @@ void Analyzer::forget_left_off(RuleId id, Time now) {
       now, FailureResolved{id, FailureResolved::How::kWithoutStrategy, {}, now - left_off.since});
 }
 
-// And its function is there again: a component of a group is of no use while the group is not active.
+// And its function is there again: a component of a group is of no use while the group is not active, but for
+// a pause, which somebody wishes.
 bool Analyzer::is_gone(RuleId id, Time now) const {
   return detector_.is_cleared(id, now) && !missing_group(id, now);
 }
 
 std::optional<GroupId> Analyzer::missing_group(RuleId id, Time now) const {
   for (const GroupId group : knowledge_.rules[id].groups) {
-    if (health_of(knowledge_.rules[group], knowledge_.components, now) != GroupHealth::kActive)
-      return group;
+    const GroupHealth health = health_of(knowledge_.rules[group], knowledge_.components, now);
+    if (health != GroupHealth::kActive && health != GroupHealth::kInactive) return group;
   }
   return std::nullopt;
 }
@@ -404,6 +405,15 @@ void Analyzer::end_attempt(RuleId id, Time now) {
 void Analyzer::abandon(RuleId id, Time now) {
   end_attempt(id, now);
   look_at(id, now);  // the failure may be gone already, or have come
+}
+
+void Analyzer::yield_to_last_resort(RuleId id, Time now) {
+  const Attempt& attempt = *knowledge_.states[id].attempt;
+  if (attempt.first_change != kNever && !attempt.has_no_failure) {
+    write_.states.set_tried(attempt.strategy, true);
+    ++write_.states.state(id).search.attempts;
+  }
+  abandon(id, now);
 }
 
 void Analyzer::make_way(RuleId id, StrategyId other, Time now) {

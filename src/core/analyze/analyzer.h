@@ -112,6 +112,9 @@ class Analyzer {
 
   // The rule's strategy under way ends without a verdict.
   void abandon(RuleId id, Time now);
+  // Likewise, for a last resort. If it has changed anything, that may be why the last resort is due: it was an
+  // attempt in vain.
+  void yield_to_last_resort(RuleId id, Time now);
 
   // The rule's strategy under way, which has taken effect, leaves its components to `other`. If its
   // changes stay, it is judged when it has the components back; else it ends without a verdict.

@@ -476,7 +476,7 @@ void Manager::go_before_others(StrategyId strategy, Time now) {
     knowledge_.events.tell(
         now, StrategyAbandoned{attempt->strategy,
                                "the last resort " + last_resort.name + " goes first"});
-    analyzer_.abandon(id, now);
+    analyzer_.yield_to_last_resort(id, now);
   }
   const Criticality level = knowledge_.rules[last_resort.rule].policies.criticality;
   for (std::size_t r = 0; r < knowledge_.rules.rules.size(); ++r) {

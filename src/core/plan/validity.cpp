@@ -122,7 +122,8 @@ bool holds_already(const Adaptation& adaptation, const Knowledge& knowledge) {
   const ComponentState& state = knowledge.components[adaptation.component];
   switch (adaptation.type) {
     case AdaptationType::kDeactivate:
-      return is_inactive_anyway(state) || (state.is_at_rest() && !state.hangs());
+      return is_inactive_anyway(state) ||
+             (state.alive == true && state.lifecycle == Lifecycle::kInactive);
     case AdaptationType::kChangeCommunication:
       return uses_already(adaptation, knowledge);
     default:

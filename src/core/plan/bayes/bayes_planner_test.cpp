@@ -357,19 +357,22 @@ TEST(BayesPlanner, LeavesLastResortsToTheManager) {
 
 // Another source restores the function at once; the repair of the cause goes on beside it.
 TEST(BayesPlanner, GoesRoundACauseWhoseRepairTakesMuchLonger) {
-  const auto scene_with = [](const char* repair, const char* workaround) {
+  const auto scene_with = [](const char* repair, const char* workaround, Duration since = 2s) {
     Scene scene(
         "COMPONENT a NODE /a LAUNCH \"a\"\nRULE A\nPOLICIES ERROR\nTRIGGER x > 1\n"
         "STRATEGY redeploy 90 10\nADAPTATION a redeploy " +
         std::string(repair) + "\n" + failure_of("b", "B") + "STRATEGY other 80 10\nADAPTATION b " +
         workaround + " 2\n");
-    scene.link("a", "b").fail("A").fail("B");
+    scene.link("a", "b").fail("A", 10s - since).fail("B", 10s - since);
     return scene;
   };
   Scene slow = scene_with("60", "change_communication in /other");
   EXPECT_EQ(slow.plan(kBalanced), "A.redeploy B.other");
   EXPECT_EQ(slow.candidate("B.restart").excluded, Condition::kDependency);
   EXPECT_EQ(scene_with("10", "change_communication in /other").plan(kBalanced), "A.redeploy");
+  EXPECT_EQ(scene_with("10", "change_communication in /other", 8s).plan(kBalanced),
+            "A.redeploy B.other")
+      << "it has taken long already";
   EXPECT_EQ(scene_with("60", "set_parameter p 1").plan(kBalanced), "A.redeploy");
   const char* both = "set_parameter p 1 2\nADAPTATION b change_communication in /other";
   EXPECT_EQ(scene_with("60", both).plan(kBalanced), "A.redeploy") << "it does more than that";
