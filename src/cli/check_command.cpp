@@ -102,7 +102,8 @@ void check_launches(const Expansion& file, Checked& checked) {
   std::erase_if(troubles, is_reported);
   if (troubles.empty()) return;
   if (is_elsewhere) {
-    fmt::print(stderr, "culprit: {}: if this is the robot's computer, {} could be started: {}\n",
+    fmt::print(stderr,
+               "culprit: {}: {} could be started on this computer: {}; check it on the robot's\n",
                file.source.name(),
                launches == 1 ? "no component with a LAUNCH"
                              : fmt::format("none of its {} components with a LAUNCH", launches),

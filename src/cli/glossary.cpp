@@ -20,6 +20,12 @@ std::string_view without_blanks(std::string_view text) {
 std::string plain_text(std::string_view markdown) {
   std::string out;
   for (std::size_t i = 0; i < markdown.size(); ++i) {
+    if (markdown.substr(i).starts_with(" ([")) {  // a reference to a page
+      if (const auto end = markdown.find("))", i); end != std::string_view::npos) {
+        i = end + 1;
+        continue;
+      }
+    }
     const char c = markdown[i];
     if (c == '`' || c == '*' || c == '[') continue;
     if (c == '\\' && i + 1 < markdown.size()) {

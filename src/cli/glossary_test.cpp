@@ -44,6 +44,8 @@ TEST(Glossary, FindsTermsAsPeopleWriteThem) {
   EXPECT_EQ(find_term("policy"), find_term("policies"));
   EXPECT_EQ(find_term("frobnicate"), nullptr);
   EXPECT_EQ(nearest_term("componnet"), "component");
+  EXPECT_NE(find_term("REPORT"), nullptr);
+  EXPECT_THAT(page(*find_term("blind")), HasSubstr("never acts.\n")) << "a link is no text";
   EXPECT_THAT(page(*find_term("component")), HasSubstr("A ROS 2 node that culprit manages"));
 }
 

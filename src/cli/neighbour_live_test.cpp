@@ -336,8 +336,8 @@ RULE CameraGone
   first->signal(SIGKILL);
   ASSERT_EQ(first->wait(), -SIGKILL);
   ASSERT_TRUE(second->prints("this one manages the robot from now on")) << second->output();
-  EXPECT_THAT(second->output(), HasSubstr("what the culprit that managed before had learned of 1 "
-                                          "strategy is known, and what it had tried"));
+  EXPECT_THAT(second->output(), HasSubstr("takes over the beliefs in 1 strategy, and the attempts, "
+                                          "of the culprit that managed before"));
   // It cannot be healed here either: a culprit without that knowledge would try it.
   EXPECT_TRUE(second->prints("CameraGone is exhausted")) << second->output();
   std::this_thread::sleep_for(3s);

@@ -77,7 +77,7 @@ TEST_F(NodesOnAnotherComputerOverAStandInForSsh, AreNotDeadWhileThatCannotBeAske
   const auto managing = run();
   ASSERT_TRUE(managing->prints("lidar is there")) << managing->output();
   ssh.refuse("robot@rover2: Permission denied (publickey).");
-  ASSERT_TRUE(managing->prints("is taken for neither alive nor dead")) << managing->output();
+  ASSERT_TRUE(managing->prints("the state of what it runs is unknown")) << managing->output();
   EXPECT_THAT(managing->output(), HasSubstr("give culprit's user a key"));
   kill(engine->pid_of("lidar_1"), SIGSTOP);
   std::this_thread::sleep_for(4s);  // it does not answer: dead after some 2 s, could it be asked

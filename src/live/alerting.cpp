@@ -137,7 +137,7 @@ std::vector<Alerting::Problem> Alerting::problems_of_sight() const {
     problem.alert.rule = rules[worst].name;
     problem.alert.health = std::string(to_string(rules[worst].policies.criticality));
     problem.alert.headline = names + ": " + describe(*knowledge.blindness[worst]);
-    problem.alert.doing = "failures that they would see stay unnoticed";
+    problem.alert.doing = "failures of these rules stay unnoticed";
     problem.needs_person_if_it_lasts = true;
   }
   return all;

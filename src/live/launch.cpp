@@ -331,7 +331,7 @@ Launched launch(Robot& robot, const RuleSet& rules, const StartComponent& start,
     const auto left = keeper.left.find(rules[c].name);
     if (left != keeper.left.end() && keeper.runs(c)) {
       listener.on_remark("bringing up " + rules[c].name +
-                         ", which a culprit started that was ended meanwhile\n");
+                         ", which an earlier culprit had started\n");
       starting.resume(c, left->second);
       unfinished.insert(*left);
     } else if (keeper.starts_missing && !starting.is_there(c) && rules[c].can_start() &&

@@ -219,7 +219,7 @@ Expected<void> LiveRun::run(OrderTaker& desk, const std::atomic<bool>& stopped) 
     }
     look_at_neighbours();
     if (frame_.orders.is_kept_again())
-      session_->announce(announcements::kKept, "what people have ordered was not kept, and is now");
+      session_->announce(announcements::kKept, "the orders of people were not stored, and are now");
     watch_hearing(desk);
     // Without a journal, the actions under way would be lost: then the new rules wait for their
     // end.

@@ -284,16 +284,16 @@ void LiveSession::inherit(RunBeginning& beginning) {
   if (!told) return;
   if (!*told) {
     beginning.findings.push_back(
-        "what the culprit that managed before had learned and tried is not known (" +
-        told->error() + "); limits count what this one knows of");
+        "the beliefs and attempts of the culprit that managed before are unknown (" +
+        told->error() + "); limits count only the actions that this one knows");
     return;
   }
   journal::inherit(beginning.learned, (*told)->learned);
   beginning.past = journal::still_counting(journal::joined(beginning.past, (*told)->past, rules_),
                                            robot_->now(), rules_);
   beginning.findings.push_back(
-      fmt::format("what the culprit that managed before had learned of {} is known, and "
-                  "what it had tried",
+      fmt::format("culprit takes over the beliefs in {}, and the attempts, of the culprit that "
+                  "managed before",
                   amount_of((*told)->learned.beliefs.size(), "strategy", "strategies")));
 }
 

@@ -46,17 +46,17 @@ std::string report(const Source& source, const RuleSet& rules, const LiveInvento
       [](const Diagnostic& each) { return each.code != Code::kRunsOtherwise; });
   const std::vector<Diagnostic> runs_otherwise(others, missing.end());
   missing.erase(others, missing.end());
-  std::string text =
-      found.empty()
-          ? fmt::format("culprit: domain {} has nothing that {} names\n", domain, source.name())
-          : fmt::format("culprit: {} names, and the robot on domain {} has:\n", source.name(),
-                        domain);
+  std::string text = found.empty()
+                         ? fmt::format("culprit: found nothing on domain {} that {} names\n",
+                                       domain, source.name())
+                         : fmt::format("culprit: {} names, and the robot on domain {} has:\n",
+                                       source.name(), domain);
   for (const std::string& line : found) text += "  " + line + "\n";
   if (!missing.empty())
-    text += fmt::format("culprit: {} names, and the robot has not:\n", source.name());
+    text += fmt::format("culprit: named in {}, and not found on the robot:\n", source.name());
   for (const Diagnostic& each : missing) text += render(each, source);
   if (!runs_otherwise.empty())
-    text += fmt::format("culprit: components run otherwise than {} says:\n", source.name());
+    text += fmt::format("culprit: components run differently from {}:\n", source.name());
   for (const Diagnostic& each : runs_otherwise) text += render(each, source);
   return text;
 }
@@ -70,10 +70,9 @@ class Look {
     if (!participant) return Error{participant.error()};
     // Keys for what the rules need do not open all that a look takes.
     if (participant->security)
-      return Error{"the domain is secured; it is not looked up what of the rules the robot has"};
+      return Error{"the domain is secured, so the rules are not compared with the robot"};
     auto survey = open_survey(message_path);
-    if (!survey)
-      return Error{"it cannot be looked up what of the rules the robot has: " + survey.error()};
+    if (!survey) return Error{"the rules cannot be compared with the robot: " + survey.error()};
     return Look(source, participant->domain, std::move(*survey));
   }
 

@@ -42,9 +42,9 @@ Expected<std::optional<journal::StandingOrders>> RoleOfCulprit::told_orders(
   const auto text = lease != nullptr ? lease->told_orders() : std::nullopt;
   if (!text && !had_elder_) return Told();
   const auto orders = text ? journal::orders_from_text(*text, journal::clocks_now(live_now()))
-                           : Expected<journal::StandingOrders>(Error{"it was not heard"});
+                           : Expected<journal::StandingOrders>(Error{"it did not send them"});
   if (!orders)
-    return Error{"what people had ordered of the culprit that managed this robot is not known (" +
+    return Error{"the orders of the culprit that managed this robot before are unknown (" +
                  orders.error() + ")"};
   return Told(*orders);
 }
@@ -54,7 +54,7 @@ std::optional<Expected<journal::Inheritance>> RoleOfCulprit::told_inheritance(
   const auto told = lease != nullptr ? lease->told_state() : std::nullopt;
   if (told) return journal::inheritance_from_text(told->text, rules, told->shift, now);
   if (!had_elder_) return std::nullopt;
-  return Error{"it was not heard"};
+  return Error{"it did not send them"};
 }
 
 std::string RoleOfCulprit::name_of_claim(const std::string& what) const {

@@ -12,7 +12,7 @@ using journal::Recovery;
 
 void tell(const Recovery& recovery, const RuleSet& rules, std::vector<std::string>& findings) {
   for (const std::string& each : recovery.given_up)
-    findings.push_back("the last run left something in the middle: " + each);
+    findings.push_back("the last run left this unfinished: " + each);
   for (const Interrupted& each : recovery.interrupted) {
     const Strategy& strategy = rules[each.strategy];
     const std::string what = strategy.name + " for " + rules[strategy.rule].name;
@@ -30,8 +30,7 @@ void tell(const Recovery& recovery, const RuleSet& rules, std::vector<std::strin
   }
   if (recovery.had_run && !recovery.was_stopped && recovery.interrupted.empty() &&
       recovery.given_up.empty())
-    findings.emplace_back(
-        "the last run ended without being asked to; nothing was left in the middle");
+    findings.emplace_back("the last run ended unexpectedly; it left nothing unfinished");
 }
 
 // It is unknown whether a person wants culprit to wait, so it does.
@@ -136,8 +135,7 @@ RunBeginning begin_journal(const std::filesystem::path& path, const RuleSet& rul
   if (const std::string why = open({}); !why.empty()) {
     beginning.findings.push_back(why);
     beginning.findings.emplace_back(
-        "the robot is managed all the same; what happens is kept and written as soon as that is "
-        "possible");
+        "culprit manages the robot all the same; it keeps the events, and writes them later");
     beginning.is_of_another = is_locked(path);
   }
   std::optional<Recovery> recovery;

@@ -108,7 +108,7 @@ export const kStates = {
     cause: 'camera is down', level: 'Error', mode: 'Silenced', also: ['since 14:03:22', 'silenced by ada'] },
   'dry-run': { events: [...kCameraDead, chosen(true)], control: { dry_run: true }, state: { ...kSuffering, RGBDead: failing, incidents: cause('would be repaired: redeploy camera') },
     cause: 'camera is down', level: 'Error', mode: 'Dry run', also: ['would be repaired: redeploy camera'] },
-  approval: { events: [...kCameraDead, event(kBroken + 0.02, 'approval_asked', 'asks', 'warning', 'person', 'shall RGBDead.rgb_redeploy redeploy camera? It waits for approval', reasons)],
+  approval: { events: [...kCameraDead, event(kBroken + 0.02, 'approval_asked', 'asks', 'warning', 'person', 'RGBDead.rgb_redeploy waits for approval: redeploy camera', reasons)],
     control: { asked: [{ rule: 'RGBDead', strategy: 'rgb_redeploy' }] }, state: { ...kSuffering, RGBDead: failing, incidents: cause('waits for approval: redeploy camera', '', { needs_person: true }) },
     cause: 'camera is down', level: 'Error', mode: 'Approval', also: ['waits for approval: redeploy camera'] },
   warning: { events: [detected(kBroken, 'SegmentationBad', 'WARNING')], control: {}, state: { SegmentationBad: { phase: 'failing', since: kBroken, attempts: 0 }, incidents: [kMinor] },

@@ -235,8 +235,8 @@ std::string Link::doubt() const {
   const Time now = live_now();
   if (is_paused()) return time_->doubt(now);
   if (lease_ && lease_->sure_until(now) <= now)
-    return "culprit was away so long that another one may manage this robot now; it waits for its "
-           "messages";
+    return "culprit did not run for so long that another one may manage this robot now; culprit "
+           "waits for its messages";
   return options_.participant.helper ? "the helper program of --link ros does not answer"
                                      : hearing_->doubt(now);
 }

@@ -340,7 +340,7 @@ TEST(Link, ReadsAStatusOnlyOfItsPublisher) {
       [](const PublisherKnown& p) { return p.status == "motor" && p.node == "/robot"; }));
   Timer lies(other->executor(), 20ms, [&] { forged.publish(temperature("90")); });
   EXPECT_TRUE(linked.wait<LinkTrouble>(
-      tells("status motor is published by /robot, and by /liar, too: only the former is used")));
+      tells("status motor is published by /robot, and by /liar, too: culprit ignores /liar")));
   EXPECT_FALSE(linked.wait<SignalRead>(
       [](const SignalRead& r) { return r.value == Value(std::string("90")); }, 500ms));
 }
@@ -369,7 +369,7 @@ TEST(Link, ReadsASignalOnlyOfThePublisherThatIsDeclared) {
                 "RULE R\nPOLICIES ERROR REPORT\nTRIGGER temperature > 80 || level > 80\n");
   EXPECT_TRUE(
       linked.wait<LinkTrouble>(tells("status motor is published by /liar, but the rules "
-                                     "read it FROM robot: only the latter is used")));
+                                     "read it FROM robot: culprit ignores /liar")));
   Robot robot(domain);
   auto own = robot.publisher<msg::DiagnosticArray>("/diagnostics");
   NodeEntry& entry = robot.managed->node().entry();

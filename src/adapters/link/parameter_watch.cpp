@@ -53,7 +53,7 @@ void ParameterWatch::ask(ComponentId component, const std::string& node, const s
   ask_(component);
   if (by.empty() || told_of_.size() >= kMost || !told_of_.emplace(node, by).second) return;
   inbox_.put(LinkTrouble{printable(by) + " published that parameters of " + node +
-                         " changed: what that node answers counts"});
+                         " changed; culprit believes only what that node answers"});
 }
 
 }  // namespace culprit::ros2

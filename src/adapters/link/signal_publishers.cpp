@@ -31,7 +31,7 @@ SignalPublishers::Answer SignalPublishers::judge(const std::string& status, cons
     if (by.component && by.is_proven && by.counts) return {};
     return report(status, by,
                   "by " + in_words(by.node) + ", but the rules read it FROM " +
-                      declared->second.names + ": only the latter is used");
+                      declared->second.names + ": culprit ignores " + in_words(by.node));
   }
   Answer answer = judge(Claim(status, by.node), by, now, is_there);
   answer.is_learned = false;
@@ -70,7 +70,7 @@ SignalPublishers::Answer SignalPublishers::judge(const Claim& claim, const Publi
   if (!is_gone)
     answer.conflict = "the diagnostic status " + printable(status) + " is published by " +
                       in_words(by.node) + " of this computer, and by " + in_words(before) +
-                      ", which is not proven to be here: only the former is used";
+                      ", which is not proven to be here: culprit ignores " + in_words(before);
   return answer;
 }
 
@@ -86,7 +86,7 @@ SignalPublishers::Answer SignalPublishers::refuse(const std::string& status, con
   const std::string other =
       by.node == bound ? "another participant that claims this name" : in_words(by.node);
   return report(status, by,
-                "by " + in_words(bound) + ", and by " + other + ", too: only the former is used");
+                "by " + in_words(bound) + ", and by " + other + ", too: culprit ignores " + other);
 }
 
 // Once for each publisher.

@@ -87,7 +87,7 @@ TEST(SignalPublishers, GiveWayToOneThatIsProven) {
   EXPECT_TRUE(statuses.uses(kStranger, 3s)) << "it came first";
   const auto driver = statuses.says(kDriver);
   EXPECT_TRUE(driver.is_used && driver.is_learned);
-  EXPECT_THAT(driver.conflict, HasSubstr("only the former is used"));
+  EXPECT_THAT(driver.conflict, HasSubstr("culprit ignores /stranger"));
   EXPECT_FALSE(statuses.uses(kStranger));
 }
 
@@ -136,7 +136,7 @@ TEST(SignalPublishers, ThatAreDeclaredAreNotLearned) {
   const auto stranger = statuses.says(kStranger, 10s);
   EXPECT_FALSE(stranger.is_used) << "though it came first";
   EXPECT_THAT(stranger.conflict, HasSubstr("motor is published by /stranger, but the rules read it "
-                                           "FROM driver: only the latter is used"));
+                                           "FROM driver: culprit ignores /stranger"));
   EXPECT_EQ(statuses.says({"/lidar", true, true, ComponentId(1)}, 10s).conflict, "")
       << "a component may have a status of that name, which no rule reads";
   const StatusPublisher declared{"/driver", true, true, ComponentId(0)};

@@ -131,7 +131,7 @@ void TopicWatch::publisher_seen(const std::string& type, const Qos& offered,
     }
   }
   if (const auto latched = listener_->publisher_offers(offered); !latched)
-    tell_once("cannot read what " + name + " has latched: " + latched.error());
+    tell_once("cannot read the transient local messages of " + name + ": " + latched.error());
 }
 
 Expected<void> TopicWatch::listen(const std::string& type, Keys keys, PayloadUse use) {
@@ -218,8 +218,8 @@ void TopicWatch::on_unheard() {
   has_heard_ = true;
   if (!told_unheard_.exchange(true)) {
     inbox_.put(LinkTrouble{"messages of " + rules_[topic_].name +
-                           " come, but cannot be put together: they are too large, or lost in "
-                           "part; only that they come is known"});
+                           " cannot be put together: they are too large, or lost in part; "
+                           "culprit knows only that they come"});
   }
   if (whole_) inbox_.put(SampleArrived{*whole_, 1}, Urgency::kSoon);
 }

@@ -300,8 +300,9 @@ ComposedNodes::Answer ComposedNodes::stop_part(Container& container, const Erran
   if (is_to_replace) {
     if (const auto could = services_.could_load(part, process.pid); !could) {
       note_missing(container, errand.component, could.error());
-      return {Outcome::kRefused,
-              part.name + " is not unloaded, for it could not be loaded again: " + could.error()};
+      return {
+          Outcome::kRefused,
+          part.name + " is not unloaded, because it could not be loaded again: " + could.error()};
     }
   }
   bool is_stuck = false;
@@ -435,7 +436,7 @@ ComposedNodes::Answer ComposedNodes::ensure(Container& container, Duration patie
     if (!process_of(container.node).is_there)
       return {Outcome::kTimedOut, is_coming(container)
                                       ? "its container " + name + " is not there yet"
-                                      : "its container " + name + " ended at once"};
+                                      : "its container " + name + " exited at once"};
   }
   container.coming_up = kLongAgo;
   const Process process = process_of(container.node);

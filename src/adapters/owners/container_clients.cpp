@@ -106,7 +106,7 @@ ContainerAnswer ContainerClients::list(const std::string& container, int pid, Du
   const auto response = decode<srv::ListNodes::Response>(std::get<Bytes>(reply));
   if (!response || response->full_node_names.size() != response->unique_ids.size() ||
       response->unique_ids.size() > kMostLoaded)
-    return {Outcome::kRefused, "the answer of " + container + " is no list of nodes"};
+    return {Outcome::kRefused, container + " answered the list of nodes in a wrong form"};
   ContainerAnswer answer;
   for (std::size_t i = 0; i < response->unique_ids.size(); ++i)
     answer.nodes.push_back({node_name(response->full_node_names[i]), response->unique_ids[i]});
@@ -131,8 +131,7 @@ ContainerAnswer ContainerClients::load(const Component& component, int pid, Dura
   auto reply = call(how.container, Which::kLoad, pid, encode(request), patience);
   if (auto* none = std::get_if<ContainerAnswer>(&reply)) return std::move(*none);
   const auto response = decode<srv::LoadNode::Response>(std::get<Bytes>(reply));
-  if (!response)
-    return {Outcome::kRefused, "the answer of " + how.container + " is none to a load"};
+  if (!response) return {Outcome::kRefused, how.container + " answered the load in a wrong form"};
   if (!response->success)
     return {Outcome::kRefused, how.container + " did not load " + how.plugin + " of " +
                                    how.package + ": " + printable(response->error_message)};
@@ -144,7 +143,7 @@ ContainerAnswer ContainerClients::unload(const std::string& container, int pid, 
   auto reply = call(container, Which::kUnload, pid, encode(srv::UnloadNode::Request{id}), patience);
   if (auto* none = std::get_if<ContainerAnswer>(&reply)) return std::move(*none);
   const auto response = decode<srv::UnloadNode::Response>(std::get<Bytes>(reply));
-  if (!response) return {Outcome::kRefused, "the answer of " + container + " is none to an unload"};
+  if (!response) return {Outcome::kRefused, container + " answered the unload in a wrong form"};
   if (!response->success) return {Outcome::kRefused, printable(response->error_message)};
   return {};
 }

@@ -314,9 +314,10 @@ void Supervisor::stop(CommandId command, ComponentId component, int pid, Ending 
   } else {
     const auto environment = programs_.environment(component);
     if (!environment)
-      return answer(command, Outcome::kRefused,
-                    rules_[component].name +
-                        " is not ended, for it could not be started again: " + environment.error());
+      return answer(
+          command, Outcome::kRefused,
+          rules_[component].name +
+              " is not ended, because it could not be started again: " + environment.error());
     const auto lock_of_start = programs_.lock_start(component);
     if (!lock_of_start) return answer(command, Outcome::kRefused, lock_of_start.error());
     auto launch = Launch::begin(programs_.program(component, 0), Until::kItCouldRun);
@@ -347,7 +348,7 @@ void Supervisor::finish_trials(Time now) {
         begin_shutdown(command, trial.component, trial.hangs, trial.meant);
       } else {
         answer(command, Outcome::kRefused,
-               name + " is not ended, for it could not be started again: " + could_run.error());
+               name + " is not ended, because it could not be started again: " + could_run.error());
       }
     }
     trial.until = kLongAgo;
@@ -541,8 +542,8 @@ void Supervisor::tell_what_stays(const Member& member) const {
       stays += (stays.empty() ? "" : ", ") + std::to_string(each.pid) + " (" + each.command + ")";
   }
   if (!stays.empty())
-    inbox_.put(LinkTrouble{rules_[member.component].name +
-                           " was ended, and what it had started goes on: process " + stays});
+    inbox_.put(LinkTrouble{rules_[member.component].name + " was ended and left running: process " +
+                           stays});
 }
 
 // ---- the thread

@@ -1139,7 +1139,7 @@ TEST(Supervisor, DoesNotEndWhatItCannotStartAgain) {
     const Reply no_program = c.stop_to_start_again();
     EXPECT_EQ(no_program.outcome, Outcome::kRefused);
     EXPECT_EQ(no_program.text,
-              "c is not ended, for it could not be started again: there is no program '" +
+              "c is not ended, because it could not be started again: there is no program '" +
                   (folder / "node").string() + "', or it is not executable");
     EXPECT_TRUE(exists(pid));
 
@@ -1188,8 +1188,7 @@ TEST(Supervisor, LeavesTheGroupOfSomebodyElseAloneAndSaysWhatStays) {
   c.supervisor->adopt(ComponentId(0), node, live_now());
   c.supervisor->stop({2}, ComponentId(0), 0, Ending::kForGood);
   const std::string told = c.trouble();
-  EXPECT_EQ(told, "c was ended, and what it had started goes on: process " + std::to_string(child) +
-                      " (sleep)");
+  EXPECT_EQ(told, "c was ended and left running: process " + std::to_string(child) + " (sleep)");
   EXPECT_FALSE(is_alive(node));
   EXPECT_TRUE(is_alive(child));
   kill(child, SIGKILL);

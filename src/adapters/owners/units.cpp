@@ -213,8 +213,8 @@ void Units::note_reach(const std::optional<std::string>& trouble) {
     if (++failures_ < kEnough) return;
     returned_ = kLongAgo;
     if (!std::exchange(is_reached_, false)) return;
-    inbox_.put(LinkTrouble{*trouble + "; until it can be asked, what it runs is taken for neither "
-                                      "alive nor dead"});
+    inbox_.put(LinkTrouble{*trouble + "; until it answers, the state of what it runs is "
+                                      "unknown"});
   } else {
     failures_ = 0;
     if (is_reached_) return;

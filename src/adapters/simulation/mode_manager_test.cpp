@@ -288,7 +288,7 @@ TEST(SimulatedSystem, IsLeftAloneIfSomethingElseSetsItsModeBackTwice) {
   plant.change("slow");
   const auto lines = said(plant, kRules, 60s, rival("slow", 60s));
   EXPECT_EQ(std::count(lines.begin(), lines.end(),
-                       "something else sets the mode of pump back; it is left alone"),
+                       "another program sets the mode of pump back; culprit leaves it alone"),
             1);
   EXPECT_EQ(plant.mode(), "slow");
   EXPECT_THAT(lines, testing::Contains(testing::HasSubstr("pump is set back by something else")));
@@ -306,7 +306,7 @@ TEST(SimulatedSystem, IsNoRivalsWhenItsPartBeganAnew) {
                         }});
   }
   const auto lines = said(plant, rules, 30s, restarts);
-  EXPECT_THAT(lines, testing::Not(testing::Contains(testing::HasSubstr("left alone"))));
+  EXPECT_THAT(lines, testing::Not(testing::Contains(testing::HasSubstr("leaves it alone"))));
   EXPECT_EQ(plant.mode(), "fast");
 }
 
@@ -346,7 +346,7 @@ RULE Dirty
       ADAPTATION washer set_parameter wash true 5
 )",
                           25s, dirt);
-  EXPECT_THAT(lines, testing::Not(testing::Contains(testing::HasSubstr("left alone"))));
+  EXPECT_THAT(lines, testing::Not(testing::Contains(testing::HasSubstr("leaves it alone"))));
   EXPECT_EQ(*washer.parameter("dirt"), Value(std::int64_t{0}));
   EXPECT_EQ(std::count(lines.begin(), lines.end(), "Dirty detected (ERROR)"), 5);
 }

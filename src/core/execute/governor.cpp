@@ -44,7 +44,7 @@ Time confirmed_by(const Program& condition, const SignalStore& signals) {
 }
 
 Governor::Held is_back(const std::string& component, Time until) {
-  return {Restraint::kLaunchEnded, component + " was started again a moment ago, by somebody",
+  return {Restraint::kLaunchEnded, component + " was started again a moment ago, not by culprit",
           until};
 }
 
@@ -148,7 +148,8 @@ std::optional<std::string> Governor::objection(const Order& order, Autonomy auto
                [&](const Propose& o) { return objection_to_propose(o.strategy); },
                [&](const Silence& o) -> Objection {
                  if (!exists(o.what, rules)) return "there is no such component or rule";
-                 if (o.lasts && *o.lasts <= Duration::zero()) return "a silence takes some time";
+                 if (o.lasts && *o.lasts <= Duration::zero())
+                   return "a silence lasts longer than 0 s";
                  return std::nullopt;
                },
                [&](const LiftSilence& o) -> Objection {
@@ -179,7 +180,7 @@ std::optional<std::string> Governor::objection_to_propose(StrategyId id) const {
   const RuleSet& rules = knowledge_.rules;
   if (id.index >= rules.strategies.size()) return "there is no such strategy";
   if (options_.approval == Approval::kNone)
-    return "culprit would ask nobody; it has to run with --approve";
+    return "culprit asks for no approval; start it with run --approve";
   const Rule& rule = rules[rules[id].rule];
   const RuleState& state = knowledge_.states[rules[id].rule];
   if (state.phase != RulePhase::kFailing && state.phase != RulePhase::kExhausted)
@@ -316,7 +317,7 @@ std::optional<Governor::Held> Governor::restraint_on_all(Time now) const {
   if (auto held = interlock()) return held;
   const Time quiet_until = later(start_, options_.quiet_at_start);
   if (now < quiet_until)
-    return Held{Restraint::kQuietPeriod, "watching began a moment ago", quiet_until};
+    return Held{Restraint::kQuietPeriod, "culprit started a moment ago", quiet_until};
   return limits_.on_all(now);
 }
 

@@ -251,7 +251,7 @@ std::optional<Pursuit::Request> Pursuit::decide(const Knowledge& knowledge, Time
   if (!before_) before_ = seen_;
   if (!has_changed_anything() && would_fight(knowledge)) {
     met_rival_ = true;
-    return give_up("something else sets it back; it is left alone");
+    return give_up("another program sets it back; culprit leaves it alone");
   }
   if (const auto* parameter = std::get_if<ParameterGoal>(&goal_)) return pursue(*parameter, now);
   if (const auto* lifecycle = std::get_if<LifecycleGoal>(&goal_)) return pursue(*lifecycle, now);
@@ -406,7 +406,7 @@ std::optional<Pursuit::Request> Pursuit::pursue(const PresentGoal& goal, const K
     deadline_ = std::max(deadline_, std::min(later(state.worked, goal.patience),
                                              later(changed_, PresentGoal::kMost)));
   const bool has_ended = state.process == ProcessState::kGone && is_it;
-  if (has_ended) return start_again(goal, "it ended at once: " + state.process_remark, now);
+  if (has_ended) return start_again(goal, "it exited at once: " + state.process_remark, now);
   return look_again(now);
 }
 

@@ -94,7 +94,7 @@ std::string next_of_exhausted(RuleId rule, const Knowledge& knowledge) {
   if (!knowledge.only_starts_the_gone(knowledge.rules[*next]))
     return "a person must look; " + knowledge.rules[*next].name +
            " is tried once its WHEN condition is true";
-  return "a person must look; the process that is gone is started again in " +
+  return "a person must look; culprit starts the exited process again in " +
          time_until(knowledge.states[rule].search.retry_at, knowledge.now);
 }
 
@@ -110,16 +110,16 @@ std::string next_of(RuleId rule, const Knowledge& knowledge) {
       case Attempt::Stage::kAdapting:
         return strategy + " is being carried out";
       case Attempt::Stage::kUndoing:
-        return "what " + strategy + " changed is being undone";
+        return "culprit undoes " + strategy;
       default:
         break;
     }
-    if (state.attempt->deadline == kNever) return "waits for the symptom to go";
-    return "if the symptom is not gone in " + time_until(state.attempt->deadline, knowledge.now) +
-           ", the next strategy is tried";
+    if (state.attempt->deadline == kNever) return "waits until it clears";
+    return "if it does not clear in " + time_until(state.attempt->deadline, knowledge.now) +
+           ", culprit tries the next strategy";
   }
   if (state.settling)
-    return "it is expected to go away with " + rules[state.settling->with].name + ", within " +
+    return "expected to clear with " + rules[state.settling->with].name + ", within " +
            time_until(state.settling->until, knowledge.now);
   if (state.search.retry_at > knowledge.now)
     return "all strategies are tried again in " + time_until(state.search.retry_at, knowledge.now);
@@ -278,8 +278,8 @@ Incidents::Course Incidents::course_of(const Incident& incident, const Knowledge
                                        Halt halt) const {
   const RuleSet& rules = knowledge.rules;
   if (!incident.host.empty())
-    return {"culprit starts nothing in their place until it is reachable again",
-            "a person must look: is it on, and connected? Then it goes on by itself"};
+    return {"culprit starts nothing in their place until the host is reachable again",
+            "a person must look: is the host on, and connected? Then culprit continues by itself"};
   const Failure& root = of(incident.root);
   const RulePhase phase = knowledge.states[incident.root].phase;
   const std::string actions = root.blamed ? actions_of(rules[*root.blamed], rules) : "";

@@ -145,10 +145,10 @@ TEST(Incidents, SaysWhatComesNextAndWhen) {
   EXPECT_EQ(watched.course().next, "redeploy_camera is being carried out");
   auto& camera = (*watched.robot)["camera"];
   camera.fault = "nothing helps";
-  for (int i = 0; i < 100 && watched.course().next.find("if the symptom") != 0; ++i)
+  for (int i = 0; i < 100 && watched.course().next.find("if it does not clear") != 0; ++i)
     watched.robot->run_for(100ms);
-  EXPECT_THAT(watched.course().next, AllOf(HasSubstr("if the symptom is not gone in "),
-                                           HasSubstr(" s, the next strategy is tried")));
+  EXPECT_THAT(watched.course().next, AllOf(HasSubstr("if it does not clear in "),
+                                           HasSubstr(" s, culprit tries the next strategy")));
   watched.robot->run_for(2min);
   const auto incidents = watched.incidents();
   ASSERT_FALSE(incidents.empty());

@@ -67,17 +67,17 @@ class Describer {
   }
   std::string operator()(const FailureHeldBack& e) const {
     if (e.candidates.empty()) return "";
-    // The reason why it waits: a strategy that was tried or makes no sense would not be next in any
-    // case.
+    // The reason why it waits: a strategy that was tried or is not possible would not be next in any
+    // case. RoundSpent and RuleExhausted say that all were tried.
     const auto is_out = [](const Candidate& c) {
       return c.excluded == Condition::kTried || c.excluded == Condition::kInvalid;
     };
     const auto waiting = std::find_if_not(e.candidates.begin(), e.candidates.end(), is_out);
-    const auto out =
-        std::find_if_not(e.candidates.begin(), e.candidates.end(),
-                         [&](const Candidate& c) { return rules_[c.strategy].is_last_resort; });
-    if (waiting == e.candidates.end() && out == e.candidates.end()) return "";
-    const Candidate& shown = waiting == e.candidates.end() ? *out : *waiting;
+    const auto impossible = std::ranges::find_if(e.candidates, [&](const Candidate& c) {
+      return c.excluded == Condition::kInvalid && !rules_[c.strategy].is_last_resort;
+    });
+    if (waiting == e.candidates.end() && impossible == e.candidates.end()) return "";
+    const Candidate& shown = waiting == e.candidates.end() ? *impossible : *waiting;
     if (shown.excluded == Condition::kWithheld) return "";  // ActionHeldBack says it
     return rules_[e.rule].name + " waits: " + describe_exclusion(shown, rules_);
   }
@@ -106,8 +106,7 @@ class Describer {
   }
   std::string operator()(const RuleExhausted& e) const {
     const Rule& rule = rules_[e.rule];
-    if (rule.strategies.empty())
-      return rule.name + ": culprit does nothing about it, a person must look";
+    if (rule.strategies.empty()) return rule.name + " only reports; a person must look";
     return rule.name + " is exhausted: nothing helped, a person must look";
   }
   std::string operator()(const LastResortReached& e) const {
@@ -132,7 +131,7 @@ class Describer {
     const bool is_component = std::holds_alternative<ComponentId>(e.what);
     return std::visit([this](auto id) { return unseen(id); }, e.what) +
            (e.near.empty() ? "." : "; did you mean '" + e.near + "'?") +
-           (is_component ? " culprit does nothing about it" : " Rules read it as unknown");
+           (is_component ? " culprit does not start it" : " Rules read it as unknown");
   }
   std::string operator()(const RuleBlind& e) const {
     return rules_[e.rule].name + " is blind: " + describe(e.blind);
@@ -147,8 +146,8 @@ class Describer {
   std::string operator()(const IncidentChanged&) const { return ""; }
   std::string operator()(const IncidentClosed&) const { return ""; }
   std::string operator()(const RivalSeen& e) const {
-    return "something else sets the mode of " + rules_[e.component].name +
-           " back; it is left alone";
+    return "another program sets the mode of " + rules_[e.component].name +
+           " back; culprit leaves it alone";
   }
   std::string operator()(const Trouble& e) const { return e.text; }
   std::string operator()(const OrderAccepted& e) const {
@@ -162,8 +161,7 @@ class Describer {
     return with_rule(e.strategy) + " is held back: " + e.reason;
   }
   std::string operator()(const ApprovalAsked& e) const {
-    return "shall " + with_rule(e.strategy) + " " + actions_of(rules_[e.strategy], rules_) +
-           "? It waits for approval";
+    return with_rule(e.strategy) + " waits for approval: " + actions_of(rules_[e.strategy], rules_);
   }
   std::string operator()(const ApprovalLapsed& e) const {
     return with_rule(e.strategy) + " needs no approval any more";
@@ -184,17 +182,17 @@ class Describer {
     return name_of(e.what) + " is no longer silenced";
   }
   std::string operator()(const StormBegan& e) const {
-    return "culprit does nothing more, a person must look: " + e.reason;
+    return "culprit starts no more strategies; a person must look: " + e.reason;
   }
-  std::string operator()(const StormEnded&) const { return "action is allowed again"; }
+  std::string operator()(const StormEnded&) const { return "culprit may start strategies again"; }
   std::string operator()(const JudgementSuspended& e) const {
-    return "culprit judges nothing until the robot can be heard again: " + e.reason;
+    return "culprit judges nothing until it receives the robot's messages again: " + e.reason;
   }
   std::string operator()(const JudgementResumed&) const {
-    return "the robot can be heard again; silent topics get a grace period";
+    return "culprit receives the robot's messages again; silent topics get a grace period";
   }
   std::string operator()(const SleepNoticed& e) const {
-    return "culprit stood still for " + in_words(e.time) + "; silent topics get a grace period";
+    return "culprit did not run for " + in_words(e.time) + "; silent topics get a grace period";
   }
   std::string operator()(const HostSilent& e) const {
     std::vector<std::string> names;
@@ -311,7 +309,7 @@ class Describer {
   std::string unseen(SignalId id) const {
     const Signal& signal = rules_[id];
     if (std::holds_alternative<GroupId>(signal.source))
-      return "group " + signal.name + " was never whole: of some component in it no state was read";
+      return "group " + signal.name + " was never seen: the state of some member was never read";
     const auto* key = std::get_if<DiagnosticKey>(&signal.source);
     const std::string source = key == nullptr || key->status == "*"
                                    ? "it"
@@ -641,7 +639,7 @@ std::string describe_exclusion(const Candidate& candidate, const RuleSet& rules)
         return "it may only show that " + component + " " + candidate.remark;
       return "it is expected to clear now that " + rules[*candidate.failure].name + " is resolved";
     case Condition::kInTheWay:
-      return strategy + " would be in the way of the repair of " + rules[*candidate.failure].name;
+      return strategy + " would delay the repair of " + rules[*candidate.failure].name;
     case Condition::kWithheld:
       return strategy + " is withheld: " + candidate.remark;
     case Condition::kUnheard: {

@@ -30,7 +30,7 @@ enum class Condition : std::uint8_t {
   kDownstream,  // a component of it depends on one that is being adapted
   kSuspect,     // a component of it depends on one that may still prove to be the cause
   kSettling,    // the failure is expected to clear by itself, or with one that was just resolved
-  kInTheWay,    // it would be in the way of the repair of another failure
+  kInTheWay,    // it would delay the repair of another failure
   // Of both planners:
   kWithheld,  // the governor does not allow it now
   // Its component, or one that may be the cause (bayes), is on an unreachable computer, or cannot be

@@ -48,7 +48,7 @@ class AdaptationReader {
     const Token& next = s.peek();
     const std::string_view written = source_.text(next.span);
     if (written == ".")
-      return read_.fail(Code::kSyntax, next.span, "no '.' stands behind a component",
+      return read_.fail(Code::kSyntax, next.span, "unexpected '.' after a component",
                         "write a blank", Edit{next.span, " "});
     if (next.is(","))
       return read_.fail(Code::kSyntax, next.span, "one line adapts one component",
@@ -143,17 +143,17 @@ class AdaptationReader {
 
   bool value(Scanner& s, syntax::Adaptation& adaptation) {
     const Token& next = s.peek();
-    constexpr std::string_view kNoSign = "no '=' stands between a parameter and its value";
+    constexpr std::string_view kNoSign = "unexpected '=' between a parameter and its value";
     if (next.text == "to" || next.text == "by")
       return read_.fail(Code::kSyntax, next.span,
-                        "no '" + std::string(next.text) + "' stands in front of a value",
-                        "remove it", Edit{{next.span.begin, next.span.end + 1}, ""});
+                        "unexpected '" + std::string(next.text) + "' before a value", "remove it",
+                        Edit{{next.span.begin, next.span.end + 1}, ""});
     if (source_.text(next.span) == "[")
       return read_.fail(Code::kSyntax, next.span, "a list stands in quotes",
                         "write it as in set_parameter gains \"[1, 2]\" 5");
     if (adaptation.subject.text.size() > 1 && adaptation.subject.text.ends_with(':')) {
       const Span colon{adaptation.subject.span.end - 1, adaptation.subject.span.end};
-      return read_.fail(Code::kExtraText, colon, "no ':' stands behind a parameter",
+      return read_.fail(Code::kExtraText, colon, "unexpected ':' after a parameter",
                         "remove the ':'", Edit{colon, ""});
     }
     // "gain=2.0 5": what stands behind it is the impact.

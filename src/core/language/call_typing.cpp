@@ -291,7 +291,8 @@ std::optional<Duration> CallTyper::window_argument(const Expression& e) {
                        "write for example 2s");
   }
   if (Duration(slot.i) <= Duration::zero())
-    return typer_.fail(Code::kPolicyRange, e.span, "a window is longer than zero", "");
+    return typer_.fail(Code::kPolicyRange, e.span, "a window is longer than zero",
+                       "write its length, as in 2s");
   if (Duration(slot.i) > kLongest) {
     return typer_.fail(Code::kLongWindow, e.span, "a window is at most a day long",
                        "write 24h or less; age(topic) > 36h notices silence that lasts longer");
@@ -337,7 +338,7 @@ std::nullopt_t CallTyper::window_in_brackets(const Expression& e, std::size_t br
   if (window.ends_with(']')) window.pop_back();
   if (window.ends_with('m')) window += "in";
   const bool is_window = parse_duration(window).has_value();
-  return typer_.fail(Code::kBadRosName, e.span, "no brackets stand behind a topic",
+  return typer_.fail(Code::kBadRosName, e.span, "unexpected brackets after a topic",
                      is_window ? "write " + topic + ", " + window + ": only rate takes a window"
                                : "write " + topic);
 }

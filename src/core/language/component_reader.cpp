@@ -66,7 +66,7 @@ bool unit(Reader& r, std::string_view what, std::string_view remedy) {
   const Span next = r.s.rest();
   if (constexpr std::string_view kOption = "--user"; r.source.text(next).starts_with(kOption)) {
     const Span option{next.begin, next.begin + static_cast<std::uint32_t>(kOption.size())};
-    return r.read.fail(Code::kSyntax, option, "no options stand behind a unit",
+    return r.read.fail(Code::kSyntax, option, "unexpected options after a unit",
                        "did you mean USER?", Edit{option, "USER"});
   }
   r.component.is_users_unit = r.s.peek().text == "USER";
@@ -165,7 +165,7 @@ bool fail_foreign_clause(Reader& r) {
   }
   if (r.component.package && upper_case(written) == "EXECUTABLE") {
     const std::string program = ahead.next_name().text;
-    return !r.read.fail(Code::kSyntax, word.span, "no '" + written + "' stands in this line",
+    return !r.read.fail(Code::kSyntax, word.span, "unexpected '" + written + "' in this line",
                         "write LAUNCH \"ros2 run " + r.component.package->text + " " + program +
                             "\" instead of both");
   }

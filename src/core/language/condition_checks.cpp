@@ -354,8 +354,8 @@ void check_last_resort(const RuleConditions& rule, const RuleSet& rules,
   const std::string& name = rules[*launchable].name;
   diagnostics.push_back({Code::kNoLastResort, Severity::kWarning, rule.written->name.span,
                          "rule '" + checked.name +
-                             "' detects silence, and none of its strategies helps if the process "
-                             "hangs",
+                             "' also fires if the process hangs, and none of its strategies "
+                             "helps then",
                          "add a strategy with ADAPTATION " + name + " redeploy"});
 }
 

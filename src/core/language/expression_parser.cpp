@@ -88,7 +88,7 @@ class ExpressionParser {
         if (auto slip = doubled(op, second)) return fail(std::move(*slip));
       }
       if (op.is("%") && !begins_value(scanner_.peek()))
-        return fail(Code::kSyntax, op.span, "no '%' stands behind a number",
+        return fail(Code::kSyntax, op.span, "unexpected '%' after a number",
                     "write a share from 0 to 1, as in 0.2 for 20 percent");
       if (scanner_.at_end()) return unfinished(op);
       auto right = binary(found->precedence + 1, depth + length);
@@ -319,7 +319,7 @@ class ExpressionParser {
             (upper == "IF" || upper == "WHEN" || upper == "UNLESS") && continues(scanner_.peek()) &&
             !scanner_.peek().is("(")) {
           return fail(Code::kSyntax, token.span,
-                      "no '" + std::string(token.text) + "' stands in front of a condition",
+                      "unexpected '" + std::string(token.text) + "' before a condition",
                       "remove it", Edit{{token.span.begin, scanner_.position()}, ""});
         }
         e.kind = Kind::kName;
@@ -386,11 +386,14 @@ class ExpressionParser {
   std::nullopt_t topic_for_value(const Token& slash) {
     const syntax::Name rest = scanner_.next_name();
     if (rest.text.empty() || rest.span.begin != slash.span.end) return value_is_missing(slash);
-    const std::string topic = "/" + rest.text;
-    return fail(Code::kSyntax, {slash.span.begin, rest.span.end}, "'" + topic + "' is no value",
-                "of a topic there are age(" + topic + "), rate(" + topic + ") and phi(" + topic +
-                    "); a field of its messages is a SIGNAL: SIGNAL name TOPIC " + topic +
-                    " FIELD field");
+    const std::string written = "/" + rest.text;
+    const auto dot = written.find('.');  // a topic's name has none: a field follows
+    const std::string topic = written.substr(0, dot);
+    const std::string field = dot == std::string::npos ? "field" : written.substr(dot + 1);
+    return fail(Code::kSyntax, {slash.span.begin, rest.span.end}, "'" + written + "' is no value",
+                "declare a field of its messages, SIGNAL name TOPIC " + topic + " FIELD " + field +
+                    ", and write its name here; or read when messages come: age(" + topic +
+                    "), rate(" + topic + ") or phi(" + topic + ")");
   }
 
   // Whether a value begins here, where none may stand behind a name.
@@ -413,7 +416,7 @@ class ExpressionParser {
   // Behind a value in parentheses.
   std::nullopt_t stray_word(const Token& word) {
     const std::string written(word.text);
-    return fail(Code::kSyntax, word.span, "no '" + written + "' stands behind a value",
+    return fail(Code::kSyntax, word.span, "unexpected '" + written + "' after a value",
                 upper_case(written) == "IF" || upper_case(written) == "ELSE"
                     ? "to choose between two values, write condition ? one : other"
                     : "remove it, or write an operator or a ')' in front of it");
@@ -424,7 +427,7 @@ class ExpressionParser {
     Scanner ahead = scanner_.ahead();
     const syntax::Name name = ahead.next_name();
     if (!name.text.starts_with('/') || !ahead.peek().is(")")) return false;
-    fail(Code::kSyntax, name.span, "no second name stands behind '" + first.name.text + "'",
+    fail(Code::kSyntax, name.span, "unexpected second name after '" + first.name.text + "'",
          "usage: " + std::string(function.usage));
     return true;
   }

@@ -86,7 +86,7 @@ std::optional<Diagnostic> foreign_language(const Source& source) {
   return Diagnostic{Code::kBadToken,
                     Severity::kError,
                     {begin, begin + 1},
-                    "this file is " + std::string(language) + ", and no rule file",
+                    "this file is " + std::string(language) + ", not a rule file",
                     remedy};
 }
 

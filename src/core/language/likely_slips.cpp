@@ -152,8 +152,8 @@ void check_unused(const syntax::File& file, const RuleSet& rules,
     diagnostics.push_back(
         {Code::kUnused, Severity::kWarning, file.components[i].name.span,
          "no rule uses component '" + component.name + "'",
-         "write a rule for it, remove this line, or add REQUIRED: culprit then reports if it is "
-         "missing"});
+         "name it in a rule, as in !alive(" + component.name +
+             "), or remove this line; with REQUIRED, culprit reports it if it is missing"});
   }
 }
 

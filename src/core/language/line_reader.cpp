@@ -238,7 +238,7 @@ bool LineReader::fail_foreign_duration(const Token& token, const Scanner& behind
   const Token second = ahead.next();
   const std::string written(source_.text(token.span));
   if (token.kind == Token::Kind::kIdentifier && second.kind == Token::Kind::kDuration)
-    return !fail(Code::kSyntax, token.span, "no '" + written + "' stands in front of a duration",
+    return !fail(Code::kSyntax, token.span, "unexpected '" + written + "' before a duration",
                  "remove it", Edit{{token.span.begin, second.span.begin}, ""});
   const auto* minutes = std::get_if<std::int64_t>(&token.literal);
   const Token third = ahead.next();
@@ -277,8 +277,7 @@ std::optional<syntax::Number> LineReader::number(Scanner& s, std::string_view wh
   if (token.kind == Token::Kind::kIdentifier && is_label_of_number(token.text) && !s.at_end()) {
     const bool has_sign = s.peek().is("=") || s.peek().is(":");
     const Span label{token.span.begin, has_sign ? s.peek().span.end : s.position()};
-    fail(Code::kSyntax, token.span,
-         "no '" + std::string(token.text) + "' stands in front of a number",
+    fail(Code::kSyntax, token.span, "unexpected '" + std::string(token.text) + "' before a number",
          "write only the number", Edit{label, ""});
     return std::nullopt;
   }
@@ -286,7 +285,7 @@ std::optional<syntax::Number> LineReader::number(Scanner& s, std::string_view wh
     remedy = "a number is missing at the end of this line";
   if (token.is("%")) {
     const bool separates = s.position() == token.span.end;  // the next number follows at once
-    fail(Code::kSyntax, token.span, "no '%' stands behind a number",
+    fail(Code::kSyntax, token.span, "unexpected '%' after a number",
          "remove it: a probability is in percent already", Edit{token.span, separates ? " " : ""});
     return std::nullopt;
   }
@@ -349,7 +348,7 @@ bool LineReader::is_one_word(const Scanner& s, const Name& name,
   const Span span{name.span.begin, end};
   if (is_type_word(name.text) && !has_dash) {
     const Span type{name.span.begin, s.peek().span.begin};
-    return fail(Code::kSyntax, name.span, "no type stands in front of a name",
+    return fail(Code::kSyntax, name.span, "unexpected type before a name",
                 "remove '" + name.text + "'", Edit{type, ""});
   }
   std::string meant;
@@ -408,10 +407,11 @@ bool LineReader::unexpected_clause(const Token& token, std::vector<std::string_v
   std::string list;
   for (const std::string_view word : known) list += (list.empty() ? "" : ", ") + std::string(word);
   std::string near = upper_case(token.text);
-  if (std::find(known.begin(), known.end(), near) == known.end()) near = closest(token.text, known);
-  if (near.empty()) near = closest(upper_case(token.text), known);
+  const bool is_known = std::find(known.begin(), known.end(), near) != known.end();
   const std::string_view foreign =
-      near.empty() ? clause_of_other_tools(token.text, known) : std::string_view();
+      is_known ? std::string_view() : clause_of_other_tools(token.text, known);
+  if (!is_known) near = foreign.empty() ? closest(token.text, known) : "";
+  if (near.empty() && foreign.empty()) near = closest(upper_case(token.text), known);
   if (!near.empty() || !foreign.empty()) {
     remedy = "did you mean " + near + std::string(foreign) + "?";
   } else if (const auto line = statement_of_clause(token.text); !line.empty() && remedy.empty()) {
@@ -423,7 +423,7 @@ bool LineReader::unexpected_clause(const Token& token, std::vector<std::string_v
   if (remedy.empty() && token.kind != Token::Kind::kEnd)
     remedy = "remove it, or write one of these words";
   if (!foreign.empty())
-    return fail(code, token.span, "no '" + std::string(token.text) + "' stands in this line",
+    return fail(code, token.span, "unexpected '" + std::string(token.text) + "' in this line",
                 std::move(remedy));
   return fail(code, token.span, "expected one of " + list + got, std::move(remedy),
               replacement(token.span, near));
@@ -443,7 +443,7 @@ bool LineReader::fail_comma(const Token& comma) {
   if (is_adaptation)
     return fail(Code::kExtraText, comma.span, "one line has one adaptation",
                 "write the next one on a line of its own that begins with ADAPTATION");
-  return fail(Code::kExtraText, comma.span, "no ',' stands between the parts of a line",
+  return fail(Code::kExtraText, comma.span, "unexpected ',' between the parts of a line",
               "remove the ','", Edit{comma.span, ""});
 }
 
@@ -504,7 +504,7 @@ bool LineReader::condition_ends(Scanner& s) {
       std::isdigit(static_cast<unsigned char>(text[token.span.begin - 1])) != 0 &&
       std::isdigit(static_cast<unsigned char>(text[token.span.end])) != 0;
   if (token.is(",") && !is_of_number)
-    return fail(Code::kExtraText, token.span, "no ',' stands between two conditions",
+    return fail(Code::kExtraText, token.span, "unexpected ',' between two conditions",
                 "write && if both must hold, || if one is enough", Edit{token.span, " &&"});
   const bool is_behind_call = token.span.begin > 0 && text[token.span.begin - 1] == ')';
   if (source_.text(token.span) == "." && is_behind_call)

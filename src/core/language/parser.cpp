@@ -138,14 +138,14 @@ class Parser {
   void superfluous_word(const Token& head) {
     const std::string keyword(source_.text(keyword_));
     read_.fail(Code::kUnknownStatement, head.span,
-               "no '" + std::string(source_.text(head.span)) + "' stands in front of " + keyword,
+               "unexpected '" + std::string(source_.text(head.span)) + "' before " + keyword,
                "remove it", Edit{{head.span.begin, keyword_.begin}, ""});
   }
 
   bool has_colon(Scanner& s) {
     const Token& token = s.peek();
     if (!token.is(":")) return false;
-    read_.fail(Code::kExtraText, token.span, "no ':' stands behind the word of a statement",
+    read_.fail(Code::kExtraText, token.span, "unexpected ':' after the word of a statement",
                "remove the ':'", Edit{token.span, ""});
     s.next();
     return true;

@@ -80,8 +80,8 @@ bool RuleReader::criticality(Scanner& s, syntax::Policies& policies) {
   for (const auto& [word, meant, remedy] : kOthers) {
     if (upper_case(level.text) != word) continue;
     return read_.fail(Code::kSyntax, level.span,
-                      "there is no criticality " + std::string(level.text), std::string(remedy),
-                      Edit{level.span, std::string(meant)});
+                      "there is no criticality '" + std::string(level.text) + "'",
+                      std::string(remedy), Edit{level.span, std::string(meant)});
   }
   if (level.text == "ERROR" || level.text == "FAILURE") {
     policies.criticality = kError;
@@ -171,7 +171,7 @@ bool RuleReader::strategy(Scanner& s) {
   const bool is_last_resort = s.peek().text == "LASTRESORT";
   if (is_last_resort) s.next();
   if (const Token& next = s.peek(); is_last_resort && next.kind == Token::Kind::kDuration)
-    return read_.fail(Code::kExtraText, next.span, "no duration stands behind LASTRESORT",
+    return read_.fail(Code::kExtraText, next.span, "unexpected duration after LASTRESORT",
                       "write WITHIN in front of it",
                       Edit{{next.span.begin, next.span.begin}, "WITHIN "});
   std::optional<Duration> within;

@@ -308,9 +308,9 @@ void Symbols::declare_engine(const syntax::Component& written, Component& compon
                                              : nullptr;
   if (other != nullptr)
     report(Code::kTwoOwners, name,
-           "component '" + written.name.text + "' has a CONTAINER and " + other +
-               ", so it is not clear who starts it",
-           std::string("keep CONTAINER if its engine runs it, else ") + other);
+           "component '" + written.name.text + "' has both CONTAINER and " + other +
+               ", but only one program may start it",
+           std::string("keep CONTAINER if its engine starts it; otherwise keep ") + other);
   const auto* same = other_of_owner(std::string(is_podman ? "podman" : "docker") + '\0' +
                                     container.host + '\0' + container.name);
   if (same != nullptr)
@@ -350,8 +350,9 @@ void Symbols::declare_composition(const syntax::Component& written, Component& c
                                              : nullptr;
   if (other != nullptr)
     report(*written.container,
-           self + " is IN a container and has " + other + ", so it is not clear who starts it",
-           std::string("keep IN if the container loads it, else ") + other, Code::kTwoOwners);
+           self + " has both IN and " + other + ", but only one program may start it",
+           std::string("keep IN if the container loads it; otherwise keep ") + other,
+           Code::kTwoOwners);
   if (!written.node) {
     report(*written.container, self + " has no NODE to be loaded as", "add NODE and its full name");
   } else if (written.node->text == composed.container) {
@@ -405,9 +406,9 @@ SystemdUnit Symbols::declared_unit(const syntax::Component& written) {
   } else if (written.launch || written.is_respawned) {
     const std::string other = written.launch ? "LAUNCH" : "RESPAWNED";
     report(Code::kTwoOwners,
-           "component '" + written.name.text + "' has a UNIT and " + other +
-               ", so it is not clear who starts it",
-           "keep UNIT if systemd runs it, else " + other);
+           "component '" + written.name.text + "' has both UNIT and " + other +
+               ", but only one program may start it",
+           "keep UNIT if systemd starts it; otherwise keep " + other);
   }
   const auto* same = other_of_owner(std::string(unit.is_of_user ? "user" : "system") + '\0' +
                                     unit.host + '\0' + unit.name);

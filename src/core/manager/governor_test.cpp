@@ -135,7 +135,7 @@ TEST(QuietPeriod, NothingIsBegunRightAfterTheStart) {
   robot["camera"].fault = "redeploy";
   robot.run_for(7s);
   EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
-  EXPECT_EQ(robot.count("is held back: watching began a moment ago"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("is held back: culprit started a moment ago"), 1u) << transcript(robot);
   robot.run_for(5s);
   EXPECT_TRUE(robot.works("camera")) << transcript(robot);
 }
@@ -199,7 +199,7 @@ TEST(Storm, WhenMostIsIllAtOnceNothingIsDoneUntilItIsOver) {
   EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
   robot["a"].fault.clear();
   robot.run_for(20s);
-  EXPECT_EQ(robot.count("action is allowed again"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("culprit may start strategies again"), 1u) << transcript(robot);
   for (const char* c : {"b", "c", "d"}) EXPECT_TRUE(robot.works(c)) << c << transcript(robot);
 }
 

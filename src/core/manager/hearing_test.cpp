@@ -59,7 +59,7 @@ TEST(Hearing, AFrozenRobotIsNotJudgedByItsSleep) {
   robot.run_for(10s);
   EXPECT_EQ(robot.count("detected"), 0u) << transcript(robot);
   EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
-  EXPECT_EQ(robot.count("stood still for 20.0 s"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("did not run for 20.0 s"), 1u) << transcript(robot);
 }
 
 // For a moment, as the runtime tells it.

@@ -302,7 +302,7 @@ TEST(KnownDead, WhatALauncherStartedAgainHasItsTimeToComeUp) {
     robot.tell(ProcessSeen{robot.id("camera"), ProcessState::kRunning, pid, ""});
     robot.run_for(Departures::kBack - 500ms);
     EXPECT_TRUE(robot.asked.empty()) << transcript(robot);
-    EXPECT_EQ(robot.count("camera was started again a moment ago, by somebody"), 1u)
+    EXPECT_EQ(robot.count("camera was started again a moment ago, not by culprit"), 1u)
         << transcript(robot);
     if (comes_up) robot.start_by_hand("camera");
     robot.run_for(10s);

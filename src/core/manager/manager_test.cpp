@@ -129,6 +129,7 @@ TEST_P(ManagerWith, RedeploysWhenARestartDidNotHelp) {
   EXPECT_TRUE(robot.works("segmentation")) << transcript(robot);
   EXPECT_EQ(robot.count("restart did not resolve FusionDead"), 1u) << transcript(robot);
   EXPECT_EQ(robot.count("FusionDead resolved by redeploy"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("fusion is lost: culprit ended it"), 1u) << transcript(robot);
   EXPECT_EQ(robot.count_asked("fusion: start process"), 1u);
   EXPECT_FALSE(robot.was_asked("segmentation:"));
 }
@@ -628,7 +629,7 @@ TEST_P(ManagerWith, ReportsAComponentThatDiesAtEveryStart) {
   robot["camera"].dies_at_start = true;
   robot.kill("camera");
   robot.run_for(120s);
-  EXPECT_GE(robot.count("it ended at once: exit code 1"), 2u) << transcript(robot);
+  EXPECT_GE(robot.count("it exited at once: exit code 1"), 2u) << transcript(robot);
   EXPECT_EQ(robot.count("CameraDead is exhausted"), 1u) << transcript(robot);
 }
 

@@ -254,7 +254,7 @@ TEST(Orders, AProposalIsRefusedWhereItMakesNoSense) {
   alone["camera"].fault = "never";
   alone.run_for(500ms);
   alone.order(order(Propose{kLight}));
-  EXPECT_EQ(alone.count("it has to run with --approve"), 1u) << transcript(alone);
+  EXPECT_EQ(alone.count("start it with run --approve"), 1u) << transcript(alone);
 
   TestRobot r = robot(Approval::kEach);
   r.order(order(Propose{kRedeploy}));

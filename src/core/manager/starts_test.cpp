@@ -128,7 +128,7 @@ TEST_P(Starts, WithoutReadyAreAttempts) {
   robot["camera"].dies_at_start = true;
   robot.kill("camera");
   robot.run_for(3s);
-  EXPECT_GE(robot.count("redeploy did not resolve Silent: camera: it ended at once"), 1u)
+  EXPECT_GE(robot.count("redeploy did not resolve Silent: camera: it exited at once"), 1u)
       << transcript(robot);
 }
 
@@ -139,7 +139,7 @@ TEST_P(Starts, FailWhenReadyIsOver) {
   robot.run_for(9s);
   EXPECT_EQ(robot.count("did not resolve"), 0u) << transcript(robot);
   robot.run_for(3s);
-  EXPECT_EQ(robot.count("redeploy did not resolve Silent: camera: it ended at once"), 1u)
+  EXPECT_EQ(robot.count("redeploy did not resolve Silent: camera: it exited at once"), 1u)
       << transcript(robot);
 }
 

@@ -284,6 +284,7 @@ class Monitor {
   void note_begin(const ProcessSeen& seen, Time at);
   void note_end(const ProcessSeen& seen, Time at);
   void note_farewell(ComponentId component, Time at);
+  bool is_being_ended(ComponentId component) const;
   void note_known_dead(ComponentId component, Time at);
   void note_no_longer_dead(ComponentId component);
   void touch_topics_of(ComponentId component);

@@ -611,6 +611,7 @@ void Monitor::update_alive(ComponentId component, Time at, const std::string& re
     return update_alive_inputs(component, at, Slot());
   }
   if (state.alive == is_alive) return;
+  const bool is_ended = is_being_ended(component);
   state.alive = is_alive;
   state.alive_since = at;
   if (is_alive && state.host_silent) deadlines_.set(return_of(component), later(at, kSpeaks));
@@ -618,8 +619,10 @@ void Monitor::update_alive(ComponentId component, Time at, const std::string& re
     write_.events.tell(at, ComponentFound{component, state.node_pid});
   } else {
     const bool is_host = knowledge_.is_unheard(component);
-    write_.events.tell(
-        at, ComponentLost{component, is_host ? "it " + knowledge_.why_unheard(component) : remark});
+    write_.events.tell(at,
+                       ComponentLost{component, is_host ? "it " + knowledge_.why_unheard(component)
+                                                : is_ended ? "culprit ended it"
+                                                           : remark});
   }
   update_alive_inputs(component, at, Slot::of(is_alive));
 }

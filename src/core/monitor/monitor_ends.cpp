@@ -37,6 +37,14 @@ void Monitor::on(Time at, const LauncherSeen& seen) {
   write_.departures.launched(seen.component, seen.pid);
 }
 
+// Does a strategy under way end the process that was there before it?
+bool Monitor::is_being_ended(ComponentId component) const {
+  const Attempt* attempt = knowledge_.states.reservation(component);
+  return may_end(attempt, knowledge_.rules) && attempt->stage == Attempt::Stage::kAdapting &&
+         attempt->first_change != kNever &&
+         knowledge_.components[component].alive_since <= attempt->first_change;
+}
+
 void Monitor::on(Time at, const StartedHere& seen) { write_.departures.started_here(seen, at); }
 
 // Whether a person ended it is known once its launcher has ended, too.

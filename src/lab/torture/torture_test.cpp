@@ -62,7 +62,7 @@ TEST(Torture, MishapsLeaveTheirMark) {
                            "is being ended",
                            "the manager crashes",
                            "is flapping: detected",
-                           "culprit stood still",
+                           "culprit did not run for",
                            "resolved by",
                            "did not resolve",
                            "is held back",

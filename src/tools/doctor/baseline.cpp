@@ -67,14 +67,14 @@ void compare_wires(const std::string& node, const char* what,
                                                is_type ? found->second.type : found->second.qos,
                                                is_type ? before.type : before.qos),
                                    "nodes that were connected to it may be disconnected now",
-                                   "if it is meant, save the robot as healthy anew"));
+                                   "change it back, or if it is intended, save a new baseline"));
       changed.nodes = {node};
       changed.topic = name;
     }
   }
   if (missing.empty()) return;
   Finding& gone = all.emplace_back(finding(
-      "D102", Gravity::kError, node, fmt::format("it {} not any more: {}", what, listed(missing)),
+      "D102", Gravity::kError, node, fmt::format("it no longer {}: {}", what, listed(missing)),
       "it is not configured as it was, or has not come up whole", "see its log"));
   gone.nodes = {node};
   gone.topic = missing.front();
@@ -100,7 +100,7 @@ void compare_parameters_of(const std::string& node, const Baseline::Node& health
   if (differences.empty()) return;
   all.push_back(finding("D105", Gravity::kWarning, node, listed(differences),
                         "it does not behave as it did",
-                        "set them back, or if it is meant, save the robot as healthy anew"));
+                        "set them back, or if it is intended, save a new baseline"));
   all.back().nodes = {node};
 }
 
@@ -122,7 +122,7 @@ void compare_node(const std::string& name, const Baseline::Node& healthy, const 
     all.push_back(finding("D107", Gravity::kWarning, name,
                           fmt::format("its process has {} of memory, and had {}", bytes(now.memory),
                                       bytes(healthy.memory)),
-                          "if that goes on, Linux ends a process of its choice",
+                          "if that goes on, the OOM killer of Linux ends a process",
                           "see what it keeps (heaptrack, tracemalloc)"));
     all.back().nodes = {name};
   }
@@ -204,7 +204,7 @@ Findings compare(const Baseline& healthy, const Baseline& now) {
   for (const std::string& name : healthy.statuses) {
     if (now.statuses.contains(name)) continue;
     all.push_back(finding("D109", Gravity::kWarning, printable(name),
-                          "its diagnostic status was heard, and is not",
+                          "its diagnostic status came, and does not any more",
                           "the node that reports it has exited, or checks no more",
                           "find the node that publishes it: ros2 topic info -v /diagnostics"));
   }

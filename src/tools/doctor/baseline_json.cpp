@@ -60,9 +60,9 @@ Expected<Baseline> parse_baseline(const std::string& text) {
   try {
     const Json json = parse_json(text);
     if (!json.is_object() || !json.contains(kMark))
-      return Error{"this is no healthy robot: culprit doctor --save FILE writes one"};
+      return Error{"this is not a baseline: culprit doctor --save FILE writes one"};
     if (json.at(kMark) != kVersion)
-      return Error{"this is of a newer culprit: save the robot as healthy anew"};
+      return Error{"this baseline is of a newer culprit: save a new one"};
     Baseline baseline;
     for (const auto& [name, node] : json.at("nodes").items()) baseline.nodes[name] = to_node(node);
     for (const auto& [name, rate] : json.at("topics").items())
@@ -73,7 +73,7 @@ Expected<Baseline> parse_baseline(const std::string& text) {
     json.at("diagnostics").get_to(baseline.statuses);
     return baseline;
   } catch (const Json::exception& wrong) {
-    return Error{std::string("this is no healthy robot, or a broken one: ") + wrong.what()};
+    return Error{std::string("this is not a baseline, or a damaged one: ") + wrong.what()};
   }
 }
 

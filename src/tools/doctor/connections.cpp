@@ -282,17 +282,17 @@ void look_for_odd_ones(const Channels& topics, Findings& all) {
     const std::string& node = (is_unread ? channel.senders : channel.receivers).front().node;
     const std::string others =
         fmt::format("the {} others of its kind ({})", members.size() - 1, kind.second);
-    all.push_back(
-        {"D004",
-         Gravity::kWarning,
-         name + ": " + (is_unread ? node + " → nobody" : "nobody → " + node),
-         is_unread ? "it has no subscription, unlike each of " + others
-                   : "it has no publisher, unlike each of " + others,
-         is_unread ? "what " + node + " says of it is lost" : node + " waits for what never comes",
-         is_unread ? "start what should read it, or see to which name that was remapped"
-                   : "start what should publish it, or see to which name that was remapped",
-         {node},
-         name});
+    all.push_back({"D004",
+                   Gravity::kWarning,
+                   name + ": " + (is_unread ? node + " → nobody" : "nobody → " + node),
+                   is_unread ? "it has no subscription, unlike each of " + others
+                             : "it has no publisher, unlike each of " + others,
+                   is_unread ? "messages of " + node + " on it are lost"
+                             : node + " waits for messages that never come",
+                   is_unread ? "start the node that should read it, or check its remappings"
+                             : "start the node that should publish it, or check its remappings",
+                   {node},
+                   name});
   }
 }
 
@@ -327,8 +327,8 @@ void look_for_missed(const Picture& picture, const std::string& name, const Chan
         {"D006",
          Gravity::kError,
          name + ": " + topic.senders.front().node + " → " + to.node,
-         fmt::format("what is latched there was published {} before {} was started, which "
-                     "asks for what comes from now on (volatile)",
+         fmt::format("its last transient local message was published {} before {} was started, "
+                     "which requests only later ones (volatile)",
                      duration(late), to.node),
          to.node + " never got it, and will not until it is published again",
          "let " + to.node + " request transient local",

@@ -67,7 +67,7 @@ void look_at_deadline(const std::string& name, const Channel& topic, const Flow&
                                              flow.pauses, [&](Duration p) { return p > deadline; }),
                                          flow.pauses.size(), duration(deadline), duration(longest)),
                  reader->node + " is notified again and again of a missed deadline",
-                 "see what keeps " + writers.front() + ", or let the deadline be what it can keep",
+                 "see what delays " + writers.front() + ", or set a deadline that it can meet",
                  {writers.front(), reader->node},
                  name});
 }

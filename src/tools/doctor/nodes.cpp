@@ -107,8 +107,8 @@ void examine_answers(const Picture& picture, Findings& all) {
          fmt::format("{} of {} nodes have not answered a question about their parameters for "
                      "{:.1f} s",
                      silent.size(), picture.asked, waited),
-         "so many do not hang at once: a computer or the network has more to do than it can, "
-         "and so late are all services now",
+         "so many do not hang at once: a computer or the network is overloaded, and all services "
+         "are late",
          "see what takes the processor (top) and the network; then look again", silent});
     return;
   }
@@ -139,7 +139,7 @@ void examine_comings(const Picture& picture, Findings& all) {
            fmt::format("it was started again {} while the doctor looked{}",
                        returns == 1 ? "once" : count_of(returns, "time"),
                        last.pid == 0 ? "" : fmt::format(", last as process {}", last.pid)),
-           is_circle ? "restarts do not repair it, and each one costs all others discovery"
+           is_circle ? "restarts do not repair it, and after each one all nodes discover it anew"
                      : "readers of its state or parameters have lost them",
            "its log says why it ended; stop its launcher, and start it by hand",
            {name}});
@@ -219,7 +219,7 @@ void examine_states(const Picture& picture, Findings& all) {
              "it is {}, {} of {} lifecycle nodes are active, and no manager would change that",
              state.last, active, picture.lifecycles.size()),
          waiting + " waits for what it publishes",
-         is_final ? "start its process again: from there no way leads back"
+         is_final ? "start its process again: no transition leaves that state"
                   : "ros2 lifecycle set " + node +
                         (state.last == "inactive" ? " activate" : " configure"),
          {node, waiting}});

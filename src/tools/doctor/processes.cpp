@@ -65,8 +65,8 @@ void look_at_memory(const Picture& picture, int pid, const Process& process,
       {"D017", left < 10min ? Gravity::kError : Gravity::kWarning, name_of(pid, process, nodes),
        fmt::format("its memory grew by {} in {}, from {} to {}", bytes(grown), duration(time),
                    bytes(samples.front().bytes), bytes(samples.back().bytes)),
-       fmt::format("at that rate this machine has none left in {}; then Linux ends a "
-                   "process of its choice",
+       fmt::format("at that rate this machine has none left in {}; then the OOM "
+                   "killer of Linux ends a process",
                    duration(left)),
        "see what it keeps (heaptrack, tracemalloc); start it again before it is late", nodes});
 }
@@ -108,7 +108,7 @@ void compare_parameters(const Picture& picture, const Process& process, Findings
                    Gravity::kWarning,
                    node,
                    listed(differences),
-                   "what was set since is lost when it is started again",
+                   "a restart loses the values that were set since",
                    "write it into its parameter file, or set it back",
                    {node}});
   }

@@ -41,7 +41,7 @@ void examine_domains(const Picture& picture, Findings& all) {
                      program,
                      fmt::format("it is on domain {}, and {}, which the same launch started, on {}",
                                  other.domain, sibling, picture.domain),
-                     "they do not hear each other",
+                     "they do not discover each other",
                      "give both the same ROS_DOMAIN_ID",
                      {sibling}});
   }
@@ -82,7 +82,7 @@ void examine_addresses(const std::vector<const Participant*>& robot, Findings& a
     all.push_back({"D032", Gravity::kError, listed(names),
                    fmt::format("they listen on {} only, and others of the robot are on {}",
                                printable(host), printable(elsewhere)),
-                   "they and the nodes on other computers do not hear each other",
+                   "they and the nodes on other computers do not discover each other",
                    "start them without ROS_LOCALHOST_ONLY=1 "
                    "(ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST), or all on one computer",
                    names});
@@ -104,13 +104,13 @@ void examine_security(const Picture& picture, Findings& all) {
   }
   if (secured == 0 || open.empty()) return;
   const std::vector<std::string> names = nodes_of(open);
-  all.push_back({"D033", Gravity::kError, listed(names),
-                 fmt::format("they are not secured, and {} of the domain {}{}",
-                             count_of(secured, "participant"), secured == 1 ? "is" : "are",
-                             whose.empty() ? "" : " (" + listed(whose) + ")"),
-                 "the one do not hear the other, unless the keys' governance lets strangers in",
-                 "start all with ROS_SECURITY_ENABLE=true and keys of one keystore, or none",
-                 names});
+  all.push_back(
+      {"D033", Gravity::kError, listed(names),
+       fmt::format("they are not secured, and {} of the domain {}{}",
+                   count_of(secured, "participant"), secured == 1 ? "is" : "are",
+                   whose.empty() ? "" : " (" + listed(whose) + ")"),
+       "the two kinds do not discover each other, unless the governance file of the keys allows it",
+       "start all with ROS_SECURITY_ENABLE=true and keys of one keystore, or none", names});
 }
 
 // Up to Humble and from Iron on, processes say differently what their nodes are called.
@@ -125,7 +125,7 @@ void examine_distributions(const std::vector<const Participant*>& robot, Finding
       {"D034", Gravity::kError, listed(nodes_of(old)),
        "they are of ROS 2 Humble or older, and others of Iron or newer: " + listed(nodes_of(young)),
        "neither side knows what the other's nodes are called, and nodes of rclcpp may crash "
-       "on what they hear",
+       "on what they receive",
        "give one side another ROS_DOMAIN_ID, and bridge what both need", nodes_of(old)});
 }
 
@@ -151,7 +151,7 @@ void examine_shared_memory(const Picture& picture, const std::vector<const Parti
           {"D035", Gravity::kError, listed((*a)->nodes) + " ↔ " + listed((*b)->nodes),
            "both take each other to be on one machine and send through shared memory, but "
            "each sees a /dev/shm of its own",
-           "they discover each other, and then hear nothing",
+           "they discover each other, but receive no messages",
            "start their containers with --ipc=host, or switch shared memory off "
            "(FASTDDS_BUILTIN_TRANSPORTS=UDPv4)",
            names});
@@ -178,7 +178,7 @@ void examine_lost_ports(const Picture& picture, const std::vector<const Particip
           {"D036", Gravity::kError, listed(writer->nodes) + " → " + listed(reader->nodes),
            "the one sends through a file of shared memory that was replaced, and the other reads "
            "from the new one",
-           "what it publishes does not arrive there",
+           "messages of the one do not reach the other",
            "restart both; to rule it out, switch shared memory off "
            "(FASTDDS_BUILTIN_TRANSPORTS=UDPv4)",
            nodes_of({writer, reader})});

@@ -39,8 +39,8 @@ void leave_out_doubtful(const Picture& picture, Report& report) {
   if (report.doubtful.empty()) return;
   report.left_out.push_back(fmt::format(
       "this look was not good: the machine is so busy that the doctor waited {} of {} for a "
-      "processor. {} that it "
-      "may only have been too late to hear {} not told; look again when the machine has less to do",
+      "processor. {} about missing or late messages {} left out; look again when the machine has "
+      "less to do",
       duration(picture.waited), duration(picture.looked),
       count_of(report.doubtful.size(), "finding"), report.doubtful.size() == 1 ? "is" : "are"));
 }

@@ -60,7 +60,7 @@ TEST(Baseline, D100AMissingNodeD101ANewOneAndD102WhatANodeLacks) {
   picture.nodes[1].node.name = "/slam_2";
   picture.nodes[0].endpoints.pop_back();
   EXPECT_THAT(differences(picture), ElementsAre("D100 /slam: it was there, and is not",
-                                                "D102 /lidar: it serves not any more: /lidar/reset",
+                                                "D102 /lidar: it no longer serves: /lidar/reset",
                                                 "D101 /slam_2: it is there, and was not"));
 }
 
@@ -108,7 +108,7 @@ TEST(Baseline, D107MoreMemoryD108AMissingTransformAndD109AMissingStatus) {
   EXPECT_THAT(differences(picture),
               ElementsAre("D108 tf: base → laser: it was published, and is not",
                           "D107 /lidar: its process has 500 MB of memory, and had 60 MB",
-                          "D109 motor: its diagnostic status was heard, and is not"));
+                          "D109 motor: its diagnostic status came, and does not any more"));
 }
 
 TEST(Baseline, IsKeptInAFile) {

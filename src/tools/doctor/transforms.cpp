@@ -90,7 +90,7 @@ void look_at_age(const Picture& picture, const Transform& edge, Findings& all) {
                                            duration(pause), publisher_of(edge), duration(silent))
                              : fmt::format("{} publishes it with stamps that are {} old",
                                            publisher_of(edge), duration(edge.lag)),
-                 "whoever asks for it now waits or gets an error, and what needs it stops",
+                 "nodes that look it up now wait or get an error, and nodes that need it stop",
                  has_stopped ? "see the log of " + publisher_of(edge)
                              : "see what delays it, or whose clock is behind",
                  {edge.node},

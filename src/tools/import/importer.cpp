@@ -100,7 +100,7 @@ Expected<Imported> import_rules(const Source& source) {
   if (source.text().size() > kMaxImport)
     return Error{source.name() + ": larger than 1 MiB; is it a rule file?"};
   if (source.text().find('\0') != std::string_view::npos)
-    return Error{source.name() + ": this file is binary, and no rule file"};
+    return Error{source.name() + ": this file is binary, not a rule file"};
   const auto file = read(source);
   if (!file) return Error{file.error()};
   foreign::Written written = foreign::write(*file, source.name());

@@ -73,7 +73,7 @@ TEST(Importer, RefusesBinaryFiles) {
   using namespace std::string_literals;
   const auto imported = import_rules(Source("old.rules", "BEGIN RULES # \0\nEND RULES\n"s));
   ASSERT_FALSE(imported);
-  EXPECT_EQ(imported.error(), "old.rules: this file is binary, and no rule file");
+  EXPECT_EQ(imported.error(), "old.rules: this file is binary, not a rule file");
 }
 
 TEST(Importer, KeepsTheReferencesGrouping) {

@@ -68,7 +68,7 @@ class CourseReader {
     if (!from) return false;
     stretch.from = *from;
     if (const Token& next = s_.peek(); next.is("-"))
-      return read_.fail(Code::kSyntax, next.span, "no '-' stands between two times", "write '..'",
+      return read_.fail(Code::kSyntax, next.span, "unexpected '-' between two times", "write '..'",
                         Edit{next.span, ".."});
     if (s_.peek().is("..")) {
       s_.next();
@@ -107,7 +107,7 @@ class CourseReader {
   bool rate(Stretch& stretch) {
     const Name name = s_.next_name();
     if (const auto end = name.span.end; name.text.ends_with(';') && name.text.size() > 1)
-      return read_.fail(Code::kSyntax, {end - 1, end}, "no ';' stands between two times",
+      return read_.fail(Code::kSyntax, {end - 1, end}, "unexpected ';' between two times",
                         "remove the ';'", Edit{{end - 1, end}, ""});
     const auto rate = rate_of(name.text);
     if (!rate)
@@ -137,7 +137,7 @@ class CourseReader {
     const bool is_truth =
         token.kind == Token::Kind::kIdentifier && (token.text == "true" || token.text == "false");
     if (token.kind == Token::Kind::kNumber && s_.peek().is("%")) {
-      read_.fail(Code::kSyntax, s_.peek().span, "no '%' stands behind a number",
+      read_.fail(Code::kSyntax, s_.peek().span, "unexpected '%' after a number",
                  "remove it; where the rules use a share from 0 to 1, write 0.8 for 80 percent",
                  Edit{s_.peek().span, ""});
       return std::nullopt;

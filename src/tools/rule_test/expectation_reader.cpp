@@ -65,7 +65,7 @@ class ExpectationReader {
   bool sentence() {
     e_.wanted = !took("NOT");
     if (const Token& next = s_.peek(); !e_.wanted && next.text == "STRATEGY")
-      return read_.fail(Code::kSyntax, next.span, "no NOT stands in front of STRATEGY",
+      return read_.fail(Code::kSyntax, next.span, "unexpected NOT before STRATEGY",
                         "write EXPECT NO STRATEGY");
     if (took("BLAME")) {
       e_.kind = Kind::kBlamed;
@@ -85,6 +85,11 @@ class ExpectationReader {
         return resolve(*subject, verb.about) && (e_.kind != Kind::kRanked || rank());
       }
     }
+    if (std::ranges::find(kVerbs, std::string_view(subject->text), &Verb::word) != kVerbs.end() &&
+        knows(std::string(word.text)))
+      return read_.fail(Code::kSyntax, subject->span,
+                        subject->text + " comes after the name that it is about",
+                        "write " + std::string(word.text) + " " + subject->text);
     if (!knows(subject->text)) {
       const std::string near = names_.closest_subject(subject->text);
       return read_.fail(Code::kUnknownName, subject->span,
@@ -209,7 +214,7 @@ class ExpectationReader {
     const std::string_view missing = clause_of(word);
     if (!missing.empty() && std::ranges::find(known, missing) != known.end())
       return read_.fail(Code::kSyntax, word.span,
-                        "no '" + std::string(missing) + "' stands in front of this",
+                        "'" + std::string(missing) + "' is missing before this",
                         "write " + std::string(missing) + " in front of it",
                         Edit{{word.span.begin, word.span.begin}, std::string(missing) + " "});
     return read_.unexpected_clause(word, known);

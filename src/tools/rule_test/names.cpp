@@ -103,6 +103,12 @@ std::optional<Subject> Names::topic_or_signal(const syntax::Name& name) {
     const auto found = topic(name);
     return found ? std::optional<Subject>(*found) : std::nullopt;
   }
+  if (rules_by_name_.contains(name.text) && !signals_.contains(name.text)) {
+    diagnostics_.push_back({Code::kUnknownName, Severity::kError, name.span,
+                            "'" + name.text + "' is a rule, not a topic or a signal",
+                            "write the topics and signals that its trigger reads"});
+    return std::nullopt;
+  }
   const auto found = signal(name);
   return found ? std::optional<Subject>(*found) : std::nullopt;
 }

@@ -116,6 +116,10 @@ class Reader {
     is_broken_ = false;
     has_scenario_ = false;
     if (!name) return false;
+    const bool is_quoted = source_.text()[name->span.begin] == '"';
+    if (!is_quoted && s.peek().kind == Token::Kind::kIdentifier)
+      return read_.fail(Code::kSyntax, s.peek().span, "a name with blanks stands in quotes",
+                        "write TEST \"" + name->text + " " + std::string(s.peek().text) + " ...\"");
     if (!test_names_.insert(name->text).second)
       return read_.fail(Code::kDuplicateName, name->span,
                         "another test of this file is called '" + name->text + "'",
