@@ -248,7 +248,7 @@ void Analyzer::detect(RuleId id, Time now) {
   }
 }
 
-// What the last strategy started has ended within its READY: that was a try of one attempt.
+// A process that the last strategy started has ended within its READY: that was a try of one attempt.
 void Analyzer::take_back_starts(RuleId id) {
   for (const StrategyId strategy : knowledge_.rules[id].strategies) {
     const auto& all = knowledge_.rules[strategy].adaptations;
@@ -693,7 +693,7 @@ void Analyzer::exhaust(RuleId id, Time now) {
   stay_exhausted(id, now);
 }
 
-// What goes on nevertheless (Knowledge::goes_on) does so after a while.
+// Strategies that go on nevertheless (Knowledge::goes_on) do so after a while.
 void Analyzer::stay_exhausted(RuleId id, Time now) {
   Search& search = write_.states.state(id).search;
   const int beyond = search.attempts - knowledge_.rules[id].policies.attempts;

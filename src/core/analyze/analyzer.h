@@ -112,7 +112,7 @@ class Analyzer {
 
   // The rule's strategy under way ends without a verdict.
   void abandon(RuleId id, Time now);
-  // Likewise, for a last resort. If it has changed anything, that may be why the last resort is due: it was an
+  // As abandon(), for a last resort. If the strategy has changed anything, that may be why the last resort is due: it was an
   // attempt in vain.
   void yield_to_last_resort(RuleId id, Time now);
 

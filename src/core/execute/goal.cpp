@@ -78,7 +78,7 @@ PresentGoal present(const Adaptation& adaptation, const Knowledge& knowledge) {
   return goal;
 }
 
-// Who states a long impact may mean a routine that answers when it has done its work.
+// An author who states a long impact may mean a routine that answers when it has done its work.
 ServiceGoal calling(const Adaptation& adaptation, const Knowledge& knowledge) {
   ServiceGoal goal;
   goal.service = service_of(adaptation.subject, knowledge.graph.node_name(adaptation.component));

@@ -169,7 +169,7 @@ bool ReasonsToWait::is_quicker_than_repair(StrategyId id, std::size_t cause) con
     }
   }
   if (!repair) return false;
-  // What has taken so long already will presumably take as long again.
+  // A repair that has taken so long already will presumably take as long again.
   const Duration so_far = knowledge_.now - knowledge_.states[rule].failing_since;
   return std::max(so_far, duration_of(*repair, knowledge_.rules)) >=
          duration_of(strategy.impact, knowledge_.rules) + kWorkaroundGain;
