@@ -155,7 +155,7 @@ TEST(Orders, AStrategyWaitsForApproval) {
   TestRobot r = robot(Approval::kEach);
   r["camera"].fault = "restart";
   r.run_for(5s);
-  EXPECT_EQ(r.count("shall CameraDead.restart restart camera?"), 1u) << transcript(r);
+  EXPECT_EQ(r.count("CameraDead.restart waits for approval: restart camera"), 1u) << transcript(r);
   EXPECT_EQ(r.manager().governor().asked(), std::vector{kRestart});
   EXPECT_TRUE(r.asked.empty());
   r.order(order(Approve{kRestart}));
@@ -175,7 +175,7 @@ TEST(Orders, ARefusedStrategyMakesRoomForTheNextAndIsAskedForAgainWithTheNextFai
   EXPECT_TRUE(r.works("camera")) << transcript(r);
   r["camera"].fault = "restart";
   r.run_for(2s);
-  EXPECT_EQ(r.count("shall CameraDead.restart"), 2u) << transcript(r);
+  EXPECT_EQ(r.count("CameraDead.restart waits for approval"), 2u) << transcript(r);
 }
 
 TEST(Orders, WhatAPersonRefusedHoldsUpNoLesserFailure) {
