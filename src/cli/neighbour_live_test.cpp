@@ -429,7 +429,7 @@ TEST_F(TwoMachines, StepBackAndDoNothingWhenTheyWereOnlySlow) {
   std::this_thread::sleep_for(1s);
   first->signal(SIGCONT);
   ASSERT_TRUE(first->prints("another culprit manages this robot, on ")) << first->output();
-  EXPECT_THAT(first->output(), HasSubstr("was away so long"));
+  EXPECT_THAT(first->output(), HasSubstr("did not run for so long"));
   EXPECT_THAT(first->output(), Not(HasSubstr("decided"))) << second->output();
   std::this_thread::sleep_for(3s);
   const std::string since = second->output().substr(second->output().find("from now on"));

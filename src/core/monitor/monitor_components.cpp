@@ -602,7 +602,8 @@ void Monitor::update_alive(ComponentId component, Time at, const std::string& re
   ComponentState& state = write_.components[component];
   const bool is_part_hung = has_hung_part(component) && at >= later(awake_, kUnsure);
   const bool answers = !does_not_answer(component, at) && !is_part_hung;
-  const bool is_alive = state.in_graph && state.process == ProcessState::kRunning && answers;
+  const bool is_there = state.in_graph && state.process == ProcessState::kRunning;
+  const bool is_alive = is_there && answers;
   if (!knowledge_.discovered.has(component)) return;          // it may be a wrong name
   if (!is_alive && !state.alive && at < discovered_) return;  // it may still be discovered
   const bool may_be_unheard = is_deaf_ || at < graced_ || state.is_out_of_reach;
@@ -611,7 +612,7 @@ void Monitor::update_alive(ComponentId component, Time at, const std::string& re
     return update_alive_inputs(component, at, Slot());
   }
   if (state.alive == is_alive) return;
-  const bool is_ended = is_being_ended(component);
+  const bool is_ended = !is_there && is_being_ended(component);
   state.alive = is_alive;
   state.alive_since = at;
   if (is_alive && state.host_silent) deadlines_.set(return_of(component), later(at, kSpeaks));
