@@ -494,15 +494,17 @@ const char* environment(const char* name) {
 }
 
 // A killed process leaves its ports in shared memory, where publishers write for nobody from then on; and this one has to
-// receive right after its killed predecessor. Fast DDS before 2.12 does not know the variable, and obeys a profile only.
-// rmw_fastrtps adds shared memory where ROS_LOCALHOST_ONLY is set, so that the profile has to say that as well.
+// receive right after its killed predecessor. Humble's Fast DDS does not know the variable, and obeys a profile only.
+// Its rmw_fastrtps adds shared memory where ROS_LOCALHOST_ONLY is set, so the profile has to say that as well. No other
+// distribution gets the profile: one that does not read it would lose ROS_LOCALHOST_ONLY.
 void use_no_shared_memory() {
   setenv("FASTDDS_BUILTIN_TRANSPORTS", "UDPv4", 0);
   const std::string rmw = environment("RMW_IMPLEMENTATION");
   const bool is_fast_dds = rmw.empty() || rmw.find("fastrtps") != std::string::npos;
   const bool has_profile = *environment("FASTRTPS_DEFAULT_PROFILES_FILE") != 0 ||
                            *environment("FASTDDS_DEFAULT_PROFILES_FILE") != 0;
-  if (!is_fast_dds || has_profile) return;
+  const bool is_humble = std::strcmp(environment("ROS_DISTRO"), "humble") == 0;
+  if (!is_fast_dds || has_profile || !is_humble) return;
   const bool is_local = std::strcmp(environment("ROS_LOCALHOST_ONLY"), "1") == 0;
   const std::string only_here =
       is_local ? "<interfaceWhiteList><address>127.0.0.1</address></interfaceWhiteList>" : "";

@@ -257,7 +257,8 @@ void Analyzer::take_back_starts(RuleId id) {
     });
     if (!has_ended || !knowledge_.states.is_tried(strategy)) continue;
     write_.states.set_tried(strategy, false);
-    --write_.states.state(id).search.attempts;
+    int& attempts = write_.states.state(id).search.attempts;
+    attempts = std::max(attempts - 1, 0);  // one that was excused was not counted
   }
 }
 

@@ -1,11 +1,13 @@
 // Strategies in steps (THEN): components that are taken down for a repair, and when they come up
 // again.
 #include <algorithm>
+#include <memory>
 
 #include <gtest/gtest.h>
 
 #include "manager/manager.h"
 #include "manager/test_robot.h"
+#include "plan/bayes/bayes_planner.h"
 
 namespace culprit::test {
 namespace {
@@ -78,6 +80,26 @@ TEST(Steps, NothingIsActivatedThatWasNotActive) {
   EXPECT_EQ(robot.count("Silent resolved by in_steps"), 1u) << transcript(robot);
   EXPECT_FALSE(robot.was_asked("planner: activate")) << transcript(robot);
   EXPECT_EQ(robot["planner"].state, Lifecycle::kInactive) << transcript(robot);
+}
+
+// culprit was killed when the driver was back: the next one gives back what that one had taken.
+TEST(Steps, AreFinishedByTheNextCulprit) {
+  TestRobot robot = arm_robot(arm_with(kAround));
+  robot["planner"].state = Lifecycle::kInactive;
+  const Command taken{{7},
+                      robot.id("planner"),
+                      ChangeLifecycle{Transition::kDeactivate},
+                      1s,
+                      Purpose{StrategyId(0), 0, false, Lifecycle::kActive}};
+  Manager::Options options;
+  options.start = robot.now;
+  auto next = std::make_unique<Manager>(robot.rules(), std::make_unique<BayesPlanner>(), options);
+  next->remember(robot.manager().knowledge().known_robot());
+  next->resume({StrategyId(0), 2, false, {{taken, Outcome::kDone}}});
+  robot.replace_manager(std::move(next));
+  robot.run_for(20s);
+  EXPECT_TRUE(robot.was_asked("planner: activate")) << transcript(robot);
+  EXPECT_EQ(robot["planner"].state, Lifecycle::kActive) << transcript(robot);
 }
 
 // A process that is dead is deactivated enough.
