@@ -218,6 +218,8 @@ TEST_F(Fleet, NothingIsLostOrCountedTwiceByOneThatIsKilledAtAnyInstant) {
   const fs::path journal = folder / "a.journal";
   std::mt19937 random(3);
   for (int kills = 0; kills < 12; ++kills) {
+    int learned[2];
+    ASSERT_EQ(pipe(learned), 0);
     const pid_t child = fork();
     if (child == 0) {
       Member::Pace pace{1ms, 1ms, 1ms, 1h, 1h, 10ms, 10ms};
@@ -227,10 +229,15 @@ TEST_F(Fleet, NothingIsLostOrCountedTwiceByOneThatIsKilledAtAnyInstant) {
       writer.begins();
       for (int i = 0;; ++i) {
         writer.outcome(i % 3 == 0 ? "restart" : "redeploy", i % 2 == 0);
+        if (i == 0 && write(learned[1], "", 1) != 1) _exit(1);
         std::this_thread::sleep_for(2ms);
       }
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(20 + random() % 150));
+    close(learned[1]);
+    char first = 0;
+    EXPECT_EQ(read(learned[0], &first, 1), 1);
+    close(learned[0]);
+    std::this_thread::sleep_for(std::chrono::milliseconds(random() % 150));
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
   }

@@ -62,8 +62,6 @@ class MapWatch {
                 Time now) const CULPRIT_REQUIRES(mutex_);
 
   NodeEntry& self_;
-  std::array<Source, kParts> sources_;
-
   mutable Mutex mutex_;
   std::vector<std::string> topics_ CULPRIT_GUARDED_BY(mutex_);
   std::array<Newest, kScan + 1> newest_ CULPRIT_GUARDED_BY(mutex_);
@@ -74,6 +72,8 @@ class MapWatch {
   Time decoded_at_ CULPRIT_GUARDED_BY(mutex_) = kLongAgo;
   std::string frame_ CULPRIT_GUARDED_BY(mutex_);
   Expected<GridPicture> grid_ CULPRIT_GUARDED_BY(mutex_) = Error{""};
+
+  std::array<Source, kParts> sources_;  // goes first: its samples come on another thread
 };
 
 }  // namespace culprit::ros2
