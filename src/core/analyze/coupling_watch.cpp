@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "diagnose/timing.h"
+#include "diagnose/causes.h"
 #include "knowledge/ambiguity.h"
 
 namespace culprit {
@@ -123,6 +123,32 @@ void CouplingWatch::cleared(RuleId rule, Time now) {
       write_.couplings.cleared(knowledge_.rules[q.strategy].rule, rule);
     return true;
   });
+}
+
+void CouplingWatch::exposed_others(RuleId cause, Time now) {
+  const auto& onset = knowledge_.states[cause].onset;
+  if (!onset) return;  // an earlier culprit detected it
+  const Time began = onset->latest;
+  const Time would_show = later(began, diagnose::kUsualDelay);
+  const Time gone = gone_since(cause, now);
+  if (gone <= would_show) return;
+  std::vector<RuleId> effects;
+  for (const ComponentId c : knowledge_.graph.downstream(knowledge_.rules[cause].components)) {
+    const auto& touching = knowledge_.states.touching(c);
+    effects.insert(effects.end(), touching.begin(), touching.end());
+  }
+  std::ranges::sort(effects);
+  effects.erase(std::unique(effects.begin(), effects.end()), effects.end());
+  for (const RuleId effect : effects) {
+    const RuleState& state = knowledge_.states[effect];
+    const bool stayed_away = effect != cause && state.phase == RulePhase::kQuiet &&
+                             state.gone_since <= began &&
+                             knowledge_.signals.is_read_since(effect, would_show);
+    const Time well_until = std::min(gone, state.detection.last_false);
+    if (!stayed_away || well_until <= would_show) continue;
+    const double times = seconds(well_until - began) / seconds(diagnose::kUsualDelay);
+    write_.couplings.stayed_away(cause, effect, std::min(times, kLongestExposure));
+  }
 }
 
 void CouplingWatch::ended(const Attempt& attempt, Time now) {

@@ -59,6 +59,23 @@ std::string_view to_string(Trouble trouble) {
   return "";
 }
 
+bool answers_nothing(Trouble trouble) {
+  switch (trouble) {
+    case Trouble::kExited:
+    case Trouble::kStopped:
+    case Trouble::kLeft:
+    case Trouble::kStarting:
+    case Trouble::kHung:
+    case Trouble::kNeverSeen:
+      return true;
+    case Trouble::kNotActive:
+    case Trouble::kNotYetActive:
+    case Trouble::kSilent:
+      return false;
+  }
+  return false;
+}
+
 std::optional<TroubleSeen> trouble_of(ComponentId component, const Knowledge& knowledge) {
   if (knowledge.is_unheard(component)) return std::nullopt;
   return own_trouble(component, knowledge);

@@ -88,7 +88,8 @@ bool LikelyCauses::is_left_to_person(std::size_t node) const {
     case CauseNode::Kind::kTrouble: {
       const auto rules = knowledge_.states.touching(causes_[node].component);
       return std::none_of(rules.begin(), rules.end(), [&](RuleId rule) {
-        return knowledge_.states[rule].detection.trigger.known;
+        return knowledge_.states[rule].detection.trigger.known &&
+               !knowledge_.states.awaits_person(rule);
       });
     }
     case CauseNode::Kind::kUnsupplied:
