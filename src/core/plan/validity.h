@@ -7,7 +7,8 @@
 //   - activate: its component is alive, has a lifecycle, and is not active;
 //   - deactivate: its component is alive and active;
 //   - restart: it is alive and has a lifecycle, for a dead or hung process answers no request;
-//   - redeploy: it has a LAUNCH command;
+//   - redeploy: it has a LAUNCH command; and it is not the sender of topics that the rule misses, inactive by
+//     the doing of others: it comes back inactive;
 //   - start: it has a LAUNCH command and is not there;
 //   - stop: it is there.
 // In steps, one that is so already is passed over: a dead component is deactivated. So is the activation of what

@@ -78,6 +78,33 @@ TEST(Validity, PassesOverStepsThatHaveNothingToDo) {
   EXPECT_EQ(reason("Silent.tuned"), "planner is not alive") << "a dead one sets no parameter";
 }
 
+// A redeploy restores the lifecycle, so nothing that was deactivated sends anything after it.
+TEST(Validity, RulesOutToRedeployForItsDataWhatOthersHaveDeactivated) {
+  Scene scene(
+      "COMPONENT camera NODE /camera LAUNCH \"camera\"\n"
+      "RULE Silent\nPOLICIES ERROR\nTRIGGER age(/rgb) > 1s\n"
+      "STRATEGY restart 50 10\nADAPTATION camera restart 2\n"
+      "STRATEGY again 50 10\nADAPTATION camera redeploy 5\n"
+      "RULE Leaks\nPOLICIES ERROR\nTRIGGER memory(camera) > 500\n"
+      "STRATEGY shrink 50 10\nADAPTATION camera redeploy 5\n");
+  scene->graph.endpoint_appeared("/camera", EndpointKind::kPublisher, "/rgb");
+  const auto invalid = [&](const char* strategy) {
+    return invalidity(scene.rules()[scene.strategy(strategy)], *scene);
+  };
+  EXPECT_FALSE(invalid("Silent.again"));
+  ComponentState& camera = scene->components[scene.component("camera")];
+  camera.lifecycle = camera.intended_lifecycle = Lifecycle::kInactive;
+  ASSERT_TRUE(invalid("Silent.again"));
+  EXPECT_TRUE(invalid("Silent.again")->waits);
+  EXPECT_FALSE(invalid("Silent.restart")) << "it activates";
+  EXPECT_FALSE(invalid("Leaks.shrink")) << "that is no matter of its lifecycle";
+  scene.tried("Silent.restart");
+  ASSERT_TRUE(invalid("Silent.again"));
+  EXPECT_FALSE(invalid("Silent.again")->waits) << "all was tried";
+  camera.brought = Brought{Lifecycle::kInactive};
+  EXPECT_FALSE(invalid("Silent.again")) << "a strategy has deactivated it";
+}
+
 // It holds what it has set as long as its failure is there, and no more than that.
 TEST(Validity, RulesOutToSetWhatALastResortHasSet) {
   Scene scene(
