@@ -43,11 +43,13 @@ StrategyExecutor::Run& StrategyExecutor::add_run(StrategyId strategy) {
 void StrategyExecutor::resume(Interrupted interrupted, Time now, Time from) {
   CULPRIT_ASSERT(
       std::all_of(runs_.begin(), runs_.end(), [](const Run& r) { return r.interrupted; }));
-  write_.attempts.resume(interrupted.strategy, now);
-  Run& run = add_run(interrupted.strategy);
   // An answer to a request of the earlier process must not be taken for one to ours.
   for (const Interrupted::Request& request : interrupted.requests)
     last_command_ = std::max(last_command_, request.command.id.number);
+  // It is over: its components are free.
+  if (interrupted.has_failed && execute::undo_of(interrupted, knowledge_).empty()) return;
+  write_.attempts.resume(interrupted.strategy, now);
+  Run& run = add_run(interrupted.strategy);
   run.interrupted = std::move(interrupted);
   run.from = from;
 }

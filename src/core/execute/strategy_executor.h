@@ -45,7 +45,8 @@ class StrategyExecutor {
   // those that have an obstacle (by place; empty: none), which are left out. Then it failed for that.
   void begin(StrategyId strategy, Time now, std::vector<std::string> obstacles = {});
 
-  // Goes on from `from` on with an attempt of an earlier process; its outcome will prove nothing.
+  // Goes on from `from` on with an attempt of an earlier process; its outcome will prove nothing. Ignored if it
+  // had failed and there is nothing to undo.
   // @pre nothing was begun yet
   void resume(Interrupted interrupted, Time now, Time from);
 
