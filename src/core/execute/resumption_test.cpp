@@ -124,7 +124,7 @@ TEST(Resumption, GoesOnUndoingAStrategyThatHadFailed) {
   EXPECT_TRUE(left.knowledge.states.is_tried(left.tune));
 }
 
-// Nothing that a redeploy does is undone: its component is free for another strategy.
+// A redeploy is not undone: its component is free for another strategy.
 TEST(Resumption, IsOverIfItHadFailedAndThereIsNothingToUndo) {
   Left left;
   StrategyExecutor executor = left.executor();
