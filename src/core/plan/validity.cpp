@@ -7,6 +7,7 @@
 #include "knowledge/group_health.h"
 #include "knowledge/held.h"
 #include "language/evaluate.h"
+#include "plan/also_ended.h"
 
 namespace culprit::plan {
 namespace {
@@ -194,6 +195,22 @@ std::optional<Invalid> held_by_last_resort(const Strategy& strategy, const Knowl
   return std::nullopt;
 }
 
+// The nodes of one process, or of one launch, end and begin together: one of them may be held. The own rule's
+// repair goes on.
+std::optional<Invalid> ends_what_is_held(const Strategy& strategy, const Knowledge& knowledge) {
+  const RuleSet& rules = knowledge.rules;
+  const bool begins_again = std::ranges::any_of(strategy.adaptations, launches);
+  Adaptation change;
+  change.type = begins_again ? AdaptationType::kRedeploy : AdaptationType::kStop;
+  for (const ComponentId other : also_ended(strategy, knowledge)) {
+    change.component = other;
+    const auto holder = holder_against(strategy, change, knowledge);
+    if (holder && rules[*holder].rule != strategy.rule)
+      return Invalid{other, held_by(*holder, rules), true};
+  }
+  return std::nullopt;
+}
+
 // It starts a group of which all members are active, and whose manager is there or cannot be started.
 std::optional<Invalid> needless_start(const Strategy& strategy, const Knowledge& knowledge) {
   const auto is_needless = [&](const Adaptation& a) {
@@ -335,6 +352,7 @@ std::optional<Invalid> invalidity(const Strategy& strategy, const Knowledge& kno
     return Invalid{strategy.adaptations.front().component,
                    "its rule is exhausted, and only exited processes are started again"};
   if (auto held = held_by_last_resort(strategy, knowledge)) return held;
+  if (auto held = ends_what_is_held(strategy, knowledge)) return held;
   if (auto barred = barred_by_another(strategy, knowledge)) return barred;
   if (auto not_active = not_active_with_group(strategy, knowledge)) return not_active;
   if (auto deactivated = stays_deactivated(strategy, knowledge)) return deactivated;

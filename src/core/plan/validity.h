@@ -16,8 +16,8 @@
 // A component on a computer that is unreachable, or cannot be asked, cannot be adapted. A redeploy or a start
 // waits while a thing that the start needs is missing (StartBarred). For an exhausted rule only what goes on is
 // valid (Knowledge::goes_on). A strategy is valid if each of its adaptations is, given the ones
-// before it, and its WHEN condition is true. Further, no last resort may hold what it would change
-// (knowledge/held.h). It must not have brought back a more critical failure (analyze/parameter_fights.h), and its
+// before it, and its WHEN condition is true. Further, no last resort may hold what it would change,
+// or end with it (knowledge/held.h, also_ended.h). It must not have brought back a more critical failure (analyze/parameter_fights.h), and its
 // component must not be out of work with its group: paused, or being brought up or down. A last
 // resort is never valid for a planner: the manager begins it.
 #pragma once

@@ -162,6 +162,25 @@ TEST(Validity, LeavesInactiveWhatALastResortHasDeactivated) {
   EXPECT_FALSE(invalid_in(scene, "Other.anew")) << "a dead process is started again";
 }
 
+// They are nodes of one process.
+TEST(Validity, LeavesTheProcessOfWhatALastResortHolds) {
+  const std::string strategies =
+      "STRATEGY anew 50 10\nADAPTATION loc redeploy 2\nSTRATEGY off 50 10\nADAPTATION loc stop 2\n";
+  Scene scene = beside_last_resort("ERROR", "ADAPTATION tool deactivate 1\n", strategies);
+  let_stand(scene);
+  EXPECT_FALSE(invalid_in(scene, "Other.anew"));
+  scene->components[scene.component("loc")].ends_with = {scene.component("tool")};
+  ASSERT_TRUE(invalid_in(scene, "Other.anew"));
+  EXPECT_EQ(invalid_in(scene, "Other.anew")->component, scene.component("tool"));
+  EXPECT_TRUE(invalid_in(scene, "Other.anew")->waits);
+  EXPECT_FALSE(invalid_in(scene, "Other.off")) << "it does nothing then";
+  Scene stopped = beside_last_resort("ERROR", "ADAPTATION tool stop 1\n", strategies);
+  let_stand(stopped);
+  stopped.process("tool", ProcessState::kGone);
+  stopped->components[stopped.component("loc")].ends_with = {stopped.component("tool")};
+  EXPECT_TRUE(invalid_in(stopped, "Other.anew")) << "it would be started again";
+}
+
 // Its own rule goes on: the new process is brought to inactive.
 TEST(Validity, LetsARuleReplaceWhatItHasDeactivated) {
   Scene scene(
