@@ -9,7 +9,8 @@ namespace {
 
 std::size_t at(Symptom symptom) { return static_cast<std::size_t>(symptom); }
 
-// Where its failure is. A rule that only reports waits for nothing, and nothing waits for it.
+// Where its failure is. A rule that only reports waits for nothing, and nothing waits until it fires. But one that
+// cleared may have explained others.
 std::vector<ComponentId> places_of(RuleId rule, const Knowledge& knowledge) {
   if (knowledge.rules[rule].components.empty()) return {};
   return touched_by(rule, knowledge);
@@ -131,7 +132,7 @@ void Awaited::place_past() {
     if (past_[p].component) {
       mark(*past_[p].component, p);
     } else {
-      for (const ComponentId c : places_of(*past_[p].rule, knowledge_)) mark(c, p);
+      for (const ComponentId c : touched_by(*past_[p].rule, knowledge_)) mark(c, p);
     }
   }
 }
