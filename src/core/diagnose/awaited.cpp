@@ -7,6 +7,9 @@
 namespace culprit::diagnose {
 namespace {
 
+// An outage costs more than a bad value, so it waits for no long window and no slow monitor.
+constexpr Duration kLongestReading = std::chrono::seconds(2);
+
 std::size_t at(Symptom symptom) { return static_cast<std::size_t>(symptom); }
 
 // Where its failure is. A rule that only reports waits for nothing, and nothing waits until it fires. But one that
@@ -172,7 +175,8 @@ Awaiting Awaited::of_declared_supplier(RuleId failure, ComponentId consumer) con
     if (d.consumer != consumer || !scc) continue;
     const Best& evidence = places_[*scc].own[at(Symptom::kValue)].without(failure);
     if (!evidence.rule) continue;
-    const Time until = later(first_onset_of(failure, knowledge_), next_reading(evidence));
+    const Duration reading = std::min<Duration>(next_reading(evidence), kLongestReading);
+    const Time until = later(first_onset_of(failure, knowledge_), reading);
     if (until > found.until) found = {until, *evidence.rule, false};
   }
   return found;

@@ -3,7 +3,7 @@
 //
 //     W_i = max_u min(b_i + E_u, d_i + kLongestEvidence)     quiet rules u upstream of i, of a
 //                                                            symptom that can cause i's
-//           l_i + one reading and a cycle of u               i is an outage, u of a value of a supplier
+//           l_i + one reading and a cycle of u, at most 2 s  i is an outage, u of a value of a supplier
 //                                                            by DEPENDENCY (a rail, a hub)
 //     Z_i = max_u r_u + passing + C_i                        rules that cleared lately, and
 //                                                            components upstream (or i's own) that a
