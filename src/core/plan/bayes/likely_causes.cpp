@@ -6,6 +6,7 @@
 
 #include "diagnose/evidence.h"
 #include "diagnose/known_down.h"
+#include "diagnose/touched.h"
 #include "plan/also_ended.h"
 #include "plan/bayes/bayes_planner.h"
 #include "plan/beside_exhausted.h"
@@ -135,6 +136,10 @@ std::optional<ComponentId> LikelyCauses::missing_member(RuleId rule) const {
 
 ComponentId LikelyCauses::likeliest_component(RuleId rule) const {
   if (knowledge_.rules[rule].components.size() == 1) return knowledge_.rules[rule].components[0];
+  if (knowledge_.rules[rule].components.empty()) {  // it only reports
+    const std::vector<ComponentId> about = touched_by(rule, knowledge_);
+    return about.empty() ? ComponentId{} : about.front();
+  }
   if (const auto missing = missing_member(rule)) return *missing;
   std::pair<std::int64_t, ComponentId> best{-1, {}};
   for (const ComponentId c : knowledge_.rules[rule].components) {
