@@ -92,6 +92,7 @@ class CouplingWatch {
 
   void settle(const std::vector<ComponentId>& repaired, RuleId cause, Time changed,
               std::optional<Cycles> on_its_way, Time now);
+  bool is_well_after(Time since, RuleId rule) const;
   Duration held(RuleId rule) const;
   Time last_change_for(RuleId cleared, Time now) const;
   Time gone_since(RuleId rule, Time now) const;

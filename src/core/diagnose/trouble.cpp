@@ -9,12 +9,6 @@ namespace {
 
 Onset at(Time since) { return {since, since}; }
 
-// A topic that pauses now and then is silent on demand; this one never was.
-bool is_steady(const SignalStore::Rhythm& rhythm) {
-  constexpr int kSteady = 3;
-  return rhythm.gap > Duration::zero() && rhythm.longest <= kSteady * rhythm.gap;
-}
-
 std::optional<TroubleSeen> own_trouble(ComponentId component, const Knowledge& knowledge) {
   const ComponentState& state = knowledge.components[component];
   if (state.process == ProcessState::kGone)
@@ -89,7 +83,7 @@ std::vector<std::optional<TroubleSeen>> all_troubles(const Knowledge& knowledge)
   for (std::size_t t = 0; t < knowledge.rules.topics.size(); ++t) {
     const TopicId topic(t);
     const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(topic);
-    if (!is_silent(topic, knowledge.now, knowledge) || !is_steady(rhythm) ||
+    if (!is_silent(topic, knowledge.now, knowledge) || !rhythm.is_steady() ||
         may_be_lost(topic, knowledge.now, knowledge))
       continue;
     const auto component = knowledge.graph.only_publisher(knowledge.rules[topic]);
