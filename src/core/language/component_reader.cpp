@@ -188,7 +188,9 @@ bool read_component_clauses(LineReader& read, const Source& source, Scanner& s,
       if (fail_foreign_clause(reader)) return false;
       const bool is_node = word.is("/") && !component.node;
       return read.unexpected_clause(word, {kWords.begin(), kWords.end()},
-                                    is_node ? "write NODE in front of the node's name" : "");
+                                    is_node               ? "write NODE in front of the node's name"
+                                    : word.text == "USER" ? "write it behind the name of a UNIT"
+                                                          : "");
     }
     s.next();
     if (!clause->parse(reader, clause->what, clause->remedy)) return false;

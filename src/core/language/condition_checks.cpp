@@ -331,6 +331,29 @@ void check_conditions(const RuleConditions& rule, const RuleSet& rules,
   for (const RuleConditions::When& when : rule.whens) check_when(rule, when, rules, diagnostics);
 }
 
+void check_file_conditions(const std::vector<FileCondition>& conditions, const RuleSet& rules,
+                           std::vector<Diagnostic>& diagnostics) {
+  for (const FileCondition& each : conditions) {
+    if (!is_small_enough(each.condition)) continue;
+    const bool is_never_true = is_never(true, each.condition, rules);
+    if (!is_never_true && !is_never(false, each.condition, rules)) continue;
+    const std::string effect =
+        each.keyword == "INTERLOCK"
+            ? is_never_true ? ", so no strategy ever starts" : ", so it holds nothing back"
+        : is_never_true ? ", so it ends no drill"
+                        : ", so no drill begins";
+    std::vector<Finding> findings;
+    find_constant_parts(each.condition, rules, findings, is_never_true);
+    const std::string reason = findings.empty() ? "" : findings[0].reason;
+    diagnostics.push_back(
+        {is_never_true ? Code::kNeverTrueInRange : Code::kAlwaysTrueInRange, Severity::kWarning,
+         each.condition.span,
+         "this " + std::string(each.keyword) + " is " + (is_never_true ? "never" : "always") +
+             " true" + effect + reason,
+         findings.empty() ? "let it read a signal, such as a speed" : findings[0].remedy});
+  }
+}
+
 void check_last_resort(const RuleConditions& rule, const RuleSet& rules,
                        std::vector<Diagnostic>& diagnostics) {
   const Rule& checked = rules[rule.rule];
@@ -343,7 +366,10 @@ void check_last_resort(const RuleConditions& rule, const RuleSet& rules,
   const auto launchable =
       std::find_if(checked.components.begin(), checked.components.end(), can_be_launched);
   if (launchable == checked.components.end() || !is_small_enough(rule.trigger)) return;
-  if (std::any_of(checked.strategies.begin(), checked.strategies.end(), helps_a_hung_process))
+  // A rule with nothing but last resorts only makes the robot safe.
+  const auto is_last = [&](StrategyId s) { return rules[s].is_last_resort; };
+  if (std::ranges::any_of(checked.strategies, helps_a_hung_process) ||
+      std::ranges::all_of(checked.strategies, is_last))
     return;
   Facts silent(rules);
   fall_silent(rule.trigger, rules, silent);

@@ -2,6 +2,7 @@
 // warnings, given only where the values of the inputs leave no doubt (language/facts.h).
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "language/diagnostic.h"
@@ -29,6 +30,16 @@ struct RuleConditions {
 // never together with the trigger.
 void check_conditions(const RuleConditions& rule, const RuleSet& rules,
                       std::vector<Diagnostic>& diagnostics);
+
+// A condition of the whole file: an INTERLOCK or an ABORT.
+struct FileCondition {
+  std::string_view keyword;
+  Typed condition;
+};
+
+// An INTERLOCK or an ABORT that is always or never true.
+void check_file_conditions(const std::vector<FileCondition>& conditions, const RuleSet& rules,
+                           std::vector<Diagnostic>& diagnostics);
 
 // A trigger that is true as long as everything lives.
 void check_true_when_well(const RuleConditions& rule, const RuleSet& rules,
