@@ -204,6 +204,8 @@ class AdaptationReader {
         s.peek().kind != Token::Kind::kSymbol && !is_last_word(s))
       return "remove it: " + std::string(keyword(adaptation.type)) + " takes the impact only";
     if (!adaptation.value) return "";
+    if (s.peek().kind == Token::Kind::kIdentifier && !is_last_word(s))
+      return "one line sets one parameter: write a line for each";
     if (!s.at_end()) return "";
     const std::string word(keyword(adaptation.type));
     return "the value and the impact stand at the end: " + word + " " + adaptation.subject.text +
@@ -232,6 +234,12 @@ class AdaptationReader {
 
   bool unknown_adaptation(const Token& word, Scanner& s) {
     if (hyphenated_adaptation(word, s)) return false;
+    if (const Token& sign = s.peek(); word.kind == Token::Kind::kIdentifier && sign.is("="))
+      return read_.fail(
+          Code::kUnknownAdaptation, {word.span.begin, sign.span.end},
+          "no adaptation is written with '='",
+          "write set_parameter " + std::string(word.text) + " and its value",
+          Edit{{word.span.begin, sign.span.end}, "set_parameter " + std::string(word.text)});
     if (word.kind == Token::Kind::kNumber && syntax::adaptation_type(s.peek().text))
       return read_.fail(Code::kSyntax, word.span, "the impact stands at the end of the line",
                         "write " + std::string(s.peek().text) + " in front of it");

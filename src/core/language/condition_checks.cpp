@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -275,13 +276,22 @@ void find_short_windows(const Typed& e, const RuleSet& rules, std::vector<Diagno
   }
 }
 
-// Comparisons of cores with a number that was meant as a percentage.
-void find_percentages(const Typed& e, const RuleSet& rules, std::vector<Diagnostic>& found) {
+// Comparisons of cores with a number that was meant as a percentage, and of MiB with one of bytes.
+void find_wrong_scales(const Typed& e, const RuleSet& rules, std::vector<Diagnostic>& found) {
   const Typed* input = e.type == Type::kBool && !is_connective(e) ? compared_input(e) : nullptr;
-  if (input == nullptr || rules[input->input].kind != Input::Kind::kCpu) {
-    for (const Typed& child : e.children) find_percentages(child, rules, found);
+  const bool is_memory = input != nullptr && rules[input->input].kind == Input::Kind::kMemory;
+  if (input == nullptr || (!is_memory && rules[input->input].kind != Input::Kind::kCpu)) {
+    for (const Typed& child : e.children) find_wrong_scales(child, rules, found);
     return;
   }
+  constexpr double kMebibyte = 1 << 20;
+  for (const double bytes : is_memory ? thresholds_of(e) : std::vector<double>()) {
+    if (bytes < kMebibyte) continue;
+    found.push_back({Code::kNeverTrueInRange, Severity::kWarning, e.span,
+                     "this is hardly ever true: memory counts the MiB that the process holds",
+                     "if these are bytes, write " + plain_number(std::round(bytes / kMebibyte))});
+  }
+  if (is_memory) return;
   for (const double cores : thresholds_of(e)) {
     if (cores < 20 || cores > 100) continue;
     found.push_back({Code::kNeverTrueInRange, Severity::kWarning, e.span,
@@ -313,7 +323,7 @@ void check_true_when_well(const RuleConditions& rule, const RuleSet& rules,
 void check_windows(const RuleConditions& rule, const RuleSet& rules,
                    std::vector<Diagnostic>& diagnostics) {
   find_short_windows(rule.trigger, rules, diagnostics);
-  find_percentages(rule.trigger, rules, diagnostics);
+  find_wrong_scales(rule.trigger, rules, diagnostics);
 }
 
 void check_conditions(const RuleConditions& rule, const RuleSet& rules,

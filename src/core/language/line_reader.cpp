@@ -324,6 +324,10 @@ std::optional<syntax::Number> LineReader::number(Scanner& s, std::string_view wh
     return std::nullopt;
   }
   if (token.is("-")) remedy = "write a positive number";
+  if (token.is("/") && remedy.empty()) {
+    remedy = "write a blank between the numbers";
+    fix = Edit{token.span, " "};
+  }
   if (token.kind == Token::Kind::kDuration && remedy.empty())
     remedy = "write a number without a unit";
   if (token.kind == Token::Kind::kIdentifier && remedy.empty()) remedy = "write a number in digits";

@@ -88,6 +88,9 @@ Remedy remedy_of_word(const UnknownLine& line, const Token& head, const Scanner&
         "a rule file is no program: a component is COMPONENT camera NODE /camera LAUNCH \"...\""};
   if (upper == "WAIT" || upper == "SLEEP")
     return {"no strategy waits for a time: THEN ADAPTATION begins once the one above took effect"};
+  if (upper == "AND" || upper == "OR")
+    return {"write " + std::string(upper == "OR" ? "||" : "&&") +
+            " and the condition at the end of the TRIGGER line"};
   if (upper == "ELSE" || upper == "OTHERWISE")
     return {"remove the line: the strategies of a rule are alternatives"};
   if (const auto statement = statement_of_clause(upper); !statement.empty() && near.empty())
