@@ -304,7 +304,7 @@ class Checker {
       check_conditions(rule, rules_, diagnostics_);
       check_last_resort(rule, rules_, diagnostics_);
       check_true_when_well(rule, rules_, diagnostics_);
-      check_windows(rule, rules_, diagnostics_);
+      check_compared_values(rule, rules_, diagnostics_);
       check_short_impacts(*rule.written, rules_, diagnostics_);
     }
     // Declared components come first, in the order of the file.

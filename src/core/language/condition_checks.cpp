@@ -301,6 +301,31 @@ void find_wrong_scales(const Typed& e, const RuleSet& rules, std::vector<Diagnos
   }
 }
 
+// Comparisons with a number, or with true or false, in quotes. The values of a diagnostic are texts.
+void find_quoted_values(const Typed& e, const RuleSet& rules, std::vector<Diagnostic>& found) {
+  for (const Typed& child : e.children) find_quoted_values(child, rules, found);
+  const bool is_order = e.op == Op::kLessString || e.op == Op::kLessEqualString;
+  if (!is_order && e.op != Op::kEqualString) return;
+  for (const std::size_t side : {0u, 1u}) {
+    const Typed& value = e.children[side];
+    const Typed* input = plain_input(e.children[1 - side]);
+    if (value.op != Op::kConstant || input == nullptr) continue;
+    const std::string& text = value.constant->text;
+    const bool is_number =
+        is_order && !text.empty() && text.find_first_not_of("-.0123456789") == std::string::npos;
+    const bool is_field =
+        rules[input->input].kind == Input::Kind::kSignal &&
+        std::holds_alternative<TopicField>(rules[rules[input->input].signal].source);
+    const bool is_truth = !is_order && is_field && (text == "true" || text == "false");
+    if (!is_number && !is_truth) continue;
+    found.push_back(
+        {Code::kTypeMismatch, Severity::kWarning, e.span,
+         "in quotes, " + text + " is a text: no " +
+             (is_number ? "number is less or more" : "field of true or false equals it"),
+         "remove the quotes"});
+  }
+}
+
 }  // namespace
 
 void check_true_when_well(const RuleConditions& rule, const RuleSet& rules,
@@ -320,10 +345,11 @@ void check_true_when_well(const RuleConditions& rule, const RuleSet& rules,
        "come has ON_CHANGE among its policies"});
 }
 
-void check_windows(const RuleConditions& rule, const RuleSet& rules,
-                   std::vector<Diagnostic>& diagnostics) {
+void check_compared_values(const RuleConditions& rule, const RuleSet& rules,
+                           std::vector<Diagnostic>& diagnostics) {
   find_short_windows(rule.trigger, rules, diagnostics);
   find_wrong_scales(rule.trigger, rules, diagnostics);
+  find_quoted_values(rule.trigger, rules, diagnostics);
 }
 
 void check_conditions(const RuleConditions& rule, const RuleSet& rules,

@@ -45,9 +45,10 @@ void check_file_conditions(const std::vector<FileCondition>& conditions, const R
 void check_true_when_well(const RuleConditions& rule, const RuleSet& rules,
                           std::vector<Diagnostic>& diagnostics);
 
-// A rate that is compared with less than one message within its window.
-void check_windows(const RuleConditions& rule, const RuleSet& rules,
-                   std::vector<Diagnostic>& diagnostics);
+// Values that a trigger compares with and that were hardly meant: a rate of less than one message
+// within its window, percent of a core, bytes for MiB, a number in quotes.
+void check_compared_values(const RuleConditions& rule, const RuleSet& rules,
+                           std::vector<Diagnostic>& diagnostics);
 
 // A rule that fires when something falls silent, of which no strategy helps against a hung process,
 // though there is a LAUNCH command.
