@@ -212,12 +212,14 @@ std::optional<ComponentId> owner_of(const Input& input, const RuleSet& rules) {
   }
   const Topic& topic = rules[input.topic];
   if (topic.publisher) return topic.publisher;
-  // A topic below the name of a node is private to it.
+  // A topic below the name of a node is private to it. A node may stand below the name of another.
+  std::optional<ComponentId> owner;
   for (std::size_t c = 0; c < rules.components.size(); ++c) {
     const std::string& node = rules.components[c].node;
-    if (!node.empty() && topic.name.starts_with(node + "/")) return ComponentId(c);
+    const bool is_below = !node.empty() && topic.name.starts_with(node + "/");
+    if (is_below && (!owner || node.size() > rules[*owner].node.size())) owner = ComponentId(c);
   }
-  return std::nullopt;
+  return owner;
 }
 
 // The components that the trigger is about. Empty also if one of its inputs has no known owner.
