@@ -93,6 +93,20 @@ TEST(ExitStatus, IsTwoWhereTheEnvironmentMakesNoSense) {
   unsetenv("ROS_DOMAIN_ID");
 }
 
+// Before anything is watched or read.
+TEST(ExitStatus, IsTwoWhereAnOptionMakesNoSense) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> calls = {
+      {{"init", "-o", "no-such-folder-at-all/my.rules"}, "no-such-folder-at-all' to write"},
+      {{"run", "--journal", "src", "rules/sunset.rules"}, "'src' is a folder"},
+      {{"log", "--since", "-1h"}, "'-1h' is negative"},
+      {{"explain", "--last", "--terms"}, "exclude each other"}};
+  for (const auto& [words, cause] : calls) {
+    const EndOfCommand end = end_of(words);
+    EXPECT_EQ(end.code, kUsage) << words[0] << ": " << end.said;
+    EXPECT_THAT(end.said, HasSubstr(cause)) << words[0];
+  }
+}
+
 TEST(ExitStatus, IsOneWhereNoCulpritAnswers) {
   const std::string nobody = "231";  // a domain that nobody can use
   for (const std::vector<std::string>& words :

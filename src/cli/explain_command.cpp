@@ -140,14 +140,16 @@ void add_explain(CLI::App& app, int& exit_code) {
       command->add_option("WHAT", options->words,
                           "A row of culprit log (123), a code (R012, D001) or a term (root cause); "
                           "without it: all codes");
-  command->add_flag("--last", options->last, "The latest decision")->excludes(code);
+  CLI::Option* last =
+      command->add_flag("--last", options->last, "The latest decision")->excludes(code);
   options->journal.add_to(*command);
   command->add_flag("--json", options->json, "As one JSON document");
   command->add_flag(
       "--markdown", options->markdown,
       "All explanations, as docs/diagnostics.md; with \"doctor\" as docs/findings.md");
   command->add_flag("--terms", options->lists_terms, "List the terms of the glossary")
-      ->excludes(code);
+      ->excludes(code)
+      ->excludes(last);
   command->callback([options, &exit_code] {
     for (const std::string& word : options->words)
       options->what += (options->what.empty() ? "" : " ") + word;

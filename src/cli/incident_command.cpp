@@ -51,9 +51,11 @@ void print_incident(const Incident& incident,
 
 int list_incidents(const IncidentOptions& options) {
   double since = 0;
+  std::string within;
   if (!options.since.empty()) {
     const auto age = duration_of_option("--since", options.since);
     if (!age) return fail(age.error(), kUsage);
+    within = " in the last " + to_string(*age);
     since = kNanosecondInSeconds *
             static_cast<double>(std::max<std::int64_t>(0, wall_now() - age->count()));
   }
@@ -83,8 +85,7 @@ int list_incidents(const IncidentOptions& options) {
                                 {"oldest", found->oldest},
                                 {"incidents", std::move(list)}}));
   } else if (found->incidents.empty()) {
-    fmt::print("no incidents{} in {}\n",
-               options.since.empty() ? "" : " in the last " + options.since, path->string());
+    fmt::print("no incidents{} in {}\n", within, path->string());
   }
   return kOk;
 }

@@ -96,12 +96,22 @@ void advise(const std::string& file, const RuleSet& rules) {
       file, file);
 }
 
+// Why nothing can be written there, which is said before anything is watched or read; empty: it can.
+std::string objection_to_output(const std::string& output) {
+  if (output.empty()) return "";
+  if (std::filesystem::exists(output))
+    return output + " is there already; name another file, or write --update in place of -o";
+  const std::filesystem::path folder = std::filesystem::absolute(output).parent_path();
+  std::error_code error;
+  if (!std::filesystem::is_directory(folder, error))
+    return "there is no folder '" + folder.string() + "' to write " + output + " to";
+  return "";
+}
+
 int draft_rules(const InitOptions& options) {
   const bool has_file = !options.output.empty();
-  if (has_file && std::filesystem::exists(options.output))
-    return fail(
-        options.output + " is there already; name another file, or write --update in place of -o",
-        kUsage);
+  if (const std::string objection = objection_to_output(options.output); !objection.empty())
+    return fail(objection, kUsage);
   if (const auto robot = ros2::options_from_environment(); !robot)
     return fail(robot.error(), kUsage);
   auto dump = dump_of(options);
@@ -150,10 +160,8 @@ int draft_rules(const InitOptions& options) {
 // From recordings instead of the live robot.
 int draft_from_bags(const InitOptions& options) {
   const bool has_file = !options.output.empty();
-  if (has_file && std::filesystem::exists(options.output))
-    return fail(
-        options.output + " is there already; name another file, or write --update in place of -o",
-        kUsage);
+  if (const std::string objection = objection_to_output(options.output); !objection.empty())
+    return fail(objection, kUsage);
   std::vector<bag_doctor::BagCourse> courses;
   for (const std::string& bag : options.bags) {
     ros2::MessageLibrary library(

@@ -267,9 +267,12 @@ int look_back(const ReplayOptions& options, const journal::Reader& journal, bool
 
 int replay_recording(const ReplayOptions& options) {
   if (options.session != 0) return fail("--session is for a journal; a bag is one run", kUsage);
-  if (options.rules.empty())
+  if (options.rules.empty()) {
+    // A folder may be anything.
+    if (const auto bag = bag::BagFile::open(options.journal); !bag) return fail(bag.error());
     return fail("'" + options.journal + "' is a bag, which has no rules: add --rules my.rules",
                 kUsage);
+  }
   return replay_bag({options.journal, options.rules, options.message_path, options.since,
                      options.json, options.fail_on, options.planner, options.html, options.mcap});
 }

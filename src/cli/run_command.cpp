@@ -273,6 +273,8 @@ int run(const RunOptions& options) {
   auto rules = live::trusted_rules(options.rules, options.improvise, colour_of(STDERR_FILENO));
   if (!rules) return fail(rules.error());
   const std::filesystem::path journal = options.journal_path(rules->rules);
+  if (std::error_code error; std::filesystem::is_directory(journal, error))
+    return fail("--journal: '" + options.journal + "' is a folder; name a file in it", kUsage);
   const auto trusted = live::trust_state(options.state_path(), journal);
   if (!trusted) return fail(trusted.error());
   live::make_private(journal);

@@ -200,6 +200,7 @@ TEST(SecondsOption, TakesUnitsOrSeconds) {
 TEST(SecondsOption, SaysWhatIsWrong) {
   EXPECT_THAT(ended({"check", "--wait", "2min"}).said, HasSubstr("is not from 500ms to 1min"));
   EXPECT_THAT(ended({"check", "--wait", "soon"}).said, HasSubstr("--wait: "));
+  EXPECT_THAT(ended({"check", "--wait", "-5min"}).said, HasSubstr("--wait: -5min is not from"));
   EXPECT_EQ(ended({"check", "--wait", "nan"}).code, kUsage);
   EXPECT_EQ(ended({"check", "--wait", "-1"}).code, kUsage);
   EXPECT_EQ(ended({"check", "--wait", "1e400"}).code, kUsage);

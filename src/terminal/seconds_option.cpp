@@ -1,5 +1,7 @@
 #include "terminal/seconds_option.h"
 
+#include <cmath>
+
 #include <fmt/core.h>
 
 #include "base/units.h"
@@ -25,6 +27,8 @@ std::string in_seconds(std::string& text) {
 Expected<Duration> duration_of_option(const std::string& name, const std::string& text) {
   auto duration = parse_duration(is_number(text) ? text + "s" : text);
   if (!duration) return Error{name + ": " + duration.error()};
+  if (*duration < Duration::zero())
+    return Error{name + ": '" + text + "' is negative; write how long ago, as in 1h"};
   return duration;
 }
 
@@ -34,8 +38,9 @@ CLI::Option* add_seconds(CLI::App& command, const std::string& name, double& val
     double number = 0;
     const bool is_number = CLI::detail::lexical_cast(text, number);
     if (is_number && number >= least && number <= most) return std::string();
-    return fmt::format("{} is not from {} to {}", text, to_string(from_seconds(least)),
-                       to_string(from_seconds(most)));
+    const bool is_time = is_number && std::isfinite(number);
+    return fmt::format("{} is not from {} to {}", is_time ? to_string(from_seconds(number)) : text,
+                       to_string(from_seconds(least)), to_string(from_seconds(most)));
   };
   return command.add_option(name, value, what)
       ->check(CLI::Validator(in_range, ""))

@@ -10,7 +10,8 @@
 
 namespace culprit {
 
-// "8s", "1.5min", "2h"; a number alone is of seconds. Errors name the option: "--since: ...".
+// How long ago: "8s", "1.5min", "2h"; a number alone is of seconds. Errors name the option:
+// "--since: ...".
 Expected<Duration> duration_of_option(const std::string& name, const std::string& text);
 
 // "--for 8s", "--for 1.5min", "--for 500ms"; a number alone is of seconds. `value`, in seconds, is

@@ -47,6 +47,10 @@ class AdaptationReader {
   bool is_one_component(Scanner& s, const Name& component) {
     const Token& next = s.peek();
     const std::string_view written = source_.text(next.span);
+    if (Scanner ahead = s.ahead(); written == "." && ahead.next().span.begin == next.span.begin &&
+                                   !syntax::adaptation_type(ahead.peek().text) &&
+                                   read_.has_dot(s, component))
+      return false;
     if (written == ".")
       return read_.fail(Code::kSyntax, next.span, "unexpected '.' after a component",
                         "write a blank", Edit{next.span, " "});
@@ -123,6 +127,7 @@ class AdaptationReader {
         if (!take_name(adaptation.subject, "the service")) return false;
         if (s.peek().kind == Token::Kind::kString)
           adaptation.request = read_.text(s, "the request", "");
+        if (names_type(s)) return false;
         if (const Token& next = s.peek(); next.kind == Token::Kind::kIdentifier
                                               ? !source_.text(next.span).starts_with('{')
                                               : source_.text(next.span) == "{")
@@ -139,6 +144,16 @@ class AdaptationReader {
         return true;
     }
     return false;
+  }
+
+  // "call /reset std_srvs/srv/Trigger 5": reported.
+  bool names_type(const Scanner& s) {
+    Scanner ahead = s.ahead();
+    const bool is_word = ahead.peek().kind == Token::Kind::kIdentifier;
+    const Name type = ahead.next_name();
+    const bool is_type = is_word && type.text.find("/srv/") != std::string::npos;
+    return is_type && !read_.fail(Code::kSyntax, type.span, "a call names no type of service",
+                                  "remove it", Edit{{type.span.begin, ahead.position()}, ""});
   }
 
   bool value(Scanner& s, syntax::Adaptation& adaptation) {
@@ -189,6 +204,8 @@ class AdaptationReader {
         s.peek().kind != Token::Kind::kSymbol && !is_last_word(s))
       return "remove it: " + std::string(keyword(adaptation.type)) + " takes the impact only";
     if (!adaptation.value) return "";
+    if (s.peek().kind == Token::Kind::kIdentifier && !is_last_word(s))
+      return "one line sets one parameter: write a line for each";
     if (!s.at_end()) return "";
     const std::string word(keyword(adaptation.type));
     return "the value and the impact stand at the end: " + word + " " + adaptation.subject.text +
@@ -217,6 +234,15 @@ class AdaptationReader {
 
   bool unknown_adaptation(const Token& word, Scanner& s) {
     if (hyphenated_adaptation(word, s)) return false;
+    if (const Token& sign = s.peek(); word.kind == Token::Kind::kIdentifier && sign.is("="))
+      return read_.fail(
+          Code::kUnknownAdaptation, {word.span.begin, sign.span.end},
+          "no adaptation is written with '='",
+          "write set_parameter " + std::string(word.text) + " and its value",
+          Edit{{word.span.begin, sign.span.end}, "set_parameter " + std::string(word.text)});
+    if (word.kind == Token::Kind::kNumber && syntax::adaptation_type(s.peek().text))
+      return read_.fail(Code::kSyntax, word.span, "the impact stands at the end of the line",
+                        "write " + std::string(s.peek().text) + " in front of it");
     if (word.kind != Token::Kind::kIdentifier)
       return read_.fail_token(word, "what to do with the component",
                               "write for example restart, redeploy or set_parameter");

@@ -325,6 +325,12 @@ std::optional<TopicId> CallTyper::topic_argument(const Expression& e) {
   if (const auto topic = symbols_.topic_of_signal(e.name.text); !topic.empty())
     return typer_.fail(Code::kBadRosName, e.span, "'" + e.name.text + "' is a signal, and no topic",
                        "write its topic, " + topic, Edit{e.span, topic});
+  const std::string& written = e.name.text;
+  if (const std::string inside = written.size() < 2 ? "" : written.substr(1, written.size() - 2);
+      written.starts_with('\'') && written.ends_with('\'') && inside.starts_with('/') &&
+      is_component_reference(inside))
+    return typer_.fail(Code::kBadRosName, e.span, "a topic has no quotes", "write " + inside,
+                       Edit{e.span, inside});
   return typer_.fail(Code::kBadRosName, e.span, "'" + e.name.text + "' is no full topic name",
                      e.name.text.starts_with('/')
                          ? remedy_of_ros_name(e.name.text)

@@ -170,14 +170,19 @@ class Checker {
 
   void interlocks() {
     for (const syntax::Interlock& written : file_.interlocks) {
-      if (auto typed = boolean(written.condition, "an INTERLOCK"))
+      if (auto typed = boolean(written.condition, "an INTERLOCK")) {
         rules_.interlocks.push_back({compile(*typed), written.text});
+        file_conditions_.push_back({"INTERLOCK", std::move(*typed)});
+      }
     }
   }
 
   void drills() {
     for (const syntax::Interlock& written : file_.aborts) {
-      if (boolean(written.condition, "an ABORT")) rules_.aborts.push_back(written.text);
+      if (auto typed = boolean(written.condition, "an ABORT")) {
+        rules_.aborts.push_back(written.text);
+        file_conditions_.push_back({"ABORT", std::move(*typed)});
+      }
     }
     for (const syntax::Drill& written : file_.drills) {
       DrillLine line{symbols_.component(written.component),
@@ -299,7 +304,7 @@ class Checker {
       check_conditions(rule, rules_, diagnostics_);
       check_last_resort(rule, rules_, diagnostics_);
       check_true_when_well(rule, rules_, diagnostics_);
-      check_windows(rule, rules_, diagnostics_);
+      check_compared_values(rule, rules_, diagnostics_);
       check_short_impacts(*rule.written, rules_, diagnostics_);
     }
     // Declared components come first, in the order of the file.
@@ -309,6 +314,9 @@ class Checker {
     check_covered_rules(conditions_, rules_, diagnostics_);
     check_oscillation(conditions_, rules_, diagnostics_);
     check_interlocks(conditions_, rules_, diagnostics_);
+    check_file_conditions(file_conditions_, rules_, diagnostics_);
+    check_effects(conditions_, rules_, diagnostics_);
+    check_settings_in_rules(file_, diagnostics_);
   }
 
   void check_complete(const syntax::Rule& rule) {
@@ -318,11 +326,8 @@ class Checker {
     };
     need(rule.policies.has_value(), "POLICIES");
     need(rule.trigger.has_value(), "TRIGGER");
-    // A last resort is nothing to begin with.
     const bool is_report = rule.policies && rule.policies->is_report;
-    need(is_report || std::any_of(rule.strategies.begin(), rule.strategies.end(),
-                                  [](const syntax::Strategy& s) { return !s.is_last_resort; }),
-         rule.strategies.empty() ? "STRATEGY" : "STRATEGY but a LASTRESORT");
+    need(is_report || !rule.strategies.empty(), "STRATEGY");
     if (is_report && !rule.strategies.empty())
       report(Code::kContradiction, rule.strategies.front().name.span,
              "rule '" + rule.name.text + "' only reports, so none of its strategies would be used",
@@ -333,9 +338,6 @@ class Checker {
         : missing == "TRIGGER" ? "add when the failure is there, as in TRIGGER age(/topic) > 1s"
         : missing == "STRATEGY"
             ? "add a STRATEGY with what may help, or REPORT to its POLICIES to notify a person"
-        : missing == "STRATEGY but a LASTRESORT"
-            ? "add a STRATEGY that may help, or leave out LASTRESORT if this one does: a last "
-              "resort only makes the robot safe"
             : "a rule says how critical the failure is (POLICIES), when it is there (TRIGGER) and "
               "what may help (STRATEGY), or that a person is notified (POLICIES ... REPORT)";
     report(Code::kIncomplete, rule.name.span,
@@ -616,6 +618,7 @@ class Checker {
   bool has_broken_declaration_ = false;
   PlaceIndex rule_names_;
   std::vector<RuleConditions> conditions_;  // of each rule that has a trigger
+  std::vector<FileCondition> file_conditions_;
 };
 
 // A mistake in a template repeats in each USE of it; one report is enough.

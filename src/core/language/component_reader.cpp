@@ -187,8 +187,12 @@ bool read_component_clauses(LineReader& read, const Source& source, Scanner& s,
     if (clause == kClauses.end() || clause->is_there(component)) {
       if (fail_foreign_clause(reader)) return false;
       const bool is_node = word.is("/") && !component.node;
+      const bool adjoins_text = word.span.begin > 0 && source.text()[word.span.begin - 1] == '"';
       return read.unexpected_clause(word, {kWords.begin(), kWords.end()},
-                                    is_node ? "write NODE in front of the node's name" : "");
+                                    is_node               ? "write NODE in front of the node's name"
+                                    : adjoins_text        ? "write \\\" for a quote within a text"
+                                    : word.text == "USER" ? "write it behind the name of a UNIT"
+                                                          : "");
     }
     s.next();
     if (!clause->parse(reader, clause->what, clause->remedy)) return false;

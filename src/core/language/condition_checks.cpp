@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -275,19 +276,53 @@ void find_short_windows(const Typed& e, const RuleSet& rules, std::vector<Diagno
   }
 }
 
-// Comparisons of cores with a number that was meant as a percentage.
-void find_percentages(const Typed& e, const RuleSet& rules, std::vector<Diagnostic>& found) {
+// Comparisons of cores with a number that was meant as a percentage, and of MiB with one of bytes.
+void find_wrong_scales(const Typed& e, const RuleSet& rules, std::vector<Diagnostic>& found) {
   const Typed* input = e.type == Type::kBool && !is_connective(e) ? compared_input(e) : nullptr;
-  if (input == nullptr || rules[input->input].kind != Input::Kind::kCpu) {
-    for (const Typed& child : e.children) find_percentages(child, rules, found);
+  const bool is_memory = input != nullptr && rules[input->input].kind == Input::Kind::kMemory;
+  if (input == nullptr || (!is_memory && rules[input->input].kind != Input::Kind::kCpu)) {
+    for (const Typed& child : e.children) find_wrong_scales(child, rules, found);
     return;
   }
+  constexpr double kMebibyte = 1 << 20;
+  for (const double bytes : is_memory ? thresholds_of(e) : std::vector<double>()) {
+    if (bytes < kMebibyte) continue;
+    found.push_back({Code::kNeverTrueInRange, Severity::kWarning, e.span,
+                     "this is hardly ever true: memory counts the MiB that the process holds",
+                     "if these are bytes, write " + plain_number(std::round(bytes / kMebibyte))});
+  }
+  if (is_memory) return;
   for (const double cores : thresholds_of(e)) {
     if (cores < 20 || cores > 100) continue;
     found.push_back({Code::kNeverTrueInRange, Severity::kWarning, e.span,
                      "this is hardly ever true: cpu counts the cores that the process uses",
                      "write " + plain_number(cores / 100) + " for " + plain_number(cores) +
                          " percent of a core"});
+  }
+}
+
+// Comparisons with a number, or with true or false, in quotes. The values of a diagnostic are texts.
+void find_quoted_values(const Typed& e, const RuleSet& rules, std::vector<Diagnostic>& found) {
+  for (const Typed& child : e.children) find_quoted_values(child, rules, found);
+  const bool is_order = e.op == Op::kLessString || e.op == Op::kLessEqualString;
+  if (!is_order && e.op != Op::kEqualString) return;
+  for (const std::size_t side : {0u, 1u}) {
+    const Typed& value = e.children[side];
+    const Typed* input = plain_input(e.children[1 - side]);
+    if (value.op != Op::kConstant || input == nullptr) continue;
+    const std::string& text = value.constant->text;
+    const bool is_number =
+        is_order && !text.empty() && text.find_first_not_of("-.0123456789") == std::string::npos;
+    const bool is_field =
+        rules[input->input].kind == Input::Kind::kSignal &&
+        std::holds_alternative<TopicField>(rules[rules[input->input].signal].source);
+    const bool is_truth = !is_order && is_field && (text == "true" || text == "false");
+    if (!is_number && !is_truth) continue;
+    found.push_back(
+        {Code::kTypeMismatch, Severity::kWarning, e.span,
+         "in quotes, " + text + " is a text: no " +
+             (is_number ? "number is less or more" : "field of true or false equals it"),
+         "remove the quotes"});
   }
 }
 
@@ -310,10 +345,11 @@ void check_true_when_well(const RuleConditions& rule, const RuleSet& rules,
        "come has ON_CHANGE among its policies"});
 }
 
-void check_windows(const RuleConditions& rule, const RuleSet& rules,
-                   std::vector<Diagnostic>& diagnostics) {
+void check_compared_values(const RuleConditions& rule, const RuleSet& rules,
+                           std::vector<Diagnostic>& diagnostics) {
   find_short_windows(rule.trigger, rules, diagnostics);
-  find_percentages(rule.trigger, rules, diagnostics);
+  find_wrong_scales(rule.trigger, rules, diagnostics);
+  find_quoted_values(rule.trigger, rules, diagnostics);
 }
 
 void check_conditions(const RuleConditions& rule, const RuleSet& rules,
@@ -331,6 +367,29 @@ void check_conditions(const RuleConditions& rule, const RuleSet& rules,
   for (const RuleConditions::When& when : rule.whens) check_when(rule, when, rules, diagnostics);
 }
 
+void check_file_conditions(const std::vector<FileCondition>& conditions, const RuleSet& rules,
+                           std::vector<Diagnostic>& diagnostics) {
+  for (const FileCondition& each : conditions) {
+    if (!is_small_enough(each.condition)) continue;
+    const bool is_never_true = is_never(true, each.condition, rules);
+    if (!is_never_true && !is_never(false, each.condition, rules)) continue;
+    const std::string effect =
+        each.keyword == "INTERLOCK"
+            ? is_never_true ? ", so no strategy ever starts" : ", so it holds nothing back"
+        : is_never_true ? ", so it ends no drill"
+                        : ", so no drill begins";
+    std::vector<Finding> findings;
+    find_constant_parts(each.condition, rules, findings, is_never_true);
+    const std::string reason = findings.empty() ? "" : findings[0].reason;
+    diagnostics.push_back(
+        {is_never_true ? Code::kNeverTrueInRange : Code::kAlwaysTrueInRange, Severity::kWarning,
+         each.condition.span,
+         "this " + std::string(each.keyword) + " is " + (is_never_true ? "never" : "always") +
+             " true" + effect + reason,
+         findings.empty() ? "let it read a signal, such as a speed" : findings[0].remedy});
+  }
+}
+
 void check_last_resort(const RuleConditions& rule, const RuleSet& rules,
                        std::vector<Diagnostic>& diagnostics) {
   const Rule& checked = rules[rule.rule];
@@ -343,7 +402,10 @@ void check_last_resort(const RuleConditions& rule, const RuleSet& rules,
   const auto launchable =
       std::find_if(checked.components.begin(), checked.components.end(), can_be_launched);
   if (launchable == checked.components.end() || !is_small_enough(rule.trigger)) return;
-  if (std::any_of(checked.strategies.begin(), checked.strategies.end(), helps_a_hung_process))
+  // A rule with nothing but last resorts only makes the robot safe.
+  const auto is_last = [&](StrategyId s) { return rules[s].is_last_resort; };
+  if (std::ranges::any_of(checked.strategies, helps_a_hung_process) ||
+      std::ranges::all_of(checked.strategies, is_last))
     return;
   Facts silent(rules);
   fall_silent(rule.trigger, rules, silent);

@@ -2,6 +2,7 @@
 // warnings, given only where the values of the inputs leave no doubt (language/facts.h).
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "language/diagnostic.h"
@@ -30,13 +31,24 @@ struct RuleConditions {
 void check_conditions(const RuleConditions& rule, const RuleSet& rules,
                       std::vector<Diagnostic>& diagnostics);
 
+// A condition of the whole file: an INTERLOCK or an ABORT.
+struct FileCondition {
+  std::string_view keyword;
+  Typed condition;
+};
+
+// An INTERLOCK or an ABORT that is always or never true.
+void check_file_conditions(const std::vector<FileCondition>& conditions, const RuleSet& rules,
+                           std::vector<Diagnostic>& diagnostics);
+
 // A trigger that is true as long as everything lives.
 void check_true_when_well(const RuleConditions& rule, const RuleSet& rules,
                           std::vector<Diagnostic>& diagnostics);
 
-// A rate that is compared with less than one message within its window.
-void check_windows(const RuleConditions& rule, const RuleSet& rules,
-                   std::vector<Diagnostic>& diagnostics);
+// Values that a trigger compares with and that were hardly meant: a rate of less than one message
+// within its window, percent of a core, bytes for MiB, a number in quotes.
+void check_compared_values(const RuleConditions& rule, const RuleSet& rules,
+                           std::vector<Diagnostic>& diagnostics);
 
 // A rule that fires when something falls silent, of which no strategy helps against a hung process,
 // though there is a LAUNCH command.

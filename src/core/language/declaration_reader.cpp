@@ -164,7 +164,7 @@ bool DeclarationReader::group(Scanner& s) {
                          "lifecycle_manager"))
     return false;
   auto manager = read_.identifier(s, "the component that manages the group");
-  if (!manager) return false;
+  if (!manager || !read_.line_ends(s)) return false;
   group.manager = std::move(*manager);
   into_.groups.push_back(std::move(group));
   return true;
@@ -297,6 +297,11 @@ bool DeclarationReader::check_field(const Scanner& s, const Name& field) {
       return read_.fail(Code::kSyntax, span, "parentheses stand in a field only in quotes",
                         "write " + quoted, Edit{span, quoted});
     }
+  }
+  if (const auto all = field.text.find("[*]"); !is_quoted && all != std::string::npos) {
+    const std::string list = field.text.substr(0, all);
+    return read_.fail(Code::kSyntax, field.span, "a signal reads one element of a list",
+                      "write its number, as in " + list + "[0], or \"min(" + list + ")\"");
   }
   const auto dot = field.text.rfind('.');
   const std::string index = dot == std::string::npos ? "" : field.text.substr(dot + 1);

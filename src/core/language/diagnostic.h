@@ -22,6 +22,7 @@ enum class Code : std::uint16_t {
   kIncomplete = 6,
   kTooDeep = 7,
   kPlaceholder = 8,
+  kSettingInRule = 9,
   // Names
   kDuplicateName = 10,
   kUnknownName = 11,
@@ -56,6 +57,7 @@ enum class Code : std::uint16_t {
   kTrueWhenWell = 45,
   kNoShell = 46,
   kBadGroup = 47,
+  kAdaptsEffect = 48,
   kMovesInterlock = 49,
   kAlwaysTrue = 50,
   kNeverTrue = 51,

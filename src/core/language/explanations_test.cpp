@@ -21,6 +21,7 @@ bool exists(Code code) {
     case Code::kIncomplete:
     case Code::kTooDeep:
     case Code::kPlaceholder:
+    case Code::kSettingInRule:
     case Code::kDuplicateName:
     case Code::kUnknownName:
     case Code::kUndeclared:
@@ -51,6 +52,7 @@ bool exists(Code code) {
     case Code::kTrueWhenWell:
     case Code::kNoShell:
     case Code::kBadGroup:
+    case Code::kAdaptsEffect:
     case Code::kMovesInterlock:
     case Code::kAlwaysTrue:
     case Code::kNeverTrue:
@@ -129,7 +131,7 @@ TEST(Explanations, AreFoundByTheirCode) {
   EXPECT_EQ(find_explanation("R012")->code, Code::kUndeclared);
   EXPECT_EQ(find_explanation("r012"), find_explanation("R012"));
   EXPECT_EQ(find_explanation("12"), find_explanation("R012"));
-  for (const char* none : {"", "R", "R009", "R012x", "R-12", "R65548", "twelve"})
+  for (const char* none : {"", "R", "R019", "R012x", "R-12", "R65548", "twelve"})
     EXPECT_EQ(find_explanation(none), nullptr) << none;
 }
 

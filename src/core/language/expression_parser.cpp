@@ -235,6 +235,13 @@ class ExpressionParser {
   }
 
   std::optional<Diagnostic> operator_in_words(const Expression& left, const Token& first) {
+    Scanner behind = scanner_.ahead();
+    behind.next();
+    if (upper_case(first.text) == "IN" && behind.next().is("(") &&
+        behind.peek().kind == Token::Kind::kString)
+      return Diagnostic{Code::kSyntax, Severity::kError, first.span,
+                        "'" + std::string(first.text) + "' is no operator",
+                        "compare with each: x == \"a\" || x == \"b\""};
     if (upper_case(first.text) == "BETWEEN" || upper_case(first.text) == "IN")
       return Diagnostic{Code::kSyntax, Severity::kError, first.span,
                         "'" + std::string(first.text) + "' is no operator",
@@ -527,6 +534,10 @@ class ExpressionParser {
       const auto number =
           std::get<std::string_view>(token.literal).substr(0, token.span.end - token.span.begin);
       const auto end = number.find_first_not_of(".0123456789");
+      if (end != std::string_view::npos && is_physical_unit(number.substr(end))) {
+        remedy = "only durations have a unit: write " + std::string(number.substr(0, end));
+        fix = Edit{token.span, std::string(number.substr(0, end))};
+      }
       if (end != std::string_view::npos && is_hertz(number.substr(end))) {
         remedy = "rates are in Hz and have no unit: write " + std::string(number.substr(0, end));
         fix = Edit{token.span, std::string(number.substr(0, end))};
@@ -546,6 +557,13 @@ class ExpressionParser {
     } else if (written == "{" || written == "[")
       remedy = "write parentheses: ( and )";
     return fail(Code::kBadToken, token.span, cause, remedy, fix);
+  }
+
+  static bool is_physical_unit(std::string_view unit) {
+    constexpr auto kUnits = std::to_array<std::string_view>(
+        {"C",  "F",  "K",   "V",   "mV",  "A", "mA", "W",  "m",  "cm",
+         "mm", "km", "deg", "rad", "rpm", "N", "Nm", "kg", "dB", "dBm"});
+    return std::ranges::find(kUnits, unit) != kUnits.end();
   }
 
   // "{limit}"; empty: no such name begins there.

@@ -16,27 +16,20 @@ struct ForeignWord {
 };
 
 constexpr auto kForeignStatements = std::to_array<ForeignWord>({
-    {"ALERT", "RULE"},         {"FAILURE", "RULE"},
-    {"FAULT", "RULE"},         {"SEVERITY", "POLICIES"},
-    {"POLICY", "POLICIES"},    {"LEVEL", "POLICIES"},
-    {"PRIORITY", "POLICIES"},  {"CRITICALITY", "POLICIES"},
-    {"IF", "TRIGGER"},         {"EXPR", "TRIGGER"},
-    {"CONDITION", "TRIGGER"},  {"TRIGGERED", "TRIGGER"},
-    {"REPAIR", "STRATEGY"},    {"ON_FAILURE", "STRATEGY"},
-    {"ONFAILURE", "STRATEGY"}, {"RECOVERY", "STRATEGY"},
-    {"ACTION", "ADAPTATION"},  {"DO", "ADAPTATION"},
-    {"ADAPT", "ADAPTATION"},   {"TASK", "ADAPTATION"},
-    {"DEPENDS", "DEPENDENCY"}, {"REQUIRES", "DEPENDENCY"},
-    {"AFTER", "DEPENDENCY"},   {"LET", "CONST"},
-    {"DEFINE", "CONST"},       {"CONSTANT", "CONST"},
-    {"VAR", "CONST"},          {"VARIABLE", "SIGNAL"},
-    {"METRIC", "SIGNAL"},      {"SENSOR", "SIGNAL"},
-    {"IMPORT", "INCLUDE"},     {"SOURCE", "INCLUDE"},
-    {"MACRO", "TEMPLATE"},     {"FUNCTION", "TEMPLATE"},
-    {"APPLY", "USE"},          {"PROCESS", "COMPONENT"},
-    {"SERVICE", "COMPONENT"},  {"GUARD", "INTERLOCK"},
-    {"ENDTEMPLATE", "END"},    {"SYSTEM", "ROBOT"},
-    {"PERIOD", "CYCLE"},
+    {"ALERT", "RULE"},         {"FAILURE", "RULE"},         {"FAULT", "RULE"},
+    {"SEVERITY", "POLICIES"},  {"POLICY", "POLICIES"},      {"LEVEL", "POLICIES"},
+    {"PRIORITY", "POLICIES"},  {"CRITICALITY", "POLICIES"}, {"IF", "TRIGGER"},
+    {"EXPR", "TRIGGER"},       {"ON", "TRIGGER"},           {"CONDITION", "TRIGGER"},
+    {"TRIGGERED", "TRIGGER"},  {"REPAIR", "STRATEGY"},      {"ON_FAILURE", "STRATEGY"},
+    {"ONFAILURE", "STRATEGY"}, {"RECOVERY", "STRATEGY"},    {"ACTION", "ADAPTATION"},
+    {"DO", "ADAPTATION"},      {"ADAPT", "ADAPTATION"},     {"TASK", "ADAPTATION"},
+    {"DEPENDS", "DEPENDENCY"}, {"REQUIRES", "DEPENDENCY"},  {"AFTER", "DEPENDENCY"},
+    {"LET", "CONST"},          {"DEFINE", "CONST"},         {"CONSTANT", "CONST"},
+    {"VAR", "CONST"},          {"VARIABLE", "SIGNAL"},      {"METRIC", "SIGNAL"},
+    {"SENSOR", "SIGNAL"},      {"IMPORT", "INCLUDE"},       {"SOURCE", "INCLUDE"},
+    {"MACRO", "TEMPLATE"},     {"FUNCTION", "TEMPLATE"},    {"APPLY", "USE"},
+    {"PROCESS", "COMPONENT"},  {"SERVICE", "COMPONENT"},    {"GUARD", "INTERLOCK"},
+    {"ENDTEMPLATE", "END"},    {"SYSTEM", "ROBOT"},         {"PERIOD", "CYCLE"},
 });
 
 // Several of ours: the first that the line may have.
@@ -198,24 +191,13 @@ constexpr auto kForeignFunctions = std::to_array<ForeignWord>({
 
 // The clauses, each with the statement whose line has it.
 constexpr auto kClauses = std::to_array<ForeignWord>({
-    {"FOR", "POLICIES"},
-    {"HOLD", "POLICIES"},
-    {"COOLDOWN", "POLICIES"},
-    {"ATTEMPTS", "POLICIES"},
-    {"ON_CHANGE", "POLICIES"},
-    {"REPORT", "POLICIES"},
-    {"WHEN", "STRATEGY"},
-    {"LASTRESORT", "STRATEGY"},
-    {"WITHIN", "STRATEGY"},
-    {"FIELD", "SIGNAL"},
-    {"KEY", "SIGNAL"},
-    {"STALE", "SIGNAL"},
-    {"RANGE", "SIGNAL"},
-    {"FROM", "SIGNAL"},
-    {"TOPIC", "SIGNAL"},
-    {"DIAGNOSTIC", "SIGNAL"},
-    {"PARAMETER", "SIGNAL"},
-    {"MANAGER", "GROUP"},
+    {"FOR", "POLICIES"},      {"HOLD", "POLICIES"},       {"COOLDOWN", "POLICIES"},
+    {"ATTEMPTS", "POLICIES"}, {"ON_CHANGE", "POLICIES"},  {"REPORT", "POLICIES"},
+    {"WHEN", "STRATEGY"},     {"LASTRESORT", "STRATEGY"}, {"WITHIN", "STRATEGY"},
+    {"FIELD", "SIGNAL"},      {"KEY", "SIGNAL"},          {"STALE", "SIGNAL"},
+    {"RANGE", "SIGNAL"},      {"FROM", "SIGNAL"},         {"TOPIC", "SIGNAL"},
+    {"DIAGNOSTIC", "SIGNAL"}, {"PARAMETER", "SIGNAL"},    {"MANAGER", "GROUP"},
+    {"ON", "DEPENDENCY"},     {"USER", "COMPONENT"},
 });
 
 std::string_view our_word(std::span<const ForeignWord> words, std::string_view theirs) {

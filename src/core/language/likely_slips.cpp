@@ -53,6 +53,9 @@ ShellWord shell_word(const std::vector<std::string>& command, const std::string&
   if (program == "export" || sets_variable(program))
     return {program, "variables are a clause of their own: ENV \"NAME=value\""};
   for (const std::string& word : command) {
+    if (word.find("\u2013") != std::string::npos || word.find("\u2014") != std::string::npos ||
+        word.find("\u201c") != std::string::npos || word.find("\u201d") != std::string::npos)
+      return {word, "write the - and the \" of the keyboard, not typographic ones"};
     if (is_one_of(word, {"&&", "||", ";", "|", "&", ">", ">>", "<", "2>&1"}) ||
         word.starts_with("$(") || word.starts_with("${"))
       return {word, "leave it out, or ask for a shell: LAUNCH \"bash -c '...'\""};
@@ -99,6 +102,17 @@ void check_short_impacts(const syntax::Rule& rule, const RuleSet& rules,
            "count the cycles of " + to_string(rules.cycle) +
                " from when its node is there until the failure is gone: 10 and more are usual"});
     }
+  }
+}
+
+void check_settings_in_rules(const syntax::File& file, std::vector<Diagnostic>& diagnostics) {
+  for (const syntax::Name& setting : file.settings_in_rules) {
+    const bool is_condition = setting.text == "INTERLOCK";
+    diagnostics.push_back(
+        {Code::kSettingInRule, Severity::kWarning, setting.span,
+         setting.text + " holds for the whole file, not only for the rule that it stands in",
+         std::string("move it above the first RULE") +
+             (is_condition ? "; for one strategy, write WHEN behind its two numbers" : "")});
   }
 }
 

@@ -13,6 +13,9 @@ namespace culprit {
 void check_short_impacts(const syntax::Rule& rule, const RuleSet& rules,
                          std::vector<Diagnostic>& diagnostics);
 
+// A statement for the whole file, such as INTERLOCK, that stands among the lines of a rule.
+void check_settings_in_rules(const syntax::File& file, std::vector<Diagnostic>& diagnostics);
+
 // A LAUNCH command written for a shell: source ... && ..., NAME=value program, a pipe. `component` is
 // what `written` declares.
 void check_shell(const syntax::Component& written, const Component& component,

@@ -34,6 +34,11 @@ bool is_reserved(std::string_view word) {
   return std::find(kReservedWords.begin(), kReservedWords.end(), word) != kReservedWords.end();
 }
 
+// Such a word cannot be a name.
+bool is_word_of_language(std::string_view word) {
+  return is_reserved(word) || word == "true" || word == "false";
+}
+
 bool is_ros_name(std::string_view name) {
   if (name.size() < 2 || name.front() != '/' || name.back() == '/') return false;
   for (std::size_t i = 1; i < name.size(); ++i) {
@@ -157,12 +162,28 @@ std::optional<Name> LineReader::identifier(Scanner& s, std::string_view what) {
 
 std::optional<Name> LineReader::declared_name(Scanner& s, std::string_view what) {
   auto name = identifier(s, what);
-  if (name && (is_reserved(name->text) || name->text == "true" || name->text == "false")) {
+  if (name && is_word_of_language(name->text)) {
     fail(Code::kReservedWord, name->span, "'" + name->text + "' is a word of the language",
          "choose another name");
     return std::nullopt;
   }
+  if (name && has_dot(s, *name)) return std::nullopt;
   return name;
+}
+
+bool LineReader::has_dot(const Scanner& s, const Name& name) {
+  Scanner ahead = s.ahead();
+  Span span = name.span;
+  std::string meant = name.text;
+  for (Token dot = ahead.next(); source_.text(dot.span) == "." && dot.span.begin == span.end;
+       dot = ahead.next()) {
+    const Token word = ahead.next();
+    if (word.kind != Token::Kind::kIdentifier || word.span.begin != dot.span.end) break;
+    meant += "_" + std::string(word.text);
+    span.end = word.span.end;
+  }
+  return span != name.span &&
+         !fail(Code::kSyntax, span, "a name has no '.' in it", "write " + meant, Edit{span, meant});
 }
 
 std::optional<Name> LineReader::name_or_text(Scanner& s, std::string_view what) {
@@ -185,7 +206,18 @@ std::optional<Name> LineReader::name_or_text(Scanner& s, std::string_view what) 
 std::optional<Name> LineReader::component_reference(Scanner& s) {
   if (s.position() < source_.text().size() && source_.text()[s.position()] == '/')
     return ros_name(s, "a component");
-  return identifier(s, "a component");
+  if (s.peek().is("*")) {
+    fail(Code::kSyntax, s.peek().span, "no sign stands for all components",
+         "write a line for each component");
+    return std::nullopt;
+  }
+  auto name = identifier(s, "a component");
+  if (!name || !is_word_of_language(name->text)) return name;
+  const std::string line(statement_of_clause(name->text));
+  fail(Code::kReservedWord, name->span, "'" + name->text + "' is a word of the language",
+       line.empty() ? "write the component in front of it"
+                    : "write the component here, and " + name->text + " on the " + line + " line");
+  return std::nullopt;
 }
 
 std::optional<Name> LineReader::ros_name(Scanner& s, std::string_view what) {
@@ -228,6 +260,8 @@ std::optional<Duration> LineReader::duration(Scanner& s, std::string_view what) 
     fix = {{token.span.begin, unit.span.end}, meant};
   } else if (token.kind == Token::Kind::kNumber) {
     remedy = "add the unit: " + number + "s or " + number + "ms";
+  } else if (token.is("-")) {
+    remedy = "write a positive duration";
   }
   fail_token(token, what, std::move(remedy), std::move(fix));
   return std::nullopt;
@@ -290,6 +324,10 @@ std::optional<syntax::Number> LineReader::number(Scanner& s, std::string_view wh
     return std::nullopt;
   }
   if (token.is("-")) remedy = "write a positive number";
+  if (token.is("/") && remedy.empty()) {
+    remedy = "write a blank between the numbers";
+    fix = Edit{token.span, " "};
+  }
   if (token.kind == Token::Kind::kDuration && remedy.empty())
     remedy = "write a number without a unit";
   if (token.kind == Token::Kind::kIdentifier && remedy.empty()) remedy = "write a number in digits";
@@ -470,8 +508,13 @@ bool LineReader::line_ends(Scanner& s, std::string_view remedy) {
   const auto is_digit = [&](std::uint32_t at) {
     return at < text.size() && text[at] >= '0' && text[at] <= '9';
   };
-  if (token.is(",") && token.span.begin > 0 && is_digit(token.span.begin - 1) &&
-      is_digit(token.span.end))
+  const bool is_in_number = token.is(",") && token.span.begin > 0 &&
+                            is_digit(token.span.begin - 1) && is_digit(token.span.end);
+  const std::uint32_t third = token.span.end + 2;
+  if (is_in_number && is_digit(third - 1) && is_digit(third) && !is_digit(third + 1))
+    return fail(Code::kExtraText, token.span, "a number has no comma",
+                "leave it out if it separates thousands, or write a '.'");
+  if (is_in_number)
     return fail(Code::kExtraText, token.span, "a number has a point, and no comma", "write a '.'",
                 Edit{token.span, "."});
   if (token.is(",")) return fail_comma(token);
@@ -487,7 +530,8 @@ bool LineReader::line_ends(Scanner& s, std::string_view remedy) {
     return fail(Code::kExtraText, token.span,
                 std::string(token.text) + " has no place in this line",
                 "write " + upper_case(token.text) + " on the " + std::string(line_of_it) + " line");
-  if (is_reserved(token.text) || is_word_of_reuse(token.text))
+  // IN is a clause of two statements.
+  if ((is_reserved(token.text) && token.text != "IN") || is_word_of_reuse(token.text))
     return fail(Code::kExtraText, token.span, std::string(token.text) + " begins a line of its own",
                 "begin a new line in front of it",
                 Edit{{token.span.begin, token.span.begin}, "\n"});

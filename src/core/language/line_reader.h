@@ -61,6 +61,8 @@ class LineReader {
   // that may follow it. Any may if there are none. Takes nothing.
   bool is_one_word(const Scanner& s, const syntax::Name& name,
                    std::span<const std::string_view> followers = {});
+  // "front.camera": reported.
+  bool has_dot(const Scanner& s, const syntax::Name& name);
   bool expect_symbol(Scanner& s, std::string_view symbol, std::string remedy = "");
   // Does the line end here, except for a comment? `remedy` is for text that nothing is known about.
   bool line_ends(Scanner& s, std::string_view remedy = "");

@@ -52,16 +52,16 @@ class Parser {
 
   static std::span<const Statement> statements() {
     static constexpr std::array kStatements = {
-        Statement{"ROBOT", &Parser::declaration<&DeclarationReader::robot>},
-        Statement{"CYCLE", &Parser::declaration<&DeclarationReader::cycle>},
+        Statement{"ROBOT", &Parser::setting<&DeclarationReader::robot>},
+        Statement{"CYCLE", &Parser::setting<&DeclarationReader::cycle>},
         Statement{"CONST", &Parser::declaration<&DeclarationReader::constant>},
         Statement{"COMPONENT", &Parser::declaration<&DeclarationReader::component>},
         Statement{"DEPENDENCY", &Parser::declaration<&DeclarationReader::dependency>},
         Statement{"GROUP", &Parser::declaration<&DeclarationReader::group>},
-        Statement{"IGNORE", &Parser::declaration<&DeclarationReader::ignore>},
-        Statement{"INTERLOCK", &Parser::declaration<&DeclarationReader::interlock>},
-        Statement{"ABORT", &Parser::declaration<&DeclarationReader::abort>},
-        Statement{"DRILL", &Parser::declaration<&DeclarationReader::drill>},
+        Statement{"IGNORE", &Parser::setting<&DeclarationReader::ignore>},
+        Statement{"INTERLOCK", &Parser::setting<&DeclarationReader::interlock>},
+        Statement{"ABORT", &Parser::setting<&DeclarationReader::abort>},
+        Statement{"DRILL", &Parser::setting<&DeclarationReader::drill>},
         Statement{"SIGNAL", &Parser::declaration<&DeclarationReader::signal>},
         Statement{"RULE", &Parser::line_of_rule<&RuleReader::rule>},
         Statement{"POLICIES", &Parser::line_of_rule<&RuleReader::policies>},
@@ -227,8 +227,38 @@ class Parser {
     return (DeclarationReader(source_, read_, *into_).*read)(s);
   }
 
+  // Holds for the whole file. Among the lines of a rule, or indented below one, it looks like a part
+  // of that rule.
+  template <bool (DeclarationReader::*read)(Scanner&)>
+  bool setting(Scanner& s) {
+    if (rules_.is_in_rule()) {
+      settings_below_rule_.push_back({std::string(source_.text(keyword_)), keyword_});
+      if (is_indented_below_rule()) note_settings_in_rule();
+    }
+    return declaration<read>(s);
+  }
+
+  bool is_indented_below_rule() const {
+    const Origin here = source_.origin(keyword_);
+    const Origin rule = source_.origin(rule_keyword_);
+    // The lines of a USE or an INCLUDE have an indentation of their own.
+    return here.place.file == rule.place.file && here.steps.size() == rule.steps.size() &&
+           source_.position(keyword_.begin).column > source_.position(rule_keyword_.begin).column;
+  }
+
+  void note_settings_in_rule() {
+    auto& all = into_->settings_in_rules;
+    all.insert(all.end(), settings_below_rule_.begin(), settings_below_rule_.end());
+    settings_below_rule_.clear();
+  }
+
   template <bool (RuleReader::*read)(Scanner&)>
   bool line_of_rule(Scanner& s) {
+    if (read == &RuleReader::rule) {
+      rule_keyword_ = keyword_;
+      settings_below_rule_.clear();
+    }
+    note_settings_in_rule();
     rules_.begin_line(*into_, keyword_, is_below_unknown_);
     return (rules_.*read)(s);
   }
@@ -309,9 +339,11 @@ class Parser {
   RuleReader rules_{source_, read_};
   std::vector<Lexeme>* lexemes_;
   syntax::File& file_;
-  syntax::File* into_ = &file_;    // what statements become part of: this, or a template's body
-  Span line_;                      // that is at hand
-  Span keyword_;                   // of it
+  syntax::File* into_ = &file_;  // what statements become part of: this, or a template's body
+  Span line_;                    // that is at hand
+  Span keyword_;                 // of it
+  Span rule_keyword_;            // of the last RULE line
+  std::vector<syntax::Name> settings_below_rule_;  // since the last line of that rule
   bool is_unknown_ = false;        // the statement at hand begins with no word of the language
   bool is_below_unknown_ = false;  // so did the one before
   bool is_unfinished_ = false;     // that one, which was reported, ends with an operator

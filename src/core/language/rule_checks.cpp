@@ -187,6 +187,70 @@ class Producers {
   std::vector<std::size_t> all_;
 };
 
+// The component whose state, samples or log lines the input is; empty: the rules do not say.
+std::optional<ComponentId> owner_of(const Input& input, const RuleSet& rules) {
+  using enum Input::Kind;
+  switch (input.kind) {
+    case kAlive:
+    case kLifecycle:
+    case kCpu:
+    case kMemory:
+    case kLogs:
+      return input.component;
+    case kRate:
+    case kAge:
+    case kPhi:
+    case kLoss:
+      break;
+    case kParameter:
+    case kLevel:
+    case kGoals:
+    case kGoalAge:
+      return std::nullopt;
+    default:
+      return publisher_of(input.signal, rules);
+  }
+  const Topic& topic = rules[input.topic];
+  if (topic.publisher) return topic.publisher;
+  // A topic below the name of a node is private to it. A node may stand below the name of another.
+  std::optional<ComponentId> owner;
+  for (std::size_t c = 0; c < rules.components.size(); ++c) {
+    const std::string& node = rules.components[c].node;
+    const bool is_below = !node.empty() && topic.name.starts_with(node + "/");
+    if (is_below && (!owner || node.size() > rules[*owner].node.size())) owner = ComponentId(c);
+  }
+  return owner;
+}
+
+// The components that the trigger is about. Empty also if one of its inputs has no known owner.
+std::set<std::size_t> subjects_of(const Rule& rule, const RuleSet& rules) {
+  std::set<std::size_t> subjects;
+  for (const InputId input : rule.inputs) {
+    const auto owner = owner_of(rules[input], rules);
+    if (!owner) return {};
+    subjects.insert(owner->index);
+  }
+  return subjects;
+}
+
+// One of `subjects` that the component depends on by declared dependencies, directly or not. Empty:
+// it depends on none, or is one itself.
+std::optional<std::size_t> producer_among(const std::set<std::size_t>& subjects,
+                                          std::size_t component, const Producers& producers) {
+  if (subjects.contains(component)) return std::nullopt;
+  std::set<std::size_t> seen{component};
+  std::vector<std::size_t> open{component};
+  while (!open.empty()) {
+    const std::size_t here = open.back();
+    open.pop_back();
+    if (subjects.contains(here)) return here;
+    for (std::size_t place = producers.begin(here); place < producers.end(here); ++place) {
+      if (seen.insert(producers[place]).second) open.push_back(producers[place]);
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::vector<bool> steps_of(const syntax::Strategy& strategy) {
@@ -319,6 +383,38 @@ void check_required(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
                                  rules[stop->component].name + "', which is REQUIRED",
                              "redeploy it, make the strategy a LASTRESORT, or take REQUIRED from "
                              "its COMPONENT line"});
+    }
+  }
+}
+
+void check_effects(const std::vector<RuleConditions>& conditions, const RuleSet& rules,
+                   std::vector<Diagnostic>& diagnostics) {
+  if (rules.dependencies.empty()) return;
+  const Producers producers(rules);
+  for (const RuleConditions& rule : conditions) {
+    const std::set<std::size_t> subjects = subjects_of(rules[rule.rule], rules);
+    for (std::size_t s = 0; !subjects.empty() && s < rule.strategies.size(); ++s) {
+      const Strategy& strategy = rules[rules[rule.rule].strategies[s]];
+      const auto producer_of = [&](ComponentId c) {
+        return producer_among(subjects, c.index, producers);
+      };
+      const auto begins_anew = [](const culprit::Adaptation& a) {
+        return !a.group && (a.type == kRestart || a.type == kRedeploy);
+      };
+      const auto anew = std::ranges::find_if(strategy.adaptations, begins_anew);
+      // Beside a repair of the cause, its consumers may have to begin anew, too.
+      const bool is_effect_only = std::ranges::all_of(
+          strategy.components, [&](ComponentId c) { return producer_of(c).has_value(); });
+      if (strategy.is_last_resort || anew == strategy.adaptations.end() || !is_effect_only)
+        continue;
+      const std::string& effect = rules[anew->component].name;
+      const std::string& cause = rules.components[*producer_of(anew->component)].name;
+      diagnostics.push_back(
+          {Code::kAdaptsEffect, Severity::kWarning,
+           rule.strategies[s]->adaptations[anew->written].span,
+           "strategy '" + strategy.name + "' adapts only '" + effect + "', which depends on '" +
+               cause + "'; the trigger is about '" + cause + "'",
+           "adapt " + cause + ", or write a rule with a trigger about " + effect});
     }
   }
 }

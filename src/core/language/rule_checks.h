@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "language/condition_checks.h"
 #include "language/diagnostic.h"
 #include "language/rule_set.h"
 #include "language/syntax.h"
@@ -26,6 +27,11 @@ void check_launches(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
 // Strategies that stop a REQUIRED component, and leave it stopped. A last resort may.
 void check_required(const syntax::Rule& rule, const RuleSet& rules, RuleId id,
                     std::vector<Diagnostic>& diagnostics);
+
+// Strategies that only restart or redeploy what depends on the component that the trigger is about, by
+// declared dependencies. A last resort may.
+void check_effects(const std::vector<RuleConditions>& conditions, const RuleSet& rules,
+                   std::vector<Diagnostic>& diagnostics);
 
 // A trigger that reads nothing is always or never true.
 void check_constant_trigger(const syntax::Rule& rule, const Program& trigger,

@@ -187,6 +187,10 @@ bool RuleReader::strategy(Scanner& s) {
   if (s.peek().text == "WHEN") {
     s.next();
     when = read_.expression(s);
+    if (const Token& next = s.peek(); when && (next.text == "LASTRESORT" || next.text == "WITHIN"))
+      return read_.fail(Code::kExtraText, next.span,
+                        std::string(next.text) + " stands in front of WHEN",
+                        "write it behind the two numbers, as in 100 10 LASTRESORT WHEN docked");
     if (!when || !read_.condition_ends(s)) return false;
   }
   if (!when && !strategy_ends(s)) return false;

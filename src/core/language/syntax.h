@@ -286,6 +286,8 @@ struct File {
   std::vector<Signal> signals;
   std::vector<Rule> rules;
   std::vector<BrokenDeclaration> broken_declarations;
+  // The words of settings, which hold for the whole file, that stand among the lines of a rule.
+  std::vector<Name> settings_in_rules;
   // Statements that expand() (reuse/expansion.h) replaces with other text.
   std::vector<Include> includes;
   std::vector<Template> templates;

@@ -7,6 +7,7 @@
 
 #include "base/closest.h"
 #include "language/foreign_words.h"
+#include "language/functions.h"
 #include "language/syntax.h"
 
 namespace culprit {
@@ -21,9 +22,17 @@ struct Remedy {
 std::optional<Span> foreign_comment(const Token& head, const Token& second) {
   const bool adjoins = second.span.begin == head.span.end;
   const bool is_pair =
-      adjoins && ((head.is("-") && second.is("-")) || (head.is("/") && second.is("*")));
+      adjoins && ((head.is("-") && second.is("-")) || (head.is("/") && second.is("*")) ||
+                  (head.is("<") && second.is("!")));
   if (is_pair) return Span{head.span.begin, second.span.end};
   return std::nullopt;
+}
+
+// "---", which divides YAML into documents.
+bool is_rule_off(const UnknownLine& line, const Token& head) {
+  const Span whole = line.source.line(line.source.position(head.span.begin).line);
+  const std::string_view text = trimmed(line.source.text(whole));
+  return text.size() >= 3 && text.find_first_not_of('-') == std::string_view::npos;
 }
 
 bool is_adaptation(std::string_view word) {
@@ -69,13 +78,26 @@ Remedy remedy_of_word(const UnknownLine& line, const Token& head, const Scanner&
                       const std::string& near) {
   const std::string upper = upper_case(head.text);
   if (const auto place = place_of_number(upper); !place.empty()) return {std::string(place)};
+  const Token& second = s.peek();
+  const Span in_front{head.span.begin, head.span.begin};
+  const bool is_call = second.is("(") && second.span.begin == head.span.end;
+  if (is_call && near.empty() && find_function(head.text) != nullptr)
+    return {"write TRIGGER in front of it", Edit{in_front, "TRIGGER "}};
+  if (is_call && near.empty())
+    return {
+        "a rule file is no program: a component is COMPONENT camera NODE /camera LAUNCH \"...\""};
+  if (upper == "WAIT" || upper == "SLEEP")
+    return {"no strategy waits for a time: THEN ADAPTATION begins once the one above took effect"};
+  if (upper == "AND" || upper == "OR")
+    return {"write " + std::string(upper == "OR" ? "||" : "&&") +
+            " and the condition at the end of the TRIGGER line"};
+  if (upper == "ELSE" || upper == "OTHERWISE")
+    return {"remove the line: the strategies of a rule are alternatives"};
   if (const auto statement = statement_of_clause(upper); !statement.empty() && near.empty())
     return {"write it on the line of its " + std::string(statement) + ": a statement is one line"};
   if (near == "TRIGGER" && !line.is_in_rule)
     return {"write RULE and its name, then lines with POLICIES, TRIGGER, STRATEGY and ADAPTATION"};
   if (!near.empty()) return {"did you mean " + near + "?", Edit{head.span, near}};
-  const Token& second = s.peek();
-  const Span in_front{head.span.begin, head.span.begin};
   if (second.is("=") && head.kind == Token::Kind::kIdentifier)
     return {"a constant begins with CONST: write CONST " +
                 std::string(line.source.text({head.span.begin, s.rest().end})),
@@ -108,6 +130,11 @@ std::string report_unknown_line(const UnknownLine& line, const Token& head, cons
   const bool is_percent = head.is("%") && !line.is_in_rule;
   const auto comment =
       written == ";" || is_percent ? std::optional(head.span) : foreign_comment(head, s.peek());
+  if (comment && is_rule_off(line, head)) {
+    line.read.fail(Code::kUnknownStatement, *comment, "a rule file has no documents",
+                   "remove the line");
+    return "";
+  }
   if (comment) {
     line.read.fail(Code::kUnknownStatement, *comment,
                    "no comment begins with '" + std::string(line.source.text(*comment)) + "'",
