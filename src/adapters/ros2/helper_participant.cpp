@@ -25,6 +25,7 @@
 #include "ros2/helper_graph.h"
 #include "ros2/helper_process.h"
 #include "ros2/names.h"
+#include "ros2/seldom_times.h"
 #include "rtps/origins.h"
 
 namespace culprit::ros2 {
@@ -242,7 +243,8 @@ class Helped final : public Participant::Impl {
       if (is_joined_) look_whether_settled(now);
       if (is_joined_ && now > later(asked_last_, kAsks)) {
         ask_whether_it_works(now);
-        if (is_settled_ && lacks_announcement(now)) {
+        if (is_settled_ && replaced_.may_come(now) && lacks_announcement(now)) {
+          replaced_.came(now);
           process.end();
           return "its middleware has lost the announcement of a participant's nodes";
         }
@@ -269,9 +271,11 @@ class Helped final : public Participant::Impl {
     });
     bool lacks = false;
     for (const GuidPrefix& each : all) {
-      if (helped_for_.contains(each) || helped_for_.size() >= kMost) continue;
       const auto since = nameless_.try_emplace(each, now).first->second;
-      lacks = lacks || (now > later(since, kNamesCome) && helped_for_.insert(each).second);
+      if (helped_for_.contains(each) || now <= later(since, kNamesCome)) continue;
+      if (helped_for_.size() >= kMost) helped_for_.clear();
+      helped_for_.insert(each);
+      lacks = true;
     }
     return lacks;
   }
@@ -381,7 +385,7 @@ class Helped final : public Participant::Impl {
     awaited_.erase(sample.id);
     const Guid writer = graph_.writer_of(ours->topic, sample.writer);
     std::int64_t number = sample.number;
-    if (number == 0) number = count(*ours, writer);
+    if (number <= 0) number = count(*ours, writer);  // a forged one may be beyond 2^63
     const ByteView payload(sample.payload);
     ours->gate.pass([&] {
       ours->on_sample({.payload = payload.first(given_of(ours->use, payload.size())),
@@ -649,6 +653,7 @@ class Helped final : public Participant::Impl {
   std::set<std::string> told_;
   std::map<GuidPrefix, Time> nameless_;  // participants without a node, since when
   std::set<GuidPrefix> helped_for_;      // those of them for which a helper was replaced
+  SeldomTimes replaced_;                 // for them
 
   Mutex mutex_;
   ConditionVariable changed_;
