@@ -75,13 +75,13 @@ void DiagnosticsWatch::on_sample(const Sample& sample) {
   const Guid writer = sample.identity.writer;
   if (writer.prefix() == self_.context().participant().guid().prefix()) return;
   const std::size_t size = sample.payload.size();
-  if (size > kMostBytes) return;
+  if (size > msg::DiagnosticArray::kLargest) return;
   const auto message = decode<msg::DiagnosticArray>(sample.payload);
   if (!message) return;
   const MutexLock lock(mutex_);
   const auto known = writers_.find(writer);
   if (known != writers_.end()) return read(*message, known->second);
-  if (waiting_ + size > kMostBytes) return;
+  if (waiting_ + size > kMostWaiting) return;
   waiting_ += size;
   tasks_.post([this, writer, size, message = *message] { look_up(writer, size, message); });
 }

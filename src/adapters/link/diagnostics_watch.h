@@ -40,9 +40,8 @@ class DiagnosticsWatch {
   std::map<std::string, std::string> conflicts() const;
 
  private:
-  // Bytes of a message, and of those of writers that are looked up; what is larger is not read. Decoded it is a
-  // multiple of that.
-  static constexpr std::size_t kMostBytes = std::size_t{4} << 20;
+  // Bytes of the messages of writers that are looked up.
+  static constexpr std::size_t kMostWaiting = msg::DiagnosticArray::kLargest;
 
   DiagnosticsWatch(NodeEntry& self, const RuleSet& rules, Inbox& inbox, ComponentOf component_of);
   bool is_wanted() const;

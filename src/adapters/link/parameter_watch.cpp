@@ -12,7 +12,7 @@ Expected<void> ParameterWatch::start(NodeEntry& self) {
   auto subscription = RawSubscription::create(
       self, "/parameter_events", msg::ParameterEvent::kType, kQos, PayloadUse::kWhole,
       [this](const Sample& sample) {
-        constexpr std::size_t kMost = std::size_t{4} << 20;  // bytes; decoded they are a multiple
+        constexpr std::size_t kMost = msg::ParameterEvent::kLargest;  // bytes that wait
         const std::size_t size = sample.payload.size();
         if (waiting_ + size > kMost) return;
         auto event = decode<msg::ParameterEvent>(sample.payload);
