@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <arpa/inet.h>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <httplib.h>
@@ -445,6 +446,15 @@ TEST_F(WebServer, GoesOnAfterAThousandConnections) {
   const auto answer = patient.Get("/api/echo");
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->status, 200);
+}
+
+// Until then it keeps a thread.
+TEST_F(WebServer, EndsARequestThatIsOnlyBegun) {
+  const Raw raw(server->port());
+  const auto began = std::chrono::steady_clock::now();
+  raw.send("GET /api/");
+  raw.receive();
+  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(8));
 }
 
 // Headers without end, and a line without end: cut off before they are kept.
