@@ -11,7 +11,7 @@ namespace {
 // How long a node that was just seen may take until its services answer.
 constexpr Duration kAnswerPatience = std::chrono::seconds(5);
 
-// Of events, in bytes: anybody sends them in the node's name.
+// Bytes of a name and a text in events, which anybody may send in the node's name.
 constexpr std::size_t kMaxName = 256;
 constexpr std::size_t kMaxText = 64 << 10;
 

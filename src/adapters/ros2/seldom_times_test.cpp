@@ -7,7 +7,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Of a second each.
+// Asks once a second.
 int times_in(SeldomTimes& times, Time begin, Duration length) {
   int count = 0;
   for (Time now = begin; now < begin + length; now += 1s) {

@@ -48,7 +48,7 @@ TEST(ServiceMapping, ReadsUserData) {
   EXPECT_EQ(user_data_value("", "clientid"), "");
 }
 
-// Of the participant with this number.
+// An endpoint of the participant with this number.
 Guid endpoint(std::uint8_t participant, std::uint16_t number) {
   Guid guid;
   guid.bytes[0] = participant;
