@@ -265,10 +265,9 @@ class Helped final : public Participant::Impl {
   // Once for each participant: those that are not of ROS announce none.
   bool lacks_announcement(Time now) {
     constexpr std::size_t kMost = 1000;
-    const std::vector<GuidPrefix> all = graph_.without_nodes();
-    std::erase_if(nameless_, [&](const auto& each) {
-      return std::ranges::find(all, each.first) == all.end();
-    });
+    const std::vector<GuidPrefix> all = graph_.without_nodes();  // ascending
+    std::erase_if(nameless_,
+                  [&](const auto& each) { return !std::ranges::binary_search(all, each.first); });
     bool lacks = false;
     for (const GuidPrefix& each : all) {
       const auto since = nameless_.try_emplace(each, now).first->second;
