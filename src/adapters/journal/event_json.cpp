@@ -116,6 +116,7 @@ class EventWriter {
   void operator()(const LifecycleIntended& e) const {
     about(e.component);
     json_.member("lifecycle", culprit::to_string(e.state));
+    if (e.is_owed) json_.member("owed", true);
   }
   void operator()(const CameUp& e) const {
     about(e.component);
@@ -390,6 +391,7 @@ class EventReader {
     const auto reading = reading_from_json(json_);
     const auto* state = std::get_if<Lifecycle>(&reading);
     if (state != nullptr) event.state = *state;
+    event.is_owed = flag_of(json_, "owed");
     return state != nullptr;
   }
   bool complete(CameUp& event) const {

@@ -37,7 +37,6 @@ constexpr Duration kFirstJoin = std::chrono::seconds(20);
 constexpr Duration kSettles = std::chrono::seconds(5);
 constexpr Duration kSoonest = std::chrono::milliseconds(200);
 constexpr Duration kLatest = std::chrono::seconds(10);
-constexpr Duration kLivedWell = std::chrono::seconds(3);  // then the next one comes soon again
 constexpr Duration kFlows = std::chrono::seconds(2);      // a topic with a sample in this time
 constexpr Duration kNamesCome = std::chrono::seconds(3);  // after a participant's first endpoint
 constexpr Duration kAsks = std::chrono::seconds(1);       // whether it is at work
@@ -205,16 +204,15 @@ class Helped final : public Participant::Impl {
   void run() {
     Duration pause = kSoonest;
     while (!ends_) {
-      const Time began = live_now();
       auto process = HelperProcess::start(options_);
       std::string why = process ? "" : process.error();
       if (process) why = talk(**process);
+      if (is_settled_) pause = kSoonest;  // it worked: the next one is not likely to fail, either
       is_joined_ = false;
       lose_all();
       if (ends_) return;
       fail_first(why);
       if (is_final_) return trouble(why);
-      if (live_now() > later(began, kLivedWell)) pause = kSoonest;
       trouble("the helper program of --link ros ended (" + why +
               "): culprit is deaf until it is back");
       sleep(pause);

@@ -6,7 +6,7 @@
 // difference, but for what only DDS shows: where datagrams come from, the host and process of a participant, and the
 // process that answered.
 //
-// - The helper is started again when it ends or hangs, after 0.2 s to 10 s. Meanwhile culprit is
+// - The helper is started again when it ends or hangs, after 0.2 s, or up to 10 s if it had not begun to work. Meanwhile culprit is
 //   deaf: topics of the package `culprit`, by which it tests its hearing (hearing.h), go only to the
 //   helper and back. It stays deaf until the new helper has discovered what the old one knew and
 //   receives the topics that the old one received, or for 5 s. The graph stays as it was for so long.

@@ -625,6 +625,7 @@ void Analyzer::resolve(RuleId id, FailureResolved how, Time now) {
 }
 
 void Analyzer::leave(RuleId id, Time now) {
+  couplings_.exposed_others(id, now);
   write_.states.state(id).gone_since = now;
   write_.states.state(id).standing.clear();
   write_.states.enter(id, RulePhase::kQuiet);

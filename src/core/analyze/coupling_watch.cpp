@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "diagnose/timing.h"
+#include "diagnose/causes.h"
 #include "knowledge/ambiguity.h"
 
 namespace culprit {
@@ -123,6 +123,42 @@ void CouplingWatch::cleared(RuleId rule, Time now) {
       write_.couplings.cleared(knowledge_.rules[q.strategy].rule, rule);
     return true;
   });
+}
+
+void CouplingWatch::exposed_others(RuleId cause, Time now) {
+  const auto& onset = knowledge_.states[cause].onset;
+  if (!onset) return;  // an earlier culprit detected it
+  const Time began = onset->latest;
+  const Time would_show = later(began, diagnose::kUsualDelay);
+  const Time gone = gone_since(cause, now);
+  if (gone <= would_show) return;
+  const double times = seconds(gone - began) / seconds(diagnose::kUsualDelay);
+  std::vector<RuleId> effects;
+  for (const ComponentId c : knowledge_.graph.downstream(knowledge_.rules[cause].components)) {
+    const auto& touching = knowledge_.states.touching(c);
+    effects.insert(effects.end(), touching.begin(), touching.end());
+  }
+  std::ranges::sort(effects);
+  effects.erase(std::unique(effects.begin(), effects.end()), effects.end());
+  for (const RuleId effect : effects) {
+    const RuleState& state = knowledge_.states[effect];
+    const bool stayed_away = effect != cause && state.phase == RulePhase::kQuiet &&
+                             state.gone_since <= began && is_well_after(would_show, effect);
+    if (stayed_away) write_.couplings.stayed_away(cause, effect, std::min(times, kLongestExposure));
+  }
+}
+
+// Is the trigger false, and has all that it reads come since then?
+bool CouplingWatch::is_well_after(Time since, RuleId rule) const {
+  const Slot& trigger = knowledge_.states[rule].detection.trigger;
+  return trigger.known && !trigger.b &&
+         std::ranges::all_of(knowledge_.rules[rule].inputs, [&](InputId id) {
+           const Input& input = knowledge_.rules[id];
+           if (diagnose::watches_a_component(input)) return true;
+           if (!diagnose::watches_a_topic(input)) return knowledge_.signals.read_at(id) > since;
+           const auto& last = knowledge_.signals.rhythm(input.topic).last;
+           return last && *last > since;
+         });
 }
 
 void CouplingWatch::ended(const Attempt& attempt, Time now) {

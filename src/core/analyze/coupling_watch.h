@@ -11,6 +11,10 @@
 //   - no earlier change can have taken effect only now,
 //   - no other failure upstream of i cleared by itself.
 //
+// Exposure counts without any repair: when j ends, each failure i downstream of it that did not come
+// while j was there, and would have been seen, was well for so many times diagnose::kUsualDelay beside
+// it. One exposure counts at most kLongestExposure of them: j may be worse the next time.
+//
 // A failure goes away as slowly as it came: if i was detected some time after j, it is given one
 // and a half times that long to go away after j. Until then i is said to settle, and planners leave
 // it alone. A flapping cause may leave effects of an earlier time behind.
@@ -33,6 +37,7 @@ class CouplingWatch {
   static constexpr Duration kLongestDelay = std::chrono::seconds(5);
   // How late an effect usually comes; for one from the time before: how long it may take to go.
   static constexpr Cycles kUsualDelay{10};
+  static constexpr double kLongestExposure = 10;
 
   // What it writes; all else it only reads.
   struct Writes {
@@ -48,6 +53,8 @@ class CouplingWatch {
   void resolved(const Attempt& attempt, bool is_proven, Time now);
   // A failure cleared without a repair of its own.
   void cleared(RuleId rule, Time now);
+  // The failure ends, with a repair or without: which ones did not follow it?
+  void exposed_others(RuleId cause, Time now);
   void ended(const Attempt& attempt, Time now);
   // Can a change that was made for another failure just before `attempt` have resolved its own?
   bool is_echo(const Attempt& attempt) const;
@@ -85,6 +92,7 @@ class CouplingWatch {
 
   void settle(const std::vector<ComponentId>& repaired, RuleId cause, Time changed,
               std::optional<Cycles> on_its_way, Time now);
+  bool is_well_after(Time since, RuleId rule) const;
   Duration held(RuleId rule) const;
   Time last_change_for(RuleId cleared, Time now) const;
   Time gone_since(RuleId rule, Time now) const;

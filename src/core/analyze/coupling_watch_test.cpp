@@ -160,6 +160,24 @@ TEST(CouplingWatch, DoesNotCoupleWhatWasGoneBeforeTheChange) {
   }
 }
 
+// The cause is there for half a minute, and the effect does not come: six times the usual delay.
+TEST(CouplingWatch, CountsWhatStaysAwayWhileItsCauseIsThere) {
+  for (const bool is_seen : {true, false}) {
+    Two two("", 2s);
+    RuleState& cause = two.knowledge.states.state(kCause);
+    cause.onset = Onset{Two::kCame, Two::kCame};
+    cause.detection.trigger = Slot::of(false);
+    cause.detection.trigger_since = Two::kCame + 30s;
+    two.knowledge.states.enter(kEffect, RulePhase::kQuiet);
+    two.knowledge.states.state(kEffect).detection.trigger = Slot::of(false);
+    for (const InputId id : two.rules[kEffect].inputs)
+      two.knowledge.signals.set_read_at(id, Two::kCame + (is_seen ? 29s : 1s));
+    CouplingWatch watch(two.knowledge, {two.knowledge.states, two.knowledge.couplings});
+    watch.exposed_others(kCause, Two::kCame + 30s);
+    EXPECT_EQ(two.knowledge.couplings.of(kCause, kEffect).stayed, is_seen ? 6 : 0);
+  }
+}
+
 // It has the usual time from the end of the change on: ten cycles.
 TEST(CouplingWatch, GivesWhatCameToLightWithTheRepairTheUsualTimeToGo) {
   Two two("", 4s, "WARNING");

@@ -7,9 +7,13 @@
 namespace culprit::diagnose {
 namespace {
 
+// An outage costs more than a bad value, so it waits for no long window and no slow monitor.
+constexpr Duration kLongestReading = std::chrono::seconds(2);
+
 std::size_t at(Symptom symptom) { return static_cast<std::size_t>(symptom); }
 
-// Where its failure is. A rule that only reports waits for nothing, and nothing waits for it.
+// Where its failure is. A rule that only reports waits for nothing, and nothing waits until it fires. But one that
+// cleared may have explained others.
 std::vector<ComponentId> places_of(RuleId rule, const Knowledge& knowledge) {
   if (knowledge.rules[rule].components.empty()) return {};
   return touched_by(rule, knowledge);
@@ -131,7 +135,7 @@ void Awaited::place_past() {
     if (past_[p].component) {
       mark(*past_[p].component, p);
     } else {
-      for (const ComponentId c : places_of(*past_[p].rule, knowledge_)) mark(c, p);
+      for (const ComponentId c : touched_by(*past_[p].rule, knowledge_)) mark(c, p);
     }
   }
 }
@@ -159,6 +163,25 @@ void Awaited::look_at(RuleId failure) {
   if (knowledge_.now < found.until) found_.emplace_back(failure, found);
 }
 
+Duration Awaited::next_reading(const Best& evidence) const {
+  return std::min<Duration>(evidence.within,
+                            reading_of(*evidence.rule, knowledge_) + knowledge_.rules.cycle);
+}
+
+Awaiting Awaited::of_declared_supplier(RuleId failure, ComponentId consumer) const {
+  Awaiting found;
+  for (const Dependency& d : knowledge_.rules.dependencies) {
+    const auto scc = knowledge_.graph.scc_of(d.producer);
+    if (d.consumer != consumer || !scc) continue;
+    const Best& evidence = places_[*scc].own[at(Symptom::kValue)].without(failure);
+    if (!evidence.rule) continue;
+    const Duration reading = std::min<Duration>(next_reading(evidence), kLongestReading);
+    const Time until = later(first_onset_of(failure, knowledge_), reading);
+    if (until > found.until) found = {until, *evidence.rule, false};
+  }
+  return found;
+}
+
 Awaiting Awaited::awaiting(RuleId failure) const {
   const RuleState& state = knowledge_.states[failure];
   const Time onset = onset_of(failure, knowledge_).latest;
@@ -166,14 +189,13 @@ Awaiting Awaited::awaiting(RuleId failure) const {
   const bool is_value = symptom_of(failure, knowledge_) == Symptom::kValue;
   const Duration lateness = presumed_lateness(failure, knowledge_);
   Awaiting found;
-  const auto wait_for = [&](const Two& evidence, Time latest, Time detected) {
-    const auto& [within, rule] = evidence.without(failure);
-    if (!rule) return;
-    const Duration least =
-        std::min<Duration>(within, reading_of(*rule, knowledge_) + knowledge_.rules.cycle);
-    const Time until = std::clamp(later(latest - lateness, within), later(latest, least),
-                                  later(detected, kLongestEvidence));
-    if (until > found.until) found = {until, *rule, false};
+  const auto wait_for = [&](const Two& all, Time latest, Time detected) {
+    const Best& evidence = all.without(failure);
+    if (!evidence.rule) return;
+    const Time until =
+        std::clamp(later(latest - lateness, evidence.within), later(latest, next_reading(evidence)),
+                   later(detected, kLongestEvidence));
+    if (until > found.until) found = {until, *evidence.rule, false};
   };
   const Duration passing = duration_of(kPassing, knowledge_.rules);
   const auto fade = [&](const Past& past, Duration passed_on) {
@@ -185,7 +207,7 @@ Awaiting Awaited::awaiting(RuleId failure) const {
     if (!scc) continue;
     const Place& place = places_[*scc];
     for (const Symptom symptom : {Symptom::kOutage, Symptom::kValue}) {
-      if (symptom == Symptom::kValue && !is_value) continue;  // no outage comes of a bad value
+      if (symptom == Symptom::kValue && !is_value) continue;  // bad data ends no data
       const std::size_t s = at(symptom);
       wait_for(place.upstream[s], first_onset, state.first_detected());
       wait_for(place.upstream_again[s], onset, state.failing_since);
@@ -193,6 +215,8 @@ Awaiting Awaited::awaiting(RuleId failure) const {
       wait_for(place.own[s], first_onset, state.first_detected());
       wait_for(place.own_again[s], onset, state.failing_since);
     }
+    const Awaiting reading = of_declared_supplier(failure, c);
+    if (!is_value && reading.until > found.until) found = reading;
     for_each(upstream_past_[*scc], [&](std::size_t p) { fade(past_[p], passing); });
     for_each(own_past_[*scc], [&](std::size_t p) {
       const bool is_its_own = past_[p].component == c;

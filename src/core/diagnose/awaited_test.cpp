@@ -189,7 +189,25 @@ TEST(Awaited, ATopicThatSentSinceTheOnsetIsProof) {
   EXPECT_FALSE(awaited());
 }
 
-// No outage comes of a bad value: neither one that can still show, nor one that cleared a moment ago.
+// A rail that is off ends the data of what hangs on it: its next reading, every 200 ms, and a cycle.
+TEST(Awaited, AnOutageWaitsForTheNextReadingOfADeclaredSupplier) {
+  std::string text = failure_of("a", "A") + failure_of("b", "B") + "DEPENDENCY b ON a\n";
+  text.replace(text.rfind("x > 1"), 5, "age(/out) > 500ms");
+  Scene scene(text);
+  scene.fail("B", 9900ms);
+  scene->signals.set_latency(scene.rules()[scene.rule("A")].inputs.front(), 400ms);
+  scene->states.state(scene.rule("A")).detection.trigger = Slot::of(false);
+  const auto awaited = [&](Duration began_ago) {
+    const Time onset = scene->now - began_ago;
+    scene->states.state(scene.rule("B")).onset = Onset{onset - 100ms, onset};
+    return Awaited(*scene, scene->states.active()).of(scene.rule("B"));
+  };
+  ASSERT_TRUE(awaited(399ms));
+  EXPECT_EQ(awaited(399ms)->because, scene.rule("A"));
+  EXPECT_FALSE(awaited(401ms));
+}
+
+// Bad data ends no data: neither a value that can still show, nor one that cleared a moment ago.
 TEST(Awaited, AnOutageWaitsForNoBadValue) {
   std::string text = failure_of("a", "A") + failure_of("b", "B");
   text.replace(text.rfind("x > 1"), 5, "age(/out) > 500ms");

@@ -147,14 +147,18 @@ void Causes::add_rules(const Knowledge& knowledge, std::span<const RuleId> immin
 
 void Causes::add_troubles(const Knowledge& knowledge,
                           std::span<const std::optional<TroubleSeen>> troubles) {
-  std::vector<bool> is_touched(knowledge.rules.components.size(), false);
+  std::vector<std::optional<Time>> began(
+      knowledge.rules.components.size());  // the last failure of each
   for (const CauseNode& node : nodes_) {
     if (node.kind != CauseNode::Kind::kFailure) continue;
-    for (const ComponentId c : touched_by(node.rule, knowledge)) is_touched[c.index] = true;
+    for (const ComponentId c : touched_by(node.rule, knowledge))
+      began[c.index] = std::max(began[c.index], std::optional(node.onset.latest));
   }
   std::vector<ComponentId> components;
   for (std::size_t c = 0; c < troubles.size(); ++c) {
-    if (troubles[c] && !is_touched[c]) components.emplace_back(c);
+    const auto& trouble = troubles[c];
+    if (trouble && (!began[c] || later(*began[c], kUsualDelay) < trouble->onset.earliest))
+      components.emplace_back(c);
   }
   const RuleSet& rules = knowledge.rules;
   std::sort(components.begin(), components.end(),
@@ -191,7 +195,8 @@ void Causes::connect(const Knowledge& knowledge, const Reach& reach, const Paths
   for (std::size_t i = 0; i < size(); ++i) {
     if (!nodes_[i].is_rule()) continue;
     const auto row = causes_[i];
-    for (const ComponentId c : touched_by(nodes_[i].rule, knowledge)) {
+    const std::vector<ComponentId> touched = touched_by(nodes_[i].rule, knowledge);
+    for (const ComponentId c : touched) {
       for_each(paths.upstream(reach.place_of(c), nodes_[i].rule),
                [&](std::size_t place) { add(row, touching[place]); });
     }
@@ -199,9 +204,11 @@ void Causes::connect(const Knowledge& knowledge, const Reach& reach, const Paths
     clear(row, i);
     for_each(row, [&](std::size_t j) {
       const bool is_trouble = nodes_[j].kind == CauseNode::Kind::kTrouble;
-      const bool is_possible =
-          is_trouble ? can_explain(j, i, knowledge) && !may_be_effect(j, i, reach, knowledge)
-                     : can_precede(j, i);
+      const bool is_own =
+          is_trouble && std::ranges::find(touched, nodes_[j].component) != touched.end();
+      const bool is_possible = is_trouble ? !is_own && can_explain(j, i, knowledge) &&
+                                                !may_be_effect(j, i, reach, knowledge)
+                                          : can_precede(j, i);
       if (!is_possible) clear(row, j);
     });
   }

@@ -3,7 +3,8 @@
 // Nodes are
 //   - failures: rules that fired, also exhausted ones whose trigger is true;
 //   - imminent rules (imminent.h): what they read looks bad, and they have not fired yet;
-//   - troubles (trouble.h) of components that no failure touches: a supplier needs no rule;
+//   - troubles (trouble.h) of components that no failure touches, or that began kUsualDelay after the
+//     last one that does: a supplier needs no rule, and one that was slow for long may be dead now;
 //   - inputs without a supplier: a failing rule that never saw its function work, of a component
 //     that reads a topic or calls a service that no node offers.
 //

@@ -18,7 +18,7 @@ Diagnosis::Diagnosis(const Knowledge& knowledge, const Causes& causes)
       against_others_(causes.size()),
       claims_(causes.size(), 0) {
   for (std::size_t i = 0; i < causes.size(); ++i) {
-    const bool is_sure = !causes[i].is_rule() || is_known_dead(i);
+    const bool is_sure = !causes[i].is_rule() || is_known_dead(i) || hangs_by_itself(i);
     prior_.push_back(is_sure ? kKnownDown : kCoincidence);
     against_others_[i] = own_cause(prior_[i], explained(i));
   }
@@ -42,6 +42,18 @@ bool Diagnosis::is_explained_by(std::size_t i, std::size_t j) const {
 
 bool Diagnosis::is_known_dead(std::size_t i) const {
   return causes_[i].is_rule() && is_known_down(causes_[i].rule, knowledge_);
+}
+
+bool Diagnosis::hangs_by_itself(std::size_t i) const {
+  if (!is_about_hang(causes_[i].rule, knowledge_)) return false;
+  bool may_wait = false;
+  for_each(causes_.causes(i), [&](std::size_t j) {
+    const CauseNode& cause = causes_[j];
+    may_wait |= cause.is_rule()
+                    ? is_known_dead(j) || is_about_hang(cause.rule, knowledge_)
+                    : cause.kind == CauseNode::Kind::kTrouble && answers_nothing(cause.trouble);
+  });
+  return !may_wait;
 }
 
 bool Diagnosis::is_enough(std::size_t j, std::size_t i) const {

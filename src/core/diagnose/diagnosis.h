@@ -10,7 +10,8 @@
 //   X_i         the probability that one of the others explains i; 0 (so P = 1) if there is none
 //   pi_i        the probability that i has a cause of its own, before anything else is known of it:
 //               kKnownDown if a strategy of i would replace a process that the operating system
-//               says is gone or stopped, and for troubles; kCoincidence otherwise
+//               says is gone or stopped, or that hangs by itself (known_down.h), and for troubles;
+//               kCoincidence otherwise
 //
 // This is the posterior of a noisy-or: any present cause is enough, and i's own is one of them.
 //
@@ -74,6 +75,8 @@ class Diagnosis {
 
  private:
   bool is_known_dead(std::size_t i) const;
+  // Node i is a rule about a process that hangs, and waits for no other one that is down.
+  bool hangs_by_itself(std::size_t i) const;
   bool is_enough(std::size_t j, std::size_t i) const;
   // kappa g
   double passes(std::size_t j, std::size_t i) const { return kappa(j, i) * causes_.timely(j, i); }

@@ -28,4 +28,14 @@ bool is_known_down(RuleId rule, const Knowledge& knowledge) {
                      [&](StrategyId s) { return revives(knowledge.rules[s], knowledge); });
 }
 
+bool is_about_hang(RuleId rule, const Knowledge& knowledge) {
+  const auto begins_hung_anew = [&](const Adaptation& a) {
+    return (a.type == AdaptationType::kRestart || launches(a)) &&
+           knowledge.components[a.component].hangs();
+  };
+  return std::ranges::any_of(knowledge.rules[rule].strategies, [&](StrategyId s) {
+    return std::ranges::any_of(knowledge.rules[s].adaptations, begins_hung_anew);
+  });
+}
+
 }  // namespace culprit::diagnose

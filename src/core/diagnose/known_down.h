@@ -1,10 +1,11 @@
-// Processes that the operating system knows to be gone or stopped, and the strategies that replace
-// them.
+// Processes that the operating system knows to be gone or stopped, or that hang, and the strategies that
+// replace them.
 //
 // Such a process does not come back by itself, whatever else is repaired, and nothing of it is left
 // that a replacement could disturb. So its component has a cause of its own, and its replacement
 // waits for no other failure. A component that ended with its container has none: the
-// container's replacement brings it back.
+// container's replacement brings it back. A process that hangs has a cause of its own, too, unless it may
+// wait for the answer of another one that is down: no missing message and no bad value makes it hang.
 #pragma once
 
 #include "knowledge/knowledge.h"
@@ -20,5 +21,7 @@ bool replaces(const Strategy& strategy, ComponentId component);
 bool revives(const Strategy& strategy, const Knowledge& knowledge);
 // Does a strategy of the rule do so?
 bool is_known_down(RuleId rule, const Knowledge& knowledge);
+// Does a strategy of the rule begin a component anew that hangs?
+bool is_about_hang(RuleId rule, const Knowledge& knowledge);
 
 }  // namespace culprit::diagnose

@@ -9,12 +9,6 @@ namespace {
 
 Onset at(Time since) { return {since, since}; }
 
-// A topic that pauses now and then is silent on demand; this one never was.
-bool is_steady(const SignalStore::Rhythm& rhythm) {
-  constexpr int kSteady = 3;
-  return rhythm.gap > Duration::zero() && rhythm.longest <= kSteady * rhythm.gap;
-}
-
 std::optional<TroubleSeen> own_trouble(ComponentId component, const Knowledge& knowledge) {
   const ComponentState& state = knowledge.components[component];
   if (state.process == ProcessState::kGone)
@@ -59,6 +53,23 @@ std::string_view to_string(Trouble trouble) {
   return "";
 }
 
+bool answers_nothing(Trouble trouble) {
+  switch (trouble) {
+    case Trouble::kExited:
+    case Trouble::kStopped:
+    case Trouble::kLeft:
+    case Trouble::kStarting:
+    case Trouble::kHung:
+    case Trouble::kNeverSeen:
+      return true;
+    case Trouble::kNotActive:
+    case Trouble::kNotYetActive:
+    case Trouble::kSilent:
+      return false;
+  }
+  return false;
+}
+
 std::optional<TroubleSeen> trouble_of(ComponentId component, const Knowledge& knowledge) {
   if (knowledge.is_unheard(component)) return std::nullopt;
   return own_trouble(component, knowledge);
@@ -72,7 +83,7 @@ std::vector<std::optional<TroubleSeen>> all_troubles(const Knowledge& knowledge)
   for (std::size_t t = 0; t < knowledge.rules.topics.size(); ++t) {
     const TopicId topic(t);
     const SignalStore::Rhythm& rhythm = knowledge.signals.rhythm(topic);
-    if (!is_silent(topic, knowledge.now, knowledge) || !is_steady(rhythm) ||
+    if (!is_silent(topic, knowledge.now, knowledge) || !rhythm.is_steady() ||
         may_be_lost(topic, knowledge.now, knowledge))
       continue;
     const auto component = knowledge.graph.only_publisher(knowledge.rules[topic]);

@@ -24,6 +24,8 @@ enum class Trouble : std::uint8_t {
 
 // For people, after the component's name: "exited", "hangs".
 std::string_view to_string(Trouble trouble);
+// Does a component in such a trouble answer no request?
+bool answers_nothing(Trouble trouble);
 
 struct TroubleSeen {
   Trouble trouble = Trouble::kExited;

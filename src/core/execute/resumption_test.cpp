@@ -124,6 +124,22 @@ TEST(Resumption, GoesOnUndoingAStrategyThatHadFailed) {
   EXPECT_TRUE(left.knowledge.states.is_tried(left.tune));
 }
 
+// A redeploy is not undone: its component is free for another strategy.
+TEST(Resumption, IsOverIfItHadFailedAndThereIsNothingToUndo) {
+  Left left;
+  StrategyExecutor executor = left.executor();
+  Interrupted again{left.again,
+                    1,
+                    true,
+                    {left.request(left.again, 0, StopProcess{42}, Lifecycle::kActive),
+                     left.request(left.again, 0, StartProcess{}, Lifecycle::kActive)}};
+  executor.resume(again, Time{100s}, Time{105s});
+  EXPECT_EQ(left.knowledge.states.attempt_of(left.again), nullptr);
+  again.has_failed = false;
+  executor.resume(again, Time{100s}, Time{105s});
+  EXPECT_NE(left.knowledge.states.attempt_of(left.again), nullptr) << "that is to be proven";
+}
+
 TEST(Resumption, StartsNoProcessOfWhichNobodyKnowsWhetherItWasStarted) {
   Left left;
   const Interrupted started{

@@ -43,11 +43,13 @@ StrategyExecutor::Run& StrategyExecutor::add_run(StrategyId strategy) {
 void StrategyExecutor::resume(Interrupted interrupted, Time now, Time from) {
   CULPRIT_ASSERT(
       std::all_of(runs_.begin(), runs_.end(), [](const Run& r) { return r.interrupted; }));
-  write_.attempts.resume(interrupted.strategy, now);
-  Run& run = add_run(interrupted.strategy);
   // An answer to a request of the earlier process must not be taken for one to ours.
   for (const Interrupted::Request& request : interrupted.requests)
     last_command_ = std::max(last_command_, request.command.id.number);
+  // It is over: its components are free.
+  if (interrupted.has_failed && execute::undo_of(interrupted, knowledge_).empty()) return;
+  write_.attempts.resume(interrupted.strategy, now);
+  Run& run = add_run(interrupted.strategy);
   run.interrupted = std::move(interrupted);
   run.from = from;
 }
@@ -453,7 +455,7 @@ bool StrategyExecutor::next_undo(Run& run, Time now) {
       continue;
     }
     if (const auto missing = missing_for(run, undo)) {
-      owe(undo);
+      owe(undo, now);
       tell_left_out(run,
                     "it may depend on " + knowledge_.rules[missing->component].name + ", which " +
                         missing->why,
@@ -490,11 +492,13 @@ bool StrategyExecutor::is_changed_by_another(const execute::Undo& undo) const {
          state.lifecycle != lifecycle->target;
 }
 
-// It stays deactivated: the next try gives it back.
-void StrategyExecutor::owe(const execute::Undo& undo) {
+// It stays deactivated: the next try gives it back, be it that of the next culprit.
+void StrategyExecutor::owe(const execute::Undo& undo, Time now) {
   const auto* lifecycle = std::get_if<execute::LifecycleGoal>(&undo.goal);
-  if (lifecycle != nullptr && lifecycle->target == Lifecycle::kActive)
-    write_.components[undo.component].brought = Brought{Lifecycle::kInactive, false, true};
+  if (lifecycle == nullptr || lifecycle->target != Lifecycle::kActive) return;
+  ComponentState& state = write_.components[undo.component];
+  state.brought = Brought{Lifecycle::kInactive, false, true};
+  write_.events.tell(now, LifecycleIntended{undo.component, state.intended_lifecycle, true});
 }
 
 // The component that keeps another one, which the strategy took down, from being brought up again: one
@@ -601,7 +605,7 @@ void StrategyExecutor::finish_undo(Run& run, Time now) {
   if (reached) {
     note_lifecycle(pursuit, now);
   } else {
-    owe(run.undo.back());
+    owe(run.undo.back(), now);
   }
   // A mode that is back by itself was set back, and that is remembered.
   if (std::holds_alternative<execute::ModeGoal>(pursuit.goal()) && pursuit.has_changed_anything())

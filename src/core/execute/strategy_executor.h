@@ -45,7 +45,8 @@ class StrategyExecutor {
   // those that have an obstacle (by place; empty: none), which are left out. Then it failed for that.
   void begin(StrategyId strategy, Time now, std::vector<std::string> obstacles = {});
 
-  // Goes on from `from` on with an attempt of an earlier process; its outcome will prove nothing.
+  // Goes on from `from` on with an attempt of an earlier process; its outcome will prove nothing. Ignored if it
+  // had failed and there is nothing to undo.
   // @pre nothing was begun yet
   void resume(Interrupted interrupted, Time now, Time from);
 
@@ -126,7 +127,7 @@ class StrategyExecutor {
   bool is_held_by_last_resort(const execute::Undo& undo) const;
   bool is_changed_by_another(const execute::Undo& undo) const;
   void tell_left_out(const Run& run, const std::string& why, Time now);
-  void owe(const execute::Undo& undo);
+  void owe(const execute::Undo& undo, Time now);
   void finish_goal(Run& run, Time now);
   bool replace_hung_member(Run& run) const;
   void finish_undo(Run& run, Time now);

@@ -4,7 +4,8 @@
 //     kappa(j -> i) = (n0 kappa0 + cleared) / (n0 + cleared + stayed)
 //
 //   cleared  how often i cleared after a strategy had resolved j, without a repair of its own
-//   stayed   how often it was still there when its signals could have shown the recovery
+//   stayed   how often it was still there when its signals could have shown the recovery; and for how
+//            many times kUsualDelay it was seen to be well while j was there (exposure)
 //   kappa0   the expectation before any outcome: kUsual if i depends on j, kRare otherwise
 //   n0       how many outcomes that expectation weighs: kWeight
 //
@@ -40,6 +41,8 @@ class Couplings {
 
   void cleared(RuleId cause, RuleId effect) { learn(cause, effect, {1, 0}); }
   void stayed(RuleId cause, RuleId effect) { learn(cause, effect, {0, 1}); }
+  // The effect was seen to be well for `times` the usual delay, although the cause was there.
+  void stayed_away(RuleId cause, RuleId effect, double times) { learn(cause, effect, {0, times}); }
   void set(RuleId cause, RuleId effect, Coupling coupling) { place(cause, effect) = coupling; }
 
   struct Learned {

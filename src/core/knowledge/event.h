@@ -211,6 +211,8 @@ struct RuleSees {
 struct LifecycleIntended {
   ComponentId component;
   Lifecycle state = Lifecycle::kUnknown;
+  // A strategy has deactivated it, and gives it back with its next try (Brought).
+  bool is_owed = false;
 };
 
 // A process of it came up otherwise than the last one (ComponentState::coming_up). Not reported

@@ -7,7 +7,7 @@
 //   StrategyFailed, RoundSpent, LastResortReached, LastResortDone, RuleExhausted     attempts
 //   OrderAccepted of Silence and LiftSilence                         silences
 //   ComponentFound                                                   the process of the last run
-//   LifecycleIntended                                                the state for a new process
+//   LifecycleIntended                       the state for a new process, and what a strategy owes
 //   CameUp                                                           the patience with its start
 //   StaysDown, OrderAccepted of Revive                               what a person ended
 //

@@ -89,6 +89,9 @@ class SignalStore {
     Duration interval{};
     Duration gap{};
     Duration longest{};  // the longest pause that ended by itself
+    // All such pauses that were longer than usual, and all other intervals.
+    Duration paused{};
+    Duration flowed{};
     // The share of the recently published messages that was lost on the way here, 0 to 1; also 0 while
     // too few were published to measure it.
     double loss = 0;
@@ -97,6 +100,11 @@ class SignalStore {
     // received all the time until now. May be a little ahead.
     Time resumed = kLongAgo;
     Time heard_again_by = kLongAgo;  // after that time: when a sample would have come at the latest
+
+    // Does it come all the time? A topic that is sent on demand pauses often or for long.
+    bool is_steady() const { return gap > Duration::zero() && paused <= flowed / kFlowsForPause; }
+    static constexpr int kFlowsForPause = 4;
+    static constexpr int kUsualPause = 3;  // gaps
 
     // Since when its silence counts. @pre last
     Time silent_since() const { return std::max(*last, resumed); }

@@ -102,6 +102,27 @@ TEST(Steps, AreFinishedByTheNextCulprit) {
   EXPECT_EQ(robot["planner"].state, Lifecycle::kActive) << transcript(robot);
 }
 
+// culprit was killed between two tries: the next one knows from the journal what the first try owes.
+TEST(Steps, WhatATryOwesIsGivenBackByTheNextCulprit) {
+  TestRobot robot = arm_robot(arm_with(kAround, "ATTEMPTS 50"));
+  robot["driver"].dies_at_start = true;
+  robot.kill("driver");
+  robot.run_for(10s);
+  ASSERT_EQ(robot["planner"].state, Lifecycle::kInactive) << transcript(robot);
+  ASSERT_FALSE(robot.was_asked("planner: activate")) << transcript(robot);
+  robot["driver"].dies_at_start = false;
+  robot["driver"].fault = "nothing helps";
+  robot.start_by_hand("driver");
+  Manager::Options options;
+  options.start = robot.now;
+  auto next = std::make_unique<Manager>(robot.rules(), std::make_unique<BayesPlanner>(), options);
+  next->remember(robot.events);
+  next->remember(robot.manager().knowledge().known_robot());
+  robot.replace_manager(std::move(next));
+  robot.run_for(120s);
+  EXPECT_TRUE(robot.was_asked("planner: activate")) << transcript(robot);
+}
+
 // A process that is dead is deactivated enough.
 TEST(Steps, TheDriverIsReplacedBehindADeadPlanner) {
   TestRobot robot = arm_robot(arm_with(kAround));

@@ -250,6 +250,8 @@ class Monitor {
 
   // Whether a component that publishes the topic joined the graph since then.
   bool has_begun_since(Time before, TopicId topic) const;
+  // Between two samples, the last of which was before.
+  void note_pause(SignalStore::Rhythm& rhythm, Duration interval, TopicId topic) const;
   std::vector<TopicId> topics_of(std::optional<ComponentId> publisher,
                                  const std::string& name) const;
   void see(TopicId topic, Time at);

@@ -166,8 +166,12 @@ void Monitor::on(Time, const EndpointVanished& seen) {
 
 void Monitor::remember(const History& past) {
   for (const Event& event : past) {
-    if (const auto* intended = std::get_if<LifecycleIntended>(&event.what))
-      write_.components[intended->component].intended_lifecycle = intended->state;
+    if (const auto* intended = std::get_if<LifecycleIntended>(&event.what)) {
+      ComponentState& state = write_.components[intended->component];
+      state.intended_lifecycle = intended->state;
+      state.brought.reset();
+      if (intended->is_owed) state.brought = Brought{Lifecycle::kInactive, false, true};
+    }
     if (const auto* came_up = std::get_if<CameUp>(&event.what)) {
       ComponentState& state = write_.components[came_up->component];
       state.coming_up = came_up->how;

@@ -28,10 +28,9 @@ void Monitor::on(Time at, const SampleArrived& seen) {
   rhythm.resumed = kLongAgo;
   if (rhythm.last && *rhythm.last >= awake_) {
     const Duration interval = (at - *rhythm.last) / std::max(1u, seen.published);
+    note_pause(rhythm, interval, seen.topic);
     rhythm.interval = smoothed(rhythm.interval, interval);
     rhythm.gap = usual_gap(rhythm.gap, interval);
-    if (interval > rhythm.longest && !has_begun_since(*rhythm.last, seen.topic))
-      rhythm.longest = interval;
   }
   rhythm.last = topic.last = at;
   topic.loss.add(at, seen.published);
@@ -52,6 +51,16 @@ void Monitor::on(Time at, const SampleArrived& seen) {
     if (topic.is_known_silent) write_.signals.touch(id);
   }
   if (!knowledge_.components.is_any_known_dead()) topic.is_known_silent = false;
+}
+
+void Monitor::note_pause(SignalStore::Rhythm& rhythm, Duration interval, TopicId topic) const {
+  const bool is_unusual =
+      rhythm.gap > Duration::zero() && interval > SignalStore::Rhythm::kUsualPause * rhythm.gap;
+  if (!is_unusual) rhythm.flowed += interval;
+  if (!is_unusual && interval <= rhythm.longest) return;
+  if (has_begun_since(*rhythm.last, topic)) return;
+  if (is_unusual) rhythm.paused += interval;
+  rhythm.longest = std::max(rhythm.longest, interval);
 }
 
 // Did its publisher, or something that this depends on, begin anew? Either keeps the topic silent

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <span>
 
+#include "diagnose/timing.h"
 #include "knowledge/group_health.h"
 #include "knowledge/held.h"
 #include "language/evaluate.h"
+#include "plan/also_ended.h"
 
 namespace culprit::plan {
 namespace {
@@ -193,6 +195,22 @@ std::optional<Invalid> held_by_last_resort(const Strategy& strategy, const Knowl
   return std::nullopt;
 }
 
+// The nodes of one process, or of one launch, end and begin together: one of them may be held. The own rule's
+// repair goes on.
+std::optional<Invalid> ends_what_is_held(const Strategy& strategy, const Knowledge& knowledge) {
+  const RuleSet& rules = knowledge.rules;
+  const bool begins_again = std::ranges::any_of(strategy.adaptations, launches);
+  Adaptation change;
+  change.type = begins_again ? AdaptationType::kRedeploy : AdaptationType::kStop;
+  for (const ComponentId other : also_ended(strategy, knowledge)) {
+    change.component = other;
+    const auto holder = holder_against(strategy, change, knowledge);
+    if (holder && rules[*holder].rule != strategy.rule)
+      return Invalid{other, held_by(*holder, rules), true};
+  }
+  return std::nullopt;
+}
+
 // It starts a group of which all members are active, and whose manager is there or cannot be started.
 std::optional<Invalid> needless_start(const Strategy& strategy, const Knowledge& knowledge) {
   const auto is_needless = [&](const Adaptation& a) {
@@ -206,21 +224,65 @@ std::optional<Invalid> needless_start(const Strategy& strategy, const Knowledge&
                  "all of " + knowledge.rules[*first.group].name + " are active already"};
 }
 
+bool reads_lifecycle(const Strategy& strategy, ComponentId component, const RuleSet& rules) {
+  return std::ranges::any_of(rules[strategy.rule].inputs, [&](InputId id) {
+    return rules[id].kind == Input::Kind::kLifecycle && rules[id].component == component;
+  });
+}
+
+bool is_of_any_group(ComponentId component, const RuleSet& rules) {
+  return std::ranges::any_of(rules.groups, [&](const Group& group) {
+    return std::ranges::find(group.members, component) != group.members.end();
+  });
+}
+
+// Its topics are what the rule misses.
+bool is_missed_by(const Strategy& strategy, ComponentId component, const Knowledge& knowledge) {
+  return std::ranges::any_of(knowledge.rules[strategy.rule].inputs, [&](InputId id) {
+    const Input& input = knowledge.rules[id];
+    return diagnose::watches_a_topic(input) &&
+           knowledge.graph.publishes(component, knowledge.rules[input.topic]);
+  });
+}
+
+bool activates(const Strategy& strategy, ComponentId component) {
+  return std::ranges::any_of(strategy.adaptations, [&](const Adaptation& a) {
+    return a.component == component && a.type == AdaptationType::kActivate;
+  });
+}
+
+// A person, or another program, has deactivated what sends the rule's topics. A redeploy brings it back to that
+// state, so it sends nothing all the same. Beside strategies that were tried in vain the rule is given up.
+std::optional<Invalid> stays_deactivated(const Strategy& strategy, const Knowledge& knowledge) {
+  const RuleSet& rules = knowledge.rules;
+  for (const Adaptation& a : strategy.adaptations) {
+    const ComponentState& state = knowledge.components[a.component];
+    const bool is_inactive = state.alive == true && state.lifecycle == Lifecycle::kInactive &&
+                             state.intended_lifecycle == Lifecycle::kInactive;
+    const bool is_ours = state.brought && !state.brought->is_changed;
+    if (a.type != AdaptationType::kRedeploy || !is_inactive || is_ours ||
+        is_of_any_group(a.component, rules) || activates(strategy, a.component) ||
+        reads_lifecycle(strategy, a.component, rules) ||
+        !is_missed_by(strategy, a.component, knowledge))
+      continue;
+    const std::string why = "is inactive, and a redeploy keeps its state";
+    const std::vector<bool>& tried = knowledge.states[strategy.rule].search.tried;
+    if (std::ranges::find(tried, true) == tried.end()) return Invalid{a.component, why, true};
+    return Invalid{a.component, rules[a.component].name + " " + why};
+  }
+  return std::nullopt;
+}
+
 // Its component lives, and is not active because its group is paused, or is being brought up or down: there is
 // nothing to repair in it. A rule that reads its lifecycle says so itself. A step that leaves a paused one as it is
 // disturbs nothing.
 std::optional<Invalid> not_active_with_group(const Strategy& strategy, const Knowledge& knowledge) {
   const RuleSet& rules = knowledge.rules;
-  const auto reads_lifecycle = [&](ComponentId component) {
-    return std::ranges::any_of(rules[strategy.rule].inputs, [&](InputId id) {
-      return rules[id].kind == Input::Kind::kLifecycle && rules[id].component == component;
-    });
-  };
   for (std::size_t i = 0; i < strategy.adaptations.size(); ++i) {
     const Adaptation& a = strategy.adaptations[i];
     const ComponentState& state = knowledge.components[a.component];
     const bool is_down = state.alive == true && state.lifecycle != Lifecycle::kActive;
-    if (a.group || !is_down || reads_lifecycle(a.component)) continue;
+    if (a.group || !is_down || reads_lifecycle(strategy, a.component, rules)) continue;
     for (const Group& group : rules.groups) {
       if (std::ranges::find(group.members, a.component) == group.members.end()) continue;
       const GroupHealth health = health_of(group, knowledge.components, knowledge.now);
@@ -290,8 +352,10 @@ std::optional<Invalid> invalidity(const Strategy& strategy, const Knowledge& kno
     return Invalid{strategy.adaptations.front().component,
                    "its rule is exhausted, and only exited processes are started again"};
   if (auto held = held_by_last_resort(strategy, knowledge)) return held;
+  if (auto held = ends_what_is_held(strategy, knowledge)) return held;
   if (auto barred = barred_by_another(strategy, knowledge)) return barred;
   if (auto not_active = not_active_with_group(strategy, knowledge)) return not_active;
+  if (auto deactivated = stays_deactivated(strategy, knowledge)) return deactivated;
   return impossibility(strategy, knowledge);
 }
 

@@ -7,7 +7,8 @@
 //   - activate: its component is alive, has a lifecycle, and is not active;
 //   - deactivate: its component is alive and active;
 //   - restart: it is alive and has a lifecycle, for a dead or hung process answers no request;
-//   - redeploy: it has a LAUNCH command;
+//   - redeploy: it has a LAUNCH command; and it is not the sender of topics that the rule misses, inactive by
+//     the doing of others: it comes back inactive;
 //   - start: it has a LAUNCH command and is not there;
 //   - stop: it is there.
 // In steps, one that is so already is passed over: a dead component is deactivated. So is the activation of what
@@ -15,8 +16,8 @@
 // A component on a computer that is unreachable, or cannot be asked, cannot be adapted. A redeploy or a start
 // waits while a thing that the start needs is missing (StartBarred). For an exhausted rule only what goes on is
 // valid (Knowledge::goes_on). A strategy is valid if each of its adaptations is, given the ones
-// before it, and its WHEN condition is true. Further, no last resort may hold what it would change
-// (knowledge/held.h). It must not have brought back a more critical failure (analyze/parameter_fights.h), and its
+// before it, and its WHEN condition is true. Further, no last resort may hold what it would change,
+// or end with it (knowledge/held.h, also_ended.h). It must not have brought back a more critical failure (analyze/parameter_fights.h), and its
 // component must not be out of work with its group: paused, or being brought up or down. A last
 // resort is never valid for a planner: the manager begins it.
 #pragma once

@@ -78,6 +78,33 @@ TEST(Validity, PassesOverStepsThatHaveNothingToDo) {
   EXPECT_EQ(reason("Silent.tuned"), "planner is not alive") << "a dead one sets no parameter";
 }
 
+// A redeploy restores the lifecycle, so nothing that was deactivated sends anything after it.
+TEST(Validity, RulesOutToRedeployForItsDataWhatOthersHaveDeactivated) {
+  Scene scene(
+      "COMPONENT camera NODE /camera LAUNCH \"camera\"\n"
+      "RULE Silent\nPOLICIES ERROR\nTRIGGER age(/rgb) > 1s\n"
+      "STRATEGY restart 50 10\nADAPTATION camera restart 2\n"
+      "STRATEGY again 50 10\nADAPTATION camera redeploy 5\n"
+      "RULE Leaks\nPOLICIES ERROR\nTRIGGER memory(camera) > 500\n"
+      "STRATEGY shrink 50 10\nADAPTATION camera redeploy 5\n");
+  scene->graph.endpoint_appeared("/camera", EndpointKind::kPublisher, "/rgb");
+  const auto invalid = [&](const char* strategy) {
+    return invalidity(scene.rules()[scene.strategy(strategy)], *scene);
+  };
+  EXPECT_FALSE(invalid("Silent.again"));
+  ComponentState& camera = scene->components[scene.component("camera")];
+  camera.lifecycle = camera.intended_lifecycle = Lifecycle::kInactive;
+  ASSERT_TRUE(invalid("Silent.again"));
+  EXPECT_TRUE(invalid("Silent.again")->waits);
+  EXPECT_FALSE(invalid("Silent.restart")) << "it activates";
+  EXPECT_FALSE(invalid("Leaks.shrink")) << "that is no matter of its lifecycle";
+  scene.tried("Silent.restart");
+  ASSERT_TRUE(invalid("Silent.again"));
+  EXPECT_FALSE(invalid("Silent.again")->waits) << "all was tried";
+  camera.brought = Brought{Lifecycle::kInactive};
+  EXPECT_FALSE(invalid("Silent.again")) << "a strategy has deactivated it";
+}
+
 // It holds what it has set as long as its failure is there, and no more than that.
 TEST(Validity, RulesOutToSetWhatALastResortHasSet) {
   Scene scene(
@@ -133,6 +160,25 @@ TEST(Validity, LeavesInactiveWhatALastResortHasDeactivated) {
   EXPECT_FALSE(invalid_in(scene, "Other.off"));
   scene.process("tool", ProcessState::kGone);
   EXPECT_FALSE(invalid_in(scene, "Other.anew")) << "a dead process is started again";
+}
+
+// They are nodes of one process.
+TEST(Validity, LeavesTheProcessOfWhatALastResortHolds) {
+  const std::string strategies =
+      "STRATEGY anew 50 10\nADAPTATION loc redeploy 2\nSTRATEGY off 50 10\nADAPTATION loc stop 2\n";
+  Scene scene = beside_last_resort("ERROR", "ADAPTATION tool deactivate 1\n", strategies);
+  let_stand(scene);
+  EXPECT_FALSE(invalid_in(scene, "Other.anew"));
+  scene->components[scene.component("loc")].ends_with = {scene.component("tool")};
+  ASSERT_TRUE(invalid_in(scene, "Other.anew"));
+  EXPECT_EQ(invalid_in(scene, "Other.anew")->component, scene.component("tool"));
+  EXPECT_TRUE(invalid_in(scene, "Other.anew")->waits);
+  EXPECT_FALSE(invalid_in(scene, "Other.off")) << "it does nothing then";
+  Scene stopped = beside_last_resort("ERROR", "ADAPTATION tool stop 1\n", strategies);
+  let_stand(stopped);
+  stopped.process("tool", ProcessState::kGone);
+  stopped->components[stopped.component("loc")].ends_with = {stopped.component("tool")};
+  EXPECT_TRUE(invalid_in(stopped, "Other.anew")) << "it would be started again";
 }
 
 // Its own rule goes on: the new process is brought to inactive.

@@ -311,6 +311,17 @@ TEST(BayesPlanner, RepairsNothingThatAnExhaustedFailureExplains) {
   EXPECT_EQ(scene.plan(kFewRedeployments), "B.restart D.restart") << "it no longer explains them";
 }
 
+// The component is that which the rule reads, wherever it is declared.
+TEST(BayesPlanner, NamesTheComponentThatAReportIsAbout) {
+  Scene scene(failure_of("b", "B") +
+              "COMPONENT a NODE /a\nSIGNAL dirt DIAGNOSTIC a KEY dirt\n"
+              "RULE Dirty\nPOLICIES ERROR REPORT\nTRIGGER dirt > 1\n");
+  scene.link("a", "b").exhaust("Dirty").fail("B");
+  EXPECT_EQ(scene.plan(kFewRedeployments), "");
+  EXPECT_EQ(scene.candidate("B.restart").failure, scene.rule("Dirty"));
+  EXPECT_EQ(scene.candidate("B.restart").component, scene.component("a"));
+}
+
 // If a process in a feedback loop is down, its component was the first to fail.
 TEST(BayesPlanner, RepairsNothingInACircleThatADeadMemberExplains) {
   Scene scene(failure_of("a", "A") + failure_of("b", "B") +

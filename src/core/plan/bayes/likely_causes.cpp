@@ -6,6 +6,7 @@
 
 #include "diagnose/evidence.h"
 #include "diagnose/known_down.h"
+#include "diagnose/touched.h"
 #include "plan/also_ended.h"
 #include "plan/bayes/bayes_planner.h"
 #include "plan/beside_exhausted.h"
@@ -88,7 +89,8 @@ bool LikelyCauses::is_left_to_person(std::size_t node) const {
     case CauseNode::Kind::kTrouble: {
       const auto rules = knowledge_.states.touching(causes_[node].component);
       return std::none_of(rules.begin(), rules.end(), [&](RuleId rule) {
-        return knowledge_.states[rule].detection.trigger.known;
+        return knowledge_.states[rule].detection.trigger.known &&
+               !knowledge_.states.awaits_person(rule);
       });
     }
     case CauseNode::Kind::kUnsupplied:
@@ -134,6 +136,10 @@ std::optional<ComponentId> LikelyCauses::missing_member(RuleId rule) const {
 
 ComponentId LikelyCauses::likeliest_component(RuleId rule) const {
   if (knowledge_.rules[rule].components.size() == 1) return knowledge_.rules[rule].components[0];
+  if (knowledge_.rules[rule].components.empty()) {  // it only reports
+    const std::vector<ComponentId> about = touched_by(rule, knowledge_);
+    return about.empty() ? ComponentId{} : about.front();
+  }
   if (const auto missing = missing_member(rule)) return *missing;
   std::pair<std::int64_t, ComponentId> best{-1, {}};
   for (const ComponentId c : knowledge_.rules[rule].components) {
