@@ -12,8 +12,8 @@ namespace {
 constexpr Duration kAnswerPatience = std::chrono::seconds(5);
 
 // Bytes of a name and a text in events, which anybody may send in the node's name.
-constexpr std::size_t kMaxName = 256;
-constexpr std::size_t kMaxText = 64 << 10;
+constexpr std::size_t kMaxParameterName = 256;
+constexpr std::size_t kMaxParameterText = 64 << 10;
 
 }  // namespace
 
@@ -66,11 +66,11 @@ void NodeReading::parameters_changed(const msg::ParameterEvent& event) {
   for (const auto* changes : {&event.new_parameters, &event.changed_parameters}) {
     for (const msg::Parameter& changed : *changes) {
       const bool has_room =
-          told_.parameters->size() < kMaxParameters && changed.name.size() <= kMaxName;
+          told_.parameters->size() < kMaxParameters && changed.name.size() <= kMaxParameterName;
       if (!has_room && !told_.parameters->contains(changed.name)) continue;
       auto value = value_or_list(changed.value);
       const auto* text = value ? std::get_if<std::string>(&*value) : nullptr;
-      if (text != nullptr && text->size() > kMaxText) value.reset();
+      if (text != nullptr && text->size() > kMaxParameterText) value.reset();
       (*told_.parameters)[changed.name] = std::move(value);
     }
   }
