@@ -78,7 +78,7 @@ Expected<LiveInventory> look(const std::vector<Expansion>& files, Duration wait)
   LiveInventory robot = live::look_for(named, **survey, wait);
   if (!robot.has_robot())
     return Error{live::nobody_on(ros2::options_from_environment()->domain) +
-                 " Nothing was checked against them"};
+                 " The rules were not compared with a robot"};
   return robot;
 }
 

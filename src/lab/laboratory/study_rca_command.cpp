@@ -307,7 +307,7 @@ void add_factors(CLI::App& command, RcaFactors& factors) {
       ->capture_default_str();
 }
 
-// Of the public benchmark (rca_study/export.h).
+// Options of the public benchmark (rca_study/export.h).
 void add_cases(CLI::App& command, RcaOptions& options) {
   auto* output =
       command
