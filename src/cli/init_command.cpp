@@ -79,11 +79,11 @@ Expected<init::RobotProfile> look(const InitOptions& options) {
         "takes; write the rules by hand"};
   auto survey = live::open_survey();
   if (!survey) return Error{survey.error()};
-  say(stderr, "culprit: watching domain {} for {}; the robot should be well meanwhile\n",
+  say(stderr, "culprit: watching domain {} for {}; keep the robot healthy meanwhile\n",
       participant->domain, to_string(from_seconds(options.seconds)));
   init::RobotProfile seen =
       init::look(**survey, participant->domain, from_seconds(options.seconds));
-  if (!seen.robot.has_robot()) return Error{live::nobody_on(participant->domain)};
+  if (!seen.robot.has_robot()) return Error{live::no_nodes_on(participant->domain)};
   return seen;
 }
 
