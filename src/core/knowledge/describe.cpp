@@ -137,8 +137,8 @@ class Describer {
     return rules_[e.rule].name + " is blind: " + describe(e.blind);
   }
   std::string operator()(const RuleSees& e) const {
-    return rules_[e.rule].name + " can see again after " + two_decimals(seconds(e.blind_for)) +
-           " s";
+    return rules_[e.rule].name + " can be evaluated again after " +
+           two_decimals(seconds(e.blind_for)) + " s";
   }
   std::string operator()(const LifecycleIntended&) const { return ""; }
   std::string operator()(const CameUp&) const { return ""; }
