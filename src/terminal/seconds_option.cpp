@@ -34,7 +34,7 @@ CLI::Option* add_seconds(CLI::App& command, const std::string& name, double& val
     double number = 0;
     const bool is_number = CLI::detail::lexical_cast(text, number);
     if (is_number && number >= least && number <= most) return std::string();
-    return fmt::format("{} is not from {} to {}", text, to_string(from_seconds(least)),
+    return fmt::format("{}s is not from {} to {}", text, to_string(from_seconds(least)),
                        to_string(from_seconds(most)));
   };
   return command.add_option(name, value, what)

@@ -149,7 +149,7 @@ std::optional<std::string> Governor::objection(const Order& order, Autonomy auto
                [&](const Silence& o) -> Objection {
                  if (!exists(o.what, rules)) return "there is no such component or rule";
                  if (o.lasts && *o.lasts <= Duration::zero())
-                   return "a silence lasts longer than 0 s";
+                   return "a mute lasts longer than 0 s";
                  return std::nullopt;
                },
                [&](const LiftSilence& o) -> Objection {
