@@ -75,8 +75,8 @@ Expected<init::RobotProfile> look(const InitOptions& options) {
   if (!participant) return Error{participant.error()};
   if (participant->security)
     return Error{
-        "the domain is secured, and keys for what rules need do not open all that a look "
-        "takes; write the rules by hand"};
+        "the domain is secured, and keys for the inputs of rules do not permit all that init "
+        "reads; write the rules by hand"};
   auto survey = live::open_survey();
   if (!survey) return Error{survey.error()};
   say(stderr, "culprit: watching domain {} for {}; keep the robot healthy meanwhile\n",
@@ -123,7 +123,9 @@ int draft_rules(const InitOptions& options) {
   const Checked checked = check(rules);
   if (!checked.rules || checked.rules->components.empty()) {
     say(stderr, "{}", *text);
-    return fail("no node of this robot can be started again by what could be found out");
+    return fail(
+        "culprit found no node of this robot that it can start again; the draft above gives the "
+        "reasons");
   }
   const std::string parameters = init::parameters_text(*seen);
   if (!parameters.empty() && std::filesystem::exists(seen->parameter_file))

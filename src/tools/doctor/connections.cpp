@@ -229,7 +229,7 @@ void look_for_near_name(Medium medium, const std::string& name, const Channel& c
                    Gravity::kWarning,
                    name + ": " + reader.node + " → no server",
                    "no node serves " + name + ", and no node calls " + meant + " of " + writer,
-                   reader.node + " waits for a service for ever, if that is what it means",
+                   reader.node + " waits for a service for ever, if that is the intended name",
                    "remap one of them, or start both in the same namespace",
                    {reader.node, writer},
                    name});
