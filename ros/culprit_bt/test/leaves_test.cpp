@@ -320,7 +320,7 @@ TEST(WaitForRecovery, FailsWithWhatCulpritSays) {
 TEST(WaitForRecovery, FailsWhereCulpritCannotBeReached) {
   Mission mission(R"(<WaitForRecovery unreachable="0.2" reason="{reason}"/>)");
   EXPECT_EQ(mission.end(), NodeStatus::FAILURE);
-  EXPECT_NE(mission.says("reason").find("culprit is not heard"), std::string::npos);
+  EXPECT_NE(mission.says("reason").find("culprit is not reachable"), std::string::npos);
 }
 
 TEST(WaitForRecovery, FailsWhenItsTimeIsOverThoughNobodySaysSo) {

@@ -92,7 +92,7 @@ void examine_answers(const Picture& picture, Findings& all) {
       all.push_back({"D011",
                      Gravity::kError,
                      name,
-                     "its process has ended, without a good-bye",
+                     "its process has ended, without an announcement",
                      "others take it for alive until its lease ends (20 s)",
                      "start it again; its log says why it ended",
                      {name}});
@@ -148,7 +148,7 @@ void examine_comings(const Picture& picture, Findings& all) {
           {"D011",
            Gravity::kError,
            name,
-           "it was lost while the doctor looked: its lease has run out, without a good-bye",
+           "it was lost while the doctor looked: its lease has run out, without an announcement",
            "its process was killed, or its computer is out of reach",
            "start it again; its log says why it ended",
            {name}});
