@@ -377,7 +377,8 @@ void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
   auto* run = command->add_option(
       "--run", options->single_run,
       "With --explain: the run to explain, from 0. With --live: the run to play, metrics as JSON");
-  command->add_flag("--explain", "Explain the decisions of the run that --run names")
+  command->add_flag("--explain")
+      ->description("Explain the decisions of the run that --run names")
       ->needs(run)
       ->excludes("--live");
   command->add_option("--switches", options->switches, "With --run: the configuration")
