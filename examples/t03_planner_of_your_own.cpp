@@ -1,8 +1,8 @@
 // t03: a planner of your own behind its port (plan/planner.h).
 //
 // A planner is asked about all failures that wait for a decision, and knows what the manager knows.
-// This one takes each rule's strategies in the order in which they are written. Whatever it chooses
-// still passes the governor (execute/governor.h).
+// This one takes each rule's strategies in the order in which they are written. The
+// governor still checks each choice (execute/governor.h).
 #include <cstdio>
 #include <map>
 #include <utility>

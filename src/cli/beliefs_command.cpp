@@ -173,8 +173,8 @@ void add_beliefs(CLI::App& app, int& exit_code) {
       ->type_name("FILE")
       ->required();
   const auto forget = add("reset", "Forget the learned rates", reset);
-  forget.first->add_option("RULE", forget.second->rule, "Of this rule");
-  forget.first->add_flag("--all", forget.second->all, "Of all rules");
+  forget.first->add_option("RULE", forget.second->rule, "Forget the rates of this rule");
+  forget.first->add_flag("--all", forget.second->all, "Forget the rates of all rules");
 }
 
 }  // namespace culprit::cli

@@ -77,8 +77,8 @@ Expected<LiveInventory> look(const std::vector<Expansion>& files, Duration wait)
   if (!survey) return Error{survey.error()};
   LiveInventory robot = live::look_for(named, **survey, wait);
   if (!robot.has_robot())
-    return Error{live::nobody_on(ros2::options_from_environment()->domain) +
-                 " Nothing was checked against them"};
+    return Error{live::no_nodes_on(ros2::options_from_environment()->domain) +
+                 " The rules were not compared with a robot"};
   return robot;
 }
 

@@ -137,7 +137,7 @@ TEST_F(Drill, ARobotThatIsIllAlreadyIsNotBroken) {
       << "RULE Ill\n  POLICIES WARNING REPORT\n  TRIGGER alive(camera)\n";
   TestProgram program(world, drill({"--kinds", "kill", "--patience", "5"}));
   EXPECT_EQ(program.wait(60s), 1) << program.output();
-  EXPECT_THAT(program.output(), HasSubstr("the robot is not well: Ill is "));
+  EXPECT_THAT(program.output(), HasSubstr("the robot is not healthy: Ill is "));
   EXPECT_THAT(program.output(), testing::Not(HasSubstr("injects")));
 }
 

@@ -86,8 +86,7 @@ Expected<std::unique_ptr<DrillSession>> DrillSession::begin(Options options, Say
 
 Expected<void> DrillSession::undo_what_is_left() {
   const auto left = drill::read_injected(options_.injected);
-  if (!left)
-    return Error{left.error() + "; see to it that the robot is well, then remove this file"};
+  if (!left) return Error{left.error() + "; restore the healthy robot, then remove this file"};
   if (!*left) return {};
   const bool is_same_boot = (*left)->boot == boot_id();
   if (is_same_boot) end_manager((*left)->manager);
@@ -115,7 +114,7 @@ DrillSession::~DrillSession() {
     say_("the culprit of this drill exited; another one heals the robot");
     auto next = DrillManager::start(options_.manager, options_.log, kNeverStopped);
     if (!next) {
-      say_(next.error() + "; see to it that the robot is well");
+      say_(next.error() + "; restore the healthy robot");
       return;
     }
     manager_ = std::move(*next);
@@ -161,7 +160,7 @@ Expected<void> DrillSession::wait_until_well(Until until) {
     if (calm_ && live_now() - *calm_ >= drill::kCalm) return {};
     next_look();
   }
-  return Error{"the robot is not well: " + listed(complaints)};
+  return Error{"the robot is not healthy: " + listed(complaints)};
 }
 
 Expected<void> DrillSession::may_inject() const {

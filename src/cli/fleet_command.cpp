@@ -107,9 +107,9 @@ void add_report(CLI::App& fleet, const Kind& kind, int& exit_code) {
       ->check(CLI::Range(1, 3650))
       ->capture_default_str();
   auto* json = command->add_flag("--json", options->as_json, "Print the result as a JSON document");
-  auto* html =
-      command->add_option("--html", options->html, "As one HTML file, there")->type_name("FILE");
-  auto* sql = command->add_flag("--sql", options->as_sql, "The queries that make the tables");
+  auto* html = command->add_option("--html", options->html, "Write the tables to this HTML file")
+                   ->type_name("FILE");
+  auto* sql = command->add_flag("--sql", options->as_sql, "Print the queries that make the tables");
   json->excludes(html)->excludes(sql);
   html->excludes(sql);
   command->callback([options, &kind, &exit_code] { exit_code = report(kind, *options); });

@@ -48,7 +48,8 @@ std::string lower_case_of(std::string_view text) {
   return out;
 }
 
-// Each word by itself, as in "coupling (κ)" and "upstream, downstream".
+// Each word by itself, as in "coupling (κ)" and "upstream, downstream"; with blanks for underscores,
+// as find_term reads them.
 std::vector<std::string> words_of_term(const std::string& name) {
   std::vector<std::string> words;
   std::string word;
@@ -61,7 +62,7 @@ std::vector<std::string> words_of_term(const std::string& name) {
     if (c == ',' || c == '(' || c == ')' || c == '/')
       end_word();
     else
-      word += c;
+      word += c == '_' ? ' ' : c;
   }
   end_word();
   return words;

@@ -45,6 +45,9 @@ TEST(Glossary, FindsTermsAsPeopleWriteThem) {
   EXPECT_EQ(find_term("frobnicate"), nullptr);
   EXPECT_EQ(nearest_term("componnet"), "component");
   EXPECT_NE(find_term("REPORT"), nullptr);
+  for (const char* look :
+       {"DEAD", "TIME_HELD", "time held", "UNWATCHED", "unreachable", "silenced"})
+    EXPECT_NE(find_term(look), nullptr) << look;
   EXPECT_THAT(page(*find_term("blind")), HasSubstr("never acts.\n")) << "a link is no text";
   EXPECT_THAT(page(*find_term("component")), HasSubstr("A ROS 2 node that culprit manages"));
 }

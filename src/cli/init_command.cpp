@@ -75,15 +75,15 @@ Expected<init::RobotProfile> look(const InitOptions& options) {
   if (!participant) return Error{participant.error()};
   if (participant->security)
     return Error{
-        "the domain is secured, and keys for what rules need do not open all that a look "
-        "takes; write the rules by hand"};
+        "the domain is secured, and keys for the inputs of rules do not permit all that init "
+        "reads; write the rules by hand"};
   auto survey = live::open_survey();
   if (!survey) return Error{survey.error()};
-  say(stderr, "culprit: watching domain {} for {}; the robot should be well meanwhile\n",
+  say(stderr, "culprit: watching domain {} for {}; keep the robot healthy meanwhile\n",
       participant->domain, to_string(from_seconds(options.seconds)));
   init::RobotProfile seen =
       init::look(**survey, participant->domain, from_seconds(options.seconds));
-  if (!seen.robot.has_robot()) return Error{live::nobody_on(participant->domain)};
+  if (!seen.robot.has_robot()) return Error{live::no_nodes_on(participant->domain)};
   return seen;
 }
 
@@ -133,7 +133,9 @@ int draft_rules(const InitOptions& options) {
   const Checked checked = check(rules);
   if (!checked.rules || checked.rules->components.empty()) {
     say(stderr, "{}", *text);
-    return fail("no node of this robot can be started again by what could be found out");
+    return fail(
+        "culprit found no node of this robot that it can start again; the draft above gives the "
+        "reasons");
   }
   const std::string parameters = init::parameters_text(*seen);
   if (!parameters.empty() && std::filesystem::exists(seen->parameter_file))

@@ -85,14 +85,17 @@ void add_log(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<LogOptions>();
   CLI::App* command = app.add_subcommand("log", "Show culprit's findings, decisions and actions");
   options->journal.add_to(*command);
-  command->add_option("-n,--lines", options->lines, "How many of the latest rows")
+  command->add_option("-n,--lines", options->lines, "Number of the latest rows")
       ->check(CLI::Range(1, 1'000'000'000))
       ->capture_default_str();
   command->add_option("--since", options->since, "Only rows of the last 10min, 2h ...");
-  command->add_option("--kind", options->kind, "All rows of this kind only")
+  command
+      ->add_option("--kind", options->kind, "Only rows of this kind, without the limit of --lines")
       ->check(CLI::IsMember({"session", "robot", "event", "intent", "outcome", "belief", "coupling",
                              "latency", "gap", "end"}));
-  command->add_option("--component", options->component, "Only rows that name this component")
+  command
+      ->add_option("--component", options->component,
+                   "Only rows that name this component, without the limit of --lines")
       ->type_name("COMPONENT");
   command->add_flag("-f,--follow", options->follows, "Go on with new rows until Ctrl-C");
   command->add_flag("--json", options->json, "One JSON document per row");

@@ -103,14 +103,16 @@ std::string RunningCulprit::name() const {
 void WhichCulprit::add_to(CLI::App& command) {
   const std::string kGroup = "Where several culprits run on this machine";
   command
-      .add_option("--domain", domain, "The one on this DDS domain (default: ROS_DOMAIN_ID, or 0)")
+      .add_option("--domain", domain,
+                  "The culprit on this DDS domain (default: ROS_DOMAIN_ID, or 0)")
       ->check(CLI::Range(0, 232))
       ->group(kGroup);
-  command.add_option("--node-name", node_name, "The one with this node name: culprit_2")
+  command
+      .add_option("--node-name", node_name, "The culprit with this node name, such as culprit_2")
       ->group(kGroup);
   command
       .add_option("--user", user,
-                  "For root: that of this user (default: root's, or that in /run/culprit)")
+                  "For root: the culprit of this user (default: root's, or that in /run/culprit)")
       ->type_name("USER")
       ->group(kGroup);
 }

@@ -161,7 +161,7 @@ std::vector<Alerting::Problem> Alerting::problems_of_the_whole() const {
         "nothing more is done: " + storm->reason)
         .alert.needs_person = true;
   if (!manager_->hears())
-    add("deafness in general", "culprit cannot hear the robot",
+    add("deafness in general", "culprit receives nothing from the robot",
         "nothing is judged, and nothing is done");
   for (std::size_t c = 0; c < knowledge.rules.components.size(); ++c) {
     if (!is_missing(ComponentId(c), knowledge)) continue;

@@ -219,7 +219,7 @@ TEST(Alerting, TellsThatTheRobotCannotBeHeardAndThatItCanAgain) {
   alerted.robot->tell(HearingLost{"a test"});
   alerted.run_for(10s);
   ASSERT_EQ(alerted.posted.size(), 1u) << testing::PrintToString(alerted.texts());
-  EXPECT_EQ(alerted.posted[0].headline, "culprit cannot hear the robot");
+  EXPECT_EQ(alerted.posted[0].headline, "culprit receives nothing from the robot");
   alerted.robot->tell(HearingRegained{});
   alerted.run_for(1min);
   EXPECT_EQ(alerted.posted.back().state, Alert::State::kResolved);

@@ -52,7 +52,7 @@ bool HostClaim::look() {
     return false;
   }
   stranger_ = known_ ? described(*known_) + " of user " + std::to_string(known_->user)
-                     : "a process that does not say who it is";
+                     : "a process that does not identify itself";
   return true;
 }
 

@@ -325,8 +325,8 @@ void LiveSession::begin(const std::atomic<bool>& stop, const KnownRobot& known_r
     keeper.keep = [&](const Unfinished& unfinished) {
       if (kept.empty()) return;
       if (const auto written = write_unfinished(kept, unfinished); !written)
-        frame_.listener.on_remark(
-            "culprit: what is being launched is not kept: " + written.error() + "\n");
+        frame_.listener.on_remark("culprit: cannot store the components that are being launched: " +
+                                  written.error() + "\n");
     };
     const auto start = [&](CommandId command, ComponentId component) {
       robot_->start(command, component);

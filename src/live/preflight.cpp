@@ -78,7 +78,7 @@ class Look {
 
   Snapshot snapshot(const std::stop_token& stop) {
     const LiveInventory robot = look_for({&*checked_.rules}, *survey_, kLook, stop);
-    if (!robot.has_robot()) return {false, "culprit: " + nobody_on(domain_) + "\n"};
+    if (!robot.has_robot()) return {false, "culprit: " + no_nodes_on(domain_) + "\n"};
     return {true, report(source_, *checked_.rules, robot, domain_)};
   }
   bool waits_for_robot(const std::stop_token& stop) {
@@ -97,7 +97,7 @@ class Look {
 
 }  // namespace
 
-std::string nobody_on(std::uint32_t domain) {
+std::string no_nodes_on(std::uint32_t domain) {
   return fmt::format("no nodes were seen on domain {}; is ROS_DOMAIN_ID the robot's?", domain);
 }
 

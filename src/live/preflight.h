@@ -17,7 +17,7 @@
 namespace culprit::live {
 
 // "no nodes were seen on domain 7; is ROS_DOMAIN_ID the robot's?"
-std::string nobody_on(std::uint32_t domain);
+std::string no_nodes_on(std::uint32_t domain);
 
 // Looks until all that these rules name is there, or `wait` is over, or it is to stop; asks
 // systemd about their units, and looks for what their launch commands need. Runs nothing of theirs.

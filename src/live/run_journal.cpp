@@ -97,7 +97,7 @@ std::optional<Recovery> take_over(const journal::Reader& reader,
   std::erase_if(beginning.past, journal::is_about_silence);
   if (!learned->beliefs.empty())
     beginning.findings.push_back(
-        fmt::format("what was learned of {} is known",
+        fmt::format("the learned values of {} are known",
                     amount_of(learned->beliefs.size(), "strategy", "strategies")));
   if (recovery->is_other_robot()) return *recovery;
   for (const Interrupted& each : recovery->interrupted)

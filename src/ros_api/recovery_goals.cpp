@@ -44,7 +44,7 @@ std::string no_such(const std::string& component, const Json& components) {
 Outlook outlook_of(const Json& status, const std::string& component) {
   Outlook outlook;
   if (status["hears"] == false) {
-    outlook.doing = "the robot cannot be heard";
+    outlook.doing = "culprit receives nothing from the robot";
     return outlook;
   }
   outlook.is_known = true;
@@ -159,7 +159,8 @@ std::vector<RecoveryGoals::Id> RecoveryGoals::cancel(const Id& id, WallTime unti
     const bool is_meant = is_any || each == id || (until != WallTime{} && goal.accepted <= until);
     if (is_meant && goal.state == State::kExecuting) canceled.push_back(each);
   }
-  for (const Id& each : canceled) end(goals_.at(each), State::kCanceled, "nobody waits any more");
+  for (const Id& each : canceled)
+    end(goals_.at(each), State::kCanceled, "no client waits any more");
   return canceled;
 }
 

@@ -89,7 +89,7 @@ TEST(RecoveryGoals, TakeForNoRecoveryWhatIsNotKnown) {
   goals.look(deaf);
   EXPECT_EQ(state_of(goals, 1), State::kExecuting);
   EXPECT_EQ(state_of(goals, 2), State::kExecuting);
-  EXPECT_EQ(goals.find(id_of(2))->feedback["doing"], "the robot cannot be heard");
+  EXPECT_EQ(goals.find(id_of(2))->feedback["doing"], "culprit receives nothing from the robot");
 
   for (const auto& [member, value] : std::map<std::string, Json>{
            {"is_present", false}, {"process", 2}, {"process", 4}, {"adapting", "restart"}}) {

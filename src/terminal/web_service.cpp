@@ -71,10 +71,10 @@ Expected<web::Access> access_for(const WebOptions& options) {
   }
   if (options.token_file.empty()) {
     if (!access.is_local)
-      return Error{
-          fmt::format("others can reach {}, so that a token is needed that you have chosen: "
-                      "write one to a file that only you can read, and add --token-file",
-                      options.address)};
+      return Error{fmt::format(
+          "other machines can reach {}: write a token to a file that only you can read, "
+          "and add --token-file FILE",
+          options.address)};
     access.token = web::make_token();
     return access;
   }

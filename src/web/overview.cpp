@@ -120,7 +120,7 @@ ComponentLook look_of(ComponentId id, std::size_t health, const Manager& manager
   const ComponentState& state = knowledge.components[id];
   ComponentLook look{kHealthWords[health], ""};
   if (knowledge.is_unheard(id) && !state.time_held) {
-    look = {"UNREACHABLE", "not heard"};
+    look = {"UNREACHABLE", "unreachable"};
   } else if (state.process == ProcessState::kStopped && state.alive) {
     look = {"STOPPED", "stopped"};
   } else if (state.alive && state.hangs()) {

@@ -209,7 +209,7 @@ Json rules_to_json(const RuleSet& rules) {
 
 namespace {
 
-// Of a culprit that only looks at the robot, `culprit doctor` say: no part of it.
+// The node of a culprit that only looks at the robot, such as `culprit doctor`, is no part of it.
 bool is_survey(const std::string& node) {
   return node.substr(node.rfind('/') + 1).starts_with("_culprit_survey");
 }

@@ -110,7 +110,7 @@ const kFile = 'beliefs.json'
 
 // The beliefs as a file that `culprit beliefs import` takes on another robot.
 const exportAll = () =>
-  act('Exporting what was learned', async () => {
+  act('Exporting the learned values', async () => {
     const learned = await call<unknown>('GET', '/api/beliefs')
     download(kFile, JSON.stringify(learned, null, 2) + '\n', 'application/json')
   })
@@ -119,7 +119,7 @@ const exportAll = () =>
 function Forget({ rule }: { rule: string }) {
   const [asked, ask] = useState<string | null>(null) // '' is all rules
   if (!can('post', '/api/orders')) return null
-  const words = asked === '' ? 'all that was learned' : `what was learned of ${asked}`
+  const words = asked === '' ? 'all learned values' : `the learned values of ${asked}`
   if (asked !== null)
     return (
       <span class="bar" role="alert">

@@ -20,7 +20,7 @@ std::shared_ptr<Culprit> Culprit::of(const BT::NodeConfig& config, const std::st
 Culprit::Culprit(std::shared_ptr<RosThread> thread, std::string name)
     : thread_(std::move(thread)),
       name_(std::move(name)),
-      why_not_("culprit is not heard as " + name_ + ": does `culprit run` run?") {
+      why_not_("culprit is not reachable as " + name_ + ": does `culprit run` run?") {
   subscribe();
   rclcpp::Node& node = thread_->node();
   client_ = node.create_client<Ask>(name_ + "/get_parameters", rmw_qos_profile_services_default,
@@ -69,7 +69,7 @@ void Culprit::look() {
   const std::scoped_lock lock(mutex_);
   if (!is_there) {
     is_silent_ = false;
-    forget("culprit is not heard as " + name_ + ": does `culprit run` run?");
+    forget("culprit is not reachable as " + name_ + ": does `culprit run` run?");
   }
   if (is_asked_ && now - asked_ > kPatience) {
     client_->remove_pending_request(request_);

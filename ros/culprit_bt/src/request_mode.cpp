@@ -99,7 +99,7 @@ void RequestMode::read_back() {
 
 std::string RequestMode::why_late() const {
   if (!answers_)
-    return "nobody serves " + system_ +
+    return "no node serves " + system_ +
            "/change_mode: is the name right, and does `culprit modes` run?";
   if (read_ == Clock::time_point()) return system_ + "/change_mode did not answer";
   if (seen_.empty())

@@ -54,9 +54,9 @@ TEST(Health, IsWellWhereNothingIsWrong) {
 }
 
 TEST(Health, IsUnknownWhileNothingWasHeardOfCulprit) {
-  const Health health = health_of({nullptr, "culprit is not heard", 0}, "camera", kNothing);
+  const Health health = health_of({nullptr, "culprit is not reachable", 0}, "camera", kNothing);
   EXPECT_EQ(health.outlook, Outlook::kUnknown);
-  EXPECT_EQ(health.reason, "culprit is not heard");
+  EXPECT_EQ(health.reason, "culprit is not reachable");
 }
 
 TEST(Health, IsUnknownWhileCulpritCannotHearTheRobot) {

@@ -476,7 +476,7 @@ TEST_F(BagTest, SaysWhatElseAFileIs) {
   EXPECT_THAT(why(days), HasSubstr("it holds the recordings monday, tuesday; name one"));
 }
 
-// Whatever is cut off or changed, reading ends, and what it gives was written.
+// Reading a damaged file always ends, and gives only messages that were written.
 RC_GTEST_PROP(DamagedBag, IsReadToItsEnd, ()) {
   const std::string name = (fs::temp_directory_path() / "culprit-bag-").string() +
                            std::to_string(getpid()) + "-damaged.mcap";

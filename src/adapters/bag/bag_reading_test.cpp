@@ -1,4 +1,4 @@
-// What rules see in a bag.
+// Signals that rules read from a bag.
 #include "bag/bag_reading.h"
 
 #include <gmock/gmock.h>

@@ -16,7 +16,7 @@ namespace culprit::bag {
 class ThinnedCurve {
  public:
   static constexpr std::size_t kMostBuckets = 400;
-  // What is larger, infinite or no number is left out: the difference of two must be a number.
+  // Values beyond this bound, infinities and NaN are left out: the difference of two must be a number.
   static constexpr double kMostValue = 1e300;
 
   struct Point {

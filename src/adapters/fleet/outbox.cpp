@@ -93,7 +93,7 @@ Expected<Outbox> Outbox::open(const fs::path& path, const std::string& machine) 
     const auto aside = Database::set_aside(path);
     if (!aside) return failure("it is damaged, and cannot be moved: " + aside.error());
     remark = "the file of unsent outcomes for the fleet was damaged; it is kept as '" +
-             aside->string() + "', and made anew from the journal";
+             aside->string() + "', and rebuilt from the journal";
   }
   auto database = open_database(path);
   if (!database) return failure(database.error());

@@ -616,7 +616,7 @@ TEST_F(LocalServer, OpensItsSocketForItsUserOnlyAndTakesItAway) {
   EXPECT_EQ(status.st_mode & 0777, 0600u);
   server.reset();
   EXPECT_FALSE(std::filesystem::exists(path));
-  EXPECT_THAT(client.get("/api/about").error(), HasSubstr("nobody listens"));
+  EXPECT_THAT(client.get("/api/about").error(), HasSubstr("no program listens"));
 }
 
 TEST_F(LocalServer, TakesThePlaceOfWhatAKilledOneLeft) {

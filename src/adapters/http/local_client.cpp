@@ -23,7 +23,7 @@ httplib::Client client_of(const std::filesystem::path& socket, Duration patience
 }
 
 std::string why_no_answer(httplib::Error error, Duration patience) {
-  if (error == httplib::Error::Connection) return "nobody listens there";
+  if (error == httplib::Error::Connection) return "no program listens there";
   if (error == httplib::Error::Read || error == httplib::Error::Write)
     return "no answer came within " + culprit::to_string(patience);
   return httplib::to_string(error);

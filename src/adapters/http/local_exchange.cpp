@@ -94,7 +94,7 @@ class Exchange {
     if (socket_ < 0) return fail(std::string("no socket can be made: ") + std::strerror(errno));
     if (connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
       if (errno == EAGAIN || errno == EINTR) return;
-      if (errno == ECONNREFUSED || errno == ENOENT) return fail("nobody listens there");
+      if (errno == ECONNREFUSED || errno == ENOENT) return fail("no program listens there");
       return fail(std::strerror(errno));
     }
     ucred peer{};

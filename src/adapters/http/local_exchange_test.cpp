@@ -104,7 +104,7 @@ TEST(LocalExchange, HasTheAnswersOfTheHonestAmongTheHostile) {
   EXPECT_THAT(error_of(answers[4]), HasSubstr("no HTTP"));
   EXPECT_THAT(error_of(answers[5]), HasSubstr("larger than 64 KiB"));
   EXPECT_THAT(error_of(answers[6]), HasSubstr("no HTTP"));
-  EXPECT_THAT(error_of(answers[7]), HasSubstr("nobody listens"));
+  EXPECT_THAT(error_of(answers[7]), HasSubstr("no program listens"));
   ASSERT_TRUE(answers[8]) << answers[8].error();
   EXPECT_EQ(answers[8]->body, "{}");
   EXPECT_EQ(answers[8]->process, getpid());

@@ -203,7 +203,7 @@ TEST_F(Corruption, AJournalThatIsGoneIsBegunAnewWithWhatWasLearned) {
   fs::remove(folder / "b.journal-wal");
   const auto writer = Writer::open(folder / "b.journal", {});
   ASSERT_TRUE(writer) << writer.error();
-  EXPECT_THAT(writer->remark(), HasSubstr("the journal is gone"));
+  EXPECT_THAT(writer->remark(), HasSubstr("the journal file is missing"));
   EXPECT_TRUE(is_same(*writer->learned(), expected));
 }
 

@@ -473,11 +473,12 @@ void Recorder::tell_of_copy() {
   if (copy_trouble_ == writer_->copy_trouble()) return;
   copy_trouble_ = writer_->copy_trouble();
   if (!options_.on_trouble) return;
-  options_.on_trouble(copy_trouble_.empty()
-                          ? "the second copy of what was learned is written again"
-                          : "the second copy of what was learned cannot be written, so only the "
-                            "journal has it: " +
-                                copy_trouble_);
+  options_.on_trouble(
+      copy_trouble_.empty()
+          ? "culprit writes the second copy of its learned values again"
+          : "culprit cannot write the second copy of its learned values, so only the "
+            "journal has it: " +
+                copy_trouble_);
 }
 
 // Only once the journal has all that such a file may have: it is emptied.

@@ -111,7 +111,7 @@ Expected<Writer> Writer::open(const fs::path& path, Options options) {
     aside = *moved;
     remark = "the journal was damaged; it is kept as '" + aside.string() +
              "' and a new one begun, " +
-             (saved ? "with what was learned" : "and what was learned is lost");
+             (saved ? "with the learned values" : "without the learned values, which are lost");
   }
   options.is_damaged = false;
   auto database = open_database(path);
@@ -148,18 +148,18 @@ Expected<void> Writer::begin() {
 // The tables have no checksum: that a bit of them changed shows beside the copy only.
 Expected<void> Writer::compare(const Expected<std::optional<LearnedCopy>>& copy) {
   if (!copy) {
-    remark_ = "the second copy of what was learned is written anew: " + copy.error();
+    remark_ = "culprit rewrites the second copy of its learned values: " + copy.error();
     return {};
   }
   if (!*copy) return {};
   const LearnedCopy& second = **copy;
   if (second.newest.id > newest_.id) {
     remark_ = newest_.id == 0
-                  ? "the journal is gone; a new one is begun, with what was learned"
+                  ? "the journal file is missing; culprit began a new one with the learned values"
                   : "the end of the journal is lost, all after row " + std::to_string(newest_.id) +
                         " (row " + std::to_string(second.newest.id) +
                         " was there): was its -wal file removed? culprit now uses the second copy "
-                        "of what was learned";
+                        "of its learned values";
     return restore(second.learned);
   }
   auto hash = database_.prepare("SELECT hash FROM entry WHERE id = ?1");
@@ -172,7 +172,7 @@ Expected<void> Writer::compare(const Expected<std::optional<LearnedCopy>>& copy)
   const auto stored = learned();
   if (!expected || !stored) return Error{expected ? stored.error() : expected.error()};
   if (is_same(*expected, *stored)) return {};
-  remark_ = "what was learned was damaged in the journal; it is known from its second copy";
+  remark_ = "learned values were damaged in the journal; culprit uses their second copy";
   return restore(*expected);
 }
 
@@ -309,7 +309,7 @@ Expected<int> Writer::forget(const std::string& rule, std::int64_t now) {
   Batch batch;
   batch.entries.push_back(
       {0, now, std::string(kind::kBelief),
-       to_line({{"forgotten", rule}, {"text", "forgot what was learned of " + what}})});
+       to_line({{"forgotten", rule}, {"text", "forgot the learned values of " + what}})});
   auto begun = database_.run("BEGIN IMMEDIATE");
   if (!begun) return failure(path_, begun.error());
   const Link before = newest_;

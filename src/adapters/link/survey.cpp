@@ -229,7 +229,7 @@ Expected<MessageLibrary> Survey::find_service_type(const std::string& service) {
                                      : Expected<MessageLibrary>(Error{library.error()}));
           });
     }
-    found->set_value(Error{"nobody offers " + service + " any more"});
+    found->set_value(Error{"no node offers " + service + " any more"});
   });
   return found->get_future().get();
 }

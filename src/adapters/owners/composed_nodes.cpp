@@ -520,7 +520,7 @@ ComposedNodes::Answer ComposedNodes::load(Container& container, ComponentId part
     if (taken.outcome != Outcome::kDone)
       inbox_.put(LinkTrouble{container.node + " does not unload " + node.name +
                              ", which it loaded one too many: " + taken.text});
-    if (is_double) return {Outcome::kDone, "somebody else has loaded it", pid};
+    if (is_double) return {Outcome::kDone, "another program has loaded it", pid};
     return {Outcome::kRefused, container.node + " loaded it as " + node.name + " in place of " +
                                    component.node + ": the class takes no other name"};
   }

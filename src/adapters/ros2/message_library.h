@@ -28,8 +28,8 @@ class MessageLibrary {
   // Adds the definition of `type` that a recorder or another program keeps: the text of its .msg
   // file, then those of the types in it, each after a line of 80 '=' and one "MSG: package/Type"
   // (mcap.dev/spec/registry, ros2msg). Goes before the directories; the first one of a type counts.
-  // Of what is made for a service or an action, as "package/srv/Type_Event", it may be the text of the
-  // .srv or .action file, as rosbag2 stores it.
+  // For a type that is made for a service or an action, as "package/srv/Type_Event", `text` may be that
+  // of the .srv or .action file, as rosbag2 stores it.
   void learn(std::string_view type, std::string_view text);
 
   // `type` is "package/msg/Type" or a part as above. Types that consist of parts are known whether

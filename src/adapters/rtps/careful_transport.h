@@ -174,7 +174,7 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
     if (!*reception_.speaks || *reception_.holds > 0) return true;
     std::vector<Locator> wanted;
     for (; *begin != *end; ++*begin) wanted.push_back(**begin);
-    if (wanted.size() > kAnnouncedTo) wanted = those_of_somebody(wanted);
+    if (wanted.size() > kAnnouncedTo) wanted = in_use(wanted);
     Locators first(wanted.cbegin());
     Locators last(wanted.cend());
     return sender->send(bytes, size, &first, &last, timeout);
@@ -191,7 +191,7 @@ class CarefulTransport final : public eprosima::fastdds::rtps::ChainingTransport
   // are unused; the system needs as long for those as for others. Unused ports are left out if the
   // system lists the used ones, and ours among them. A port that is opened meanwhile gets it a
   // moment later.
-  std::vector<Locator> those_of_somebody(const std::vector<Locator>& all) {
+  std::vector<Locator> in_use(const std::vector<Locator>& all) {
     constexpr Duration kLasts = std::chrono::milliseconds(200);
     const MutexLock lock(mutex_);
     const Time now = live_now();

@@ -206,8 +206,8 @@ ByteView DatagramFilter::look_at(std::span<std::uint8_t> datagram, Clock::time_p
   course.received = received;
   std::copy_n(datagram.data() + 8, course.source.bytes.size(), course.source.bytes.begin());
   const bool addresses = addresses_ && changes_ == 0;
-  bool is_for_nobody = false;  // something of it
-  bool is_for_somebody = false;
+  bool has_unwanted = false;  // something of it
+  bool has_wanted = false;
   Gap gap{};
   std::size_t end = datagram.size();
   for (std::size_t at = rtps::kHeader; at < end;) {
@@ -225,8 +225,8 @@ ByteView DatagramFilter::look_at(std::span<std::uint8_t> datagram, Clock::time_p
       announcement = take(rest.first(size), course, gap);
     const bool is_passed = objection == nullptr && announcement != Announcement::kInGapBefore &&
                            (!addresses || address(rest.first(size), course, now));
-    is_for_somebody = is_for_somebody || (is_passed && !rtps::is_about_others(rest[0]));
-    is_for_nobody = is_for_nobody || (objection == nullptr && !is_passed);
+    has_wanted = has_wanted || (is_passed && !rtps::is_about_others(rest[0]));
+    has_unwanted = has_unwanted || (objection == nullptr && !is_passed);
     if (!is_passed) {
       // A submessage without a length of its own, or with a false one, is cut off; the rest becomes
       // padding.
@@ -248,7 +248,7 @@ ByteView DatagramFilter::look_at(std::span<std::uint8_t> datagram, Clock::time_p
     at = next;
   }
   if (end <= rtps::kHeader && datagram.size() > rtps::kHeader) return {};
-  if (is_for_nobody && !is_for_somebody) return {};
+  if (has_unwanted && !has_wanted) return {};
   return datagram.first(end);
 }
 
@@ -412,7 +412,7 @@ const char* DatagramFilter::objection(const Submessage& submessage, Clock::time_
       const std::int64_t base = body.read_sequence();
       // The fragments of a sample have shorter numbers.
       if (submessage.kind == rtps::kNackFragment) body.skip(4);
-      if (base < 0 || base > kFirst) return "an acknowledgement of what nobody wrote";
+      if (base < 0 || base > kFirst) return "an acknowledgement of data that was never written";
       if (!body.skip_bitmap() || body.left() < 4) return "a damaged acknowledgement";
       return nullptr;
     }

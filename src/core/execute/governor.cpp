@@ -148,8 +148,7 @@ std::optional<std::string> Governor::objection(const Order& order, Autonomy auto
                [&](const Propose& o) { return objection_to_propose(o.strategy); },
                [&](const Silence& o) -> Objection {
                  if (!exists(o.what, rules)) return "there is no such component or rule";
-                 if (o.lasts && *o.lasts <= Duration::zero())
-                   return "a silence lasts longer than 0 s";
+                 if (o.lasts && *o.lasts <= Duration::zero()) return "a mute lasts longer than 0 s";
                  return std::nullopt;
                },
                [&](const LiftSilence& o) -> Objection {

@@ -137,8 +137,8 @@ class Describer {
     return rules_[e.rule].name + " is blind: " + describe(e.blind);
   }
   std::string operator()(const RuleSees& e) const {
-    return rules_[e.rule].name + " can see again after " + two_decimals(seconds(e.blind_for)) +
-           " s";
+    return rules_[e.rule].name + " can be evaluated again after " +
+           two_decimals(seconds(e.blind_for)) + " s";
   }
   std::string operator()(const LifecycleIntended&) const { return ""; }
   std::string operator()(const CameUp&) const { return ""; }
@@ -273,7 +273,7 @@ class Describer {
     return "end the processes that culprit started";
   }
   std::string operator()(const Forget& o) const {
-    return "forget what was learned of " + (o.rule ? name_of(*o.rule) : "all strategies");
+    return "forget the learned values of " + (o.rule ? name_of(*o.rule) : "all strategies");
   }
 
  private:
@@ -526,7 +526,7 @@ std::string_view to_string(Criticality criticality) {
 namespace {
 
 // The owner that ends and starts it, where culprit does neither.
-std::string by_whom(const Component& component) {
+std::string owner_words(const Component& component) {
   using Engine = EngineContainer::Engine;
   const std::string where = component.host().empty() ? ")" : " on " + component.host() + ")";
   if (component.unit) return " (" + component.unit->name + where;
@@ -559,7 +559,7 @@ std::string describe(const Adaptation& adaptation, const RuleSet& rules) {
     case AdaptationType::kStart:
     case AdaptationType::kStop:
       return std::string(keyword(adaptation.type)) + " " + component +
-             by_whom(rules[adaptation.component]);
+             owner_words(rules[adaptation.component]);
     case AdaptationType::kActivate:
     case AdaptationType::kDeactivate:
     case AdaptationType::kRestart:

@@ -259,9 +259,9 @@ class AdaptationReader {
                         "did you mean 'set_parameter'?", Edit{span, "set_parameter"});
     }
     if (is_command_word(plain))
-      return read_.fail(
-          Code::kUnknownAdaptation, word.span, "no adaptation runs a command",
-          "redeploy starts a component anew, by its LAUNCH or UNIT; call calls a service");
+      return read_.fail(Code::kUnknownAdaptation, word.span, "no adaptation runs a command",
+                        "redeploy ends a process and starts it again, by its LAUNCH or UNIT; call "
+                        "calls a service");
     return read_.fail(
         Code::kUnknownAdaptation, word.span,
         "there is no adaptation '" + std::string(word.text) + "'",

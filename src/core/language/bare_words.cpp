@@ -22,7 +22,7 @@ std::string remedy_of_bare_value(const Expression& left, const std::string& name
   if (is_one_of({"NAN"}))
     return "write isnan(" + (left.kind == Kind::kName ? left.name.text : "signal") + ")";
   if (is_one_of({"NULL", "NONE", "NIL", "UNKNOWN", "UNDEFINED"}))
-    return "no value can be compared with a missing one: age(/topic) > 1s tells that none comes";
+    return "no value can be compared with a missing one: age(/topic) > 1s detects that none comes";
   if (is_one_of({"YES", "ON"})) return "write true";
   if (is_one_of({"NO", "OFF"})) return "write false";
   return "write a value, or declare it: CONST " + name + " = 0.5, or SIGNAL " + name + " ...";

@@ -492,7 +492,7 @@ class Checker {
       return {static_cast<std::int64_t>(written.impact.value)};
     report(Code::kImpactRange, written.impact.span,
            "an impact is a whole number of cycles, at least 1",
-           "count how many cycles it takes until the failure is gone");
+           "count the cycles until the failure is cleared");
     return {};
   }
 

@@ -100,7 +100,7 @@ void check_short_impacts(const syntax::Rule& rule, const RuleSet& rules,
           {Code::kShortImpact, Severity::kWarning, a.impact.span,
            "an impact of " + to_string(given) + " is over before a process is at work again",
            "count the cycles of " + to_string(rules.cycle) +
-               " from when its node is there until the failure is gone: 10 and more are usual"});
+               " from the start of its node until the failure is cleared: 10 and more are usual"});
     }
   }
 }

@@ -279,7 +279,7 @@ class LiveChecks {
       case kDecreaseParameter:
       case kChangeCommunication:
         return offers(a.component.text, "set_parameters", a.span, "has no parameters to set",
-                      "only nodes with a set_parameters service can be told new values");
+                      "only nodes with a set_parameters service accept new values");
       case kCall:
         return request(a);
       case kRedeploy:
@@ -444,7 +444,7 @@ class LiveChecks {
   }
 
   static constexpr const char* kListenLonger =
-      "correct the name, or listen for longer: some are published seldom";
+      "correct the name, or listen for longer: some are published rarely";
 
   const syntax::File& file_;
   const RuleSet& rules_;

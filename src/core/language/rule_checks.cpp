@@ -89,8 +89,8 @@ class Presence {
   const Adaptation* last_ = nullptr;
 };
 
-// The adaptations of one component in a strategy so far. Of several that contradict the same others
-// it keeps the first.
+// The adaptations of one component in a strategy so far. Keeps the first of several that contradict
+// the same others.
 class Done {
  public:
   // Why the earliest of those that contradict `next` does so; null if none does.

@@ -89,7 +89,7 @@ TEST(Blind, AStaleSignalMakesItsRuleBlindUntilItComesAgainForAWhile) {
   EXPECT_TRUE(blind(robot)) << "one value is no sight" << transcript(robot);
   send(robot, "battery", Value(0.9), 10s);
   EXPECT_FALSE(blind(robot)) << transcript(robot);
-  EXPECT_EQ(robot.count("Low can see again"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("Low can be evaluated again"), 1u) << transcript(robot);
   EXPECT_EQ(robot.count("is blind"), 1u) << transcript(robot);
 }
 
@@ -248,7 +248,7 @@ TEST(Blind, ARobotThatNobodySeesIsWatchedByNoRule) {
   show_driver(robot);
   robot.run_for(30s);
   EXPECT_FALSE(robot.manager().knowledge().blindness.is_total()) << transcript(robot);
-  EXPECT_EQ(robot.count("Low can see again"), 1u) << transcript(robot);
+  EXPECT_EQ(robot.count("Low can be evaluated again"), 1u) << transcript(robot);
 }
 
 }  // namespace

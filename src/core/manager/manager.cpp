@@ -225,7 +225,8 @@ void Manager::obey(const Order& order, Time now) {
   const auto begun = governor_.begun_by(order);
   if (begun) refresh_conditions(*begun, now);
   if (!hears_ && begun)
-    return knowledge_.events.tell(now, OrderRefused{order, "the robot cannot be heard"});
+    return knowledge_.events.tell(now,
+                                  OrderRefused{order, "culprit receives nothing from the robot"});
   if (auto reason = governor_.objection(order, autonomy_))
     return knowledge_.events.tell(now, OrderRefused{order, std::move(*reason)});
   knowledge_.events.tell(now, OrderAccepted{order, governor_.last_resorts_behind(order)});

@@ -28,7 +28,7 @@ bool is_cause(const RoverDemo::Play& play, const std::string& component) {
 std::string blamed_in(const RoverDemo::Play& play, const PlayOutcome& outcome) {
   for (const std::string& each : outcome.blamed)
     if (is_cause(play, each)) return each;
-  return outcome.blamed.empty() ? "nobody" : "not it: " + outcome.blamed.front();
+  return outcome.blamed.empty() ? "none" : "not it: " + outcome.blamed.front();
 }
 
 }  // namespace

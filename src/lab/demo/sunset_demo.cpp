@@ -140,7 +140,7 @@ Expected<void> SunsetDemo::clear() {
   if (auto cleared = world_->experiment().clear(); !cleared) return cleared;
   if (wait_until_well(kPatience)) return {};
   if (stop_) return Error{"interrupted"};
-  return Error{"the robot is not well after its faults were cleared: " +
+  return Error{"the robot did not recover after its faults were cleared: " +
                world_->experiment().measure().complaint};
 }
 

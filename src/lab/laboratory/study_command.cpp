@@ -355,7 +355,7 @@ void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
   CLI::App* command = study.add_subcommand(
       "sunset", "The paper's evaluation on SUNSET, in virtual time; without a choice, all of it");
   add_comparison(command, options);
-  command->add_option("--runs", options->runs, "Of each configuration")
+  command->add_option("--runs", options->runs, "Number of runs of each configuration")
       ->check(CLI::Range(1U, 1'000'000'000U))
       ->capture_default_str();
   command
@@ -377,12 +377,15 @@ void add_sunset(CLI::App& study, const std::string& version, int& exit_code) {
   auto* run = command->add_option(
       "--run", options->single_run,
       "With --explain: the run to explain, from 0. With --live: the run to play, metrics as JSON");
-  command->add_flag("--explain")->needs(run)->excludes("--live");
-  command->add_option("--switches", options->switches, "With --run: of this configuration")
+  command->add_flag("--explain")
+      ->description("Explain the decisions of the run that --run names")
+      ->needs(run)
+      ->excludes("--live");
+  command->add_option("--switches", options->switches, "With --run: the configuration")
       ->capture_default_str();
   command
       ->add_flag("--misspecified", options->misspecified,
-                 "With --run: of the configuration whose success probabilities are 20 % off")
+                 "With --run: the configuration whose success probabilities are 20 % off")
       ->needs(run);
   options->output.add_to(*command);
   command->callback([options, &exit_code] { exit_code = study_sunset(*options); });

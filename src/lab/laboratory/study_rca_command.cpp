@@ -307,7 +307,7 @@ void add_factors(CLI::App& command, RcaFactors& factors) {
       ->capture_default_str();
 }
 
-// Of the public benchmark (rca_study/export.h).
+// Options of the public benchmark (rca_study/export.h).
 void add_cases(CLI::App& command, RcaOptions& options) {
   auto* output =
       command
@@ -434,7 +434,9 @@ void add_learning_and_regret(CLI::App* command, const std::shared_ptr<RcaOptions
   // illness came to.
   for (const std::string factor : {"--unwatched", "--common-causes", "--false-alarms"})
     learn->excludes(factor);
-  command->add_option("--forgetting", options->forgetting, "As of culprit run")
+  command
+      ->add_option("--forgetting", options->forgetting,
+                   "Discount factor per outcome, as of culprit run")
       ->check(CLI::Range(0.5, 1.0))
       ->capture_default_str()
       ->needs(learn);

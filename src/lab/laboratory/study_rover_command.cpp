@@ -247,7 +247,7 @@ void add_study_rover(CLI::App& study, int& exit_code) {
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   command->add_option("--jobs", options->jobs, "Threads")->check(CLI::Range(1, 1024));
-  command->add_option("--format", options->format, "Of the tables")
+  command->add_option("--format", options->format, "Format of the tables")
       ->check(CLI::IsMember({"text", "markdown"}))
       ->capture_default_str();
   command->add_flag("--json", options->is_json, "Print the table as JSON");

@@ -323,7 +323,7 @@ void add_study_suave(CLI::App& study, const std::string& version, int& exit_code
                         "With a battery that runs low (default: the standard mission)");
   command
       ->add_flag("--stress", options->stress,
-                 "Ours: processes that die and a mode manager that hangs, on top of it")
+                 "Also kill processes, and hang the mode manager (not in the paper)")
       ->excludes(extended);
   command
       ->add_flag("--claims", options->claims,
@@ -336,7 +336,7 @@ void add_study_suave(CLI::App& study, const std::string& version, int& exit_code
       ->delimiter(',');
   command->add_option("--generation", options->generation, "Which SUAVE: era (published) or new")
       ->capture_default_str();
-  command->add_option("--runs", options->runs, "Of each manager")
+  command->add_option("--runs", options->runs, "Number of runs of each manager")
       ->check(CLI::Range(1U, 1'000'000U))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Seed of all random numbers")->capture_default_str();

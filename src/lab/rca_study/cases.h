@@ -39,8 +39,8 @@ struct CaseTruth {
   double end_s = 0;                 // of the case
 };
 
-// What the faults of the scenario do while nobody repairs anything. Nothing if a fault has no
-// effect that shows: its own component or each component that is ill because of it is unwatched.
+// The effects of the scenario's faults without a repair; empty if the effects of a fault are hidden:
+// its own component or each component that is ill because of it is unwatched.
 std::optional<CaseTruth> truth_of(const RcaScenario& scenario);
 
 enum class CaseEventKind : std::uint8_t {
@@ -62,7 +62,7 @@ struct Proposal {
   double at_s = 0;
 };
 
-// What a planner says of a case without acting.
+// A planner's answer to a case, without acting.
 struct Advice {
   // Components by the probability of a cause of their own, then by what they explain of others, if
   // the planner has these; else those that it would repair, in its order. As of the last 2 s.

@@ -1,4 +1,4 @@
-// What culprit decides on random robots, one line a seed: how many steps, how many events, and a sum of
+// culprit's decisions on random robots, one line a seed: how many steps, how many events, and a sum of
 // all event texts. Two machines that print the same lines decide alike (scripts/arm64).
 //
 //     decisions 200        seeds 1 to 200

@@ -141,8 +141,8 @@ void Invariants::note_the_dead(const Manager& manager, Time now) {
   }
 }
 
-// Whatever the budgets of a minute allow, a failure that no strategy repairs does not cost more
-// than its attempts, in an hour or in a day. Neither does one that flaps.
+// A failure that no strategy repairs costs at most its attempts, in an hour or in a day, even if the
+// budgets of a minute allow more. The same holds for one that flaps.
 void Invariants::count_attempts(const Event& event) {
   const auto count = [&](StrategyId strategy) {
     const RuleId rule = rules_[strategy].rule;

@@ -77,7 +77,7 @@ struct StatusCourse {
   std::size_t count = 0;
 };
 
-// What a node wrote to /rosout at ERROR or FATAL.
+// A node's log messages on /rosout at ERROR or FATAL.
 struct LogCourse {
   struct Line {
     Nanoseconds at = 0;

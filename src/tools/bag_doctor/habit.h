@@ -43,7 +43,7 @@ struct Habit {
   std::vector<Slow> slow{};
 
   bool is_known() const { return usual > Duration::zero(); }
-  // What has to pass without a message until the topic is silent.
+  // Time without a message after which the topic counts as silent.
   Duration patience() const;
 };
 

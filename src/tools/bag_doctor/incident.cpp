@@ -78,7 +78,7 @@ class Diagnosing {
     std::optional<std::size_t> because;  // the symptom that explains it most
   };
 
-  // Of symptom i, beside `others`.
+  // The verdict on symptom i, beside `others`.
   Verdict verdict(std::size_t i, const std::vector<std::size_t>& others) const {
     if (rules_ == nullptr) return {};
     Knowledge knowledge(*rules_);
@@ -146,7 +146,7 @@ class Diagnosing {
       for (const std::string& node : nodes) appear(node, EndpointKind::kSubscriber, topic);
     }
     for (const RobotGraph::Edge& edge : graph_.edges) {
-      // What is declared has no channel: it gets one of its own.
+      // A declared dependency has no channel: it gets one of its own.
       const std::string channel = edge.channel.empty() ? edge.producer + "/declared" : edge.channel;
       appear(edge.producer, EndpointKind::kPublisher, channel);
       appear(edge.consumer, EndpointKind::kSubscriber, channel);
@@ -307,7 +307,7 @@ std::vector<Owner> owners_of(const std::vector<Symptom>& symptoms, const RobotGr
                                               : symptom.topic,
                       is_node});
   }
-  // Of several publishers it is the one that has another symptom at that time.
+  // A topic with several publishers belongs to the one that has another symptom at that time.
   for (std::size_t i = 0; i < symptoms.size(); ++i) {
     const auto publishers = graph.publishers.find(symptoms[i].topic);
     if (owners[i].is_node || publishers == graph.publishers.end()) continue;

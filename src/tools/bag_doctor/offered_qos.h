@@ -1,4 +1,4 @@
-// What the publishers of a recorded topic offered, as the recorder wrote it down.
+// The QoS that the publishers of a recorded topic offered, as the recorder wrote it down.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// What a recording has to have, for pipelines that check each one (`culprit doctor BAG --policy FILE`):
+// Requirements on a recording, for pipelines that check each one (`culprit doctor BAG --policy FILE`):
 //
 //     # a comment
 //     TOPIC /scan RATE 9..11 GAP 500ms COVERAGE 95%

@@ -1,4 +1,4 @@
-// What the doctor says of a recording, whole: for a terminal, for programs.
+// The doctor's whole report on a recording: for a terminal, for programs.
 //
 //     ros2::MessageLibrary library;
 //     const auto course = read_course("my_bag", library);

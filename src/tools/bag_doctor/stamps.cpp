@@ -113,7 +113,7 @@ class StampLook {
     add("D044", is_failure ? Gravity::kError : Gravity::kWarning,
         fmt::format("its time stamps jumped back {}, by {} at most",
                     count == 1 ? "once" : doctor::count_of(count, "time"), duration(furthest)),
-        "tf drops its history or later messages, and filters start anew",
+        "tf drops its history or later messages, and filters start again",
         "see whether a clock was set meanwhile (chrony, PTP), or two publishers use this topic",
         {time_of(all_.times[*first]), time_of(all_.times[*first])}, time_of(all_.times[*first]),
         "stamped back in time on ");
@@ -126,7 +126,7 @@ class StampLook {
     add("D044", Gravity::kError,
         fmt::format("its time stamps became zero, for {} ({} messages)",
                     duration(Duration(run.to - run.from)), run.messages),
-        "tf drops its history or later messages, and filters start anew",
+        "tf drops its history or later messages, and filters start again",
         "see whether its publisher lost its clock: /clock with use_sim_time, or the device's own",
         {time_of(run.from), time_of(run.from)},
         run.to == topic_.times.back() ? kNever : time_of(run.to), "stamped with zero on ");

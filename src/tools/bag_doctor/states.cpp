@@ -1,4 +1,4 @@
-// What nodes say of themselves: diagnostics, logs, lifecycle states, and the quality of service that they offer.
+// States that nodes report about themselves: diagnostics, logs, lifecycle states, and the quality of service that they offer.
 #include <algorithm>
 
 #include <fmt/core.h>

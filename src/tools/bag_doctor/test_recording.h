@@ -65,7 +65,7 @@ inline double noise(std::uint64_t seed) {
   return static_cast<double>(seed >> 40) / static_cast<double>(1 << 24) - 0.5;
 }
 
-// What messages of some types say, with `value` as their measured number.
+// Messages of some types, with `value` as their measured number.
 inline std::string imu(double stamp, double value) {
   return Payload()
       .header(stamp, "imu")
@@ -153,7 +153,7 @@ class Recording {
  public:
   // The text of a type that is no standard one.
   void define(const std::string& type, const std::string& text) { definitions_[type] = text; }
-  // What the publishers of a topic offered, as the recorder writes it down.
+  // The QoS that the publishers of a topic offered, as the recorder writes it down.
   void offer(const std::string& topic, const std::string& yaml) { offers_[topic] = yaml; }
   void announce(const std::string& topic, const std::string& type) {
     topics_.try_emplace(topic, type);

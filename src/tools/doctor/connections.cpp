@@ -218,7 +218,7 @@ void look_for_near_name(Medium medium, const std::string& name, const Channel& c
   if (is_topic) {
     all.push_back({"D003",
                    Gravity::kWarning,
-                   name + ": nobody → " + reader.node,
+                   name + ": no publisher → " + reader.node,
                    "no node publishes " + name + ", and no node reads " + meant + " of " + writer,
                    reader.node + " receives nothing, if that is the intended name",
                    "remap one of them, or start both in the same namespace",
@@ -227,9 +227,9 @@ void look_for_near_name(Medium medium, const std::string& name, const Channel& c
   } else {
     all.push_back({"D003",
                    Gravity::kWarning,
-                   name + ": " + reader.node + " → nobody",
+                   name + ": " + reader.node + " → no server",
                    "no node serves " + name + ", and no node calls " + meant + " of " + writer,
-                   reader.node + " waits for a service for ever, if that is what it means",
+                   reader.node + " waits for a service for ever, if that is the intended name",
                    "remap one of them, or start both in the same namespace",
                    {reader.node, writer},
                    name});
@@ -284,7 +284,7 @@ void look_for_odd_ones(const Channels& topics, Findings& all) {
         fmt::format("the {} others of its kind ({})", members.size() - 1, kind.second);
     all.push_back({"D004",
                    Gravity::kWarning,
-                   name + ": " + (is_unread ? node + " → nobody" : "nobody → " + node),
+                   name + ": " + (is_unread ? node + " → no subscriber" : "no publisher → " + node),
                    is_unread ? "it has no subscription, unlike each of " + others
                              : "it has no publisher, unlike each of " + others,
                    is_unread ? "messages of " + node + " on it are lost"

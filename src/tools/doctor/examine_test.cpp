@@ -160,7 +160,7 @@ TEST(Examine, D004WhatAllOthersOfItsKindHave) {
   }
   EXPECT_THAT(examine(picture), IsEmpty());
   picture.nodes[1].endpoints.pop_back();
-  EXPECT_EQ(only_finding(picture).subject, "/camera_3/image: /cameras → nobody");
+  EXPECT_EQ(only_finding(picture).subject, "/camera_3/image: /cameras → no subscriber");
   EXPECT_EQ(only_finding(picture).code, "D004");
   picture.nodes[1].endpoints.pop_back();
   EXPECT_THAT(examine(picture), IsEmpty()) << "one of three is no rule";
@@ -171,7 +171,7 @@ TEST(Examine, D004WhatAllOthersOfItsKindHave) {
     wheels.nodes[1].endpoints.push_back(reads(topic));
     if (std::string(topic) != "/rear/speed") wheels.nodes[0].endpoints.push_back(publishes(topic));
   }
-  EXPECT_EQ(only_finding(wheels).subject, "/rear/speed: nobody → /wheels");
+  EXPECT_EQ(only_finding(wheels).subject, "/rear/speed: no publisher → /wheels");
 }
 
 TEST(Examine, D005OneNameOfATypeAndTwoDefinitions) {

@@ -165,7 +165,7 @@ void look_at_stamps(const Picture& picture, const std::string& name, const Chann
         fmt::format("its time stamps jumped back {}, by {} at most",
                     stamps.jumps_back == 1 ? "once" : count_of(stamps.jumps_back, "time"),
                     duration(stamps.furthest_back)),
-        "tf drops its history or what comes after, and filters start anew",
+        "tf drops its history or what comes after, and filters start again",
         "is the clock set while it runs (chrony, PTP), or do two devices publish here?");
   if (stamps.count < kFewestStamps) return;
   const auto simulated = std::ranges::count_if(
@@ -213,7 +213,7 @@ void look_at_clock(const Picture& picture, const Wiring& wiring, Findings& all) 
          fmt::format(
              "the simulated time jumped back {}",
              picture.clock->jumps_back == 1 ? "once" : count_of(picture.clock->jumps_back, "time")),
-         "tf drops its history, and filters start anew",
+         "tf drops its history, and filters start again",
          "do two simulators or bags publish /clock?",
          {},
          "/clock"});

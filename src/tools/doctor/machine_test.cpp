@@ -60,16 +60,16 @@ TEST(ProcessWatch, KnowsWhetherAnybodyReadsWhatAProcessPrints) {
   const std::string output = "/proc/" + std::to_string(child) + "/fd/1";
   while (!std::filesystem::read_symlink(output).native().starts_with("pipe:"))
     std::this_thread::yield();
-  EXPECT_FALSE(prints_to_nobody(child));
+  EXPECT_FALSE(has_unread_output(child));
   while (std::filesystem::exists("/proc/" + std::to_string(child) + "/fd/" +
                                  std::to_string(ends[0])) &&
          ends[0] > STDERR_FILENO)
     std::this_thread::yield();
   close(ends[0]);
-  EXPECT_TRUE(prints_to_nobody(child));
+  EXPECT_TRUE(has_unread_output(child));
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
-  EXPECT_FALSE(prints_to_nobody(child)) << "it is gone";
+  EXPECT_FALSE(has_unread_output(child)) << "it is gone";
 }
 
 TEST(StartParameters, AreReadFromACommandLine) {

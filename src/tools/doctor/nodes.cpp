@@ -92,7 +92,7 @@ void examine_answers(const Picture& picture, Findings& all) {
       all.push_back({"D011",
                      Gravity::kError,
                      name,
-                     "its process has ended, without a good-bye",
+                     "its process has ended, without an announcement",
                      "others take it for alive until its lease ends (20 s)",
                      "start it again; its log says why it ended",
                      {name}});
@@ -131,16 +131,16 @@ void examine_comings(const Picture& picture, Findings& all) {
         std::ranges::count_if(comings, [](const Coming& each) { return each.is_there; }));
     const Coming& last = comings.back();
     if (returns > 0) {
-      const bool is_circle = returns > 1;
+      const bool is_loop = returns > 1;
       all.push_back(
           {"D013",
-           is_circle ? Gravity::kError : Gravity::kWarning,
+           is_loop ? Gravity::kError : Gravity::kWarning,
            name,
            fmt::format("it was started again {} while the doctor looked{}",
                        returns == 1 ? "once" : count_of(returns, "time"),
                        last.pid == 0 ? "" : fmt::format(", last as process {}", last.pid)),
-           is_circle ? "restarts do not repair it, and after each one all nodes discover it anew"
-                     : "readers of its state or parameters have lost them",
+           is_loop ? "restarts do not repair it, and after each one all nodes discover it again"
+                   : "readers of its state or parameters have lost them",
            "its log says why it ended; stop its launcher, and start it by hand",
            {name}});
     } else if (last.was_lost && !picture.unanswered.contains(name)) {
@@ -148,7 +148,7 @@ void examine_comings(const Picture& picture, Findings& all) {
           {"D011",
            Gravity::kError,
            name,
-           "it was lost while the doctor looked: its lease has run out, without a good-bye",
+           "it was lost while the doctor looked: its lease has run out, without an announcement",
            "its process was killed, or its computer is out of reach",
            "start it again; its log says why it ended",
            {name}});

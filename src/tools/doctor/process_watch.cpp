@@ -99,7 +99,7 @@ Process started(int pid, const std::vector<std::string>& nodes) {
   const int parent = owners::parent_of(pid).value_or(0);
   if (!adopts(parent))
     process.launcher = "process " + std::to_string(parent) + " (" + command_of(parent) + ")";
-  process.is_left_over = adopts(parent) && prints_to_nobody(pid);
+  process.is_left_over = adopts(parent) && has_unread_output(pid);
   if (const auto identity = owners::identity_of(pid)) process.user = identity->user;
   process.shared_memory = shared_memory_of(pid);
   look_at_ports(pid, process);
@@ -110,7 +110,7 @@ Process started(int pid, const std::vector<std::string>& nodes) {
 
 }  // namespace
 
-bool prints_to_nobody(int pid) {
+bool has_unread_output(int pid) {
   const fs::path output = folder_of(pid) / "fd/1";
   std::error_code error;
   if (!fs::read_symlink(output, error).native().starts_with("pipe:")) return false;

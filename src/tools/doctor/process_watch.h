@@ -35,7 +35,7 @@ class ProcessWatch {
 };
 
 // Whether the process's output has no reader: its standard output is a pipe that no process reads.
-bool prints_to_nobody(int pid);
+bool has_unread_output(int pid);
 
 // Bytes that new processes may have; 0: not known.
 std::int64_t free_memory();

@@ -31,7 +31,7 @@ void look_whether_left_over(int pid, const Process& process, const std::vector<s
                  "its launcher has exited, and so has the reader of its output",
                  "it is left over from an earlier launch: no launcher restarts it, a new launch "
                  "makes a second one, and printing may end it",
-                 fmt::format("end it (kill {}) and launch the robot anew", pid), nodes});
+                 fmt::format("end it (kill {}) and launch the robot again", pid), nodes});
 }
 
 // Whether memory only grew: of four quarters of the time each ended higher than all before it.

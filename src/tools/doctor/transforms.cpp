@@ -66,7 +66,7 @@ void look_for_rivals(const ByChild& frames, Findings& all) {
                    "tf: " + edge_of(*c),
                    "two publish it: " + publisher_of(*c) + " and " + publisher_of(*d),
                    "where they differ the frame jumps between the two",
-                   "switch one of them off (publish_tf), or end what is there twice",
+                   "switch one of them off (publish_tf), or end a duplicate node",
                    {c->node, d->node},
                    "/tf"});
   }

@@ -103,7 +103,7 @@ std::vector<TableQuery> status_queries(const Scope& scope) {
             {"began", "since", Kind::kTime},
             {"strategies", "strategies", Kind::kCount},
             {"remark", ""},
-            {"seen", "heard last", Kind::kTime}}},
+            {"seen", "last seen", Kind::kTime}}},
           scope),
       in_scope({"Unreachable for an hour",
                 "all are reachable",
@@ -113,7 +113,7 @@ std::vector<TableQuery> status_queries(const Scope& scope) {
                     "\nORDER BY r.seen DESC\nLIMIT 50",
                 {{"robot", "robot"},
                  {"model", "model"},
-                 {"seen", "heard last", Kind::kTime},
+                 {"seen", "last seen", Kind::kTime},
                  {"culprit", "culprit"},
                  {"number", "number"}}},
                scope)};

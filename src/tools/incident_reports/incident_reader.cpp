@@ -43,7 +43,7 @@ void IncidentReader::add(const Told& told) {
   note(told, type);
 }
 
-// What happens to a rule of an incident belongs to it.
+// An event of one of its rules belongs to the incident.
 void IncidentReader::note(const Told& told, const std::string& type) {
   const std::string rule = journal::text_of(told.event, "rule");
   if (rule.empty()) return;

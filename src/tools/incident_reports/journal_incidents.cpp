@@ -144,7 +144,7 @@ Expected<std::int64_t> row_that_begins(const Reader& journal, const std::string&
   return *row ? found->integer(0) : before;
 }
 
-// What is told between an opening and the failure that it is about: nothing but the same step.
+// Rows between an incident's opening and its failure: both are written in the same step.
 constexpr std::int64_t kRowsOfStep = 64;
 
 std::string opening_of(const std::string& id) {

@@ -53,7 +53,7 @@ struct JournalIncidents : testing::Test {
   void chosen(double after, const char* rule, const char* strategy) {
     tell(after, {{"type", "strategy_chosen"}, {"rule", rule}, {"strategy", strategy}});
   }
-  // What a manager tells of an incident that began `age` seconds before.
+  // A manager's event of an incident that began `age` seconds before.
   void incident(double after, const char* type, const char* id, const char* rule,
                 const std::vector<std::string>& consequences, const char* component, double age,
                 Json more = Json::object()) {

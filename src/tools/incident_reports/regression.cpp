@@ -77,7 +77,7 @@ bool is_latched(const bag::BagTopic& topic) {
          topic.offered_qos.find("durability: 1") != std::string::npos;
 }
 
-// What the rules say of the copy, and whom they blame.
+// The rules that fire on the copy, and the components that they blame.
 struct Seen {
   std::map<std::string, Duration> detected;  // rules, since the copy's beginning
   std::map<std::string, Duration> blamed;    // components

@@ -194,7 +194,7 @@ class Draft {
   std::optional<std::string> why_not(const std::string& name,
                                      const LiveInventory::Node& node) const {
     if (node.pid == 0)
-      return "its process is not on this machine, or of another user. Write who starts it: "
+      return "its process is not on this machine, or of another user. Name its owner: "
              "LAUNCH, UNIT or CONTAINER";
     if (recipes_.contains(name)) return std::nullopt;
     const auto start = seen_.starts.find(name);

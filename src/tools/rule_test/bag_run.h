@@ -12,8 +12,8 @@ namespace culprit::rule_test {
 // advises, since nothing can be done in a recording. If the bag cannot be read, that is a disappointment.
 Result run_bag_test(const RuleSet& rules, const Test& test, std::unique_ptr<const Planner> planner);
 
-// What a test of a bag is judged by if it expects that a component is blamed: a strategy that was preferred and could not
-// be begun counts as chosen, for a recording seldom shows that its component was there.
+// The events by which a test of a bag is judged if it expects that a component is blamed. A preferred strategy that could
+// not begin counts as chosen, for a recording seldom shows that its component was there.
 std::vector<Event> with_preferred(const std::vector<Event>& events);
 
 }  // namespace culprit::rule_test

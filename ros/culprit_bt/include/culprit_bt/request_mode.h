@@ -21,7 +21,7 @@ namespace culprit_bt {
 //
 // - RUNNING: it is asked for, or accepted and not there yet. A request that is accepted is not done.
 // - SUCCESS: the mode was read back, and is the one that was asked for.
-// - FAILURE: it was refused, or `timeout` seconds are over: nobody serves the mode, nobody answers, or it was
+// - FAILURE: it was refused, or `timeout` seconds are over: no node serves the mode, nobody answers, or it was
 //   accepted and another mode is read. `reason` says which.
 // - Halted: it waits no longer. An accepted request stays: the mode that was wanted before is unknown.
 class RequestMode : public BT::StatefulActionNode {

@@ -137,9 +137,9 @@ class Expander {
     if (size_ > Source::kMaxSize) return refuse(kTooLarge, "");
     const std::string key = key_of(*loaded);
     if (const auto above = std::find(open.begin(), open.end(), key); above != open.end()) {
-      std::string circle;
-      for (auto each = above; each != open.end(); ++each) circle += *each + " includes ";
-      return refuse("files include one another: " + circle + key, "leave one of the INCLUDEs out");
+      std::string cycle;
+      for (auto each = above; each != open.end(); ++each) cycle += *each + " includes ";
+      return refuse("files include one another: " + cycle + key, "leave one of the INCLUDEs out");
     }
     if (known_files_.contains(key)) return std::nullopt;
     const auto index = static_cast<std::uint32_t>(files_.size());
@@ -243,10 +243,10 @@ class Expander {
       return nullptr;
     }
     if (std::find(open.begin(), open.end(), known->second.pattern) != open.end()) {
-      std::string circle;
-      for (const syntax::Template* each : open) circle += each->name.text + " uses ";
+      std::string cycle;
+      for (const syntax::Template* each : open) cycle += each->name.text + " uses ";
       refuse_use(unit, Code::kEndlessTemplate, use.pattern.span,
-                 "template '" + name + "' would use itself: " + circle + name,
+                 "template '" + name + "' would use itself: " + cycle + name,
                  "leave one of the USEs out");
       return nullptr;
     }

@@ -120,10 +120,10 @@ double joint_cost(std::span<const Side> sides, std::span<const std::size_t> begi
       still_there[i].fails(tried);
     }
     std::sort(times.begin(), times.end(), std::greater<>());
-    double nobody_longer = 1;
+    double none_longer = 1;
     for (const auto& [time, p] : times) {
-      sum += time * p * nobody_longer;
-      nobody_longer *= 1 - p;
+      sum += time * p * none_longer;
+      none_longer *= 1 - p;
     }
   }
   return sum;

@@ -184,10 +184,9 @@ Table effects_table(const Ablation& ablation) {
   }
   const Agreement count = agreement(ablation);
   table.notes.push_back(fmt::format(
-      "Tukey's HSD among the eight configurations at 95 %. Of the {} effects that are "
-      "significant in "
-      "the paper, {} have the same sign here; {} of all {} have the same verdict.",
-      count.significant, count.significant_signs, count.same_significance, count.effects));
+      "Tukey's HSD among the eight configurations at 95 %. {} of the {} effects that are "
+      "significant in the paper have the same sign here; {} of all {} have the same verdict.",
+      count.significant_signs, count.significant, count.same_significance, count.effects));
   table.notes.push_back(anova_note(ablation));
   return table;
 }

@@ -12,7 +12,7 @@ namespace {
 
 Table sample() {
   return {"sample",
-          "What 50 % of <all> find",
+          "Findings of 50 % of <all>",
           {{"", "name", "", "", Align::kLeft},
            {"ratio", "ours", "$r$", ""},
            {"ratio", "paper", "$r$", ""}},
@@ -23,7 +23,7 @@ Table sample() {
 }
 
 TEST(Tables, AreAlignedInATerminal) {
-  EXPECT_EQ(text(sample()), R"(What 50 % of <all> find
+  EXPECT_EQ(text(sample()), R"(Findings of 50 % of <all>
 
               ratio
 name          ours   paper
@@ -55,7 +55,7 @@ TEST(Tables, SetTheLiveRobotBesideItsModel) {
 }
 
 TEST(Tables, AreMarkdown) {
-  EXPECT_EQ(markdown(sample()), R"(**What 50 % of \<all\> find**
+  EXPECT_EQ(markdown(sample()), R"(**Findings of 50 % of \<all\>**
 
 | name | ratio: ours | ratio: paper |
 | :-- | --: | --: |

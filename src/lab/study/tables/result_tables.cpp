@@ -152,13 +152,13 @@ Table learning_table(const std::vector<LearningCurve>& curves) {
                           {number(curve.truth_of_all)}});
   }
   table.notes.push_back(fmt::format(
-      "After {} experiments. Of the paper's own learning (c_p = {:g}) there is a figure of "
+      "After {} experiments. The paper shows its own learning (c_p = {:g}) only as a figure of "
       "F1 and F4, without numbers.",
       curves.front().learned.size(), published::kLearning.confidence));
   table.notes.push_back(
-      "The true rate is how often a strategy ends the fault, of the times that it was learned "
-      "from; last, of all. Of the error, what is left of the initial P, which weighs as much as "
-      "c_p outcomes; and the standard error of as many outcomes as one series learns from.");
+      "The true rate is the share of a strategy's learned outcomes that ended the fault; the last "
+      "column, of all outcomes. The error has two parts: the rest of the initial P, which weighs "
+      "as much as c_p outcomes, and the standard error of a series' number of outcomes.");
   table.notes.push_back(
       "Not learned from: an outage may have hidden the outcome; another repair can have had the "
       "same effect, or nothing was changed; the run ended first. Cleared: the share of all "
