@@ -89,7 +89,8 @@ Health health_of(const Knowledge& known, const std::string& component, std::uint
   if (!known.status) return {Outlook::kUnknown, known.why_not};
   const Status& status = *known.status;
   if (!status.hears)
-    return {Outlook::kUnknown, "culprit receives nothing from the robot, so nothing is known of it"};
+    return {Outlook::kUnknown,
+            "culprit receives nothing from the robot, so nothing is known of it"};
   bool is_there = component.empty();
   for (const Component& each : status.components) {
     if (!component.empty() && each.name != component) continue;
