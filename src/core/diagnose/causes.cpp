@@ -97,6 +97,27 @@ bool is_about_states(RuleId rule, const Knowledge& knowledge) {
                      });
 }
 
+// Does the rule watch nothing but what `other` watches, too?
+bool watches_the_same(RuleId rule, RuleId other, const RuleSet& rules) {
+  return std::ranges::all_of(rules[rule].inputs, [&](InputId id) {
+    return std::ranges::any_of(rules[other].inputs, [&](InputId same) {
+      const bool are_of_topics = watches_a_topic(rules[id]) && watches_a_topic(rules[same]);
+      return id == same || (are_of_topics && rules[id].topic == rules[same].topic);
+    });
+  });
+}
+
+// Does rule j, which is left to a person, show what is wrong with components that i adapts, too (`touched`)?
+// It is the failure i, seen at another threshold, and no cause of it.
+bool is_seen_twice(RuleId j, RuleId i, std::span<const ComponentId> touched,
+                   const Knowledge& knowledge) {
+  const bool is_left = knowledge.rules[j].strategies.empty() || knowledge.states.awaits_person(j);
+  return is_left && watches_the_same(j, i, knowledge.rules) &&
+         std::ranges::all_of(touched_by(j, knowledge), [&](ComponentId c) {
+           return std::ranges::find(touched, c) != touched.end();
+         });
+}
+
 // Did its function never work while culprit watched?
 bool never_worked(RuleId rule, const Knowledge& knowledge) {
   return knowledge.states[rule].detection.last_false == kLongAgo;
@@ -206,9 +227,11 @@ void Causes::connect(const Knowledge& knowledge, const Reach& reach, const Paths
       const bool is_trouble = nodes_[j].kind == CauseNode::Kind::kTrouble;
       const bool is_own =
           is_trouble && std::ranges::find(touched, nodes_[j].component) != touched.end();
-      const bool is_possible = is_trouble ? !is_own && can_explain(j, i, knowledge) &&
-                                                !may_be_effect(j, i, reach, knowledge)
-                                          : can_precede(j, i);
+      const bool is_possible =
+          is_trouble
+              ? !is_own && can_explain(j, i, knowledge) && !may_be_effect(j, i, reach, knowledge)
+              : can_precede(j, i) &&
+                    !is_seen_twice(nodes_[j].rule, nodes_[i].rule, touched, knowledge);
       if (!is_possible) clear(row, j);
     });
   }

@@ -10,8 +10,9 @@
 //
 // Node j may be the cause of node i if a component of j is upstream of one of i, along a path that
 // the effect can have taken (paths.h). Criticality does not matter: the effects decide how bad a
-// cause is (plan/bayes/levels.h). One exception: a bad value whose strategies begin nothing anew and call
-// nothing is no cause of a more critical failure. Two failures that were seen to clear together count as if they
+// cause is (plan/bayes/levels.h). Two exceptions: a bad value whose strategies begin nothing anew and call
+// nothing is no cause of a more critical failure; and a rule that only reports, or is exhausted, is no cause of one
+// that watches the same and adapts the same. Two failures that were seen to clear together count as if they
 // were connected, although the graph shows no edge. A cause begins before its effect (timing.h), or,
 // if the effect outlasts an earlier cause or its own component's new beginning, before that.
 // Nodes that may be the causes of each other, directly or through others, form a feedback loop. It

@@ -61,6 +61,13 @@ std::string status_of(const Input& input, const RuleSet& rules) {
   return key != nullptr ? key->status : "";
 }
 
+// Does the rule only report on a value that another rule acts on? A second threshold is no second value.
+bool only_reports_the_same(const Rule& rule, const Input& input, const RuleSet& rules) {
+  return rule.strategies.empty() && std::ranges::any_of(input.readers, [&](RuleId reader) {
+           return !rules[reader].strategies.empty();
+         });
+}
+
 Duration least_impact(const Rule& rule, const RuleSet& rules) {
   std::optional<Cycles> least;
   for (const StrategyId id : rule.strategies) {
@@ -80,7 +87,8 @@ Latencies::Latencies(const RuleSet& rules)
   std::map<std::string, std::set<std::size_t>> readers;  // of each status: rules
   for (std::size_t r = 0; r < rules.rules.size(); ++r) {
     for (const InputId id : rules.rules[r].inputs) {
-      if (const std::string status = status_of(rules[id], rules); !status.empty())
+      const std::string status = status_of(rules[id], rules);
+      if (!status.empty() && !only_reports_the_same(rules.rules[r], rules[id], rules))
         readers[status].insert(r);
     }
   }

@@ -14,7 +14,8 @@
 // monitors exceed it, all such rules are taken to be as late as slow monitors of robots are.
 //
 // A status that carries the values of several rules comes from one monitor, which sees all of them
-// at once: none of these rules is later than the others, and they have no lateness. Triggers on topics alone have no lateness: their thresholds say when they fire.
+// at once: none of these rules is later than the others, and they have no lateness. A rule that only reports on
+// a value that another one acts on does not count. Triggers on topics alone have no lateness: their thresholds say when they fire.
 #pragma once
 
 #include <vector>

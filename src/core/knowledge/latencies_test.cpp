@@ -10,7 +10,8 @@ namespace {
 using namespace std::chrono_literals;
 using Range = Latencies::Range;
 
-// Late and Other read a status each; Common and Beside one that both of them read; OnTopic none.
+// Late and Other read a status each, and Told, which only reports, that of Late; Common and Beside one that both of
+// them read; OnTopic none.
 RuleSet latency_rules() {
   return *check(Source("x.rules", R"(
 CYCLE 200ms
@@ -46,6 +47,9 @@ RULE OnTopic
   TRIGGER age(/rgb) > 1s
     STRATEGY again 90 10
       ADAPTATION c restart 5
+RULE Told
+  POLICIES WARNING REPORT
+  TRIGGER late > 2
 )"))
               .rules;
 }
