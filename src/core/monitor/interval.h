@@ -10,6 +10,8 @@ namespace culprit::monitor {
 
 // A topic with a longer interval shows little about how fast it would show a change.
 constexpr Duration kLongestLatency = std::chrono::seconds(5);
+// A signal that regularly comes at longer intervals shows a change within two of them, at most this.
+constexpr Duration kLongestOfSeldom = std::chrono::seconds(20);
 
 // A new interval counts for an eighth, as in TCP's round-trip estimate.
 inline Duration smoothed(Duration before, Duration now) {

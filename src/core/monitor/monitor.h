@@ -216,7 +216,7 @@ class Monitor {
   void note_arrival(InputId id, Time at);
   void update(InputId id, Time now);
   void put_held(InputId id);
-  Duration latency_of(SignalId signal) const;
+  Duration latency_of(SignalId signal, InputId id) const;
   void note_reading(InputId id, const Slot& slot);
   void note_number(SignalId signal, const Value& value, const Slot& slot, Time at);
   void update_window(InputId id, Time now);

@@ -52,7 +52,7 @@ void Monitor::read_signal(SignalId signal, const Value& value, Time at) {
   note_number(signal, value, slot, at);
   for (const InputId id : state.inputs) {
     const Input& input = knowledge_.rules[id];
-    write_.signals.set_latency(id, latency_of(signal) + input.window);
+    write_.signals.set_latency(id, latency_of(signal, id) + input.window);
     write_.signals.set_read_at(id, at);
     note_arrival(id, at);
     if (has_rhythm && !had_rhythm) write_.signals.touch(id);
@@ -130,13 +130,19 @@ void Monitor::note_arrival(InputId id, Time at) {
   write_.signals.set_arrivals(id, arrivals);
 }
 
-Duration Monitor::latency_of(SignalId signal) const {
+Duration Monitor::latency_of(SignalId signal, InputId id) const {
   // Nodes report at once when a parameter changes.
   if (std::holds_alternative<ParameterId>(knowledge_.rules[signal].source))
     return knowledge_.rules.cycle;
   // After one reading the time of the next one is unknown.
   const Duration interval = signals_[signal.index].interval;
-  return interval > Duration::zero() ? usual_latency(interval) : monitor::kLongestLatency;
+  if (interval == Duration::zero()) return monitor::kLongestLatency;
+  // A status that comes seldom shows nothing before it comes again.
+  const SignalStore::Arrivals& arrivals = knowledge_.signals.arrivals(id);
+  const bool is_known = arrivals.count >= SignalStore::kRegular;
+  const Duration seldom =
+      is_known ? std::min(2 * arrivals.gap, monitor::kLongestOfSeldom) : Duration::zero();
+  return seldom > monitor::kLongestLatency ? seldom : usual_latency(interval);
 }
 
 // A new extreme, or nearer to a threshold than it ever was lately?
