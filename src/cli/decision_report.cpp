@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "base/name_grammar.h"
 #include "cli/journal_file.h"
 #include "journal/json.h"
 #include "knowledge/event_words.h"
@@ -12,7 +13,11 @@ namespace culprit::cli {
 namespace {
 
 using journal::Entry;
-using journal::text_of;
+
+// culprit's own rows are escaped; the file may be another's.
+std::string text_of(const Json& json, const char* key) {
+  return escape_controls(journal::text_of(json, key));
+}
 
 bool is_decision(const Entry& entry, const Json& body) {
   const std::string type = text_of(body, "type");

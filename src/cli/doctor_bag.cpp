@@ -6,6 +6,7 @@
 #include "bag_doctor/policy.h"
 #include "bag_doctor/report.h"
 #include "base/environment.h"
+#include "base/name_grammar.h"
 #include "base/text_file.h"
 #include "cli/finding_text.h"
 #include "cli/load_rules.h"
@@ -73,8 +74,8 @@ void print_bags(const std::vector<BagReport>& reports, const BagExamination& opt
   } else {
     for (const BagReport& report : reports) {
       for (const Finding& each : report.findings) print_finding(each, colour_of(STDOUT_FILENO));
-      for (const std::string& each : report.left_out) say(stdout, "{}\n", each);
-      say(stdout, "{}\n", summary(report));
+      for (const std::string& each : report.left_out) say(stdout, "{}\n", escape_controls(each));
+      say(stdout, "{}\n", escape_controls(summary(report)));
     }
   }
 }

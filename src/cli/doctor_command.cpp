@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "base/amount.h"
+#include "base/name_grammar.h"
 #include "base/text_file.h"
 #include "base/units.h"
 #include "cli/commands.h"
@@ -42,7 +43,7 @@ struct DoctorOptions {
 };
 
 void print_summary(const Report& report) {
-  for (const std::string& each : report.left_out) say(stdout, "{}\n", each);
+  for (const std::string& each : report.left_out) say(stdout, "{}\n", escape_controls(each));
   if (report.nodes > 0) say(stdout, "{}\n", summary(report));
 }
 
@@ -88,7 +89,8 @@ void print_changes(const Report& before, const Report& now) {
   };
   for (const Finding& finding : before.findings) {
     if (!is_in(finding, now) && !is_doubtful(finding))
-      say(stdout, "{:%H:%M:%S} cleared[{}]: {}\n", time, finding.code, finding.subject);
+      say(stdout, "{:%H:%M:%S} cleared[{}]: {}\n", time, finding.code,
+          escape_controls(finding.subject));
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "owners/piped_program.h"
 #include "owners/proc.h"
+#include "owners/process_tree.h"
 #include "ros2/lifecycle.h"
 
 namespace culprit::cli {
@@ -28,6 +29,10 @@ constexpr int kRunningMs = 50;
 
 int send_signal(int process, int signal) {
   return static_cast<int>(syscall(SYS_pidfd_send_signal, process, signal, nullptr, 0));
+}
+
+owners::FileDescriptor hold(const drill::ProcessId& process) {
+  return owners::hold(process.pid, process.ticks);
 }
 
 // The guard, between fork and _exit: calls only what may be called there.
@@ -229,20 +234,22 @@ Expected<Injected> DrillInjector::prepare(const drill::Fault& fault, const std::
 Expected<void> DrillInjector::inject(const Injected& fault, Duration lasts) {
   switch (fault.fault.kind) {
     case FaultKind::kKill:
-      if (owners::start_ticks_of(fault.process.pid) != fault.process.ticks ||
-          kill(fault.process.pid, SIGKILL) != 0)
+      if (const auto process = hold(fault.process);
+          !process || send_signal(process.get(), SIGKILL) != 0)
         return Error{"process " + std::to_string(fault.process.pid) + " cannot be killed"};
       return {};
     case FaultKind::kLoss: {
+      if (!hold(fault.process))
+        return Error{"process " + std::to_string(fault.process.pid) + " has ended"};
       auto loss = lose_datagrams(fault.process.pid, lasts);
       if (!loss) return Error{loss.error()};
       guards_.push_back(std::move(*loss));
       return {};
     }
     case FaultKind::kHang:
-      return stop_for(fault.process.pid, lasts, false);
+      return stop_for(fault.process, lasts, false);
     case FaultKind::kSlow:
-      return stop_for(fault.process.pid, lasts, true);
+      return stop_for(fault.process, lasts, true);
     case FaultKind::kDeactivate:
       return node_.change(fault.node, kDeactivate);
     case FaultKind::kRestart:
@@ -254,10 +261,10 @@ Expected<void> DrillInjector::inject(const Injected& fault, Duration lasts) {
   return {};
 }
 
-Expected<void> DrillInjector::stop_for(int pid, Duration lasts, bool in_rhythm) {
-  owners::FileDescriptor process(static_cast<int>(syscall(SYS_pidfd_open, pid, 0)));
+Expected<void> DrillInjector::stop_for(const drill::ProcessId& id, Duration lasts, bool in_rhythm) {
+  const owners::FileDescriptor process = hold(id);
   auto pipe = owners::make_pipe();
-  if (!process || !pipe) return Error{"process " + std::to_string(pid) + " cannot be stopped"};
+  if (!process || !pipe) return Error{"process " + std::to_string(id.pid) + " cannot be stopped"};
   const auto lasts_ms =
       static_cast<int>(std::chrono::duration_cast<std::chrono::milliseconds>(lasts).count());
   const int child = fork();
@@ -283,9 +290,10 @@ Expected<bool> DrillInjector::undo(const Injected& fault) {
     case FaultKind::kLoss:
     case FaultKind::kHang:
     case FaultKind::kSlow: {
-      const bool is_it = owners::start_ticks_of(fault.process.pid) == fault.process.ticks;
-      if (is_it && owners::state_letter(fault.process.pid) == 'T') kill(fault.process.pid, SIGCONT);
-      return is_it;
+      const auto process = hold(fault.process);
+      if (process && owners::state_letter(fault.process.pid) == 'T')
+        send_signal(process.get(), SIGCONT);
+      return static_cast<bool>(process);
     }
     case FaultKind::kDeactivate:
     case FaultKind::kRestart: {

@@ -58,7 +58,7 @@ class DrillInjector {
   void release();
 
  private:
-  Expected<void> stop_for(int pid, Duration lasts, bool in_rhythm);
+  Expected<void> stop_for(const drill::ProcessId& process, Duration lasts, bool in_rhythm);
 
   DrillNode& node_;
   std::vector<FaultGuard> guards_;

@@ -8,6 +8,7 @@
 #include "journal/json.h"
 #include "owners/piped_program.h"
 #include "owners/proc.h"
+#include "owners/process_tree.h"
 #include "owners/spawn.h"
 
 namespace culprit::cli {
@@ -31,9 +32,10 @@ double drill_clock() { return static_cast<double>(wall_now()) / 1e9; }
 
 void end_manager(const drill::ProcessId& process) {
   if (process.pid == 0) return;
+  const auto held = owners::hold(process.pid, process.ticks);
   for (const auto& [signal, patience] : {std::pair(SIGINT, 5s), std::pair(SIGKILL, 2s)}) {
-    if (!runs(process)) break;
-    kill(process.pid, signal);
+    if (!held || !runs(process)) break;
+    owners::send_signal(held, signal);
     for (const Time end = live_now() + patience; runs(process) && live_now() < end;)
       std::this_thread::sleep_for(20ms);
   }

@@ -1,5 +1,9 @@
 #include "cli/finding_text.h"
 
+#include <fmt/format.h>
+
+#include "base/name_grammar.h"
+
 namespace culprit::cli {
 namespace {
 
@@ -11,11 +15,17 @@ std::string coloured(doctor::Gravity gravity, Colour colour) {
 
 }  // namespace
 
+std::string finding_text(const doctor::Finding& finding, Colour colour) {
+  const auto when =
+      finding.when ? "  when:    " + escape_controls(to_string(*finding.when)) + "\n" : "";
+  return fmt::format("{}[{}]: {}\n{}  seen:    {}\n  matters: {}\n  do:      {}\n",
+                     coloured(finding.gravity, colour), finding.code,
+                     escape_controls(finding.subject), when, escape_controls(finding.seen),
+                     escape_controls(finding.matters), escape_controls(finding.remedy));
+}
+
 void print_finding(const doctor::Finding& finding, Colour colour) {
-  say(stdout, "{}[{}]: {}\n", coloured(finding.gravity, colour), finding.code, finding.subject);
-  if (finding.when) say(stdout, "  when:    {}\n", to_string(*finding.when));
-  say(stdout, "  seen:    {}\n  matters: {}\n  do:      {}\n", finding.seen, finding.matters,
-      finding.remedy);
+  say_text(stdout, finding_text(finding, colour));
 }
 
 }  // namespace culprit::cli

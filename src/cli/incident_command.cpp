@@ -44,9 +44,10 @@ void print_incident(const Incident& incident,
   for (const recorder::StoredRecording& each : recordings)
     names += "  " + each.path.filename().string();
   const auto began = static_cast<std::int64_t>(incident.began / kNanosecondInSeconds);
-  fmt::print("{:<13} {:<24} {:>12}  {:<24} {}{}\n", incident.id, local_time(began),
-             incident_reports::lasting_text(incident.seconds), incident_reports::cause_of(incident),
-             incident_reports::outcome_of(incident), escape_controls(names));
+  fmt::print("{:<13} {:<24} {:>12}  {:<24} {}{}\n", escape_controls(incident.id), local_time(began),
+             incident_reports::lasting_text(incident.seconds),
+             escape_controls(incident_reports::cause_of(incident)),
+             escape_controls(incident_reports::outcome_of(incident)), escape_controls(names));
 }
 
 int list_incidents(const IncidentOptions& options) {

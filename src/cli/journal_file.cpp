@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include "base/environment.h"
+#include "base/name_grammar.h"
 #include "cli/commands.h"
 #include "journal/json.h"
 #include "terminal/console.h"
@@ -101,7 +102,9 @@ std::string log_line(const journal::Entry& entry) {
     text = fmt::format("{} is to be {}", journal::text_of(body, "component"),
                        journal::text_of(body, "lifecycle"));
   if (text.empty() && entry.kind == journal::kind::kEvent) return "";
-  return fmt::format("{:>7}  {}  {:<18}  {}", entry.id, local_time(entry.at), what, text);
+  // culprit's own rows are escaped; the file may be another's.
+  return fmt::format("{:>7}  {}  {:<18}  {}", entry.id, local_time(entry.at), escape_controls(what),
+                     escape_controls(text));
 }
 
 }  // namespace culprit::cli

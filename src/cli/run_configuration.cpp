@@ -1,6 +1,7 @@
 #include "cli/run_configuration.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <sstream>
 
 #include <CLI/CLI.hpp>
@@ -11,6 +12,7 @@
 #include "base/text_file.h"
 #include "base/wrapped.h"
 #include "cli/run_options.h"
+#include "live/rule_trust.h"
 #include "terminal/help.h"
 #include "terminal/listed.h"
 #include "terminal/wrong_call.h"
@@ -168,6 +170,11 @@ Expected<RunConfiguration> with_configuration(std::vector<std::string> words) {
   }
   RunConfiguration out{std::move(words), ""};
   if (!options.config.empty()) {
+    // A pipe has no name that others could replace.
+    std::error_code error;
+    if (std::filesystem::is_regular_file(options.config, error)) {
+      if (auto trusted = live::trust_rules(options.config); !trusted) return Error{trusted.error()};
+    }
     auto text = read_text(options.config);
     if (!text)
       return Error{text.error() + "\nculprit run --print-config > culprit.toml writes one"};

@@ -1,6 +1,7 @@
 #include "cli/run_configuration.h"
 
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -45,6 +46,15 @@ TEST_F(RunConfigurationFile, StandsForOptions) {
       added("# a comment\nrules = \"my.rules\"\nweb = true\ndry-run = false\nsettle = \"8s\"\n",
             {"run"}),
       ElementsAre("my.rules", "--web", "--settle=8s"));
+}
+
+// It chooses the rules and the programs that are run.
+TEST_F(RunConfigurationFile, IsOneThatNobodyElseCanChange) {
+  write("rules = \"my.rules\"\n");
+  std::filesystem::permissions(file_, std::filesystem::perms(0666));
+  EXPECT_THAT(
+      error_of("rules = \"my.rules\"\n"),
+      HasSubstr("another user could change it: " + file_ + " is writable by others; chmod"));
 }
 
 TEST_F(RunConfigurationFile, GivesWayToTheCommandLine) {

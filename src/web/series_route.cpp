@@ -94,9 +94,9 @@ Answer answer_past(const Json& body, const std::filesystem::path& journal, Mutex
                                       "--since",
                                       ago(from),
                                       "--until",
-                                      ago(to),
-                                      "--curve"};
-  command.insert(command.end(), names->begin(), names->end());
+                                      ago(to)};
+  // In one word: a name that begins with hyphens is no option.
+  for (const std::string& name : *names) command.push_back("--curve=" + name);
   const auto folder = TemporaryFolder::make("aside");
   if (!folder) return refuse(503, folder.error());
   const auto read = run_aside(std::move(command), *folder, kMostSecondsOfCurves);

@@ -50,6 +50,8 @@ constexpr std::size_t kMostAsked =
     1000;  // requests to a service of culprit that wait for its answer
 constexpr std::size_t kMostRequests = 1000;  // of culprit to one service, that wait for theirs
 constexpr std::size_t kRestOfFrame = 1024;   // an upper limit for what is beside a payload
+// Messages of one endpoint in turn: the others' turn comes, too, and anybody may send without end.
+constexpr int kAtOnce = 100;
 
 std::string last_error() {
   const std::string text = rcl_get_error_string().str;
@@ -71,11 +73,13 @@ class Channel {
     ignore(setsockopt(socket_, SOL_SOCKET, SO_SNDTIMEO, &kPatience, sizeof kPatience));
   }
 
-  void put(const Frame& frame) {
+  // False: it is too large for a frame.
+  bool put(const Frame& frame) {
     const Bytes bytes = encode(frame);
-    if (bytes.size() > kLargestFrame + kLengthSize) return;
+    if (bytes.size() > kLargestFrame + kLengthSize) return false;
     out_.insert(out_.end(), bytes.begin(), bytes.end());
     if (out_.size() > kFlushes) flush();
+    return true;
   }
 
   void flush() {
@@ -377,7 +381,6 @@ class Helper {
   }
 
   void take_samples(std::uint32_t id, Subscription& from) {
-    constexpr int kAtOnce = 100;  // the others' turn comes, too
     for (int i = 0; i < kAtOnce; ++i) {
       rcl_serialized_message_t message = rmw_get_zero_initialized_serialized_message();
       if (rmw_serialized_message_init(&message, 0, &allocator_) != RMW_RET_OK)
@@ -408,7 +411,7 @@ class Helper {
   }
 
   void take_replies(std::uint32_t id, Client& from) {
-    while (true) {
+    for (int i = 0; i < kAtOnce; ++i) {
       rmw_service_info_t header{};
       const auto response = from.response->make();
       if (!response) return;
@@ -421,7 +424,7 @@ class Helper {
   }
 
   void take_requests(std::uint32_t id, Service& from) {
-    while (true) {
+    for (int i = 0; i < kAtOnce; ++i) {
       rmw_service_info_t header{};
       const auto request = from.request->make();
       if (!request) return;
@@ -442,7 +445,10 @@ class Helper {
     GraphSeen seen = read_graph(node_);
     read_graph_ = Clock::now();
     if (has_told_ && seen == told_) return;
-    channel_.put(seen);
+    if (!channel_.put(seen))
+      channel_.put(
+          Trouble{"the robot's graph is larger than 16 MiB; culprit sees no change of it, "
+                  "until it is smaller. Find the participant that announces so much"});
     told_ = std::move(seen);
     has_told_ = true;
   }

@@ -222,6 +222,22 @@ TEST_F(BagTest, SaysWhyABagCannotBeRead) {
   EXPECT_THAT(why(folder_ / "b.db3"), HasSubstr("it is no bag"));
 }
 
+// It would be read without an end.
+TEST_F(BagTest, AViewInPlaceOfMessagesIsRefused) {
+  auto database =
+      value_of(journal::Database::open(folder_ / "a.db3", journal::Database::Mode::kWrite));
+  ASSERT_TRUE(database.run(
+      "CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT, serialization_format "
+      "TEXT, "
+      "offered_qos_profiles TEXT);"
+      "INSERT INTO topics VALUES (1, '/a', 'std_msgs/msg/Float64', 'cdr', '');"
+      "CREATE VIEW messages AS WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) "
+      "SELECT x AS id, 1 AS topic_id, x AS timestamp, '' AS data FROM n WHERE x < 0"));
+  const auto opened = BagFile::open(folder_ / "a.db3");
+  ASSERT_FALSE(opened);
+  EXPECT_THAT(opened.error(), HasSubstr("it is no bag"));
+}
+
 std::vector<double> times_of(const fs::path& path) {
   std::vector<double> times;
   BagFile bag = value_of(BagFile::open(path));

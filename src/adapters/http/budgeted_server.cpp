@@ -56,7 +56,8 @@ class Connection final : public httplib::Stream {
   bool begins_request() {
     const bool has_some = at_ < end_ || (tls_ != nullptr && tls_->has_pending());
     if (!has_some && !wait_for(socket_, POLLIN, budget_.idle)) return false;
-    deadline_ = Clock::now() + budget_.request;
+    begun_ = Clock::now();
+    deadline_ = begun_ + budget_.header;
     header_ = body_ = 0;
     line_ends_ = 0;
     return true;
@@ -83,6 +84,7 @@ class Connection final : public httplib::Stream {
     if (line_ends_ < kEndOfHeader.size()) {
       const char c = buffer_[at_];
       line_ends_ = c == kEndOfHeader[line_ends_] ? line_ends_ + 1 : (c == '\r' ? 1 : 0);
+      if (line_ends_ == kEndOfHeader.size()) deadline_ = begun_ + budget_.request;
     }
     at_ += size;
     return static_cast<ssize_t>(size);
@@ -126,6 +128,7 @@ class Connection final : public httplib::Stream {
   std::size_t at_ = 0;
   std::size_t end_ = 0;
   bool is_over_ = false;  // the client sends no more
+  Clock::time_point begun_;
   Clock::time_point deadline_;
   std::size_t header_ = 0;     // bytes of this request
   std::size_t body_ = 0;       // likewise

@@ -2,8 +2,8 @@
 //
 // httplib itself keeps every header that comes, however many and however long a line is, and waits
 // again for each byte. Here the bytes of a connection are counted before they are parsed: so many
-// bytes of headers, so many of a body, and so much time for both. A connection that exceeds them is
-// closed.
+// bytes of headers, so many of a body, so much time for the headers, and so much for both. A connection that exceeds them is
+// closed. A request that is only begun keeps one of the few threads from others, so its headers have little time.
 //
 // Nor does it compress answers: httplib would use brotli at its slowest if the browser accepts
 // that, and the incidents of a day came after seconds. takes_gzip() says whether the client can
@@ -24,6 +24,8 @@ namespace culprit::web {
 struct ConnectionBudget {
   std::size_t header_bytes = 8u << 10;  // request line included
   std::size_t body_bytes = 1u << 20;
+  std::chrono::milliseconds header =
+      std::chrono::seconds(3);  // from its first byte to the headers' end
   std::chrono::milliseconds request = std::chrono::seconds(10);  // from its first byte to its last
   std::chrono::milliseconds idle = std::chrono::seconds(2);      // between two requests
   std::chrono::milliseconds write = std::chrono::seconds(5);     // for each piece of an answer

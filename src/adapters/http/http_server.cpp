@@ -173,7 +173,7 @@ class HttpServer::Http {
         routes_(std::move(routes)),
         hub_(hub),
         limit_(kRequestsPerSecond, kBurst),
-        owner_limit_(kRequestsPerSecond, kBurst),
+        token_limit_(kRequestsPerSecond, kBurst),
         most_connections_(affordable_connections(kMostConnections)),
         server_({.body_bytes = kMostBytes}, is_on_socket() ? Clients::kOwnUser : Clients::kAny,
                 options_.tls) {
@@ -268,7 +268,7 @@ class HttpServer::Http {
       return refuse(403, "pages of other sites may not ask this server");
     const auto role = options_.access.role_of(q.get_header_value("Authorization"));
     const Role needed = role_for(q);
-    if (!is_within_limits(q, role && *role >= needed))
+    if (!is_within_limits(q, role && *role >= needed ? role : std::nullopt))
       return refuse(429, "too many requests; wait a second");
     const bool needs_token = changes(q) || (is_api(q) && !options_.access.is_local);
     if (needs_token && !role)
@@ -288,13 +288,13 @@ class HttpServer::Http {
     return Role::kAdminister;
   }
 
-  // An address says little about the client: all users of this machine share one. Changes by the
-  // owner of the token have a limit of their own, so that requests without the token cannot delay
-  // them.
-  bool is_within_limits(const httplib::Request& q, bool has_token) {
+  // An address says little about the client: all users of this machine share one. Each token has limits of its own, for changes
+  // and for the rest, so that neither requests without it nor those with another one can delay it.
+  bool is_within_limits(const httplib::Request& q, std::optional<Role> token) {
     const auto now = RateLimit::Clock::now();
-    if (has_token && changes(q)) return owner_limit_.allows("", now);
-    return limit_.allows(q.remote_addr, now);
+    if (!token) return limit_.allows(q.remote_addr, now);
+    return token_limit_.allows(std::string(to_string(*token)) + (changes(q) ? " changes" : ""),
+                               now);
   }
 
   // The calls that this server offers: a page shows no more than that.
@@ -355,7 +355,11 @@ class HttpServer::Http {
 
   void stream(const httplib::Request& q, httplib::Response& r) {
     // Other requests need a connection, too.
-    const std::size_t most = std::min(kMostStreams, (most_connections_ + 1) / 2);
+    const bool has_token =
+        is_on_socket() || options_.access.role_of(q.get_header_value("Authorization"));
+    const std::size_t all = std::min(kMostStreams, (most_connections_ + 1) / 2);
+    const std::size_t most =
+        has_token ? all : (all * kMostStreamsWithoutToken + kMostStreams - 1) / kMostStreams;
     if (++streams_ > static_cast<int>(most)) {
       --streams_;
       r.set_header("Retry-After", "5");
@@ -376,7 +380,7 @@ class HttpServer::Http {
   const std::vector<Route> routes_;
   Hub* const hub_;
   RateLimit limit_;
-  RateLimit owner_limit_;
+  RateLimit token_limit_;
   std::atomic<int> streams_ = 0;
   std::atomic<bool> is_over_ = false;  // it does not listen any more
   const std::size_t most_connections_;

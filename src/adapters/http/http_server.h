@@ -31,8 +31,9 @@ class HttpServer {
   // Fewer where the limit of descriptors (ulimit -n) is low: those are the manager's first.
   static constexpr std::size_t kMostConnections = 128;
   static constexpr std::size_t kMostStreams = 64;
-  static constexpr std::size_t kMostBytes = 1 << 20;  // of a request's body
-  // The limit for one address, in the long run; and again as many changes with the token.
+  static constexpr std::size_t kMostStreamsWithoutToken = 48;  // the rest is for those with one
+  static constexpr std::size_t kMostBytes = 1 << 20;           // of a request's body
+  // The limit for one address, in the long run; and for each token as many changes, and as many other requests.
   static constexpr double kRequestsPerSecond = 50;
   static constexpr double kBurst = 200;
 

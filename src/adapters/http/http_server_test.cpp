@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <arpa/inet.h>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <httplib.h>
@@ -378,6 +379,7 @@ TEST_F(WebServer, TakesOrdersWithTheTokenWhileSomebodyElseAsksTooOften) {
   for (int i = 0; i < 40; ++i) {
     ASSERT_EQ(ask_too_often(), 1);
     EXPECT_EQ(post(with_token), 200);
+    EXPECT_EQ(client().Get("/api/echo", with_token)->status, 200) << "nor its page";
     EXPECT_THAT(post({{"Authorization", "Bearer wrong"}}), testing::AnyOf(401, 429));
   }
 }
@@ -400,12 +402,18 @@ TEST_F(WebServer, StreamsWhatIsPublished) {
 
 TEST_F(WebServer, BoundsTheNumberOfStreams) {
   std::vector<std::unique_ptr<Raw>> readers;
-  for (std::size_t i = 0; i < HttpServer::kMostStreams; ++i) {
+  const auto read = [&](const std::string& more) {
     readers.push_back(std::make_unique<Raw>(server->port()));
-    readers.back()->send("GET /api/stream HTTP/1.1\r\nHost: localhost\r\n\r\n");
-    ASSERT_THAT(readers.back()->receive("hello"), HasSubstr("hello"));
-  }
+    readers.back()->send("GET /api/stream HTTP/1.1\r\nHost: localhost\r\n" + more + "\r\n");
+    return readers.back()->receive("hello");
+  };
+  for (std::size_t i = 0; i < HttpServer::kMostStreamsWithoutToken; ++i)
+    ASSERT_THAT(read(""), HasSubstr("hello"));
   EXPECT_EQ(client().Get("/api/stream")->status, 503);
+  while (readers.size() < HttpServer::kMostStreams)
+    ASSERT_THAT(read(std::string("Authorization: Bearer ") + kToken + "\r\n"), HasSubstr("hello"))
+        << "readers without a token cannot take all";
+  EXPECT_EQ(client().Get("/api/stream", with_token)->status, 503);
   readers.clear();  // and the publisher does not notice that
   for (int i = 0; i < 10; ++i) hub.publish(Kind::kEvent, "{}");
 }
@@ -438,6 +446,15 @@ TEST_F(WebServer, GoesOnAfterAThousandConnections) {
   const auto answer = patient.Get("/api/echo");
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->status, 200);
+}
+
+// Until then it keeps a thread.
+TEST_F(WebServer, EndsARequestThatIsOnlyBegun) {
+  const Raw raw(server->port());
+  const auto began = std::chrono::steady_clock::now();
+  raw.send("GET /api/");
+  raw.receive();
+  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(8));
 }
 
 // Headers without end, and a line without end: cut off before they are kept.

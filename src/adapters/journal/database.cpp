@@ -124,6 +124,8 @@ Expected<Database> Database::open(const std::filesystem::path& path, Mode mode) 
     if (code != SQLITE_OK) return Error{why(code, sqlite3_errmsg(connection))};
     sqlite3_extended_result_codes(connection, 1);
     sqlite3_busy_timeout(connection, kBusyMilliseconds);
+    sqlite3_db_config(connection, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
+    sqlite3_db_config(connection, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     if (mode == Mode::kSalvage) (void)database.run("PRAGMA writable_schema = ON");
     // Whether it can be read shows with the first look only.
     if (const auto look = database.number("SELECT count(*) FROM sqlite_schema"); !look)

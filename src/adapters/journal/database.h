@@ -1,6 +1,7 @@
 // SQLite with owners and errors as values.
 //
-// A Database is one connection, used by one thread at a time. Statements must not outlive it.
+// A Database is one connection, used by one thread at a time. Statements must not outlive it. Views are refused: a file of somebody
+// else may have one without an end in place of a table.
 #pragma once
 
 #include <cstdint>

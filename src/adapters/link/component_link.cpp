@@ -447,7 +447,10 @@ void ComponentLink::execute(const Command& command) {
   std::visit([&](const auto& what) { run(command, what); }, command.what);
 }
 
+// A node's own words go into the journal, the page and alerts.
 void ComponentLink::reply(const Command& command, Answer answer) {
+  constexpr std::size_t kLongestText = 500;  // bytes
+  if (answer.text.size() > kLongestText) answer.text.resize(kLongestText);
   inbox_.put(Reply{command.id, answer.outcome, std::move(answer.value), std::move(answer.text)});
 }
 

@@ -1,5 +1,6 @@
 #include "link/diagnostics_reading.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace culprit::ros2 {
@@ -22,6 +23,8 @@ DiagnosticsReading::DiagnosticsReading(const RuleSet& rules) {
     levels_.emplace(rules.diagnostics[d].name,
                     Wanted<DiagnosticId>{DiagnosticId(d), rules.diagnostics[d].name});
   missing_ += levels_.size();
+  for (const auto& [name, wanted] : signals_) longest_ = std::max(longest_, name.size());
+  for (const auto& [name, wanted] : levels_) longest_ = std::max(longest_, name.size());
 }
 
 void DiagnosticsReading::read(const msg::DiagnosticArray& message, const MaySay& may_say) {
@@ -38,12 +41,14 @@ void DiagnosticsReading::read(const msg::DiagnosticStatus& status, const MaySay&
 
 void DiagnosticsReading::read_named(const std::string& name, const msg::DiagnosticStatus& status,
                                     const MaySay& may_say) {
+  if (name.size() > longest_) return;
   const auto level = levels_.find(name);
   if (level != levels_.end() && (!may_say || may_say(level->second.status, {}))) {
     note_found(level->second);
     on_level(level->second.id, status.level);
   }
   for (const msg::KeyValue& pair : status.values) {
+    if (name.size() + 1 + pair.key.size() > longest_) continue;
     read(name + "\n" + pair.key, pair.value, may_say);
     read(name + "_" + pair.key, pair.value, may_say);
   }

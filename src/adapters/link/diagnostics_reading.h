@@ -63,8 +63,9 @@ class DiagnosticsReading {
   // By "status\nkey", or the bare name.
   std::unordered_map<std::string, std::vector<Wanted<SignalId>>> signals_;
   std::unordered_map<std::string, Wanted<DiagnosticId>> levels_;  // by name or hardware id
-  std::size_t missing_ = 0;                                       // of both
-  std::unordered_set<std::string> told_;                          // "name\nhardware id" of statuses
+  std::size_t longest_ = 0;  // bytes of a name in either: longer ones are never put together
+  std::size_t missing_ = 0;  // of both
+  std::unordered_set<std::string> told_;  // "name\nhardware id" of statuses
 };
 
 }  // namespace culprit::ros2

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "base/live_clock.h"
+#include "robot/unreadable.h"
 
 namespace culprit::ros2 {
 
@@ -73,24 +74,27 @@ void DiagnosticsWatch::on_sample(const Sample& sample) {
   // culprit's own messages are not read.
   const Guid writer = sample.identity.writer;
   if (writer.prefix() == self_.context().participant().guid().prefix()) return;
+  const std::size_t size = sample.payload.size();
+  if (size > msg::DiagnosticArray::kLargest) return;
   const auto message = decode<msg::DiagnosticArray>(sample.payload);
   if (!message) return;
   const MutexLock lock(mutex_);
   const auto known = writers_.find(writer);
   if (known != writers_.end()) return read(*message, known->second);
-  if (waiting_ >= kMostWaiting) return;
-  ++waiting_;
-  tasks_.post([this, writer, message = *message] { look_up(writer, message); });
+  if (waiting_ + size > kMostWaiting) return;
+  waiting_ += size;
+  tasks_.post([this, writer, size, message = *message] { look_up(writer, size, message); });
 }
 
 // A writer that no node claims yet is looked up again with its next message.
-void DiagnosticsWatch::look_up(const Guid& writer, const msg::DiagnosticArray& message) {
+void DiagnosticsWatch::look_up(const Guid& writer, std::size_t size,
+                               const msg::DiagnosticArray& message) {
   constexpr std::size_t kMostWriters = 10'000;  // the network decides how many there are
   const Graph::Owner owner = self_.context().graph().owner_of(writer);
   SignalPublishers::Publisher by{owner.node, owner.pid != 0, owner.node.empty() || owner.counts,
                                  component_of_(owner.node)};
   const MutexLock lock(mutex_);
-  --waiting_;
+  waiting_ -= size;
   if (by.node.empty()) {
     if (unclaimed_.size() >= kMostWriters) unclaimed_.clear();
     const Time now = live_now();
@@ -130,7 +134,7 @@ void DiagnosticsWatch::on_signal(SignalId signal, const std::string& text) {
   std::string& last = last_[signal.index];
   const Urgency urgency = last == text ? Urgency::kSoon : Urgency::kNow;
   last = text;
-  inbox_.put(SignalRead{signal, Value(text)}, urgency);
+  inbox_.put(SignalRead{signal, readable(text)}, urgency);
 }
 
 }  // namespace culprit::ros2

@@ -40,12 +40,13 @@ class DiagnosticsWatch {
   std::map<std::string, std::string> conflicts() const;
 
  private:
-  static constexpr int kMostWaiting = 1000;  // messages of writers that are looked up
+  // Bytes of the messages of writers that are looked up.
+  static constexpr std::size_t kMostWaiting = msg::DiagnosticArray::kLargest;
 
   DiagnosticsWatch(NodeEntry& self, const RuleSet& rules, Inbox& inbox, ComponentOf component_of);
   bool is_wanted() const;
   void on_sample(const Sample& sample);
-  void look_up(const Guid& writer, const msg::DiagnosticArray& message);
+  void look_up(const Guid& writer, std::size_t size, const msg::DiagnosticArray& message);
   void read(const msg::DiagnosticArray& message, const SignalPublishers::Publisher& by)
       CULPRIT_REQUIRES(mutex_);
   bool may_say(const std::string& status, std::optional<ComponentId> publisher,
@@ -64,7 +65,7 @@ class DiagnosticsWatch {
       CULPRIT_GUARDED_BY(mutex_);  // that were looked up
   // Those that no node claims: when each was looked up first.
   std::unordered_map<Guid, Time> unclaimed_ CULPRIT_GUARDED_BY(mutex_);
-  int waiting_ CULPRIT_GUARDED_BY(mutex_) = 0;
+  std::size_t waiting_ CULPRIT_GUARDED_BY(mutex_) = 0;  // bytes
   // The newest values, by signal and by diagnostic.
   std::unordered_map<std::uint32_t, std::string> last_ CULPRIT_GUARDED_BY(mutex_);
   std::unordered_map<std::uint32_t, std::uint8_t> last_level_ CULPRIT_GUARDED_BY(mutex_);

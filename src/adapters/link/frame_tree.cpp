@@ -44,7 +44,8 @@ bool is_valid(const msg::Transform& transform) {
 
 void FrameTree::add(const msg::TFMessage& message, Kind kind, Time now) {
   for (const msg::TransformStamped& each : message.transforms) {
-    if (!is_valid(each.transform)) continue;
+    const std::size_t longest = std::max(each.header.frame_id.size(), each.child_frame_id.size());
+    if (longest > kLongestName || !is_valid(each.transform)) continue;
     if (edges_.size() >= kMostFrames && !edges_.contains(each.child_frame_id)) continue;
     edges_[each.child_frame_id] = {each.header.frame_id, each.transform,
                                    kind == Kind::kStatic ? std::nullopt : std::optional(now)};

@@ -21,10 +21,12 @@ bool is_valid(const msg::Transform& transform);
 
 class FrameTree {
  public:
-  static constexpr std::size_t kMostFrames = 10'000;  // the network decides how many there are
+  // The network decides how many there are, and what they are called.
+  static constexpr std::size_t kMostFrames = 10'000;
+  static constexpr std::size_t kLongestName = 256;
 
   enum class Kind : std::uint8_t { kMoving, kStatic };
-  // Transforms that are not valid, and new frames behind the limit, are dropped.
+  // Transforms that are not valid, or between frames with longer names, and new frames behind the limit, are dropped.
   void add(const msg::TFMessage& message, Kind kind, Time now);
 
   struct Placed {

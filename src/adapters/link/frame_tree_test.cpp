@@ -57,6 +57,18 @@ TEST(FrameTree, SurvivesARingAndNumbersThatAreNone) {
   EXPECT_FALSE(tree.place("far", "map", kStart));
 }
 
+TEST(FrameTree, KeepsNoNamesThatOnlyTakeMemory) {
+  FrameTree tree;
+  const std::string longest(FrameTree::kLongestName, 'f');
+  const std::string longer = longest + "f";
+  tree.add({{edge("map", longest.c_str(), 1, 0, 0), edge("map", longer.c_str(), 1, 0, 0),
+             edge(longer.c_str(), "base_link", 1, 0, 0)}},
+           FrameTree::Kind::kMoving, kStart);
+  EXPECT_TRUE(tree.place(longest, "map", kStart));
+  EXPECT_FALSE(tree.place(longer, "map", kStart));
+  EXPECT_FALSE(tree.place("base_link", longer, kStart));
+}
+
 TEST(FrameTree, FindsARobotInItsNamespace) {
   FrameTree tree;
   tree.add({{edge("odom", "rover1/base_link", 0, 0, 0), edge("odom", "no_base_link", 0, 0, 0)}},

@@ -513,10 +513,14 @@ void Link::probe() {
 
 // Reports only a process on this machine that is proven to be the node's.
 void Link::tell_usage() {
+  constexpr Duration kAtOnce = std::chrono::milliseconds(50);
   for (auto& [component, meter] : meters_) {
     const int pid = pid_of(binding_.node_of(component));
+    const Time before = live_now();
     const auto usage = pid == 0 ? std::nullopt : usage_of(pid);
-    const auto cores = usage ? meter.look(pid, *usage, live_now()) : std::nullopt;
+    const Time now = live_now();
+    if (!usage || now > later(before, kAtOnce)) continue;  // it is not known when it was so
+    const auto cores = meter.look(pid, *usage, now);
     if (cores) inbox_.put(UsageSeen{component, *cores, usage->resident_mib});
   }
 }

@@ -37,6 +37,8 @@ bool is_finite(const msg::Vector3& v) {
 }  // namespace
 
 Expected<GridPicture> picture_of(const msg::OccupancyGrid& grid) {
+  if (grid.header.frame_id.size() > FrameTree::kLongestName)
+    return Error{"the name of its frame is too long"};
   const auto& [time, resolution, width, height, origin] = grid.info;
   const std::string size = std::to_string(width) + " × " + std::to_string(height);
   if (grid.data.size() != static_cast<std::size_t>(width) * height)

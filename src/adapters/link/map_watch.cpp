@@ -1,15 +1,20 @@
 #include "link/map_watch.h"
 
 #include <algorithm>
+#include <ranges>
 #include <tuple>
 #include <utility>
 
 #include "base/live_clock.h"
+#include "base/name_grammar.h"
 
 namespace culprit::ros2 {
 namespace {
 
 constexpr std::size_t kMostRobots = 16;
+// The network decides how many there are.
+constexpr std::size_t kMostBases = 64;  // that are placed
+constexpr std::size_t kMostTopics = 100;
 
 // The last part of the name of the usual topic of a type, as Nav2 and slam_toolbox have it.
 struct Usual {
@@ -43,7 +48,7 @@ void MapWatch::follow(const std::vector<Topic>& topics, const std::string& wante
     if (part != kGrid) continue;
     const MutexLock lock(mutex_);
     topics_.clear();
-    for (const Topic& topic : found) topics_.push_back(topic.name);
+    for (const Topic& topic : found | std::views::take(kMostTopics)) topics_.push_back(topic.name);
   }
   const Qos latched{.durability = Durability::kTransientLocal, .depth = 100};
   listen(kTransforms, {"/tf", std::string(msg::TFMessage::kType), qos::kSensorData});
@@ -80,8 +85,9 @@ void MapWatch::stop() {
 void MapWatch::on_sample(Part part, const std::string& topic, const Sample& sample) {
   if (part <= kScan) {
     const MutexLock lock(mutex_);
-    return keep(newest_[part], topic, sample);
+    return keep(part, topic, sample);
   }
+  if (sample.payload.size() > kMostBytesOfOthers) return;
   const auto message = decode<msg::TFMessage>(sample.payload);
   if (!message) return;
   const MutexLock lock(mutex_);
@@ -89,8 +95,9 @@ void MapWatch::on_sample(Part part, const std::string& topic, const Sample& samp
               live_now());
 }
 
-void MapWatch::keep(Newest& newest, const std::string& topic, const Sample& sample) {
-  const bool fits = sample.payload.size() <= kMostBytes;
+void MapWatch::keep(Part part, const std::string& topic, const Sample& sample) {
+  Newest& newest = newest_[part];
+  const bool fits = sample.payload.size() <= (part == kGrid ? kMostBytes : kMostBytesOfOthers);
   newest.refused = fits ? 0 : sample.payload.size();
   if (!fits) return;
   newest.topic = topic;
@@ -116,7 +123,7 @@ void MapWatch::decode_grid(Time now) {
   const MutexLock lock(mutex_);
   if (number != decoded_) return;
   grid_ = std::move(grid);
-  if (message) frame_ = message->header.frame_id;
+  if (grid_) frame_ = message->header.frame_id;
 }
 
 MapPicture MapWatch::picture(std::uint64_t known, Time now) {
@@ -146,7 +153,7 @@ MapPicture MapWatch::picture(std::uint64_t known, Time now) {
 void MapWatch::add_robots(MapPicture& picture, Time now) const {
   std::vector<std::string> bases = frames_.called("base_link");
   if (bases.empty()) bases = frames_.called("base_footprint");
-  for (const std::string& base : bases) {
+  for (const std::string& base : bases | std::views::take(kMostBases)) {
     const auto placed = frames_.place(base, frame_, now);
     if (!placed || picture.robots.size() == kMostRobots) continue;
     const auto& [t, rotation] = placed->transform;
@@ -160,6 +167,9 @@ void MapWatch::add_robots(MapPicture& picture, Time now) const {
 template <class Message>
 void MapWatch::add_line(MapPicture& picture, std::optional<MapPicture::Line>& line,
                         const Newest& newest, Time now) const {
+  if (newest.refused > 0)
+    picture.troubles.push_back("A path or scan of " + std::to_string(newest.refused >> 20) +
+                               " MB is not drawn; the limit is 4 MB");
   if (newest.number == 0) return;
   const auto message = decode<Message>(newest.payload);
   if (!message) return;
@@ -169,7 +179,7 @@ void MapWatch::add_line(MapPicture& picture, std::optional<MapPicture::Line>& li
         MapPicture::Line{newest.topic, points_of(*message, placed->transform), now - newest.at});
   } else {
     picture.troubles.push_back(newest.topic + " is not drawn: no transform on /tf leads from " +
-                               message->header.frame_id + " to " + frame_);
+                               printable(message->header.frame_id) + " to " + frame_);
   }
 }
 

@@ -15,7 +15,9 @@ namespace culprit::ros2 {
 
 class MapWatch {
  public:
-  static constexpr std::size_t kMostBytes = 64UL << 20;  // of a message; larger ones are refused
+  // Of a message; larger ones are refused. A map is decoded once, all else for each picture, or with each message.
+  static constexpr std::size_t kMostBytes = 64UL << 20;
+  static constexpr std::size_t kMostBytesOfOthers = 4UL << 20;
   static constexpr Duration kGridPeriod = std::chrono::seconds(1);  // a map is decoded so often
 
   struct Topic {
@@ -53,8 +55,7 @@ class MapWatch {
 
   void listen(Part part, const Topic& topic);
   void on_sample(Part part, const std::string& topic, const Sample& sample);
-  void keep(Newest& newest, const std::string& topic, const Sample& sample)
-      CULPRIT_REQUIRES(mutex_);
+  void keep(Part part, const std::string& topic, const Sample& sample) CULPRIT_REQUIRES(mutex_);
   void decode_grid(Time now);
   void add_robots(MapPicture& picture, Time now) const CULPRIT_REQUIRES(mutex_);
   template <class Message>

@@ -11,6 +11,10 @@ namespace {
 // How long a node that was just seen may take until its services answer.
 constexpr Duration kAnswerPatience = std::chrono::seconds(5);
 
+// Bytes of a name and a text in events, which anybody may send in the node's name.
+constexpr std::size_t kMaxParameterName = 256;
+constexpr std::size_t kMaxParameterText = 64 << 10;
+
 }  // namespace
 
 LiveInventory::Node NodeReading::told() const {
@@ -61,9 +65,13 @@ void NodeReading::parameters_changed(const msg::ParameterEvent& event) {
   if (!told_.parameters) return;  // they will be read as they are then
   for (const auto* changes : {&event.new_parameters, &event.changed_parameters}) {
     for (const msg::Parameter& changed : *changes) {
-      const bool has_room = told_.parameters->size() < kMaxParameters;
-      if (has_room || told_.parameters->contains(changed.name))
-        (*told_.parameters)[changed.name] = value_or_list(changed.value);
+      const bool has_room =
+          told_.parameters->size() < kMaxParameters && changed.name.size() <= kMaxParameterName;
+      if (!has_room && !told_.parameters->contains(changed.name)) continue;
+      auto value = value_or_list(changed.value);
+      const auto* text = value ? std::get_if<std::string>(&*value) : nullptr;
+      if (text != nullptr && text->size() > kMaxParameterText) value.reset();
+      (*told_.parameters)[changed.name] = std::move(value);
     }
   }
   for (const msg::Parameter& deleted : event.deleted_parameters)

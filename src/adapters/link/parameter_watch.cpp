@@ -12,12 +12,14 @@ Expected<void> ParameterWatch::start(NodeEntry& self) {
   auto subscription = RawSubscription::create(
       self, "/parameter_events", msg::ParameterEvent::kType, kQos, PayloadUse::kWhole,
       [this](const Sample& sample) {
-        constexpr int kMost = 1000;
+        constexpr std::size_t kMost = msg::ParameterEvent::kLargest;  // bytes that wait
+        const std::size_t size = sample.payload.size();
+        if (waiting_ + size > kMost) return;
         auto event = decode<msg::ParameterEvent>(sample.payload);
-        if (!event || waiting_ >= kMost) return;
-        ++waiting_;
-        tasks_.post([this, event = std::move(*event), writer = sample.identity.writer] {
-          --waiting_;
+        if (!event) return;
+        waiting_ += size;
+        tasks_.post([this, size, event = std::move(*event), writer = sample.identity.writer] {
+          waiting_ -= size;
           on_event(event, writer);
         });
       });

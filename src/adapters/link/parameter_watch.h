@@ -52,7 +52,7 @@ class ParameterWatch {
   ComponentBinding& binding_;
   const OtherNodes& others_;
   const Ask ask_;
-  std::atomic<int> waiting_ = 0;                           // events
+  std::atomic<std::size_t> waiting_ = 0;                   // bytes of events
   std::map<ComponentId, Time> asked_;                      // because of somebody else's event
   std::set<std::pair<std::string, std::string>> told_of_;  // nodes, and the sources in their names
   TaskGroup tasks_;

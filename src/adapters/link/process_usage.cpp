@@ -15,10 +15,12 @@ std::optional<ProcessUsage> usage_of(int pid) {
 
 std::optional<double> UsageMeter::look(int pid, const ProcessUsage& usage, Time now) {
   constexpr Duration kLongest = std::chrono::hours(24);
+  constexpr Duration kShortest = std::chrono::milliseconds(500);
   const Duration used = usage.processor - processor_;
   const Duration since = at_ == kLongAgo ? Duration::zero() : now - at_;
   const bool is_first =
       pid != pid_ || since <= Duration::zero() || since > kLongest || used < Duration::zero();
+  if (!is_first && since < kShortest) return std::nullopt;
   pid_ = pid;
   processor_ = usage.processor;
   at_ = now;

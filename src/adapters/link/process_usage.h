@@ -21,7 +21,8 @@ std::optional<ProcessUsage> usage_of(int pid);
 class UsageMeter {
  public:
   // Measures the process, and returns how many cores it used since the measurement before. Empty at the
-  // first one of a process, and if the one before is more than a day old.
+  // first one of a process, and if the one before is more than a day old. Nor is a short time measured, as
+  // between two looks of which the first was late: the kernel counts in steps of 10 ms.
   std::optional<double> look(int pid, const ProcessUsage& usage, Time now);
 
  private:

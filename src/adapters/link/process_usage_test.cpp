@@ -26,5 +26,13 @@ TEST(UsageMeter, MeasuresBetweenTwoLooksAtOneProcess) {
   EXPECT_EQ(meter.look(8, {1s, 1}, Time(105s)), 0.0);
 }
 
+// A look that was a second late is followed by one in time: 10 ms of work in 1 ms are no ten cores.
+TEST(UsageMeter, MeasuresNoShortTime) {
+  UsageMeter meter;
+  EXPECT_FALSE(meter.look(7, {10s, 1}, Time(100s)));
+  EXPECT_FALSE(meter.look(7, {10s + 10ms, 1}, Time(100s + 1ms)));
+  EXPECT_EQ(meter.look(7, {10s + 500ms, 1}, Time(101s)), 0.5) << "of the whole time";
+}
+
 }  // namespace
 }  // namespace culprit::ros2

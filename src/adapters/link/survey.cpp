@@ -12,7 +12,17 @@ namespace {
 constexpr std::size_t kMaxStatuses = 10'000;  // the network decides how many there are
 constexpr std::size_t kMaxLoggers = 2'000;    // likewise
 constexpr std::size_t kMaxLines = 30;         // of each
-constexpr std::size_t kMaxText = 2'000;       // bytes of a line
+constexpr std::size_t kMaxLine = 2'000;       // bytes of a line
+constexpr std::size_t kMaxShown = 256;        // bytes, of a status, a logger or a file of code
+constexpr std::size_t kMaxStatus = 16 << 10;  // bytes
+
+// In bytes, about.
+std::size_t size_of(const msg::DiagnosticStatus& status) {
+  std::size_t size = status.name.size() + status.hardware_id.size();
+  for (const msg::KeyValue& pair : status.values)
+    size += sizeof pair + pair.key.size() + pair.value.size();
+  return size;
+}
 
 }  // namespace
 
@@ -93,10 +103,16 @@ void Survey::listen_to_log() {
 
 void Survey::on_log(const msg::Log& line) {
   const MutexLock lock(mutex_);
+  if (line.name.size() > kMaxShown) return;
   if (log_lines_.size() >= kMaxLoggers && !log_lines_.contains(line.name)) return;
   std::deque<msg::Log>& lines = log_lines_[line.name];
-  lines.push_back(line);
-  if (lines.back().msg.size() > kMaxText) lines.back().msg.resize(kMaxText);
+  lines.push_back({.stamp = line.stamp,
+                   .level = line.level,
+                   .name = line.name,
+                   .msg = line.msg.substr(0, kMaxLine),
+                   .file = line.file.substr(0, kMaxShown),
+                   .function = line.function.substr(0, kMaxShown),
+                   .line = line.line});
   if (lines.size() > kMaxLines) lines.pop_front();
 }
 
@@ -359,6 +375,7 @@ void Survey::on_diagnostics(const msg::DiagnosticArray& message) {
   for (const msg::DiagnosticStatus& heard : message.status) {
     const StatusKey key{heard.name, heard.hardware_id};
     if (statuses_.size() >= kMaxStatuses && !statuses_.contains(key)) continue;
+    if (heard.name.size() > kMaxShown || size_of(heard) > kMaxStatus) continue;
     LiveInventory::Status& status = statuses_[key];
     status = {heard.name, heard.hardware_id, heard.level, {}};
     StatusCourse& course = courses_[key];

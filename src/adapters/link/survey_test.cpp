@@ -1,5 +1,7 @@
 #include "link/survey.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "ros2/lifecycle_node.h"
@@ -247,6 +249,28 @@ TEST(Survey, SaysWhyItDoesNotDrawAMap) {
   ASSERT_TRUE(is_told(map));
   EXPECT_EQ(map.troubles[0], "/map is not drawn: it claims 100000 × 100000 cells, and has 1");
   EXPECT_FALSE(map.grid);
+}
+
+TEST(Survey, KeepsNoStatusThatOnlyTakesMemory) {
+  const TestDomain domain;
+  SurveyedRobot robot(domain);
+  const auto survey = survey_of(domain);
+  const std::string long_name(300, 'n');
+  msg::DiagnosticArray array;
+  array.status = {{0, long_name, "", "", {}},
+                  {0, "large", "", "", {{"key", std::string(20'000, 'v')}}},
+                  {0, "usual", "", "", {}}};
+  const auto has = [](const LiveInventory& seen, const std::string& name) {
+    return std::ranges::any_of(seen.diagnostics,
+                               [&](const auto& status) { return status.name == name; });
+  };
+  EXPECT_TRUE(shows(*survey, [&](const LiveInventory& seen) {
+    robot.context.run([&] { robot.diagnostics->publish(array); });
+    return has(seen, "usual");
+  }));
+  const LiveInventory seen = survey->inventory();
+  EXPECT_FALSE(has(seen, "large"));
+  EXPECT_FALSE(has(seen, long_name));
 }
 
 TEST(Survey, ForgetsWhatIsGone) {

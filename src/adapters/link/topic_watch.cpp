@@ -199,6 +199,7 @@ void TopicWatch::read(Field& field, ByteView payload) {
   Value value;
   if (field.reader.read(payload, value, wall_now()) != FieldStatus::kRead)
     value = unreadable_value();
+  value = readable(std::move(value));
   // The same value again changes no trigger; it only proves that the signal is not stale.
   const Urgency urgency = field.last == value ? Urgency::kSoon : Urgency::kNow;
   field.last = value;

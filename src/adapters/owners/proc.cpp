@@ -1,6 +1,8 @@
 #include "owners/proc.h"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cstring>
 #include <ctime>
@@ -83,6 +85,15 @@ std::string command_name(int pid) {
   return name;
 }
 
+// systemd.unit(5). Other users make control groups, too, with names that have blanks.
+bool is_name_of_unit(std::string_view name) {
+  return std::ranges::all_of(name, [](unsigned char c) {
+    return c < 0x80 &&
+           (std::isalnum(c) != 0 ||
+            std::string_view(":-_.\\@").find(static_cast<char>(c)) != std::string_view::npos);
+  });
+}
+
 // The service of systemd whose control group it is in; empty: in none.
 std::string service_around(int pid) {
   std::ifstream groups("/proc/" + std::to_string(pid) + "/cgroup");
@@ -90,7 +101,7 @@ std::string service_around(int pid) {
     // cgroups(7): of version 2, or of the hierarchy that systemd has beside version 1.
     if (!line.starts_with("0::") && line.find(":name=systemd:") == std::string::npos) continue;
     std::string unit = line.substr(line.rfind('/') + 1);
-    if (unit.ends_with(".service")) return unit;
+    if (unit.ends_with(".service") && is_name_of_unit(unit)) return unit;
   }
   return "";
 }

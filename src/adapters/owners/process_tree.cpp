@@ -19,6 +19,12 @@ void send_signal(const FileDescriptor& process, int signal) {
   syscall(SYS_pidfd_send_signal, process.get(), signal, nullptr, 0);
 }
 
+FileDescriptor hold(int pid, std::int64_t start_ticks) {
+  FileDescriptor held(static_cast<int>(syscall(SYS_pidfd_open, pid, 0)));
+  if (held && start_ticks_of(pid) == start_ticks) return held;
+  return {};
+}
+
 std::vector<FileDescriptor> signal_descendants(int pid, const std::string& variable, int signal) {
   std::vector<FileDescriptor> tree;
   const std::vector<int> group = members_of_group(pid);

@@ -2,6 +2,7 @@
 // successor needs.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,9 @@
 namespace culprit::owners {
 
 void send_signal(const FileDescriptor& process, int signal);
+
+// The process of that number and that start (proc.h), held so that the number cannot come to mean another one. Empty: it has ended.
+FileDescriptor hold(int pid, std::int64_t start_ticks);
 
 // Sends the signal to the descendants of the process that are not in its group, and returns all of them. They are found
 // by their parents, also if they have cleared their environment. Not those of another component, for example if the

@@ -141,9 +141,11 @@ std::string RemoteProgram::without_its_name(std::string said) const {
 std::string RemoteProgram::trouble() {
   constexpr Duration kAfterItsWords = std::chrono::milliseconds(300);
   const std::optional<int> how = status(later(live_now(), kAfterItsWords));
+  constexpr std::size_t kMostSaid = std::size_t{64} << 10;  // bytes: it may never end
   std::array<char, 4096> text{};
   std::string said;
-  for (ssize_t size = 0; (size = read(errors_.get(), text.data(), text.size())) > 0;)
+  for (ssize_t size = 0;
+       said.size() < kMostSaid && (size = read(errors_.get(), text.data(), text.size())) > 0;)
     said.append(text.data(), static_cast<std::size_t>(size));
   said = without_its_name(last_line(std::move(said)));
   const std::string of = host_ + ": ";

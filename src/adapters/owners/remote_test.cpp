@@ -59,6 +59,13 @@ TEST_F(Remote, ThatHangsIsGivenUpInTime) {
   EXPECT_LT(live_now() - before, RemoteProgram::kPatience + 5s);
 }
 
+TEST_F(Remote, ThatComplainsWithoutAnEndIsGivenUpInTime) {
+  ssh.babble();
+  const Time before = live_now();
+  EXPECT_THAT(could_reach(kHost).error(), HasSubstr("it does not answer"));
+  EXPECT_LT(live_now() - before, RemoteProgram::kPatience + 5s);
+}
+
 TEST_F(Remote, ThatLacksTheProgramIsToldWhich) {
   ssh.be_bare();
   EXPECT_THAT(could_manage(SystemdUnit{"lidar.service", false, kHost}).error(),

@@ -17,6 +17,7 @@ read -r how < "$here/how"
 case $how in
   refuse) sed 1d "$here/how" >&2; exit 255 ;;
   hang) exec sleep 1000 ;;
+  babble) exec yes >&2 ;;
   bare) PATH=$here/nothing ;;
   *) PATH=$here/there:$PATH ;;
 esac

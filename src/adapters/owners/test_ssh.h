@@ -22,6 +22,8 @@ class TestSsh {
   // It ends with ssh's own failure, and these words.
   void refuse(const std::string& words) { tell("refuse\n" + words); }
   void hang() { tell("hang"); }
+  // It hangs, and writes errors without an end.
+  void babble() { tell("babble"); }
   // Lets us in, and has no programs.
   void be_bare() { tell("bare"); }
   // Ends the program that runs: the cable is cut. From now on connections are refused.

@@ -41,6 +41,7 @@ class HelperGraph {
   // Whether something is kept that the last graph did not have.
   bool has_missing() const { return has_missing_; }
   // Participants with endpoints and without a node: their announcement of nodes has not come, or they are not of ROS.
+  // Ascending.
   std::vector<GuidPrefix> without_nodes() const;
 
   // The announcements that hold now.

@@ -25,6 +25,7 @@
 #include "ros2/helper_graph.h"
 #include "ros2/helper_process.h"
 #include "ros2/names.h"
+#include "ros2/seldom_times.h"
 #include "rtps/origins.h"
 
 namespace culprit::ros2 {
@@ -240,7 +241,8 @@ class Helped final : public Participant::Impl {
       if (is_joined_) look_whether_settled(now);
       if (is_joined_ && now > later(asked_last_, kAsks)) {
         ask_whether_it_works(now);
-        if (is_settled_ && lacks_announcement(now)) {
+        if (is_settled_ && replaced_.may_come(now) && lacks_announcement(now)) {
+          replaced_.came(now);
           process.end();
           return "its middleware has lost the announcement of a participant's nodes";
         }
@@ -261,15 +263,16 @@ class Helped final : public Participant::Impl {
   // Once for each participant: those that are not of ROS announce none.
   bool lacks_announcement(Time now) {
     constexpr std::size_t kMost = 1000;
-    const std::vector<GuidPrefix> all = graph_.without_nodes();
-    std::erase_if(nameless_, [&](const auto& each) {
-      return std::ranges::find(all, each.first) == all.end();
-    });
+    const std::vector<GuidPrefix> all = graph_.without_nodes();  // ascending
+    std::erase_if(nameless_,
+                  [&](const auto& each) { return !std::ranges::binary_search(all, each.first); });
     bool lacks = false;
     for (const GuidPrefix& each : all) {
-      if (helped_for_.contains(each) || helped_for_.size() >= kMost) continue;
       const auto since = nameless_.try_emplace(each, now).first->second;
-      lacks = lacks || (now > later(since, kNamesCome) && helped_for_.insert(each).second);
+      if (helped_for_.contains(each) || now <= later(since, kNamesCome)) continue;
+      if (helped_for_.size() >= kMost) helped_for_.clear();
+      helped_for_.insert(each);
+      lacks = true;
     }
     return lacks;
   }
@@ -379,7 +382,7 @@ class Helped final : public Participant::Impl {
     awaited_.erase(sample.id);
     const Guid writer = graph_.writer_of(ours->topic, sample.writer);
     std::int64_t number = sample.number;
-    if (number == 0) number = count(*ours, writer);
+    if (number <= 0) number = count(*ours, writer);  // a forged one may be beyond 2^63
     const ByteView payload(sample.payload);
     ours->gate.pass([&] {
       ours->on_sample({.payload = payload.first(given_of(ours->use, payload.size())),
@@ -647,6 +650,7 @@ class Helped final : public Participant::Impl {
   std::set<std::string> told_;
   std::map<GuidPrefix, Time> nameless_;  // participants without a node, since when
   std::set<GuidPrefix> helped_for_;      // those of them for which a helper was replaced
+  SeldomTimes replaced_;                 // for them
 
   Mutex mutex_;
   ConditionVariable changed_;

@@ -8,12 +8,17 @@
 
 #include <array>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace culprit::ros2::msg {
+
+// Bytes of a report that anybody may send, as diagnostics; larger ones are not decoded. Nodes send far smaller ones, and
+// decoded they are a multiple of that.
+inline constexpr std::size_t kLargestReport = std::size_t{4} << 20;
 
 struct Time {
   static constexpr std::string_view kType = "builtin_interfaces/msg/Time";
@@ -96,6 +101,7 @@ struct DiagnosticStatus {
 
 struct DiagnosticArray {
   static constexpr std::string_view kType = "diagnostic_msgs/msg/DiagnosticArray";
+  static constexpr std::size_t kLargest = kLargestReport;
   Header header;
   std::vector<DiagnosticStatus> status;
   static void visit(auto& self, auto& each) { each(self.header, self.status); }
@@ -143,6 +149,7 @@ struct Image {
 
 struct Log {
   static constexpr std::string_view kType = "rcl_interfaces/msg/Log";
+  static constexpr std::size_t kLargest = kLargestReport;
   Time stamp;
   std::uint8_t level = 0;
   std::string name;
@@ -241,6 +248,7 @@ struct Parameter {
 
 struct ParameterEvent {
   static constexpr std::string_view kType = "rcl_interfaces/msg/ParameterEvent";
+  static constexpr std::size_t kLargest = kLargestReport;
   Time stamp;
   std::string node;  // full name
   std::vector<Parameter> new_parameters;

@@ -100,12 +100,15 @@ class Node {
     return Publisher<Message>(std::move(*raw));
   }
 
-  // Messages that are not well-formed are left out.
+  // Messages that are not well-formed, or larger than their type may be (kLargest), are left out.
   template <class Message>
   Expected<std::unique_ptr<Subscription>> create_subscription(
       std::string_view topic, const Qos& qos, std::function<void(const Message&)> callback) {
     return Subscription::create(entry_, topic, Message::kType, qos,
                                 [callback = std::move(callback)](ByteView payload) {
+                                  if constexpr (requires { Message::kLargest; }) {
+                                    if (payload.size() > Message::kLargest) return;
+                                  }
                                   if (const auto message = decode<Message>(payload))
                                     callback(*message);
                                 });

@@ -241,29 +241,23 @@ void ServiceClient::on_reply_writer(const Guid& writer, Match match) {
 
 void ServiceClient::update_servers() {
   const Graph& graph = node_.context().graph();
-  std::map<std::uint64_t, Server> by_age;
-  for (const auto& [reader, reader_age] : request_readers_) {
-    for (const auto& [writer, writer_age] : reply_writers_) {
-      if (!is_pair(reader, writer)) continue;
-      const GuidPrefix participant = reader.prefix();
-      by_age[std::max(reader_age, writer_age)] = {participant,
-                                                  mapping_of(graph.participant(participant))};
-    }
-  }
+  const std::vector<GuidPrefix> all =
+      servers_among(request_readers_, reply_writers_, [&graph](const Guid& guid) {
+        const EndpointInfo* info = graph.endpoint(guid);
+        return info == nullptr ? std::string_view() : user_data_value(info->user_data, "serviceid");
+      });
   {
     const MutexLock lock(mutex_);
-    std::erase_if(by_age, [this](const auto& each) CULPRIT_REQUIRES(mutex_) {
-      return only_ && each.second.participant != *only_;
-    });
     const auto is_known = [](const std::vector<Server>& servers, const GuidPrefix& participant) {
       return std::ranges::find(servers, participant, &Server::participant) != servers.end();
     };
     const std::vector<Server> before = std::move(servers_);
     servers_.clear();
     bool has_new = false;
-    for (const auto& [age, server] : by_age) {
-      has_new = has_new || !is_known(before, server.participant);
-      servers_.push_back(server);
+    for (const GuidPrefix& each : all) {
+      if (only_ && each != *only_) continue;
+      has_new = has_new || !is_known(before, each);
+      servers_.push_back({each, mapping_of(graph.participant(each))});
     }
     // A new server may be the successor of the one that proved to know us and has exited.
     if (has_new || (proven_ && !is_known(servers_, proven_->participant))) lose_proof();
@@ -282,18 +276,6 @@ void ServiceClient::on_server_left() {
     lose_proof();
   }
   tasks_.post([this] { start_probe(); });
-}
-
-// Whether both belong to one server. Two services of one name in one process can be distinguished
-// only on Cyclone.
-bool ServiceClient::is_pair(const Guid& reader, const Guid& writer) const {
-  if (reader.prefix() != writer.prefix()) return false;
-  const Graph& graph = node_.context().graph();
-  const auto id = [&graph](const Guid& guid) {
-    const EndpointInfo* info = graph.endpoint(guid);
-    return info == nullptr ? std::string_view() : user_data_value(info->user_data, "serviceid");
-  };
-  return id(reader) == id(writer);
 }
 
 void ServiceClient::send_waiting() {

@@ -131,7 +131,6 @@ class ServiceClient {
   void on_reply_writer(const Guid& writer, Match match);
   void update_servers();
   void on_server_left();
-  bool is_pair(const Guid& reader, const Guid& writer) const;
   void send_waiting();
   void start_probe();
   void on_probe(std::uint64_t round, CallOutcome outcome, const GuidPrefix& participant);
@@ -152,8 +151,8 @@ class ServiceClient {
   std::uint64_t header_id_ = 0;  // what Cyclone knows us by
 
   // Used by the executor's thread only: the matched endpoints, with the order in which they came.
-  std::map<Guid, std::uint64_t> request_readers_;
-  std::map<Guid, std::uint64_t> reply_writers_;
+  Matches request_readers_;
+  Matches reply_writers_;
   std::uint64_t matches_ = 0;
   bool is_probing_ = false;
 

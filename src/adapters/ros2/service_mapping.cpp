@@ -1,6 +1,7 @@
 #include "ros2/service_mapping.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace culprit::ros2 {
 namespace {
@@ -45,6 +46,31 @@ std::string_view user_data_value(std::string_view user_data, std::string_view ke
     user_data.remove_prefix(std::min(end + 1, user_data.size()));
   }
   return {};
+}
+
+std::vector<GuidPrefix> servers_among(const Matches& request_readers, const Matches& reply_writers,
+                                      const std::function<std::string_view(const Guid&)>& id_of) {
+  struct Newest {
+    std::uint64_t reader = 0;
+    std::uint64_t writer = 0;
+  };
+  std::map<std::pair<GuidPrefix, std::string_view>, Newest> servers;
+  const auto add = [&](const Matches& endpoints, std::uint64_t Newest::*which) {
+    for (const auto& [endpoint, number] : endpoints) {
+      std::uint64_t& newest = servers[{endpoint.prefix(), id_of(endpoint)}].*which;
+      newest = std::max(newest, number);
+    }
+  };
+  add(request_readers, &Newest::reader);
+  add(reply_writers, &Newest::writer);
+  std::map<std::uint64_t, GuidPrefix> by_age;
+  for (const auto& [server, newest] : servers) {
+    if (newest.reader != 0 && newest.writer != 0)
+      by_age[std::max(newest.reader, newest.writer)] = server.first;
+  }
+  std::vector<GuidPrefix> all;
+  for (const auto& [age, participant] : by_age) all.push_back(participant);
+  return all;
 }
 
 }  // namespace culprit::ros2

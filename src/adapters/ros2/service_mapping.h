@@ -18,8 +18,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "ros2/participant.h"
 #include "rtps/cdr.h"
@@ -49,5 +52,13 @@ std::optional<SplitPayload> split_header(ByteView payload);
 // there. Cyclone marks the two endpoints of a client with one `clientid`, and those of a server
 // with one `serviceid`.
 std::string_view user_data_value(std::string_view user_data, std::string_view key);
+
+// When each endpoint matched: the how manieth it was, from 1.
+using Matches = std::map<Guid, std::uint64_t>;
+// The participants that have a server: a reader of requests and a writer of replies with the same id, which may be empty. Two
+// services of one name in one process can be distinguished only on Cyclone. The newest last. Strangers decide how many endpoints
+// there are, so each is looked at once.
+std::vector<GuidPrefix> servers_among(const Matches& request_readers, const Matches& reply_writers,
+                                      const std::function<std::string_view(const Guid&)>& id_of);
 
 }  // namespace culprit::ros2

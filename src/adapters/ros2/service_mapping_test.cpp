@@ -48,5 +48,43 @@ TEST(ServiceMapping, ReadsUserData) {
   EXPECT_EQ(user_data_value("", "clientid"), "");
 }
 
+// An endpoint of the participant with this number.
+Guid endpoint(std::uint8_t participant, std::uint16_t number) {
+  Guid guid;
+  guid.bytes[0] = participant;
+  guid.bytes[12] = static_cast<std::uint8_t>(number >> 8);
+  guid.bytes[13] = static_cast<std::uint8_t>(number);
+  return guid;
+}
+
+TEST(ServiceMapping, AServerHasBothEnds) {
+  const auto no_id = [](const Guid&) { return std::string_view(); };
+  const Matches readers{{endpoint(1, 1), 1}, {endpoint(2, 1), 2}, {endpoint(3, 1), 3}};
+  const Matches writers{{endpoint(1, 2), 5}, {endpoint(2, 2), 4}};
+  EXPECT_EQ(servers_among(readers, writers, no_id),
+            (std::vector{endpoint(2, 0).prefix(), endpoint(1, 0).prefix()}))
+      << "the newest is the last one";
+  const auto by_number = [](const Guid& guid) {
+    return std::string_view(guid.bytes[13] == 1 ? "a" : "b");
+  };
+  EXPECT_TRUE(servers_among(readers, writers, by_number).empty()) << "of two servers each";
+}
+
+TEST(ServiceMapping, LooksAtEachOfAStrangersEndpointsOnce) {
+  constexpr std::uint16_t kMany = 1000;
+  Matches readers, writers;
+  for (std::uint16_t i = 0; i < kMany; ++i) {
+    readers[endpoint(1, i)] = 2u * i + 1;
+    writers[endpoint(1, i)] = 2u * i + 2;
+  }
+  int looks = 0;
+  const auto id_of = [&](const Guid&) {
+    ++looks;
+    return std::string_view();
+  };
+  EXPECT_EQ(servers_among(readers, writers, id_of).size(), 1u);
+  EXPECT_EQ(looks, 2 * kMany);
+}
+
 }  // namespace
 }  // namespace culprit::ros2

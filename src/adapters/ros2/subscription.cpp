@@ -94,10 +94,21 @@ Subscription::~Subscription() { tasks_.close(); }
 void Subscription::on_sample(const Sample& sample) {
   {
     const MutexLock lock(mutex_);
-    if (payloads_.size() >= depth_) payloads_.pop_front();
+    const auto is_full = [&]() CULPRIT_REQUIRES(mutex_) {
+      return payloads_.size() >= depth_ || bytes_ + sample.payload.size() > kMostBytes;
+    };
+    while (!payloads_.empty() && is_full()) take_oldest();
     payloads_.emplace_back(sample.payload.begin(), sample.payload.end());
+    bytes_ += sample.payload.size();
   }
   tasks_.post([this] { deliver_next(); });
+}
+
+Bytes Subscription::take_oldest() {
+  Bytes oldest = std::move(payloads_.front());
+  payloads_.pop_front();
+  bytes_ -= oldest.size();
+  return oldest;
 }
 
 void Subscription::deliver_next() {
@@ -105,8 +116,7 @@ void Subscription::deliver_next() {
   {
     const MutexLock lock(mutex_);
     if (payloads_.empty()) return;
-    payload = std::move(payloads_.front());
-    payloads_.pop_front();
+    payload = take_oldest();
   }
   callback_(payload);
 }

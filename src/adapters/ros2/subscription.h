@@ -60,10 +60,12 @@ class RawSubscription {
 };
 
 // Calls back on the executor's thread, where anything is allowed but to destroy the subscription.
-// Keeps as many payloads as its QoS is deep, while that thread is busy; then the oldest is dropped.
+// Keeps as many payloads as its QoS is deep, while that thread is busy, and no more than kMostBytes beside the newest one; then
+// the oldest is dropped.
 class Subscription {
  public:
   using Callback = std::function<void(ByteView payload)>;
+  static constexpr std::size_t kMostBytes = std::size_t{16} << 20;
 
   static Expected<std::unique_ptr<Subscription>> create(NodeEntry& node, std::string_view topic,
                                                         std::string_view type, const Qos& qos,
@@ -75,12 +77,14 @@ class Subscription {
 
   void on_sample(const Sample& sample);
   void deliver_next();
+  Bytes take_oldest() CULPRIT_REQUIRES(mutex_);
 
   const std::size_t depth_;
   const Callback callback_;
   Mutex mutex_;
   std::deque<Bytes> payloads_ CULPRIT_GUARDED_BY(mutex_);
-  TaskGroup tasks_;  // outlives the one that posts to it
+  std::size_t bytes_ CULPRIT_GUARDED_BY(mutex_) = 0;  // of them
+  TaskGroup tasks_;                                   // outlives the one that posts to it
   std::unique_ptr<RawSubscription> raw_;
 };
 

@@ -716,8 +716,9 @@ void Analyzer::schedule(RuleId id, Time now) {
     want(later(state.detection.trigger_since, kLostAfter));
   if (state.phase == RulePhase::kFailing) want(state.search.retry_at);
   want(last_resorts_.next_time(id));
-  // A process that begins anew has lost what a last resort has changed.
-  if (!state.standing.empty()) want(later(now, knowledge_.rules.cycle));
+  // A process that begins anew has lost what a last resort has changed, and may do what was refused.
+  const bool awaits_process = !state.standing.empty() || !state.search.refused.empty();
+  if (awaits_process && state.phase != RulePhase::kQuiet) want(later(now, knowledge_.rules.cycle));
   if (state.attempt && state.attempt->stage == Attempt::Stage::kWaiting) {
     want(state.attempt->deadline);
     want(later(state.attempt->deadline, kLostAfter));

@@ -257,9 +257,19 @@ bool CouplingWatch::is_echo(const Attempt& attempt) const {
   });
 }
 
+// Was something that it depends on in trouble when it began, and is not any more?
+bool CouplingWatch::has_supply_back(RuleId rule) const {
+  const Onset& began = *knowledge_.states[rule].onset;
+  const auto& upstream = knowledge_.graph.upstream(knowledge_.rules[rule].components);
+  return std::ranges::any_of(upstream, [&](ComponentId component) {
+    const auto& trouble = knowledge_.components[component].past_trouble;
+    return trouble && trouble->since <= began.latest && trouble->over >= began.earliest;
+  });
+}
+
 bool CouplingWatch::is_unaided(RuleId rule) const {
   const RuleState& state = knowledge_.states[rule];
-  if (!state.onset) return false;
+  if (!state.onset || has_supply_back(rule)) return false;
   const Time gone = state.detection.trigger_since;
   const Sources sources(knowledge_, rule);
   const auto may_have_helped = [&](StrategyId strategy, Time begin) {

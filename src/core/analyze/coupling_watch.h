@@ -58,7 +58,8 @@ class CouplingWatch {
   void ended(const Attempt& attempt, Time now);
   // Can a change that was made for another failure just before `attempt` have resolved its own?
   bool is_echo(const Attempt& attempt) const;
-  // The failure of `rule` clears. Did no change that can have cleared it take effect since it began?
+  // The failure of `rule` clears. Did no change that can have cleared it take effect since it began, and
+  // was no trouble upstream over meanwhile?
   bool is_unaided(RuleId rule) const;
 
   // culprit did not watch for a while: failures that cleared meanwhile count as coupled to none.
@@ -99,6 +100,7 @@ class CouplingWatch {
   Duration delay(RuleId cause, RuleId effect) const;
   Time shown(const Change& change, RuleId rule) const;
   Time shown_after_all(const Change& change, RuleId rule) const;
+  bool has_supply_back(RuleId rule) const;
   bool is_only_cause(StrategyId strategy, RuleId effect, Time since) const;
   void forget_what_is_settled(Time now);
 

@@ -178,6 +178,21 @@ TEST(CouplingWatch, CountsWhatStaysAwayWhileItsCauseIsThere) {
   }
 }
 
+// The consumer works again when its supplier does.
+TEST(CouplingWatch, TakesAnEndOfTroubleUpstreamForAnAid) {
+  for (const bool began_before : {true, false}) {
+    Two two("", 0s);
+    RuleState& effect = two.knowledge.states.state(kEffect);
+    effect.onset = Onset{Two::kCame, Two::kCame};
+    effect.detection.trigger = Slot::of(false);
+    effect.detection.trigger_since = Two::kCame + 4s;
+    const Time since = Two::kCame + (began_before ? -1s : 1s);
+    two.knowledge.components[ComponentId(0u)].past_trouble = PastTrouble{since, Two::kCame + 4s};
+    CouplingWatch watch(two.knowledge, {two.knowledge.states, two.knowledge.couplings});
+    EXPECT_EQ(watch.is_unaided(kEffect), !began_before);
+  }
+}
+
 // It has the usual time from the end of the change on: ten cycles.
 TEST(CouplingWatch, GivesWhatCameToLightWithTheRepairTheUsualTimeToGo) {
   Two two("", 4s, "WARNING");

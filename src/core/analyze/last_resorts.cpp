@@ -5,6 +5,7 @@
 
 #include "analyze/backoff.h"
 #include "analyze/detector.h"
+#include "knowledge/ambiguity.h"
 
 namespace culprit {
 namespace {
@@ -36,11 +37,20 @@ void stand(RuleState& state, StrategyId strategy, Time since) {
 }
 
 // How often it could not be carried out.
-int refuse(Search& search, StrategyId strategy, Time now) {
-  auto refused = std::ranges::find(search.refused, strategy, &Search::Refused::strategy);
-  if (refused == search.refused.end()) refused = search.refused.insert(refused, {strategy, 0, {}});
+int refuse(Search& search, const Attempt& attempt, Time now) {
+  auto refused = std::ranges::find(search.refused, attempt.strategy, &Search::Refused::strategy);
+  if (refused == search.refused.end()) refused = search.refused.insert(refused, {attempt.strategy});
+  refused->begun = attempt.chosen;
   refused->again = later(now, pause_after(++refused->times));
   return refused->times;
+}
+
+// Has a process that it is asked of begun since then? One that begins processes would begin again for ever.
+bool has_new_process(const Strategy& strategy, Time since, const Knowledge& knowledge) {
+  return !begins_anew(strategy) &&
+         std::ranges::any_of(strategy.adaptations, [&](const Adaptation& adaptation) {
+           return knowledge.components[adaptation.component].node_seen > since;
+         });
 }
 
 }  // namespace
@@ -106,9 +116,9 @@ bool LastResorts::has_to_give_way(RuleId id, Time now) const {
 }
 
 void LastResorts::give_way(RuleId id, Time now) {
-  const StrategyId strategy = knowledge_.states[id].last_resort->strategy;
+  const Attempt attempt = *knowledge_.states[id].last_resort;
   abandon(id, now);
-  refuse(write_.states.state(id).search, strategy, now);
+  refuse(write_.states.state(id).search, attempt, now);
 }
 
 void LastResorts::abandon(RuleId id, Time now) {
@@ -131,7 +141,7 @@ void LastResorts::judge(RuleId id, Time now) {
     const bool has_parts = knowledge_.rules[attempt.strategy].adaptations.size() > 1;
     if (has_parts && attempt.first_change != kNever && state.phase != RulePhase::kQuiet)
       stand(state, attempt.strategy, now);
-    if (refuse(search, attempt.strategy, now) < knowledge_.rules[id].policies.attempts) return;
+    if (refuse(search, attempt, now) < knowledge_.rules[id].policies.attempts) return;
   } else if (attempt.has_no_failure) {
     return write_.events.tell(now, OrderCarriedOut{attempt.strategy});
   } else {
@@ -141,9 +151,9 @@ void LastResorts::judge(RuleId id, Time now) {
     const Duration impact =
         duration_of(knowledge_.rules[attempt.strategy].impact, knowledge_.rules);
     search.last_resort_at = later(attempt.effective, impact + knowledge_.signals.latency(id));
+    std::erase_if(search.refused,
+                  [&](const auto& each) { return each.strategy == attempt.strategy; });
   }
-  std::erase_if(search.refused,
-                [&](const auto& each) { return each.strategy == attempt.strategy; });
   write_.states.set_tried(attempt.strategy, true);
   if (const auto following = next(id))
     search.last_resort_at = std::max(
@@ -160,6 +170,10 @@ void LastResorts::watch(RuleId id, Time now) {
     });
     each.is_lost |= begins_again;
     if (begins_again) write_.states.set_tried(each.strategy, false);
+  }
+  for (const Search::Refused& each : state.search.refused) {
+    if (has_new_process(knowledge_.rules[each.strategy], each.begun, knowledge_))
+      write_.states.set_tried(each.strategy, false);
   }
   const auto following = next(id);
   if (following && !is_false(state.detection.trigger) &&

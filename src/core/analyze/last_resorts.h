@@ -3,8 +3,9 @@
 // They are due WITHIN their time of the detection, or earlier if no other strategy can begin or help
 // by then, and go beside whatever is under way. They have no verdict: their changes stay while the
 // failure is there, and the other strategies go on. One that could not be carried out is tried again
-// with back-off, up to ATTEMPTS times, and meanwhile the next one begins in its time. Several follow
-// each other by WITHIN, each after the impact of the one before.
+// with back-off, up to ATTEMPTS times, and meanwhile the next one begins in its time. Each new
+// process of its components gives it one more try: the one before may have ended while it began. Several
+// follow each other by WITHIN, each after the impact of the one before.
 #pragma once
 
 #include <optional>
@@ -44,7 +45,8 @@ class LastResorts {
   void abandon(RuleId id, Time now);
   // The one under way, if any: it took effect, or could not be carried out.
   void judge(RuleId id, Time now);
-  // Those whose changes a new process has lost are tried again, and the time of the next may have come.
+  // Those whose changes a new process has lost, or that its predecessor refused, are tried again. The
+  // time of the next may have come.
   void watch(RuleId id, Time now);
 
   // The one whose effect the failure went away by: in the time that the latest one had for that, and

@@ -54,10 +54,12 @@ struct Search {
   // effect, or could not be carried out ATTEMPTS times.
   bool is_at_last_resort = false;  // the first of them is due, since nothing else helps in time
   Time last_resort_at = kLongAgo;  // the next of them is not begun before
-  // Those that could not be carried out, so often in a row; tried again at `again`.
+  // Those that could not be carried out, so often in a row; tried again from `again` on, after ATTEMPTS
+  // times only in a process that began after `begun`.
   struct Refused {
     StrategyId strategy;
     int times = 0;
+    Time begun{};  // the last try
     Time again{};
   };
   std::vector<Refused> refused;

@@ -4,8 +4,8 @@
 // repair of such a failure is useless, and takes down what works. So the planner waits for it first
 // (plan/bayes/planning_step.cpp), as soon as that was seen to happen on this robot. Symbols:
 //
-//     n_r   how often the failure of rule r cleared by itself: without a repair that can have helped. It
-//           then stayed away for as long as it had lasted.
+//     n_r   how often the failure of rule r cleared by itself: without a repair that can have helped, and
+//           not with a trouble upstream. It then stayed away for as long as it had lasted.
 //     m_r   how often it did not clear, although it was left alone for long enough, or came back sooner.
 //     s_r   the share that clears by itself: (n_r + 2 s) / (n_r + m_r + 2). s = n / (n + m + 1) is that of
 //           all rules.

@@ -318,6 +318,25 @@ TEST_P(LastResort, IsTriedAgainIfItCouldNotBeCarriedOut) {
   EXPECT_TRUE(stands_still(robot)) << transcript(robot);
 }
 
+// The process may have been about to end when it refused.
+TEST_P(LastResort, IsTriedAgainInANewProcessAfterAllAttempts) {
+  std::string once = loc_lost();
+  once.replace(once.find("ATTEMPTS 4"), 10, "ATTEMPTS 1");
+  TestRobot robot = driving(once);
+  robot["base"].refuses = true;
+  robot["loc"].fault = "a person";
+  robot.run_for(8s);
+  robot["base"].refuses = false;
+  robot.run_for(8s);
+  ASSERT_EQ(robot.count("stand_still did not resolve"), 1u) << transcript(robot);
+  ASSERT_FALSE(stands_still(robot)) << transcript(robot);
+  robot.kill("base");
+  robot.run_for(3s);
+  robot.start_by_hand("base");
+  robot.run_for(3s);
+  EXPECT_TRUE(stands_still(robot)) << transcript(robot);
+}
+
 // It is said that the safe stop cannot be done, and it is done as soon as it can be.
 TEST_P(LastResort, WaitsForItsComponentAndSaysSo) {
   TestRobot robot = driving(loc_lost());

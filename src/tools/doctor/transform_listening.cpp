@@ -37,6 +37,7 @@ void TransformListening::on_sample(const ros2::Sample& sample, bool is_static) {
   const Time now = live_now();
   const MutexLock lock(mutex_);
   for (const ros2::msg::TransformStamped& each : message->transforms) {
+    if (std::max(each.header.frame_id.size(), each.child_frame_id.size()) > kLongestName) continue;
     const Key key{frame(each.header.frame_id), frame(each.child_frame_id), sample.identity.writer,
                   is_static};
     if (edges_.size() >= kMostEdges && !edges_.contains(key)) continue;

@@ -15,7 +15,9 @@ namespace culprit::doctor {
 // On the executor's thread, except for message callbacks.
 class TransformListening {
  public:
-  static constexpr std::size_t kMostEdges = 10'000;  // the network decides how many there are
+  // The network decides how many there are, and what frames are called.
+  static constexpr std::size_t kMostEdges = 10'000;
+  static constexpr std::size_t kLongestName = 256;
 
   // `self` outlives it.
   explicit TransformListening(ros2::NodeEntry& self) : self_(self) {}

@@ -152,7 +152,8 @@ class Draft {
     add(Part::Kind::kInterlock, kAll, interlocks_text(seen_, declared_));
     if (!left_out_.empty()) {
       std::string text = "# Left out, since it could not be found out:\n";
-      for (const std::string& each : left_out_) text += "# " + each + "\n";
+      // A command line and a variable may have lines of their own, which would be rules.
+      for (const std::string& each : left_out_) text += "# " + escape_controls(each) + "\n";
       add(Part::Kind::kLeftOut, kAll, text);
     }
     return std::move(parts_);
@@ -298,7 +299,7 @@ class Draft {
     if (!withheld.empty())
       text +=
           fmt::format("# Variables of theirs that are not copied, for they may be secrets: {}\n",
-                      fmt::join(withheld, ", "));
+                      escape_controls(fmt::format("{}", fmt::join(withheld, ", "))));
     add(Part::Kind::kHead, "", text);
   }
 

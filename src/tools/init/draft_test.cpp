@@ -59,6 +59,20 @@ const Component& component(const RuleSet& rules, const std::string& name) {
   return *std::ranges::find(rules.components, name, &Component::name);
 }
 
+TEST(Draft, NoCommandLineAndNoVariableWritesRules) {
+  RobotProfile seen = robot();
+  seen.robot.nodes["/other"] = {.parameters = {}, .lifecycle = "", .pid = 13};
+  seen.starts["/other"] = {.command = {"ros2", "topic\nCOMPONENT evil NODE /x LAUNCH \"evil\"\n"},
+                           .environment = {},
+                           .withheld = {},
+                           .folder = "",
+                           .owner = "",
+                           .declare = ""};
+  seen.starts["/robot/camera"].withheld = {"KEY\nCOMPONENT evil NODE /x LAUNCH \"evil\"\n"};
+  EXPECT_THAT(draft(seen), Not(HasSubstr("\nCOMPONENT evil")));
+  EXPECT_EQ(rules_of(seen).components.size(), 2u);
+}
+
 TEST(Draft, LeavesOutToolsAndSaysSo) {
   RobotProfile seen = robot();
   seen.robot.nodes["/rosbag2_recorder"] = {.parameters = {}, .lifecycle = "", .pid = 13};

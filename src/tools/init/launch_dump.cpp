@@ -1,6 +1,7 @@
 #include "init/launch_dump.h"
 
 #include <algorithm>
+#include <cctype>
 #include <stdexcept>
 
 #include <yaml-cpp/yaml.h>
@@ -53,6 +54,13 @@ std::string value_as_yaml(const YAML::Node& value, bool is_text = false) {
   return "[" + all + "]";
 }
 
+// The names of packages and classes, which stand in the draft as they are.
+bool is_word(const std::string& text) {
+  return std::ranges::all_of(text, [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == ':' || c == '/' || c == '.' || c == '-';
+  });
+}
+
 // {name: value}, or [[name, value], ...]; [name, value, "text"] of composed_nodes_of_launch (owners/launch_file.h).
 std::vector<std::pair<std::string, std::string>> parameters_in(const YAML::Node& all) {
   std::vector<std::pair<std::string, std::string>> found;
@@ -83,6 +91,7 @@ void take_recipe(const std::string& node, const std::string& container, const YA
                  const std::string& package, LaunchDump& dump) {
   const std::string plugin = text_at(how, "plugin");
   if (!is_valid_topic_name(node) || !is_valid_topic_name(container) || plugin.empty()) return;
+  if (!is_word(plugin) || !is_word(package)) return;
   dump.recipes[node] = {container, package, plugin, parameters_in(how["params"]),
                         remaps_in(how["remaps"])};
 }
