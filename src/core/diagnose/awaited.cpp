@@ -135,7 +135,7 @@ void Awaited::place_past() {
     if (past_[p].component) {
       mark(*past_[p].component, p);
     } else {
-      for (const ComponentId c : touched_by(*past_[p].rule, knowledge_)) mark(c, p);
+      for (const ComponentId c : spreads_from(*past_[p].rule, knowledge_)) mark(c, p);
     }
   }
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "diagnose/imminent.h"
 #include "plan/bayes/test_scene.h"
 
 namespace culprit::diagnose {
@@ -65,6 +66,27 @@ TEST_F(TwoMonitors, ARuleThatCannotSeeIsNotWaitedFor) {
 TEST_F(TwoMonitors, ARuleInItsCooldownIsNotWaitedFor) {
   state("A").quiet_until = scene_->now + 10s;
   EXPECT_FALSE(awaited(100ms));
+}
+
+// Its trigger stays true as long as that part of the mission lasts, and fires no more.
+TEST(Awaited, AMissionRuleIsNotWaitedForOnceItHasActed) {
+  std::string text = failure_of("a", "A", "ERROR ON_CHANGE") + failure_of("b", "B");
+  text.replace(text.rfind("x > 1"), 5, "y > 1");
+  Scene scene(text);
+  scene.link("a", "b").fail("B", 9900ms);
+  scene->latencies.weigh(-3);
+  for (const char* rule : {"A", "B"})
+    scene->signals.set_latency(scene.rules()[scene.rule(rule)].inputs.front(), 400ms);
+  Detection& seen = scene->states.state(scene.rule("A")).detection;
+  seen.trigger = Slot::of(true);
+  const auto awaited = [&] {
+    return Awaited(*scene, scene->states.active()).of(scene.rule("B")).has_value();
+  };
+  EXPECT_TRUE(awaited());
+  EXPECT_TRUE(is_imminent(scene.rule("A"), *scene));
+  seen.armed = false;
+  EXPECT_FALSE(awaited());
+  EXPECT_FALSE(is_imminent(scene.rule("A"), *scene));
 }
 
 TEST_F(TwoMonitors, ARuleDownstreamIsNotWaitedFor) {

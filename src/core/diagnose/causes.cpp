@@ -38,17 +38,9 @@ std::size_t level_of(const Rule& rule) {
   return static_cast<std::size_t>(rule.policies.criticality);
 }
 
-// Does a strategy of its rule begin anew what it is about, or call one of its routines (which may
-// cycle the power of a device)?
+// Does a strategy of its rule do more than to reconfigure?
 bool may_be_broken(RuleId rule, const RuleSet& rules) {
-  const auto mends = [](const Adaptation& adaptation) {
-    return adaptation.type == AdaptationType::kRestart || launches(adaptation) ||
-           adaptation.type == AdaptationType::kCall;
-  };
-  return std::any_of(
-      rules[rule].strategies.begin(), rules[rule].strategies.end(), [&](StrategyId s) {
-        return std::any_of(rules[s].adaptations.begin(), rules[s].adaptations.end(), mends);
-      });
+  return std::ranges::any_of(rules[rule].strategies, [&](StrategyId s) { return mends(rules[s]); });
 }
 
 // When the last process of a component that the rule touches began, and its node was there, if that
@@ -203,23 +195,29 @@ void Causes::add_unsupplied(const Knowledge& knowledge) {
 }
 
 void Causes::connect(const Knowledge& knowledge, const Reach& reach, const Paths& paths) {
-  BitRows touching(reach.size(), size());  // by place: which nodes touch it
+  // By place: which nodes touch it, and which spread from it to failures of values.
+  BitRows touching(reach.size(), size());
+  BitRows spreading(reach.size(), size());
   for (std::size_t i = 0; i < size(); ++i) {
     const CauseNode& node = nodes_[i];
     if (node.is_rule()) {
       for (const ComponentId c : touched_by(node.rule, knowledge))
         set(touching[reach.place_of(c)], i);
+      for (const ComponentId c : spreads_from(node.rule, knowledge))
+        set(spreading[reach.place_of(c)], i);
     } else if (node.kind == CauseNode::Kind::kTrouble) {
       set(touching[reach.place_of(node.component)], i);
+      set(spreading[reach.place_of(node.component)], i);
     }
   }
   for (std::size_t i = 0; i < size(); ++i) {
     if (!nodes_[i].is_rule()) continue;
     const auto row = causes_[i];
     const std::vector<ComponentId> touched = touched_by(nodes_[i].rule, knowledge);
+    const BitRows& from = nodes_[i].is_outage ? touching : spreading;
     for (const ComponentId c : touched) {
       for_each(paths.upstream(reach.place_of(c), nodes_[i].rule),
-               [&](std::size_t place) { add(row, touching[place]); });
+               [&](std::size_t place) { add(row, from[place]); });
     }
     connect_learned(knowledge, i);
     clear(row, i);
@@ -252,15 +250,18 @@ void Causes::connect_learned(const Knowledge& knowledge, std::size_t i) {
 
 // Leaves out, by level, less critical failures of values that are only ever reconfigured. Such a
 // failure is no cause: its author finds nothing broken there, and the bad value may be old, because a
-// publisher of better values exited.
+// publisher of better values exited. With ON_CHANGE it causes nothing at all: the robot is in another
+// state of its mission, which may last.
 void Causes::leave_out_slight(const Knowledge& knowledge) {
   const RuleSet& rules = knowledge.rules;
   BitRows slight(kLevels, size());
   for (std::size_t j = 0; j < size(); ++j) {
     if (!nodes_[j].is_rule()) continue;
     const RuleId rule = nodes_[j].rule;
-    if (symptom_of(rule, knowledge) == Symptom::kOutage || may_be_broken(rule, rules)) continue;
-    for (std::size_t level = level_of(rules[rule]) + 1; level < kLevels; ++level)
+    const bool is_mission = rules[rule].policies.on_change && !rules[rule].strategies.empty();
+    const bool is_outage = !is_mission && symptom_of(rule, knowledge) == Symptom::kOutage;
+    if (is_outage || may_be_broken(rule, rules)) continue;
+    for (std::size_t level = is_mission ? 0 : level_of(rules[rule]) + 1; level < kLevels; ++level)
       set(slight[level], j);
   }
   for (std::size_t i = 0; i < size(); ++i) {

@@ -240,6 +240,19 @@ TEST(Diagnosis, ALesserFailureIsACauseIfAnyOfItsStrategiesBeginsAnew) {
   EXPECT_LT(own_of(tuned + anew), 0.5);
 }
 
+// Its strategy was refused: the robot does not slow down, and that silences nothing.
+TEST(Diagnosis, AMissionIsNoCause) {
+  const auto own_of = [](const std::string& policies) {
+    Scene scene("COMPONENT a NODE /a\nRULE A\nPOLICIES " + policies +
+                "\nTRIGGER y > 1\nSTRATEGY slow 90 10\nADAPTATION a change_mode slow 1\n" +
+                failure_of("b", "B"));
+    scene.link("a", "b").exhaust("A").fail("B");
+    return own(scene, "B");
+  };
+  EXPECT_LT(own_of("ERROR"), 0.5);
+  EXPECT_DOUBLE_EQ(own_of("ERROR ON_CHANGE"), 1);
+}
+
 // Its strategy does more than to start it again.
 TEST(Diagnosis, RisesAlsoWhereAStrategyDoesMoreThanToReplaceTheProcess) {
   Scene scene(failure_of("a", "A") +
@@ -311,6 +324,27 @@ TEST(Diagnosis, AFailureIsNotWhereAStrategyOnlyPauses) {
   };
   EXPECT_DOUBLE_EQ(own_of("THEN ADAPTATION driver redeploy 10\n"), 1);
   EXPECT_LT(own_of(""), 0.5);
+}
+
+// It is dark, so a lamp is switched on: the camera's value is bad, and what needs the camera doubts. A rule that
+// reads it beside a value of what it repairs is about the latter; and bad data ends no data.
+TEST(Diagnosis, ABadValueThatIsMendedElsewhereSpreadsFromItsPublisher) {
+  const auto own_of = [](const std::string& dark, const std::string& lamp,
+                         const std::string& of_b) {
+    std::string consumer = failure_of("b", "B");
+    consumer.replace(consumer.find("x > 1"), 5, of_b);
+    Scene scene(
+        "COMPONENT camera NODE /camera\nCOMPONENT lamp NODE /lamp\n"
+        "SIGNAL dark DIAGNOSTIC camera KEY dark\nSIGNAL heat DIAGNOSTIC lamp KEY heat\n"
+        "RULE Dark\nPOLICIES ERROR\nTRIGGER " +
+        dark + "\nSTRATEGY light 90 10\nADAPTATION lamp " + lamp + " 10\n" + consumer);
+    scene.link("camera", "b").fail("Dark").fail("B");
+    return own(scene, "B");
+  };
+  EXPECT_DOUBLE_EQ(own_of("dark > 1", "call ~/on", "x > 1"), own_cause(kPi, kKappa));
+  EXPECT_DOUBLE_EQ(own_of("dark > 1 && heat < 9", "call ~/on", "x > 1"), 1);
+  EXPECT_DOUBLE_EQ(own_of("dark > 1", "set_parameter on true", "x > 1"), 1);
+  EXPECT_DOUBLE_EQ(own_of("dark > 1", "call ~/on", "age(/t) > 3s"), 1);
 }
 
 // A safe stop adapts a component that has nothing to do with the failure.

@@ -18,10 +18,8 @@ std::vector<ComponentId> components_that_matter(
       all.push_back(c);
       all.insert(all.end(), others.begin(), others.end());
     }
-    if (knowledge.rules[rule].components.empty()) {
-      const std::vector<ComponentId> touched = touched_by(rule, knowledge);
-      all.insert(all.end(), touched.begin(), touched.end());
-    }
+    const std::vector<ComponentId> ill = spreads_from(rule, knowledge);
+    all.insert(all.end(), ill.begin(), ill.end());
   };
   std::for_each(knowledge.states.active().begin(), knowledge.states.active().end(), add);
   std::for_each(knowledge.states.exhausted().begin(), knowledge.states.exhausted().end(), add);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "diagnose/timing.h"
 #include "language/evaluate.h"
 
 namespace culprit::diagnose {
@@ -69,9 +70,8 @@ std::optional<Slot> after_long_silence(const Input& input) {
 }
 
 bool is_imminent(RuleId rule, const Knowledge& knowledge) {
-  const RuleState& state = knowledge.states[rule];
-  if (state.phase != RulePhase::kQuiet || knowledge.now < state.quiet_until) return false;
-  return is_coming(state, knowledge.rules[rule].policies) ||
+  if (!may_fire(rule, knowledge)) return false;
+  return is_coming(knowledge.states[rule], knowledge.rules[rule].policies) ||
          fires_if_silence_lasts(rule, knowledge) || nears_its_threshold(rule, knowledge);
 }
 

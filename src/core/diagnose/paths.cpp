@@ -54,8 +54,9 @@ std::vector<Signs> signs_of(const Knowledge& knowledge, std::span<const RuleId> 
     const auto mark = [&](ComponentId c) {
       (is_ill ? signs[c.index].has_ill : signs[c.index].is_watched)[symptom] = true;
     };
-    // A quiet rule that only reports is no proof of health.
-    if (is_ill || !knowledge.rules[rule].components.empty())
+    if (is_ill)
+      std::ranges::for_each(spreads_from(rule, knowledge), mark);
+    else if (!knowledge.rules[rule].components.empty())  // a report that is quiet proves no health
       std::ranges::for_each(touched_by(rule, knowledge), mark);
   };
   for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {

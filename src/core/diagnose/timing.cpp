@@ -152,10 +152,14 @@ Duration presumed_lateness(RuleId failure, const Knowledge& knowledge) {
                                                            : Duration::zero();
 }
 
+bool may_fire(RuleId rule, const Knowledge& knowledge) {
+  const RuleState& state = knowledge.states[rule];
+  const bool has_acted = knowledge.rules[rule].policies.on_change && !state.detection.armed;
+  return state.phase == RulePhase::kQuiet && knowledge.now >= state.quiet_until && !has_acted;
+}
+
 Duration evidence_within(RuleId quiet, Time onset, const Knowledge& knowledge) {
-  const RuleState& state = knowledge.states[quiet];
-  if (state.phase != RulePhase::kQuiet || knowledge.now < state.quiet_until ||
-      !state.detection.trigger.known)
+  if (!may_fire(quiet, knowledge) || !knowledge.states[quiet].detection.trigger.known)
     return Duration::zero();
   Duration longest{};
   bool reads_value = false;

@@ -68,8 +68,11 @@ Time first_onset_of(RuleId failure, const Knowledge& knowledge);
 // How much earlier than the latest possible onset the failure presumably began.
 Duration presumed_lateness(RuleId failure, const Knowledge& knowledge);
 
+// Can the rule fire: it is quiet, its COOLDOWN is over, and with ON_CHANGE its trigger was not true since it
+// acted?
+bool may_fire(RuleId rule, const Knowledge& knowledge);
 // E of a quiet rule; zero if it gives no evidence any more: its topics have sent since `onset`, its
-// trigger is unknown, it is in its COOLDOWN, or its nodes must be asked.
+// trigger is unknown, it cannot fire, or its nodes must be asked.
 Duration evidence_within(RuleId quiet, Time onset, const Knowledge& knowledge);
 
 // How long the failure may still be shown after its cause has cleared: the readings, the lateness

@@ -34,7 +34,7 @@ void add_repaired(const Strategy& strategy, std::vector<ComponentId>& to) {
   if (to.size() == before) to.insert(to.end(), all.begin(), all.end());
 }
 
-// Those that alone publish what the rule reads: what a rule without strategies is about.
+// Those that alone publish what the rule reads.
 std::vector<ComponentId> publishers_read(const Rule& rule, const Knowledge& knowledge) {
   const RuleSet& rules = knowledge.rules;
   std::vector<ComponentId> all;
@@ -58,6 +58,12 @@ std::vector<ComponentId> publishers_read(const Rule& rule, const Knowledge& know
 
 }  // namespace
 
+bool mends(const Strategy& strategy) {
+  return std::ranges::any_of(strategy.adaptations, [](const Adaptation& a) {
+    return a.type == AdaptationType::kRestart || a.type == AdaptationType::kCall || launches(a);
+  });
+}
+
 std::vector<ComponentId> touched_by(RuleId rule, const Knowledge& knowledge) {
   const Rule& of = knowledge.rules[rule];
   std::vector<ComponentId> touched;
@@ -69,6 +75,22 @@ std::vector<ComponentId> touched_by(RuleId rule, const Knowledge& knowledge) {
   if (touched.empty()) return of.components;
   sort_unique(touched);
   return touched;
+}
+
+std::vector<ComponentId> spreads_from(RuleId rule, const Knowledge& knowledge) {
+  const Rule& of = knowledge.rules[rule];
+  std::vector<ComponentId> all = touched_by(rule, knowledge);
+  const bool is_mended = std::ranges::any_of(of.strategies, [&](StrategyId id) {
+    return !knowledge.rules[id].is_last_resort && mends(knowledge.rules[id]);
+  });
+  if (!is_mended || symptom_of(rule, knowledge) == Symptom::kOutage) return all;
+  const std::vector<ComponentId> read = publishers_read(of, knowledge);
+  const bool is_any_touched =
+      std::ranges::any_of(read, [&](ComponentId c) { return std::ranges::binary_search(all, c); });
+  if (is_any_touched) return all;
+  all.insert(all.end(), read.begin(), read.end());
+  sort_unique(all);
+  return all;
 }
 
 }  // namespace culprit::diagnose

@@ -13,4 +13,12 @@ namespace culprit::diagnose {
 // or that publish what it reads.
 std::vector<ComponentId> touched_by(RuleId rule, const Knowledge& knowledge);
 
+// Does the strategy begin a component anew, or call one of its routines (which may cycle the power of a
+// device)? If not, it only reconfigures.
+bool mends(const Strategy& strategy);
+// From where the failure may spread to failures of values: these, and of a bad value that is mended only
+// elsewhere (a lamp is switched on where a camera sees too little) also the component whose value it is. A
+// rule that only reconfigures another component may be about a good value: the robot drives on.
+std::vector<ComponentId> spreads_from(RuleId rule, const Knowledge& knowledge);
+
 }  // namespace culprit::diagnose

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/invariant.h"
+#include "diagnose/known_down.h"
 #include "execute/limits.h"
 #include "knowledge/ambiguity.h"
 #include "knowledge/held.h"
@@ -156,7 +157,10 @@ void StrategyExecutor::advance(Run& run, Time now, std::vector<Command>& command
   const bool is_at_rest = stage == Attempt::Stage::kWaiting ||
                           stage == Attempt::Stage::kSuspended || stage == Attempt::Stage::kOver;
   const bool may_start_again = stage == Attempt::Stage::kWaiting;
-  if (is_at_rest && !(may_start_again && start_again(run, now))) return;
+  if (is_at_rest && !(may_start_again && start_again(run, now))) {
+    if (may_start_again) fail_with_lost_process(run);
+    return;
+  }
   // The analysis has not taken it from here yet.
   if (!attempt_of(run)->obstacle.empty() && !run.is_undoing) return;
   while (run.pursuit || (run.is_undoing ? next_undo(run, now) : next_goal(run, now))) {
@@ -374,6 +378,32 @@ bool StrategyExecutor::start_again(Run& run, Time now) {
     return true;
   }
   return false;
+}
+
+// It took effect in a process that exited or is stopped since, and that culprit can replace: its effect is lost, and
+// the replacement must not wait for the verdict. The outcome proves nothing, but it counts as an attempt: the strategy
+// may have ended the process.
+void StrategyExecutor::fail_with_lost_process(const Run& run) {
+  const RuleSet& rules = knowledge_.rules;
+  const Strategy& strategy = rules[run.strategy];
+  if (strategy.is_last_resort) return;
+  for (std::size_t i = 0; i < strategy.adaptations.size(); ++i) {
+    const Adaptation& adaptation = strategy.adaptations[i];
+    const ComponentId component = adaptation.component;
+    const bool needs_no_process = adaptation.type == AdaptationType::kStop ||
+                                  adaptation.type == AdaptationType::kDeactivate ||
+                                  gives_back(i, strategy);
+    const bool brings_it_back = adaptation.group || diagnose::replaces(strategy, component);
+    if (needs_no_process || brings_it_back || !rules[component].can_start() ||
+        !diagnose::is_known_down(component, knowledge_))
+      continue;
+    const bool is_stopped = knowledge_.components[component].process == ProcessState::kStopped;
+    write_.attempts.make_ambiguous(run.strategy);
+    write_.attempts.adapts_again(run.strategy);
+    write_.attempts.obstruct(run.strategy,
+                             rules[component].name + (is_stopped ? " is stopped" : " exited"));
+    return write_.signals.touch(run.rule);
+  }
 }
 
 void StrategyExecutor::finish_goal(Run& run, Time now) {

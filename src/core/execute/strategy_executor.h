@@ -7,7 +7,8 @@
 // again where that one is down. A step that activates what an earlier one deactivates gives back what that
 // one took: what was not active before stays so. From its choice to
 // the end of its undoing a strategy has its components to itself, but for last resorts: these go
-// beside it and are not undone, and no other undoing touches their changes.
+// beside it and are not undone, and no other undoing touches their changes. If a process that it changed
+// exits or is stopped before the verdict, it fails at once: the process is to be replaced.
 #pragma once
 
 #include <optional>
@@ -113,6 +114,7 @@ class StrategyExecutor {
   bool has_nothing_to_do(const Run& run, Time now);
   bool has_taken(const Run& run, ComponentId component) const;
   bool start_again(Run& run, Time now);
+  void fail_with_lost_process(const Run& run);
   bool is_first_rise(const execute::Pursuit& pursuit) const;
   std::optional<ComponentId> deactivated_meanwhile(const Run& run) const;
   bool is_managed_still(const Run& run) const;

@@ -40,7 +40,8 @@ struct Brought {
   bool is_owed = false;
 };
 
-// A trouble (diagnose/trouble.h) that a failure was there beside, and that is over.
+// A trouble (diagnose/trouble.h) that is over: that it was not active, or another that a failure was there
+// beside.
 struct PastTrouble {
   Time since{};
   Time over{};

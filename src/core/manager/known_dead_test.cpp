@@ -116,6 +116,35 @@ TEST(KnownDead, AGoodByeOnTheWireIsAWishWhateverTheExitCode) {
   }
 }
 
+// A call or a parameter cannot be verified in a process that is gone, and its changes went with it.
+TEST(KnownDead, ItsReplacementDoesNotWaitForWhatWasPendingInIt) {
+  for (const bool is_killed : {true, false}) {
+    TestRobot robot = robot_with(std::string(kPatientRules) + R"(
+RULE Blurred
+  POLICIES ERROR
+  TRIGGER blur > 0.5
+    STRATEGY focus 90 10
+      ADAPTATION camera set_parameter angle 1 100
+)");
+    robot["camera"].parameters = {{"angle", Value(std::int64_t{0})}};
+    robot.signal("blur", Value(0.0));
+    robot.run_for(1s);
+    robot.signal("blur", Value(1.0));
+    robot.run_for(1s);
+    ASSERT_EQ(robot.count("set angle of camera: done"), 1u) << transcript(robot);
+    const StrategyId focus = robot.rules().rules[1].strategies.front();
+    const Belief before = robot.manager().knowledge().beliefs[focus];
+    is_killed ? robot.kill("camera") : robot.stop("camera");
+    robot.run_for(2s);
+    EXPECT_EQ(robot.count(is_killed ? "focus did not resolve Blurred: camera exited"
+                                    : "focus did not resolve Blurred: camera is stopped"),
+              1u)
+        << transcript(robot);
+    EXPECT_TRUE(robot.works("camera")) << transcript(robot);
+    EXPECT_EQ(robot.manager().knowledge().beliefs[focus], before) << "nobody saw whether it helped";
+  }
+}
+
 TEST(KnownDead, ForAndHoldKeepTheirTime) {
   for (const auto& [policy, time] : {std::pair("FOR 1s", Duration(1s)), {"HOLD 3/5", 200ms}}) {
     TestRobot robot = robot_with(

@@ -188,6 +188,10 @@ void Monitor::on(Time at, const LifecycleRead& seen) {
   if (is_primary && state.lifecycle != Lifecycle::kUnknown && seen.state != state.lifecycle &&
       state.brought)
     state.brought->is_changed |= seen.state != state.brought->to;
+  const bool was_inactive =
+      state.lifecycle != Lifecycle::kUnknown && state.lifecycle != Lifecycle::kActive;
+  if (was_inactive && seen.state == Lifecycle::kActive)
+    state.past_trouble = PastTrouble{state.lifecycle_since, at};
   if (seen.state != state.lifecycle) state.lifecycle_since = at;
   state.lifecycle = seen.state;
   state.was_active |= seen.state == Lifecycle::kActive;

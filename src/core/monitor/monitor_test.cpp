@@ -541,6 +541,19 @@ TEST(Monitor, NobodyIntendedTheStateThatANewProcessComesUpIn) {
   EXPECT_EQ(intended(), Lifecycle::kActive) << "it was seen on its way";
 }
 
+// Its consumers need a moment after that, whether or not a failure was there beside.
+TEST(Monitor, AnActivationEndsATroubleAndTheFirstReadingDoesNot) {
+  Watched watched(rule("!alive(c)"));
+  const auto& past = watched.knowledge.components[ComponentId(0)].past_trouble;
+  watched.observe(1s, NodeAppeared{"/c", 7});
+  watched.observe(1s, LifecycleRead{ComponentId(0), Lifecycle::kActive});
+  EXPECT_FALSE(past);
+  watched.observe(20s, LifecycleRead{ComponentId(0), Lifecycle::kInactive});
+  watched.observe(140s, LifecycleRead{ComponentId(0), Lifecycle::kActive});
+  ASSERT_TRUE(past);
+  EXPECT_EQ(past->over - past->since, 120s);
+}
+
 constexpr const char* kHeard = "!alive(c) || age(/t) > 1h";
 
 // Its process is known, it publishes /t every 100 ms until `end`, and answers until then.

@@ -28,8 +28,9 @@ bool can_ask(const Adaptation& adaptation, const Command& command) {
     return adaptation.subject == set->name &&
            (type == kSetParameter || type == kIncreaseParameter || type == kDecreaseParameter ||
             type == kChangeCommunication);
-  if (std::holds_alternative<ChangeLifecycle>(command.what))
-    return type == kActivate || type == kDeactivate || type == kRestart;
+  if (const auto* change = std::get_if<ChangeLifecycle>(&command.what))
+    return (type == kActivate && change->transition != Transition::kDeactivate) ||
+           (type == kDeactivate && change->transition != Transition::kActivate) || type == kRestart;
   if (std::holds_alternative<StopProcess>(command.what)) return type == kRedeploy || type == kStop;
   if (std::holds_alternative<StartProcess>(command.what))
     return type == kRedeploy || type == kStart;

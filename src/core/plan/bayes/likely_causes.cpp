@@ -158,8 +158,14 @@ ComponentId LikelyCauses::likeliest_component(RuleId rule) const {
 }
 
 ComponentId LikelyCauses::component_of(std::size_t node) const {
-  return causes_[node].is_rule() ? likeliest_component(causes_[node].rule)
-                                 : causes_[node].component;
+  if (!causes_[node].is_rule()) return causes_[node].component;
+  const RuleId rule = causes_[node].rule;
+  const auto& adapted = knowledge_.rules[rule].components;
+  // A camera that sees too little: its consumers do not depend on the lamp that is switched on.
+  for (const ComponentId c : spreads_from(rule, knowledge_)) {
+    if (!adapted.empty() && std::ranges::find(adapted, c) == adapted.end()) return c;
+  }
+  return likeliest_component(rule);
 }
 
 std::vector<Suspect> LikelyCauses::suspects(std::size_t failure) const {

@@ -42,6 +42,7 @@ class LikelyCauses {
 
   // The component at which the rule's untried strategies are most likely to help.
   ComponentId likeliest_component(RuleId rule) const;
+  // The component that the effects of the node depend on.
   ComponentId component_of(std::size_t node) const;
 
  private:
