@@ -251,14 +251,17 @@ bool activates(const Strategy& strategy, ComponentId component) {
   });
 }
 
-// A person, or another program, has deactivated what sends the rule's topics. A redeploy brings it back to that
-// state, so it sends nothing all the same. Beside strategies that were tried in vain the rule is given up.
+// A person, or another program, deactivated what sends the rule's topics before they were missed. A redeploy brings
+// it back to that state, so it sends nothing all the same. Beside strategies that were tried in vain the rule is
+// given up. (Inactive since then: an interrupted restart may have left it so.)
 std::optional<Invalid> stays_deactivated(const Strategy& strategy, const Knowledge& knowledge) {
   const RuleSet& rules = knowledge.rules;
+  const RuleState& of_rule = knowledge.states[strategy.rule];
   for (const Adaptation& a : strategy.adaptations) {
     const ComponentState& state = knowledge.components[a.component];
     const bool is_inactive = state.alive == true && state.lifecycle == Lifecycle::kInactive &&
-                             state.intended_lifecycle == Lifecycle::kInactive;
+                             state.intended_lifecycle == Lifecycle::kInactive &&
+                             state.lifecycle_since <= of_rule.failing_since;
     const bool is_ours = state.brought && !state.brought->is_changed;
     if (a.type != AdaptationType::kRedeploy || !is_inactive || is_ours ||
         is_of_any_group(a.component, rules) || activates(strategy, a.component) ||
@@ -266,7 +269,7 @@ std::optional<Invalid> stays_deactivated(const Strategy& strategy, const Knowled
         !is_missed_by(strategy, a.component, knowledge))
       continue;
     const std::string why = "is inactive, and a redeploy keeps its state";
-    const std::vector<bool>& tried = knowledge.states[strategy.rule].search.tried;
+    const std::vector<bool>& tried = of_rule.search.tried;
     if (std::ranges::find(tried, true) == tried.end()) return Invalid{a.component, why, true};
     return Invalid{a.component, rules[a.component].name + " " + why};
   }
