@@ -450,9 +450,11 @@ bool LineReader::unexpected_clause(const Token& token, std::vector<std::string_v
       is_known ? std::string_view() : clause_of_other_tools(token.text, known);
   if (!is_known) near = foreign.empty() ? closest(token.text, known) : "";
   if (near.empty() && foreign.empty()) near = closest(upper_case(token.text), known);
+  const bool are_clauses = !known.empty() && upper_case(known.front()) == known.front();
+  const std::string_view line = are_clauses ? statement_of_clause(token.text) : std::string_view();
   if (!near.empty() || !foreign.empty()) {
     remedy = "did you mean " + near + std::string(foreign) + "?";
-  } else if (const auto line = statement_of_clause(token.text); !line.empty() && remedy.empty()) {
+  } else if (!line.empty() && remedy.empty()) {
     remedy = upper_case(token.text) + " belongs to the " + std::string(line) + " line";
   }
   const std::string got = token.kind == Token::Kind::kEnd
