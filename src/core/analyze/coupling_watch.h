@@ -11,9 +11,9 @@
 //   - no earlier change can have taken effect only now,
 //   - no other failure upstream of i cleared by itself.
 //
-// Exposure counts without any repair: when j ends, each failure i downstream of it that did not come
-// while j was there, and would have been seen, was well for so many times diagnose::kUsualDelay beside
-// it. One exposure counts at most kLongestExposure of them: j may be worse the next time.
+// Exposure counts without any repair. When j ends, each failure i downstream that stayed away, and would
+// have been seen, counts as apart from j: once for each diagnose::kUsualDelay that j lasted. One exposure
+// counts at most kLongestExposure times: j may be worse the next time.
 //
 // A failure goes away as slowly as it came: if i was detected some time after j, it is given one
 // and a half times that long to go away after j. Until then i is said to settle, and planners leave
