@@ -174,7 +174,7 @@ TEST(CouplingWatch, CountsWhatStaysAwayWhileItsCauseIsThere) {
       two.knowledge.signals.set_read_at(id, Two::kCame + (is_seen ? 29s : 1s));
     CouplingWatch watch(two.knowledge, {two.knowledge.states, two.knowledge.couplings});
     watch.exposed_others(kCause, Two::kCame + 30s);
-    EXPECT_EQ(two.knowledge.couplings.of(kCause, kEffect).stayed, is_seen ? 6 : 0);
+    EXPECT_EQ(two.knowledge.couplings.of(kCause, kEffect).spared, is_seen ? 6 : 0);
   }
 }
 

@@ -28,6 +28,7 @@ void Couplings::learn(RuleId cause, RuleId effect, Coupling outcome) {
   Coupling& coupling = place(cause, effect);
   coupling.cleared = forgetting_ * coupling.cleared + outcome.cleared;
   coupling.stayed = forgetting_ * coupling.stayed + outcome.stayed;
+  coupling.spared = forgetting_ * coupling.spared + outcome.spared;
 }
 
 }  // namespace culprit

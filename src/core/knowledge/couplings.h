@@ -1,11 +1,12 @@
 // How surely a failure clears when another one is resolved: kappa(j -> i), learned for each ordered
 // pair of rules (docs/planning.md, which also defines its true value).
 //
-//     kappa(j -> i) = (n0 kappa0 + cleared) / (n0 + cleared + stayed)
+//     kappa(j -> i) = (n0 kappa0 + cleared) / (n0 + cleared + stayed + spared)
 //
 //   cleared  how often i cleared after a strategy had resolved j, without a repair of its own
-//   stayed   how often it was still there when its signals could have shown the recovery; and for how
-//            many times kUsualDelay it was seen to be well while j was there (exposure)
+//   stayed   how often it was still there when its signals could have shown the recovery
+//   spared   for how many times kUsualDelay it was seen to be well while j was there (exposure); not
+//            kept in the journal
 //   kappa0   the expectation before any outcome: kUsual if i depends on j, kRare otherwise
 //   n0       how many outcomes that expectation weighs: kWeight
 //
@@ -26,9 +27,10 @@ struct Coupling {
 
   double cleared = 0;
   double stayed = 0;
+  double spared = 0;
 
   double mean(double expected) const {
-    return (kWeight * expected + cleared) / (kWeight + cleared + stayed);
+    return (kWeight * expected + cleared) / (kWeight + cleared + stayed + spared);
   }
   bool operator==(const Coupling&) const = default;
 };
@@ -39,10 +41,12 @@ class Couplings {
   explicit Couplings(const RuleSet& rules);
   void set_forgetting(double forgetting) { forgetting_ = forgetting; }
 
-  void cleared(RuleId cause, RuleId effect) { learn(cause, effect, {1, 0}); }
-  void stayed(RuleId cause, RuleId effect) { learn(cause, effect, {0, 1}); }
+  void cleared(RuleId cause, RuleId effect) { learn(cause, effect, {1, 0, 0}); }
+  void stayed(RuleId cause, RuleId effect) { learn(cause, effect, {0, 1, 0}); }
   // The effect was seen to be well for `times` the usual delay, although the cause was there.
-  void stayed_away(RuleId cause, RuleId effect, double times) { learn(cause, effect, {0, times}); }
+  void stayed_away(RuleId cause, RuleId effect, double times) {
+    learn(cause, effect, {0, 0, times});
+  }
   void set(RuleId cause, RuleId effect, Coupling coupling) { place(cause, effect) = coupling; }
 
   struct Learned {
