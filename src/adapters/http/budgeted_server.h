@@ -3,8 +3,8 @@
 // httplib itself keeps every header that comes, however many and however long a line is, and waits
 // again for each byte. Here the bytes of a connection are counted before they are parsed: so many
 // bytes of headers, so many of a body, so much time for the headers, and so much for both. A connection that exceeds them is
-// closed. A request that is only begun keeps one of the few threads from others, so its headers have little time, and it
-// ends at once if another connection needs the thread (waiting_clients.h).
+// closed. A request that is only begun keeps one of the few threads from others, so its headers have little time. It ends at
+// once if another connection needs the thread (waiting_clients.h).
 //
 // Nor does it compress answers: httplib would use brotli at its slowest if the browser accepts
 // that, and the incidents of a day came after seconds. takes_gzip() says whether the client can

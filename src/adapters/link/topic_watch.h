@@ -17,10 +17,10 @@
 #include "base/mutex.h"
 #include "base/time.h"
 #include "language/rule_set.h"
-#include "link/sample_gaps.h"
 #include "link/topic_listener.h"
 #include "robot/inbox.h"
 #include "ros2/field_reader.h"
+#include "ros2/sample_gaps.h"
 
 namespace culprit::ros2 {
 

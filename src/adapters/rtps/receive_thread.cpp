@@ -147,7 +147,7 @@ class ReceiveThread::Batch {
   }
 
  private:
-  // What the kernel says beside a datagram.
+  // Room for the notes of the kernel beside a datagram.
   struct Note {
     static constexpr std::size_t kSize =
         CMSG_SPACE(sizeof(timespec)) + CMSG_SPACE(sizeof(std::uint32_t));

@@ -1,4 +1,4 @@
-#include "link/sample_gaps.h"
+#include "ros2/sample_gaps.h"
 
 #include <limits>
 
