@@ -19,7 +19,7 @@ class WaitingLookups {
 
   explicit WaitingLookups(std::size_t most_bytes) : most_bytes_(most_bytes) {}
 
-  // A message of this size has come. What is to be looked up with it is not done() yet.
+  // A message of this size has come. Unless kNone, the caller looks up its writer and then calls done().
   Room admit(const Guid& writer, std::size_t size) {
     if (bytes_ + size <= most_bytes_) {
       bytes_ += size;
