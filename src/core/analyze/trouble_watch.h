@@ -1,5 +1,9 @@
 // Notes when troubles of components end (ComponentState::past_trouble): what depends on them needs a
 // moment to work again. Only while there are failures, whose plans it is called before.
+//
+// A topic that becomes slow is not silent, and recovers from nothing. So a silence is over only if it was
+// longer than kSilentGaps of the gap that is usual once it ended, and if no other silence begins with the very
+// message that ended it.
 #pragma once
 
 #include <vector>
@@ -21,11 +25,17 @@ class TroubleWatch {
   struct Open {
     ComponentId component;
     Time since{};
+    std::optional<TopicId> topic;  // of a silence
+    Time last{};  // its last message before, or once it is over: the one that ended it
   };
+
+  void open(Open found);
+  void close(Open trouble, Time now);
 
   const Knowledge& knowledge_;
   ComponentStates& components_;
   std::vector<Open> open_;
+  std::vector<Open> over_;  // silences that count as over, until a second message comes
 };
 
 }  // namespace culprit

@@ -88,8 +88,8 @@ std::vector<std::optional<TroubleSeen>> all_troubles(const Knowledge& knowledge)
       continue;
     const auto component = knowledge.graph.only_publisher(knowledge.rules[topic]);
     if (component && !all[component->index] && !knowledge.is_unheard(*component))
-      all[component->index] =
-          TroubleSeen{Trouble::kSilent, {*rhythm.last, later(rhythm.silent_since(), rhythm.gap)}};
+      all[component->index] = TroubleSeen{
+          Trouble::kSilent, {*rhythm.last, later(rhythm.silent_since(), rhythm.gap)}, topic};
   }
   return all;
 }
