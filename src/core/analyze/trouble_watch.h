@@ -1,9 +1,9 @@
 // Notes when troubles of components end (ComponentState::past_trouble): what depends on them needs a
 // moment to work again. Only while there are failures, whose plans it is called before.
 //
-// A topic that becomes slow is not silent, and recovers from nothing. So a silence is over only if it was
-// longer than kSilentGaps of the gap that is usual once it ended, and if no other silence begins with the very
-// message that ended it.
+// A topic that becomes slow is not silent, and recovers from nothing. So a silence is over only
+// under two conditions. It was longer than kSilentGaps of the gap that is usual once it ended, and no other
+// silence begins with the very message that ended it.
 #pragma once
 
 #include <vector>

@@ -11,7 +11,7 @@ namespace culprit::plan {
 
 class ConnectedParts {
  public:
-  // Of the graph as it is now. Takes time in proportion to its size.
+  // The parts of the graph as it is now. Takes time in proportion to its size.
   explicit ConnectedParts(const Knowledge& knowledge);
 
   // One strategy adapts them all.

@@ -116,7 +116,7 @@ TEST(SideBySide, IsHowTheBayesPlannerBeginsSeveralStrategies) {
   EXPECT_EQ(scene.candidate("A.restart").excluded, Condition::kOneEach);
 }
 
-// Nothing connects it with a.
+// The graph does not connect it with a.
 TEST(SideBySide, DecidesNothingForAnUnrelatedComponent) {
   const BayesPlanner downtime(Objective::kDowntime);
   Scene scene(failure_of("a", "A") + failure_of("d", "D"));
