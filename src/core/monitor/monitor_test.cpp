@@ -564,6 +564,18 @@ void work_until(Watched& watched, Duration end) {
   watched.observe(end, Probed{ComponentId(0), true});
 }
 
+TEST(Monitor, NotesSinceWhenAnswersAreMissing) {
+  Watched watched(rule(kHeard));
+  work_until(watched, 5s);
+  const ComponentState& state = watched.knowledge.components[ComponentId(0)];
+  const Time begin = state.answered;
+  watched.observe(6s, Probed{ComponentId(0), false});
+  watched.observe(7s, Probed{ComponentId(0), true});
+  watched.observe(8s, Probed{ComponentId(0), false});
+  watched.observe(9s, Probed{ComponentId(0), false});
+  EXPECT_EQ(state.missed_since - begin, 3s);
+}
+
 TEST(Monitor, ALocalNodeHangsThatNeitherAnswersNorPublishes) {
   Watched watched(rule(kHeard));
   const auto is_alive = [&] { return watched.knowledge.components[ComponentId(0)].alive; };
