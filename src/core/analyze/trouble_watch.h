@@ -1,11 +1,11 @@
 // Notes when troubles of components end (ComponentState::past_trouble): what depends on them needs a
 // moment to work again. Only while there are failures, whose plans it is called before.
 //
-// A topic that becomes slow is not silent, and recovers from nothing. So a silence is over only
-// under two conditions. It was longer than kSilentGaps of the gap that is usual once it ended, and no other
-// silence begins with the very message that ended it.
+// A topic that becomes slow is not silent, and recovers from nothing: its silence ends only as
+// SignalStore::Rhythm::silence says.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "knowledge/knowledge.h"
@@ -26,16 +26,16 @@ class TroubleWatch {
     ComponentId component;
     Time since{};
     std::optional<TopicId> topic;  // of a silence
-    Time last{};  // its last message before, or once it is over: the one that ended it
   };
 
-  void open(Open found);
-  void close(Open trouble, Time now);
+  void close(const Open& trouble, Time now);
+  bool is_over(const Open& silence) const;
+  void withdraw();
 
   const Knowledge& knowledge_;
   ComponentStates& components_;
   std::vector<Open> open_;
-  std::vector<Open> over_;  // silences that count as over, until a second message comes
+  std::vector<Open> over_;  // silences that may yet turn out to be slow messages
 };
 
 }  // namespace culprit

@@ -45,7 +45,7 @@ bool watches_a_component(const Input& input);
 bool tells_of_data(RuleId rule, const RuleSet& rules);
 
 // A topic counts as silent after this many of its usual gaps.
-inline constexpr int kSilentGaps = 2;
+inline constexpr int kSilentGaps = SignalStore::Rhythm::kSilentGaps;
 // Evidence that takes longer than this is not waited for.
 inline constexpr Duration kLongestEvidence = std::chrono::seconds(10);
 
