@@ -9,10 +9,53 @@ namespace {
 
 using namespace std::chrono_literals;
 
+constexpr ComponentId kLamp{std::size_t{0}};
+
+struct Lamp {
+  Lamp() { knowledge.discovered.note(kLamp, Time(0s)); }
+
+  ComponentState& state() { return knowledge.components[kLamp]; }
+  void stop(Time at) {
+    state().process = ProcessState::kStopped;
+    state().process_since = at;
+  }
+  void go_on() { state().process = ProcessState::kRunning; }
+
+  const RuleSet rules = *check(Source("x.rules",
+                                      "COMPONENT lamp NODE /lamp\nRULE Dark\nPOLICIES ERROR\n"
+                                      "TRIGGER x > 1\nSTRATEGY s 90 10\n"
+                                      "ADAPTATION lamp restart 5\n"))
+                             .rules;
+  Knowledge knowledge{rules};
+  TroubleWatch watch{knowledge, knowledge.components};
+};
+
+TEST(TroubleWatch, NotesATroubleThatEndsBesideAFailure) {
+  Lamp lamp;
+  lamp.stop(Time(10s));
+  lamp.watch.look(Time(12s), true);
+  EXPECT_FALSE(lamp.state().past_trouble);
+  lamp.go_on();
+  lamp.watch.look(Time(20s), true);
+  ASSERT_TRUE(lamp.state().past_trouble);
+  EXPECT_EQ(lamp.state().past_trouble->since, Time(10s));
+  EXPECT_EQ(lamp.state().past_trouble->over, Time(20s));
+}
+
+TEST(TroubleWatch, ForgetsATroubleThatOutlastsTheFailures) {
+  Lamp lamp;
+  lamp.stop(Time(10s));
+  lamp.watch.look(Time(12s), true);
+  lamp.watch.look(Time(13s), false);
+  lamp.go_on();
+  lamp.watch.look(Time(5min), true);
+  EXPECT_FALSE(lamp.state().past_trouble) << "when it ended was not seen";
+}
+
 // A component that alone publishes a topic, silent for a second.
-class TroubleWatchTest : public testing::Test {
+class SilentTopic : public testing::Test {
  protected:
-  TroubleWatchTest()
+  SilentTopic()
       : rules_(
             *check(Source("x.rules",
                           "COMPONENT c NODE /c\nRULE Gone\nPOLICIES ERROR\n"
@@ -56,7 +99,7 @@ class TroubleWatchTest : public testing::Test {
   SignalStore::Rhythm rhythm_;
 };
 
-TEST_F(TroubleWatchTest, ASilenceThatIsOverIsAPastTrouble) {
+TEST_F(SilentTopic, ASilenceThatIsOverIsAPastTrouble) {
   const Time over = kBegan + 2s;
   receive(over, {{kBegan, over, 100ms}});
   ASSERT_TRUE(past());
@@ -67,12 +110,12 @@ TEST_F(TroubleWatchTest, ASilenceThatIsOverIsAPastTrouble) {
   EXPECT_TRUE(past());
 }
 
-TEST_F(TroubleWatchTest, ASlowMessageEndsNoTrouble) {
+TEST_F(SilentTopic, ASlowMessageEndsNoTrouble) {
   receive(kBegan + 2s, std::nullopt);
   EXPECT_FALSE(past());
 }
 
-TEST_F(TroubleWatchTest, ASilenceThatTurnsOutToBeASlowTopicIsForgotten) {
+TEST_F(SilentTopic, ASilenceThatTurnsOutToBeASlowTopicIsForgotten) {
   const Time over = kBegan + 2s;
   receive(over, {{kBegan, over, 100ms}});
   receive(over + 2s, std::nullopt);
