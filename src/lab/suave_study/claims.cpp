@@ -134,8 +134,8 @@ std::vector<Claim> suave_claims(const SuaveResult& first, const SuaveResult& sec
   add("rows Metacontrol, ROSA: search and distance", "TOST",
       as_printed(standard, {"metacontrol", "rosa"}));
   add("extended rows BT, ROSA: search and distance", "TOST", as_printed(extended, {"bt", "rosa"}));
-  add("row Ours: search and distance", "TOST", as_printed(standard, {kCulprit}));
-  add("extended row Ours: search and distance", "TOST", as_printed(extended, {kCulprit}));
+  add("rows Ours: search and distance", "TOST",
+      joined({as_printed(standard, {kCulprit}), as_printed(extended, {kCulprit})}));
   add("rows BT, Metacontrol, ROSA: reactions", "TOST",
       joined({standard.reactions("bt"), standard.reactions("metacontrol"),
               standard.reactions("rosa"), extended.reactions("bt"), extended.reactions("rosa")}));
