@@ -15,7 +15,7 @@
 
 namespace culprit::study {
 
-// Of each fault so many cases. The same seed gives the same cases.
+// `of_each` cases of each fault. The same seed gives the same cases.
 std::vector<rca::RcaCase> sunset_cases(std::uint64_t seed, std::size_t of_each);
 std::vector<rca::RcaCase> rover_cases(std::uint64_t seed, std::size_t of_each);
 
