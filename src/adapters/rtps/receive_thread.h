@@ -31,6 +31,7 @@
 
 #include "base/expected.h"
 #include "base/mutex.h"
+#include "base/wake_file.h"
 #include "rtps/datagram_sources.h"
 #include "rtps/haste.h"
 #include "rtps/system_time.h"
@@ -112,7 +113,7 @@ class ReceiveThread {
   void calm(Clock::time_point now) CULPRIT_REQUIRES(mutex_);
 
   const int wait_fd_;  // of epoll
-  const int wake_fd_;  // to end
+  const WakeFile end_;
 
   mutable Mutex mutex_;
   ConditionVariable round_ended_;
