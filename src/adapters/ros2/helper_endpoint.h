@@ -36,7 +36,7 @@ struct HelperEndpoint {
   bool reads(Purpose purpose, const std::string& name) const {
     return reads() && meaning.purpose == purpose && meaning.name == name;
   }
-  // What a helper is asked to make for it, if it needs anything.
+  // Returns the frame that asks a helper to make it, if it needs anything.
   std::optional<culprit_link::Frame> asks_for(const Qos& qos) const;
 
   // Only the thread that talks to the helper calls these.

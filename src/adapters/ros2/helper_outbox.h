@@ -1,4 +1,4 @@
-// What waits until the helper program reads it. Not thread-safe.
+// Holds frames until the helper program reads them. Not thread-safe.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ class HelperOutbox {
 
   // False: no helper takes it now.
   bool queue(const culprit_link::Frame& frame);
-  // What the socket takes without waiting. False: it is broken.
+  // Sends as much as the socket takes without waiting. False: it is broken.
   bool send(int socket);
 
   bool has_waiting() const { return !waiting_.empty(); }

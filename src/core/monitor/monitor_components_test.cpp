@@ -1,4 +1,4 @@
-// What the monitor makes of a component's process, node, answers and transitions.
+// The monitor on the process, the node, the answers and the transitions of a component.
 #include <gtest/gtest.h>
 
 #include "monitor/monitor.h"
