@@ -1,5 +1,6 @@
 // Notes when troubles of components end (ComponentState::past_trouble): what depends on them needs a
-// moment to work again. Only while there are failures, whose plans it is called before.
+// moment to work again. Only while there are failures: the end of a trouble is noted when it is seen,
+// and without plans nobody looks.
 #pragma once
 
 #include <vector>
@@ -14,7 +15,8 @@ class TroubleWatch {
   TroubleWatch(const Knowledge& knowledge, ComponentStates& components)
       : knowledge_(knowledge), components_(components) {}
 
-  // To be called before each plan. `is_any_failing`: there is a failure to plan for.
+  // To be called before each plan, and in each step that has nothing to plan. `is_any_failing`: there is
+  // a failure to plan for.
   void look(Time now, bool is_any_failing);
 
  private:

@@ -122,6 +122,7 @@ std::vector<Command> Manager::step(Time now, std::span<const Observation> observ
     react(commands);
   } else {
     executor_.advance(now_, commands);  // lets go of what has just succeeded
+    troubles_.look(now_, false);
     next_plan_ = analyzer_.next_start();
   }
   if (hears_) analyzer_.look_for_blind(now_);

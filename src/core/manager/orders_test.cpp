@@ -67,6 +67,21 @@ TEST(Orders, PauseStopsAtOnceWhatIsUnderWayAndResumeGoesOn) {
   EXPECT_TRUE(r.works("camera")) << transcript(r);
 }
 
+// The restart has deactivated the camera, and the pause keeps it from being activated again. The next culprit knows
+// that no person deactivated it.
+TEST(Orders, WhatAPausedRestartLeftInactiveIsOwedByTheNextCulprit) {
+  TestRobot r = robot();
+  begin_restart(r);
+  r.order(order(Pause{}));
+  r.run_for(2s);
+  ASSERT_EQ(r["camera"].state, Lifecycle::kInactive) << transcript(r);
+  Manager::Options options;
+  options.start = r.now;
+  auto next = std::make_unique<Manager>(r.rules(), std::make_unique<BayesPlanner>(), options);
+  next->remember(r.events);
+  EXPECT_TRUE(next->knowledge().components[kCamera].is_to_be_given_back()) << transcript(r);
+}
+
 TEST(Orders, NothingIsLearnedFromAStrategyThatWasAbandoned) {
   TestRobot r = robot();
   const Belief before = r.manager().knowledge().beliefs[kRestart];

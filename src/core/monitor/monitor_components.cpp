@@ -205,7 +205,9 @@ void Monitor::on(Time at, const LifecycleRead& seen) {
     state.changes_until = later(at, is_measured || is_ours ? longest : kUnknownTransition);
   }
   if (is_primary) write_.discovered.read_lifecycle(seen.component);
-  if (is_primary && !state.took_place && knowledge_.states.reservation(seen.component) == nullptr)
+  const bool is_owed = state.is_to_be_given_back() && seen.state == state.brought->to;
+  if (is_primary && !is_owed && !state.took_place &&
+      knowledge_.states.reservation(seen.component) == nullptr)
     write_.components.intend_lifecycle(seen.component, seen.state, at, write_.events);
   if (seen.state != Lifecycle::kUnknown) state.took_place = false;
   if (seen.is_shut_down && knowledge_.states.reservation(seen.component) == nullptr)

@@ -155,6 +155,17 @@ TEST(Monitor, CountsWhatWasLostOnTheWay) {
   EXPECT_NEAR(watched.knowledge.signals[InputId(0)].d, 10, 2.1);
 }
 
+TEST(Monitor, DoesNotCallALossWhatOurOwnSocketsDropped) {
+  Watched watched(rule("loss(/t) > 0.1"));
+  const auto& loss = watched.knowledge.signals[InputId(0)];
+  for (int i = 0; i < 20; ++i) watched.observe(100ms * i, SampleArrived{TopicId(0), 2});
+  EXPECT_TRUE(loss.known);
+  watched.observe(2s, SampleArrived{TopicId(0), 2, true});
+  EXPECT_FALSE(loss.known);
+  for (int i = 21; i < 200; ++i) watched.observe(100ms * i, SampleArrived{TopicId(0), 2});
+  EXPECT_TRUE(loss.known);
+}
+
 TEST(Monitor, KnowsHowLongATopicThatComesInBurstsIsSilent) {
   Watched watched(rule("age(/t) > 1s"));
   const auto rhythm = [&] { return watched.knowledge.signals.rhythm(TopicId(0)); };

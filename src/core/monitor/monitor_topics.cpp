@@ -33,8 +33,8 @@ void Monitor::on(Time at, const SampleArrived& seen) {
     rhythm.gap = usual_gap(rhythm.gap, interval);
   }
   rhythm.last = topic.last = at;
-  topic.loss.add(at, seen.published);
-  rhythm.loss = topic.loss.share(at).value_or(0);
+  topic.loss.add(at, seen.published, seen.lost_here);
+  rhythm.loss = topic.loss.share_with_ours(at).value_or(0);
   rhythm.loss_at_most = topic.loss.at_most(at);
   write_.signals.set_rhythm(seen.topic, rhythm);
   if (topic.needs_phi) topic.phi.add(at, seen.published);
