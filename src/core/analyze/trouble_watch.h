@@ -1,8 +1,12 @@
 // Notes when troubles of components end (ComponentState::past_trouble): what depends on them needs a
 // moment to work again. Only while there are failures: the end of a trouble is noted when it is seen,
 // and without plans nobody looks.
+//
+// A topic that becomes slow is not silent, and recovers from nothing: its silence ends only as
+// SignalStore::Rhythm::silence says.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "knowledge/knowledge.h"
@@ -23,11 +27,17 @@ class TroubleWatch {
   struct Open {
     ComponentId component;
     Time since{};
+    std::optional<TopicId> topic;  // of a silence
   };
+
+  void close(const Open& trouble, Time now);
+  bool is_over(const Open& silence) const;
+  void withdraw();
 
   const Knowledge& knowledge_;
   ComponentStates& components_;
   std::vector<Open> open_;
+  std::vector<Open> over_;  // silences that may yet turn out to be slow messages
 };
 
 }  // namespace culprit

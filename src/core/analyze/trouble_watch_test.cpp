@@ -52,5 +52,75 @@ TEST(TroubleWatch, ForgetsATroubleThatOutlastsTheFailures) {
   EXPECT_FALSE(lamp.state().past_trouble) << "when it ended was not seen";
 }
 
+// A component that alone publishes a topic, silent for a second.
+class SilentTopic : public testing::Test {
+ protected:
+  SilentTopic()
+      : rules_(
+            *check(Source("x.rules",
+                          "COMPONENT c NODE /c\nRULE Gone\nPOLICIES ERROR\n"
+                          "TRIGGER age(/t) > 1h\nSTRATEGY again 90 10\nADAPTATION c restart 5\n"))
+                 .rules) {
+    knowledge_.components[kComponent].alive = true;
+    knowledge_.components[kComponent].lifecycle = Lifecycle::kActive;
+    knowledge_.graph.node_appeared("/c");
+    knowledge_.graph.endpoint_appeared("/c", EndpointKind::kPublisher, "/t");
+    knowledge_.discovered.note(kComponent, Time{});
+    rhythm_.last = kBegan;
+    rhythm_.interval = rhythm_.gap = 100ms;
+    rhythm_.flowed = 100s;
+    look(kBegan + 1s);
+  }
+
+  // A message comes; with `silence` it ends one.
+  void receive(Time at, std::optional<SignalStore::Rhythm::Silence> silence) {
+    rhythm_.last = at;
+    rhythm_.silence = silence;
+    look(at);
+  }
+  const std::optional<PastTrouble>& past() const {
+    return knowledge_.components[kComponent].past_trouble;
+  }
+
+  static constexpr Time kBegan{100s};
+
+ private:
+  static constexpr ComponentId kComponent{0u};
+
+  void look(Time now) {
+    knowledge_.now = now;
+    knowledge_.signals.set_rhythm(TopicId(0u), rhythm_);
+    watch_.look(now, true);
+  }
+
+  RuleSet rules_;
+  Knowledge knowledge_{rules_};
+  TroubleWatch watch_{knowledge_, knowledge_.components};
+  SignalStore::Rhythm rhythm_;
+};
+
+TEST_F(SilentTopic, ASilenceThatIsOverIsAPastTrouble) {
+  const Time over = kBegan + 2s;
+  receive(over, {{kBegan, over, 100ms}});
+  ASSERT_TRUE(past());
+  EXPECT_EQ(past()->since, kBegan);
+  EXPECT_EQ(past()->over, over);
+  receive(over + 100ms, {{kBegan, over, 100ms}});
+  receive(over + 200ms, {{over, over + 200ms, 100ms}});
+  EXPECT_TRUE(past());
+}
+
+TEST_F(SilentTopic, ASlowMessageEndsNoTrouble) {
+  receive(kBegan + 2s, std::nullopt);
+  EXPECT_FALSE(past());
+}
+
+TEST_F(SilentTopic, ASilenceThatTurnsOutToBeASlowTopicIsForgotten) {
+  const Time over = kBegan + 2s;
+  receive(over, {{kBegan, over, 100ms}});
+  receive(over + 2s, std::nullopt);
+  EXPECT_FALSE(past());
+}
+
 }  // namespace
 }  // namespace culprit

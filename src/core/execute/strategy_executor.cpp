@@ -531,8 +531,7 @@ void StrategyExecutor::owe_restart(const Run& run, Time now) {
   const auto& adaptations = knowledge_.rules[run.strategy].adaptations;
   if (run.is_undoing || run.adaptation >= adaptations.size()) return;
   const Adaptation& adaptation = adaptations[run.adaptation];
-  const bool has_changed =
-      run.goal > 0 || (run.pursuit && run.pursuit->has_changed_anything());
+  const bool has_changed = run.goal > 0 || (run.pursuit && run.pursuit->has_changed_anything());
   if (adaptation.type == AdaptationType::kRestart && !run.goals.empty() && has_changed)
     owe({adaptation.component, execute::LifecycleGoal{Lifecycle::kActive, {}}}, now);
 }

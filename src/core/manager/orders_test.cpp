@@ -67,6 +67,24 @@ TEST(Orders, PauseStopsAtOnceWhatIsUnderWayAndResumeGoesOn) {
   EXPECT_TRUE(r.works("camera")) << transcript(r);
 }
 
+// The diagnosis does not stop with the pause.
+TEST(Orders, APauseHidesNoEvidence) {
+  TestRobot r = robot();
+  r.order(order(Pause{}));
+  r["camera"].fault = "restart";
+  r.run_for(5s);
+  const auto held = std::ranges::find_if(r.events, [](const Event& event) {
+    return std::holds_alternative<ActionHeldBack>(event.what);
+  });
+  ASSERT_NE(held, r.events.end()) << transcript(r);
+  const auto& told = std::get<ActionHeldBack>(held->what);
+  EXPECT_EQ(told.restraint, Restraint::kPaused);
+  EXPECT_FALSE(told.candidates.empty());
+  ASSERT_FALSE(told.suspects.empty());
+  EXPECT_EQ(told.suspects[0].component, r.id("camera"));
+  EXPECT_FALSE(told.suspects[0].evidence.empty());
+}
+
 // The restart has deactivated the camera, and the pause keeps it from being activated again. The next culprit knows
 // that no person deactivated it.
 TEST(Orders, WhatAPausedRestartLeftInactiveIsOwedByTheNextCulprit) {
