@@ -145,6 +145,7 @@ endif()
 if(CULPRIT_TESTS)
   add_custom_target(offline_tests) # those of culprit itself that start no processes of a robot
   add_custom_target(soak_tests) # those of them that only `make soak` runs under the address sanitizer
+  add_custom_target(live_tests) # those that start the processes of a robot
   add_custom_target(unsanitized_tests) # all that the address sanitizer does not look at in `make test`
   add_custom_target(thread_tests) # those that the thread sanitizer looks at in `make test`
   add_library(culprit_test_main OBJECT ${CMAKE_CURRENT_LIST_DIR}/test_main.cpp)
@@ -238,7 +239,6 @@ function(culprit_library path)
   set(with ${folder} ${ARG_TEST_USES})
   if(testing)
     add_library(${folder}_testing STATIC EXCLUDE_FROM_ALL ${testing})
-    set_target_properties(${folder}_testing PROPERTIES UNITY_BUILD OFF)
     culprit_reuse_precompiled(${folder}_testing test)
     target_link_libraries(${folder}_testing PUBLIC ${with} ${ARG_TEST_PACKAGES} GTest::gtest GTest::gmock rapidcheck
                                             PRIVATE culprit_test_options)
@@ -377,7 +377,7 @@ function(culprit_test name)
   endif()
   set(kinds offline sanitized)
   if(ARG_LIVE)
-    set(kinds unsanitized)
+    set(kinds live unsanitized)
   elseif("soak" IN_LIST ARG_LABELS)
     set(kinds soak unsanitized)
   endif()

@@ -106,8 +106,6 @@ class ManagerLease {
   // The orders in the latest beat of another manager of this robot; empty: it sent none. Nothing:
   // no such beat arrived.
   const std::optional<std::string>& told_orders() const { return told_orders_; }
-  // Whether it has proven that it knows the key, and is there.
-  bool is_friend(const GuidPrefix& participant) const { return lives_.contains(participant); }
   // The highest term that was proven.
   std::int64_t highest_term() const { return highest_term_; }
 

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <csignal>
 #include <poll.h>
-#include <sys/eventfd.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include "owners/bounded_log.h"
 #include "owners/launch_note.h"
@@ -39,8 +37,7 @@ Supervisor::Supervisor(const RuleSet& rules, Options options, Inbox& inbox)
                 std::move(options.robot),
                 options.lifetime,
                 std::move(options.environments)},
-      launchers_(rules, programs_.log_folder, inbox),
-      wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+      launchers_(rules, programs_.log_folder, inbox) {
   for (std::size_t c = 0; c < rules_.components.size(); ++c) take_over(ComponentId(c));
   {
     const MutexLock lock(mutex_);
@@ -561,10 +558,7 @@ Time Supervisor::next_deadline() const {
   return next;
 }
 
-void Supervisor::wake() {
-  const std::uint64_t one = 1;
-  [[maybe_unused]] const auto written = write(wake_.get(), &one, sizeof one);
-}
+void Supervisor::wake() { wake_file_.wake(); }
 
 void Supervisor::run() {
   MutexLock lock(mutex_);
@@ -572,7 +566,7 @@ void Supervisor::run() {
   Time next_look_at_logs = next_look;
   std::vector<std::filesystem::path> logs;
   while (!is_ending_) {
-    std::vector<pollfd> watched{{wake_.get(), POLLIN, 0}};
+    std::vector<pollfd> watched{{wake_file_.descriptor(), POLLIN, 0}};
     for (const Member& member : members_) {
       watched.push_back({member.process.descriptor(), POLLIN, 0});
       if (member.launch) watched.push_back({member.launch->descriptor(), POLLIN, 0});
@@ -595,8 +589,7 @@ void Supervisor::run() {
             ? -1
             : static_cast<int>(std::chrono::ceil<std::chrono::milliseconds>(wait).count());
     poll(watched.data(), watched.size(), milliseconds);
-    std::uint64_t count = 0;
-    [[maybe_unused]] const auto taken = read(wake_.get(), &count, sizeof count);
+    wake_file_.clear();
     lock.lock();
     const Time now = live_now();
     look(now);

@@ -56,6 +56,7 @@
 #include <vector>
 
 #include "base/mutex.h"
+#include "base/wake_file.h"
 #include "language/rule_set.h"
 #include "owners/component_programs.h"
 #include "owners/launchers.h"
@@ -268,7 +269,7 @@ class Supervisor {
       CULPRIT_GUARDED_BY(mutex_);  // the last process that ended, and which member it was
   SharedMemoryPorts ports_ CULPRIT_GUARDED_BY(mutex_);
   bool is_ending_ CULPRIT_GUARDED_BY(mutex_) = false;
-  FileDescriptor wake_;
+  WakeFile wake_file_;
   std::thread thread_;
 };
 

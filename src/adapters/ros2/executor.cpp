@@ -6,7 +6,6 @@
 #include <cstring>
 #include <poll.h>
 #include <string>
-#include <sys/eventfd.h>
 #include <sys/signalfd.h>
 #include <unistd.h>
 
@@ -22,11 +21,8 @@ timespec to_timespec(std::chrono::nanoseconds d) {
 
 }  // namespace
 
-Executor::Executor() : wake_fd_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
-
 Executor::~Executor() {
   CULPRIT_ASSERT(ready_.empty() && timers_.empty() && running_ == nullptr);
-  close(wake_fd_);
   if (signal_fd_ >= 0) close(signal_fd_);
 }
 
@@ -64,8 +60,7 @@ void Executor::stop() {
 void Executor::wake() {
   if (!sleeping_) return;
   sleeping_ = false;
-  const std::uint64_t one = 1;
-  [[maybe_unused]] const auto written = write(wake_fd_, &one, sizeof one);
+  wake_file_.wake();
 }
 
 void Executor::collect_due() {
@@ -107,12 +102,10 @@ void Executor::sleep(MutexLock& lock) {
         to_timespec(std::max(timers_.begin()->first.first - Clock::now(), Clock::duration::zero()));
   }
   lock.unlock();
-  std::array<pollfd, 2> fds = {pollfd{wake_fd_, POLLIN, 0}, pollfd{signal_fd_, POLLIN, 0}};
+  std::array<pollfd, 2> fds = {pollfd{wake_file_.descriptor(), POLLIN, 0},
+                               pollfd{signal_fd_, POLLIN, 0}};
   ppoll(fds.data(), fds.size(), has_timeout ? &timeout : nullptr, nullptr);  // ignores an fd of -1
-  if ((fds[0].revents & POLLIN) != 0) {
-    std::uint64_t count = 0;
-    [[maybe_unused]] const auto drained = read(wake_fd_, &count, sizeof count);
-  }
+  if ((fds[0].revents & POLLIN) != 0) wake_file_.clear();
   const bool has_signal = take_signal();
   lock.lock();
   sleeping_ = false;

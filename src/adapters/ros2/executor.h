@@ -20,6 +20,7 @@
 
 #include "base/expected.h"
 #include "base/mutex.h"
+#include "base/wake_file.h"
 
 namespace culprit::ros2 {
 
@@ -30,7 +31,7 @@ class Executor {
   using Clock = std::chrono::steady_clock;
   using Task = std::function<void()>;
 
-  Executor();
+  Executor() = default;
   ~Executor();  // @pre not running, and no TaskGroup left
   Executor(const Executor&) = delete;
   Executor& operator=(const Executor&) = delete;
@@ -61,7 +62,7 @@ class Executor {
   void sleep(MutexLock& lock) CULPRIT_REQUIRES(mutex_) CULPRIT_NOT_ANALYZED;
   bool take_signal() const;
 
-  int wake_fd_;
+  WakeFile wake_file_;
   int signal_fd_ = -1;
 
   Mutex mutex_;

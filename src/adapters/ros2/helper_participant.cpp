@@ -11,18 +11,18 @@
 #include <poll.h>
 #include <random>
 #include <set>
-#include <sys/eventfd.h>
 #include <sys/socket.h>
 #include <thread>
-#include <unistd.h>
 #include <utility>
 #include <variant>
 
 #include "base/live_clock.h"
 #include "base/mutex.h"
+#include "base/wake_file.h"
 #include "culprit_link/protocol.h"
-#include "ros2/gate.h"
+#include "ros2/helper_endpoint.h"
 #include "ros2/helper_graph.h"
+#include "ros2/helper_outbox.h"
 #include "ros2/helper_process.h"
 #include "ros2/names.h"
 #include "ros2/seldom_times.h"
@@ -42,50 +42,8 @@ constexpr Duration kNamesCome = std::chrono::seconds(3);  // after a participant
 constexpr Duration kAsks = std::chrono::seconds(1);       // whether it is at work
 constexpr Duration kHangs = std::chrono::seconds(5);      // one that sends nothing for so long
 constexpr auto kLooks = std::chrono::milliseconds(100);
-// The reader of a helper that takes samples in turn.
-constexpr std::uint32_t kLeastDepth = 16;
-
-// The meaning of a DDS topic here.
-enum class Purpose : std::uint8_t {
-  kTopic,
-  kRequest,
-  kReply,
-  kOwn,   // of the package `culprit`: to the helper and back
-  kInfos  // ros_discovery_info
-};
-
-struct Meaning {
-  Purpose purpose = Purpose::kTopic;
-  std::string name;  // of the topic or service
-  std::string type;  // "package/srv/Type"
-};
-
-std::optional<Meaning> meaning_of(const std::string& topic, const std::string& type) {
-  if (topic == kDiscoveryInfoTopic) return Meaning{Purpose::kInfos, topic, type};
-  if (type.starts_with("culprit::")) return Meaning{Purpose::kOwn, topic, type};
-  const auto channel = demangle_topic(topic);
-  if (!channel) return std::nullopt;
-  const auto name = demangle_type(channel->channel, type);
-  if (!name) return std::nullopt;
-  const Purpose purpose = channel->channel == Channel::kTopic     ? Purpose::kTopic
-                          : channel->channel == Channel::kRequest ? Purpose::kRequest
-                                                                  : Purpose::kReply;
-  return Meaning{purpose, channel->name, *name};
-}
-
-std::int64_t to_nanoseconds(Duration duration) {
-  return duration == kInfinite ? 0 : std::int64_t{duration.count()};
-}
-
-link::Quality to_quality(const Qos& qos) {
-  link::Quality quality;
-  quality.is_reliable = qos.reliability == Reliability::kReliable;
-  quality.is_transient_local = qos.durability == Durability::kTransientLocal;
-  quality.keeps_all = qos.history == History::kKeepAll;
-  quality.depth = std::max(qos.depth, kLeastDepth);
-  quality.lifespan = to_nanoseconds(qos.lifespan);
-  return quality;
-}
+using Ours = HelperEndpoint;  // one of our readers or writers
+using Purpose = HelperEndpoint::Purpose;
 
 SystemTime to_system_time(std::int64_t nanoseconds) {
   return SystemTime(std::chrono::nanoseconds(nanoseconds));
@@ -108,40 +66,18 @@ Guid own_guid(const GuidPrefix& prefix, std::uint32_t id, std::uint8_t kind) {
   return guid;
 }
 
-// One of our readers or writers.
-struct Ours {
-  std::uint32_t id = 0;
-  Guid guid;
-  EndpointRole role = EndpointRole::kReader;
-  Meaning meaning;
-  std::string topic;                // as DDS has it
-  std::optional<link::Frame> wish;  // by which the helper makes it; nothing: it needs none
-  PayloadUse use = PayloadUse::kWhole;
-  SampleCallback on_sample;  // of a reader
-  MatchCallback on_match;    // may be empty
-  Gate gate;
-
-  // Only the thread that talks to the helper uses these.
-  std::set<Guid> matched;
-  Guid newest{};                         // of those, that which matched last
-  Time came_last = kLongAgo;             // a sample
-  std::map<Guid, std::int64_t> counted;  // samples of writers that the middleware does not count
-};
-
 class Helped final : public Participant::Impl {
  public:
   Helped(HelperOptions options, DiscoveryCallback on_discovery)
       : options_(std::move(options)),
         on_discovery_(std::move(on_discovery)),
         prefix_(random_prefix()),
-        guid_(own_guid(prefix_, 1, 0xc1)),
-        wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
+        guid_(own_guid(prefix_, 1, 0xc1)) {}
 
   ~Helped() override {
     ends_ = true;
-    wake();
+    wake_.wake();
     if (thread_.joinable()) thread_.join();
-    close(wake_);
   }
 
   Expected<void> open() {
@@ -186,9 +122,9 @@ class Helped final : public Participant::Impl {
     {
       const MutexLock lock(mutex_);
       ours_.erase(ours.id);
-      if (ours.wish) queue(link::Remove{ours.id});
+      if (ours.wish) outbox_.queue(link::Remove{ours.id});
     }
-    wake();
+    wake_.wake();
   }
   std::optional<std::int64_t> write(const Ours& ours, ByteView payload,
                                     const SampleIdentity& related);
@@ -230,10 +166,10 @@ class Helped final : public Participant::Impl {
     while (!ends_) {
       std::array<pollfd, 2> files{};
       files[0] = {process.socket(), static_cast<short>(POLLIN | (has_waiting() ? POLLOUT : 0)), 0};
-      files[1] = {wake_, POLLIN, 0};
+      files[1] = {wake_.descriptor(), POLLIN, 0};
       constexpr int kLookMs = std::chrono::milliseconds(kLooks).count();
       (void)poll(files.data(), files.size(), kLookMs);
-      clear_wake();
+      wake_.clear();
       if (const auto why = receive(process); !why.empty()) return why;
       if (is_joined_ && last_graph_ && rematches_.exchange(false)) match();
       if (is_joined_) deliver_infos();
@@ -281,15 +217,12 @@ class Helped final : public Participant::Impl {
   void ask_whether_it_works(Time now) {
     asked_last_ = now;
     const MutexLock lock(mutex_);
-    queue(link::Echo{});
+    outbox_.queue(link::Echo{});
   }
 
   void begin_talk() {
     const MutexLock lock(mutex_);
-    waiting_ = link::encode(link::Join{link::kVersion, options_.name_space, options_.name});
-    sent_ = 0;
-    is_up_ = false;
-    is_stuck_ = false;
+    outbox_.greet(link::Join{link::kVersion, options_.name_space, options_.name});
   }
 
   // Everything that is there. Not empty: it ended, or means nothing.
@@ -328,26 +261,16 @@ class Helped final : public Participant::Impl {
 
   bool send_waiting(int socket) {
     const MutexLock lock(mutex_);
-    while (sent_ < waiting_.size()) {
-      const ssize_t count =
-          send(socket, waiting_.data() + sent_, waiting_.size() - sent_, MSG_NOSIGNAL);
-      if (count < 0 && errno == EINTR) continue;
-      if (count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return true;
-      if (count <= 0) return false;
-      sent_ += static_cast<std::size_t>(count);
-    }
-    waiting_.clear();
-    sent_ = 0;
-    return true;
+    return outbox_.send(socket);
   }
 
   bool has_waiting() {
     const MutexLock lock(mutex_);
-    return !waiting_.empty();
+    return outbox_.has_waiting();
   }
   bool is_stuck() {
     const MutexLock lock(mutex_);
-    return is_stuck_;
+    return outbox_.is_stuck();
   }
 
   // ---- what the helper says; each gives why the talk is over
@@ -367,10 +290,10 @@ class Helped final : public Participant::Impl {
     joined_ = live_now();
     last_graph_.reset();
     const MutexLock lock(mutex_);
+    outbox_.begin();
     for (const auto& [id, ours] : ours_) {
-      if (ours->wish) append(*ours->wish);
+      if (ours->wish) outbox_.queue(*ours->wish);
     }
-    is_up_ = true;
     has_joined_ = true;
     changed_.notify_all();
     return "";
@@ -383,7 +306,7 @@ class Helped final : public Participant::Impl {
     awaited_.erase(sample.id);
     const Guid writer = graph_.writer_of(ours->topic, sample.writer);
     std::int64_t number = sample.number;
-    if (number <= 0) number = count(*ours, writer);  // a forged one may be beyond 2^63
+    if (number <= 0) number = ours->count(writer);  // a forged one may be beyond 2^63
     const ByteView payload(sample.payload);
     ours->gate.pass([&] {
       ours->on_sample({.payload = payload.first(given_of(ours->use, payload.size())),
@@ -396,33 +319,22 @@ class Helped final : public Participant::Impl {
     return "";
   }
 
-  static std::int64_t count(Ours& ours, const Guid& writer) {
-    constexpr std::size_t kMostWriters = 1000;  // the network decides how many there are
-    if (ours.counted.size() >= kMostWriters) ours.counted.clear();
-    return ++ours.counted[writer];
-  }
-
   // The middleware does not say who answered: a server of the service.
   std::string take(const link::Reply& reply) {
     const OursPtr client = find(reply.id);
     if (!client || client->meaning.purpose != Purpose::kRequest) return "";
     for (const OursPtr& ours : readers_of(Purpose::kReply, client->meaning.name)) {
       const std::set<Guid>& servers = graph_.matching(ours->topic, EndpointRole::kReader);
-      const Guid server = servers.empty() ? Guid{} : newest_of(*ours, servers);
-      deliver(*ours, reply.payload, {server, reply.number}, {client->guid, reply.number});
+      const Guid server = servers.empty() ? Guid{} : ours->newest_of(servers);
+      ours->deliver(reply.payload, {server, reply.number}, {client->guid, reply.number});
     }
     return "";
-  }
-
-  // Returns the server that matched last.
-  static Guid newest_of(const Ours& ours, const std::set<Guid>& servers) {
-    return servers.contains(ours.newest) ? ours.newest : *servers.begin();
   }
 
   std::string take(const link::Asked& asked) {
     const OursPtr server = find(asked.id);
     if (server && server->meaning.purpose == Purpose::kRequest)
-      deliver(*server, asked.payload, {own_guid(prefix_, 0, 0x03), asked.number}, {});
+      server->deliver(asked.payload, {own_guid(prefix_, 0, 0x03), asked.number}, {});
     return "";
   }
 
@@ -435,7 +347,7 @@ class Helped final : public Participant::Impl {
     if (!writer || writer->meaning.purpose != Purpose::kOwn) return "";
     const ByteView payload = ByteView(echo.payload).subspan(sizeof id);
     for (const OursPtr& ours : readers_of(Purpose::kOwn, writer->meaning.name))
-      deliver(*ours, payload, {writer->guid, count(*ours, writer->guid)}, {});
+      ours->deliver(payload, {writer->guid, ours->count(writer->guid)}, {});
     return "";
   }
 
@@ -465,19 +377,6 @@ class Helped final : public Participant::Impl {
     return "it sent a frame that only culprit sends";
   }
 
-  void deliver(Ours& ours, ByteView payload, const SampleIdentity& identity,
-               const SampleIdentity& related) {
-    ours.gate.pass([&] {
-      const SystemTime now = std::chrono::system_clock::now();
-      ours.on_sample({.payload = payload,
-                      .size = payload.size(),
-                      .sent = now,
-                      .received = now,
-                      .identity = identity,
-                      .related = related});
-    });
-  }
-
   // ---- the graph
 
   void take_graph() {
@@ -503,7 +402,7 @@ class Helped final : public Participant::Impl {
   void deliver_info(const DiscoveryInfo& info) {
     const Bytes payload = encode_discovery_info(info, GidSize::kHumbleAndOlder);
     for (const OursPtr& ours : readers_of(Purpose::kInfos, std::string(kDiscoveryInfoTopic)))
-      deliver(*ours, payload, {info.participant, count(*ours, info.participant)}, {});
+      ours->deliver(payload, {info.participant, ours->count(info.participant)}, {});
   }
 
   // To a reader that came later.
@@ -516,56 +415,25 @@ class Helped final : public Participant::Impl {
     for (const OursPtr& ours : all_ours()) {
       if (ours->meaning.purpose == Purpose::kOwn || ours->meaning.purpose == Purpose::kInfos)
         continue;
-      match(*ours, graph_.matching(ours->topic, ours->role));
+      ours->match(graph_.matching(ours->topic, ours->role));
     }
-  }
-
-  static void match(Ours& ours, const std::set<Guid>& now) {
-    if (ours.matched == now) return;
-    const std::set<Guid> before = std::exchange(ours.matched, now);
-    ours.gate.pass([&] {
-      for (const Guid& each : before) {
-        if (!now.contains(each) && ours.on_match) ours.on_match(each, Match::kLost);
-      }
-      for (const Guid& each : now) {
-        if (before.contains(each)) continue;
-        ours.newest = each;
-        if (ours.on_match) ours.on_match(each, Match::kMade);
-      }
-    });
   }
 
   // Its successor's endpoints are new ones, which servers have to discover.
   void lose_all() {
     {
       const MutexLock lock(mutex_);
-      is_up_ = false;
-      waiting_.clear();
-      sent_ = 0;
+      outbox_.close();
     }
     is_settled_ = false;
     const Time now = live_now();
     for (const OursPtr& ours : all_ours()) {
       if (now < later(ours->came_last, kFlows)) awaited_.insert(ours->id);
-      match(*ours, {});
+      ours->match({});
     }
   }
 
   // ---- small parts
-
-  void append(const link::Frame& frame) CULPRIT_REQUIRES(mutex_) {
-    const link::Bytes bytes = link::encode(frame);
-    if (bytes.size() > link::kLargestFrame + link::kLengthSize) return;
-    waiting_.insert(waiting_.end(), bytes.begin(), bytes.end());
-    is_stuck_ = is_stuck_ || waiting_.size() - sent_ > link::kLongestQueue;
-  }
-
-  // False: there is no helper now.
-  bool queue(const link::Frame& frame) CULPRIT_REQUIRES(mutex_) {
-    if (!is_up_ || is_stuck_) return false;
-    append(frame);
-    return true;
-  }
 
   OursPtr find(std::uint32_t id) {
     const MutexLock lock(mutex_);
@@ -584,29 +452,18 @@ class Helped final : public Participant::Impl {
     const MutexLock lock(mutex_);
     std::vector<OursPtr> found;
     for (const auto& [id, ours] : ours_) {
-      if (ours->role == EndpointRole::kReader && ours->meaning.purpose == purpose &&
-          ours->meaning.name == name)
-        found.push_back(ours);
+      if (ours->reads(purpose, name)) found.push_back(ours);
     }
     return found;
-  }
-
-  void wake() const {
-    constexpr std::uint64_t kOne = 1;
-    (void)!::write(wake_, &kOne, sizeof kOne);
-  }
-  void clear_wake() const {
-    std::uint64_t count = 0;
-    (void)!::read(wake_, &count, sizeof count);
   }
 
   void sleep(Duration pause) {
     const Time until = later(live_now(), pause);
     while (!ends_ && live_now() < until) {
-      pollfd file{wake_, POLLIN, 0};
+      pollfd file{wake_.descriptor(), POLLIN, 0};
       const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - live_now());
       (void)poll(&file, 1, static_cast<int>(std::max<std::int64_t>(left.count(), 1)));
-      clear_wake();
+      wake_.clear();
     }
   }
 
@@ -631,7 +488,7 @@ class Helped final : public Participant::Impl {
   const DiscoveryCallback on_discovery_;
   const GuidPrefix prefix_;
   const Guid guid_;
-  const int wake_;
+  const WakeFile wake_;
   Origins origins_;
   std::atomic<bool> ends_ = false;
   std::atomic<bool> infos_are_due_ = false;
@@ -657,10 +514,7 @@ class Helped final : public Participant::Impl {
   ConditionVariable changed_;
   bool has_joined_ CULPRIT_GUARDED_BY(mutex_) = false;  // once
   std::optional<std::string> failure_ CULPRIT_GUARDED_BY(mutex_);
-  bool is_up_ CULPRIT_GUARDED_BY(mutex_) = false;
-  bool is_stuck_ CULPRIT_GUARDED_BY(mutex_) = false;
-  link::Bytes waiting_ CULPRIT_GUARDED_BY(mutex_);
-  std::size_t sent_ CULPRIT_GUARDED_BY(mutex_) = 0;
+  HelperOutbox outbox_ CULPRIT_GUARDED_BY(mutex_);
   std::map<std::uint32_t, OursPtr> ours_ CULPRIT_GUARDED_BY(mutex_);
   std::uint32_t last_id_ CULPRIT_GUARDED_BY(mutex_) = 0;
   std::int64_t last_number_ CULPRIT_GUARDED_BY(mutex_) = 0;
@@ -707,10 +561,9 @@ class HelpedWriter final : public Writer::Impl {
 Expected<std::shared_ptr<Ours>> Helped::add(EndpointRole role, const std::string& topic,
                                             const std::string& type, const Qos& qos, PayloadUse use,
                                             SampleCallback on_sample, MatchCallback on_match) {
-  auto meaning = meaning_of(topic, type);
+  auto meaning = Ours::meaning_of(topic, type);
   if (!meaning) return Error{printable(topic) + " is no topic of ROS 2"};
   auto ours = std::make_shared<Ours>();
-  const bool reads = role == EndpointRole::kReader;
   ours->role = role;
   ours->meaning = std::move(*meaning);
   ours->topic = topic;
@@ -720,27 +573,14 @@ Expected<std::shared_ptr<Ours>> Helped::add(EndpointRole role, const std::string
   {
     const MutexLock lock(mutex_);
     ours->id = ++last_id_;
-    ours->guid = own_guid(prefix_, ours->id, reads ? 0x04 : 0x03);
-    const std::string& name = ours->meaning.name;
-    const std::string& its_type = ours->meaning.type;
-    const link::Quality quality = to_quality(qos);
-    const std::uint32_t most =
-        is_whole(use) ? link::kWhole : static_cast<std::uint32_t>(given_of(use, kBeginningSize));
-    if (ours->meaning.purpose == Purpose::kTopic && reads)
-      ours->wish = link::Subscribe{ours->id, name, its_type, quality, most};
-    if (ours->meaning.purpose == Purpose::kTopic && !reads)
-      ours->wish = link::Advertise{ours->id, name, its_type, quality};
-    // The other half of each, the reply, belongs to the request's.
-    if (ours->meaning.purpose == Purpose::kRequest && !reads)
-      ours->wish = link::Use{ours->id, name, its_type, quality};
-    if (ours->meaning.purpose == Purpose::kRequest && reads)
-      ours->wish = link::Offer{ours->id, name, its_type, quality};
+    ours->guid = own_guid(prefix_, ours->id, ours->reads() ? 0x04 : 0x03);
+    ours->wish = ours->asks_for(qos);
     ours_.emplace(ours->id, ours);
-    if (ours->wish) queue(*ours->wish);
-    if (ours->meaning.purpose == Purpose::kInfos && reads) infos_are_due_ = true;
+    if (ours->wish) outbox_.queue(*ours->wish);
+    if (ours->reads() && ours->meaning.purpose == Purpose::kInfos) infos_are_due_ = true;
     rematches_ = true;
   }
-  wake();
+  wake_.wake();
   return ours;
 }
 
@@ -768,30 +608,29 @@ std::optional<std::int64_t> Helped::write(const Ours& ours, ByteView payload,
     link::Bytes bytes(payload.begin(), payload.end());
     switch (ours.meaning.purpose) {
       case Purpose::kTopic:
-        if (!queue(link::Publish{ours.id, std::move(bytes)})) return std::nullopt;
+        if (!outbox_.queue(link::Publish{ours.id, std::move(bytes)})) return std::nullopt;
         break;
       case Purpose::kRequest:
-        if (!queue(link::Request{ours.id, number, std::move(bytes)})) return std::nullopt;
+        if (!outbox_.queue(link::Request{ours.id, number, std::move(bytes)})) return std::nullopt;
         break;
       case Purpose::kReply:
         for (const auto& [id, each] : ours_) {
-          if (each->role == EndpointRole::kReader && each->meaning.purpose == Purpose::kRequest &&
-              each->meaning.name == ours.meaning.name)
-            queue(link::Respond{id, related.sequence, bytes});
+          if (each->reads(Purpose::kRequest, ours.meaning.name))
+            outbox_.queue(link::Respond{id, related.sequence, bytes});
         }
         break;
       case Purpose::kOwn: {
         link::Bytes echo(sizeof ours.id);
         std::memcpy(echo.data(), &ours.id, sizeof ours.id);
         echo.insert(echo.end(), payload.begin(), payload.end());
-        if (!queue(link::Echo{std::move(echo)})) return std::nullopt;
+        if (!outbox_.queue(link::Echo{std::move(echo)})) return std::nullopt;
         break;
       }
       case Purpose::kInfos:  // the helper's middleware announces its node
         break;
     }
   }
-  wake();
+  wake_.wake();
   return number;
 }
 

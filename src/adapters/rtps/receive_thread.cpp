@@ -7,7 +7,6 @@
 #include <deque>
 #include <string>
 #include <sys/epoll.h>
-#include <sys/eventfd.h>
 #include <sys/socket.h>
 #include <unistd.h>
 #include <utility>
@@ -193,20 +192,17 @@ class ReceiveThread::Batch {
   std::size_t count_ = 0;
 };
 
-ReceiveThread::ReceiveThread()
-    : wait_fd_(epoll_create1(EPOLL_CLOEXEC)), wake_fd_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+ReceiveThread::ReceiveThread() : wait_fd_(epoll_create1(EPOLL_CLOEXEC)) {
   epoll_event event{};
   event.events = kReadable;
   event.data.u64 = kToEnd;
-  epoll_ctl(wait_fd_, EPOLL_CTL_ADD, wake_fd_, &event);
+  epoll_ctl(wait_fd_, EPOLL_CTL_ADD, end_.descriptor(), &event);
 }
 
 ReceiveThread::~ReceiveThread() {
-  const std::uint64_t one = 1;
-  [[maybe_unused]] const auto written = write(wake_fd_, &one, sizeof one);
+  end_.wake();
   if (thread_.joinable()) thread_.join();
   ::close(wait_fd_);
-  ::close(wake_fd_);
 }
 
 Expected<void> ReceiveThread::open(const Place& place, OnDatagram on_datagram) {

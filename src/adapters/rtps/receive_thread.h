@@ -35,6 +35,7 @@
 
 #include "base/expected.h"
 #include "base/mutex.h"
+#include "base/wake_file.h"
 #include "rtps/datagram_sources.h"
 #include "rtps/haste.h"
 #include "rtps/system_time.h"
@@ -120,7 +121,7 @@ class ReceiveThread {
   void calm(Clock::time_point now) CULPRIT_REQUIRES(mutex_);
 
   const int wait_fd_;  // of epoll
-  const int wake_fd_;  // to end
+  const WakeFile end_;
 
   std::atomic<std::uint64_t> dropped_ = 0;
   mutable Mutex mutex_;

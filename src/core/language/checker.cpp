@@ -110,19 +110,9 @@ class Checker {
              "it divides by zero or overflows");
       return std::nullopt;
     }
-    switch (typed->type) {
-      case Type::kBool:
-        return slot.b;
-      case Type::kInt:
-        return slot.i;
-      case Type::kDouble:
-        return slot.d;
-      case Type::kString:
-        return std::string(slot.s);
-      case Type::kDuration:
-        return Duration(slot.i);
-    }
-    return std::nullopt;
+    if (typed->type == Type::kDuration) return Duration(slot.i);
+    return std::visit([](const auto& value) -> syntax::Literal { return value; },
+                      to_value(slot, typed->type));
   }
 
   // A constant must not create signals by naming them.

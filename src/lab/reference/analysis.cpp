@@ -8,20 +8,10 @@ namespace culprit::study::reference {
 
 Analysis::Analysis(const RuleSet& rules, const ReferenceOptions& options)
     : rules_(rules),
-      slips_(options.slips),
-      impacts_(options.impacts),
       states_(rules.rules.size()),
       tried_(rules.strategies.size()),
       healths_(rules.components.size(), Criticality::kNonCritical),
-      sent_(rules.rules.size(), options.seed),
-      beliefs_(rules) {
-  // Exactly as the paper writes it: 100 % has no doubt to begin with.
-  for (std::size_t s = 0; s < rules.strategies.size(); ++s) {
-    const Strategy& strategy = rules.strategies[s];
-    const double successes = strategy.confidence * strategy.success.value;
-    beliefs_.set(StrategyId(s), {successes, strategy.confidence - successes});
-  }
-}
+      sent_(rules.rules.size(), options.seed) {}
 
 void Analysis::advance(Time now, std::span<const StrategyId> chosen, std::span<const Slot> signals,
                        std::vector<Event>& events) {
@@ -33,7 +23,7 @@ void Analysis::advance(Time now, std::span<const StrategyId> chosen, std::span<c
     tried_[strategy.index] = true;
     states_[rule.index].phase = Phase::kAdapted;
     states_[rule.index].last = strategy;
-    states_[rule.index].counter = -highest_impact(rules_[strategy], impacts_).count;
+    states_[rule.index].counter = -highest_impact(rules_[strategy]).count;
     sent_.erase(rule);
   }
   for (std::size_t r = 0; r < rules_.rules.size(); ++r) {
@@ -69,7 +59,6 @@ void Analysis::detect(RuleId id, Time now, std::vector<Event>& events) {
 void Analysis::fail(RuleId id, Time now, std::vector<Event>& events) {
   State& state = states_[id.index];
   events.push_back({now, StrategyFailed{*state.last, "the failure is still there"}});
-  if (!slips_.fixed_beliefs) beliefs_.did_not_help(*state.last);
   state.phase = Phase::kSent;
   sent_.insert(id);
   const auto& strategies = rules_[id].strategies;
@@ -80,7 +69,6 @@ void Analysis::fail(RuleId id, Time now, std::vector<Event>& events) {
 void Analysis::resolve(RuleId id, FailureResolved::How how, Time now, std::vector<Event>& events) {
   State& state = states_[id.index];
   const bool by_strategy = how == FailureResolved::How::kByStrategy;
-  if (by_strategy && !slips_.fixed_beliefs) beliefs_.helped(*state.last);
   events.push_back({now, FailureResolved{id, how, by_strategy ? state.last : std::nullopt,
                                          now - state.detected}});
   state.phase = Phase::kQuiet;
@@ -90,22 +78,6 @@ void Analysis::resolve(RuleId id, FailureResolved::How how, Time now, std::vecto
 
 void Analysis::set_health(RuleId id, Criticality health) {
   for (const ComponentId component : rules_[id].components) healths_[component.index] = health;
-}
-
-Criticality Analysis::health(ComponentId component) const {
-  if (slips_.overwritten_health) return healths_[component.index];
-  Criticality worst = Criticality::kNonCritical;
-  for (std::size_t r = 0; r < states_.size(); ++r) {
-    const auto& touched = rules_.rules[r].components;
-    if (states_[r].phase != Phase::kQuiet &&
-        std::binary_search(touched.begin(), touched.end(), component))
-      worst = std::max(worst, rules_.rules[r].policies.criticality);
-  }
-  return worst;
-}
-
-Probability Analysis::success(StrategyId strategy) const {
-  return slips_.fixed_beliefs ? rules_[strategy].success : beliefs_[strategy].mean();
 }
 
 }  // namespace culprit::study::reference

@@ -21,7 +21,6 @@
 #include <span>
 #include <vector>
 
-#include "knowledge/beliefs.h"
 #include "knowledge/event.h"
 #include "language/evaluate.h"
 #include "reference/options.h"
@@ -41,12 +40,9 @@ class Analysis {
   // The rules that wait for planning.
   std::span<const RuleId> sent() const { return sent_.in_order(); }
   bool is_tried(StrategyId strategy) const { return tried_[strategy.index]; }
-  Criticality health(ComponentId component) const;
-
-  // P of a strategy: the designer's, or what was learned.
-  Probability success(StrategyId strategy) const;
-  const Belief& belief(StrategyId strategy) const { return beliefs_[strategy]; }
-  void set_belief(StrategyId strategy, Belief belief) { beliefs_.set(strategy, belief); }
+  // One for each component: a later rule overwrites it, and any resolved rule that touches the
+  // component sets it to OK.
+  Criticality health(ComponentId component) const { return healths_[component.index]; }
 
  private:
   enum class Phase : std::uint8_t { kQuiet, kSent, kAdapted };
@@ -64,13 +60,10 @@ class Analysis {
   void set_health(RuleId id, Criticality health);
 
   const RuleSet& rules_;
-  Slips slips_;
-  ImpactTable impacts_;
   std::vector<State> states_;         // by rule
   std::vector<bool> tried_;           // by strategy
-  std::vector<Criticality> healths_;  // by component, as they are overwritten
+  std::vector<Criticality> healths_;  // by component
   SentRules sent_;
-  Beliefs beliefs_;
 };
 
 }  // namespace culprit::study::reference

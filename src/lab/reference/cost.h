@@ -3,9 +3,8 @@
 //     public code:  0.5 (1 - P) + 0.5 (i - 1) / N        paper (Eq. 1):  (1 - P) + i / i_max
 //
 // i is the sum of the impacts of the strategy's adaptations in the public code, and their maximum
-// in the paper; i_max is the highest i of the rule set. N was to be the impact of a redeploy, but a
-// misplaced "- 1" makes it that of a restart. Without S both are 1 - P (the public code writes it
-// in percent).
+// in the paper (plan/cost.h). N was to be the impact of a redeploy, but a misplaced "- 1" makes it
+// that of a restart. Without S both are 1 - P (the public code writes it in percent).
 #pragma once
 
 #include <vector>
@@ -24,10 +23,7 @@ class Costs {
 
  private:
   bool with_impact_;
-  bool weighted_;
   std::vector<Cycles> impacts_;  // by strategy
-  Cycles heaviest_{1};           // i_max
-  double scale_ = 1;             // N
 };
 
 }  // namespace culprit::study::reference

@@ -13,10 +13,7 @@ Value as_sent(const Value& value) {
 
 }  // namespace
 
-Execution::Execution(const RuleSet& rules, const ReferenceOptions& options)
-    : rules_(rules),
-      resends_parameters_(options.slips.resent_parameters),
-      branches_(rules.components.size()) {}
+Execution::Execution(const RuleSet& rules) : rules_(rules), branches_(rules.components.size()) {}
 
 const Adaptation& Execution::adaptation(const Order& order) const {
   return rules_[order.strategy].adaptations[order.adaptation];
@@ -134,7 +131,6 @@ void Execution::request(Branch& branch, ComponentId component, std::vector<Comma
         call(SetParameter{adaptation(order).subject, order.value});
       return;
     case Stage::kParameters:
-      if (!resends_parameters_) branch.parameters.clear();
       for (const Order& order : branch.orders)
         branch.parameters.push_back({adaptation(order).subject, order.value});
       for (const SetParameter& parameter : branch.parameters) call(parameter);

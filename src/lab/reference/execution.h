@@ -3,7 +3,7 @@
 // Adaptations wait at their component until the next round. A round runs all components side by
 // side. In each, it works through the waiting adaptations in this order: redeploy (the first one;
 // others are dropped), activate, deactivate and restart (the same), changes of communication (all),
-// parameters (all). A failure ends the component's part of the round. The next round begins in the
+// parameters (all, and once more all that were ever sent). A failure ends the component's part of the round. The next round begins in the
 // tick after the slowest component is through: a request that is never answered holds back
 // everything for good.
 //
@@ -18,7 +18,6 @@
 
 #include "knowledge/event.h"
 #include "language/evaluate.h"
-#include "reference/options.h"
 #include "robot/command.h"
 
 namespace culprit::study::reference {
@@ -30,7 +29,7 @@ class Execution {
   static constexpr Duration kNoTimeout = std::chrono::hours(24);
 
   // `rules` must outlive the execution.
-  Execution(const RuleSet& rules, const ReferenceOptions& options);
+  explicit Execution(const RuleSet& rules);
 
   // Has the strategy's adaptations wait at their components, with the values that they have now.
   void add(StrategyId strategy, std::span<const Slot> signals);
@@ -80,7 +79,6 @@ class Execution {
                  std::vector<Command>& commands);
 
   const RuleSet& rules_;
-  bool resends_parameters_;
   std::vector<Branch> branches_;  // by component
   bool is_round_open_ = false;
   std::uint64_t last_command_ = 0;

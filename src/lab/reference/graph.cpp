@@ -17,7 +17,7 @@ std::string channel(const std::string& node, EndpointKind kind, const std::strin
 }  // namespace
 
 Graph::Graph(const RuleSet& rules, const ReferenceOptions& options)
-    : graph_(rules), frozen_at_(options.slips.frozen_graph ? options.graph_frozen_at : kNever) {}
+    : graph_(rules), frozen_at_(options.graph_frozen_at) {}
 
 void Graph::take_in(const Observation& observation) {
   if (is_frozen_) return;

@@ -2,7 +2,7 @@
 //
 // As in the public code, a subscriber depends on the publishers of its topic in its own namespace
 // only (topics are compared with the namespace of the node in front of them). A server depends on
-// its clients.
+// its clients. After the snapshot the graph stays as it is.
 #pragma once
 
 #include "knowledge/dependency_graph.h"

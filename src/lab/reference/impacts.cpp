@@ -4,18 +4,15 @@
 
 namespace culprit::study::reference {
 
-Cycles impact(const Adaptation& adaptation, ImpactTable table) {
-  if (table == ImpactTable::kRuleFile) return adaptation.impact;
-  const bool stray = table == ImpactTable::kStray;
-  switch (adaptation.type) {
+Cycles impact_of(AdaptationType type) {
+  switch (type) {
     case AdaptationType::kActivate:
-      return {stray ? 5 : 10};
     case AdaptationType::kDeactivate:
-      return {stray ? 1 : 10};
+      return {10};
     case AdaptationType::kRestart:
-      return {stray ? 10 : 25};
+      return {25};
     case AdaptationType::kRedeploy:
-      return {stray ? 15 : 50};
+      return {50};
     case AdaptationType::kChangeCommunication:
       return {2};
     default:
@@ -23,17 +20,17 @@ Cycles impact(const Adaptation& adaptation, ImpactTable table) {
   }
 }
 
-Cycles sum_of_impacts(const Strategy& strategy, ImpactTable table) {
+Cycles sum_of_impacts(const Strategy& strategy) {
   Cycles sum;
   for (const Adaptation& adaptation : strategy.adaptations)
-    sum.count += impact(adaptation, table).count;
+    sum.count += impact_of(adaptation.type).count;
   return sum;
 }
 
-Cycles highest_impact(const Strategy& strategy, ImpactTable table) {
+Cycles highest_impact(const Strategy& strategy) {
   Cycles highest;
   for (const Adaptation& adaptation : strategy.adaptations)
-    highest = std::max(highest, impact(adaptation, table));
+    highest = std::max(highest, impact_of(adaptation.type));
   return highest;
 }
 

@@ -31,7 +31,7 @@ std::vector<Candidate> Planning::candidates(Criticality level, const Analysis& a
   for (const RuleId failure : analysis.sent()) {
     if (rules_[failure].policies.criticality != level) continue;
     for (const StrategyId id : rules_[failure].strategies)
-      all.push_back({id, cost_(id, analysis.success(id)), {}, {}, {}, {}});
+      all.push_back({id, cost_(id, rules_[id].success), {}, {}, {}, {}});
   }
   std::stable_sort(all.begin(), all.end(),
                    [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });

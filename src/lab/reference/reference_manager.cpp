@@ -19,7 +19,7 @@ ReferenceManager::ReferenceManager(const RuleSet& rules, const ReferenceOptions&
       blackboard_(rules),
       graph_(rules, options),
       analysis_(rules, options),
-      execution_(rules, options),
+      execution_(rules),
       planning_(rules, options) {
   for (std::size_t s = 0; s < rules.signals.size(); ++s) {
     const auto value = options.initial.find(rules.signals[s].name);

@@ -12,6 +12,8 @@
 // The blackboard holds the signals of the rules, each with the value read last, for ever. Rates,
 // ages and states are not there: a rule file for the reference reads signals only.
 //
+// It learns nothing: P stays the designer's.
+//
 // Not reproduced: the reference works on texts of numbers with six decimals (so 1e-7 == 0), and
 // exits on errors in expressions at run time. It also shuts a component down by a lifecycle
 // transition, which an inactive node refuses.
@@ -41,10 +43,6 @@ class ReferenceManager : public ManagingSystem {
   std::vector<Command> step(Time now, std::span<const Observation> observations) override;
   Time next_deadline() const override { return next_tick_; }
   std::span<const Event> events() const override { return events_; }
-
-  // The learned belief, to go on with in the next run (without the slip fixed_beliefs).
-  const Belief& belief(StrategyId strategy) const { return analysis_.belief(strategy); }
-  void set_belief(StrategyId strategy, Belief belief) { analysis_.set_belief(strategy, belief); }
 
  private:
   ReferenceManager(const RuleSet& rules, const ReferenceOptions& options);

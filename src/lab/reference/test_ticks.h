@@ -43,7 +43,6 @@ class Ticks {
   std::set<std::string> refusing;  // components that say no
   const RuleSet& rules() const { return *rules_; }
   StrategyId strategy(const std::string& name) const;
-  study::ReferenceManager& manager() { return *manager_; }
   std::vector<Event> events;
 
  private:

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "import/actions.h"
+#include "import/expression_reader.h"
 #include "import/file_reader.h"
 #include "language/expression_parser.h"
 #include "language/scanner.h"
@@ -226,15 +227,6 @@ class ConditionDialect {
     }
     present().strategies.push_back(std::move(strategy));
     return true;
-  }
-
-  static Expression binary(Operator op, Expression left, Expression right) {
-    Expression e;
-    e.kind = Kind::kBinary;
-    e.op = op;
-    e.children.push_back(std::move(left));
-    e.children.push_back(std::move(right));
-    return e;
   }
 
   std::string_view text() const { return reader_.source().text(); }

@@ -162,15 +162,6 @@ class ExpressionReader {
                                         std::holds_alternative<double>(*e.literal));
   }
 
-  static Expression binary(Operator op, Expression left, Expression right) {
-    Expression e;
-    e.kind = Kind::kBinary;
-    e.op = op;
-    e.children.push_back(std::move(left));
-    e.children.push_back(std::move(right));
-    return e;
-  }
-
   static Expression call_pow(Expression base, Expression exponent) {
     Expression e = binary(Operator::kMultiply, std::move(base), std::move(exponent));
     e.kind = Kind::kCall;
@@ -195,6 +186,15 @@ class ExpressionReader {
 };
 
 }  // namespace
+
+Expression binary(Operator op, Expression left, Expression right) {
+  Expression e;
+  e.kind = Kind::kBinary;
+  e.op = op;
+  e.children.push_back(std::move(left));
+  e.children.push_back(std::move(right));
+  return e;
+}
 
 std::optional<Expression> read_expression(Scanner& scanner, FileReader& reader,
                                           std::vector<std::string>& notes) {

@@ -18,4 +18,6 @@ namespace culprit::foreign {
 std::optional<Expression> read_expression(Scanner& scanner, FileReader& reader,
                                           std::vector<std::string>& notes);
 
+Expression binary(syntax::Operator op, Expression left, Expression right);
+
 }  // namespace culprit::foreign

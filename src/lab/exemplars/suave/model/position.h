@@ -20,11 +20,6 @@ inline bool is_near(const Position& a, const Position& b, double tolerance) {
   return std::abs(a.x - b.x) <= tolerance && std::abs(a.y - b.y) <= tolerance;
 }
 
-// A setpoint for the autopilot (mavros/setpoint_position/local).
-struct Setpoint {
-  Position goal;
-};
-
 // The tangent of half the camera's field of view, 60 degrees: how much of the ground it sees to
 // each side, per metre above it.
 inline const double kSeenPerMetre = 1 / std::sqrt(3.0);
