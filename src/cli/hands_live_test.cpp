@@ -129,7 +129,7 @@ TEST_F(Hands, SeeAndSteerARunningCulprit) {
   lists_what_is_silenced();
   EXPECT_EQ(ended({"silence", "depth", "--lift"}).code, 0);
 
-  // What a shell completes.
+  // The names for completion in a shell.
   EXPECT_EQ(ended({"names", "names"}).said, "CameraGone\nDepthGone\ncamera\ndepth\n");
   EXPECT_EQ(ended({"names", "strategies"}).said,
             "CameraGone.camera_redeploy\nDepthGone.depth_redeploy\n");

@@ -17,7 +17,7 @@ struct NamesOptions {
   WhichCulprit which;
 };
 
-// What GET `path` says, or an empty document.
+// The answer to GET `path`, or an empty document.
 Json ask(const RunningCulprit& culprit, const std::string& path) {
   auto answer =
       culprit.client.with_patience(kTimeToAnswer).get(path, web::LocalClient::kLargeAnswer);

@@ -134,7 +134,7 @@ int order(const OrderOptions& options, const MakeOrder& make) {
   return is_all_done && (here->others.empty() || !all) ? kOk : kFailed;
 }
 
-// Of a silence, at `now` of the robot's time; null: until it is lifted.
+// Seconds that a silence still lasts at `now`, a time of the robot; null: until it is lifted.
 Json seconds_left(const Json& silence, double now) {
   const auto until = silence.find("until");
   if (until == silence.end() || !until->is_number()) return nullptr;

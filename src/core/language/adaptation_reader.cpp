@@ -125,6 +125,11 @@ class AdaptationReader {
         return take_name(adaptation.subject, "the mode");
       case kCall:
         if (!take_name(adaptation.subject, "the service")) return false;
+        if (const Name& service = adaptation.subject;
+            service.text.find("/srv/") != std::string::npos)
+          return read_.fail(Code::kSyntax, service.span,
+                            "this is the type of a service, and no name",
+                            "write the name that ros2 service list shows, as in ~/enable");
         if (s.peek().kind == Token::Kind::kString)
           adaptation.request = read_.text(s, "the request", "");
         if (names_type(s)) return false;
