@@ -161,8 +161,9 @@ int list_silences(const OrderOptions& options) {
   if (here->answering.empty()) return fail(none_to_ask(*here));
   Json list = Json::array();
   for (const RunningCulprit& culprit : here->answering) {
-    const auto control = culprit.client.get("/api/control", web::LocalClient::kLargeAnswer);
+    // The state is a new one, and culprit publishes what is silenced in front of it.
     const auto state = culprit.client.get("/api/state", web::LocalClient::kLargeAnswer);
+    const auto control = culprit.client.get("/api/control", web::LocalClient::kLargeAnswer);
     if (!control || !state)
       return fail(culprit.name() +
                   " does not answer: " + (control ? state.error() : control.error()));
