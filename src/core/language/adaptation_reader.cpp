@@ -161,6 +161,18 @@ class AdaptationReader {
                                   "remove it", Edit{{type.span.begin, ahead.position()}, ""});
   }
 
+  // "increase_parameter gain 10% 2": reported.
+  bool has_percent(const Scanner& s) {
+    Scanner ahead = s.ahead();
+    const Token number = ahead.next();
+    const Token sign = ahead.next();
+    const bool is_so = number.kind == Token::Kind::kNumber && sign.is("%") &&
+                       sign.span.begin == number.span.end &&
+                       ahead.peek().span.begin > sign.span.end;
+    return is_so && !read_.fail(Code::kSyntax, sign.span, "unexpected '%' after a number",
+                                "write the amount itself, in the unit of the parameter");
+  }
+
   bool value(Scanner& s, syntax::Adaptation& adaptation) {
     const Token& next = s.peek();
     constexpr std::string_view kNoSign = "unexpected '=' between a parameter and its value";
@@ -191,6 +203,7 @@ class AdaptationReader {
       return read_.fail(Code::kTypeMismatch, {next.span.begin, ahead.peek().span.end},
                         "ROS parameters hold no durations",
                         "write only the number, in the unit that the node expects");
+    if (has_percent(s)) return false;
     adaptation.value = read_.expression(s);
     return adaptation.value.has_value();
   }
