@@ -31,13 +31,29 @@ std::filesystem::path own_folder() {
   return std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
 }
 
-Expected<std::filesystem::path> find_laboratory() {
-  constexpr const char* kProgram = "culprit-lab";
-  std::istringstream folders(own_folder().native() + ":" + environment("PATH"));
+namespace {
+
+// The first `program` in `list`, folders as PATH has them; empty: it is in none.
+std::filesystem::path program_in(const std::string& list, const char* program) {
+  std::istringstream folders(list);
   for (std::string folder; std::getline(folders, folder, ':');) {
-    const std::filesystem::path place = std::filesystem::path(folder) / kProgram;
+    const std::filesystem::path place = std::filesystem::path(folder) / program;
     if (!folder.empty() && access(place.c_str(), X_OK) == 0) return place;
   }
+  return {};
+}
+
+}  // namespace
+
+std::string culprit_at_terminal() {
+  constexpr const char* kProgram = "culprit";
+  if (!program_in(environment("PATH"), kProgram).empty()) return kProgram;
+  return program_in(own_folder(), kProgram);
+}
+
+Expected<std::filesystem::path> find_laboratory() {
+  const auto place = program_in(own_folder().native() + ":" + environment("PATH"), "culprit-lab");
+  if (!place.empty()) return place;
   return Error{
       "studies, torture and demonstrations are of culprit-lab, which is neither beside culprit nor "
       "in PATH; install it, or build it: cmake --build --preset release --target culprit-lab"};

@@ -19,6 +19,10 @@ std::filesystem::path own_folder();
 // running program, or in PATH. Errors: it is in neither.
 Expected<std::filesystem::path> find_laboratory();
 
+// How a person calls the program culprit: its name if it is in PATH, else its path if it is beside the running program.
+// Empty: it is in neither, as after make demo.
+std::string culprit_at_terminal();
+
 // The name of this machine (its host name).
 std::string host_name();
 

@@ -12,6 +12,7 @@ namespace culprit::cli {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr const char* kHandsRules = R"(
 ROBOT two_cameras
@@ -41,6 +42,22 @@ struct Hands : testing::Test {
     TestProgram program(world, std::move(arguments));
     const int code = program.wait().value_or(-1);
     return {code, program.output()};
+  }
+  // A component for a time and a rule until it is lifted, once they are silenced.
+  void lists_what_is_silenced() const {
+    EXPECT_EQ(ended({"silence", "CameraGone", "--reason", "new lens"}).code, 0);
+    const Ended list = ended({"silence", "list"});
+    EXPECT_EQ(list.code, 0);
+    EXPECT_THAT(list.said, HasSubstr("these are left alone"));
+    EXPECT_THAT(list.said, HasSubstr("component depth, for another "));
+    EXPECT_THAT(list.said, HasSubstr("rule CameraGone, by "));
+    EXPECT_THAT(list.said, HasSubstr(": new lens"));
+    const Ended json = ended({"silence", "list", "--json"});
+    EXPECT_THAT(json.said, HasSubstr(R"("component":"depth")"));
+    EXPECT_THAT(json.said, HasSubstr(R"("rule":"CameraGone")"));
+    EXPECT_THAT(json.said, HasSubstr(R"("left_s":59)")) << "of ten minutes";
+    EXPECT_EQ(ended({"silence", "CameraGone", "--lift"}).code, 0);
+    EXPECT_THAT(ended({"silence", "list"}).said, Not(HasSubstr("CameraGone")));
   }
   // Until it says so; the last that was said.
   std::string status_says(const std::string& text) const {
@@ -80,6 +97,7 @@ TEST_F(Hands, SeeAndSteerARunningCulprit) {
   EXPECT_THAT(status_says("culprit approve"),
               HasSubstr("culprit approve CameraGone.camera_redeploy"));
   EXPECT_EQ(ended({"status"}).code, 1) << "somebody is ill";
+  EXPECT_THAT(ended({"names", "incidents"}).said, HasSubstr("-")) << "the open one";
   const Ended mistyped = ended({"approve", "CameraGone.camera_redploy"});
   EXPECT_EQ(mistyped.code, 2);
   EXPECT_THAT(mistyped.said, HasSubstr("did you mean 'CameraGone.camera_redeploy'?"));
@@ -108,7 +126,16 @@ TEST_F(Hands, SeeAndSteerARunningCulprit) {
   EXPECT_EQ(resumed.code, 0) << resumed.said;
   EXPECT_EQ(ended({"silence", "depth", "--for", "10min"}).code, 0);
   EXPECT_THAT(ended({"status"}).said, HasSubstr("Left alone: depth until"));
+  lists_what_is_silenced();
   EXPECT_EQ(ended({"silence", "depth", "--lift"}).code, 0);
+
+  // The names for completion in a shell.
+  EXPECT_EQ(ended({"names", "names"}).said, "CameraGone\nDepthGone\ncamera\ndepth\n");
+  EXPECT_EQ(ended({"names", "strategies"}).said,
+            "CameraGone.camera_redeploy\nDepthGone.depth_redeploy\n");
+  EXPECT_EQ(ended({"names", "nodes"}).said,
+            "/managed_subsystem/camera\n/managed_subsystem/depth\n");
+  EXPECT_EQ(ended({"names", "incidents"}).said, "") << "none is open";
 }
 
 TEST_F(Hands, AreToldWhenACulpritThatIsStoppedDoesNotAnswer) {

@@ -169,7 +169,8 @@ void add_incident(CLI::App& app, int& exit_code) {
                                          "List the robot's incidents; or write one as a "
                                          "self-contained HTML file, with plots of its recordings");
   CLI::Option* id =
-      command->add_option("ID", options->id, "The id from the list (default: list them)");
+      command->add_option("ID", options->id, "The id from the list (default: list them)")
+          ->type_name("INCIDENT");
   options->journal.add_to(*command);
   command
       ->add_option("--record-folder", options->recordings,

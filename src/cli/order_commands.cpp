@@ -134,14 +134,20 @@ int order(const OrderOptions& options, const MakeOrder& make) {
   return is_all_done && (here->others.empty() || !all) ? kOk : kFailed;
 }
 
-// "rule Slow until 12 min from now, by ada: maintenance"
-std::string silence_line(const Json& silence, double now) {
+// Seconds that a silence still lasts at `now`, a time of the robot; null: until it is lifted.
+Json seconds_left(const Json& silence, double now) {
+  const auto until = silence.find("until");
+  if (until == silence.end() || !until->is_number()) return nullptr;
+  return std::max(until->get<double>() - now, 0.0);
+}
+
+// "rule Slow, for another 12 min, by ada: maintenance"
+std::string silence_line(const Json& silence) {
   const bool is_rule = silence.contains("rule");
   std::string line = (is_rule ? "rule " : "component ") +
                      web::text_of(silence, is_rule ? "rule" : "component").value_or("");
-  if (silence.contains("until") && silence["until"].is_number())
-    line += ", for another " +
-            in_words(from_seconds(std::max(silence["until"].get<double>() - now, 0.0)));
+  if (const auto left = silence.find("left_s"); left != silence.end() && left->is_number())
+    line += ", for another " + in_words(from_seconds(left->get<double>()));
   const std::string author = web::text_of(silence, "author").value_or("");
   const std::string reason = web::text_of(silence, "reason").value_or("");
   if (!author.empty()) line += ", by " + author;
@@ -155,19 +161,23 @@ int list_silences(const OrderOptions& options) {
   if (here->answering.empty()) return fail(none_to_ask(*here));
   Json list = Json::array();
   for (const RunningCulprit& culprit : here->answering) {
-    const auto control = culprit.client.get("/api/control", web::LocalClient::kLargeAnswer);
+    // The state is a new one, and culprit publishes what is silenced in front of it.
     const auto state = culprit.client.get("/api/state", web::LocalClient::kLargeAnswer);
+    const auto control = culprit.client.get("/api/control", web::LocalClient::kLargeAnswer);
     if (!control || !state)
       return fail(culprit.name() +
                   " does not answer: " + (control ? state.error() : control.error()));
-    const Json silences = control->value("silences", Json::array());
+    Json silences = control->value("silences", Json::array());
+    const double now = state->is_object() ? state->value("t", 0.0) : 0.0;
+    for (Json& silence : silences) {
+      if (silence.is_object()) silence["left_s"] = seconds_left(silence, now);
+    }
     list.push_back({{"process", culprit.process}, {"silences", silences}});
     if (options.json) continue;
-    const double now = state->is_object() ? state->value("t", 0.0) : 0.0;
     say(stdout, "{}: {}\n", culprit.name(),
         silences.empty() ? "nothing is silenced" : "these are left alone");
     for (const Json& silence : silences)
-      say(stdout, "  {}\n", escape_controls(silence_line(silence, now)));
+      say(stdout, "  {}\n", escape_controls(silence_line(silence)));
   }
   if (options.json) say(stdout, "{}\n", to_line(list));
   return kOk;

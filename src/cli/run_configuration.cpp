@@ -121,6 +121,9 @@ Expected<std::vector<std::string>> words_of_file(const ConfigurationFile& file, 
     if (!is_known) return unknown_key(file, item.name, known);
     CLI::Option* option = run.get_option(item.name == kRulesKey ? "RULES" : "--" + item.name);
     if (option->count() > 0) continue;  // by the command line or the environment
+    // As --print-config writes an option that has no value.
+    const bool is_empty = item.inputs.size() == 1 && item.inputs.front().empty();
+    if (is_empty && !is_flag(*option)) continue;
     auto more = words_of_item(file, item, *option);
     if (!more) return more;
     words.insert(words.end(), more->begin(), more->end());

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <sys/stat.h>
 
 #include <gmock/gmock.h>
@@ -109,6 +110,22 @@ TEST_F(RunConfigurationFile, IsPrintedWithEveryOption) {
   const auto again = with(result->printed, {"run"});
   ASSERT_TRUE(again) << again.error();
   EXPECT_THAT(again->words, testing::Contains("--web"));
+}
+
+TEST_F(RunConfigurationFile, MayHaveEachPrintedOptionWithoutItsCommentSign) {
+  const auto result = with("", {"run", "my.rules", "--print-config"});
+  ASSERT_TRUE(result) << result.error();
+  std::istringstream lines(result->printed);
+  int count = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const auto sign = line.find(" = ");
+    const bool is_option =
+        line.starts_with("# ") && sign != std::string::npos && line.find(' ', 2) == sign;
+    if (!is_option) continue;
+    ++count;
+    EXPECT_EQ(error_of(line.substr(2) + "\n"), "no error") << line;
+  }
+  EXPECT_GT(count, 40);
 }
 
 TEST_F(RunConfigurationFile, LeavesAWrongLineToItsParser) {

@@ -208,6 +208,9 @@ void add_people(const WhatCulpritSays& said, Lines& lines) {
 // Lists the components that culprit started, and those that a person ended.
 void add_started(const WhatCulpritSays& said, Lines& lines) {
   const double now = number_at(said.state, "clock").value_or(0);
+  const bool is_demonstration = said.about.is_object() && text_at(said.about, "version").empty();
+  const char* const end =
+      is_demonstration ? "; it ends with culprit" : "; it runs on when culprit ends";
   for (const Json& each : list_at(said.control, "started")) {
     const auto since = number_at(each, "since");
     const auto clock = since ? clock_at(said, *since) : std::nullopt;
@@ -217,7 +220,7 @@ void add_started(const WhatCulpritSays& said, Lines& lines) {
         number_at(each, "pid").value_or(0), clock ? " at " + by_the_clock(*clock, now) : "",
         launcher ? fmt::format(", in place of one of process {:.0f}; it ends with that launch",
                                *launcher)
-                 : "; it runs on when culprit ends"));
+                 : end));
   }
   for (const Json& each : list_at(said.control, "down"))
     lines.push_back("  Stays down: " + text_at(each, "component") + ": " + text_at(each, "text") +

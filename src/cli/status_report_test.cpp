@@ -86,6 +86,16 @@ TEST(StatusReport, SaysWhatKeepsCulpritFromActingAndHowToLetItGoOn) {
   EXPECT_THAT(text, HasSubstr("by ada (lens); culprit silence --lift fusion"));
 }
 
+// The nodes of a demonstration end with it.
+TEST(StatusReport, SaysWhetherAStartedProcessOutlivesCulprit) {
+  WhatCulpritSays said = well();
+  said.control["started"] = parse_json(R"([{"component": "camera", "pid": 17}])");
+  said.about["version"] = "1.2";
+  EXPECT_THAT(all_of(said), HasSubstr("camera (process 17); it runs on when culprit ends"));
+  said.about["version"] = "";
+  EXPECT_THAT(all_of(said), HasSubstr("camera (process 17); it ends with culprit"));
+}
+
 WhatCulpritSays with_blind(const char* criticality) {
   WhatCulpritSays said = well();
   said.robot["rules"] = parse_json(R"([{"name": "CameraGone", "criticality": "ERROR"},

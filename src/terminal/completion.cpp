@@ -43,13 +43,16 @@ struct ValueType {
 };
 
 ValueType type_of_value(const CLI::Option& option) {
-  const std::string type = value_of(option);
+  std::string type = value_of(option);
+  if (type.ends_with(" ...")) type.resize(type.size() - 4);
   if (type.empty()) return {};
   if (type.starts_with("FILE")) return {ValueKind::kFile};
   if (type.starts_with("FOLDER")) return {ValueKind::kFolder};
-  if (type == "COMPONENT") return {ValueKind::kLive, "names components"};
-  if (type == "NAME") return {ValueKind::kLive, "names names"};
-  if (type == "STRATEGY") return {ValueKind::kLive, "names strategies"};
+  static const std::map<std::string, std::string> live = {
+      {"COMPONENT", "components"}, {"NAME", "names"}, {"STRATEGY", "strategies"},
+      {"TOPIC", "topics"},         {"NODE", "nodes"}, {"INCIDENT", "incidents"}};
+  if (const auto kind = live.find(type); kind != live.end())
+    return {ValueKind::kLive, "names " + kind->second};
   const std::size_t end = type.find('}');
   if (type.front() != '{' || end == std::string::npos) return {ValueKind::kText};
   std::string words = type.substr(1, end - 1);

@@ -29,7 +29,11 @@ std::unique_ptr<web::HttpServer> serve_this_machine(const CulpritIdentity& ident
         socket ? server.error() : socket.error());
     return nullptr;
   }
-  say(out, "Ask it from another terminal: culprit status, culprit top, culprit pause\n");
+  if (identity.program.empty()) return std::move(*server);
+  const std::string where =
+      identity.domain == 0 ? "" : " --domain " + std::to_string(identity.domain);
+  say(out, "Ask it from another terminal: {0} status{1}, {0} top{1}, {0} pause{1}\n",
+      identity.program, where);
   return std::move(*server);
 }
 

@@ -16,6 +16,7 @@ struct CulpritIdentity {
   std::uint32_t domain = 0;
   std::string node;
   std::string page;
+  std::string program = "culprit";  // how a terminal calls it; empty: nothing is said about it
 };
 
 // Serves until the server is destroyed, and says on `out` how to ask. Null, and said, if that is

@@ -125,6 +125,11 @@ class AdaptationReader {
         return take_name(adaptation.subject, "the mode");
       case kCall:
         if (!take_name(adaptation.subject, "the service")) return false;
+        if (const Name& service = adaptation.subject;
+            service.text.find("/srv/") != std::string::npos)
+          return read_.fail(Code::kSyntax, service.span,
+                            "this is the type of a service, and no name",
+                            "write the name that ros2 service list shows, as in ~/enable");
         if (s.peek().kind == Token::Kind::kString)
           adaptation.request = read_.text(s, "the request", "");
         if (names_type(s)) return false;
@@ -154,6 +159,18 @@ class AdaptationReader {
     const bool is_type = is_word && type.text.find("/srv/") != std::string::npos;
     return is_type && !read_.fail(Code::kSyntax, type.span, "a call names no type of service",
                                   "remove it", Edit{{type.span.begin, ahead.position()}, ""});
+  }
+
+  // "increase_parameter gain 10% 2": reported.
+  bool has_percent(const Scanner& s) {
+    Scanner ahead = s.ahead();
+    const Token number = ahead.next();
+    const Token sign = ahead.next();
+    const bool is_so = number.kind == Token::Kind::kNumber && sign.is("%") &&
+                       sign.span.begin == number.span.end &&
+                       ahead.peek().span.begin > sign.span.end;
+    return is_so && !read_.fail(Code::kSyntax, sign.span, "unexpected '%' after a number",
+                                "write the amount itself, in the unit of the parameter");
   }
 
   bool value(Scanner& s, syntax::Adaptation& adaptation) {
@@ -189,6 +206,7 @@ class AdaptationReader {
       return read_.fail(Code::kTypeMismatch, {next.span.begin, ahead.peek().span.end},
                         "ROS parameters hold no durations",
                         "write only the number, in the unit that the node expects");
+    if (has_percent(s)) return false;
     adaptation.value = read_.expression(s);
     return adaptation.value.has_value();
   }

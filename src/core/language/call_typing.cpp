@@ -129,9 +129,14 @@ std::optional<Typed> CallTyper::parameter(const Expression& e) {
 }
 
 std::optional<Typed> CallTyper::level(const Expression& e) {
+  const syntax::Name& status = e.children[0].name;
+  if (status.text == "/diagnostics" || status.text == "/diagnostics_agg")
+    return typer_.fail(Code::kBadRosName, status.span,
+                       "'" + status.text + "' is a topic, and no status",
+                       "write the name or the hardware id of a status, as in level(motor)");
   Input wanted;
   wanted.kind = Input::Kind::kLevel;
-  wanted.diagnostic = symbols_.diagnostic(e.children[0].name.text);
+  wanted.diagnostic = symbols_.diagnostic(status.text);
   return input(wanted, Type::kInt);
 }
 
@@ -326,6 +331,12 @@ std::optional<TopicId> CallTyper::topic_argument(const Expression& e) {
     return typer_.fail(Code::kBadRosName, e.span, "'" + e.name.text + "' is a signal, and no topic",
                        "write its topic, " + topic, Edit{e.span, topic});
   const std::string& written = e.name.text;
+  if (symbols_.known_signal(written))
+    return typer_.fail(Code::kBadRosName, e.span, "'" + written + "' is a signal, and no topic",
+                       "write the topic that brings it; STALE limits the age of its value");
+  if (symbols_.known_component(written))
+    return typer_.fail(Code::kBadRosName, e.span, "'" + written + "' is a component, and no topic",
+                       "write a topic that it publishes, as in /robot/camera/image");
   if (const std::string inside = written.size() < 2 ? "" : written.substr(1, written.size() - 2);
       written.starts_with('\'') && written.ends_with('\'') && inside.starts_with('/') &&
       is_component_reference(inside))

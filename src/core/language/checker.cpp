@@ -300,6 +300,7 @@ class Checker {
     // Declared components come first, in the order of the file.
     for (std::size_t i = 0; i < file_.components.size(); ++i)
       check_shell(file_.components[i], rules_.components[i], diagnostics_);
+    check_topics_as_components(file_, rules_, diagnostics_);
     check_unused(file_, rules_, diagnostics_);
     check_covered_rules(conditions_, rules_, diagnostics_);
     check_oscillation(conditions_, rules_, diagnostics_);

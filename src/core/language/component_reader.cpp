@@ -88,8 +88,12 @@ bool host(Reader& r, std::string_view what, std::string_view remedy) {
 }
 
 bool engine(Reader& r, std::string_view what, std::string_view remedy) {
-  return name<&Component::engine, Form::kNameOrText>(r, what, remedy) &&
-         name<&Component::engine_container, Form::kNameOrText>(r, "the container's name", "");
+  if (!name<&Component::engine, Form::kNameOrText>(r, what, remedy)) return false;
+  const Name& first = *r.component.engine;
+  if (r.s.at_end() && first.text != "docker" && first.text != "podman")
+    return r.read.fail(Code::kSyntax, first.span, "the engine of this container is missing",
+                       "write docker or podman in front of it: CONTAINER docker " + first.text);
+  return name<&Component::engine_container, Form::kNameOrText>(r, "the container's name", "");
 }
 
 bool ready(Reader& r, std::string_view what, std::string_view) {

@@ -274,6 +274,9 @@ bool DeclarationReader::assigned_signal(const Name& name, const Token& sign) {
   const Span line = source_.line(source_.position(sign.span.begin).line);
   Scanner ahead(source_.text(), {sign.span.end, line.end});
   const Name value = ahead.next_name();
+  if (std::ranges::find(kSignalSources, value.text) != kSignalSources.end())
+    return read_.fail(Code::kSyntax, sign.span, "no '=' stands here", "remove the '='",
+                      Edit{{sign.span.begin, value.span.begin}, ""});
   const auto dot = value.text.find('.');
   const bool is_field = value.text.starts_with('/') && dot != std::string::npos;
   const std::string source =
@@ -303,6 +306,9 @@ bool DeclarationReader::check_field(const Scanner& s, const Name& field) {
     return read_.fail(Code::kSyntax, field.span, "a signal reads one element of a list",
                       "write its number, as in " + list + "[0], or \"min(" + list + ")\"");
   }
+  if (std::ranges::count(field.text, '[') != std::ranges::count(field.text, ']'))
+    return read_.fail(Code::kSyntax, field.span, "a bracket has no other one in this field",
+                      "write both around the number of an element, as in ranges[0]");
   const auto dot = field.text.rfind('.');
   const std::string index = dot == std::string::npos ? "" : field.text.substr(dot + 1);
   if (index.empty() || index.find_first_not_of("0123456789") != std::string::npos) return true;
@@ -311,11 +317,35 @@ bool DeclarationReader::check_field(const Scanner& s, const Name& field) {
                     "write " + meant, Edit{field.span, meant});
 }
 
+// "PARAMETER /robot/camera.gain"
+bool DeclarationReader::is_apart(const Scanner& s) {
+  Scanner ahead = s.ahead();
+  const Name written = ahead.next_name();
+  const auto dot = written.text.find('.');
+  if (dot == std::string::npos || !is_component_reference(written.text.substr(0, dot))) return true;
+  const std::string meant = written.text.substr(0, dot) + " " + written.text.substr(dot + 1);
+  return read_.fail(Code::kSyntax, written.span, "a component and its parameter stand apart",
+                    "write PARAMETER " + meant, Edit{written.span, meant});
+}
+
+// "DIAGNOSTIC left motor KEY heat"
+bool DeclarationReader::is_status_whole(const Scanner& s, const Name& status) {
+  Scanner ahead = s.ahead();
+  Span span = status.span;
+  while (ahead.peek().kind == Token::Kind::kIdentifier && ahead.peek().text != "KEY")
+    span.end = ahead.next().span.end;
+  if (span.end == status.span.end || ahead.peek().text != "KEY") return true;
+  const std::string quoted = "\"" + std::string(source_.text(span)) + "\"";
+  return read_.fail(Code::kSyntax, span, "blanks stand in a name only in quotes", "write " + quoted,
+                    Edit{span, quoted});
+}
+
 bool DeclarationReader::signal_source(Scanner& s, syntax::Signal& signal) {
   const Token kind = s.next();
   if (kind.text == "DIAGNOSTIC") {
     auto status = read_.name_or_text(s, "the status's name or hardware id");
-    if (!status || !read_.expect_word(s, "KEY", "write KEY and the key, as in KEY temperature"))
+    if (!status || !is_status_whole(s, *status) ||
+        !read_.expect_word(s, "KEY", "write KEY and the key, as in KEY temperature"))
       return false;
     auto key = read_.name_or_text(s, "the key");
     if (!key || !publisher(s, signal)) return false;
@@ -329,6 +359,7 @@ bool DeclarationReader::signal_source(Scanner& s, syntax::Signal& signal) {
     if (!field || !check_field(s, *field) || !publisher(s, signal)) return false;
     signal.source = syntax::TopicSource{std::move(*topic), std::move(*field)};
   } else if (kind.text == "PARAMETER") {
+    if (!is_apart(s)) return false;
     auto component = read_.component_reference(s);
     if (!component) return false;
     if (const auto slash = component->text.rfind('/');

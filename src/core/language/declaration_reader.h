@@ -35,6 +35,8 @@ class DeclarationReader {
   bool equals_sign(Scanner& s, const syntax::Name& constant);
   bool condition(Scanner& s, std::vector<syntax::Interlock>& all);
   bool assigned_signal(const syntax::Name& name, const Token& sign);
+  bool is_status_whole(const Scanner& s, const syntax::Name& status);
+  bool is_apart(const Scanner& s);
   bool check_field(const Scanner& s, const syntax::Name& field);
   bool signal_source(Scanner& s, syntax::Signal& signal);
   bool publisher(Scanner& s, syntax::Signal& signal);

@@ -234,21 +234,36 @@ class ExpressionParser {
     return "";
   }
 
-  std::optional<Diagnostic> operator_in_words(const Expression& left, const Token& first) {
+  // "in ("a", "b")", "not in ["a"]"
+  std::optional<Diagnostic> membership(const Token& first) {
     Scanner behind = scanner_.ahead();
     behind.next();
-    if (upper_case(first.text) == "IN" && behind.next().is("(") &&
-        behind.peek().kind == Token::Kind::kString)
-      return Diagnostic{Code::kSyntax, Severity::kError, first.span,
-                        "'" + std::string(first.text) + "' is no operator",
-                        "compare with each: x == \"a\" || x == \"b\""};
+    Span span = first.span;
+    const bool is_negated =
+        upper_case(first.text) == "NOT" && upper_case(behind.peek().text) == "IN";
+    if (is_negated) span.end = behind.next().span.end;
+    if (!is_negated && upper_case(first.text) != "IN") return std::nullopt;
+    const Token open = behind.next();
+    const bool is_list = open.is("(") || text_of(open.span) == "[";
+    if (!is_list || (!is_negated && behind.peek().kind != Token::Kind::kString))
+      return std::nullopt;
+    return Diagnostic{Code::kSyntax, Severity::kError, span,
+                      "'" + std::string(text_of(span)) + "' is no operator",
+                      is_negated ? "compare with each: x != \"a\" && x != \"b\""
+                                 : "compare with each: x == \"a\" || x == \"b\""};
+  }
+
+  std::optional<Diagnostic> operator_in_words(const Expression& left, const Token& first) {
+    if (auto slip = membership(first)) return slip;
     if (upper_case(first.text) == "BETWEEN" || upper_case(first.text) == "IN")
       return Diagnostic{Code::kSyntax, Severity::kError, first.span,
                         "'" + std::string(first.text) + "' is no operator",
                         "to test a range, write low <= x && x <= high"};
     std::string meant(operator_of_word(first.text));
     if (meant.empty()) return std::nullopt;
-    if (auto slip = state_in_words(left, first)) return slip;
+    if (meant == "==") {
+      if (auto slip = state_in_words(left, first)) return slip;
+    }
     Scanner ahead = scanner_.ahead();
     ahead.next();
     Span span = first.span;

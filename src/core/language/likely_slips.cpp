@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 
 namespace culprit {
 namespace {
@@ -87,6 +88,16 @@ std::optional<Edit> with_setup(const syntax::Component& written,
   return Edit{written.launch->span, "\"" + text.substr(first) + "\" SETUP " + command[1]};
 }
 
+// Calls `check` with the component of each alive(component) and lifecycle(component) in `e`.
+void check_calls(const syntax::Expression& e,
+                 const std::function<void(const syntax::Name&)>& check) {
+  const bool is_of_component = e.kind == syntax::Expression::Kind::kCall &&
+                               e.children.size() == 1 &&
+                               is_one_of(e.name.text, {"alive", "lifecycle", "cpu", "memory"});
+  if (is_of_component) check(e.children[0].name);
+  for (const syntax::Expression& child : e.children) check_calls(child, check);
+}
+
 }  // namespace
 
 void check_short_impacts(const syntax::Rule& rule, const RuleSet& rules,
@@ -125,6 +136,33 @@ void check_shell(const syntax::Component& written, const Component& component,
       {Code::kNoShell, Severity::kWarning, written.launch->span,
        "no shell reads this command, so '" + found.word + "' is a word like any other",
        found.remedy, with_setup(written, component.launch)});
+}
+
+void check_topics_as_components(const syntax::File& file, const RuleSet& rules,
+                                std::vector<Diagnostic>& diagnostics) {
+  // A node may be called like a topic, but then it is declared: first, in the order of the file.
+  const auto check = [&](const syntax::Name& name) {
+    if (!name.text.starts_with('/')) return;
+    const bool is_topic =
+        std::ranges::find(rules.topics, name.text, &Topic::name) != rules.topics.end();
+    bool is_declared = false;
+    for (std::size_t i = 0; i < file.components.size(); ++i)
+      is_declared |= rules.components[i].has_node(name.text);
+    if (!is_topic || is_declared) return;
+    diagnostics.push_back({Code::kUnknownName, Severity::kWarning, name.span,
+                           "'" + name.text + "' is a topic of these rules, and no component",
+                           "write the component that publishes it"});
+  };
+  for (const syntax::Dependency& dependency : file.dependencies) {
+    check(dependency.consumer);
+    for (const syntax::Name& producer : dependency.producers) check(producer);
+  }
+  for (const syntax::Rule& rule : file.rules) {
+    if (rule.trigger) check_calls(*rule.trigger, check);
+    for (const syntax::Strategy& strategy : rule.strategies) {
+      for (const syntax::Adaptation& a : strategy.adaptations) check(a.component);
+    }
+  }
 }
 
 void check_unused(const syntax::File& file, const RuleSet& rules,

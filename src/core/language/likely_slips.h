@@ -21,6 +21,10 @@ void check_settings_in_rules(const syntax::File& file, std::vector<Diagnostic>& 
 void check_shell(const syntax::Component& written, const Component& component,
                  std::vector<Diagnostic>& diagnostics);
 
+// The full name of a topic that the rules read where a component belongs.
+void check_topics_as_components(const syntax::File& file, const RuleSet& rules,
+                                std::vector<Diagnostic>& diagnostics);
+
 // Components that are declared and that nothing in the rules is about, if there are rules.
 void check_unused(const syntax::File& file, const RuleSet& rules,
                   std::vector<Diagnostic>& diagnostics);

@@ -276,14 +276,18 @@ bool LineReader::fail_foreign_duration(const Token& token, const Scanner& behind
                  "remove it", Edit{{token.span.begin, second.span.begin}, ""});
   const auto* minutes = std::get_if<std::int64_t>(&token.literal);
   const Token third = ahead.next();
+  const Span all{token.span.begin, third.span.end};
+  if (const std::string meant = written + "." + std::string(source_.text(third.span));
+      second.is(",") && third.kind == Token::Kind::kDuration && parse_duration(meant))
+    return !fail(Code::kSyntax, all, "a number has a point, and no comma", "write " + meant,
+                 Edit{all, meant});
   const auto* seconds = std::get_if<std::int64_t>(&third.literal);
   constexpr std::int64_t kMost = 100'000;
   if (second.is(":") && minutes != nullptr && seconds != nullptr && *minutes < kMost &&
       *seconds < 60) {
     const std::string meant = to_string(Duration(std::chrono::seconds(*minutes * 60 + *seconds)));
-    const Span span{token.span.begin, third.span.end};
-    return !fail(Code::kSyntax, span, "a duration is a number and its unit", "write " + meant,
-                 Edit{span, meant});
+    return !fail(Code::kSyntax, all, "a duration is a number and its unit", "write " + meant,
+                 Edit{all, meant});
   }
   return false;
 }
@@ -477,9 +481,11 @@ std::string LineReader::blank_for(const Token& separator) const {
 
 bool LineReader::fail_comma(const Token& comma) {
   const Span line = source_.line(source_.position(comma.span.begin).line);
-  const bool is_adaptation =
-      trimmed(source_.text({line.begin, comma.span.begin})).find("ADAPTATION ") !=
-      std::string::npos;
+  const std::string_view in_front = trimmed(source_.text({line.begin, comma.span.begin}));
+  const bool is_adaptation = in_front.find("ADAPTATION ") != std::string_view::npos;
+  if (in_front.starts_with("SIGNAL ") && std::ranges::count(in_front, ' ') == 1)
+    return fail(Code::kExtraText, comma.span, "one line declares one signal",
+                "write a line for each");
   if (is_adaptation)
     return fail(Code::kExtraText, comma.span, "one line has one adaptation",
                 "write the next one on a line of its own that begins with ADAPTATION");
@@ -561,6 +567,9 @@ bool LineReader::condition_ends(Scanner& s) {
         Code::kBadToken, token.span,
         "'" + std::string(source_.text(token.span)) + "' means nothing here",
         "a function has parentheses, as in alive(camera); a signal has no labels, and no index");
+  if (upper_case(token.text) == "UNLESS")
+    return fail(Code::kExtraText, token.span, "'" + std::string(token.text) + "' is no operator",
+                "write && and the condition with ! in front, as in && !docked");
   if (upper_case(token.text) == "FROM")
     return fail(Code::kExtraText, token.span, "FROM stands inside the parentheses",
                 "write it behind the topic, as in age(/scan FROM lidar)");

@@ -221,7 +221,9 @@ bool RuleReader::strategy_ends(Scanner& s) {
 bool RuleReader::step(Scanner& s) {
   const Span then = keyword_;
   const Token word = s.peek();
-  if (!inside_rule("THEN") || !read_.expect_word(s, "ADAPTATION")) return false;
+  const std::string remedy =
+      s.at_end() ? "write both on one line, as in THEN ADAPTATION camera activate 2" : "";
+  if (!inside_rule("THEN") || !read_.expect_word(s, "ADAPTATION", remedy)) return false;
   keyword_ = word.span;
   const auto& strategies = into_->rules.back().strategies;
   const bool is_first = !strategies.empty() && strategies.back().adaptations.empty() &&

@@ -138,6 +138,13 @@ bool is_utf8(std::string_view character) {
   return character.size() == expected;
 }
 
+// "|heat|" -> "heat"; empty: `rest` begins with something else.
+std::string between_bars(std::string_view rest) {
+  const auto end = rest.find_first_of("| \t&<>=\n", 1);
+  const bool is_so = rest[0] == '|' && end != std::string_view::npos && end > 1 && rest[end] == '|';
+  return is_so ? std::string(rest.substr(1, end - 1)) : "";
+}
+
 Complaint meaningless(Span span, std::string_view rest) {
   const std::string_view character = rest.substr(0, span.end - span.begin);
   const auto first = static_cast<unsigned char>(rest[0]);
@@ -156,6 +163,11 @@ Complaint meaningless(Span span, std::string_view rest) {
       return {"this character looks like a blank, and is another one", Edit{span, " "},
               "write an ordinary blank"};
   }
+  if (const std::string inside = between_bars(rest); !inside.empty())
+    return {"'|' is no operator",
+            Edit{{span.begin, span.begin + static_cast<std::uint32_t>(inside.size()) + 2},
+                 "abs(" + inside + ")"},
+            "write abs(" + inside + ")"};
   for (const auto& [written, meant] : kLookAlikes) {
     if (!rest.starts_with(written)) continue;
     if (meant.empty()) break;
@@ -163,6 +175,7 @@ Complaint meaningless(Span span, std::string_view rest) {
     return {"'" + std::string(written) + "' is no operator",
             Edit{{span.begin, end}, std::string(meant)}, "write " + std::string(meant)};
   }
+  if (character == "\u00b0") return {cause, std::nullopt, "write the number without its unit"};
   if (first >= 0x80)
     return {"'" + std::string(character) + "' stands only in texts and comments", std::nullopt,
             "names are made of the letters a to z and A to Z, digits and '_'"};
@@ -180,6 +193,8 @@ Complaint meaningless(Span span, std::string_view rest) {
     case '[':
     case ']':
       return {cause, std::nullopt, "write parentheses: ( and )"};
+    case '$':
+      return {cause, std::nullopt, "in a TEMPLATE, a parameter stands in braces, as in {name}"};
     case '^':
       return {cause, std::nullopt, "write pow(base, exponent)"};
     case '.':

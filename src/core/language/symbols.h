@@ -57,6 +57,9 @@ class Symbols {
   InputId input(const Input& wanted);
 
   bool is_declared_component(std::string_view name) const;
+  // Those that the file declares or named until now.
+  std::optional<ComponentId> known_component(std::string_view name) const;
+  std::optional<SignalId> known_signal(std::string_view name) const;
 
   // If `signal` was reported as a near miss of a declared name: takes that report back, since its
   // caller has a better one, and gives the declared name. Otherwise empty.
@@ -91,8 +94,6 @@ class Symbols {
                          const std::vector<std::string_view>& declared);
   const std::vector<std::string_view>& sorted_values();
   std::string near_name(const std::string& name, const std::vector<std::string_view>& declared);
-  std::optional<ComponentId> known_component(std::string_view name) const;
-  std::optional<SignalId> known_signal(std::string_view name) const;
   std::optional<ParameterId> known_parameter(ComponentId component, std::string_view name) const;
   ComponentId add_component(Component component);
   SignalId add_signal(Signal signal, std::optional<Type> type = std::nullopt);

@@ -153,8 +153,11 @@ std::nullopt_t Typer::unknown_type(const Expression& e) {
                 "did you mean '" + near + "'?", Edit{e.span, near});
   }
   if (names_broken_constant(whole_)) return std::nullopt;  // which would have told
+  const std::string& name = e.name.text;
+  const std::string declare =
+      symbols_.is_looked_up(name) ? "declare it, as in CONST " + name + " = ..., or " : "";
   return fail(Code::kUnknownType, e.span, "cannot infer the type of this value",
-              "compare it with a constant; a text needs quotes: \"" + e.name.text + "\"");
+              declare + "compare it with a constant; a text needs quotes: \"" + name + "\"");
 }
 
 Typed Typer::input(Input wanted, Type type) {

@@ -102,6 +102,11 @@ Remedy remedy_of_word(const UnknownLine& line, const Token& head, const Scanner&
     return {"a constant begins with CONST: write CONST " +
                 std::string(line.source.text({head.span.begin, s.rest().end})),
             Edit{in_front, "CONST "}};
+  constexpr std::string_view kComparisons = "< <= > >= == !=";
+  const bool is_condition = second.kind == Token::Kind::kSymbol &&
+                            kComparisons.find(second.text) != std::string_view::npos;
+  if (is_condition && line.is_in_rule && head.kind == Token::Kind::kIdentifier)
+    return {"write TRIGGER in front of it", Edit{in_front, "TRIGGER "}};
   if (upper == "VERSION") return {"remove the line: a rule file has no version"};
   if (is_adaptation(second.text))
     return {

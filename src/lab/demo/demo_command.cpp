@@ -222,10 +222,11 @@ template <class Robot>
 void print_how_to_break(const std::string& address, std::uint32_t domain) {
   say(stdout,
       "  in the browser             {0}\n"
-      "  a crash                    pkill -KILL -f '{2} {3}'\n"
-      "  a hang                     pkill -STOP -f '{2} {4}'\n"
-      "  and see what culprit does  culprit status --domain {1}\n",
-      address, domain, Robot::kProgram, Robot::kCrashes, Robot::kHangs);
+      "  a crash                    pkill -KILL -f '{1} {2}'\n"
+      "  a hang                     pkill -STOP -f '{1} {3}'\n",
+      address, Robot::kProgram, Robot::kCrashes, Robot::kHangs);
+  if (const std::string culprit = culprit_at_terminal(); !culprit.empty())
+    say(stdout, "  and see what culprit does  {} status --domain {}\n", culprit, domain);
 }
 
 template <class Robot>
@@ -294,9 +295,10 @@ int demo_robot(const DemoOptions& options) {
   histories.start();
   std::vector<web::Route> local = web::live_routes(hub);
   for (web::Route& route : web::order_routes(orders, hub)) local.push_back(std::move(route));
-  const auto asked = serve_this_machine({"", (*demo)->rules().robot, Robot::kRules,
-                                         (*demo)->domain(), "culprit", (*server)->address()},
-                                        std::move(local), hub);
+  const auto asked =
+      serve_this_machine({"", (*demo)->rules().robot, Robot::kRules, (*demo)->domain(), "culprit",
+                          (*server)->address(), culprit_at_terminal()},
+                         std::move(local), hub);
   if (options.stay) {
     say(stdout, "Break it in the browser, and see what becomes of it; Ctrl-C ends it.\n");
     print_how_to_break<Robot>((*server)->address(), (*demo)->domain());

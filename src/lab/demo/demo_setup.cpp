@@ -2,6 +2,8 @@
 
 #include <stdlib.h>
 
+#include <fmt/core.h>
+
 #include "base/environment.h"
 #include "demo/embedded_rules.h"
 #include "language/checker.h"
@@ -60,9 +62,12 @@ owners::Supervisor::Options demo_processes(const std::filesystem::path& state) {
 }
 
 void say_domain(const char* robot, std::uint32_t domain) {
-  say(stdout,
-      "{0} is on domain {1}; to look at it: ROS_DOMAIN_ID={1} ROS_LOCALHOST_ONLY=1 culprit graph\n",
-      robot, domain);
+  const std::string culprit = culprit_at_terminal();
+  say(stdout, "{} is on domain {}{}\n", robot, domain,
+      culprit.empty()
+          ? ""
+          : fmt::format("; to look at it: ROS_DOMAIN_ID={} ROS_LOCALHOST_ONLY=1 {} graph", domain,
+                        culprit));
 }
 
 void start_all(owners::Supervisor& supervisor, const RuleSet& rules) {

@@ -241,9 +241,13 @@ std::vector<Name> rule_files(const Source& source, std::vector<Diagnostic>& diag
       files.push_back(std::move(*name));
     } while (!s.at_end());
   }
-  if (files.empty() && diagnostics.empty())
+  if (files.empty() && diagnostics.empty()) {
+    const std::string own = source.name().substr(source.name().rfind('/') + 1);
     read.fail(Code::kIncomplete, {}, "this file does not say which rules it tests",
-              "begin it with RULES and a path, relative to this file");
+              own.ends_with(".rules")
+                  ? "a test is a file of its own, which begins with RULES " + own
+                  : "begin it with RULES and a path, relative to this file");
+  }
   return files;
 }
 

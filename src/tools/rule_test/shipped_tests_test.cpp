@@ -101,6 +101,9 @@ TEST(FileRun, RunsNothingOfAFileThatCannotBeUsed) {
   const FileRun no_rules = run_file(write("no_rules.test", kTest), "", bayes, Colour::kOff);
   EXPECT_FALSE(no_rules.is_usable);
   EXPECT_NE(no_rules.complaints.find("does not say which rules it tests"), std::string::npos);
+  const FileRun rules = run_file(write("alone.rules", kRules), "", bayes, Colour::kOff);
+  EXPECT_NE(rules.complaints.find("which begins with RULES alone.rules"), std::string::npos)
+      << rules.complaints;
   const FileRun lost = run_file(write("lost.test", std::string("RULES gone.rules\n") + kTest), "",
                                 bayes, Colour::kOff);
   EXPECT_FALSE(lost.is_usable);
