@@ -1,4 +1,8 @@
+#include <algorithm>
+#include <map>
 #include <memory>
+#include <string>
+#include <string_view>
 
 #include <fmt/core.h>
 
@@ -62,6 +66,27 @@ void show_latencies(const std::vector<journal::LearnedLatency>& all) {
                "within", transient);
 }
 
+// The pairs that began together more than once, and how often the rarer of both failures began.
+std::string pairs_in(const std::vector<journal::LearnedCoincidence>& all) {
+  std::map<std::string_view, int> began;
+  for (const journal::LearnedCoincidence& each : all) {
+    if (each.rule == each.other) began[each.rule] = each.count;
+  }
+  std::string pairs;
+  for (const journal::LearnedCoincidence& each : all) {
+    if (each.rule == each.other || each.count < Coincidences::kLeast) continue;
+    pairs += fmt::format("{:<28} {:<28} {:>8} {:>8}\n", each.rule, each.other, each.count,
+                         std::min(began[each.rule], began[each.other]));
+  }
+  return pairs;
+}
+
+void show_pairs(const std::string& pairs) {
+  if (pairs.empty()) return;
+  fmt::print("\nFailures that begin together\n{:<28} {:<28} {:>8} {:>8}\n{}", "rule", "rule",
+             "together", "of", pairs);
+}
+
 int show(const BeliefsOptions& options) {
   const auto journal = options.journal.open();
   if (!journal) return fail(journal.error());
@@ -73,7 +98,8 @@ int show(const BeliefsOptions& options) {
   }
   std::erase_if(learned->couplings, [](const auto& each) { return each.coupling == Coupling(); });
   std::erase_if(learned->latencies, [](const auto& each) { return each.count == 0; });
-  if (learned->is_empty()) {
+  const std::string pairs = pairs_in(learned->coincidences);
+  if (!learned->has_outcomes() && pairs.empty()) {
     fmt::print(
         "nothing was learned yet: the outcome of a repair counts after it has held for a minute "
         "(culprit run --healthy)\n");
@@ -88,6 +114,7 @@ int show(const BeliefsOptions& options) {
                learned_of(each.belief.beta, each.prior.beta));
   show_couplings(learned->couplings);
   show_latencies(learned->latencies);
+  show_pairs(pairs);
   return kOk;
 }
 

@@ -42,7 +42,12 @@ struct BeliefsCommand : testing::Test {
 TEST_F(BeliefsCommand, ShowsAllThatWasLearned) {
   learn({{{"CameraDark", "brighten", {6, 2}, {5, 1}}},
          {{"CameraDark", "MapOld", {2, 1, 0}}, {"CameraDark", "RobotLost", {0, 0, 3.5}}},
-         {{"MapOld", 4, 0.5, 2.25}}});
+         {{"MapOld", 4, 0.5, 2.25}},
+         {{"CameraDark", "CameraDark", 9},
+          {"CameraDark", "MapOld", 1},
+          {"CameraDark", "RobotLost", 3},
+          {"MapOld", "MapOld", 1},
+          {"RobotLost", "RobotLost", 4}}});
   EXPECT_EQ(
       shown(),
       R"(rule                         strategy                       rules     now   helped  did not
@@ -55,10 +60,26 @@ CameraDark                   RobotLost                           0        0     
 How late rules are
 rule                            count     from       to
 MapOld                              4    0.5 s   2.25 s
+
+Failures that begin together
+rule                         rule                         together       of
+CameraDark                   RobotLost                           3        4
 )");
   EXPECT_THAT(
       shown({"--json"}),
       testing::HasSubstr(R"("effect":"RobotLost","cleared":0.0,"stayed":0.0,"spared":3.5)"));
+  EXPECT_THAT(shown({"--json"}),
+              testing::HasSubstr(R"({"rule":"CameraDark","other":"RobotLost","count":3})"));
+}
+
+TEST_F(BeliefsCommand, ShowsFailuresThatBeginTogetherAloneAndNotOnce) {
+  learn({{}, {}, {}, {{"MapOld", "MapOld", 1}, {"MapOld", "RobotLost", 1}}});
+  EXPECT_THAT(shown(), testing::HasSubstr("nothing was learned yet"));
+  learn({{},
+         {},
+         {},
+         {{"MapOld", "MapOld", 2}, {"MapOld", "RobotLost", 2}, {"RobotLost", "RobotLost", 5}}});
+  EXPECT_THAT(shown(), testing::ContainsRegex("MapOld +RobotLost +2 +2"));
 }
 
 TEST_F(BeliefsCommand, ShowsExposureAloneAndNoCouplingThatWasForgotten) {

@@ -124,6 +124,7 @@ journal::Learned learned_by(const Knowledge& knowledge) {
     for (journal::LearnedLatency& each : journal::named(rules.rules[r].name, seen))
       learned.latencies.push_back(std::move(each));
   }
+  learned.coincidences = journal::named(knowledge.coincidences, Coincidences(rules), rules);
   return learned;
 }
 

@@ -43,11 +43,9 @@ Answer beliefs(Hub& hub) {
   const Json& rules = robot.body["rules"];
   const Json& now = state.body["beliefs"];
   const Json& priors = state.body["priors"];
-  Json document{{"format", "culprit-beliefs"},
-                {"format_version", 1},
-                {"beliefs", Json::array()},
-                {"couplings", Json::array()},
-                {"latencies", Json::array()}};
+  Json document{{"format", "culprit-beliefs"}, {"format_version", 1},
+                {"beliefs", Json::array()},    {"couplings", Json::array()},
+                {"latencies", Json::array()},  {"coincidences", Json::array()}};
   std::size_t place = 0;
   for (const Json& rule : rules) {
     for (const Json& strategy : rule["strategies"]) {
@@ -79,6 +77,13 @@ Answer beliefs(Hub& hub) {
                                      {"count", each[1]},
                                      {"least_s", each[2]},
                                      {"most_s", each[3]}});
+  }
+  for (const Json& each : state.body["coincidences"]) {
+    const auto rule = each[0].get<std::size_t>();
+    const auto other = each[1].get<std::size_t>();
+    if (rule >= rules.size() || other >= rules.size()) continue;
+    document["coincidences"].push_back(
+        {{"rule", rules[rule]["name"]}, {"other", rules[other]["name"]}, {"count", each[2]}});
   }
   return {200, document};
 }

@@ -179,6 +179,19 @@ Json latencies_to_json(const Knowledge& knowledge) {
   return list;
 }
 
+// How often failures of two rules began together; of one rule twice: how often it began.
+Json coincidences_to_json(const Knowledge& knowledge) {
+  Json list = Json::array();
+  for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
+    const int count = knowledge.coincidences.times(RuleId(r));
+    if (count > 0) list.push_back(Json::array({r, r, count}));
+  }
+  for (const auto& [pair, count] : knowledge.coincidences.pairs()) {
+    if (count > 0) list.push_back(Json::array({pair.first.index, pair.second.index, count}));
+  }
+  return list;
+}
+
 }  // namespace
 
 Json rules_to_json(const RuleSet& rules) {
@@ -362,6 +375,7 @@ Json state_to_json(const Knowledge& knowledge, Time start) {
   }
   json["couplings"] = couplings_to_json(knowledge);
   json["latencies"] = latencies_to_json(knowledge);
+  json["coincidences"] = coincidences_to_json(knowledge);
   return json;
 }
 

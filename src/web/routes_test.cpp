@@ -431,7 +431,8 @@ TEST_F(Routes, ExportWhatWasLearned) {
   hub.publish(Kind::kRobot, R"({"rules": [{"name": "R", "strategies": [
       {"name": "s", "prior": [9, 1]}, {"name": "t", "prior": [5, 5]}]}]})");
   hub.publish(Kind::kState, R"({"beliefs": [[3, 7], [5, 5]], "priors": [[2, 7], [5, 5]],
-      "couplings": [[0, 0, 2, 1, 6.5]], "latencies": [[0, 3, 0.5, 2.25]]})");
+      "couplings": [[0, 0, 2, 1, 6.5]], "latencies": [[0, 3, 0.5, 2.25]],
+      "coincidences": [[0, 0, 4], [0, 7, 2]]})");
   const Json learned = ask("get /api/beliefs").body;
   EXPECT_EQ(to_line(learned["beliefs"]),
             R"([{"rule":"R","strategy":"s","belief":[3,7],"prior":[2,7]}])")
@@ -440,6 +441,7 @@ TEST_F(Routes, ExportWhatWasLearned) {
             R"([{"cause":"R","effect":"R","cleared":2,"stayed":1,"spared":6.5}])");
   EXPECT_EQ(to_line(learned["latencies"]),
             R"([{"rule":"R","count":3,"least_s":0.5,"most_s":2.25}])");
+  EXPECT_EQ(to_line(learned["coincidences"]), R"([{"rule":"R","other":"R","count":4}])");
 }
 
 TEST_F(Routes, ReloadOnlyRulesWithoutErrors) {

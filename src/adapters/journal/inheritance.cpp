@@ -126,6 +126,16 @@ void inherit(Learned& ours, const Learned& theirs) {
       *known = each;
     }
   }
+  for (const LearnedCoincidence& each : theirs.coincidences) {
+    const auto known = std::ranges::find_if(ours.coincidences, [&](const LearnedCoincidence& o) {
+      return o.rule == each.rule && o.other == each.other;
+    });
+    if (known == ours.coincidences.end()) {
+      ours.coincidences.push_back(each);
+    } else {
+      *known = each;
+    }
+  }
 }
 
 History joined(const History& ours, const History& theirs, const RuleSet& rules) {

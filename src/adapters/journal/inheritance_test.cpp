@@ -27,7 +27,10 @@ constexpr std::size_t kMuch = 1 << 20;
 Inheritance of_a_day() {
   const RuleId r(0);
   return {
-      {{{"R", "s", {9, 2}, {5, 1}}}, {{"R", "R", {3, 1, 2.5}}}, {{"R", 2, 0.1, 2.5}}},
+      {{{"R", "s", {9, 2}, {5, 1}}},
+       {{"R", "R", {3, 1, 2.5}}},
+       {{"R", 2, 0.1, 2.5}},
+       {{"Q", "R", 2}, {"R", "R", 3}}},
       {then(10s, FailureDetected{r, {}, {}}),
        then(11s, StrategyChosen{StrategyId(0), {}, {}, false, {}, {}}),
        then(12s, StrategyFailed{StrategyId(0), "it did not help"}), then(13s, RuleExhausted{r})}};
@@ -40,6 +43,7 @@ TEST(Inheritance, IsReadAsWrittenOnTheClockOfTheReader) {
   EXPECT_EQ(told->learned.beliefs, of_a_day().learned.beliefs);
   EXPECT_EQ(told->learned.couplings, of_a_day().learned.couplings);
   EXPECT_EQ(told->learned.latencies, of_a_day().learned.latencies);
+  EXPECT_EQ(told->learned.coincidences, of_a_day().learned.coincidences);
   ASSERT_EQ(told->past.size(), 4u);
   EXPECT_EQ(told->past[0].at, Time(110s));
   EXPECT_TRUE(std::holds_alternative<FailureDetected>(told->past[0].what));
@@ -151,16 +155,20 @@ TEST(Inheritance, WhatIsKnownFromBothSidesCountsOnce) {
 TEST(Inheritance, WhatTheyLearnedReplacesOursAndTheRestStays) {
   Learned ours{{{"R", "s", {2, 2}, {1, 1}}, {"R", "t", {4, 4}, {1, 1}}},
                {{"R", "Q", {1, 0}}},
-               {{"P", 1, 3, 3}, {"R", 1, 2, 2}}};
+               {{"P", 1, 3, 3}, {"R", 1, 2, 2}},
+               {{"P", "Q", 5}, {"Q", "R", 1}}};
   inherit(ours, {{{"R", "s", {9, 2}, {5, 1}}, {"Q", "u", {1, 1}, {1, 1}}},
                  {{"R", "Q", {5, 1, 1.5}}},
-                 {{"R", 4, 1, 2}}});
+                 {{"R", 4, 1, 2}},
+                 {{"Q", "R", 3}, {"R", "R", 4}}});
   ASSERT_EQ(ours.beliefs.size(), 3u);
   EXPECT_EQ(ours.beliefs[0].belief.alpha, 9);
   EXPECT_EQ(ours.beliefs[1].belief.alpha, 4);
   ASSERT_EQ(ours.couplings.size(), 1u);
   EXPECT_EQ(ours.couplings[0].coupling, (Coupling{5, 1, 1.5}));
   EXPECT_EQ(ours.latencies, (std::vector<LearnedLatency>{{"P", 1, 3, 3}, {"R", 4, 1, 2}}));
+  EXPECT_EQ(ours.coincidences,
+            (std::vector<LearnedCoincidence>{{"P", "Q", 5}, {"Q", "R", 3}, {"R", "R", 4}}));
 }
 
 }  // namespace

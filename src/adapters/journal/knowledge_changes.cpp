@@ -5,7 +5,8 @@
 
 namespace culprit::journal {
 
-KnowledgeChanges::KnowledgeChanges(const Knowledge& knowledge) : knowledge_(knowledge) {
+KnowledgeChanges::KnowledgeChanges(const Knowledge& knowledge)
+    : knowledge_(knowledge), coincidences_(knowledge.coincidences) {
   for (std::size_t s = 0; s < knowledge.rules.strategies.size(); ++s)
     beliefs_.push_back(knowledge.beliefs[StrategyId(s)]);
   for (std::size_t r = 0; r < knowledge.rules.rules.size(); ++r) {
@@ -50,6 +51,10 @@ Learned KnowledgeChanges::learned() {
     transients_[r] = seen;
     for (LearnedLatency& each : named(rules.rules[r].name, seen))
       learned.latencies.push_back(std::move(each));
+  }
+  if (knowledge_.coincidences != coincidences_) {
+    learned.coincidences = named(knowledge_.coincidences, coincidences_, rules);
+    coincidences_ = knowledge_.coincidences;
   }
   return learned;
 }

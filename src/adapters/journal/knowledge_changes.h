@@ -33,6 +33,7 @@ class KnowledgeChanges {
   std::vector<std::vector<Couplings::Learned>> couplings_;
   std::vector<Latencies::Learned> latencies_;
   std::vector<Transients::Seen> transients_;
+  Coincidences coincidences_;
 
   KnownRobot robot_;
   std::uint64_t robot_changes_ = 0;

@@ -9,6 +9,20 @@ namespace {
 constexpr std::string_view kClears = " clears by itself";
 constexpr std::string_view kStays = " stays";
 
+void merge_coincidences(std::vector<LearnedCoincidence>& ours,
+                        const std::vector<LearnedCoincidence>& theirs) {
+  for (const LearnedCoincidence& each : theirs) {
+    const auto known = std::ranges::find_if(ours, [&](const LearnedCoincidence& o) {
+      return o.rule == each.rule && o.other == each.other;
+    });
+    if (known == ours.end()) {
+      ours.push_back(each);
+    } else {
+      known->count = std::min(known->count, Coincidences::kMost - each.count) + each.count;
+    }
+  }
+}
+
 }  // namespace
 
 Belief grown_from(const Belief& prior, const LearnedBelief& learned) {
@@ -39,6 +53,26 @@ std::optional<std::pair<std::string, Transients::Seen>> transients_from(
     return std::pair(rule(kStays), Transients::Seen{0, learned.count, {}});
   if (!learned.rule.ends_with(kClears)) return std::nullopt;
   return std::pair(rule(kClears), Transients::Seen{learned.count, 0, from_seconds(learned.most_s)});
+}
+
+LearnedCoincidence coincidence_of(std::string one, std::string other, int count) {
+  if (other < one) std::swap(one, other);
+  return {std::move(one), std::move(other), count};
+}
+
+std::vector<LearnedCoincidence> named(const Coincidences& coincidences, const Coincidences& before,
+                                      const RuleSet& rules) {
+  std::vector<LearnedCoincidence> all;
+  for (std::size_t r = 0; r < rules.rules.size(); ++r) {
+    const int count = coincidences.times(RuleId(r));
+    const std::string& name = rules.rules[r].name;
+    if (count != before.times(RuleId(r))) all.push_back({name, name, count});
+  }
+  for (const auto& [pair, count] : coincidences.pairs()) {
+    if (count != before.together(pair.first, pair.second))
+      all.push_back(coincidence_of(rules[pair.first].name, rules[pair.second].name, count));
+  }
+  return all;
 }
 
 void merge(Learned& learned, const Learned& other) {
@@ -82,6 +116,7 @@ void merge(Learned& learned, const Learned& other) {
       ours->most_s = std::max(ours->most_s, theirs.most_s);
     }
   }
+  merge_coincidences(learned.coincidences, other.coincidences);
 }
 
 }  // namespace culprit::journal

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "knowledge/beliefs.h"
+#include "knowledge/coincidences.h"
 #include "knowledge/couplings.h"
 #include "knowledge/latencies.h"
 #include "knowledge/transients.h"
@@ -45,19 +46,35 @@ std::array<LearnedLatency, 2> named(const std::string& rule, const Transients::S
 std::optional<std::pair<std::string, Transients::Seen>> transients_from(
     const LearnedLatency& learned);
 
+// How often the failures of two rules began together; of a rule with itself: how often it began.
+struct LearnedCoincidence {
+  std::string rule;  // not after `other` in the alphabet
+  std::string other;
+  int count = 0;  // 0: nothing is known any more
+  bool operator==(const LearnedCoincidence&) const = default;
+};
+LearnedCoincidence coincidence_of(std::string one, std::string other, int count);
+// The counts that differ from `before`, which is of the same rules.
+std::vector<LearnedCoincidence> named(const Coincidences& coincidences, const Coincidences& before,
+                                      const RuleSet& rules);
+
 struct Learned {
   std::vector<LearnedBelief> beliefs;
   std::vector<LearnedCoupling> couplings;
   std::vector<LearnedLatency> latencies;
+  // They change with each detection. So they make no rows, and nobody waits until they are on the disk.
+  std::vector<LearnedCoincidence> coincidences{};
 
-  bool is_empty() const { return beliefs.empty() && couplings.empty() && latencies.empty(); }
+  bool has_outcomes() const { return !beliefs.empty() || !couplings.empty() || !latencies.empty(); }
+  bool is_empty() const { return !has_outcomes() && coincidences.empty(); }
 };
 
 // `learned` as a belief that grows from `prior`: to the last bit what it was if the prior is the
 // same; otherwise the designer changed the rule file, and what was counted is added to the new one.
 Belief grown_from(const Belief& prior, const LearnedBelief& learned);
 
-// Adds what `other` counted to `learned`: beliefs, couplings and latencies of a fleet become one.
+// Adds what `other` counted to `learned`: beliefs, couplings, latencies and coincidences of a fleet
+// become one.
 void merge(Learned& learned, const Learned& other);
 
 }  // namespace culprit::journal

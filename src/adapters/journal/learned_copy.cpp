@@ -51,6 +51,9 @@ void forget(Learned& learned, const std::string& rule) {
   std::erase_if(learned.latencies, [&](const LearnedLatency& each) {
     return rule.empty() || each.rule == rule || each.rule.starts_with(rule + " ");
   });
+  std::erase_if(learned.coincidences, [&](const LearnedCoincidence& each) {
+    return rule.empty() || each.rule == rule || each.other == rule;
+  });
 }
 
 void follow(Learned& learned, std::string_view kind, const Json& body) {

@@ -1,6 +1,7 @@
 // A second copy of what was learned, in a file of its own beside the journal: "a.journal-learned".
 // It shows when the tables of the journal have changed, and what they were before; and, because it
-// names a row that the journal had, when the end of the journal is lost.
+// names a row that the journal had, when the end of the journal is lost. Coincidences, which make no
+// rows, are in it as they were when it was written last.
 #pragma once
 
 #include <filesystem>
@@ -28,10 +29,10 @@ Json body_of(const LearnedBelief& learned);
 Json body_of(const LearnedCoupling& learned);
 Json body_of(const LearnedLatency& learned);
 
-// The copy's content, with the newer rows of `journal` applied.
+// The copy's content, with the newer rows of `journal` applied: its coincidences may be older.
 Expected<Learned> brought_up_to_date(const LearnedCopy& copy, const Database& journal);
 
-// Whether both hold the same, in whatever order.
+// Whether both hold the same, in whatever order. Coincidences do not count.
 bool is_same(Learned a, Learned b);
 
 }  // namespace culprit::journal

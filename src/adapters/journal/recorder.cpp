@@ -36,6 +36,12 @@ void replace(Learned& learned, const Learned& news) {
                   [&](const LearnedLatency& old) { return old.rule == each.rule; });
     learned.latencies.push_back(each);
   }
+  for (const LearnedCoincidence& each : news.coincidences) {
+    std::erase_if(learned.coincidences, [&](const LearnedCoincidence& old) {
+      return old.rule == each.rule && old.other == each.other;
+    });
+    learned.coincidences.push_back(each);
+  }
 }
 
 // Older journals have no such rows, and no decision depends on them.
@@ -139,7 +145,7 @@ void Recorder::hand_over(Pending& step, std::span<const Command> commands,
   bool asks = false;
   if (decides) {
     has_to_wait =
-        !step.decided->learned.is_empty() || std::any_of(events.begin(), events.end(), is_order);
+        step.decided->learned.has_outcomes() || std::any_of(events.begin(), events.end(), is_order);
     for (const Command& command : commands) {
       if (is_read(command)) continue;
       asks = true;

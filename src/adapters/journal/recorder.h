@@ -3,9 +3,10 @@
 // The manager's thread keeps the steps that decide nothing, hands them over several at a time and
 // goes on; a thread of the recorder's own turns them into rows. Steps that decide nothing wait for
 // others, because each write costs whole pages of the disk, however little it is about; events and
-// requests are written soon. The manager waits only for a step that learned something, took an
+// requests are written soon. The manager waits only for a step that learned from an outcome, took an
 // order or requests changes that cannot be read back later: its rows are on the disk before any
-// request or message goes out. A request that can be settled by reading back (settled_here.h) waits
+// request or message goes out. Counts of failures that began together, which change with each
+// detection, are written soon: a killed process may lose the last of them. A request that can be settled by reading back (settled_here.h) waits
 // for one write to the intent file only, and is on the disk soon.
 //
 // If the file cannot be written, the manager does not wait: the robot is managed all the same. Rows

@@ -237,6 +237,28 @@ TEST_F(Recording, FailuresThatClearByThemselvesAreOnRecord) {
                                          {"Blurred stays", 1, 0, 0}}));
 }
 
+// The file is locked: waiting would take Recorder::kPatience.
+TEST_F(Recording, ADetectionDoesNotWaitUntilFailuresThatBeganTogetherAreOnTheDisk) {
+  const auto recorder = begin();
+  auto locked = lock_the_file();
+  knowledge.coincidences.began(RuleId(1), {});
+  knowledge.coincidences.began(RuleId(0), std::vector{RuleId(1)});
+  const auto began = std::chrono::steady_clock::now();
+  sees_a_failure(*recorder);
+  EXPECT_LT(std::chrono::steady_clock::now() - began, Recorder::kPatience / 2);
+  ASSERT_TRUE(locked.run("ROLLBACK"));
+  const auto learned = [&] {
+    return value_of(value_of(Reader::open(path)).learned()).coincidences;
+  };
+  const std::vector<LearnedCoincidence> once = {
+      {"Blurred", "Blurred", 1}, {"Blurred", "Silent", 1}, {"Silent", "Silent", 1}};
+  EXPECT_TRUE(comes_true([&] { return learned() == once; })) << "soon, without the next row";
+  knowledge.coincidences.began(RuleId(0), {});
+  sees_a_failure(*recorder);
+  EXPECT_TRUE(recorder->end());
+  EXPECT_THAT(learned(), testing::Contains(LearnedCoincidence{"Silent", "Silent", 2}));
+}
+
 // A thread that writes to such a disk may not come back.
 TEST_F(RecordingHere, WhileTheDiskDoesNotAnswerARequestWaitsForTheJournalAndNotForEver) {
   const auto recorder = begin();

@@ -38,7 +38,8 @@ CREATE TABLE IF NOT EXISTS latency(
   least REAL NOT NULL, most REAL NOT NULL  -- seconds
 ) WITHOUT ROWID;
 )sql",
-    // Made anew, which also works if the exposure is there and only the version is damaged.
+    // Couplings are made anew, which also works if the exposure is there and only the version is
+    // damaged.
     R"sql(
 ALTER TABLE coupling RENAME TO coupling_before;
 CREATE TABLE coupling(
@@ -48,6 +49,11 @@ CREATE TABLE coupling(
 ) WITHOUT ROWID;
 INSERT INTO coupling SELECT cause, effect, cleared, stayed, 0 FROM coupling_before;
 DROP TABLE coupling_before;
+CREATE TABLE IF NOT EXISTS coincidence(
+  rule TEXT NOT NULL, other TEXT NOT NULL,  -- the same: how often it began
+  count INTEGER NOT NULL,
+  PRIMARY KEY(rule, other)
+) WITHOUT ROWID;
 )sql"};
 
 // A reader takes what later versions added for empty.
@@ -108,6 +114,7 @@ Expected<void> check_schema(const Database& database) {
 
 bool has_latencies(const Database& database) { return is_of_version(database, 2); }
 bool has_exposure(const Database& database) { return is_of_version(database, 3); }
+bool has_coincidences(const Database& database) { return is_of_version(database, 3); }
 
 bool has_damaged_head(const Database& database) {
   constexpr int kNoCulpritYet = 1000;

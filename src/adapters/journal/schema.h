@@ -17,6 +17,7 @@ Expected<void> check_schema(const Database& database);
 // False for a journal of an older culprit, which has no such table or column.
 bool has_latencies(const Database& database);
 bool has_exposure(const Database& database);
+bool has_coincidences(const Database& database);
 
 // Whether it has the tables of a journal, but lacks the numbers in its head that mark it as one:
 // not those of any culprit that there may be.

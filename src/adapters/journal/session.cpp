@@ -30,8 +30,10 @@ bool is_latency(std::int64_t count, double least_s, double most_s) {
 }  // namespace
 
 Json to_json(const Learned& learned) {
-  Json json = {
-      {"beliefs", Json::array()}, {"couplings", Json::array()}, {"latencies", Json::array()}};
+  Json json = {{"beliefs", Json::array()},
+               {"couplings", Json::array()},
+               {"latencies", Json::array()},
+               {"coincidences", Json::array()}};
   for (const LearnedBelief& each : learned.beliefs)
     json["beliefs"].push_back({{"rule", each.rule},
                                {"strategy", each.strategy},
@@ -48,6 +50,9 @@ Json to_json(const Learned& learned) {
                                  {"count", each.count},
                                  {"least_s", each.least_s},
                                  {"most_s", each.most_s}});
+  for (const LearnedCoincidence& each : learned.coincidences)
+    json["coincidences"].push_back(
+        {{"rule", each.rule}, {"other", each.other}, {"count", each.count}});
   return json;
 }
 
@@ -57,8 +62,12 @@ Expected<Learned> learned_from_json(const Json& json) {
   Learned learned;
   const Json beliefs = json.value("beliefs", Json());
   const Json couplings = json.value("couplings", Json());
-  const Json latencies = json.value("latencies", Json::array());  // older culprits have none
-  if (!beliefs.is_array() || !couplings.is_array() || !latencies.is_array()) return damaged;
+  // Older culprits have none of these.
+  const Json latencies = json.value("latencies", Json::array());
+  const Json coincidences = json.value("coincidences", Json::array());
+  for (const Json* each : {&beliefs, &couplings, &latencies, &coincidences}) {
+    if (!each->is_array()) return damaged;
+  }
   for (const Json& each : beliefs) {
     const auto belief = pair_from(each, "belief");
     const auto prior = pair_from(each, "prior");
@@ -83,6 +92,12 @@ Expected<Learned> learned_from_json(const Json& json) {
     const double most = number_of(each, "most_s", -1);
     if (!is_latency(count, least, most)) return damaged;
     learned.latencies.push_back({text_of(each, "rule"), static_cast<int>(count), least, most});
+  }
+  for (const Json& each : coincidences) {
+    const std::int64_t count = integer_of(each, "count", -1);
+    if (count < 0 || count > Coincidences::kMost) return damaged;
+    learned.coincidences.push_back(
+        coincidence_of(text_of(each, "rule"), text_of(each, "other"), static_cast<int>(count)));
   }
   return learned;
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "journal/schema.h"
 
@@ -17,6 +19,19 @@ Expected<Link> link_from(const Database& database, std::string_view sql) {
   const auto hash = hash_from(statement->bytes(1));
   if (!hash) return Error{"it is damaged (a hash has not 32 bytes)"};
   return Link{statement->integer(0), *hash};
+}
+
+Expected<std::vector<LearnedCoincidence>> coincidences_in(const Database& database) {
+  std::vector<LearnedCoincidence> all;
+  if (!has_coincidences(database)) return all;
+  auto rows = database.prepare("SELECT rule, other, count FROM coincidence ORDER BY rule, other");
+  if (!rows) return Error{rows.error()};
+  auto row = rows->step();
+  for (; row && *row; row = rows->step())
+    all.push_back({std::string(rows->bytes(0)), std::string(rows->bytes(1)),
+                   static_cast<int>(rows->integer(2))});
+  if (!row) return Error{row.error()};
+  return all;
 }
 
 }  // namespace
@@ -60,6 +75,9 @@ Expected<Learned> read_learned(const Database& database) {
                                  static_cast<int>(latencies->integer(1)), latencies->real(2),
                                  latencies->real(3)});
   if (!row) return Error{row.error()};
+  auto coincidences = coincidences_in(database);
+  if (!coincidences) return Error{coincidences.error()};
+  learned.coincidences = std::move(*coincidences);
   return learned;
 }
 

@@ -63,7 +63,9 @@ bool is_damaged(const fs::path& path) {
   const bool has_hash = !hash || *hash == 0 || *hash == sizeof(Hash);
   if (!has_hash || Database::is_damaged(path, kLooks)) return true;
   constexpr std::array kNewerLooks = {"SELECT * FROM latency"};
-  return has_latencies(*database) && Database::is_damaged(path, kNewerLooks);
+  if (has_latencies(*database) && Database::is_damaged(path, kNewerLooks)) return true;
+  constexpr std::array kNewestLooks = {"SELECT * FROM coincidence"};
+  return has_coincidences(*database) && Database::is_damaged(path, kNewestLooks);
 }
 
 // The beliefs in a damaged file; nothing: they are lost.
@@ -168,9 +170,10 @@ Expected<void> Writer::compare(const Expected<std::optional<LearnedCopy>>& copy)
   if (!row) return Error{row.error()};
   // The copy is of another journal, which was replaced by this one.
   if (*row && hash_from(hash->bytes(0)) != second.newest.hash) return {};
-  const auto expected = brought_up_to_date(second, database_);
+  auto expected = brought_up_to_date(second, database_);
   const auto stored = learned();
   if (!expected || !stored) return Error{expected ? stored.error() : expected.error()};
+  expected->coincidences = stored->coincidences;
   if (is_same(*expected, *stored)) return {};
   remark_ = "learned values were damaged in the journal; culprit uses their second copy";
   return restore(*expected);
@@ -180,7 +183,8 @@ Expected<void> Writer::compare(const Expected<std::optional<LearnedCopy>>& copy)
 Expected<void> Writer::restore(const Learned& learned) {
   const Link before = newest_;
   auto done = database_.run(
-      "BEGIN IMMEDIATE; DELETE FROM belief; DELETE FROM coupling; DELETE FROM latency");
+      "BEGIN IMMEDIATE; DELETE FROM belief; DELETE FROM coupling; DELETE FROM latency; "
+      "DELETE FROM coincidence");
   const std::int64_t now = std::chrono::duration_cast<std::chrono::nanoseconds>(
                                std::chrono::system_clock::now().time_since_epoch())
                                .count();
@@ -238,7 +242,7 @@ Expected<void> Writer::append(const Batch& batch, std::int64_t now, Durability d
     session_ = session_before;
     return failure(path_, written.error());
   }
-  if (is_copy_due_ || !batch.learned.is_empty()) copy_learned();
+  if (is_copy_due_ || batch.learned.has_outcomes()) copy_learned();
   // Somebody may wait for what has to be durable.
   if (!is_durable) move_wal();
   return {};
@@ -298,6 +302,18 @@ Expected<void> Writer::keep(const Learned& learned, std::int64_t now) {
     const Entry entry{0, now, std::string(kind::kLatency), to_line(body_of(each))};
     if (const auto inserted = insert(entry); !inserted) return inserted;
   }
+  return keep(learned.coincidences);
+}
+
+Expected<void> Writer::keep(const std::vector<LearnedCoincidence>& coincidences) {
+  if (coincidences.empty()) return {};
+  auto row = database_.prepare("INSERT OR REPLACE INTO coincidence VALUES(?, ?, ?)");
+  if (!row) return Error{row.error()};
+  for (const LearnedCoincidence& each : coincidences) {
+    row->bind(1, std::string_view(each.rule)).bind(2, std::string_view(each.other));
+    row->bind(3, std::int64_t{each.count});
+    if (const auto done = row->step(); !done) return Error{done.error()};
+  }
   return {};
 }
 
@@ -318,7 +334,8 @@ Expected<int> Writer::forget(const std::string& rule, std::int64_t now) {
   for (const char* sql :
        {"DELETE FROM belief WHERE ?1 = '' OR rule = ?1",
         "DELETE FROM coupling WHERE ?1 = '' OR cause = ?1 OR effect = ?1",
-        "DELETE FROM latency WHERE ?1 = '' OR rule = ?1 OR instr(rule, ?1 || ' ') = 1"}) {
+        "DELETE FROM latency WHERE ?1 = '' OR rule = ?1 OR instr(rule, ?1 || ' ') = 1",
+        "DELETE FROM coincidence WHERE ?1 = '' OR rule = ?1 OR other = ?1"}) {
     auto statement = database_.prepare(sql);
     if (!statement) return failure(path_, statement.error());
     const auto deleted = statement->bind(1, std::string_view(rule)).step();

@@ -25,7 +25,7 @@ enum class Durability : std::uint8_t { kProcessEnd, kPowerFailure };
 
 struct Batch {
   std::vector<Entry> entries;  // without `id`
-  Learned learned;             // what changed; each change makes a row, too
+  Learned learned;             // what changed; each change makes a row, too, but of coincidences
 };
 
 class Writer {
@@ -80,6 +80,7 @@ class Writer {
   Expected<void> write(const Batch& batch, std::int64_t now);
   Expected<void> insert(Entry entry);
   Expected<void> keep(const Learned& learned, std::int64_t now);
+  Expected<void> keep(const std::vector<LearnedCoincidence>& coincidences);
   Expected<void> drop_old(std::int64_t now);
   Expected<void> check_name() const;
 

@@ -257,11 +257,17 @@ TEST(Faults, AJournalOfANewerCulpritIsLeftAlone) {
   EXPECT_THAT(unread.error(), HasSubstr("newer culprit"));
 }
 
-// As version 1 left it: without the table of latencies, and couplings without exposure.
-void make_old(const std::filesystem::path& path) {
+// As version 2 left it: couplings without exposure, and no table of coincidences.
+void make_version_2(const std::filesystem::path& path) {
   run_sql(path,
-          "DROP TABLE latency; ALTER TABLE coupling DROP COLUMN spared; "
-          "PRAGMA user_version = 1");
+          "DROP TABLE coincidence; ALTER TABLE coupling DROP COLUMN spared; "
+          "PRAGMA user_version = 2");
+}
+
+// As version 1 left it: also without the table of latencies.
+void make_old(const std::filesystem::path& path) {
+  make_version_2(path);
+  run_sql(path, "DROP TABLE latency; PRAGMA user_version = 1");
 }
 
 Writer open_with_couplings(const std::filesystem::path& path,
@@ -348,6 +354,92 @@ TEST(OlderFile, HasCouplingsWithoutExposure) {
     EXPECT_EQ(writer.remark(), "");
   }
   EXPECT_EQ(value_of(open(folder / "a.journal").learned()).couplings, later);
+}
+
+Writer open_with_coincidences(const std::filesystem::path& path,
+                              const std::vector<LearnedCoincidence>& coincidences) {
+  Writer writer = open(path);
+  Batch all;
+  all.learned.coincidences = coincidences;
+  EXPECT_TRUE(append(writer, all));
+  return writer;
+}
+
+const std::vector<LearnedCoincidence> kTogether = {{"Other", "Other", 5}, {"Other", "Rule", 3}};
+
+TEST(Writer, KeepsHowOftenFailuresBeganTogether) {
+  const TestFolder folder;
+  { const Writer first = open_with_coincidences(folder / "a.journal", kTogether); }
+  const Writer writer = open_with_coincidences(folder / "a.journal", {{"Other", "Rule", 4}});
+  EXPECT_EQ(writer.remark(), "");
+  const std::vector<LearnedCoincidence> now = {{"Other", "Other", 5}, {"Other", "Rule", 4}};
+  EXPECT_EQ(value_of(writer.learned()).coincidences, now);
+  EXPECT_EQ(value_of(value_of(Reader::open(folder / "a.journal")).learned()).coincidences, now);
+  EXPECT_EQ(writer.last_id(), 0) << "they make no rows";
+}
+
+TEST(OlderFile, OfVersion2HasNoFailuresThatBeganTogether) {
+  const TestFolder folder;
+  {
+    Writer writer = open_with_couplings(folder / "a.journal", {{"Rule", "Other", {2, 1, 0}}});
+    ASSERT_TRUE(append(writer, batch(3)));
+  }
+  make_version_2(folder / "a.journal");
+  EXPECT_TRUE(
+      value_of(value_of(Reader::open(folder / "a.journal")).learned()).coincidences.empty());
+  {
+    const Writer writer = open_with_coincidences(folder / "a.journal", kTogether);
+    EXPECT_EQ(writer.remark(), "");
+  }
+  const Writer writer = open_with_couplings(folder / "a.journal", {{"Rule", "Other", {2, 1, 3.5}}});
+  EXPECT_EQ(writer.remark(), "");
+  EXPECT_EQ(value_of(writer.learned()).coincidences, kTogether);
+  EXPECT_TRUE(verified(folder / "a.journal").findings.empty());
+}
+
+TEST(OlderFile, OnlyByItsVersionKeepsFailuresThatBeganTogether) {
+  const TestFolder folder;
+  { const Writer first = open_with_coincidences(folder / "a.journal", kTogether); }
+  run_sql(folder / "a.journal", "PRAGMA user_version = 2");
+  EXPECT_EQ(value_of(open(folder / "a.journal").learned()).coincidences, kTogether);
+}
+
+// Writing it takes the time of the disk. It need not be written, because no row names what it lacks.
+TEST(Writer, LeavesTheSecondCopyAloneForFailuresThatBeganTogether) {
+  const TestFolder folder;
+  const auto copied = [&] {
+    return value_of(read_copy(learned_beside(folder / "a.journal"))).value().learned.coincidences;
+  };
+  {
+    Writer writer = open_with_coincidences(folder / "a.journal", {{"Other", "Rule", 1}});
+    Batch all;
+    all.learned.coincidences = kTogether;
+    ASSERT_TRUE(append(writer, all));
+    EXPECT_EQ(copied(), (std::vector<LearnedCoincidence>{{"Other", "Rule", 1}}));
+  }
+  Writer writer = open(folder / "a.journal");
+  EXPECT_EQ(writer.remark(), "") << "an older copy is no damage";
+  EXPECT_EQ(value_of(writer.learned()).coincidences, kTogether);
+  Batch all;
+  all.learned.beliefs = {kBelief};
+  ASSERT_TRUE(append(writer, all));
+  EXPECT_EQ(copied(), kTogether);
+}
+
+TEST(Faults, TheSecondCopyRestoresTheRestAndKeepsFailuresThatBeganTogether) {
+  const TestFolder folder;
+  const std::vector<LearnedCoupling> couplings = {{"Rule", "Other", {2, 1, 3.5}}};
+  {
+    Writer writer = open_with_couplings(folder / "a.journal", couplings);
+    Batch all;
+    all.learned.coincidences = kTogether;
+    ASSERT_TRUE(append(writer, all));
+  }
+  run_sql(folder / "a.journal", "UPDATE coupling SET spared = 1000");
+  const Writer writer = open(folder / "a.journal");
+  EXPECT_THAT(writer.remark(), HasSubstr("second copy"));
+  EXPECT_EQ(value_of(writer.learned()).couplings, couplings);
+  EXPECT_EQ(value_of(writer.learned()).coincidences, kTogether);
 }
 
 TEST(OlderFile, OnlyByItsVersionHasTheExposureOfTheSecondCopy) {
@@ -541,6 +633,44 @@ TEST(Learned, LatenciesThatCannotBeAreRefused) {
   EXPECT_TRUE(learned_from_json(parse_json(R"({"beliefs":[],"couplings":[]})"))) << "of version 1";
 }
 
+TEST(Learned, FailuresThatBeganTogetherAreAddedUpInWhateverOrderTheyAreNamed) {
+  Learned ours = value_of(learned_from_json(parse_json(
+      R"({"beliefs":[],"couplings":[],"coincidences":[{"rule":"S","other":"R","count":2}]})")));
+  EXPECT_EQ(ours.coincidences, (std::vector<LearnedCoincidence>{{"R", "S", 2}}));
+  EXPECT_EQ(value_of(learned_from_json(parse_json(to_line(to_json(ours))))).coincidences,
+            ours.coincidences);
+  Learned theirs;
+  theirs.coincidences = {{"R", "R", Coincidences::kMost}, {"R", "S", 3}};
+  merge(ours, theirs);
+  merge(ours, theirs);
+  EXPECT_EQ(ours.coincidences,
+            (std::vector<LearnedCoincidence>{{"R", "S", 8}, {"R", "R", Coincidences::kMost}}));
+}
+
+TEST(Learned, CountsOfFailuresThatCannotBeAreRefused) {
+  for (const char* wrong :
+       {R"({})", R"([{"rule":"R","other":"S"}])", R"([{"rule":"R","other":"S","count":-1}])",
+        R"([{"rule":"R","other":"S","count":9000000000}])"}) {
+    EXPECT_FALSE(learned_from_json(
+        parse_json(R"({"beliefs":[],"couplings":[],"coincidences":)" + std::string(wrong) + "}")))
+        << wrong;
+  }
+}
+
+TEST(Learned, FailuresThatBeganTogetherAreNamedOnceTheyChange) {
+  RuleSet rules;
+  rules.rules.resize(2);
+  rules.rules[0].name = "S";
+  rules.rules[1].name = "R";
+  Coincidences before(rules);
+  before.began(RuleId(0), {});
+  Coincidences now = before;
+  EXPECT_TRUE(named(now, before, rules).empty());
+  now.began(RuleId(1), std::vector{RuleId(0)});
+  EXPECT_EQ(named(now, before, rules),
+            (std::vector<LearnedCoincidence>{{"R", "R", 1}, {"R", "S", 1}}));
+}
+
 TEST(Learned, GrowsFromANewPriorByWhatWasCounted) {
   EXPECT_EQ(grown_from({9, 1}, {"R", "s", {6, 7}, {5, 5}}), (Belief{10, 3}));
 }
@@ -552,12 +682,15 @@ TEST(Writer, ForgetsOneRuleOrAll) {
   all.learned.beliefs = {kBelief, {"Other", "s", {2, 1}, {1, 1}}};
   all.learned.couplings = {{"Rule", "Other", {1, 0}}};
   all.learned.latencies = {{"Other", 1, 2, 2}, {"Rule", 3, 0.5, 2}};
+  all.learned.coincidences = kTogether;
   ASSERT_TRUE(append(writer, all));
   EXPECT_EQ(value_of(writer.forget("Rule", kWrittenAt)), 1);
   EXPECT_EQ(value_of(writer.learned()).beliefs.size(), 1u);
   EXPECT_TRUE(value_of(writer.learned()).couplings.empty());
   EXPECT_EQ(value_of(writer.learned()).latencies,
             (std::vector<LearnedLatency>{{"Other", 1, 2, 2}}));
+  EXPECT_EQ(value_of(writer.learned()).coincidences,
+            (std::vector<LearnedCoincidence>{{"Other", "Other", 5}}));
   EXPECT_EQ(value_of(writer.forget("", kWrittenAt)), 1);
   EXPECT_TRUE(value_of(writer.learned()).is_empty());
   EXPECT_TRUE(verified(folder / "a.journal").findings.empty());

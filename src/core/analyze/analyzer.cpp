@@ -207,6 +207,8 @@ void Analyzer::detect(RuleId id, Time now) {
   const bool is_same = state.search.times > 0 && !is_proven(state.gone_since, now) &&
                        !knowledge_.rules[id].policies.on_change;
   left_off_.detected(id, now);
+  // An earlier process detected it.
+  const bool is_left_off = state.left_off.has_value();
   const bool is_said_to_be_exhausted = is_same && state.search.is_exhausted;
   state.recurring_since = recurs ? state.first_detected() : kNever;
   write_.transients.came_back(id);
@@ -231,7 +233,7 @@ void Analyzer::detect(RuleId id, Time now) {
     state.first_onset = state.onset->latest;
     state.worked_until = state.detection.last_false;
   }
-  if (!is_same && !recurs) note_coincidence(id);
+  if (!is_same && !recurs && !is_left_off) note_coincidence(id);
   for (const StrategyId strategy : knowledge_.rules[id].strategies) {
     const Strategy& last = knowledge_.rules[strategy];
     if (last.is_last_resort && !begins_anew(last)) write_.states.set_tried(strategy, false);

@@ -3,11 +3,16 @@
 #include <algorithm>
 
 namespace culprit {
+namespace {
+
+void count_up(int& count) { count = std::min(count, Coincidences::kMost - 1) + 1; }
+
+}  // namespace
 
 void Coincidences::began(RuleId rule, std::span<const RuleId> others) {
-  ++began_[rule.index];
+  count_up(began_[rule.index]);
   if (others.size() > kMostTogether) return;
-  for (const RuleId other : others) ++together_[ordered(rule, other)];
+  for (const RuleId other : others) count_up(together_[ordered(rule, other)]);
 }
 
 int Coincidences::together(RuleId a, RuleId b) const {
@@ -29,6 +34,17 @@ std::vector<RuleId> Coincidences::of(RuleId rule) const {
   }
   std::sort(all.begin(), all.end());
   return all;
+}
+
+void Coincidences::set(RuleId a, RuleId b, int count) {
+  (a == b ? began_[a.index] : together_[ordered(a, b)]) = count;
+}
+
+void Coincidences::forget(RuleId rule) {
+  began_[rule.index] = 0;
+  for (auto& [pair, count] : together_) {
+    if (pair.first == rule || pair.second == rule) count = 0;
+  }
 }
 
 }  // namespace culprit

@@ -7,10 +7,14 @@
 // i and j coincide if n_ij >= kLeast and n_ij >= kShare min(n_i, n_j). Then their repairs are staggered,
 // the one first this time and the other the next, so that one can see which repair clears the other
 // (Couplings).
+//
+// The journal keeps the counts, but no step waits until they are on the disk: a culprit that is killed may
+// lose the last one. A failure that an earlier process detected does not begin again with the next one.
 #pragma once
 
 #include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "language/rule_set.h"
@@ -23,25 +27,36 @@ class Coincidences {
   static constexpr double kShare = 0.6;
   // More failures at once than this are counted as one event, not as pairs.
   static constexpr std::size_t kMostTogether = 16;
+  static constexpr int kMost = 1'000'000'000;  // counts no further
+
+  using Pair = std::pair<RuleId, RuleId>;  // the lesser one first
 
   explicit Coincidences(const RuleSet& rules) : began_(rules.rules.size(), 0) {}
 
   // The failure began, together with these others.
   void began(RuleId rule, std::span<const RuleId> others);
 
+  // n_i
+  int times(RuleId rule) const { return began_[rule.index]; }
   // n_ij
   int together(RuleId a, RuleId b) const;
+  const std::map<Pair, int>& pairs() const { return together_; }
   bool coincide(RuleId a, RuleId b) const;
   // The rules that coincide with it, ascending.
   std::vector<RuleId> of(RuleId rule) const;
 
+  // For counts of an earlier run: n_ab, or n_a if both are the same rule.
+  void set(RuleId a, RuleId b, int count);
+  // All counts of the rule are zero.
+  void forget(RuleId rule);
+
+  bool operator==(const Coincidences&) const = default;
+
  private:
-  static std::pair<RuleId, RuleId> ordered(RuleId a, RuleId b) {
-    return a < b ? std::pair(a, b) : std::pair(b, a);
-  }
+  static Pair ordered(RuleId a, RuleId b) { return a < b ? Pair(a, b) : Pair(b, a); }
 
   std::vector<int> began_;
-  std::map<std::pair<RuleId, RuleId>, int> together_;
+  std::map<Pair, int> together_;
 };
 
 }  // namespace culprit

@@ -56,5 +56,27 @@ TEST_F(CoincidencesOfThree, AStormOfFailuresMakesNoPairs) {
   EXPECT_EQ(coincidences_.together(a_, b_), 0);
 }
 
+TEST_F(CoincidencesOfThree, CountsOfAnEarlierRunGoOn) {
+  coincidences_.set(b_, a_, 1);
+  coincidences_.set(a_, a_, 1);
+  coincidences_.set(b_, b_, Coincidences::kMost);
+  EXPECT_FALSE(coincidences_.coincide(a_, b_));
+  begin_together(a_, b_);
+  EXPECT_EQ(coincidences_.together(a_, b_), 2);
+  EXPECT_EQ(coincidences_.times(a_), 2);
+  EXPECT_EQ(coincidences_.times(b_), Coincidences::kMost);
+  EXPECT_TRUE(coincidences_.coincide(a_, b_));
+}
+
+TEST_F(CoincidencesOfThree, OnlyTheCountsOfOneRuleAreForgotten) {
+  for (int k = 0; k < 2; ++k) begin_together(a_, b_);
+  for (int k = 0; k < 2; ++k) begin_together(b_, c_);
+  coincidences_.forget(a_);
+  EXPECT_EQ(coincidences_.times(a_), 0);
+  EXPECT_EQ(coincidences_.together(a_, b_), 0);
+  EXPECT_EQ(coincidences_.times(b_), 4);
+  EXPECT_THAT(coincidences_.of(b_), ElementsAre(c_));
+}
+
 }  // namespace
 }  // namespace culprit

@@ -268,6 +268,7 @@ void Manager::forget(std::optional<RuleId> rule) {
     if (rule && effect != *rule) continue;
     knowledge_.latencies.forget(effect);
     knowledge_.transients.forget(effect);
+    knowledge_.coincidences.forget(effect);
   }
 }
 

@@ -85,6 +85,7 @@ class Manager : public ManagingSystem {
   void add_transients(RuleId rule, const Transients::Seen& seen) {
     knowledge_.transients.add(rule, seen);
   }
+  void set_coincidence(RuleId a, RuleId b, int count) { knowledge_.coincidences.set(a, b, count); }
   // Restores the state that earlier processes left: budgets, back-offs, silences, and the last
   // attempts.
   // Before the first step, and before resume().

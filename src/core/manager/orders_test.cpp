@@ -138,6 +138,20 @@ TEST(Orders, WhatWasLearnedIsForgotten) {
   EXPECT_TRUE(r.manager().knowledge().couplings.of(kCameraDead, kDark) == Coupling{});
 }
 
+TEST(Orders, HowOftenFailuresBeganTogetherIsForgotten) {
+  TestRobot r = robot();
+  const auto together = [&] {
+    return r.manager().knowledge().coincidences.together(kCameraDead, kDark);
+  };
+  r.manager().set_coincidence(kDark, kCameraDead, 3);
+  EXPECT_EQ(together(), 3);
+  r.order(order(Forget{kDark}));
+  EXPECT_EQ(together(), 0);
+  r.manager().set_coincidence(kDark, kCameraDead, 3);
+  r.order(order(Forget{}));
+  EXPECT_EQ(together(), 0);
+}
+
 TEST(Orders, HowLateARuleIsIsForgotten) {
   TestRobot r = robot();
   const auto count = [&] { return r.manager().knowledge().latencies.learned(kDark).count; };

@@ -13,6 +13,8 @@ Expected<Priors> add_priors(const std::filesystem::path& drilled,
   auto added = reader->learned();
   if (!added) return Error{added.error()};
   added->beliefs.clear();
+  // The drill chose which failures began together.
+  added->coincidences.clear();
   // Rules that the drill added are in no file.
   const auto is_own = [](const std::string& rule) { return rule.starts_with(kOwnRules); };
   std::erase_if(added->couplings,

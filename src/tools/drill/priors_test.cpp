@@ -30,7 +30,8 @@ TEST_F(DrillPriors, AreAddedToWhatTheRobotLearnedButSuccessRatesAreNot) {
         {{{"CameraDead", "redeploy", {3, 1}, {1, 1}}},
          {{"CameraDead", "FusionDead", {5, 0, 2}}, {"drill_abort_1", "FusionDead", {1, 0}}},
          {{"FusionDead", 4, 0.1, 0.3},
-          journal::named("FusionDead", Transients::Seen{3, 1, std::chrono::seconds(5)})[0]}});
+          journal::named("FusionDead", Transients::Seen{3, 1, std::chrono::seconds(5)})[0]},
+         {{"CameraDead", "FusionDead", 2}}});
   const auto added = add_priors(drilled, robot, 2);
   ASSERT_TRUE(added) << added.error();
   EXPECT_EQ(added->couplings, 1u);
@@ -41,6 +42,7 @@ TEST_F(DrillPriors, AreAddedToWhatTheRobotLearnedButSuccessRatesAreNot) {
   ASSERT_EQ(now.latencies.size(), 1u);
   EXPECT_EQ(now.latencies[0].rule, "FusionDead");
   EXPECT_TRUE(now.beliefs.empty());
+  EXPECT_TRUE(now.coincidences.empty()) << "the drill made them fail together";
 }
 
 TEST_F(DrillPriors, OfAJournalThatIsNotThereAreAnError) {

@@ -327,5 +327,84 @@ RULE Lost
   EXPECT_FALSE(repeated.difference) << "it begins with what the first process had learned";
 }
 
+// The camera and the arm, which the graph does not connect, fail at the same moments.
+constexpr const char* kSharedPort = R"(
+COMPONENT camera NODE /camera LAUNCH "camera"
+COMPONENT arm NODE /arm LAUNCH "arm"
+COMPONENT lidar NODE /lidar LAUNCH "lidar"
+RULE Blurred
+  POLICIES ERROR
+  TRIGGER blur > 0.5
+    STRATEGY redeploy 90 10
+      ADAPTATION camera redeploy 2
+RULE Stuck
+  POLICIES ERROR
+  TRIGGER effort > 0.5
+    STRATEGY redeploy_arm 90 10
+      ADAPTATION arm redeploy 2
+)";
+
+int times_together(const fs::path& path) {
+  for (const auto& each : value_of(value_of(journal::Reader::open(path)).learned()).coincidences) {
+    if (each.rule == "Blurred" && each.other == "Stuck") return each.count;
+  }
+  return 0;
+}
+
+struct SharedPort : testing::Test {
+  void measure(double both, Duration time) {
+    for (const Time end = robot.now + time; robot.now < end; robot.run_for(100ms)) {
+      robot.signal("blur", Value(both));
+      robot.signal("effort", Value(both));
+    }
+  }
+  // The second time is on record, and both failures are there.
+  void fail_twice(const fs::path& journal) {
+    for (int i = 0; i < 2; ++i) {
+      measure(0, 2min);
+      measure(1, 3s);
+    }
+    for (int i = 0; i < 1000 && times_together(journal) < 2; ++i) std::this_thread::sleep_for(10ms);
+    EXPECT_EQ(times_together(journal), 2) << transcript(robot);
+  }
+  const Coincidences& known() { return robot.manager().knowledge().coincidences; }
+
+  const TestFolder folder;
+  TestRobot robot{kSharedPort};
+};
+
+TEST_F(SharedPort, CountsFollowTheNamesOfTheRules) {
+  journal::Learned learned;
+  learned.coincidences = {{"Blurred", "Gone", 4}, {"Blurred", "Stuck", 3}, {"Stuck", "Stuck", 5}};
+  restore(robot.manager(), learned, robot.rules());
+  EXPECT_EQ(known().together(RuleId(1), RuleId(0)), 3);
+  EXPECT_EQ(known().times(RuleId(0)), 0);
+  EXPECT_EQ(known().times(RuleId(1)), 5);
+}
+
+TEST_F(SharedPort, ThatFailuresBeganTogetherIsKnownToTheNextProcess) {
+  for (const char* name : {"camera", "arm", "lidar"}) robot.add(name, {}, "/" + std::string(name));
+  Life first(folder / "first.journal", robot, kSharedPort);
+  robot.discover();
+  fail_twice(folder / "first.journal");
+  const Coincidences before = known();
+  first.die_after(0, true);
+  robot.leave("lidar");
+  for (int i = 0; i < 60 && !first.is_dead(); ++i) measure(1, 1s);
+  ASSERT_TRUE(first.is_dead());
+  {
+    const Life second(first.remains(), robot, kSharedPort);
+    EXPECT_EQ(known(), before);
+    measure(1, 10s);
+    for (const RuleId rule : {RuleId(0), RuleId(1)})
+      EXPECT_NE(robot.manager().knowledge().states[rule].phase, RulePhase::kQuiet);
+    EXPECT_EQ(known(), before) << "the next process detects them, but they have not begun again";
+  }
+  const journal::Reader reader = value_of(journal::Reader::open(first.remains()));
+  Recording recording = value_of(Recording::open(reader));
+  const auto repeated = value_of(repeat(recording, reader, std::make_unique<BayesPlanner>(), {}));
+  EXPECT_FALSE(repeated.difference) << "it begins with what the first process had counted";
+}
+
 }  // namespace
 }  // namespace culprit::replay

@@ -98,6 +98,11 @@ void restore(Manager& manager, const journal::Learned& learned, const RuleSet& r
     const auto rule = transients ? journal::find_rule(rules, transients->first) : std::nullopt;
     if (rule) manager.add_transients(*rule, transients->second);
   }
+  for (const journal::LearnedCoincidence& each : learned.coincidences) {
+    const auto rule = journal::find_rule(rules, each.rule);
+    const auto other = journal::find_rule(rules, each.other);
+    if (rule && other) manager.set_coincidence(*rule, *other, each.count);
+  }
 }
 
 std::unique_ptr<Manager> manager_for(const journal::Session& session, const RuleSet& rules,
