@@ -309,6 +309,17 @@ Json control_to_json(const Manager& manager, Time start) {
   return json;
 }
 
+// The evidence without which another component would be held responsible.
+Json hinges_to_json(const std::vector<Suspect>& suspects) {
+  Json list = Json::array();
+  for (const Suspect& suspect : suspects) {
+    for (const Evidence& each : suspect.evidence) {
+      if (!each.without.empty()) list.push_back({{"text", each.text}, {"without", each.without}});
+    }
+  }
+  return list;
+}
+
 Json incidents_to_json(const Manager& manager, Time start) {
   const RuleSet& rules = manager.knowledge().rules;
   Json list = Json::array();
@@ -324,6 +335,7 @@ Json incidents_to_json(const Manager& manager, Time start) {
          {"certain", each.is_certain},
          {"host", each.host.empty() ? Json(nullptr) : Json(each.host)},
          {"consequences", names_of(each.consequences, rules)},
+         {"hinges_on", hinges_to_json(manager.incidents().suspects_of(each.root))},
          {"needs_person", each.needs_person()},
          {"doing", course.doing},
          {"next", course.next}});

@@ -12,7 +12,7 @@ import { usePaced } from './paced'
 import { signalOf, toAddress } from './plotted'
 import { isIll, kLooks, type Look, rankOf } from './looks'
 import { blindRules, can, clockAt, conditionAt, culprits, graph, isLive, live, looks, now, robot, selected, state } from './store'
-import type { Candidate, Criticality, Evidence, ManagerEvent } from './types'
+import type { Candidate, Criticality, Evidence, ManagerEvent, Suspect } from './types'
 
 export const kWords: Record<Criticality, string> = {
   ERROR: 'error',
@@ -36,6 +36,24 @@ function EvidenceList({ evidence }: { evidence: Evidence[] }) {
         </li>
       ))}
     </ul>
+  )
+}
+
+// As culprit computed it with the decision.
+function WhatWouldChange({ suspects }: { suspects: Suspect[] }) {
+  const hinges = suspects.flatMap(({ evidence }) => (evidence ?? []).filter((each) => each.without))
+  if (hinges.length === 0) return null
+  return (
+    <>
+      <h3>What would change this</h3>
+      <ul class="evidence">
+        {hinges.map(({ text, without }) => (
+          <li>
+            Without “{text}”, <b>{without}</b> would be held responsible.
+          </li>
+        ))}
+      </ul>
+    </>
   )
 }
 
@@ -161,6 +179,7 @@ function Why({ failure, isOpen }: { failure: Failure; isOpen: boolean }) {
     <details class="why" open={isOpen}>
       <summary>Possible causes and repairs</summary>
       <Suspects decision={decision} rule={failure.rule} />
+      <WhatWouldChange suspects={decision.suspects ?? []} />
       <Onsets decision={decision} />
       <Candidates
         list={decision.candidates ?? []}
