@@ -105,7 +105,9 @@ function Onsets({ decision }: { decision: ManagerEvent }) {
         <tbody>
           {onsets.map(({ component, text, age, isFor }) => (
             <tr>
-              <th scope="row">{component}</th>
+              <th scope="row">
+                {component}: <small>{text}</small>
+              </th>
               <td class="axis">
                 <svg width="100%" height="16" aria-hidden="true">
                   <line x1={at(age)} x2={at(0)} y1="8" y2="8" />
@@ -113,7 +115,6 @@ function Onsets({ decision }: { decision: ManagerEvent }) {
                 </svg>
               </td>
               <td class="number">{lasting(age)} before</td>
-              <td>{text}</td>
             </tr>
           ))}
         </tbody>

@@ -327,12 +327,19 @@ async function guidesNewcomers(page, server) {
 
 async function tellsWhatWouldChange(page, server) {
   await become(page, server, kStates.ill, 'robot')
-  const explanation = page.getByRole('region', { name: 'Explanation' })
-  await explanation.getByText('camera exited').first().waitFor()
-  expect((await explanation.getByText('What would change this').count()) === 0, 'something would change a decision that hinges on nothing')
+  const why = page.getByRole('region', { name: 'Explanation' }).locator('.incident > .why').first() // of the root cause
+  await why.getByText('camera exited').first().waitFor()
+  expect((await why.getByText('What would change this').count()) === 0, 'something would change a decision that hinges on nothing')
   await become(page, server, hinging(kStates.ill), 'robot')
-  await explanation.getByText('Without “camera exited”, fusion would be held responsible.').first().waitFor()
-  await isLaidOut(page, 'what would change a decision')
+  await why.getByText('Without “camera exited”, fusion would be held responsible.').waitFor()
+  await why.getByText('What began first').click()
+  await why.getByRole('rowheader', { name: 'camera: camera exited' }).waitFor()
+  for (const [width, height] of [[1024, 768], [1440, 900]]) {
+    await page.setViewportSize({ width, height })
+    await isLaidOut(page, `the evidence of a decision, ${width} × ${height}`)
+    const hidden = await page.locator('.cause-first').evaluate((column) => column.scrollWidth - column.clientWidth)
+    expect(hidden <= 0, `the right column is ${hidden} pixels too wide at ${width} pixels`)
+  }
 }
 
 // The robot is drawn where it is, for as long as somebody looks; what is old looks old.
