@@ -309,14 +309,21 @@ Json control_to_json(const Manager& manager, Time start) {
   return json;
 }
 
-// The evidence without which another component would be held responsible.
-Json hinges_to_json(const std::vector<Suspect>& suspects) {
+// The evidence for the cause of each failure, if another component would be held responsible without it.
+Json hinges_to_json(const Incident& incident, const Manager& manager) {
   Json list = Json::array();
-  for (const Suspect& suspect : suspects) {
-    for (const Evidence& each : suspect.evidence) {
-      if (!each.without.empty()) list.push_back({{"text", each.text}, {"without", each.without}});
+  const auto add = [&](RuleId failure) {
+    for (const Suspect& suspect : manager.incidents().suspects_of(failure)) {
+      for (const Evidence& each : suspect.evidence) {
+        if (each.without.empty()) continue;
+        list.push_back({{"rule", manager.knowledge().rules[failure].name},
+                        {"text", each.text},
+                        {"without", each.without}});
+      }
     }
-  }
+  };
+  add(incident.root);
+  for (const RuleId failure : incident.consequences) add(failure);
   return list;
 }
 
@@ -335,7 +342,7 @@ Json incidents_to_json(const Manager& manager, Time start) {
          {"certain", each.is_certain},
          {"host", each.host.empty() ? Json(nullptr) : Json(each.host)},
          {"consequences", names_of(each.consequences, rules)},
-         {"hinges_on", hinges_to_json(manager.incidents().suspects_of(each.root))},
+         {"hinges_on", hinges_to_json(each, manager)},
          {"needs_person", each.needs_person()},
          {"doing", course.doing},
          {"next", course.next}});

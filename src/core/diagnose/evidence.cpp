@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "diagnose/known_down.h"
-#include "diagnose/otherwise.h"
 #include "diagnose/touched.h"
 
 namespace culprit::diagnose {
@@ -37,18 +36,20 @@ EvidenceSource source_of(Trouble trouble) {
 
 class Collector {
  public:
-  Collector(const Examination& found, const Knowledge& knowledge)
-      : causes_(found.causes()), diagnosis_(found.diagnosis()), knowledge_(knowledge) {}
+  Collector(const Otherwise& otherwise, const Examination& found, const Knowledge& knowledge)
+      : otherwise_(otherwise),
+        causes_(found.causes()),
+        diagnosis_(found.diagnosis()),
+        knowledge_(knowledge) {}
 
   std::vector<PieceOfEvidence> own(std::size_t i) {
-    const Otherwise otherwise(i, causes_, diagnosis_);
     const double explained = diagnosis_.explained(i);
     for (const ComponentId c : touched_by(causes_[i].rule, knowledge_)) {
       if (is_known_down(causes_[i].rule, knowledge_) && is_known_down(c, knowledge_))
         add(EvidenceSource::kKernel, name(c) + " exited or is stopped",
             knowledge_.components[c].process_since, logit(kKnownDown));
     }
-    if (all_.size() == 1) change(otherwise, otherwise.with_prior(kCoincidence));
+    if (all_.size() == 1) change(otherwise_.with_prior(kCoincidence));
     if (explained <= 0) {
       add(EvidenceSource::kMeasured, "nothing upstream is wrong", kLongAgo, kSurely);
     } else if (all_.empty()) {
@@ -68,7 +69,6 @@ class Collector {
   }
 
   std::vector<PieceOfEvidence> other(std::size_t j, std::size_t i) {
-    const Otherwise otherwise(i, causes_, diagnosis_);
     const CauseNode& node = causes_[j];
     const double weight = std::log(Coupling::kUsual) + kSurely;
     switch (node.kind) {
@@ -88,20 +88,20 @@ class Collector {
         add(EvidenceSource::kGraph, "no node offers " + node.channel, kLongAgo, weight);
         break;
     }
-    change(otherwise, otherwise.without(j));
+    change(otherwise_.without(j));
     const double timely = causes_.timely(j, i);
     const double kappa = diagnosis_.kappa(j, i);
     if (timely < 1) {
       add(EvidenceSource::kMeasured, name(causes_[i].rule) + " did not follow at once",
           node.onset.latest, std::log(timely));
-      change(otherwise, otherwise.if_passed(j, kappa));
+      change(otherwise_.if_passed(j, kappa));
     }
     if (kappa != Coupling::kUsual) {
       add(EvidenceSource::kLearned,
           kappa > Coupling::kUsual ? "they cleared together before"
                                    : "one stayed before when the other cleared",
           kLongAgo, std::log(kappa / Coupling::kUsual));
-      change(otherwise, otherwise.if_passed(j, Coupling::kUsual * timely));
+      change(otherwise_.if_passed(j, Coupling::kUsual * timely));
     }
     return heaviest_first();
   }
@@ -122,8 +122,8 @@ class Collector {
     all_.push_back({{source, std::move(text), age, bounded(log_odds)}});
   }
   // Without the last piece, `next` would be the likeliest.
-  void change(const Otherwise& otherwise, std::size_t next) {
-    if (next != otherwise.likeliest()) all_.back().otherwise = next;
+  void change(std::size_t next) {
+    if (next != otherwise_.likeliest()) all_.back().otherwise = next;
   }
   std::vector<PieceOfEvidence> heaviest_first() {
     std::stable_sort(all_.begin(), all_.end(),
@@ -135,6 +135,7 @@ class Collector {
   const std::string& name(RuleId rule) const { return knowledge_.rules[rule].name; }
   const std::string& name(ComponentId component) const { return knowledge_.rules[component].name; }
 
+  const Otherwise& otherwise_;
   const Causes& causes_;
   const Diagnosis& diagnosis_;
   const Knowledge& knowledge_;
@@ -143,9 +144,9 @@ class Collector {
 
 }  // namespace
 
-std::vector<PieceOfEvidence> evidence_for(std::size_t j, std::size_t i, const Examination& found,
-                                          const Knowledge& knowledge) {
-  Collector collector(found, knowledge);
+std::vector<PieceOfEvidence> evidence_for(std::size_t j, std::size_t i, const Otherwise& otherwise,
+                                          const Examination& found, const Knowledge& knowledge) {
+  Collector collector(otherwise, found, knowledge);
   return i == j ? collector.own(i) : collector.other(j, i);
 }
 

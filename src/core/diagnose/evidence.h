@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "diagnose/examination.h"
+#include "diagnose/otherwise.h"
 #include "knowledge/event.h"
 
 namespace culprit::diagnose {
@@ -33,8 +34,8 @@ struct PieceOfEvidence {
   std::optional<std::size_t> otherwise{};
 };
 // For suspect `j` of failure `i`, both nodes of found.causes(); the heaviest first. @pre j is i or one
-// of its causes
-std::vector<PieceOfEvidence> evidence_for(std::size_t j, std::size_t i, const Examination& found,
-                                          const Knowledge& knowledge);
+// of its causes; `otherwise` is of i
+std::vector<PieceOfEvidence> evidence_for(std::size_t j, std::size_t i, const Otherwise& otherwise,
+                                          const Examination& found, const Knowledge& knowledge);
 
 }  // namespace culprit::diagnose

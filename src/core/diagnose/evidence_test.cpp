@@ -23,10 +23,11 @@ class EvidenceFor : public ::testing::Test {
   std::vector<Evidence> of(const char* suspect, const char* failure) {
     const Examination found(*scene_, scene_->states.active());
     const Causes& causes = found.causes();
+    const std::size_t i = causes.index_of(scene_.rule(failure));
+    const Otherwise otherwise(i, causes, found.diagnosis());
+    const std::size_t j = causes.index_of(scene_.rule(suspect));
     std::vector<Evidence> all;
-    for (PieceOfEvidence& each :
-         evidence_for(causes.index_of(scene_.rule(suspect)), causes.index_of(scene_.rule(failure)),
-                      found, *scene_)) {
+    for (PieceOfEvidence& each : evidence_for(j, i, otherwise, found, *scene_)) {
       if (each.otherwise) each.evidence.without = scene_->rules[causes[*each.otherwise].rule].name;
       all.push_back(std::move(each.evidence));
     }
@@ -71,9 +72,10 @@ TEST_F(EvidenceFor, ASupplierInTroubleNeedsNoRule) {
   scene_.process("b", ProcessState::kGone);
   const Examination found(*scene_, scene_->states.active());
   const std::size_t i = found.causes().index_of(scene_.rule("C"));
+  const Otherwise otherwise(i, found.causes(), found.diagnosis());
   std::vector<std::string> all;
   for_each(found.causes().causes(i), [&](std::size_t j) {
-    for (const PieceOfEvidence& each : evidence_for(j, i, found, *scene_))
+    for (const PieceOfEvidence& each : evidence_for(j, i, otherwise, found, *scene_))
       all.push_back(each.evidence.text);
   });
   EXPECT_THAT(all, ElementsAre("b exited"));

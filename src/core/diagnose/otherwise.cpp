@@ -3,10 +3,14 @@
 namespace culprit::diagnose {
 
 Otherwise::Otherwise(std::size_t i, const Causes& causes, const Diagnosis& diagnosis)
-    : i_(i), prior_(diagnosis.prior(i)), in_loop_(diagnosis.of(i) / diagnosis.against_others(i)) {
+    : i_(i),
+      prior_(diagnosis.prior(i)),
+      in_loop_(diagnosis.of(i) / diagnosis.against_others(i)),
+      likeliest_(i) {
   for_each(causes.causes(i), [&](std::size_t j) {
     causes_.push_back({j, diagnosis.kappa(j, i) * causes.timely(j, i), diagnosis.of(j)});
   });
+  likeliest_ = likeliest(prior_, kNone, 0);
 }
 
 std::size_t Otherwise::likeliest(double prior, std::size_t changed, double passes) const {

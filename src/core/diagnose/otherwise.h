@@ -19,7 +19,7 @@ class Otherwise {
   Otherwise(std::size_t i, const Causes& causes, const Diagnosis& diagnosis);
 
   // As it was found.
-  std::size_t likeliest() const { return likeliest(prior_, kNone, 0); }
+  std::size_t likeliest() const { return likeliest_; }
   // If pi_i were `prior`.
   std::size_t with_prior(double prior) const { return likeliest(prior, kNone, 0); }
   // If node j, a cause of i, were not wrong.
@@ -41,6 +41,7 @@ class Otherwise {
   double prior_;
   double in_loop_;  // R_i / P(own i)
   std::vector<Cause> causes_;
+  std::size_t likeliest_;
 };
 
 }  // namespace culprit::diagnose

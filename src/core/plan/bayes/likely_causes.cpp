@@ -186,9 +186,10 @@ std::vector<Suspect> LikelyCauses::suspects(std::size_t failure) const {
                     });
   all.resize(shown);
   std::vector<Suspect> suspects;
+  const Otherwise otherwise(failure, causes_, diagnosis_);
   const ComponentId responsible = all.front().first.component;
   for (auto& [suspect, node] : all) {
-    for (PieceOfEvidence& piece : evidence_for(node, failure, found_, knowledge_)) {
+    for (PieceOfEvidence& piece : evidence_for(node, failure, otherwise, found_, knowledge_)) {
       if (piece.otherwise) {
         const ComponentId next = *piece.otherwise == failure ? likeliest_component(rule)
                                                              : component_of(*piece.otherwise);
