@@ -7,13 +7,13 @@
 namespace culprit::rule_graph {
 namespace {
 
-RuleGraph drawn(const std::string& text) {
+RuleGraph graph_in(const std::string& text) {
   const Source source("robot.rules", text);
   return graph_of(*check(source).rules, source);
 }
 
 TEST(RuleGraph, TellsWhereAFailureMaySpreadTo) {
-  const Json json = as_json(drawn(R"(COMPONENT camera NODE /camera
+  const Json json = as_json(graph_in(R"(COMPONENT camera NODE /camera
 COMPONENT fusion NODE /fusion
 COMPONENT pilot NODE /pilot
 COMPONENT lamp NODE /lamp
